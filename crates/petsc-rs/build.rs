@@ -53,13 +53,16 @@ const VARIABLES: &[&str] = &[
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=MPICC");
-    let petsc = pkg_config::Config::new().atleast_version("3.18").probe("PETSc").unwrap_or_else(|error| {
-        stop(&format!(
-            "PETSc >= 3.18 was not found by pkg-config under the name `PETSc`.\n\
+    let petsc = pkg_config::Config::new()
+        .atleast_version("3.18")
+        .probe("PETSc")
+        .unwrap_or_else(|error| {
+            stop(&format!(
+                "PETSc >= 3.18 was not found by pkg-config under the name `PETSc`.\n\
                  Debian, Ubuntu: apt install libpetsc-real-dev; a PETSc of your own: put its\n\
                  lib/pkgconfig directory into PKG_CONFIG_PATH.\n\n{error}"
-        ))
-    });
+            ))
+        });
     let mpi = build_probe_mpi::probe()
         .unwrap_or_else(|errors| stop(&format!("MPI was not found (mpicc on the PATH, or MPICC): {errors:?}")));
 
@@ -79,7 +82,9 @@ fn main() {
     for name in VARIABLES {
         builder = builder.allowlist_var(name);
     }
-    let bindings = builder.generate().unwrap_or_else(|error| stop(&format!("PETSc's headers were refused: {error}")));
+    let bindings = builder
+        .generate()
+        .unwrap_or_else(|error| stop(&format!("PETSc's headers were refused: {error}")));
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     bindings
         .write_to_file(out.join("bindings.rs"))

@@ -39,7 +39,9 @@ impl Options {
     /// Whether this chapter is walked through: all are, or the one that is named with or without `.md`.
     fn includes(&self, chapter: &Chapter) -> bool {
         let stem = chapter.file.trim_end_matches(".md");
-        self.only.as_ref().is_none_or(|name| name.trim_end_matches(".md") == stem)
+        self.only
+            .as_ref()
+            .is_none_or(|name| name.trim_end_matches(".md") == stem)
     }
 }
 
@@ -86,25 +88,44 @@ fn main() -> io::Result<ExitCode> {
     };
     let mut counts = Counts::default();
     let shared = reader_directory(options.is_full)?;
-    let chapters: Vec<Chapter> = chapters()?.into_iter().filter(|chapter| options.includes(chapter)).collect();
+    let chapters: Vec<Chapter> = chapters()?
+        .into_iter()
+        .filter(|chapter| options.includes(chapter))
+        .collect();
     if chapters.is_empty() {
-        println!("SUMMARY.md has no chapter {}", options.only.as_deref().unwrap_or_default());
+        println!(
+            "SUMMARY.md has no chapter {}",
+            options.only.as_deref().unwrap_or_default()
+        );
     }
     for chapter in &chapters {
         let start = Instant::now();
         let before = counts.passed + counts.failed;
         if chapter.is_tutorial() {
-            walk(chapter, reader_directory(options.is_full)?.path(), &options, &mut counts)?;
+            walk(
+                chapter,
+                reader_directory(options.is_full)?.path(),
+                &options,
+                &mut counts,
+            )?;
         } else {
             walk(chapter, shared.path(), &options, &mut counts)?;
         }
         let checks = counts.passed + counts.failed - before;
         if checks > 0 {
-            println!("{:<32} {checks:>3} checks {:>6.1} s", chapter.file, start.elapsed().as_secs_f64());
+            println!(
+                "{:<32} {checks:>3} checks {:>6.1} s",
+                chapter.file,
+                start.elapsed().as_secs_f64()
+            );
         }
     }
     counts.print();
-    Ok(if counts.failed == 0 && counts.passed > 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if counts.failed == 0 && counts.passed > 0 {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
 }
 
 /// Walks through a chapter in the reader's directory.
@@ -142,22 +163,41 @@ fn walk(chapter: &Chapter, directory: &Path, options: &Options, counts: &mut Cou
 fn reader_directory(is_full: bool) -> io::Result<TempDir> {
     let repository = repository();
     let directory = tempfile::tempdir()?;
-    let cases = Command::new("cp").arg("-r").arg(repository.join("cases")).arg(directory.path()).status()?;
+    let cases = Command::new("cp")
+        .arg("-r")
+        .arg(repository.join("cases"))
+        .arg(directory.path())
+        .status()?;
     if !cases.success() {
         return Err(io::Error::other("the cases could not be copied"));
     }
     fs::create_dir(directory.path().join("scripts"))?;
     let coarse = if is_full { "" } else { " --set accuracy=draft" };
     let run = format!("exec \"{}\" \"$@\"{coarse}\n", repository.join("scripts/run").display());
-    fs::write(directory.path().join("scripts/run"), format!("#!/usr/bin/env bash\n{run}"))?;
-    let allowed = Command::new("chmod").args(["+x", "scripts/run"]).current_dir(directory.path()).status()?;
-    if allowed.success() { Ok(directory) } else { Err(io::Error::other("chmod failed")) }
+    fs::write(
+        directory.path().join("scripts/run"),
+        format!("#!/usr/bin/env bash\n{run}"),
+    )?;
+    let allowed = Command::new("chmod")
+        .args(["+x", "scripts/run"])
+        .current_dir(directory.path())
+        .status()?;
+    if allowed.success() {
+        Ok(directory)
+    } else {
+        Err(io::Error::other("chmod failed"))
+    }
 }
 
 /// Runs the commands of a block and returns the fault of their exit code.
 fn run(block: &Block, directory: &Path, printed: &mut String) -> io::Result<Option<String>> {
-    let output = Command::new("bash").args(["-euo", "pipefail", "-c", &block.text]).current_dir(directory).output()?;
-    *printed = [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).concat();
+    let output = Command::new("bash")
+        .args(["-euo", "pipefail", "-c", &block.text])
+        .current_dir(directory)
+        .output()?;
+    *printed = [output.stdout, output.stderr]
+        .map(|text| String::from_utf8_lossy(&text).into_owned())
+        .concat();
     let expected = block.value("exit").map_or(Some(0), |code| code.parse().ok());
     let code = output.status.code();
     let is_right = code.is_some() && code == expected;
@@ -175,8 +215,12 @@ fn missing_line(text: &str, printed: &str) -> Option<String> {
 
 /// Whether a line is the pattern, in which `...` matches anything.
 fn matches_pattern(line: &str, pattern: &str) -> bool {
-    let Some((first, others)) = pattern.split_once("...") else { return line == pattern };
-    let Some(mut rest) = line.strip_prefix(first) else { return false };
+    let Some((first, others)) = pattern.split_once("...") else {
+        return line == pattern;
+    };
+    let Some(mut rest) = line.strip_prefix(first) else {
+        return false;
+    };
     let mut pieces: Vec<&str> = others.split("...").collect();
     let last = pieces.pop().unwrap_or_default();
     for piece in pieces {
@@ -198,7 +242,10 @@ fn write(block: &Block, directory: &Path, options: &Options) -> io::Result<Optio
     if let Some(name) = block.value("file") {
         fs::write(directory.join(name), text)?;
     } else if let Some(name) = block.value("append") {
-        fs::OpenOptions::new().append(true).open(directory.join(name))?.write_all(text.as_bytes())?;
+        fs::OpenOptions::new()
+            .append(true)
+            .open(directory.join(name))?
+            .write_all(text.as_bytes())?;
     }
     Ok(None)
 }

@@ -95,7 +95,9 @@ impl Block {
 
     /// The text after each `NAME=` in its attributes.
     pub fn values(&self, name: &str) -> impl Iterator<Item = &str> {
-        self.attributes.iter().filter_map(move |attribute| attribute.strip_prefix(name)?.strip_prefix('='))
+        self.attributes
+            .iter()
+            .filter_map(move |attribute| attribute.strip_prefix(name)?.strip_prefix('='))
     }
 
     /// Its text in a coarse run: every `coarse=KEY:VALUE` replaces one line.
@@ -105,9 +107,13 @@ impl Block {
     pub fn coarse_text(&self) -> Result<String, String> {
         let mut lines: Vec<String> = self.text.lines().map(str::to_owned).collect();
         for replacement in self.values("coarse") {
-            let (key, value) = replacement.split_once(':').ok_or(format!("coarse={replacement} has no colon"))?;
+            let (key, value) = replacement
+                .split_once(':')
+                .ok_or(format!("coarse={replacement} has no colon"))?;
             let mut same_key = lines.iter_mut().filter(|line| is_line_of(line, key));
-            let line = same_key.next().ok_or(format!("coarse={replacement}: no line begins with `{key} =`"))?;
+            let line = same_key
+                .next()
+                .ok_or(format!("coarse={replacement}: no line begins with `{key} =`"))?;
             if same_key.next().is_some() {
                 return Err(format!("coarse={replacement}: two lines begin with `{key} =`"));
             }
@@ -134,7 +140,10 @@ pub struct Link {
 impl Link {
     /// The link with this target at this byte of a text.
     pub fn at(text: &str, start: usize, target: &str) -> Link {
-        Link { line: line_at(text, start), target: target.to_owned() }
+        Link {
+            line: line_at(text, start),
+            target: target.to_owned(),
+        }
     }
 
     /// Whether it leads to another site.
@@ -223,13 +232,21 @@ pub fn blocks(text: &str) -> Vec<Block> {
     let mut found = Vec::new();
     let mut events = events(text);
     while let Some((event, range)) = events.next() {
-        let Event::Start(Tag::CodeBlock(CodeBlockKind::Fenced(words))) = event else { continue };
+        let Event::Start(Tag::CodeBlock(CodeBlockKind::Fenced(words))) = event else {
+            continue;
+        };
         let mut words = separated(&words).into_iter();
         let language = words.next().unwrap_or_default();
         let attributes = words.collect();
         let inside = events.by_ref().take_while(|(event, _)| matches!(event, Event::Text(_)));
         let lines = inside.map(|(_, range)| &text[range]).collect();
-        found.push(Block { line: line_at(text, range.start), range, language, attributes, text: lines });
+        found.push(Block {
+            line: line_at(text, range.start),
+            range,
+            language,
+            attributes,
+            text: lines,
+        });
     }
     found
 }
@@ -283,11 +300,18 @@ fn placed_links(text: &str) -> Vec<PlacedLink> {
             Event::Start(Tag::Paragraph) => paragraph = whole,
             Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => {
                 let inside = text[whole.clone()].strip_suffix(')');
-                let Some(words) = inside.and_then(|inside| inside.rfind("](")) else { continue };
+                let Some(words) = inside.and_then(|inside| inside.rfind("](")) else {
+                    continue;
+                };
                 let start = whole.start + words + 2;
                 let link = Link::at(text, start, &dest_url);
                 let target = start..whole.end - 1;
-                found.push(PlacedLink { link, whole, target, paragraph: paragraph.clone() });
+                found.push(PlacedLink {
+                    link,
+                    whole,
+                    target,
+                    paragraph: paragraph.clone(),
+                });
             }
             _ => {}
         }
@@ -314,11 +338,18 @@ pub fn relinked(text: &str, replace: impl Fn(&Link) -> String) -> String {
 pub fn pictures(text: &str) -> Vec<Picture> {
     let mut found = Vec::new();
     for PlacedLink { link, whole, .. } in placed_links(text) {
-        let comment = text[whole.end..].trim_start().strip_prefix("<!--").and_then(|rest| rest.split_once("-->"));
+        let comment = text[whole.end..]
+            .trim_start()
+            .strip_prefix("<!--")
+            .and_then(|rest| rest.split_once("-->"));
         if let Some((drawn, _)) = comment
             && text[whole].starts_with('!')
         {
-            found.push(Picture { line: link.line, target: link.target, drawn: drawn.trim().to_owned() });
+            found.push(Picture {
+                line: link.line,
+                target: link.target,
+                drawn: drawn.trim().to_owned(),
+            });
         }
     }
     found
@@ -328,7 +359,13 @@ pub fn pictures(text: &str) -> Vec<Picture> {
 /// (with or without a comment) is followed by its caption in a paragraph of the class `caption`.
 pub fn captioned(text: &str) -> String {
     let mut captioned = text.to_owned();
-    for PlacedLink { whole, target, paragraph, .. } in placed_links(text).into_iter().rev() {
+    for PlacedLink {
+        whole,
+        target,
+        paragraph,
+        ..
+    } in placed_links(text).into_iter().rev()
+    {
         let after = text.get(whole.end..paragraph.end).unwrap_or_default().trim_end();
         let is_alone = after.is_empty() || after.trim_start().starts_with("<!--") && after.ends_with("-->");
         if is_alone && whole.start == paragraph.start && text[whole.clone()].starts_with('!') {
@@ -343,25 +380,32 @@ pub fn captioned(text: &str) -> String {
 /// Numbers of the equations of a chapter, as its `\tag{...}` give them.
 pub fn tags(text: &str) -> Vec<String> {
     let tags = text.split("\\tag{").skip(1);
-    tags.filter_map(|rest| Some(rest.split_once('}')?.0.to_owned())).collect()
+    tags.filter_map(|rest| Some(rest.split_once('}')?.0.to_owned()))
+        .collect()
 }
 
 /// Numbers of the equations of the theory manual that a text cites: `3.2` for each `(T3.2)`.
 pub fn cited_equations(text: &str) -> Vec<String> {
     let cited = text.split("(T").skip(1).filter_map(|rest| rest.split_once(')'));
-    cited.map(|(number, _)| number.to_owned()).filter(|number| is_equation_number(number)).collect()
+    cited
+        .map(|(number, _)| number.to_owned())
+        .filter(|number| is_equation_number(number))
+        .collect()
 }
 
 /// Whether this is two numbers with a full stop between them.
 fn is_equation_number(text: &str) -> bool {
     let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
-    text.split_once('.').is_some_and(|(chapter, equation)| is_number(chapter) && is_number(equation))
+    text.split_once('.')
+        .is_some_and(|(chapter, equation)| is_number(chapter) && is_number(equation))
 }
 
 /// Anchor of a heading, given its line in the Markdown.
 pub fn anchor(heading: &str) -> String {
     let title = heading.trim_start_matches('#').trim().to_lowercase();
-    let kept = title.chars().filter(|letter| letter.is_alphanumeric() || matches!(letter, ' ' | '-' | '_'));
+    let kept = title
+        .chars()
+        .filter(|letter| letter.is_alphanumeric() || matches!(letter, ' ' | '-' | '_'));
     kept.map(|letter| if letter == ' ' { '-' } else { letter }).collect()
 }
 
@@ -370,7 +414,10 @@ mod tests {
     use super::*;
 
     fn link(line: usize, target: &str) -> Link {
-        Link { line, target: target.to_owned() }
+        Link {
+            line,
+            target: target.to_owned(),
+        }
     }
 
     #[test]
@@ -392,18 +439,39 @@ mod tests {
         let summary = "# Summary\n\n[Start](index.md)\n\n# Tutorials\n\n- [First run](tutorials/first-run.md)\n  \
             - [Draft]()\n    - [Deep](tutorials/deep/page.md)\n\n---\n\n[End](decisions.md)\n";
         let files = files_of_summary(summary);
-        assert_eq!(files, ["index.md", "tutorials/first-run.md", "tutorials/deep/page.md", "decisions.md"]);
+        assert_eq!(
+            files,
+            [
+                "index.md",
+                "tutorials/first-run.md",
+                "tutorials/deep/page.md",
+                "decisions.md"
+            ]
+        );
     }
 
     #[test]
     fn a_coarse_run_replaces_whole_lines() {
         let fence = "```toml,file=x.toml,coarse=accuracy:\"a, b\",coarse=cells:[4, 2]";
-        let block = &blocks(&format!("{fence}\naccuracy = \"fine\"\n  cells = [40, 20]  # many\nfor = 1\n```\n"))[0];
+        let block = &blocks(&format!(
+            "{fence}\naccuracy = \"fine\"\n  cells = [40, 20]  # many\nfor = 1\n```\n"
+        ))[0];
         assert_eq!(block.value("file"), Some("x.toml"));
-        assert_eq!(block.coarse_text().unwrap(), "accuracy = \"a, b\"\ncells = [4, 2]\nfor = 1\n");
+        assert_eq!(
+            block.coarse_text().unwrap(),
+            "accuracy = \"a, b\"\ncells = [4, 2]\nfor = 1\n"
+        );
         let with = |words: &str| blocks(&format!("```toml,{words}\ndt = 1\ndtmax = 2\nh = 1\nh = 2\n```\n"))[0].clone();
-        assert_eq!(with("coarse=dt:3").coarse_text().unwrap(), "dt = 3\ndtmax = 2\nh = 1\nh = 2\n");
-        assert!(with("coarse=steps:3").coarse_text().unwrap_err().contains("no line begins with `steps =`"));
+        assert_eq!(
+            with("coarse=dt:3").coarse_text().unwrap(),
+            "dt = 3\ndtmax = 2\nh = 1\nh = 2\n"
+        );
+        assert!(
+            with("coarse=steps:3")
+                .coarse_text()
+                .unwrap_err()
+                .contains("no line begins with `steps =`")
+        );
         assert!(with("coarse=h:3").coarse_text().unwrap_err().contains("two lines"));
         assert!(with("coarse=dt=3").coarse_text().unwrap_err().contains("no colon"));
     }
@@ -412,16 +480,25 @@ mod tests {
     fn pictures_name_the_file_that_is_drawn() {
         let text =
             "![no comment](a.png)\n\n![two lines\nof it](../b.png)<!-- x.out/b.png -->\n![c](c.png)\n<!-- c -->\n";
-        let picture =
-            |line, target: &str, drawn: &str| Picture { line, target: target.to_owned(), drawn: drawn.to_owned() };
-        assert_eq!(pictures(text), [picture(4, "../b.png", "x.out/b.png"), picture(5, "c.png", "c")]);
+        let picture = |line, target: &str, drawn: &str| Picture {
+            line,
+            target: target.to_owned(),
+            drawn: drawn.to_owned(),
+        };
+        assert_eq!(
+            pictures(text),
+            [picture(4, "../b.png", "x.out/b.png"), picture(5, "c.png", "c")]
+        );
     }
 
     #[test]
     fn captions_follow_pictures_that_are_paragraphs() {
         let text = "![a\nb](x.png)<!-- y.png -->\n\nsee ![c](z.png)\n\n```text\n\n![d](e.png)\n\n```\n";
         let below = "\n\n<div class=\"caption\">\n\na\nb\n\n</div>\n";
-        assert_eq!(captioned(text), text.replacen("y.png -->", &format!("y.png -->{below}"), 1));
+        assert_eq!(
+            captioned(text),
+            text.replacen("y.png -->", &format!("y.png -->{below}"), 1)
+        );
     }
 
     #[test]
@@ -434,7 +511,10 @@ mod tests {
     #[test]
     fn equations_are_numbered_and_cited() {
         assert_eq!(tags("$$\nx = 1 \\tag{3.2}\n$$\n$$ y \\tag{3.10} $$"), ["3.2", "3.10"]);
-        assert_eq!(cited_equations("F-bar (T3.2), (T3), (T x.1), (T3.x) and (T12.10)."), ["3.2", "12.10"]);
+        assert_eq!(
+            cited_equations("F-bar (T3.2), (T3), (T x.1), (T3.x) and (T12.10)."),
+            ["3.2", "12.10"]
+        );
     }
 
     #[test]

@@ -61,8 +61,17 @@ impl Manual {
     /// Collects what the chapters link to.
     fn read(chapters: Vec<Chapter>) -> io::Result<Manual> {
         let repository = repository();
-        let source = source().strip_prefix(&repository).map_err(io::Error::other)?.to_path_buf();
-        let mut manual = Manual { repository, source, chapters, files: BTreeSet::new(), binaries: BTreeSet::new() };
+        let source = source()
+            .strip_prefix(&repository)
+            .map_err(io::Error::other)?
+            .to_path_buf();
+        let mut manual = Manual {
+            repository,
+            source,
+            chapters,
+            files: BTreeSet::new(),
+            binaries: BTreeSet::new(),
+        };
         for chapter in manual.chapters.clone() {
             let page = manual.source.join(&chapter.file);
             manual.collect_files(&page, &chapter.text)?;
@@ -79,7 +88,12 @@ impl Manual {
         for link in internal_links(text) {
             let path = self.linked_file(page, &link);
             if !self.repository.join(&path).exists() {
-                return Err(io::Error::other(format!("{}:{}: no file {}", page.display(), link.line, link.target)));
+                return Err(io::Error::other(format!(
+                    "{}:{}: no file {}",
+                    page.display(),
+                    link.line,
+                    link.target
+                )));
             } else if self.is_binary(&path) {
                 self.binaries.insert(path);
             } else if !self.is_chapter(&path) {
@@ -103,11 +117,17 @@ impl Manual {
     fn linked_file(&self, page: &Path, link: &Link) -> PathBuf {
         let path = normalised(&page.parent().unwrap_or(page).join(link.path()));
         let readme = path.join("README.md");
-        if self.repository.join(&readme).is_file() { readme } else { path }
+        if self.repository.join(&readme).is_file() {
+            readme
+        } else {
+            path
+        }
     }
 
     fn is_chapter(&self, path: &Path) -> bool {
-        self.chapters.iter().any(|chapter| self.source.join(&chapter.file) == path)
+        self.chapters
+            .iter()
+            .any(|chapter| self.source.join(&chapter.file) == path)
     }
 
     /// Whether this is a file that is no text.
@@ -122,7 +142,10 @@ impl Manual {
         if self.is_chapter(path) {
             path.strip_prefix(&self.source).ok().map(Path::to_path_buf)
         } else if self.binaries.contains(path) {
-            Some(path.strip_prefix(&self.source).map_or_else(|_| files.join(path), Path::to_path_buf))
+            Some(
+                path.strip_prefix(&self.source)
+                    .map_or_else(|_| files.join(path), Path::to_path_buf),
+            )
         } else {
             self.files.contains(path).then(|| files.join(page_name(path)))
         }
@@ -130,7 +153,10 @@ impl Manual {
 
     /// Writes the chapters and the summary for mdBook.
     fn write_chapters(&self, destination: &Path) -> io::Result<()> {
-        write(&destination.join("SUMMARY.md"), &fs::read_to_string(source().join("SUMMARY.md"))?)?;
+        write(
+            &destination.join("SUMMARY.md"),
+            &fs::read_to_string(source().join("SUMMARY.md"))?,
+        )?;
         for chapter in &self.chapters {
             let page = self.source.join(&chapter.file);
             let text = relinked(&chapter.text, |link| self.target(&page, link).unwrap_or_default());
@@ -162,7 +188,11 @@ impl Manual {
             return Ok(preformatted(&list_of_files(&full_path)?));
         }
         let text = fs::read_to_string(full_path)?;
-        Ok(if is_markdown(path) { self.formatted(path, &text) } else { preformatted(&text) })
+        Ok(if is_markdown(path) {
+            self.formatted(path, &text)
+        } else {
+            preformatted(&text)
+        })
     }
 
     /// A Markdown file as HTML. Headings get their anchors; links to a file without a place become text.
@@ -203,7 +233,11 @@ impl Manual {
             place.set_extension("html");
         }
         let depth = self.place(page)?.components().count() - 1;
-        let anchor = if link.anchor().is_empty() { String::new() } else { format!("#{}", link.anchor()) };
+        let anchor = if link.anchor().is_empty() {
+            String::new()
+        } else {
+            format!("#{}", link.anchor())
+        };
         Some(format!("{}{}{anchor}", "../".repeat(depth), place.display()))
     }
 }
@@ -211,12 +245,18 @@ impl Manual {
 /// Name of the page with a file: `solve.html` for `solve.md`, `solve.rs.html` for `solve.rs`.
 fn page_name(path: &Path) -> PathBuf {
     // mdBook would shorten a link to `solve.md.html` in its page with all chapters.
-    if is_markdown(path) { path.with_extension("html") } else { PathBuf::from(format!("{}.html", path.display())) }
+    if is_markdown(path) {
+        path.with_extension("html")
+    } else {
+        PathBuf::from(format!("{}.html", path.display()))
+    }
 }
 
 /// Links of a text to files.
 fn internal_links(text: &str) -> impl Iterator<Item = Link> {
-    links(text).into_iter().filter(|link| !link.is_external() && !link.path().is_empty())
+    links(text)
+        .into_iter()
+        .filter(|link| !link.is_external() && !link.path().is_empty())
 }
 
 fn is_markdown(path: &Path) -> bool {
@@ -278,7 +318,10 @@ mod tests {
 
     #[test]
     fn a_missing_file_is_an_error() {
-        let chapter = Chapter { file: "index.md".to_owned(), text: "# Start\n\n[a](none.md)\n".to_owned() };
+        let chapter = Chapter {
+            file: "index.md".to_owned(),
+            text: "# Start\n\n[a](none.md)\n".to_owned(),
+        };
         let fault = Manual::read(vec![chapter]).err().unwrap().to_string();
         assert!(fault.ends_with("index.md:3: no file none.md"), "{fault}");
     }

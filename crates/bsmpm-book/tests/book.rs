@@ -52,9 +52,15 @@ fn assert_cases_are_valid(text_of: impl Fn(&Block) -> Result<String, String>) {
     for chapter in chapters().unwrap() {
         let mut alone = BTreeMap::new();
         let files = if chapter.is_tutorial() { &mut alone } else { &mut shared };
-        for block in blocks(&chapter.text).into_iter().filter(|block| block.language == "toml") {
+        for block in blocks(&chapter.text)
+            .into_iter()
+            .filter(|block| block.language == "toml")
+        {
             let place = place(&chapter, block.line);
-            let name = block.value("file").or(block.value("append")).unwrap_or_else(|| panic!("{place}: file=NAME"));
+            let name = block
+                .value("file")
+                .or(block.value("append"))
+                .unwrap_or_else(|| panic!("{place}: file=NAME"));
             let file = files.entry(name.to_owned()).or_default();
             assert_eq!(
                 file.is_empty(),
@@ -67,7 +73,11 @@ fn assert_cases_are_valid(text_of: impl Fn(&Block) -> Result<String, String>) {
                 continue;
             }
             let has_tests = file.contains("[element.");
-            let read = if has_tests { Case::of_element_tests } else { Case::from_bytes };
+            let read = if has_tests {
+                Case::of_element_tests
+            } else {
+                Case::from_bytes
+            };
             match (read(name, file.as_bytes(), &[]), block.is("wrong")) {
                 (Ok(_), false) | (Err(_), true) => cases += 1,
                 (Ok(_), true) => panic!("{place}: a valid case is called wrong"),
@@ -83,7 +93,11 @@ fn every_fence_is_known() {
     for chapter in chapters().unwrap() {
         for block in blocks(&chapter.text) {
             let place = place(&chapter, block.line);
-            assert!(LANGUAGES.contains(&block.language.as_str()), "{place}: language \"{}\"", block.language);
+            assert!(
+                LANGUAGES.contains(&block.language.as_str()),
+                "{place}: language \"{}\"",
+                block.language
+            );
             for attribute in &block.attributes {
                 let name = attribute.split('=').next().unwrap_or_default();
                 assert!(ATTRIBUTES.contains(&name), "{place}: {attribute}");
@@ -98,7 +112,11 @@ fn rust_code_is_a_doctest() {
     for chapter in chapters().unwrap() {
         let has_rust = blocks(&chapter.text).iter().any(|block| block.language == "rust");
         let include = format!("include_str!(\"{}\")", chapter.file);
-        assert!(!has_rust || library.contains(&include), "{} has Rust code, lib.rs has no {include}", chapter.file);
+        assert!(
+            !has_rust || library.contains(&include),
+            "{} has Rust code, lib.rs has no {include}",
+            chapter.file
+        );
     }
 }
 
@@ -116,7 +134,10 @@ fn the_catalogue_of_messages_is_current() {
 fn assert_is_current(file: &str, generated: &str, command: &str) {
     let committed = fs::read_to_string(source().join(file)).unwrap();
     let renew = format!("target/release/bsmpm {command} > crates/bsmpm-book/src/{file}");
-    assert!(committed == generated, "{file} is not what the program prints; renew it: {renew}");
+    assert!(
+        committed == generated,
+        "{file} is not what the program prints; renew it: {renew}"
+    );
 }
 
 #[test]
@@ -144,7 +165,11 @@ fn leads_somewhere(chapter: &Chapter, link: &Link) -> bool {
 /// Anchors of the headings of a file.
 fn anchors(path: &Path) -> BTreeSet<String> {
     let text = fs::read_to_string(path).unwrap();
-    prose(&text).lines().filter(|line| line.starts_with('#')).map(anchor).collect()
+    prose(&text)
+        .lines()
+        .filter(|line| line.starts_with('#'))
+        .map(anchor)
+        .collect()
 }
 
 #[test]
@@ -153,8 +178,16 @@ fn drawn_pictures_have_a_place_in_the_manual() {
         for picture in pictures(&chapter.text) {
             let path = normalised(&chapter.folder().join(&picture.target));
             let place = place(&chapter, picture.line);
-            assert!(path.starts_with(source().join("pictures")), "{place}: a full run would write {}", path.display());
-            assert!(!picture.drawn.starts_with(['/', '.']), "{place}: {} is not in the directory", picture.drawn);
+            assert!(
+                path.starts_with(source().join("pictures")),
+                "{place}: a full run would write {}",
+                path.display()
+            );
+            assert!(
+                !picture.drawn.starts_with(['/', '.']),
+                "{place}: {} is not in the directory",
+                picture.drawn
+            );
         }
     }
 }
@@ -164,7 +197,9 @@ fn every_chapter_is_in_the_summary() {
     let listed: Vec<String> = chapters().unwrap().into_iter().map(|chapter| chapter.file).collect();
     let files = files_below(&source(), "md").into_iter();
     let relative = files.map(|path| path.strip_prefix(source()).unwrap().to_string_lossy().into_owned());
-    let unlisted: Vec<String> = relative.filter(|file| file != "SUMMARY.md" && !listed.contains(file)).collect();
+    let unlisted: Vec<String> = relative
+        .filter(|file| file != "SUMMARY.md" && !listed.contains(file))
+        .collect();
     assert!(unlisted.is_empty(), "not in SUMMARY.md: {unlisted:?}");
     let different: BTreeSet<&String> = listed.iter().collect();
     assert_eq!(listed.len(), different.len(), "SUMMARY.md lists a chapter twice");
@@ -173,7 +208,10 @@ fn every_chapter_is_in_the_summary() {
 #[test]
 fn every_chapter_has_one_title() {
     for chapter in chapters().unwrap() {
-        let titles = prose(&chapter.text).lines().filter(|line| line.starts_with("# ")).count();
+        let titles = prose(&chapter.text)
+            .lines()
+            .filter(|line| line.starts_with("# "))
+            .count();
         // A page that a program writes says so first.
         let text = chapter.text.trim_start_matches(|c| c != '#');
         let is_first = chapter.text.starts_with("# ") || chapter.text.starts_with("<!--") && text.starts_with("# ");
@@ -183,7 +221,11 @@ fn every_chapter_has_one_title() {
 
 /// The chapters of the theory manual, in order.
 fn theory() -> Vec<Chapter> {
-    chapters().unwrap().into_iter().filter(|chapter| chapter.file.starts_with("theory/")).collect()
+    chapters()
+        .unwrap()
+        .into_iter()
+        .filter(|chapter| chapter.file.starts_with("theory/"))
+        .collect()
 }
 
 #[test]
@@ -192,12 +234,25 @@ fn equations_are_numbered_by_chapter() {
     for (number, chapter) in theory().iter().enumerate() {
         for tag in tags(&chapter.text) {
             let prefix = format!("{}.", number + 1);
-            assert!(tag.starts_with(&prefix), "{} is chapter {}: \\tag{{{tag}}}", chapter.file, number + 1);
+            assert!(
+                tag.starts_with(&prefix),
+                "{} is chapter {}: \\tag{{{tag}}}",
+                chapter.file,
+                number + 1
+            );
             assert!(known.insert(tag.clone()), "{}: a second \\tag{{{tag}}}", chapter.file);
         }
     }
-    for chapter in chapters().unwrap().iter().filter(|chapter| !chapter.file.starts_with("theory/")) {
-        assert!(tags(&chapter.text).is_empty(), "{}: only the theory manual numbers equations", chapter.file);
+    for chapter in chapters()
+        .unwrap()
+        .iter()
+        .filter(|chapter| !chapter.file.starts_with("theory/"))
+    {
+        assert!(
+            tags(&chapter.text).is_empty(),
+            "{}: only the theory manual numbers equations",
+            chapter.file
+        );
     }
 }
 
@@ -211,10 +266,16 @@ fn every_cited_equation_exists() {
     let mut wrong = Vec::new();
     for path in files {
         let text = fs::read_to_string(&path).unwrap();
-        let unknown = cited_equations(&text).into_iter().filter(|number| !known.contains(number));
+        let unknown = cited_equations(&text)
+            .into_iter()
+            .filter(|number| !known.contains(number));
         wrong.extend(unknown.map(|number| format!("{}: (T{number})", path.display())));
     }
-    assert!(wrong.is_empty(), "equations that the theory manual does not have:\n{}", wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "equations that the theory manual does not have:\n{}",
+        wrong.join("\n")
+    );
 }
 
 #[test]
@@ -225,7 +286,11 @@ fn mathematics_is_complete() {
             assert!(dollars % 2 == 0, "{}: an odd number of $ in: {paragraph}", chapter.file);
             for (number, formula) in paragraph.split('$').enumerate() {
                 // Every second piece is within dollars; `$$` leaves an empty piece on each side.
-                assert!(number % 2 == 0 || braces_match(formula), "{}: braces in: {formula}", chapter.file);
+                assert!(
+                    number % 2 == 0 || braces_match(formula),
+                    "{}: braces in: {formula}",
+                    chapter.file
+                );
             }
         }
     }

@@ -129,7 +129,9 @@ fn crates() -> PathBuf {
 
 /// Whether another theme names the file itself.
 fn is_named_elsewhere(file: &str, theme: &str) -> bool {
-    THEMES.iter().any(|(other, files)| *other != theme && files.contains(&file))
+    THEMES
+        .iter()
+        .any(|(other, files)| *other != theme && files.contains(&file))
 }
 
 /// The files of a theme, a folder with all its own that no other theme names.
@@ -163,7 +165,10 @@ fn tests_of(text: &str) -> Vec<TestRow> {
         } else {
             if is_test && let Some(name) = line.strip_prefix("fn ").and_then(|rest| rest.split('(').next()) {
                 let source = Some(first_sentence(&doc)).filter(|sentence| is_source(sentence));
-                tests.push(TestRow { statement: statement(name), source: source.unwrap_or_default() });
+                tests.push(TestRow {
+                    statement: statement(name),
+                    source: source.unwrap_or_default(),
+                });
             }
             doc.clear();
             is_test = false;
@@ -176,22 +181,35 @@ fn tests_of(text: &str) -> Vec<TestRow> {
 fn statement(name: &str) -> String {
     let words = name.replace('_', " ");
     let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    letters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// A text up to its first full stop, as a cell of a table.
 fn first_sentence(text: &str) -> String {
-    let end = text.match_indices(". ").map(|(at, _)| at).find(|at| !text[..*at].ends_with(" al"));
+    let end = text
+        .match_indices(". ")
+        .map(|(at, _)| at)
+        .find(|at| !text[..*at].ends_with(" al"));
     let sentence = end.map_or(text, |at| &text[..at]);
     sentence.trim_end_matches(['.', ':']).replace('|', "\\|")
 }
 
 /// Whether a sentence says what a test compares with: a publication with its year, a formula, or one of these words.
 fn is_source(sentence: &str) -> bool {
-    const WORDS: [&str; 6] =
-        ["Closed form:", "Reference:", "Theory:", "Invariance:", "Isotropy:", "Independent solution"];
-    let is_year =
-        |part: &str| part.get(..5).is_some_and(|year| year.ends_with(')') && year[..4].parse::<u16>().is_ok());
+    const WORDS: [&str; 6] = [
+        "Closed form:",
+        "Reference:",
+        "Theory:",
+        "Invariance:",
+        "Isotropy:",
+        "Independent solution",
+    ];
+    let is_year = |part: &str| {
+        part.get(..5)
+            .is_some_and(|year| year.ends_with(')') && year[..4].parse::<u16>().is_ok())
+    };
     let has_year = sentence.split('(').any(is_year) || sentence.split(", ").any(is_year);
     let has_formula = sentence.contains('`') && sentence.contains(" = ");
     has_year || has_formula || WORDS.iter().any(|word| sentence.starts_with(word))
@@ -205,7 +223,10 @@ fn page() -> String {
         for file in files_of(theme, names) {
             let text = fs::read_to_string(crates().join(&file)).unwrap_or_else(|error| panic!("{file}: {error}"));
             let tests = tests_of(&text);
-            assert!(!tests.is_empty() || !names.contains(&file.as_str()), "{file} has no test");
+            assert!(
+                !tests.is_empty() || !names.contains(&file.as_str()),
+                "{file} has no test"
+            );
             let short = file.rsplit('/').next().unwrap_or(&file);
             for TestRow { statement, source } in tests {
                 if source.is_empty() {
@@ -232,7 +253,10 @@ fn the_page_of_the_tests_is_current() {
     }
     let committed = fs::read_to_string(&path).unwrap_or_default();
     let renew = "BSMPM_RENEW=1 cargo test -p bsmpm-book --test tests_page";
-    assert!(committed == page(), "tests or their first sentences have changed since tests.md was made: {renew}");
+    assert!(
+        committed == page(),
+        "tests or their first sentences have changed since tests.md was made: {renew}"
+    );
 }
 
 #[test]
@@ -249,8 +273,14 @@ fn a_test_becomes_a_statement_with_its_source() {
     let text = "/// Lamé (1852): a cylinder. More.\n#[test]\nfn a_cylinder_is_lames() {\n}\n\n/// Help.\nfn help() {}\n\n\
                 /// It takes long.\n#[test]\nfn it_ends() {\n}\n";
     let tests = tests_of(text);
-    let found: Vec<_> = tests.iter().map(|test| (test.statement.as_str(), test.source.as_str())).collect();
-    assert_eq!(found, [("A cylinder is lames", "Lamé (1852): a cylinder"), ("It ends", "")]);
+    let found: Vec<_> = tests
+        .iter()
+        .map(|test| (test.statement.as_str(), test.source.as_str()))
+        .collect();
+    assert_eq!(
+        found,
+        [("A cylinder is lames", "Lamé (1852): a cylinder"), ("It ends", "")]
+    );
     assert!(
         is_source("`a = b`") && is_source("Reference: b") && is_source("Waves (Kramer, 1996)") && !is_source("(a)")
     );

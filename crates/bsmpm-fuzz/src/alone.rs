@@ -29,7 +29,13 @@ impl SerialRun {
         points.sort_by_cell(&model.grid);
         points.surface = model.boundary.surface();
         let (nodes, solver) = (model.grid.nodes(), Trusted(Skyline::new(&model.grid)));
-        Self { model, points, guess: vec![0.0; nodes * 2], halo: Alone { nodes }, solver }
+        Self {
+            model,
+            points,
+            guess: vec![0.0; nodes * 2],
+            halo: Alone { nodes },
+            solver,
+        }
     }
 
     /// Gives the points the stress that the case wants at the start.
@@ -105,5 +111,9 @@ impl LinearSolver for Trusted {
 }
 
 fn finite(solution: &[f64]) -> Result<(), SolveError> {
-    if solution.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(SolveError::NotFinite) }
+    if solution.iter().all(|x| x.is_finite()) {
+        Ok(())
+    } else {
+        Err(SolveError::NotFinite)
+    }
 }

@@ -14,7 +14,10 @@ const MOST: u64 = 4096;
 pub fn target(data: &[u8]) {
     let mut parts = data.split(|&byte| byte == SEPARATOR);
     let bytes = parts.next().unwrap_or_default();
-    let overrides: Vec<String> = parts.take(OVERRIDES).map(|part| String::from_utf8_lossy(part).into_owned()).collect();
+    let overrides: Vec<String> = parts
+        .take(OVERRIDES)
+        .map(|part| String::from_utf8_lossy(part).into_owned())
+        .collect();
     match Case::from_bytes("case.toml", bytes, &overrides) {
         Ok(case) => accepted(&case),
         Err(errors) => refused(&errors),
@@ -46,12 +49,18 @@ fn seeded<K: Kinematics<D>, const D: usize>(case: &Case, estimate: &Estimate) {
         bsmpm_scene::model::model::<K, D>(case).expect("a model of what is accepted");
     }
     let by_column = case.points_by_column();
-    assert_eq!((by_column.len(), by_column.iter().sum()), (case.grid.spans(0), estimate.points));
+    assert_eq!(
+        (by_column.len(), by_column.iter().sum()),
+        (case.grid.spans(0), estimate.points)
+    );
     let mut count = 0;
     for (number, seed) in seed::<K, D>(case, 0..columns).enumerate() {
         assert_eq!(seed.id, number as u64);
         assert!(usize::from(seed.material) < case.materials.len());
-        assert!(seed.volume > 0.0 && seed.volume.is_finite() && seed.mass >= 0.0 && seed.mass.is_finite(), "{seed:?}");
+        assert!(
+            seed.volume > 0.0 && seed.volume.is_finite() && seed.mass >= 0.0 && seed.mass.is_finite(),
+            "{seed:?}"
+        );
         for (x, axis) in seed.x.iter().zip(&case.grid.axes) {
             assert!((0.0..=axis.length()).contains(x), "{seed:?} of {axis:?}");
         }

@@ -33,13 +33,34 @@ pub struct Target {
 
 /// All targets.
 pub const TARGETS: [Target; 7] = [
-    Target { name: "case", run: case::target },
-    Target { name: "record", run: record::target },
-    Target { name: "manifest", run: manifest::target },
-    Target { name: "table", run: table::target },
-    Target { name: "step", run: step::target },
-    Target { name: "material", run: material::target },
-    Target { name: "spline", run: spline::target },
+    Target {
+        name: "case",
+        run: case::target,
+    },
+    Target {
+        name: "record",
+        run: record::target,
+    },
+    Target {
+        name: "manifest",
+        run: manifest::target,
+    },
+    Target {
+        name: "table",
+        run: table::target,
+    },
+    Target {
+        name: "step",
+        run: step::target,
+    },
+    Target {
+        name: "material",
+        run: material::target,
+    },
+    Target {
+        name: "spline",
+        run: spline::target,
+    },
 ];
 
 /// The target of that name.

@@ -45,11 +45,22 @@ fn draw(u: &mut Unstructured<'_>) -> Result<()> {
 /// What [`bsmpm_scene`] admits: E > 0, -1 < ν < ½, 0 ≤ ψ ≤ φ < 90°, c ≥ 0, σ_y > 0, H ≥ 0, a strength reduction of 0.1
 /// to 100, a strength that falls, 0 < κ < λ < 1, 0 < M < 3, μ_s ≤ μ_2; of any law also by height.
 fn material(u: &mut Unstructured<'_>) -> Result<Material> {
-    let elastic = Elastic { young: draw::size(u, -12.0, 20.0)?, poisson: poisson(u)? };
+    let elastic = Elastic {
+        young: draw::size(u, -12.0, 20.0)?,
+        poisson: poisson(u)?,
+    };
     let friction = draw::between(u, 0.0, 89.999)?.to_radians() * if u.ratio(1, 8)? { 1e-9 } else { 1.0 };
     let dilation = friction * draw::fraction(u)?;
-    let cohesion = if u.ratio(1, 4)? { 0.0 } else { draw::size(u, -12.0, 20.0)? };
-    let separation = if u.arbitrary()? { Separation::Forgotten } else { Separation::Closing };
+    let cohesion = if u.ratio(1, 4)? {
+        0.0
+    } else {
+        draw::size(u, -12.0, 20.0)?
+    };
+    let separation = if u.arbitrary()? {
+        Separation::Forgotten
+    } else {
+        Separation::Closing
+    };
     let reduction = if u.arbitrary()? { 1.0 } else { draw::size(u, -1.0, 2.0)? };
     let law = match u.int_in_range(0..=11)? {
         0 => Material::Hencky(Hencky { elastic }),
@@ -62,20 +73,31 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
             let (decay, part) = (*u.choose(&[Decay::Linear, Decay::Exponential])?, draw::fraction(u)?);
             let residual = (friction * part, dilation * part, cohesion * draw::fraction(u)?);
             let (peak, strain) = ((friction, dilation, cohesion), draw::size(u, -6.0, 3.0)?);
-            let (first, last) = if u.arbitrary()? { (peak, residual) } else { (residual, peak) };
+            let (first, last) = if u.arbitrary()? {
+                (peak, residual)
+            } else {
+                (residual, peak)
+            };
             Material::SofteningMohrCoulomb(SofteningMohrCoulomb::new(elastic, first, last, strain, decay))
         }
         6 => {
             let lambda = draw::between(u, 1e-4, 0.9)?;
             let (kappa, ratio) = (lambda * draw::between(u, 0.01, 0.99)?, draw::between(u, 0.01, 2.99)?);
-            let (given, ocr) = (if u.arbitrary()? { 0.0 } else { draw::size(u, -3.0, 9.0)? }, draw::size(u, 0.0, 3.0)?);
+            let (given, ocr) = (
+                if u.arbitrary()? { 0.0 } else { draw::size(u, -3.0, 9.0)? },
+                draw::size(u, 0.0, 3.0)?,
+            );
             Material::CamClay(CamClay::new(elastic, [kappa, lambda, ratio, given, ocr]))
         }
         7 => {
             let [fast, i_0] = [friction * draw::between(u, 1.0, 2.0)?, draw::size(u, -6.0, 3.0)?];
             let [diameter, density] = [draw::size(u, -9.0, 3.0)?, draw::size(u, -3.0, 6.0)?];
             let law = MuI::new(elastic, [friction, fast, i_0, diameter, density]);
-            Material::MuI(law.over(draw::size(u, -12.0, 6.0)?).filter(|_| u.ratio(3, 4).unwrap_or(true)).unwrap_or(law))
+            Material::MuI(
+                law.over(draw::size(u, -12.0, 6.0)?)
+                    .filter(|_| u.ratio(3, 4).unwrap_or(true))
+                    .unwrap_or(law),
+            )
         }
         _ => Material::MohrCoulomb(MohrCoulomb::new(elastic, friction, dilation, cohesion).separating(separation)),
     };
@@ -119,12 +141,30 @@ fn check(material: &Material, trial: &Symmetric, response: &Response, state: &[f
     let context = || format!("{material:?} at {trial:?}: {response:?}");
     let principal = response.principal_tau();
     let increments = [response.gap(), response.plastic_increment(), response.dissipation()];
-    let numbers = tau.0.iter().chain(&b_e.0).chain(&principal).chain(&increments).chain(state);
-    assert!(numbers.into_iter().all(|number| number.is_finite()), "not finite: {}", context());
-    assert!(principal[0] >= principal[1] && principal[1] >= principal[2], "order: {}", context());
+    let numbers = tau
+        .0
+        .iter()
+        .chain(&b_e.0)
+        .chain(&principal)
+        .chain(&increments)
+        .chain(state);
+    assert!(
+        numbers.into_iter().all(|number| number.is_finite()),
+        "not finite: {}",
+        context()
+    );
+    assert!(
+        principal[0] >= principal[1] && principal[1] >= principal[2],
+        "order: {}",
+        context()
+    );
     assert!(increments[0] >= 0.0 && increments[1] >= 0.0, "sign: {}", context());
     let tangent = response.linearise(&Tensor::new(0.3, -0.2, 0.1, 0.5, -0.4, 0.2, 0.1, 0.0, 0.6));
-    assert!(tangent.iter().all(|number| number.is_finite()), "tangent: {}", context());
+    assert!(
+        tangent.iter().all(|number| number.is_finite()),
+        "tangent: {}",
+        context()
+    );
     let scale = yield_scale(material, principal, state);
     if let Material::MuI(law) = material {
         // Sheared at a rate it lies beyond its surface at rest, and within that of the fastest shear.
@@ -133,18 +173,33 @@ fn check(material: &Material, trial: &Symmetric, response: &Response, state: &[f
         let fastest = material.with(law.elastic().clone(), &parameters);
         // Of a pressure that is a small difference of large moduli no more is left than their rounding.
         let (lambda, mu) = material.elastic().lame();
-        let strain = response.principal_eps_e().iter().fold(0.0_f64, |most, eps| most.max(eps.abs()));
+        let strain = response
+            .principal_eps_e()
+            .iter()
+            .fold(0.0_f64, |most, eps| most.max(eps.abs()));
         let rounding = 32.0 * f64::EPSILON * (3.0 * lambda.abs() + 2.0 * mu) * strain;
-        assert!(fastest.excess(principal, state) <= SAME * scale + rounding, "yield: {}", context());
+        assert!(
+            fastest.excess(principal, state) <= SAME * scale + rounding,
+            "yield: {}",
+            context()
+        );
         return;
     }
-    assert!(material.excess(principal, state) <= SAME * scale, "yield: {}", context());
+    assert!(
+        material.excess(principal, state) <= SAME * scale,
+        "yield: {}",
+        context()
+    );
     second_return(material, response, scale, state);
 }
 
 /// Size of the terms of the yield function, Pa.
 fn yield_scale(material: &Material, [first, second, third]: [f64; 3], state: &[f64]) -> f64 {
-    let strength = if material.yields() { material.excess([0.0; 3], state).abs() } else { 0.0 };
+    let strength = if material.yields() {
+        material.excess([0.0; 3], state).abs()
+    } else {
+        0.0
+    };
     first.abs() + second.abs() + third.abs() + strength
 }
 
@@ -157,7 +212,11 @@ fn second_return(material: &Material, response: &Response, scale: f64, state: &[
         return;
     }
     // Of elasticity by the pressure, K = p/κ; nothing is left of a stress that is less than the digits of b hold.
-    let bulk = if material.is_linear() { 0.0 } else { scale / material.parameters()[0] };
+    let bulk = if material.is_linear() {
+        0.0
+    } else {
+        scale / material.parameters()[0]
+    };
     let (lambda, mu) = material.elastic().lame();
     let stiffness = 3.0 * (lambda.abs() + bulk) + 2.0 * mu;
     if !material.is_linear() && 32.0 * f64::EPSILON * condition * stiffness > SAME * scale {
@@ -170,5 +229,8 @@ fn second_return(material: &Material, response: &Response, scale: f64, state: &[
     let rounding = 32.0 * f64::EPSILON * (condition * stiffness + elasticity * scale);
     let (before, after) = (response.principal_tau(), again.principal_tau());
     let change = (0..3).map(|k| (before[k] - after[k]).abs()).fold(0.0, f64::max);
-    assert!(change <= SAME * scale + rounding, "{material:?}: {response:?} became {again:?}, {change:e} {rounding:e}");
+    assert!(
+        change <= SAME * scale + rounding,
+        "{material:?}: {response:?} became {again:?}, {change:e} {rounding:e}"
+    );
 }

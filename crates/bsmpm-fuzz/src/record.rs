@@ -20,7 +20,9 @@ pub fn target(data: &[u8]) {
         0 => drop(try_folder(data, FILE)),
         1 => drop(try_folder(&signed(data), FILE)),
         _ => {
-            let Ok(record) = record(&mut Unstructured::new(data)) else { return };
+            let Ok(record) = record(&mut Unstructured::new(data)) else {
+                return;
+            };
             let text = serde_json::to_vec(&record).expect("a record is JSON");
             if let Some(found) = try_folder(&signed(&text), FILE) {
                 assert_eq!(found.record, record);
@@ -39,8 +41,19 @@ fn signed(body: &[u8]) -> Vec<u8> {
 fn record(u: &mut Unstructured<'_>) -> Result<CheckpointRecord> {
     let array = |u: &mut Unstructured<'_>| {
         let numbers = [ArrayNumber::U8, ArrayNumber::U16, ArrayNumber::U64, ArrayNumber::F64];
-        let count = |u: &mut Unstructured<'_>| if u.ratio(1, 8)? { u.arbitrary() } else { u.int_in_range(0..=2) };
-        Ok(RecordedArray { name: u.arbitrary()?, number: *u.choose(&numbers)?, rows: count(u)?, width: count(u)? })
+        let count = |u: &mut Unstructured<'_>| {
+            if u.ratio(1, 8)? {
+                u.arbitrary()
+            } else {
+                u.int_in_range(0..=2)
+            }
+        };
+        Ok(RecordedArray {
+            name: u.arbitrary()?,
+            number: *u.choose(&numbers)?,
+            rows: count(u)?,
+            width: count(u)?,
+        })
     };
     Ok(CheckpointRecord {
         schema: if u.ratio(1, 16)? { u.arbitrary()? } else { SCHEMA },
@@ -49,8 +62,14 @@ fn record(u: &mut Unstructured<'_>) -> Result<CheckpointRecord> {
         time_bits: u.arbitrary()?,
         case: u.arbitrary()?,
         ranks: u.arbitrary()?,
-        bytes: if u.ratio(1, 16)? { u.arbitrary()? } else { FILE.len() as u64 },
-        blake3: blake3::hash(if u.ratio(1, 16)? { b"another file" } else { FILE }).to_hex().to_string(),
+        bytes: if u.ratio(1, 16)? {
+            u.arbitrary()?
+        } else {
+            FILE.len() as u64
+        },
+        blake3: blake3::hash(if u.ratio(1, 16)? { b"another file" } else { FILE })
+            .to_hex()
+            .to_string(),
         arrays: (0..u.int_in_range(0..=3)?).map(|_| array(u)).collect::<Result<_>>()?,
     })
 }
@@ -59,7 +78,9 @@ fn record(u: &mut Unstructured<'_>) -> Result<CheckpointRecord> {
 fn try_folder(record: &[u8], file: &[u8]) -> Option<FoundCheckpoint> {
     FOLDER.with(|folder| {
         let path = folder.path().join("step_000000007.json");
-        fs::write(&path, record).and_then(|()| fs::write(path.with_extension("h5"), file)).expect("room for files");
+        fs::write(&path, record)
+            .and_then(|()| fs::write(path.with_extension("h5"), file))
+            .expect("room for files");
         let found = named(&path);
         let (searched, damaged) = newest(folder.path()).expect("a folder that can be read");
         assert_eq!(found.as_ref().ok(), searched.as_ref());
@@ -80,7 +101,10 @@ fn try_folder(record: &[u8], file: &[u8]) -> Option<FoundCheckpoint> {
 fn check(found: &FoundCheckpoint, file: &[u8], path: &Path) {
     let record = &found.record;
     assert_eq!(found.path, path.with_extension("h5"));
-    assert_eq!((record.bytes, &*record.blake3), (file.len() as u64, blake3::hash(file).to_hex().as_str()));
+    assert_eq!(
+        (record.bytes, &*record.blake3),
+        (file.len() as u64, blake3::hash(file).to_hex().as_str())
+    );
     assert!(record.schema == SCHEMA && record.time().is_finite());
     let held: u64 = record.arrays.iter().map(|array| array.bytes().expect("counted")).sum();
     assert!(held <= record.bytes);

@@ -71,15 +71,31 @@ fn check<const W: usize>(axis: &KnotVector, x: f64) {
     };
     let last = cell + 1 == axis.cells();
     let (from, to) = (axis.breakpoint(cell), axis.breakpoint(cell + 1));
-    assert!(from <= x && (x < to || (last && x == to)), "{x} in cell {cell} of {axis:?}");
+    assert!(
+        from <= x && (x < to || (last && x == to)),
+        "{x} in cell {cell} of {axis:?}"
+    );
     let (N, dN) = axis.basis::<W>(x, cell);
     assert!(N.iter().all(|N| *N >= 0.0), "{N:?} at {x} of {axis:?}");
     let sum: f64 = N.iter().sum();
-    assert!((sum - 1.0).abs() <= UNITY, "the sum is 1 + {:e} at {x} of {axis:?}", sum - 1.0);
+    assert!(
+        (sum - 1.0).abs() <= UNITY,
+        "the sum is 1 + {:e} at {x} of {axis:?}",
+        sum - 1.0
+    );
     let slopes = dN.map(|slope| slope * (to - from));
-    let (sum, size) = (slopes.iter().sum::<f64>(), slopes.iter().map(|slope| slope.abs()).sum::<f64>());
+    let (sum, size) = (
+        slopes.iter().sum::<f64>(),
+        slopes.iter().map(|slope| slope.abs()).sum::<f64>(),
+    );
     assert!(dN.iter().all(|slope| slope.is_finite()), "{dN:?} at {x} of {axis:?}");
-    assert!(size.is_finite() && sum.abs() <= UNITY * size, "{dN:?} at {x} of {axis:?}");
+    assert!(
+        size.is_finite() && sum.abs() <= UNITY * size,
+        "{dN:?} at {x} of {axis:?}"
+    );
     let place: f64 = N.iter().enumerate().map(|(a, N)| N * axis.greville(cell + a)).sum();
-    assert!((place - x).abs() <= 4.0 * UNITY * axis.length(), "Greville: {place} at {x} of {axis:?}");
+    assert!(
+        (place - x).abs() <= 4.0 * UNITY * axis.length(),
+        "Greville: {place} at {x} of {axis:?}"
+    );
 }

@@ -17,8 +17,12 @@ const STEPS: usize = 2;
 /// The choices of a case.
 pub fn target(data: &[u8]) {
     // What the bytes are too few for is no input.
-    let Ok(text) = scene::text(&mut Unstructured::new(data)) else { return };
-    let Ok(case) = Case::from_text("case.toml", &text, &[]) else { return };
+    let Ok(text) = scene::text(&mut Unstructured::new(data)) else {
+        return;
+    };
+    let Ok(case) = Case::from_text("case.toml", &text, &[]) else {
+        return;
+    };
     if case.points() <= POINTS {
         try_steps(&case);
     }
@@ -51,7 +55,11 @@ fn try_steps(case: &Case) {
             }
             Err(error) => {
                 assert!(!error.to_string().is_empty());
-                assert!((&run.points, &run.guess) == (&before.0, &before.1), "{error} left traces {}", context());
+                assert!(
+                    (&run.points, &run.guess) == (&before.0, &before.1),
+                    "{error} left traces {}",
+                    context()
+                );
                 return;
             }
         }
@@ -66,11 +74,29 @@ fn check(points: &Points<2>, grid: &Grid<2>, context: &dyn Fn() -> String) {
         if column.number() == bsmpm::points::Number::F64 {
             let mut bytes = Vec::new();
             (0..column.rows()).for_each(|p| column.put(p, &mut bytes));
-            let numbers = bytes.chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().expect("eight")));
-            assert!(numbers.into_iter().all(f64::is_finite), "{name} is not finite {}", context());
+            let numbers = bytes
+                .chunks_exact(8)
+                .map(|bytes| f64::from_le_bytes(bytes.try_into().expect("eight")));
+            assert!(
+                numbers.into_iter().all(f64::is_finite),
+                "{name} is not finite {}",
+                context()
+            );
         }
     }
-    assert!(points.x.iter().all(|x| grid.locate(x).is_some()), "outside {}", context());
-    assert!(points.F.iter().all(|F| F.determinant() > 0.0), "inside out {}", context());
-    assert!(points.eps_p.iter().all(|eps_p| *eps_p >= 0.0), "negative plastic strain {}", context());
+    assert!(
+        points.x.iter().all(|x| grid.locate(x).is_some()),
+        "outside {}",
+        context()
+    );
+    assert!(
+        points.F.iter().all(|F| F.determinant() > 0.0),
+        "inside out {}",
+        context()
+    );
+    assert!(
+        points.eps_p.iter().all(|eps_p| *eps_p >= 0.0),
+        "negative plastic strain {}",
+        context()
+    );
 }

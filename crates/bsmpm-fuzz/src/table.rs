@@ -20,9 +20,18 @@ pub fn target(data: &[u8]) {
 fn check(columns: &Columns) {
     let rows = columns.values[0].len();
     assert_eq!(columns.headings.len(), columns.values.len());
-    assert!(columns.values.iter().all(|column| column.len() == rows && column.iter().all(|value| value.is_finite())));
+    assert!(
+        columns
+            .values
+            .iter()
+            .all(|column| column.len() == rows && column.iter().all(|value| value.is_finite()))
+    );
     for heading in &columns.headings {
-        let first = columns.headings.iter().position(|other| other.name == heading.name).expect("there");
+        let first = columns
+            .headings
+            .iter()
+            .position(|other| other.name == heading.name)
+            .expect("there");
         assert_eq!(columns.get(&heading.name), Some(&columns.values[first][..]));
         assert_eq!(columns.unit(&heading.name), Some(&*columns.headings[first].unit));
     }
@@ -32,18 +41,37 @@ fn check(columns: &Columns) {
         return; // a name that was indented: at the beginning of a line it is a comment
     }
     let units = join(columns.headings.iter().map(|heading| heading.unit.clone()).collect());
-    let row = |row: usize| join(columns.values.iter().map(|column| format!("{:?}", column[row])).collect());
+    let row = |row: usize| {
+        join(
+            columns
+                .values
+                .iter()
+                .map(|column| format!("{:?}", column[row]))
+                .collect(),
+        )
+    };
     let text = format!("{names}#{units}{}", (0..rows).map(row).collect::<String>());
     let again = parse(&text).expect("what was read once");
     assert_eq!(&again, columns);
-    let bits = |columns: &Columns| columns.values.iter().flatten().map(|value| value.to_bits()).collect::<Vec<_>>();
+    let bits = |columns: &Columns| {
+        columns
+            .values
+            .iter()
+            .flatten()
+            .map(|value| value.to_bits())
+            .collect::<Vec<_>>()
+    };
     assert_eq!(bits(&again), bits(columns));
 }
 
 /// A motion lies between the rows around it and meets each.
 fn motion(columns: &Columns) {
     let [times, x, .., y] = &columns.values[..] else { return };
-    let rows: Vec<_> = times.iter().zip(x.iter().zip(y)).map(|(t, (x, y))| (*t, Vector::from([*x, *y]))).collect();
+    let rows: Vec<_> = times
+        .iter()
+        .zip(x.iter().zip(y))
+        .map(|(t, (x, y))| (*t, Vector::from([*x, *y])))
+        .collect();
     let admitted = |rows: &[(f64, Vector<2>)]| rows.windows(2).all(|pair| pair[0].0 < pair[1].0) && rows[0].0 > 0.0;
     if rows.is_empty() || !admitted(&rows) || rows.iter().any(|(_, moved)| moved.amax() > 1e300) {
         return; // those of a case begin after 0 and increase

@@ -33,17 +33,27 @@ impl Filled {
     /// Fills the file.
     pub fn new(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<Self, Error> {
         let temporary = temporary(path);
-        let written =
-            write(&temporary, fill).map(|file| Self { file, temporary: temporary.clone(), path: path.into() });
+        let written = write(&temporary, fill).map(|file| Self {
+            file,
+            temporary: temporary.clone(),
+            path: path.into(),
+        });
         written.map_err(|source| {
             let _ = fs::remove_file(&temporary);
-            Error::File { action: "write", path: path.to_owned(), source }
+            Error::File {
+                action: "write",
+                path: path.to_owned(),
+                source,
+            }
         })
     }
 
     /// Puts its bytes on the disk, then its name in the place of the temporary one; the folder is still to be synced.
     pub fn give_name(self) -> Result<(), Error> {
-        let named = self.file.sync_all().and_then(|()| fs::rename(&self.temporary, &self.path));
+        let named = self
+            .file
+            .sync_all()
+            .and_then(|()| fs::rename(&self.temporary, &self.path));
         named.map_err(Error::file("write", &self.path))
     }
 }
@@ -57,7 +67,10 @@ impl Drop for Filled {
 
 /// Puts the entry of a file in its folder on the disk.
 pub(crate) fn sync_folder(path: &Path) -> io::Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
     File::open(folder)?.sync_all()
 }
 

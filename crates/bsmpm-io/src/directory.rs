@@ -47,7 +47,13 @@ impl OutputDirectory {
     /// [`Error::Locked`] by a run that goes on, see [`Lock::take`]. [`Error::NotDirectory`], [`Error::Directory`] if
     /// the path is a file or cannot be made or written to, or if a link stands where one of the run's folders belongs.
     pub fn hold(path: &Path, unseen: Unseen) -> Result<Self, Error> {
-        let refused = |action| move |source| Error::Directory { action, path: path.to_owned(), source };
+        let refused = |action| {
+            move |source| Error::Directory {
+                action,
+                path: path.to_owned(),
+                source,
+            }
+        };
         let idle = match fs::metadata(path) {
             Ok(found) if !found.is_dir() => return Err(Error::NotDirectory { path: path.to_owned() }),
             Ok(_) => false,
@@ -55,10 +61,18 @@ impl OutputDirectory {
         };
         let lock = Some(Lock::take(path, unseen)?);
         // A link there would lead what is written out of the directory.
-        if let Some(folder) = FOLDERS.iter().map(|folder| path.join(folder)).find(|folder| is_no_folder(folder)) {
+        if let Some(folder) = FOLDERS
+            .iter()
+            .map(|folder| path.join(folder))
+            .find(|folder| is_no_folder(folder))
+        {
             return Err(Error::NotDirectory { path: folder });
         }
-        Ok(Self { path: path.to_owned(), lock, idle })
+        Ok(Self {
+            path: path.to_owned(),
+            lock,
+            idle,
+        })
     }
 
     /// Puts the first manifest of a new run there.
@@ -69,7 +83,13 @@ impl OutputDirectory {
     /// deleted then. [`Error::Directory`] if it cannot be written to.
     pub fn claim(mut self, existing: Existing, first: &Manifest) -> Result<Self, Error> {
         let path = &self.path;
-        let refused = |action| move |source| Error::Directory { action, path: path.clone(), source };
+        let refused = |action| {
+            move |source| Error::Directory {
+                action,
+                path: path.clone(),
+                source,
+            }
+        };
         let held = run_files(path).map_err(refused("read"))?;
         match (held.first(), existing) {
             (None, _) => {}
@@ -80,7 +100,11 @@ impl OutputDirectory {
             (Some(_), Existing::Delete) => delete_run(path, &held)?,
         }
         let refused = |error| match error {
-            Error::File { source, .. } => Error::Directory { action: "write to", path: path.clone(), source },
+            Error::File { source, .. } => Error::Directory {
+                action: "write to",
+                path: path.clone(),
+                source,
+            },
             other => other,
         };
         first.write(path).map_err(refused)?;
@@ -93,7 +117,11 @@ impl OutputDirectory {
     /// # Errors
     /// Those of [`Manifest::read`].
     pub fn run(&self) -> Result<Option<Manifest>, Error> {
-        if exists(&self.path.join(MANIFEST)) { Manifest::read(&self.path).map(Some) } else { Ok(None) }
+        if exists(&self.path.join(MANIFEST)) {
+            Manifest::read(&self.path).map(Some)
+        } else {
+            Ok(None)
+        }
     }
 
     /// Makes the run that is there go on as `manifest` says: what its `run.json` names and the manifest does not goes.
@@ -103,7 +131,10 @@ impl OutputDirectory {
     pub fn go_on(mut self, manifest: &Manifest) -> Result<Self, Error> {
         let before = self.run()?.map_or_else(Vec::new, |run| run.outputs);
         let kept = |name: &str| manifest.outputs.iter().any(|output| output.path == name);
-        let doomed = doomed(&self.path, before.iter().map(|output| &*output.path).filter(|name| !kept(name)))?;
+        let doomed = doomed(
+            &self.path,
+            before.iter().map(|output| &*output.path).filter(|name| !kept(name)),
+        )?;
         // What is left half deleted is still named by the older manifest.
         delete(&doomed)?;
         manifest.write(&self.path)?;
@@ -133,12 +164,20 @@ impl Drop for OutputDirectory {
 }
 
 fn occupied(path: &Path, found: &str, advice: &'static str) -> Error {
-    Error::Occupied { path: path.to_owned(), found: found.to_owned(), advice }
+    Error::Occupied {
+        path: path.to_owned(),
+        found: found.to_owned(),
+        advice,
+    }
 }
 
 /// The files of a run that a directory holds, relative to it.
 fn run_files(directory: &Path) -> io::Result<Vec<String>> {
-    let mut found: Vec<String> = FILES.iter().filter(|file| exists(&directory.join(file))).map(|&f| f.into()).collect();
+    let mut found: Vec<String> = FILES
+        .iter()
+        .filter(|file| exists(&directory.join(file)))
+        .map(|&f| f.into())
+        .collect();
     for folder in FOLDERS {
         let entries = match fs::read_dir(directory.join(folder)) {
             Err(error) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()) => continue,
@@ -194,7 +233,11 @@ fn delete_run(directory: &Path, held: &[String]) -> Result<(), Error> {
 fn doomed<'a>(directory: &Path, names: impl Iterator<Item = &'a str>) -> Result<Vec<PathBuf>, Error> {
     let mut doomed = Vec::new();
     for name in names {
-        let unsafe_output = |reason| Error::UnsafeOutput { path: directory.to_owned(), name: name.to_owned(), reason };
+        let unsafe_output = |reason| Error::UnsafeOutput {
+            path: directory.to_owned(),
+            name: name.to_owned(),
+            reason,
+        };
         if inspect(directory, name).map_err(unsafe_output)? {
             doomed.push(directory.join(name));
         }
@@ -205,7 +248,11 @@ fn doomed<'a>(directory: &Path, names: impl Iterator<Item = &'a str>) -> Result<
 fn delete(doomed: &[PathBuf]) -> Result<(), Error> {
     let refused = |path: &PathBuf| fs::remove_file(path).map_err(|source| (path.clone(), source));
     let deleted = doomed.iter().try_for_each(refused);
-    deleted.map_err(|(path, source)| Error::Directory { action: "empty", path, source })
+    deleted.map_err(|(path, source)| Error::Directory {
+        action: "empty",
+        path,
+        source,
+    })
 }
 
 /// Whether an output that a `run.json` names is there to be deleted, or why it must not be.
@@ -234,5 +281,7 @@ fn inspect(directory: &Path, name: &str) -> Result<bool, &'static str> {
 }
 
 fn has_our_ending(name: &str) -> bool {
-    Path::new(name).extension().is_some_and(|ending| ENDINGS.iter().any(|&ours| ending == ours))
+    Path::new(name)
+        .extension()
+        .is_some_and(|ending| ENDINGS.iter().any(|&ours| ending == ours))
 }

@@ -213,15 +213,25 @@ impl Error {
 
     /// For `map_err`: the system's error while `action` was done to the file `path`.
     pub fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
-        move |source| Self::File { action, path: path.to_owned(), source }
+        move |source| Self::File {
+            action,
+            path: path.to_owned(),
+            source,
+        }
     }
 
     pub(crate) fn checkpoint(path: &Path, reason: impl Into<String>) -> Self {
-        Self::Checkpoint { path: path.to_owned(), reason: reason.into() }
+        Self::Checkpoint {
+            path: path.to_owned(),
+            reason: reason.into(),
+        }
     }
 
     pub(crate) fn format(path: &Path, reason: impl Into<String>) -> Self {
-        Self::Format { path: path.to_owned(), reason: reason.into() }
+        Self::Format {
+            path: path.to_owned(),
+            reason: reason.into(),
+        }
     }
 }
 

@@ -63,9 +63,13 @@ mod tests {
 
     #[test]
     fn the_table_has_every_code_once() {
-        let rows = include_str!("exit.md").lines().filter_map(|line| line.strip_prefix("| ")?.split(" | ").next());
-        let documented: Vec<u8> =
-            rows.flat_map(|codes| codes.split(", ")).filter_map(|code| code.parse().ok()).collect();
+        let rows = include_str!("exit.md")
+            .lines()
+            .filter_map(|line| line.strip_prefix("| ")?.split(" | ").next());
+        let documented: Vec<u8> = rows
+            .flat_map(|codes| codes.split(", "))
+            .filter_map(|code| code.parse().ok())
+            .collect();
         assert_eq!(documented, ALL);
     }
 }

@@ -48,7 +48,10 @@ impl FailureMeasures {
     /// Of numbers that may not be finite.
     pub fn new(energy: f64, force: f64) -> Self {
         let finite = |number: f64| Some(number).filter(|number| number.is_finite());
-        Self { energy: finite(energy), force: finite(force) }
+        Self {
+            energy: finite(energy),
+            force: finite(force),
+        }
     }
 }
 
@@ -59,10 +62,19 @@ impl FailureReport {
     /// [`Error::NotFinite`] before anything is written; [`Error::File`] when the system refuses.
     pub fn write(&self, directory: &Path) -> Result<(), Error> {
         let path = directory.join(FAILURE);
-        let places = self.worst.iter().flat_map(|worst| worst.position.iter().copied().chain(worst.force));
+        let places = self
+            .worst
+            .iter()
+            .flat_map(|worst| worst.position.iter().copied().chain(worst.force));
         if let Some(value) = places.chain([self.time, self.dt]).find(|number| !number.is_finite()) {
-            return Err(Error::NotFinite { path, item: "failure".into(), value });
+            return Err(Error::NotFinite {
+                path,
+                item: "failure".into(),
+                value,
+            });
         }
-        atomic::replace(&path, |file| serde_json::to_writer_pretty(file, self).map_err(Into::into))
+        atomic::replace(&path, |file| {
+            serde_json::to_writer_pretty(file, self).map_err(Into::into)
+        })
     }
 }

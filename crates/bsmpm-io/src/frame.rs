@@ -70,14 +70,21 @@ impl FieldValues {
 impl Field {
     /// A physical quantity with `components` numbers per point, in SI units.
     pub fn real(name: &str, components: usize, values: Vec<f64>) -> Self {
-        Self { name: name.to_owned(), components, values: FieldValues::F64(values) }
+        Self {
+            name: name.to_owned(),
+            components,
+            values: FieldValues::F64(values),
+        }
     }
 }
 
 impl Frame {
     /// The numbers of the physical quantity `name` with `components` per point, if the frame has it.
     pub fn real(&self, name: &str, components: usize) -> Option<&[f64]> {
-        let field = self.fields.iter().find(|field| field.name == name && field.components == components)?;
+        let field = self
+            .fields
+            .iter()
+            .find(|field| field.name == name && field.components == components)?;
         match &field.values {
             FieldValues::F64(values) => Some(values),
             _ => None,
@@ -100,8 +107,16 @@ impl Frame {
             FieldValues::U16(_) => FieldValues::U16(Vec::new()),
         };
         let fields = self.fields.iter();
-        let fields = fields.map(|field| Field { values: none(&field.values), name: field.name.clone(), ..*field });
-        Self { position: Vec::new(), fields: fields.collect(), ..*self }
+        let fields = fields.map(|field| Field {
+            values: none(&field.values),
+            name: field.name.clone(),
+            ..*field
+        });
+        Self {
+            position: Vec::new(),
+            fields: fields.collect(),
+            ..*self
+        }
     }
 
     /// Whether the frame may be written to `path`.
@@ -111,7 +126,11 @@ impl Frame {
     /// its numbers for every point, [`Error::PointNotFinite`] for the first number that is infinite or none.
     pub fn check(&self, path: &Path) -> Result<(), Error> {
         if !self.time.is_finite() {
-            return Err(Error::NotFinite { path: path.to_owned(), item: "time".to_owned(), value: self.time });
+            return Err(Error::NotFinite {
+                path: path.to_owned(),
+                item: "time".to_owned(),
+                value: self.time,
+            });
         }
         self.check_finite(path, "position", 3, self.position.as_flattened())?;
         for (index, field) in self.fields.iter().enumerate() {
@@ -119,7 +138,12 @@ impl Frame {
             let expected = self.position.len() * field.components;
             if field.values.len() != expected || field.components == 0 {
                 let (item, found) = (field.name.clone(), field.values.len());
-                return Err(Error::Length { path: path.to_owned(), item, expected, found });
+                return Err(Error::Length {
+                    path: path.to_owned(),
+                    item,
+                    expected,
+                    found,
+                });
             }
             if let FieldValues::F64(values) = &field.values {
                 self.check_finite(path, &field.name, field.components, values)?;
@@ -138,11 +162,17 @@ impl Frame {
         } else {
             return Ok(());
         };
-        Err(Error::Name { path: path.to_owned(), name: name.clone(), reason })
+        Err(Error::Name {
+            path: path.to_owned(),
+            name: name.clone(),
+            reason,
+        })
     }
 
     fn check_finite(&self, path: &Path, field: &str, components: usize, values: &[f64]) -> Result<(), Error> {
-        let Some(bad) = values.iter().position(|value| !value.is_finite()) else { return Ok(()) };
+        let Some(bad) = values.iter().position(|value| !value.is_finite()) else {
+            return Ok(());
+        };
         Err(Error::PointNotFinite {
             path: path.to_owned(),
             field: field.to_owned(),
@@ -153,7 +183,11 @@ impl Frame {
     }
 
     fn id(&self, index: usize) -> u64 {
-        let ids = self.fields.iter().find(|field| field.name == "id").map(|field| &field.values);
+        let ids = self
+            .fields
+            .iter()
+            .find(|field| field.name == "id")
+            .map(|field| &field.values);
         match ids {
             Some(FieldValues::U64(ids)) => ids.get(index).copied().unwrap_or(index as u64),
             _ => index as u64,

@@ -58,7 +58,13 @@ impl Frames {
         fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
         atomic::remove_temporaries(&folder).map_err(Error::file("clear", &folder))?;
         let directory = directory.to_owned();
-        Ok(Self { directory, entries: Vec::new(), filled: Vec::new(), manifest: None, ending: None })
+        Ok(Self {
+            directory,
+            entries: Vec::new(),
+            filled: Vec::new(),
+            manifest: None,
+            ending: None,
+        })
     }
 
     /// Goes on with the frames of a run, those of `entries` that are there, and lists them again.
@@ -68,7 +74,9 @@ impl Frames {
     pub fn resume(directory: &Path, entries: Vec<Entry>) -> Result<Self, Error> {
         let mut frames = Self::create(directory)?;
         frames.entries = entries;
-        frames.entries.retain(|entry| is_plain_relative(&entry.file) && directory.join(&entry.file).is_file());
+        frames
+            .entries
+            .retain(|entry| is_plain_relative(&entry.file) && directory.join(&entry.file).is_file());
         write_collection(&directory.join(COLLECTION), &frames.entries)?;
         Ok(frames)
     }
@@ -85,7 +93,13 @@ impl Frames {
     /// Those of [`vtu::write`]; the list then names the frames before only.
     pub fn write(&mut self, frame: &Frame) -> Result<(), Error> {
         vtu::write(&self.directory.join(Self::file(frame.step)), frame)?;
-        enter(&mut self.entries, Entry { time: frame.time, file: Self::file(frame.step) });
+        enter(
+            &mut self.entries,
+            Entry {
+                time: frame.time,
+                file: Self::file(frame.step),
+            },
+        );
         write_collection(&self.directory.join(COLLECTION), &self.entries)
     }
 
@@ -95,12 +109,25 @@ impl Frames {
     /// # Errors
     /// Those of [`vtu::write_parts`], and of the thread that had frames before.
     pub fn begin(&mut self, parts: Parts<'_>, manifest: &Manifest) -> Result<Vec<ManifestOutput>, Error> {
-        let entry = Entry { time: parts.head.time, file: Self::file(parts.head.step) };
+        let entry = Entry {
+            time: parts.head.time,
+            file: Self::file(parts.head.step),
+        };
         // Two of one name at a time have one temporary name.
-        let listed = self.ending.iter().flat_map(|ending| &ending.entries).chain(&self.entries);
-        let is_there = self.filled.iter().map(|(_, entry)| entry).chain(listed).any(|one| one.file == entry.file);
+        let listed = self
+            .ending
+            .iter()
+            .flat_map(|ending| &ending.entries)
+            .chain(&self.entries);
+        let is_there = self
+            .filled
+            .iter()
+            .map(|(_, entry)| entry)
+            .chain(listed)
+            .any(|one| one.file == entry.file);
         let mut ended = self.ended(is_there || self.filled.len() >= MOST_FILLED)?;
-        self.filled.push((vtu::filled(&self.directory.join(&entry.file), parts)?, entry));
+        self.filled
+            .push((vtu::filled(&self.directory.join(&entry.file), parts)?, entry));
         self.manifest = Some(manifest.clone());
         ended.extend(self.ended(false)?);
         Ok(ended)
@@ -153,10 +180,16 @@ fn end(
     let mut outputs = Vec::new();
     for (file, entry) in filled {
         file.give_name()?;
-        outputs.push(ManifestOutput { path: entry.file, bytes: None, blake3: None });
+        outputs.push(ManifestOutput {
+            path: entry.file,
+            bytes: None,
+            blake3: None,
+        });
     }
     let first = outputs.first().map(|output| directory.join(&output.path));
-    first.map_or(Ok(()), |first| atomic::sync_folder(&first).map_err(Error::file("write", &first)))?;
+    first.map_or(Ok(()), |first| {
+        atomic::sync_folder(&first).map_err(Error::file("write", &first))
+    })?;
     write_collection(&directory.join(COLLECTION), entries)?;
     outputs.iter_mut().try_for_each(|output| output.complete(directory))?;
     Ok(outputs)
@@ -165,7 +198,10 @@ fn end(
 fn write_collection(path: &Path, entries: &[Entry]) -> Result<(), Error> {
     atomic::replace(path, |list| {
         writeln!(list, "<?xml version=\"1.0\"?>")?;
-        writeln!(list, "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>")?;
+        writeln!(
+            list,
+            "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>"
+        )?;
         for Entry { time, file } in entries {
             writeln!(list, "    <DataSet timestep=\"{time:?}\" part=\"0\" file=\"{file}\"/>")?;
         }
@@ -187,7 +223,10 @@ pub fn read_collection(directory: &Path) -> Result<Vec<Entry>, Error> {
             let time = tag.attribute("timestep").and_then(|time| time.parse::<f64>().ok());
             let file = tag.attribute("file").filter(|file| is_plain_relative(file));
             match (time.filter(|time| time.is_finite()), file) {
-                (Some(time), Some(file)) => Ok(Entry { time, file: file.to_owned() }),
+                (Some(time), Some(file)) => Ok(Entry {
+                    time,
+                    file: file.to_owned(),
+                }),
                 _ => Err(Error::format(&path, "a DataSet has no good timestep or file")),
             }
         })

@@ -54,13 +54,19 @@ impl Lock {
     /// # Errors
     /// [`Error::Locked`] by a run that lives, or that cannot be looked at; [`Error::Directory`] if the system refuses.
     pub fn take(directory: &Path, unseen: Unseen) -> Result<Self, Error> {
-        let refused = |source| Error::Directory { action: "lock", path: directory.to_owned(), source };
+        let refused = |source| Error::Directory {
+            action: "lock",
+            path: directory.to_owned(),
+            source,
+        };
         let (path, own) = (directory.join(LOCK), Holder::this_process());
         for _ in 0..LOOKS.0 {
             if create(&path, &own).map_err(refused)? {
                 return Ok(Self::held(path, own, None));
             }
-            let Some(found) = FoundLock::whole(&path).map_err(refused)? else { continue };
+            let Some(found) = FoundLock::whole(&path).map_err(refused)? else {
+                continue;
+            };
             let note = found.yields(directory, &own, unseen)?;
             if take_over(directory, (&own, &found), unseen)? {
                 return Ok(Self::held(path, own, Some(note)));
@@ -122,7 +128,11 @@ fn create(path: &Path, own: &Holder) -> io::Result<bool> {
 
 /// Puts `own` in the place of the dead holder that was found; false if the lock is no longer as it was.
 fn take_over(directory: &Path, (own, found): (&Holder, &FoundLock), unseen: Unseen) -> Result<bool, Error> {
-    let refused = |source| Error::Directory { action: "lock", path: directory.to_owned(), source };
+    let refused = |source| Error::Directory {
+        action: "lock",
+        path: directory.to_owned(),
+        source,
+    };
     let (path, guard) = (directory.join(LOCK), directory.join(TAKEOVER));
     let mut looks = LOOKS.0;
     while !create(&guard, own).map_err(refused)? {
@@ -159,7 +169,10 @@ impl FoundLock {
             file => file?,
         };
         let owner = file.metadata()?.uid();
-        Ok(Some(Self { holder: Holder::read(&mut file)?, owner }))
+        Ok(Some(Self {
+            holder: Holder::read(&mut file)?,
+            owner,
+        }))
     }
 
     /// The same, after the moment that its creator needs to write its name.
@@ -177,7 +190,11 @@ impl FoundLock {
     fn yields(&self, directory: &Path, own: &Holder, unseen: Unseen) -> Result<String, Error> {
         let unknown = "an unknown run".to_owned();
         let name = self.holder.as_ref().map_or(unknown, Holder::to_string);
-        let why = match self.holder.as_ref().map_or(Fate::Unseen, |holder| holder.fate(own, self.owner)) {
+        let why = match self
+            .holder
+            .as_ref()
+            .map_or(Fate::Unseen, |holder| holder.fate(own, self.owner))
+        {
             Fate::Alive => {
                 return Err(locked(
                     directory,
@@ -200,5 +217,9 @@ impl FoundLock {
 }
 
 fn locked(directory: &Path, holder: &str, advice: &'static str) -> Error {
-    Error::Locked { path: directory.to_owned(), holder: holder.to_owned(), advice }
+    Error::Locked {
+        path: directory.to_owned(),
+        holder: holder.to_owned(),
+        advice,
+    }
 }

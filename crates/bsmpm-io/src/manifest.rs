@@ -169,7 +169,11 @@ impl Manifest {
     /// Names a file, relative to the directory, that is about to be written; a name that is there already stays once.
     pub fn name_output(&mut self, path: &str) {
         if !self.outputs.iter().any(|output| output.path == path) {
-            self.outputs.push(ManifestOutput { path: path.to_owned(), bytes: None, blake3: None });
+            self.outputs.push(ManifestOutput {
+                path: path.to_owned(),
+                bytes: None,
+                blake3: None,
+            });
         }
     }
 
@@ -209,31 +213,56 @@ impl Manifest {
     /// JSON has no infinite numbers, and serde would write `null` for them.
     fn check(&self, path: &Path) -> Result<(), Error> {
         match self.numbers().find(|(_, value)| !value.is_finite()) {
-            Some((item, value)) => Err(Error::NotFinite { path: path.to_owned(), item, value }),
+            Some((item, value)) => Err(Error::NotFinite {
+                path: path.to_owned(),
+                item,
+                value,
+            }),
             None => Ok(()),
         }
     }
 
     /// Every float of the manifest with its key.
     fn numbers(&self) -> impl Iterator<Item = (String, f64)> {
-        let timers = self.timers.iter().map(|(name, &value)| (format!("timers.{name}"), value));
-        let times = self.picture_times.iter().map(|&time| ("picture_times".to_owned(), time));
-        let grid = self.grid.iter().flat_map(GridExtent::numbers).map(|value| ("grid".to_owned(), value));
+        let timers = self
+            .timers
+            .iter()
+            .map(|(name, &value)| (format!("timers.{name}"), value));
+        let times = self
+            .picture_times
+            .iter()
+            .map(|&time| ("picture_times".to_owned(), time));
+        let grid = self
+            .grid
+            .iter()
+            .flat_map(GridExtent::numbers)
+            .map(|value| ("grid".to_owned(), value));
         let checks = self.checks.iter().flat_map(|check| {
             let numbers = [check.at, check.value, check.min, check.max].into_iter().flatten();
             numbers.map(|value| (format!("checks.{}", check.quantity), value))
         });
-        let failure = self.failure.iter().flat_map(ManifestFailure::numbers).map(|value| ("failure".to_owned(), value));
+        let failure = self
+            .failure
+            .iter()
+            .flat_map(ManifestFailure::numbers)
+            .map(|value| ("failure".to_owned(), value));
         let cpu = [("summary.cpu_seconds".to_owned(), self.summary.cpu_seconds)];
         let balance = self.balance.iter().flat_map(|balance| [balance.mean, balance.largest]);
         let balance = balance.map(|value| ("balance".to_owned(), value));
-        let indicators = self
-            .indicators
-            .iter()
-            .flat_map(|(name, indicator)| indicator.numbers().map(move |value| (format!("indicators.{name}"), value)));
+        let indicators = self.indicators.iter().flat_map(|(name, indicator)| {
+            indicator
+                .numbers()
+                .map(move |value| (format!("indicators.{name}"), value))
+        });
         let limit_loads = self.limit_loads.iter().flat_map(|load| [load.value, load.change]);
         let limit_loads = limit_loads.map(|value| ("limit_loads".to_owned(), value));
-        let run = timers.chain(times).chain(grid).chain(checks).chain(failure).chain(cpu).chain(balance);
+        let run = timers
+            .chain(times)
+            .chain(grid)
+            .chain(checks)
+            .chain(failure)
+            .chain(cpu)
+            .chain(balance);
         run.chain(indicators).chain(limit_loads)
     }
 

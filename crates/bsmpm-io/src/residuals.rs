@@ -61,12 +61,21 @@ impl Iterate {
     pub fn columns(time_unit: &str, flows: bool) -> Vec<TableColumn> {
         let all = ["step", "time", "iteration", "method", "energy", "force", "water"];
         let unit = |name: &str| if name == "time" { time_unit } else { "-" };
-        all[..6 + usize::from(flows)].iter().map(|name| TableColumn::new(name, unit(name))).collect()
+        all[..6 + usize::from(flows)]
+            .iter()
+            .map(|name| TableColumn::new(name, unit(name)))
+            .collect()
     }
 
     /// The iteration as a row under [`Iterate::columns`].
     pub fn cells(&self, flows: bool) -> Vec<Cell> {
-        let measure = |value: f64| if value.is_finite() { Cell::Float(value) } else { Cell::Empty };
+        let measure = |value: f64| {
+            if value.is_finite() {
+                Cell::Float(value)
+            } else {
+                Cell::Empty
+            }
+        };
         let mut cells = vec![
             Cell::Int(self.step),
             Cell::Float(self.time),
@@ -81,13 +90,25 @@ impl Iterate {
 
     fn parse(line: &str) -> Option<Self> {
         let cells: Vec<&str> = line.split(',').collect();
-        let [step, time, iteration, method, energy, force, ref water @ ..] = cells[..] else { return None };
-        let measure = |cell: &str| if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
+        let [step, time, iteration, method, energy, force, ref water @ ..] = cells[..] else {
+            return None;
+        };
+        let measure = |cell: &str| {
+            if cell.is_empty() {
+                Some(f64::NAN)
+            } else {
+                cell.parse().ok()
+            }
+        };
         Some(Self {
             step: step.parse().ok()?,
             time: time.parse().ok()?,
             iteration: iteration.parse().ok()?,
-            method: if method.is_empty() { None } else { Some(ResidualMethod::of(method)?) },
+            method: if method.is_empty() {
+                None
+            } else {
+                Some(ResidualMethod::of(method)?)
+            },
             energy: measure(energy)?,
             force: measure(force)?,
             water: match water {
@@ -105,7 +126,11 @@ impl Iterate {
 /// [`Error::File`] when the system refuses, [`Error::Format`] with the line for what is no row.
 pub fn read(path: &Path) -> Result<Vec<Iterate>, Error> {
     let text = table::whole_lines(path)?;
-    let rows = text.lines().enumerate().skip(1).filter(|(_, line)| !line.starts_with('#'));
+    let rows = text
+        .lines()
+        .enumerate()
+        .skip(1)
+        .filter(|(_, line)| !line.starts_with('#'));
     let row = |(index, line): (usize, &str)| {
         Iterate::parse(line).ok_or_else(|| Error::format(path, format!("line {}: no row of residuals", index + 1)))
     };

@@ -21,7 +21,10 @@ impl TableColumn {
     /// A column `name` in `unit`; an empty unit is written as `-`.
     pub fn new(name: &str, unit: &str) -> Self {
         let unit = if unit.is_empty() { "-" } else { unit };
-        Self { name: name.to_owned(), unit: unit.to_owned() }
+        Self {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+        }
     }
 }
 
@@ -67,7 +70,12 @@ impl CsvTable {
         let file = File::create_new(path).map_err(Error::file("create", path))?;
         atomic::sync_folder(path).map_err(Error::file("create", path))?;
         let (path, columns) = (path.to_owned(), columns.to_vec());
-        let mut table = Self { path, file, hasher: Box::default(), columns };
+        let mut table = Self {
+            path,
+            file,
+            hasher: Box::default(),
+            columns,
+        };
         let heading = heading(&table.columns);
         table.append(&heading)?;
         Ok(table)
@@ -95,7 +103,11 @@ impl CsvTable {
     /// The table at the mark, whatever comes after it.
     fn reach(path: &Path, columns: &[TableColumn], mark: &TableMark) -> Result<Self, Error> {
         check_headings(path, columns)?;
-        let mut file = File::options().read(true).write(true).open(path).map_err(Error::file("open", path))?;
+        let mut file = File::options()
+            .read(true)
+            .write(true)
+            .open(path)
+            .map_err(Error::file("open", path))?;
         let mut hasher = Box::<blake3::Hasher>::default();
         let begun = heading(columns);
         let mut first = vec![0; begun.len()];
@@ -109,7 +121,12 @@ impl CsvTable {
             let reason = format!("its first {} bytes are not those that the run had written", mark.bytes);
             return Err(Error::format(path, reason));
         }
-        Ok(Self { path: path.to_owned(), file, columns: columns.to_vec(), hasher })
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            columns: columns.to_vec(),
+            hasher,
+        })
     }
 
     /// Where the table stands now. All of it is on the disk then.
@@ -118,12 +135,17 @@ impl CsvTable {
     /// [`Error::File`] when the system refuses.
     pub fn mark(&self) -> Result<TableMark, Error> {
         self.file.sync_all().map_err(Error::file("write", &self.path))?;
-        Ok(TableMark { bytes: self.hasher.count(), blake3: self.hasher.finalize().to_hex().to_string() })
+        Ok(TableMark {
+            bytes: self.hasher.count(),
+            blake3: self.hasher.finalize().to_hex().to_string(),
+        })
     }
 
     fn append(&mut self, text: &str) -> Result<(), Error> {
         self.hasher.update(text.as_bytes());
-        self.file.write_all(text.as_bytes()).map_err(Error::file("write", &self.path))
+        self.file
+            .write_all(text.as_bytes())
+            .map_err(Error::file("write", &self.path))
     }
 
     /// Adds a row, floats in the shortest form that reads back to the same bits. The row goes to the system whole.
@@ -134,7 +156,12 @@ impl CsvTable {
     pub fn row(&mut self, cells: &[Cell]) -> Result<(), Error> {
         if cells.len() != self.columns.len() {
             let (expected, found) = (self.columns.len(), cells.len());
-            return Err(Error::Length { path: self.path.clone(), item: "a row".to_owned(), expected, found });
+            return Err(Error::Length {
+                path: self.path.clone(),
+                item: "a row".to_owned(),
+                expected,
+                found,
+            });
         }
         let mut line = String::new();
         for (column, cell) in self.columns.iter().zip(cells) {
@@ -153,9 +180,17 @@ impl CsvTable {
             Cell::Empty => Ok(String::new()),
             Cell::Float(value) if value.is_finite() => Ok(format!("{value:?}")),
             Cell::Float(value) => {
-                let of_step = if let Cell::Int(step) = first { format!(" in step {step}") } else { String::new() };
+                let of_step = if let Cell::Int(step) = first {
+                    format!(" in step {step}")
+                } else {
+                    String::new()
+                };
                 let item = format!("{}{of_step}", column.name);
-                Err(Error::NotFinite { path: self.path.clone(), item, value })
+                Err(Error::NotFinite {
+                    path: self.path.clone(),
+                    item,
+                    value,
+                })
             }
         }
     }
@@ -177,7 +212,11 @@ fn check_headings(path: &Path, columns: &[TableColumn]) -> Result<(), Error> {
         } else {
             continue;
         };
-        return Err(Error::Name { path: path.to_owned(), name: name.clone(), reason });
+        return Err(Error::Name {
+            path: path.to_owned(),
+            name: name.clone(),
+            reason,
+        });
     }
     Ok(())
 }
@@ -200,7 +239,10 @@ impl Columns {
 
     /// The unit of the column `name`.
     pub fn unit(&self, name: &str) -> Option<&str> {
-        self.headings.iter().find(|column| column.name == name).map(|column| column.unit.as_str())
+        self.headings
+            .iter()
+            .find(|column| column.name == name)
+            .map(|column| column.unit.as_str())
     }
 }
 
@@ -225,24 +267,41 @@ pub(crate) fn whole_lines(path: &Path) -> Result<String, Error> {
 /// # Errors
 /// Says in words which line is no row of finite numbers.
 pub fn parse(text: &str) -> Result<Columns, String> {
-    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()).peekable();
+    let mut lines = text
+        .lines()
+        .enumerate()
+        .filter(|(_, line)| !line.trim().is_empty())
+        .peekable();
     while lines.next_if(|(_, line)| line.starts_with('#')).is_some() {}
     let (_, names) = lines.next().ok_or("it has no line of names")?;
-    let mut headings: Vec<_> =
-        names.split(',').map(|name| TableColumn { name: name.trim().to_owned(), unit: String::new() }).collect();
+    let mut headings: Vec<_> = names
+        .split(',')
+        .map(|name| TableColumn {
+            name: name.trim().to_owned(),
+            unit: String::new(),
+        })
+        .collect();
     if let Some(units) = lines.peek().and_then(|(_, line)| line.strip_prefix('#')) {
         let units: Vec<_> = units.split(',').collect();
         if units.len() == headings.len() {
-            headings.iter_mut().zip(units).for_each(|(heading, unit)| unit.trim().clone_into(&mut heading.unit));
+            headings
+                .iter_mut()
+                .zip(units)
+                .for_each(|(heading, unit)| unit.trim().clone_into(&mut heading.unit));
         }
     }
     let mut values = vec![Vec::new(); headings.len()];
     for (index, line) in lines.filter(|(_, line)| !line.starts_with('#')) {
-        let cells = line.split(',').map(|cell| cell.trim().parse::<f64>().ok().filter(|value| value.is_finite()));
+        let cells = line
+            .split(',')
+            .map(|cell| cell.trim().parse::<f64>().ok().filter(|value| value.is_finite()));
         let row: Option<Vec<_>> = cells.collect();
         let row = row.filter(|row| row.len() == values.len());
         let row = row.ok_or_else(|| format!("line {}: {} finite numbers are needed", index + 1, values.len()))?;
-        values.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+        values
+            .iter_mut()
+            .zip(row)
+            .for_each(|(column, value)| column.push(value));
     }
     Ok(Columns { headings, values })
 }

@@ -24,7 +24,12 @@ pub fn write(path: &Path, frame: &Frame) -> Result<(), Error> {
     let mut left = Some(frame.clone());
     write_parts(
         path,
-        Parts { head: frame.without_points(), points: frame.position.len(), names: &[], next: &mut || left.take() },
+        Parts {
+            head: frame.without_points(),
+            points: frame.position.len(),
+            names: &[],
+            next: &mut || left.take(),
+        },
     )
 }
 
@@ -48,7 +53,12 @@ pub(crate) fn filled(path: &Path, parts: Parts<'_>) -> Result<Filled, Error> {
 fn fill(
     file: &mut (impl Write + Seek),
     path: &Path,
-    Parts { head, points, names, next }: Parts<'_>,
+    Parts {
+        head,
+        points,
+        names,
+        next,
+    }: Parts<'_>,
     refused: &mut Option<Error>,
 ) -> io::Result<()> {
     let mut places = Vec::new(); // of every array in the file, behind its length
@@ -76,7 +86,12 @@ fn fill(
     }
     if given != points {
         let item = "a frame".to_owned();
-        return Err(wrong(Error::Length { path: path.to_owned(), item, expected: points, found: given }));
+        return Err(wrong(Error::Length {
+            path: path.to_owned(),
+            item,
+            expected: points,
+            found: given,
+        }));
     }
     let mut end = 0;
     for (data, place) in arrays(&head, 0).zip(&places) {
@@ -104,7 +119,9 @@ fn write_head(
     let mut data = arrays(head, 0);
     let mut offset = 0;
     let mut array = |file: &mut dyn Write, name: &str, components: usize| {
-        let data = data.next().ok_or_else(|| io::Error::other("more arrays announced than written"))?;
+        let data = data
+            .next()
+            .ok_or_else(|| io::Error::other("more arrays announced than written"))?;
         write_array(file, name, components, data.kind(), offset)?;
         places.push(offset as u64 + LENGTH);
         offset += LENGTH as usize + points * data.point_bytes();
@@ -112,9 +129,15 @@ fn write_head(
     };
     writeln!(file, "<?xml version=\"1.0\"?>")?;
     let order = "byte_order=\"LittleEndian\" header_type=\"UInt64\"";
-    writeln!(file, "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" {order}>\n  <UnstructuredGrid>")?;
+    writeln!(
+        file,
+        "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" {order}>\n  <UnstructuredGrid>"
+    )?;
     write_moment(file, head, names)?;
-    writeln!(file, "    <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{points}\">\n      <PointData>")?;
+    writeln!(
+        file,
+        "    <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{points}\">\n      <PointData>"
+    )?;
     for Field { name, components, .. } in &head.fields {
         array(file, name, *components)?;
     }
@@ -133,10 +156,19 @@ fn write_moment(file: &mut impl Write, frame: &Frame, names: &[(String, Vec<Stri
     let Frame { step, time, .. } = frame;
     let one = "NumberOfTuples=\"1\" format=\"ascii\"";
     writeln!(file, "    <FieldData>")?;
-    writeln!(file, "      <DataArray type=\"Float64\" Name=\"TimeValue\" {one}>{time:?}</DataArray>")?;
-    writeln!(file, "      <DataArray type=\"UInt64\" Name=\"Step\" {one}>{step}</DataArray>")?;
+    writeln!(
+        file,
+        "      <DataArray type=\"Float64\" Name=\"TimeValue\" {one}>{time:?}</DataArray>"
+    )?;
+    writeln!(
+        file,
+        "      <DataArray type=\"UInt64\" Name=\"Step\" {one}>{step}</DataArray>"
+    )?;
     for (name, list) in names {
-        let codes = list.iter().flat_map(|name| name.bytes().chain([0])).map(|code| code.to_string());
+        let codes = list
+            .iter()
+            .flat_map(|name| name.bytes().chain([0]))
+            .map(|code| code.to_string());
         let (codes, count) = (codes.collect::<Vec<_>>().join(" "), list.len());
         let array = format!("Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"{count}\" format=\"ascii\"");
         writeln!(file, "      <{array}>{codes}</Array>")?;
@@ -145,7 +177,10 @@ fn write_moment(file: &mut impl Write, frame: &Frame, names: &[(String, Vec<Stri
 }
 
 fn write_array(file: &mut dyn Write, name: &str, components: usize, kind: &str, offset: usize) -> io::Result<()> {
-    write!(file, "        <DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\"")?;
+    write!(
+        file,
+        "        <DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\""
+    )?;
     if components == SYMMETRIC.len() {
         for (index, label) in SYMMETRIC.iter().enumerate() {
             write!(file, " ComponentName{index}=\"{label}\"")?;
@@ -158,13 +193,23 @@ fn write_array(file: &mut dyn Write, name: &str, components: usize, kind: &str, 
 /// number being `first`.
 fn arrays(frame: &Frame, first: usize) -> impl Iterator<Item = Data<'_>> {
     let points = frame.position.len();
-    let fields =
-        frame.fields.iter().map(|field| Data { components: field.components, numbers: (&field.values).into() });
+    let fields = frame.fields.iter().map(|field| Data {
+        components: field.components,
+        numbers: (&field.values).into(),
+    });
     let place = Numbers::F64(frame.position.as_flattened());
-    let count = |first: usize| Numbers::Count { first: first as i64, points };
+    let count = |first: usize| Numbers::Count {
+        first: first as i64,
+        points,
+    };
     let cells = [count(first), count(first + 1), Numbers::Vertices { points }];
     let cells = cells.map(|numbers| Data { components: 1, numbers });
-    fields.chain([Data { components: 3, numbers: place }]).chain(cells)
+    fields
+        .chain([Data {
+            components: 3,
+            numbers: place,
+        }])
+        .chain(cells)
 }
 
 /// One array of the file.

@@ -18,7 +18,12 @@ pub fn read(path: &Path) -> Result<Frame, Error> {
 
 fn parse(bytes: &[u8]) -> Result<Frame, String> {
     let (head, data) = split(bytes)?;
-    let mut frame = Frame { step: 0, time: 0.0, position: Vec::new(), fields: Vec::new() };
+    let mut frame = Frame {
+        step: 0,
+        time: 0.0,
+        position: Vec::new(),
+        fields: Vec::new(),
+    };
     let (mut section, mut points) = ("", 0_usize);
     for tag in tags(head) {
         match tag.name {
@@ -36,15 +41,25 @@ fn parse(bytes: &[u8]) -> Result<Frame, String> {
             _ => {}
         }
     }
-    if frame.position.len() == points { Ok(frame) } else { Err("it holds no places of points".to_owned()) }
+    if frame.position.len() == points {
+        Ok(frame)
+    } else {
+        Err("it holds no places of points".to_owned())
+    }
 }
 
 /// The XML before, and the raw bytes after, the underscore that begins the appended data.
 fn split(bytes: &[u8]) -> Result<(&str, &[u8]), String> {
     let mark = b"<AppendedData encoding=\"raw\">";
-    let at = bytes.windows(mark.len()).position(|window| window == mark).ok_or("it has no raw appended data")?;
+    let at = bytes
+        .windows(mark.len())
+        .position(|window| window == mark)
+        .ok_or("it has no raw appended data")?;
     let rest = &bytes[at + mark.len()..];
-    let begin = rest.iter().position(|&byte| byte == b'_').ok_or("its appended data do not begin")?;
+    let begin = rest
+        .iter()
+        .position(|&byte| byte == b'_')
+        .ok_or("its appended data do not begin")?;
     let head = std::str::from_utf8(&bytes[..at]).map_err(|error| error.to_string())?;
     Ok((head, &rest[begin + 1..]))
 }
@@ -61,7 +76,11 @@ fn moment(tag: &Tag, frame: &mut Frame) -> Result<(), String> {
 
 fn places(tag: &Tag, data: &[u8], points: usize) -> Result<Vec<[f64; 3]>, String> {
     match field(tag, data, points)? {
-        Field { components: 3, values: FieldValues::F64(values), .. } => Ok(values.as_chunks().0.to_vec()),
+        Field {
+            components: 3,
+            values: FieldValues::F64(values),
+            ..
+        } => Ok(values.as_chunks().0.to_vec()),
         _ => Err("its points are no triples of Float64".to_owned()),
     }
 }
@@ -72,15 +91,37 @@ fn field(tag: &Tag, data: &[u8], points: usize) -> Result<Field, String> {
     let raw =
         block(data, number(tag, "offset")?).ok_or_else(|| format!("{name} reaches beyond the end of the file"))?;
     let values = match tag.attribute("type") {
-        Some("Float64") => FieldValues::F64(raw.as_chunks().0.iter().map(|&bytes| f64::from_le_bytes(bytes)).collect()),
-        Some("UInt64") => FieldValues::U64(raw.as_chunks().0.iter().map(|&bytes| u64::from_le_bytes(bytes)).collect()),
-        Some("UInt16") => FieldValues::U16(raw.as_chunks().0.iter().map(|&bytes| u16::from_le_bytes(bytes)).collect()),
+        Some("Float64") => FieldValues::F64(
+            raw.as_chunks()
+                .0
+                .iter()
+                .map(|&bytes| f64::from_le_bytes(bytes))
+                .collect(),
+        ),
+        Some("UInt64") => FieldValues::U64(
+            raw.as_chunks()
+                .0
+                .iter()
+                .map(|&bytes| u64::from_le_bytes(bytes))
+                .collect(),
+        ),
+        Some("UInt16") => FieldValues::U16(
+            raw.as_chunks()
+                .0
+                .iter()
+                .map(|&bytes| u16::from_le_bytes(bytes))
+                .collect(),
+        ),
         other => return Err(format!("{name} is of type {}", other.unwrap_or("unknown"))),
     };
     if components == 0 || points.checked_mul(components) != Some(values.len()) {
         return Err(format!("{name} has {} numbers for {points} points", values.len()));
     }
-    Ok(Field { name, components, values })
+    Ok(Field {
+        name,
+        components,
+        values,
+    })
 }
 
 /// The bytes at `offset`, whose number stands before them as a 64-bit integer.
@@ -90,6 +131,8 @@ fn block(data: &[u8], offset: usize) -> Option<&[u8]> {
 }
 
 fn number(tag: &Tag, key: &str) -> Result<usize, String> {
-    let text = tag.attribute(key).ok_or_else(|| format!("a {} lacks {key}", tag.name))?;
+    let text = tag
+        .attribute(key)
+        .ok_or_else(|| format!("a {} lacks {key}", tag.name))?;
     text.parse().map_err(|_| format!("{key} is \"{text}\""))
 }

@@ -72,7 +72,14 @@ mod tests {
     #[test]
     fn a_code_is_a_letter_and_four_digits_before_a_colon() {
         assert_eq!(code_of("W0206: gravity"), Some("W0206"));
-        for other in ["", "W0206", "W0206 gravity", "X0112: gravity", "W01a2: gravity", "äöü: gravity"] {
+        for other in [
+            "",
+            "W0206",
+            "W0206 gravity",
+            "X0112: gravity",
+            "W01a2: gravity",
+            "äöü: gravity",
+        ] {
             assert_eq!(code_of(other), None, "{other}");
             assert_eq!(without_code(other), other);
         }

@@ -11,16 +11,46 @@ struct Area {
 
 /// The areas in the order of the manual.
 const AREAS: [Area; 10] = [
-    Area { heading: "Reading a case file (00)", pages: include_str!("pages/reading.md") },
-    Area { heading: "Plausibility (01)", pages: include_str!("pages/plausibility.md") },
-    Area { heading: "Grid, bodies and boundaries (02)", pages: include_str!("pages/ground.md") },
-    Area { heading: "Materials and initial stresses (03)", pages: include_str!("pages/materials.md") },
-    Area { heading: "Loads, footings, rigid bodies and contact (04)", pages: include_str!("pages/loads.md") },
-    Area { heading: "Water (05)", pages: include_str!("pages/water.md") },
-    Area { heading: "Analysis, stages, solver and output (06)", pages: include_str!("pages/analysis.md") },
-    Area { heading: "The run (07)", pages: include_str!("pages/run.md") },
-    Area { heading: "Tools (08)", pages: include_str!("pages/tools.md") },
-    Area { heading: "Indicators", pages: include_str!("pages/indicators.md") },
+    Area {
+        heading: "Reading a case file (00)",
+        pages: include_str!("pages/reading.md"),
+    },
+    Area {
+        heading: "Plausibility (01)",
+        pages: include_str!("pages/plausibility.md"),
+    },
+    Area {
+        heading: "Grid, bodies and boundaries (02)",
+        pages: include_str!("pages/ground.md"),
+    },
+    Area {
+        heading: "Materials and initial stresses (03)",
+        pages: include_str!("pages/materials.md"),
+    },
+    Area {
+        heading: "Loads, footings, rigid bodies and contact (04)",
+        pages: include_str!("pages/loads.md"),
+    },
+    Area {
+        heading: "Water (05)",
+        pages: include_str!("pages/water.md"),
+    },
+    Area {
+        heading: "Analysis, stages, solver and output (06)",
+        pages: include_str!("pages/analysis.md"),
+    },
+    Area {
+        heading: "The run (07)",
+        pages: include_str!("pages/run.md"),
+    },
+    Area {
+        heading: "Tools (08)",
+        pages: include_str!("pages/tools.md"),
+    },
+    Area {
+        heading: "Indicators",
+        pages: include_str!("pages/indicators.md"),
+    },
 ];
 
 /// Every text with a code that stands in the sources, a line each; a test compares it with the sources.
@@ -42,7 +72,11 @@ impl Page {
     fn parse(section: &'static str) -> Self {
         let (heading, text) = section.split_once('\n').unwrap_or((section, ""));
         let (code, title) = heading.split_once(": ").unwrap_or((heading, ""));
-        Self { code, title, text: text.trim() }
+        Self {
+            code,
+            title,
+            text: text.trim(),
+        }
     }
 }
 

@@ -6,7 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Parts that each page has, in this order.
-const PARTS: [&str; 4] = ["**What it means.**", "**Why it matters.**", "**What to do.**", "**Example.**"];
+const PARTS: [&str; 4] = [
+    "**What it means.**",
+    "**Why it matters.**",
+    "**What to do.**",
+    "**Example.**",
+];
 /// Characters that a text may have, a name or number counted as [`PLACEHOLDER`].
 const LONGEST: usize = 200;
 /// Characters that a name or number in a text has on average.
@@ -17,7 +22,10 @@ const SHORTEST: usize = 20;
 const ENDED_BY_A_HINT: [&str; 3] = ["E0017", "E0020", "E0518"];
 
 fn crates() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a crate lies in the workspace").to_owned()
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .expect("a crate lies in the workspace")
+        .to_owned()
 }
 
 /// All Rust files below `directory`.
@@ -101,14 +109,19 @@ fn has_bare_point(text: &str) -> bool {
 /// Every code that a text names.
 fn codes_in(text: &str) -> impl Iterator<Item = &str> {
     let is_code = |word: &&str| word.len() == 5 && Kind::of(word).is_some() && word[1..].parse::<u16>().is_ok();
-    text.split(|character: char| !character.is_ascii_alphanumeric()).filter(is_code)
+    text.split(|character: char| !character.is_ascii_alphanumeric())
+        .filter(is_code)
 }
 
 /// The codes of a row of `retired.txt`: those from the first to the last that it names.
 fn codes_without_message(row: &str) -> Vec<String> {
     let named: Vec<&str> = codes_in(row.split(' ').next().unwrap_or_default()).collect();
-    let (Some(first), Some(last)) = (named.first(), named.last()) else { panic!("no code at the beginning of {row}") };
-    (number_of(first)..=number_of(last)).map(|number| format!("{}{number:04}", &first[..1])).collect()
+    let (Some(first), Some(last)) = (named.first(), named.last()) else {
+        panic!("no code at the beginning of {row}")
+    };
+    (number_of(first)..=number_of(last))
+        .map(|number| format!("{}{number:04}", &first[..1]))
+        .collect()
 }
 
 fn number_of(code: &str) -> u16 {
@@ -151,15 +164,29 @@ fn each_text_is_short_and_says_what_is_wrong_in_sentences() {
 
 #[test]
 fn texts_without_an_end_and_numbers_without_a_leading_zero_are_found() {
-    for text in ["E0001: no `key`", "E0001: no key (of two)", "E0001: no …", "E0001: Use …"] {
+    for text in [
+        "E0001: no `key`",
+        "E0001: no key (of two)",
+        "E0001: no …",
+        "E0001: Use …",
+    ] {
         assert!(!is_ended(text), "{text}");
     }
-    for text in ["E0001: no key.", "E0001: no key. …", "E0001: failed: …", "E0001: no keys:  …", "E0017: found ……"]
-    {
+    for text in [
+        "E0001: no key.",
+        "E0001: no key. …",
+        "E0001: failed: …",
+        "E0001: no keys:  …",
+        "E0017: found ……",
+    ] {
         assert!(is_ended(text), "{text}");
     }
     assert!(["is .5", "(.5)", "-.5", "k=.5"].iter().all(|text| has_bare_point(text)));
-    assert!(!["0.5", "body.0", "stage.….0", "body.….1", "1...2"].iter().any(|text| has_bare_point(text)));
+    assert!(
+        !["0.5", "body.0", "stage.….0", "body.….1", "1...2"]
+            .iter()
+            .any(|text| has_bare_point(text))
+    );
 }
 
 #[test]
@@ -172,22 +199,33 @@ fn each_code_has_one_page_and_each_page_a_text() {
     let without_page: Vec<_> = used.difference(&once).collect();
     let without_text: Vec<_> = once.difference(&used).collect();
     assert!(without_page.is_empty(), "codes without a page: {without_page:?}");
-    assert!(without_text.is_empty(), "pages without a text in the sources: {without_text:?}");
+    assert!(
+        without_text.is_empty(),
+        "pages without a text in the sources: {without_text:?}"
+    );
 }
 
 #[test]
 fn each_number_of_an_area_is_used_or_listed_as_retired_or_reserved() {
-    let rows = include_str!("../src/retired.txt").lines().filter(|row| !row.starts_with('#'));
+    let rows = include_str!("../src/retired.txt")
+        .lines()
+        .filter(|row| !row.starts_with('#'));
     let listed: BTreeSet<String> = rows.flat_map(codes_without_message).collect();
     let used: BTreeSet<String> = pages().iter().map(|page| page.code.to_owned()).collect();
     let used_again: Vec<_> = listed.intersection(&used).collect();
-    assert!(used_again.is_empty(), "retired or reserved codes are used: {used_again:?}");
+    assert!(
+        used_again.is_empty(),
+        "retired or reserved codes are used: {used_again:?}"
+    );
     let mut last = BTreeMap::new();
     for code in &used | &listed {
         let area = code[..3].to_owned();
         let number = number_of(&code);
         let previous = last.insert(area, number);
-        assert!(previous.is_none_or(|previous| previous + 1 == number), "the number before {code} is not listed");
+        assert!(
+            previous.is_none_or(|previous| previous + 1 == number),
+            "the number before {code} is not listed"
+        );
     }
 }
 
@@ -201,7 +239,11 @@ fn codes_in_readmes_and_in_this_crate_have_pages() {
     for file in files.iter().filter(|file| file.exists()) {
         let text = fs::read_to_string(file).expect("readmes and sources can be read");
         let unknown: Vec<_> = codes_in(&text).filter(|code| !explained.contains(code)).collect();
-        assert!(unknown.is_empty(), "{} names {unknown:?}, which have no page", file.display());
+        assert!(
+            unknown.is_empty(),
+            "{} names {unknown:?}, which have no page",
+            file.display()
+        );
     }
 }
 
@@ -209,9 +251,15 @@ fn codes_in_readmes_and_in_this_crate_have_pages() {
 fn each_page_has_a_cause_and_four_parts() {
     for Page { code, title, text } in pages() {
         assert!(Kind::of(code).is_some() && code.len() == 5, "{code}: no code");
-        assert!(!title.is_empty() && !title.ends_with('.'), "{code}: the heading is `## {code}: CAUSE`");
+        assert!(
+            !title.is_empty() && !title.ends_with('.'),
+            "{code}: the heading is `## {code}: CAUSE`"
+        );
         let places: Vec<_> = PARTS.iter().map(|part| text.find(part)).collect();
-        assert!(places.is_sorted() && places.iter().all(Option::is_some), "{code}: the parts are {PARTS:?}");
+        assert!(
+            places.is_sorted() && places.iter().all(Option::is_some),
+            "{code}: the parts are {PARTS:?}"
+        );
     }
 }
 
@@ -221,6 +269,9 @@ fn pages_of_an_area_are_in_the_order_of_their_numbers() {
     for Page { code, .. } in pages() {
         let area = &code[..3];
         let previous = last.insert(area, code);
-        assert!(previous.is_none_or(|previous| previous < code), "{code} stands after {previous:?}");
+        assert!(
+            previous.is_none_or(|previous| previous < code),
+            "{code} stands after {previous:?}"
+        );
     }
 }

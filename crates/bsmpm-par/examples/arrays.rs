@@ -28,8 +28,12 @@ fn print(universe: &Universe, file: &Path) -> Result<(), Refusal> {
     let (found, _) = find(&universe.world(), Wanted::Named(file))?;
     let found = found.expect("a checkpoint that is named is found or refused");
     let opened = Opened::new((&hdf5, universe.world()), &found)?;
-    let law_state =
-        found.record.arrays.iter().find(|array| array.name == "law_state").map_or(0, |array| array.width as usize);
+    let law_state = found
+        .record
+        .arrays
+        .iter()
+        .find(|array| array.name == "law_state")
+        .map_or(0, |array| array.width as usize);
     let names: Vec<&str> = found.record.arrays.iter().map(|array| array.name.as_str()).collect();
     let mut points = Points::<2>::holding(&names, law_state);
     opened.points(points.named_columns())?;

@@ -53,7 +53,13 @@ fn write(
     let world = universe.world();
     let (rank, ranks) = (world.rank() as u64, world.size() as u64);
     // Unequal shares, and none at all for the last of several ranks.
-    let cut = |rank: u64| if rank + 1 >= ranks { count } else { count * (rank * (rank + 1)) / (ranks * (ranks - 1)) };
+    let cut = |rank: u64| {
+        if rank + 1 >= ranks {
+            count
+        } else {
+            count * (rank * (rank + 1)) / (ranks * (ranks - 1))
+        }
+    };
     let own = if ranks == 1 {
         0..count
     } else if rank + 1 == ranks {
@@ -72,7 +78,11 @@ fn write(
     };
     let state = state(step);
     let guess = guess(rank, step);
-    let contents = Contents { columns: points.named_columns(), guess: (guess.into(), WIDTH), state: state.as_bytes() };
+    let contents = Contents {
+        columns: points.named_columns(),
+        guess: (guess.into(), WIDTH),
+        state: state.as_bytes(),
+    };
     let strike = |now: Phase| {
         if rank == 0 && phase.is_some_and(|phase| phase == format!("{now:?}")) {
             std::process::abort();
@@ -84,15 +94,21 @@ fn write(
 fn read(universe: &Universe, hdf5: &Hdf5<'_>, wanted: Wanted<'_>, count: u64) -> Result<(), Refusal> {
     let world = universe.world();
     let (found, passed_over) = checkpoint::find(&world, wanted)?;
-    passed_over.iter().for_each(|warning| launch::say(&format!("passed over: {warning}")));
+    passed_over
+        .iter()
+        .for_each(|warning| launch::say(&format!("passed over: {warning}")));
     let Some(found) = found else {
         if world.rank() == 0 {
             launch::say("no checkpoint");
         }
         return Ok(());
     };
-    let law_state =
-        found.record.arrays.iter().find(|array| array.name == "law_state").map_or(0, |array| array.width as usize);
+    let law_state = found
+        .record
+        .arrays
+        .iter()
+        .find(|array| array.name == "law_state")
+        .map_or(0, |array| array.width as usize);
     let names: Vec<&str> = found.record.arrays.iter().map(|array| array.name.as_str()).collect();
     let mut held = Points::<2>::holding(&names, law_state);
     let opened = Opened::new((hdf5, universe.world()), &found)?;
@@ -101,15 +117,26 @@ fn read(universe: &Universe, hdf5: &Hdf5<'_>, wanted: Wanted<'_>, count: u64) ->
     let layers = 2 * found.record.ranks as usize;
     for rank in 0..u64::from(found.record.ranks) {
         let at = (2 * rank) as usize;
-        assert_eq!(opened.guess((layers, WIDTH), at..at + 2)?, guess(rank, found.record.step), "another displacement");
+        assert_eq!(
+            opened.guess((layers, WIDTH), at..at + 2)?,
+            guess(rank, found.record.step),
+            "another displacement"
+        );
     }
     opened.close()?;
     let (rank, ranks) = (world.rank() as u64, world.size() as u64);
     let start = |rank: u64| rank * (count / ranks) + rank.min(count % ranks);
-    assert_eq!(held, points(start(rank)..start(rank + 1), found.record.step), "other points");
+    assert_eq!(
+        held,
+        points(start(rank)..start(rank + 1), found.record.step),
+        "other points"
+    );
     assert_eq!(text, state(found.record.step).as_bytes());
     if rank == 0 {
-        launch::say(&format!("good: step {} of {} ranks", found.record.step, found.record.ranks));
+        launch::say(&format!(
+            "good: step {} of {} ranks",
+            found.record.step, found.record.ranks
+        ));
     }
     Ok(())
 }
@@ -119,7 +146,9 @@ const WIDTH: usize = 6;
 
 /// Two layers of nodes of a rank.
 fn guess(rank: u64, step: u64) -> Vec<f64> {
-    (0..2 * WIDTH as u64).map(|at| ((rank * 100 + at) as f64).cos() * step as f64).collect()
+    (0..2 * WIDTH as u64)
+        .map(|at| ((rank * 100 + at) as f64).cos() * step as f64)
+        .collect()
 }
 
 fn state(step: u64) -> String {

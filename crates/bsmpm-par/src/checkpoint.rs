@@ -45,5 +45,10 @@ fn named(name: &str, shape: Shape) -> RecordedArray {
         hdf5_collective::Number::U64 => ArrayNumber::U64,
         hdf5_collective::Number::F64 => ArrayNumber::F64,
     };
-    RecordedArray { name: name.to_owned(), number, rows: shape.rows, width: shape.width }
+    RecordedArray {
+        name: name.to_owned(),
+        number,
+        rows: shape.rows,
+        width: shape.width,
+    }
 }

@@ -8,8 +8,17 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 /// Beginnings of the PETSc options that may follow `--`: methods, preconditioners and their reports, no files.
-const PETSC_OPTIONS: [&str; 9] =
-    ["-ksp_", "-pc_", "-mg_", "-sub_", "-redundant_", "-newton_", "-mat_mumps_", "-mat_superlu_dist_", "-mat_cholmod_"];
+const PETSC_OPTIONS: [&str; 9] = [
+    "-ksp_",
+    "-pc_",
+    "-mg_",
+    "-sub_",
+    "-redundant_",
+    "-newton_",
+    "-mat_mumps_",
+    "-mat_superlu_dist_",
+    "-mat_cholmod_",
+];
 
 /// Parts of names that do none the less: code of other languages is loaded, a server started, factors put into files.
 const PETSC_REFUSED: [&str; 5] = ["python", "matlab", "saws", "_ooc", "mumps_icntl_22"];
@@ -47,7 +56,11 @@ pub enum Restart {
 
 impl From<&str> for Restart {
     fn from(text: &str) -> Self {
-        if text == "auto" { Self::Auto } else { Self::From(text.into()) }
+        if text == "auto" {
+            Self::Auto
+        } else {
+            Self::From(text.into())
+        }
     }
 }
 
@@ -165,7 +178,11 @@ impl Arguments {
         };
         let mut words = vec![launcher, quoted(&self.case.to_string_lossy())];
         words.extend(self.set.iter().map(|set| format!("--set {}", quoted(set))));
-        words.extend(self.output.iter().map(|directory| format!("-o {}", quoted(&directory.to_string_lossy()))));
+        words.extend(
+            self.output
+                .iter()
+                .map(|directory| format!("-o {}", quoted(&directory.to_string_lossy()))),
+        );
         words.extend((self.threads > 1).then(|| format!("--threads {}", self.threads)));
         words.push("--restart auto".into());
         if !self.petsc.is_empty() {
@@ -216,7 +233,9 @@ fn petsc_options(options: &[String]) -> Result<(), String> {
     }
     // The value would be a viewer, and some of those write files of their own choice of name: binary, hdf5, vtk, ...
     let views = |name: &str| ["view", "monitor", "reason"].iter().any(|part| name.contains(part));
-    let viewer = options.windows(2).find(|pair| views(&pair[0]) && !pair[1].starts_with('-'));
+    let viewer = options
+        .windows(2)
+        .find(|pair| views(&pair[0]) && !pair[1].starts_with('-'));
     viewer.map_or(Ok(()), |pair| {
         let (name, value) = (&pair[0], &pair[1]);
         Err(format!(
@@ -228,7 +247,10 @@ fn petsc_options(options: &[String]) -> Result<(), String> {
 
 fn wall(text: &str) -> Result<Duration, String> {
     let wrong = || format!("{text} is not a time of the form HH:MM:SS");
-    let parts: Vec<u64> = text.split(':').map(|part| part.parse().map_err(|_| wrong())).collect::<Result<_, _>>()?;
+    let parts: Vec<u64> = text
+        .split(':')
+        .map(|part| part.parse().map_err(|_| wrong()))
+        .collect::<Result<_, _>>()?;
     match parts[..] {
         [hours, minutes, seconds] if minutes < 60 && seconds < 60 && hours < 1_000_000 => {
             Ok(Duration::from_secs(hours * 3600 + minutes * 60 + seconds))
@@ -246,9 +268,17 @@ mod tests {
     #[test]
     fn the_help_names_the_codes_of_the_list() {
         let command = Arguments::command();
-        let codes = [("max_steps", STOPPED), ("max_wall", STOPPED), ("max_memory", MEMORY), ("strict_space", WRITE)];
+        let codes = [
+            ("max_steps", STOPPED),
+            ("max_wall", STOPPED),
+            ("max_memory", MEMORY),
+            ("strict_space", WRITE),
+        ];
         for (option, code) in codes {
-            let option = command.get_arguments().find(|argument| argument.get_id() == option).expect("an option");
+            let option = command
+                .get_arguments()
+                .find(|argument| argument.get_id() == option)
+                .expect("an option");
             let help = option.get_help().expect("a help text").to_string();
             assert!(help.contains(&format!("(exit {code}")), "{help}");
         }
@@ -258,7 +288,15 @@ mod tests {
     fn petsc_options_that_write_or_read_files_are_refused() {
         let refused =
             |options: &[&str]| petsc_options(&options.iter().map(|&o| o.to_owned()).collect::<Vec<_>>()).is_err();
-        assert!(!refused(&["-ksp_type", "cg", "-pc_type", "gamg", "-log_view", "-ksp_rtol", "1e-12"]));
+        assert!(!refused(&[
+            "-ksp_type",
+            "cg",
+            "-pc_type",
+            "gamg",
+            "-log_view",
+            "-ksp_rtol",
+            "1e-12"
+        ]));
         assert!(refused(&["-log_view", ":pwned"]));
         assert!(refused(&["-log_view", "pwned"]));
         assert!(refused(&["-options_file", "x"]) && refused(&["-dll_append", "x"]) && refused(&["-dll_prepend", "x"]));
@@ -274,7 +312,9 @@ mod tests {
     fn the_command_that_continues_a_run_is_quoted_for_a_shell() {
         let given =
             "bsmpm-par it's.toml --force -q --set grid.cell=5_mm --max-steps 3 -o out --threads 2 -- -ksp_type cg";
-        let given = given.split(' ').map(|word| word.replace('_', " ").replace("ksp type", "ksp_type"));
+        let given = given
+            .split(' ')
+            .map(|word| word.replace('_', " ").replace("ksp type", "ksp_type"));
         let arguments = Arguments::parse_from(given);
         let expected =
             "bsmpm-par 'it'\\''s.toml' --set 'grid.cell=5 mm' -o out --threads 2 --restart auto -- -ksp_type cg";

@@ -23,9 +23,14 @@ enum FaultPlace {
 impl Fault {
     /// Reads this rank's `BSMPM_FAULT` for a run on so many ranks; `Err` says what is wrong with it.
     pub fn from_environment(ranks: usize) -> Result<Option<Self>, String> {
-        let Some(text) = std::env::var_os("BSMPM_FAULT") else { return Ok(None) };
+        let Some(text) = std::env::var_os("BSMPM_FAULT") else {
+            return Ok(None);
+        };
         match Self::parse(&text.to_string_lossy())? {
-            Self { place: FaultPlace::Rank(rank), .. } if rank >= ranks => Err(format!(
+            Self {
+                place: FaultPlace::Rank(rank),
+                ..
+            } if rank >= ranks => Err(format!(
                 "E0708: BSMPM_FAULT (environment variable for program tests) names an MPI rank that this run of \
                  {ranks} rank(s) does not have. Nothing was run. Unset BSMPM_FAULT, or name a rank below {ranks}."
             )),
@@ -43,7 +48,10 @@ impl Fault {
                 "reject" if place.is_empty() => FaultPlace::Convergence,
                 _ => return None,
             };
-            Some(Self { place, step: step.strip_prefix("step=")?.parse().ok()? })
+            Some(Self {
+                place,
+                step: step.strip_prefix("step=")?.parse().ok()?,
+            })
         };
         let forms = "panic:rank=R,step=N, kill:phase=P,step=N or reject:step=N";
         read().ok_or_else(|| {
@@ -61,7 +69,10 @@ impl Fault {
 
     /// Panics if this is the rank and the step.
     pub fn strike(self, rank: usize, step: u64) {
-        assert!((FaultPlace::Rank(rank), step) != (self.place, self.step), "injected by BSMPM_FAULT at step {step}");
+        assert!(
+            (FaultPlace::Rank(rank), step) != (self.place, self.step),
+            "injected by BSMPM_FAULT at step {step}"
+        );
     }
 
     /// Kills the process, with no chance to clean up, if it writes the checkpoint of this step and is in this phase.
@@ -73,7 +84,9 @@ impl Fault {
 }
 
 fn phase(name: &str) -> Option<Phase> {
-    Phase::ALL.into_iter().find(|phase| format!("{phase:?}").to_lowercase() == name)
+    Phase::ALL
+        .into_iter()
+        .find(|phase| format!("{phase:?}").to_lowercase() == name)
 }
 
 #[cfg(test)]
@@ -82,10 +95,25 @@ mod tests {
 
     #[test]
     fn a_fault_names_rank_or_phase_and_step() {
-        assert_eq!(Fault::parse("panic:rank=1,step=20"), Ok(Fault { place: FaultPlace::Rank(1), step: 20 }));
-        let fault = Fault { place: FaultPlace::Phase(Phase::Midway), step: 4 };
+        assert_eq!(
+            Fault::parse("panic:rank=1,step=20"),
+            Ok(Fault {
+                place: FaultPlace::Rank(1),
+                step: 20
+            })
+        );
+        let fault = Fault {
+            place: FaultPlace::Phase(Phase::Midway),
+            step: 4,
+        };
         assert_eq!(Fault::parse("kill:phase=midway,step=4"), Ok(fault));
-        assert_eq!(Fault::parse("reject:step=7"), Ok(Fault { place: FaultPlace::Convergence, step: 7 }));
+        assert_eq!(
+            Fault::parse("reject:step=7"),
+            Ok(Fault {
+                place: FaultPlace::Convergence,
+                step: 7
+            })
+        );
         for wrong in [
             "reject:rank=1,step=2",
             "",

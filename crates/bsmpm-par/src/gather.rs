@@ -78,9 +78,15 @@ impl<'a, const D: usize> FieldSource<'a, D> {
             }
         }
         let state = variables.into_iter().map(|variable| Self::State(variable, materials));
-        let first = columns(shaped).chain([Self::Pressure]).chain(projected.map(Self::Projected));
+        let first = columns(shaped)
+            .chain([Self::Pressure])
+            .chain(projected.map(Self::Projected));
         let asked = around.fields.iter().map(|&field| Self::Asked(field, around));
-        let numbers = first.chain(columns(numbers)).chain(state).chain([Self::Volume]).chain(asked);
+        let numbers = first
+            .chain(columns(numbers))
+            .chain(state)
+            .chain([Self::Volume])
+            .chain(asked);
         numbers.chain(columns(whole).rev()).collect()
     }
 
@@ -137,13 +143,18 @@ impl<'a, const D: usize> FieldSource<'a, D> {
             _ => Number::F64,
         };
         let mut numbers = Vec::with_capacity(rows.len() * components);
-        rows.iter().for_each(|row| numbers.extend_from_slice(&row[at..at + components]));
+        rows.iter()
+            .for_each(|row| numbers.extend_from_slice(&row[at..at + components]));
         let values = match number {
             Number::U16 => FieldValues::U16(numbers.into_iter().map(|number| number as u16).collect()),
             Number::U64 => FieldValues::U64(numbers.into_iter().map(|number| number as u64).collect()),
             Number::F64 => return Field::real(name, components, numbers),
         };
-        Field { name: name.into(), components, values }
+        Field {
+            name: name.into(),
+            components,
+            values,
+        }
     }
 }
 
@@ -204,7 +215,16 @@ impl<'a, const D: usize> Gathering<'a, D> {
         world.all_reduce_into(&own, &mut end, SystemOperation::max());
         world.all_reduce_into(&(points.len() as u64), &mut total, SystemOperation::sum());
         let sources = FieldSource::all(points, projected, around);
-        Self { world, points, sources, moment, by_id, gone: 0, ids: 0..end, total: total as usize }
+        Self {
+            world,
+            points,
+            sources,
+            moment,
+            by_id,
+            gone: 0,
+            ids: 0..end,
+            total: total as usize,
+        }
     }
 
     /// Units of the fields, by name.
@@ -243,7 +263,10 @@ impl<'a, const D: usize> Gathering<'a, D> {
         }
         let mut counts = vec![0_i32; self.world.size().unsigned_abs() as usize];
         root.gather_into_root(&count, &mut counts[..]);
-        let starts: Vec<i32> = counts.iter().scan(0, |at, count| Some(std::mem::replace(at, *at + count))).collect();
+        let starts: Vec<i32> = counts
+            .iter()
+            .scan(0, |at, count| Some(std::mem::replace(at, *at + count)))
+            .collect();
         let mut all = vec![0.0; counts.iter().map(|&count| count as usize).sum()];
         root.gather_varcount_into_root(&own[..], &mut PartitionMut::new(&mut all[..], &counts[..], &starts[..]));
         let mut rows: Vec<&[f64]> = all.chunks_exact(width(&self.sources)).collect();
@@ -298,7 +321,15 @@ fn no_points<const D: usize>(dynamic: bool) -> Points<D> {
 pub fn point_bytes<const D: usize>(dynamic: bool, projected: bool, around: Around<'_, D>) -> u64 {
     let points = no_points(dynamic);
     let sources = FieldSource::all(&points, projected.then_some(&[]), around);
-    vtu::point_bytes(&unpack(&[], FrameMoment { step: 0, time: 0.0, lower: [0.0; 3] }, &sources))
+    vtu::point_bytes(&unpack(
+        &[],
+        FrameMoment {
+            step: 0,
+            time: 0.0,
+            lower: [0.0; 3],
+        },
+        &sources,
+    ))
 }
 
 fn unpack<const D: usize>(
@@ -312,6 +343,14 @@ fn unpack<const D: usize>(
         source.field(rows, at - source.components())
     };
     let fields = sources.iter().map(field).collect();
-    let position = rows.iter().map(|row| std::array::from_fn(|axis| lower[axis] + row[1 + axis])).collect();
-    Frame { step, time, position, fields }
+    let position = rows
+        .iter()
+        .map(|row| std::array::from_fn(|axis| lower[axis] + row[1 + axis]))
+        .collect();
+    Frame {
+        step,
+        time,
+        position,
+        fields,
+    }
 }

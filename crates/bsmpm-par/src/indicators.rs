@@ -113,19 +113,41 @@ impl IndicatorState {
     ) -> Result<Self, StepError> {
         let defect = quadrature::defect(model, points, halo);
         let compression = quadrature::compression(points, model.materials.len(), halo);
-        let young = model.materials.iter().map(|material| material.elastic().young).fold(0.0, f64::max);
+        let young = model
+            .materials
+            .iter()
+            .map(|material| material.elastic().young)
+            .fold(0.0, f64::max);
         let noise = relative_pressure_noise(&model.grid, points, (model.weighting, young), halo)?;
         let energy = recorder.books().map(|books| {
             let now = Stored::of(model, (points, t), halo);
-            let numbers = [books.flows.external.abs(), books.flows.plastic, books.start, now.kinetic + now.elastic];
+            let numbers = [
+                books.flows.external.abs(),
+                books.flows.plastic,
+                books.start,
+                now.kinetic + now.elastic,
+            ];
             let so_far = budget.map_or(f64::MIN_POSITIVE, |budget| budget.largest);
             let largest = numbers.into_iter().fold(so_far, f64::max);
-            Energy { closure: books.closure(now).abs() / largest, loss: books.flows.numerical() / largest }
+            Energy {
+                closure: books.closure(now).abs() / largest,
+                loss: books.flows.numerical() / largest,
+            }
         });
-        let water = PoreWater::of(model, points, t).and_then(|water| water.balance(halo)).map(f64::abs);
+        let water = PoreWater::of(model, points, t)
+            .and_then(|water| water.balance(halo))
+            .map(f64::abs);
         let interfaces = interfaces::shift(model, points, halo);
         let growth = budget.map(|budget| budget.growth);
-        Ok(Self { defect, compression, noise, energy, growth, water, interfaces })
+        Ok(Self {
+            defect,
+            compression,
+            noise,
+            energy,
+            growth,
+            water,
+            interfaces,
+        })
     }
 
     /// The indicators of a run of a case, by name: of what is in it, and of its history, if there is one.
@@ -136,15 +158,32 @@ impl IndicatorState {
             ("energy-measure", summary.largest_energy_measure),
             ("water-measure", summary.largest_water_measure),
         ];
-        all.extend(measures.into_iter().filter_map(|(name, value)| Some((name, at_most(1.0, value?)))));
+        all.extend(
+            measures
+                .into_iter()
+                .filter_map(|(name, value)| Some((name, at_most(1.0, value?)))),
+        );
         all.push(("compression", self.compression(case)));
         let slip = summary.largest_slip.map(|value| ("slip", at_most(SLIP, value)));
-        let smoothed = summary.smoothing_passes.map(|passes| ("smoothing-length", smoothing(case, passes)));
+        let smoothed = summary
+            .smoothing_passes
+            .map(|passes| ("smoothing-length", smoothing(case, passes)));
         all.extend(slip.into_iter().chain(smoothed).chain(course(case, summary)));
         all.extend(shifts(self.interfaces, case));
-        all.extend(history.and_then(|history| force_noise::of(case, history)).map(|noise| ("force-noise", noise)));
-        all.extend(case.cells_across_footing().map(|cells| ("cells-across-footing", across_footing(cells))));
-        all.extend(case.opening.as_ref().map(|narrowest| ("cells-across-opening", across(narrowest))));
+        all.extend(
+            history
+                .and_then(|history| force_noise::of(case, history))
+                .map(|noise| ("force-noise", noise)),
+        );
+        all.extend(
+            case.cells_across_footing()
+                .map(|cells| ("cells-across-footing", across_footing(cells))),
+        );
+        all.extend(
+            case.opening
+                .as_ref()
+                .map(|narrowest| ("cells-across-opening", across(narrowest))),
+        );
         // JSON has no other numbers.
         all.retain(|(_, indicator)| indicator.value.is_finite());
         let judged = |(name, indicator): (&str, Indicator)| {
@@ -181,7 +220,10 @@ impl IndicatorState {
         }
         if let Some(energy) = self.energy {
             rows.push(("energy-closure", at_most(ENERGY[0], energy.closure)));
-            rows.push(("energy-loss", Indicator::new(energy.loss, "-", "", [-ENERGY[1], ENERGY[1]])));
+            rows.push((
+                "energy-loss",
+                Indicator::new(energy.loss, "-", "", [-ENERGY[1], ENERGY[1]]),
+            ));
         }
         rows.extend(self.growth.map(|growth| ("energy-growth", at_most(GROWTH, growth))));
         rows.extend(self.water.map(|lost| ("water-balance", at_most(WATER, lost))));
@@ -199,9 +241,15 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
     let longest = |axis: &GridAxis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
     let share = |part: f64, whole: f64| if part == 0.0 { 0.0 } else { part / whole };
     // Elastic bodies without weight are meant to hang on planes of symmetry; soil is not.
-    let has_soil = case.bodies.iter().any(|body| case.materials[body.material].material.yields());
+    let has_soil = case
+        .bodies
+        .iter()
+        .any(|body| case.materials[body.material].material.yields());
     let may_come_off = has_soil || case.gravity.is_some();
-    let pull = summary.largest_pull.zip(summary.largest_reaction).filter(|_| may_come_off);
+    let pull = summary
+        .largest_pull
+        .zip(summary.largest_reaction)
+        .filter(|_| may_come_off);
     let pull = pull.map(|(pull, largest)| ("support-pull", at_most(PULL, share(pull, largest))));
     let setback = summary.largest_front_setback.map(|setback| {
         let usual = [0.0, SETBACK * longest(&case.grid.axes[0])];
@@ -213,23 +261,50 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
             Some(t) => format!("the ground failed at t = {}", short(t)),
             None => "the ground has not failed".to_owned(),
         };
-        ("stiffness-loss", Indicator::new(loss, "-", &state, [0.0, STIFFNESS_LOSS]))
+        (
+            "stiffness-loss",
+            Indicator::new(loss, "-", &state, [0.0, STIFFNESS_LOSS]),
+        )
     });
-    let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
-    let advance = summary.largest_advance.filter(|_| case.analysis.regime == Regime::Dynamic);
+    let cell = case
+        .grid
+        .axes
+        .iter()
+        .map(GridAxis::shortest)
+        .fold(f64::INFINITY, f64::min);
+    let advance = summary
+        .largest_advance
+        .filter(|_| case.analysis.regime == Regime::Dynamic);
     let advance = advance.map(|advance| ("step-advance", at_most(ADVANCE, advance / cell)));
-    let beside = summary
-        .beside_fixed
-        .zip(summary.kinetic)
-        .map(|(excess, all)| ("wall-velocity", Indicator::new(share(excess, all), "-", "", [-BESIDE, BESIDE])));
-    let penetration = summary.deepest_penetration.map(|depth| ("rigid-penetration", at_most(PENETRATION, depth)));
-    [pull, setback, background, load_share, loss, advance, beside, penetration].into_iter().flatten()
+    let beside = summary.beside_fixed.zip(summary.kinetic).map(|(excess, all)| {
+        (
+            "wall-velocity",
+            Indicator::new(share(excess, all), "-", "", [-BESIDE, BESIDE]),
+        )
+    });
+    let penetration = summary
+        .deepest_penetration
+        .map(|depth| ("rigid-penetration", at_most(PENETRATION, depth)));
+    [
+        pull,
+        setback,
+        background,
+        load_share,
+        loss,
+        advance,
+        beside,
+        penetration,
+    ]
+    .into_iter()
+    .flatten()
 }
 
 /// What the soft background takes of the work, if there is one: over all steps, or where a limit load is read at the
 /// end of the run in the last one; and its force under dead load.
 fn of_background(case: &Case, summary: &Summary) -> [Option<(&'static str, Indicator)>; 2] {
-    let load = summary.background_forces.map(|shares| ("background-load-share", at_most(LOAD_SHARE, shares)));
+    let load = summary
+        .background_forces
+        .map(|shares| ("background-load-share", at_most(LOAD_SHARE, shares)));
     let part = match case.limit_load {
         Some(_) => summary.last_background.map(|shares| shares.work),
         None => {
@@ -242,9 +317,15 @@ fn of_background(case: &Case, summary: &Summary) -> [Option<(&'static str, Indic
 
 /// How far interfaces have left their grid lines.
 fn shifts(found: InterfaceShift, case: &Case) -> impl Iterator<Item = (&'static str, Indicator)> {
-    let most = if case.solver.quadrature == Quadrature::Fitted { SHIFT_FITTED } else { SHIFT };
+    let most = if case.solver.quadrature == Quadrature::Fitted {
+        SHIFT_FITTED
+    } else {
+        SHIFT
+    };
     let stress = found.stress.map(|moved| ("interface-shift", at_most(most, moved)));
-    let water = found.water.map(|moved| ("permeability-shift", at_most(SHIFT_WATER, moved)));
+    let water = found
+        .water
+        .map(|moved| ("permeability-shift", at_most(SHIFT_WATER, moved)));
     stress.into_iter().chain(water)
 }
 
@@ -266,5 +347,10 @@ fn smoothing(case: &Case, passes: f64) -> Indicator {
         Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => SMOOTHED[1],
         _ => SMOOTHED[0],
     };
-    Indicator::new(setup::smoothing_length(case, passes), "m", "", [0.0, part * case.thinnest()])
+    Indicator::new(
+        setup::smoothing_length(case, passes),
+        "m",
+        "",
+        [0.0, part * case.thinnest()],
+    )
 }

@@ -49,7 +49,11 @@ pub fn watch() -> bool {
 
 /// Writes a line to stderr; where nobody listens there is nothing left to do.
 pub fn say(line: &str) {
-    let clear = if IS_DRAWN.swap(false, Ordering::Relaxed) { CLEAR } else { "" };
+    let clear = if IS_DRAWN.swap(false, Ordering::Relaxed) {
+        CLEAR
+    } else {
+        ""
+    };
     write(&format!("{clear}{line}\n"));
 }
 

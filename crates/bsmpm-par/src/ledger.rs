@@ -70,12 +70,22 @@ impl Headings {
         history.extend(columns.iter().cloned());
         let profile = |profile: &Profile| {
             let columns = profile.columns();
-            let columns = columns.iter().map(|column| TableColumn::new(&column.name, &column.unit));
+            let columns = columns
+                .iter()
+                .map(|column| TableColumn::new(&column.name, &column.unit));
             (profile.file(), first().into_iter().chain(columns).collect())
         };
         let profiles = case.profiles.iter().map(profile).collect();
-        let residuals = case.output.residuals.then(|| Iterate::columns(time, case.flow.is_some()));
-        Self { history, steps: StepRow::columns(time).into(), residuals, profiles }
+        let residuals = case
+            .output
+            .residuals
+            .then(|| Iterate::columns(time, case.flow.is_some()));
+        Self {
+            history,
+            steps: StepRow::columns(time).into(),
+            residuals,
+            profiles,
+        }
     }
 }
 
@@ -89,18 +99,32 @@ impl Ledger {
         columns: Vec<TableColumn>,
     ) -> Result<Self, Error> {
         let mut manifest = first::manifest(arguments, case, ranks);
-        [HISTORY, STEPS, COLLECTION].iter().for_each(|file| manifest.name_output(file));
+        [HISTORY, STEPS, COLLECTION]
+            .iter()
+            .for_each(|file| manifest.name_output(file));
         if case.output.residuals {
             manifest.name_output(RESIDUALS);
         }
-        case.profiles.iter().for_each(|profile| manifest.name_output(&profile.file()));
-        manifest.warnings.extend(held.note().map(str::to_owned).into_iter().chain(beginning.warnings.clone()));
+        case.profiles
+            .iter()
+            .for_each(|profile| manifest.name_output(&profile.file()));
+        manifest.warnings.extend(
+            held.note()
+                .map(str::to_owned)
+                .into_iter()
+                .chain(beginning.warnings.clone()),
+        );
         manifest.restarts.clone_from(&beginning.restarts);
         let directory = held.claim(beginning.existing, &manifest)?;
         let headings = Headings::of(case, &columns);
         let path = directory.path();
-        let residuals = headings.residuals.map(|headings| CsvTable::create(&path.join(RESIDUALS), &headings));
-        let profiles = headings.profiles.iter().map(|(file, headings)| CsvTable::create(&path.join(file), headings));
+        let residuals = headings
+            .residuals
+            .map(|headings| CsvTable::create(&path.join(RESIDUALS), &headings));
+        let profiles = headings
+            .profiles
+            .iter()
+            .map(|(file, headings)| CsvTable::create(&path.join(file), headings));
         Ok(Self {
             profiles: profiles.collect::<Result<_, _>>()?,
             residuals: residuals.transpose()?,
@@ -190,17 +214,26 @@ impl Ledger {
         self.manifest.summary.steps = number;
         self.attempts(accepted.rejected.len(), accepted.counts);
         if self.manifest.ranks > 1 {
-            self.manifest.balance.get_or_insert_default().enter(cost.imbalance, cost.is_cut_again);
+            self.manifest
+                .balance
+                .get_or_insert_default()
+                .enter(cost.imbalance, cost.is_cut_again);
         }
         self.manifest.summary.newton_steps += u64::from(report.newton_iterations > 0);
         self.measures(number, report);
         self.stiffness(number, accepted);
         self.reactions(report);
-        let slips = report.strips.iter().filter(|strip| strip.motion > 0.0).map(surfaces::relative_slip);
+        let slips = report
+            .strips
+            .iter()
+            .filter(|strip| strip.motion > 0.0)
+            .map(surfaces::relative_slip);
         let largest = slips.chain(self.manifest.summary.largest_slip).reduce(f64::max);
         self.manifest.summary.largest_slip = largest;
         let accumulated = report.strips.iter().map(|strip| strip.accumulated);
-        let largest = accumulated.chain(self.manifest.summary.largest_accumulated_slip).reduce(f64::max);
+        let largest = accumulated
+            .chain(self.manifest.summary.largest_accumulated_slip)
+            .reduce(f64::max);
         self.manifest.summary.largest_accumulated_slip = largest;
         let sizes = &mut self.manifest.sizes;
         sizes.insert("active_nodes".into(), report.active_nodes as u64);
@@ -250,8 +283,11 @@ impl Ledger {
         if let Some(passes) = &mut summary.smoothing_passes {
             *passes += report.smoothed;
         }
-        summary.largest_advance =
-            Some(summary.largest_advance.map_or(report.advance, |so_far| so_far.max(report.advance)));
+        summary.largest_advance = Some(
+            summary
+                .largest_advance
+                .map_or(report.advance, |so_far| so_far.max(report.advance)),
+        );
         let penetrations = report.rigid.iter().map(|rigid| rigid.penetration);
         summary.deepest_penetration = penetrations.chain(summary.deepest_penetration).reduce(f64::max);
         summary.settled_steps += u64::from(report.settled);
@@ -289,7 +325,11 @@ impl Ledger {
         let summary = &mut self.manifest.summary;
         for (&(axis, push), force) in self.faces.iter().zip(&report.reactions) {
             let size = force.iter().map(|f| f * f).sum::<f64>().sqrt();
-            let pull = if size > self.least_reaction { (-push * force[axis]).max(0.0) } else { 0.0 };
+            let pull = if size > self.least_reaction {
+                (-push * force[axis]).max(0.0)
+            } else {
+                0.0
+            };
             let [size, pull] = [size, pull].map(|force| force * self.whole);
             summary.largest_reaction = Some(summary.largest_reaction.map_or(size, |so_far| so_far.max(size)));
             summary.largest_pull = Some(summary.largest_pull.map_or(pull, |so_far| so_far.max(pull)));
@@ -302,13 +342,18 @@ impl Ledger {
         let farthest = summary.farthest_front.map_or(front, |so_far| so_far.max(front));
         summary.farthest_front = Some(farthest);
         let setback = farthest - front;
-        summary.largest_front_setback =
-            Some(summary.largest_front_setback.map_or(setback, |so_far| so_far.max(setback)));
+        summary.largest_front_setback = Some(
+            summary
+                .largest_front_setback
+                .map_or(setback, |so_far| so_far.max(setback)),
+        );
     }
 
     /// The rows of `residuals.csv`, if there is one.
     fn residuals(&mut self, step: u64, accepted: &Accepted) -> Result<(), Error> {
-        let Some(table) = &mut self.residuals else { return Ok(()) };
+        let Some(table) = &mut self.residuals else {
+            return Ok(());
+        };
         let report = &accepted.report;
         let flows = self.water_flows;
         let row = |iteration, method: Option<Method>, [energy, force, water]: [f64; 3]| {
@@ -317,12 +362,31 @@ impl Ledger {
                 Method::QuasiNewton(QuasiNewton::Broyden) => residuals::ResidualMethod::Broyden,
                 Method::Newton => residuals::ResidualMethod::Newton,
             });
-            Iterate { step, time: accepted.t, iteration, method, energy, force, water }.cells(flows)
+            Iterate {
+                step,
+                time: accepted.t,
+                iteration,
+                method,
+                energy,
+                force,
+                water,
+            }
+            .cells(flows)
         };
         let mut iteration = 0;
-        for &Measures { energy, force, water, method } in &report.history {
+        for &Measures {
+            energy,
+            force,
+            water,
+            method,
+        } in &report.history
+        {
             iteration += 1;
-            table.row(&row(iteration, Some(method), [energy, force, water.unwrap_or(f64::NAN)]))?;
+            table.row(&row(
+                iteration,
+                Some(method),
+                [energy, force, water.unwrap_or(f64::NAN)],
+            ))?;
         }
         if report.history.last().is_none_or(|last| last.force != report.force) {
             let water = report.water.as_ref().map_or(f64::NAN, |water| water.measure);

@@ -17,17 +17,31 @@ const ERRORS_WITHOUT_AVERAGES: [f64; 2] = [0.02, 0.26];
 
 /// The limit loads that the history of a run shows at its end; empty for a case that seeks none, or without rows.
 pub fn found(case: &Case, history: &Columns) -> Vec<ManifestLimitLoad> {
-    let Some(sought) = &case.limit_load else { return Vec::new() };
-    sought.loads.iter().filter_map(|load| of_load(sought, load, history)).collect()
+    let Some(sought) = &case.limit_load else {
+        return Vec::new();
+    };
+    sought
+        .loads
+        .iter()
+        .filter_map(|load| of_load(sought, load, history))
+        .collect()
 }
 
 fn of_load(sought: &LimitLoad, load: &SoughtLoad, history: &Columns) -> Option<ManifestLimitLoad> {
     let times = history.get("time")?;
     let last = times.len().checked_sub(1)?;
-    let moved = |row: usize| load.path.at(times[row]).iter().fold(0.0, |length: f64, along| length.hypot(*along));
+    let moved = |row: usize| {
+        load.path
+            .at(times[row])
+            .iter()
+            .fold(0.0, |length: f64, along| length.hypot(*along))
+    };
     let late = (0..=last).find(|row| moved(*row) >= LATE * moved(last))?;
     let at = |row: usize| -> Option<f64> {
-        let parts = load.columns.iter().map(|(column, weight)| Some(weight * history.get(column)?.get(row)?));
+        let parts = load
+            .columns
+            .iter()
+            .map(|(column, weight)| Some(weight * history.get(column)?.get(row)?));
         parts.sum()
     };
     let [before, value] = [at(late)?, at(last)?];
@@ -49,7 +63,11 @@ fn of_load(sought: &LimitLoad, load: &SoughtLoad, history: &Columns) -> Option<M
 /// A line on each of them that was reached.
 pub fn report_lines(case: &Case, loads: &[ManifestLimitLoad]) -> Vec<String> {
     let averages = case.limit_load.as_ref().is_some_and(|sought| sought.averages);
-    loads.iter().filter(|load| load.is_reached).map(|load| reached(load, averages)).collect()
+    loads
+        .iter()
+        .filter(|load| load.is_reached)
+        .map(|load| reached(load, averages))
+        .collect()
 }
 
 /// A warning of each of them that was not.
@@ -60,7 +78,11 @@ pub fn warnings(loads: &[ManifestLimitLoad]) -> Vec<String> {
 fn reached(load: &ManifestLimitLoad, averages: bool) -> String {
     let ManifestLimitLoad { name, value, unit, .. } = load;
     let part = load.part();
-    let errors = if averages { ERRORS_OF_AVERAGES } else { ERRORS_WITHOUT_AVERAGES };
+    let errors = if averages {
+        ERRORS_OF_AVERAGES
+    } else {
+        ERRORS_WITHOUT_AVERAGES
+    };
     let expected = load.cells.map_or_else(String::new, |cells| {
         let [least, most] = errors.map(|error| 100.0 * error * STATED_CELLS / cells);
         format!(
@@ -72,7 +94,13 @@ fn reached(load: &ManifestLimitLoad, averages: bool) -> String {
 }
 
 fn not_reached(load: &ManifestLimitLoad) -> String {
-    let ManifestLimitLoad { name, value, unit, change, .. } = load;
+    let ManifestLimitLoad {
+        name,
+        value,
+        unit,
+        change,
+        ..
+    } = load;
     let percent = 100.0 * change;
     if *value <= 0.0 {
         return format!(

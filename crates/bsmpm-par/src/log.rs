@@ -67,7 +67,11 @@ impl Log {
             speaks,
             verbosity,
             format,
-            progress: if speaks { progress(arguments.progress, verbosity, is_watched) } else { Progress::Off },
+            progress: if speaks {
+                progress(arguments.progress, verbosity, is_watched)
+            } else {
+                Progress::Off
+            },
             due: Instant::now() + first,
             end: case.analysis.end,
             unit: if case.analysis.kind.is_timeless() { "" } else { " s" },
@@ -105,7 +109,11 @@ impl Log {
     /// Attempts at a step that were rejected.
     pub fn rejected(&self, number: u64, errors: &[StepError]) {
         for error in errors {
-            self.print(Verbosity::Attempts, "cut", &format!("step {number}: attempt rejected: {error}"));
+            self.print(
+                Verbosity::Attempts,
+                "cut",
+                &format!("step {number}: attempt rejected: {error}"),
+            );
         }
     }
 
@@ -154,7 +162,11 @@ impl Log {
 
     /// A failure, which begins with its code.
     pub fn failure(&self, text: &str) {
-        let text = &if code_of(text).is_some() { format!("error {text}") } else { format!("error: {text}") };
+        let text = &if code_of(text).is_some() {
+            format!("error {text}")
+        } else {
+            format!("error: {text}")
+        };
         match self.format {
             LogFormat::Json => self.print(Verbosity::Warnings, "failure", text),
             LogFormat::Text => self.print(Verbosity::Warnings, "failure", &format!("bsmpm-par: {text}")),
@@ -227,7 +239,11 @@ pub fn duration(seconds: f64) -> String {
 pub fn short(number: f64) -> String {
     let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
     let size = rounded.abs();
-    if size == 0.0 || (1e-3..1e6).contains(&size) { format!("{rounded}") } else { format!("{rounded:e}") }
+    if size == 0.0 || (1e-3..1e6).contains(&size) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
 }
 
 #[cfg(test)]
@@ -237,7 +253,15 @@ mod tests {
     #[test]
     fn durations_have_two_units_at_most() {
         let spoken = [0.04, 9.96, 61.0, 3599.6, 7260.0, 93_600.0, f64::INFINITY].map(duration);
-        let expected = ["0.0 s", "10 s", "1 min 1 s", "1 h 0 min", "2 h 1 min", "1 d 2 h", "an unknown time"];
+        let expected = [
+            "0.0 s",
+            "10 s",
+            "1 min 1 s",
+            "1 h 0 min",
+            "2 h 1 min",
+            "1 d 2 h",
+            "an unknown time",
+        ];
         assert_eq!(spoken, expected);
     }
 

@@ -9,7 +9,12 @@ const TICKS: f64 = 100.0;
 pub fn cpu_seconds() -> f64 {
     let stat = fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let after_name = stat.rsplit(')').next().unwrap_or_default();
-    let ticks = |field: usize| after_name.split_whitespace().nth(field).and_then(|text| text.parse::<f64>().ok());
+    let ticks = |field: usize| {
+        after_name
+            .split_whitespace()
+            .nth(field)
+            .and_then(|text| text.parse::<f64>().ok())
+    };
     (ticks(11).unwrap_or(0.0) + ticks(12).unwrap_or(0.0)) / TICKS
 }
 
@@ -17,7 +22,9 @@ pub fn cpu_seconds() -> f64 {
 pub fn peak_memory() -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with("VmHWM:"));
-    line.and_then(|line| line.split_whitespace().nth(1)?.parse::<u64>().ok()).unwrap_or(0) * 1024
+    line.and_then(|line| line.split_whitespace().nth(1)?.parse::<u64>().ok())
+        .unwrap_or(0)
+        * 1024
 }
 
 /// Processors of this host that its system counts, whoever may use them; `None` if unknown.
@@ -30,12 +37,20 @@ pub fn processors() -> Option<u64> {
 pub fn blas() -> Option<String> {
     let maps = fs::read_to_string("/proc/self/maps").unwrap_or_default();
     let files = maps.lines().filter_map(|line| line.split('/').next_back());
-    let known = |name: &&str| ["openblas", "mkl", "blis", "libblas"].iter().any(|part| name.contains(part));
+    let known = |name: &&str| {
+        ["openblas", "mkl", "blis", "libblas"]
+            .iter()
+            .any(|part| name.contains(part))
+    };
     let mut found: Vec<&str> = files.filter(known).collect();
     found.sort_unstable();
     found.dedup();
     // Debian calls an optimised BLAS libblas.so too; the package's own library is loaded then as well.
-    found.iter().find(|name| !name.starts_with("libblas")).or(found.first()).map(|name| (*name).to_owned())
+    found
+        .iter()
+        .find(|name| !name.starts_with("libblas"))
+        .or(found.first())
+        .map(|name| (*name).to_owned())
 }
 
 /// Whether the BLAS is a slow reference one: factorisations then take several times as long.

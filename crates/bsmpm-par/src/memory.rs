@@ -45,9 +45,15 @@ impl Display for Shortage {
         match self.by {
             Limit::Asked => write!(f, "on {ranks} rank(s), and --max-memory allows {allowed:.1} GiB"),
             Limit::Process => write!(f, "on each of {ranks} rank(s), and `ulimit` allows {allowed:.1} GiB"),
-            Limit::Free => write!(f, "on this computer ({ranks} rank(s)), where {allowed:.1} GiB are available"),
+            Limit::Free => write!(
+                f,
+                "on this computer ({ranks} rank(s)), where {allowed:.1} GiB are available"
+            ),
             Limit::Group => {
-                write!(f, "on this computer ({ranks} rank(s)), whose control group allows {allowed:.1} GiB")
+                write!(
+                    f,
+                    "on this computer ({ranks} rank(s)), whose control group allows {allowed:.1} GiB"
+                )
             }
         }
     }
@@ -115,18 +121,30 @@ fn short(needed: u64, (ranks, here): (usize, usize), (by, allowed): (Limit, u64)
         Limit::Process => (each, ranks),
         Limit::Free | Limit::Group => (each * here as u64, here),
     };
-    (needed > allowed).then_some(Shortage { needed, ranks, allowed, by })
+    (needed > allowed).then_some(Shortage {
+        needed,
+        ranks,
+        allowed,
+        by,
+    })
 }
 
 /// What was asked for, or what this host and its control groups tell; and what the process's own limits do.
 fn limits(asked: Option<u64>) -> Vec<(Limit, Option<u64>)> {
     let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
-    let process = (Limit::Process, left(&read("/proc/self/limits"), &read("/proc/self/status")));
+    let process = (
+        Limit::Process,
+        left(&read("/proc/self/limits"), &read("/proc/self/status")),
+    );
     if asked.is_some() {
         return vec![(Limit::Asked, asked), process];
     }
     let group = group(Path::new("/sys/fs/cgroup"), &read("/proc/self/cgroup"));
-    vec![(Limit::Group, group), (Limit::Free, kilobytes(&read("/proc/meminfo"), "MemAvailable:")), process]
+    vec![
+        (Limit::Group, group),
+        (Limit::Free, kilobytes(&read("/proc/meminfo"), "MemAvailable:")),
+        process,
+    ]
 }
 
 fn kilobytes(text: &str, name: &str) -> Option<u64> {
@@ -141,7 +159,10 @@ fn left(limits: &str, status: &str) -> Option<u64> {
         let limit = line.split_whitespace().next()?.parse::<u64>().ok()?; // none where it is "unlimited"
         Some(limit.saturating_sub(kilobytes(status, size).unwrap_or(0) + RESERVED))
     };
-    [of("Max address space", "VmSize:"), of("Max data size", "VmData:")].into_iter().flatten().min()
+    [of("Max address space", "VmSize:"), of("Max data size", "VmData:")]
+        .into_iter()
+        .flatten()
+        .min()
 }
 
 /// The least limit of the process's control groups of either version and of those around them; `membership` is
@@ -156,8 +177,12 @@ fn group(mounted: &Path, membership: &str) -> Option<u64> {
             _ => return None,
         };
         let own = PathBuf::from(path.trim_start_matches('/'));
-        let files = below.iter().flat_map(|below| own.ancestors().map(move |group| mounted.join(below).join(group)));
-        files.filter_map(|group| fs::read_to_string(group.join(file)).ok()?.trim().parse::<u64>().ok()).min()
+        let files = below
+            .iter()
+            .flat_map(|below| own.ancestors().map(move |group| mounted.join(below).join(group)));
+        files
+            .filter_map(|group| fs::read_to_string(group.join(file)).ok()?.trim().parse::<u64>().ok())
+            .min()
     };
     membership.lines().filter_map(of_line).min()
 }
@@ -193,7 +218,10 @@ mod tests {
         put("job/memory.max", "4000000000\n");
         assert_eq!(group(mounted.path(), "0::/job/step\n"), Some(4_000_000_000));
         put("memory/slurm/job/memory.limit_in_bytes", "3000000000\n");
-        assert_eq!(group(mounted.path(), "4:memory:/slurm/job\n0::/job/step\n"), Some(3_000_000_000));
+        assert_eq!(
+            group(mounted.path(), "4:memory:/slurm/job\n0::/job/step\n"),
+            Some(3_000_000_000)
+        );
         assert_eq!(group(mounted.path(), "4:cpu:/slurm/job\n"), None);
         assert_eq!(group(mounted.path(), "nonsense"), None);
     }
@@ -206,6 +234,9 @@ mod tests {
         assert!(is_short((Limit::Free, 1 << 30)) && !is_short((Limit::Group, 2 << 30)));
         assert!(is_short((Limit::Process, 1 << 29)) && !is_short((Limit::Process, 1 << 30)));
         let said = short(4 << 30, ranks, (Limit::Free, 1 << 30)).unwrap().to_string();
-        assert!(said.contains("about 2.0 GiB on this computer (2 rank(s)), where 1.0 GiB are available"), "{said}");
+        assert!(
+            said.contains("about 2.0 GiB on this computer (2 rank(s)), where 1.0 GiB are available"),
+            "{said}"
+        );
     }
 }

@@ -26,21 +26,55 @@ pub fn rows<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Vec<Vec<f64>> {
     let places = profile.places();
-    let local: Vec<Vector<D>> = places.iter().map(|(_, at)| vector::<D, _>(*at) - vector(lower)).collect();
-    let configuration = if profile.fixed { Configuration::Present } else { Configuration::Initial };
+    let local: Vec<Vector<D>> = places
+        .iter()
+        .map(|(_, at)| vector::<D, _>(*at) - vector(lower))
+        .collect();
+    let configuration = if profile.fixed {
+        Configuration::Present
+    } else {
+        Configuration::Initial
+    };
     let water = PoreWater::of(model, points, t);
     let fields = |p: usize| {
         let velocity = points.motion.as_ref().map_or(Vector::zeros(), |motion| motion.v[p]);
         let vectors = [points.u[p], points.displacement(p), velocity].map(|vector| gather::spatial(&vector));
         let pores = water.map_or([0.0; 2], |water| [water.pressure(p), water.excess(p)]);
-        let numbers = vectors.into_iter().flatten().chain(points.sigma.at(p).0).chain([points.eps_p[p]]).chain(pores);
+        let numbers = vectors
+            .into_iter()
+            .flatten()
+            .chain(points.sigma.at(p).0)
+            .chain([points.eps_p[p]])
+            .chain(pores);
         let mut fields = [0.0; FIELDS];
-        fields.iter_mut().zip(numbers).for_each(|(field, number)| *field = number);
+        fields
+            .iter_mut()
+            .zip(numbers)
+            .for_each(|(field, number)| *field = number);
         fields
     };
     let found = place::values::<K, D, _>(&model.grid, points, (&local, configuration), fields, halo);
     let row = |((distance, at), found): (&(f64, [f64; 3]), &Option<[f64; FIELDS]>)| {
-        let [ux, uy, uz, dx, dy, dz, vx, vy, vz, xx, yy, zz, xy, yz, xz, plastic, pore, excess] = (*found)?;
+        let [
+            ux,
+            uy,
+            uz,
+            dx,
+            dy,
+            dz,
+            vx,
+            vy,
+            vz,
+            xx,
+            yy,
+            zz,
+            xy,
+            yz,
+            xz,
+            plastic,
+            pore,
+            excess,
+        ] = (*found)?;
         let moved = if profile.fixed { [0.0; 3] } else { [ux, uy, uz] };
         let stress = Symmetric([xx, yy, zz, xy, yz, xz]);
         let mut row = vec![*distance];

@@ -50,7 +50,11 @@ fn prepare(universe: &Universe) -> Result<Option<(Task, Cut)>, u8> {
     if arguments.check {
         if speaks {
             // A closed stdout is no reason to fail.
-            let _ = writeln!(std::io::stdout(), "{}", source::describe(&case, ranks, &arguments.petsc));
+            let _ = writeln!(
+                std::io::stdout(),
+                "{}",
+                source::describe(&case, ranks, &arguments.petsc)
+            );
         }
         return Ok(None);
     }
@@ -67,12 +71,15 @@ fn agreed<T>(universe: &Universe, code: u8, mine: Result<T, String>) -> Result<T
         launch::complain(reason);
     }
     let failed = bsmpm_ranks::launch::agree(&world, own * code);
-    mine.map_err(|_| failed).and_then(|good| if failed == 0 { Ok(good) } else { Err(failed) })
+    mine.map_err(|_| failed)
+        .and_then(|good| if failed == 0 { Ok(good) } else { Err(failed) })
 }
 
 /// Computes with the vectors of `BSMPM_LANES`, for tests; without it with the widest.
 fn choose_lanes() -> Result<(), String> {
-    let Some(name) = std::env::var_os("BSMPM_LANES") else { return Ok(()) };
+    let Some(name) = std::env::var_os("BSMPM_LANES") else {
+        return Ok(());
+    };
     let name = name.to_string_lossy();
     lanes::choose(&name).map_err(|error| {
         format!(
@@ -84,7 +91,9 @@ fn choose_lanes() -> Result<(), String> {
 
 /// The threads that share the points of this rank; its own one is the first of them, so that one is none more.
 fn start_threads(count: u32) -> Result<(), String> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(count as usize).use_current_thread();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(count as usize)
+        .use_current_thread();
     pool.build_global().map_err(|error| {
         format!("E0711: {count} threads could not be started: {error}. Nothing was run. Reduce `--threads`.")
     })
@@ -95,7 +104,10 @@ fn start_threads(count: u32) -> Result<(), String> {
 fn reports(options: &[String]) -> (Vec<&str>, Vec<(&str, Option<&str>)>) {
     let is_name = |option: &str| option.starts_with('-') && option.parse::<f64>().is_err();
     let reports = |option: &str| {
-        option != "-log_view" && ["_view", "_monitor", "_converged_reason"].iter().any(|part| option.contains(part))
+        option != "-log_view"
+            && ["_view", "_monitor", "_converged_reason"]
+                .iter()
+                .any(|part| option.contains(part))
     };
     let (mut others, mut waiting) = (Vec::new(), Vec::<(&str, Option<&str>)>::new());
     let mut is_value = false; // of one that waits
@@ -127,7 +139,9 @@ fn solve(universe: &Universe, task: Task, cut: Cut) -> Result<u8, u8> {
         )
     });
     agreed(universe, exit::CASE, probed)?;
-    let set = reports.iter().try_for_each(|(name, value)| petsc.set_option(name, *value));
+    let set = reports
+        .iter()
+        .try_for_each(|(name, value)| petsc.set_option(name, *value));
     agreed(
         universe,
         exit::BUG,
@@ -159,7 +173,10 @@ mod tests {
         let words = "-ksp_view :view.txt -ksp_type cg -ksp_monitor -ksp_rtol -1e-3 -log_view :times.txt";
         let options: Vec<String> = words.split(' ').map(String::from).collect();
         let (others, waiting) = reports(&options);
-        assert_eq!(others, ["-ksp_type", "cg", "-ksp_rtol", "-1e-3", "-log_view", ":times.txt"]);
+        assert_eq!(
+            others,
+            ["-ksp_type", "cg", "-ksp_rtol", "-1e-3", "-log_view", ":times.txt"]
+        );
         assert_eq!(waiting, [("-ksp_view", Some(":view.txt")), ("-ksp_monitor", None)]);
     }
 }

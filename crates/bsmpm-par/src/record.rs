@@ -58,7 +58,11 @@ impl<const D: usize> Recorder<D> {
         let followed = histories.iter().enumerate().map(follow).collect();
         let has_box = |number: &usize| histories[*number].quantity.counted().within.is_some();
         let vacant = (0..histories.len()).filter(has_box).collect();
-        let state = RecordState { followed, vacant, ..RecordState::default() };
+        let state = RecordState {
+            followed,
+            vacant,
+            ..RecordState::default()
+        };
         Self::of(case, state)
     }
 
@@ -72,11 +76,25 @@ impl<const D: usize> Recorder<D> {
             Quantity::Reaction { face } => surfaces::strip_of_face(case, face),
             _ => None,
         };
-        let wants_work =
-            |history: &History| matches!(history.quantity, Quantity::Strip { measured: Measurement::Work, .. });
+        let wants_work = |history: &History| {
+            matches!(
+                history.quantity,
+                Quantity::Strip {
+                    measured: Measurement::Work,
+                    ..
+                }
+            )
+        };
         let strips = case.prescribed.len() + usize::from(case.footing.is_some());
         let mut work = state.work;
-        work.resize(if case.histories.iter().any(wants_work) { strips } else { 0 }, 0.0);
+        work.resize(
+            if case.histories.iter().any(wants_work) {
+                strips
+            } else {
+                0
+            },
+            0.0,
+        );
         Self {
             work,
             histories: case.histories.clone(),
@@ -100,13 +118,23 @@ impl<const D: usize> Recorder<D> {
     pub fn state(&self) -> RecordState {
         let (followed, books) = (self.followed.clone(), self.books.map(BooksForm));
         let (vacant, work, datum) = (self.vacant.clone(), self.work.clone(), self.datum.clone());
-        RecordState { followed, vacant, books, left: self.left, work, datum }
+        RecordState {
+            followed,
+            vacant,
+            books,
+            left: self.left,
+            work,
+            datum,
+        }
     }
 
     /// Follows points of the bodies that a stage has placed, and sets displacements to zero where it wants that.
     pub fn begin_stage(&mut self, (case, stage): (&Case, &Stage), points: &Points<D>, halo: &dyn Halo) {
         let (taken, placed) = (case.taken_by(stage), case.placed_by(stage));
-        self.followed.iter_mut().filter(|followed| followed.is_some_and(&taken)).for_each(|lost| *lost = None);
+        self.followed
+            .iter_mut()
+            .filter(|followed| followed.is_some_and(&taken))
+            .for_each(|lost| *lost = None);
         for &number in &stage.follows {
             if let Some(at) = followed_place(&self.histories[number].quantity) {
                 self.followed[number] = observe::nearest(points, &(vector(at) - self.lower), &placed, halo);
@@ -143,8 +171,10 @@ impl<const D: usize> Recorder<D> {
     pub fn reported(&self) -> Vec<bool> {
         let is_sum = |history: &History| {
             let quantity = &history.quantity;
-            matches!(quantity, Quantity::Mass { .. } | Quantity::Momentum { .. } | Quantity::AngularMomentum { .. })
-                || matches!(quantity, Quantity::KineticEnergy { .. })
+            matches!(
+                quantity,
+                Quantity::Mass { .. } | Quantity::Momentum { .. } | Quantity::AngularMomentum { .. }
+            ) || matches!(quantity, Quantity::KineticEnergy { .. })
         };
         let reported = |(number, history): (usize, &History)| {
             let is_reported = is_sum(history) || !self.empty.contains(&number);
@@ -155,7 +185,11 @@ impl<const D: usize> Recorder<D> {
 
     /// Names of the histories in whose box no point has been yet, if there are any.
     pub fn vacant(&self) -> Option<String> {
-        let names: Vec<&str> = self.vacant.iter().map(|&number| &*self.histories[number].name).collect();
+        let names: Vec<&str> = self
+            .vacant
+            .iter()
+            .map(|&number| &*self.histories[number].name)
+            .collect();
         (!names.is_empty()).then(|| names.join(", "))
     }
 
@@ -177,12 +211,17 @@ impl<const D: usize> Recorder<D> {
     /// Heading and unit of every column.
     pub fn columns(&self) -> Vec<bsmpm_io::table::TableColumn> {
         let columns = self.histories.iter().flat_map(History::columns);
-        columns.map(|column| bsmpm_io::table::TableColumn::new(&column.name, &column.unit)).collect()
+        columns
+            .map(|column| bsmpm_io::table::TableColumn::new(&column.name, &column.unit))
+            .collect()
     }
 
     /// The body's front (m) in a row, if it is recorded.
     pub fn front(&self, row: &[f64]) -> Option<f64> {
-        let at = self.histories.iter().position(|history| history.quantity == Quantity::Front)?;
+        let at = self
+            .histories
+            .iter()
+            .position(|history| history.quantity == Quantity::Front)?;
         let column: usize = self.histories[..at].iter().map(|history| history.columns().len()).sum();
         Some(row.get(column)? / self.histories[at].factor()).filter(|front| front.is_finite())
     }
@@ -195,10 +234,19 @@ impl<const D: usize> Recorder<D> {
         (t, report): (f64, &StepReport),
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
-        let energy = if model.balances_energy { self.energy(model, points, (t, report), halo) } else { Vec::new() };
-        self.work.iter_mut().zip(&report.strips).for_each(|(sum, strip)| *sum += strip.work);
+        let energy = if model.balances_energy {
+            self.energy(model, points, (t, report), halo)
+        } else {
+            Vec::new()
+        };
+        self.work
+            .iter_mut()
+            .zip(&report.strips)
+            .for_each(|(sum, strip)| *sum += strip.work);
         let boxes = (0..self.parts.len()).filter(|&number| matches!(self.parts[number], Part::Within(..)));
-        self.empty = boxes.filter(|&number| !observe::is_occupied(points, &self.parts[number], halo)).collect();
+        self.empty = boxes
+            .filter(|&number| !observe::is_occupied(points, &self.parts[number], halo))
+            .collect();
         self.vacant.retain(|number| self.empty.contains(number));
         let mut row = Vec::new();
         for (number, history) in self.histories.iter().enumerate() {
@@ -227,13 +275,19 @@ impl<const D: usize> Recorder<D> {
                 }
                 Quantity::PorePressures { .. } => {
                     let water = PoreWater::of(model, points, t);
-                    water.map_or([0.0; 3], |water| water.range(&self.parts[number], halo)).to_vec()
+                    water
+                        .map_or([0.0; 3], |water| water.range(&self.parts[number], halo))
+                        .to_vec()
                 }
                 Quantity::WaterOutflow { drain } => {
                     vec![drain.map_or(points.surface.crossed.out(), |drain| self.drained(drain, points))]
                 }
                 Quantity::WaterBalance => {
-                    vec![PoreWater::of(model, points, t).and_then(|water| water.balance(halo)).unwrap_or(0.0)]
+                    vec![
+                        PoreWater::of(model, points, t)
+                            .and_then(|water| water.balance(halo))
+                            .unwrap_or(0.0),
+                    ]
                 }
                 Quantity::Rigid { what, body } => rigid(*what, *body, (t, model), report),
                 quantity => self.values((number, quantity), model, points, halo)?,
@@ -298,7 +352,10 @@ impl<const D: usize> Recorder<D> {
             Quantity::PlasticStrain { .. } => observe::plastic_strain(points, part, halo).to_vec(),
             Quantity::SectionForces { lines, round, fixed } => {
                 let local = lines.iter().map(|line| line.map(|end| vector(end) - self.lower));
-                let at_start = Section { lines: local.collect(), round: *round };
+                let at_start = Section {
+                    lines: local.collect(),
+                    round: *round,
+                };
                 section::<K, D>((&model.grid, points), at_start, *fixed, halo)
             }
             Quantity::Velocity { at, surface: true } => {
@@ -310,10 +367,19 @@ impl<const D: usize> Recorder<D> {
                 shown::<D>(&at_surface((model, points), vector(*at) - self.lower, stress, halo))
             }
             Quantity::Heave { .. } => vec![observe::heave(points, part, halo)],
-            Quantity::StressNoise => both(noise::stress_noise(&model.grid, points, model.weighting, VERTICAL, halo)?),
-            Quantity::PressureNoise { .. } => {
-                both(noise::pressure_noise(&model.grid, (points, part), model.weighting, halo)?)
-            }
+            Quantity::StressNoise => both(noise::stress_noise(
+                &model.grid,
+                points,
+                model.weighting,
+                VERTICAL,
+                halo,
+            )?),
+            Quantity::PressureNoise { .. } => both(noise::pressure_noise(
+                &model.grid,
+                (points, part),
+                model.weighting,
+                halo,
+            )?),
             Quantity::Displacement { at } => {
                 let Some(id) = followed else { return Ok(vec![0.0; D]) };
                 let total = displacement((*at, self.lower), id, points, halo);
@@ -322,7 +388,12 @@ impl<const D: usize> Recorder<D> {
             }
             quantity => {
                 let at = followed_place(quantity).map_or(Vector::zeros(), |at| vector::<D, _>(at) - self.lower);
-                at_followed(quantity, FollowedPoint::of(followed, at, &self.grid), (model, points), halo)
+                at_followed(
+                    quantity,
+                    FollowedPoint::of(followed, at, &self.grid),
+                    (model, points),
+                    halo,
+                )
             }
         })
     }
@@ -341,8 +412,20 @@ impl<const D: usize> Recorder<D> {
             books.flows += step;
         }
         let flows = books.flows;
-        let parts = [flows.transfer, flows.integration, flows.smoothing, flows.background, flows.penalty];
-        let whole = [now.kinetic, now.elastic, flows.plastic, flows.external, flows.numerical()];
+        let parts = [
+            flows.transfer,
+            flows.integration,
+            flows.smoothing,
+            flows.background,
+            flows.penalty,
+        ];
+        let whole = [
+            now.kinetic,
+            now.elastic,
+            flows.plastic,
+            flows.external,
+            flows.numerical(),
+        ];
         whole.into_iter().chain(parts).chain([books.closure(now)]).collect()
     }
 }
@@ -350,7 +433,14 @@ impl<const D: usize> Recorder<D> {
 /// Whether it reports how far the footing or a rigid body has moved.
 fn is_of_rigid(quantity: &Quantity) -> bool {
     use Measurement::{RigidDisplacement, RigidRotation};
-    matches!(quantity, Quantity::Penetration | Quantity::Rigid { what: RigidDisplacement | RigidRotation, .. })
+    matches!(
+        quantity,
+        Quantity::Penetration
+            | Quantity::Rigid {
+                what: RigidDisplacement | RigidRotation,
+                ..
+            }
+    )
 }
 
 /// The points that every history counts.

@@ -62,7 +62,11 @@ pub struct Beginning {
 
 impl Default for Beginning {
     fn default() -> Self {
-        Self { existing: Existing::Refuse, restarts: Vec::new(), warnings: Vec::new() }
+        Self {
+            existing: Existing::Refuse,
+            restarts: Vec::new(),
+            warnings: Vec::new(),
+        }
     }
 }
 
@@ -94,13 +98,26 @@ pub fn plan<'h>(
 ) -> Result<RunStart<'h>, Refusal> {
     let world = universe.world();
     let Some(restart) = &arguments.restart else {
-        let existing = if arguments.force { Existing::Delete } else { Existing::Refuse };
-        return Ok(RunStart::New(Beginning { existing, ..Beginning::default() }));
+        let existing = if arguments.force {
+            Existing::Delete
+        } else {
+            Existing::Refuse
+        };
+        return Ok(RunStart::New(Beginning {
+            existing,
+            ..Beginning::default()
+        }));
     };
-    let run = agree(&world, held.map_or(Ok(None), OutputDirectory::run).map_err(Refusal::from))?;
+    let run = agree(
+        &world,
+        held.map_or(Ok(None), OutputDirectory::run).map_err(Refusal::from),
+    )?;
     let auto = *restart == Restart::Auto;
     if auto {
-        let there = agree(&world, held.map_or(Ok(There::Unfinished), |_| there::look(run.as_ref(), case)))?;
+        let there = agree(
+            &world,
+            held.map_or(Ok(There::Unfinished), |_| there::look(run.as_ref(), case)),
+        )?;
         match There::of(broadcast(&world, 0, there.bytes())) {
             There::Nothing => return Ok(RunStart::New(Beginning::default())),
             There::Complete(code) => return Ok(RunStart::Complete(code)),
@@ -113,12 +130,21 @@ pub fn plan<'h>(
         Restart::Auto => find(&world, Wanted::Newest(&folder))?,
     };
     let Some(found) = found else {
-        let afresh =
-            held.map_or_else(|| Ok(Beginning::default()), |_| there::afresh(run.as_ref(), &passed_over, world.size()));
+        let afresh = held.map_or_else(
+            || Ok(Beginning::default()),
+            |_| there::afresh(run.as_ref(), &passed_over, world.size()),
+        );
         return agree(&world, afresh).map(RunStart::New);
     };
     let restarts = run.map_or_else(Vec::new, |run| run.restarts);
-    agree(&world, if auto { there::futile(&restarts, found.record.step) } else { Ok(()) })?;
+    agree(
+        &world,
+        if auto {
+            there::futile(&restarts, found.record.step)
+        } else {
+            Ok(())
+        },
+    )?;
     resume((hdf5, universe), found, (passed_over, restarts), case)
 }
 
@@ -155,10 +181,21 @@ fn resume<'h>(
         return Err(Refusal::new(exit::CHECKPOINT, reason));
     }
     let mut warnings: Vec<String> = passed_over.iter().map(|bad| there::passed_over(bad)).collect();
-    warnings.extend(there::other_machine(past, universe.world().size().unsigned_abs(), &found));
+    warnings.extend(there::other_machine(
+        past,
+        universe.world().size().unsigned_abs(),
+        &found,
+    ));
     warnings.extend(there::new_defaults(past, case));
     warnings.extend(changed.iter().map(|change| there::changed_since(change)));
-    Ok(RunStart::Resumed(Box::new(Resumed { found, state, changed, warnings, restarts, opened })))
+    Ok(RunStart::Resumed(Box::new(Resumed {
+        found,
+        state,
+        changed,
+        warnings,
+        restarts,
+        opened,
+    })))
 }
 
 impl Resumed<'_> {
@@ -205,7 +242,13 @@ impl Resumed<'_> {
     ) -> Result<(Slabs, Points<D>, Stepper), Refusal> {
         let world = universe.world();
         let foreign = |what: &str| Refusal::unusable(&self.found.path, what);
-        let names: Vec<&str> = self.found.record.arrays.iter().map(|array| array.name.as_str()).collect();
+        let names: Vec<&str> = self
+            .found
+            .record
+            .arrays
+            .iter()
+            .map(|array| array.name.as_str())
+            .collect();
         let laws = case.materials.iter().map(|named| &named.material);
         let width = bsmpm::material::state_width(laws);
         let mut points = Points::holding(&names, width);
@@ -214,14 +257,22 @@ impl Resumed<'_> {
         let present = (!case.stages.is_empty() || left > 0).then(|| case.ids_at(self.state.progress.t));
         let known = (model.materials.len(), present.as_deref(), left);
         checkpoint::require(&world, &self.found.path, &mut points, &model.grid, known)?;
-        let held = self.state.within(&model.grid).ok_or_else(|| foreign("its active domain is not one of the grid"))?;
-        let past = self.cut(&held).ok_or_else(|| foreign("its partition is not one of the grid"))?;
+        let held = self
+            .state
+            .within(&model.grid)
+            .ok_or_else(|| foreign("its active domain is not one of the grid"))?;
+        let past = self
+            .cut(&held)
+            .ok_or_else(|| foreign("its partition is not one of the grid"))?;
         let (grid, slabs) = self.slabs(universe, case, (&held, &past), &points)?;
         model.grid = grid;
         let rank = world.rank().unsigned_abs() as usize;
         let window = model.grid.window_of(slabs.cells(rank, model.grid.room()));
         migrate::points((&world, &Traffic::default()), &slabs, &window, &mut points);
-        points.surface = self.state.surface().ok_or_else(|| foreign("its surfaces are not those of the case"))?;
+        points.surface = self
+            .state
+            .surface()
+            .ok_or_else(|| foreign("its surfaces are not those of the case"))?;
         let surface = model.boundary.surface();
         let sizes = |lists: &[Vec<_>]| lists.iter().map(Vec::len).collect::<Vec<_>>();
         let same = sizes(&points.surface.traction) == sizes(&surface.traction)
@@ -241,8 +292,18 @@ impl Resumed<'_> {
         if !same || !anchored {
             return Err(foreign("its surfaces are not those of the case"));
         }
-        let columns = self.state.free_field.iter().map(|column| column.points(width)).collect::<Option<Vec<_>>>();
-        let sound = |column: &Points<D>| column.material.iter().all(|&law| usize::from(law) < model.materials.len());
+        let columns = self
+            .state
+            .free_field
+            .iter()
+            .map(|column| column.points(width))
+            .collect::<Option<Vec<_>>>();
+        let sound = |column: &Points<D>| {
+            column
+                .material
+                .iter()
+                .all(|&law| usize::from(law) < model.materials.len())
+        };
         let columns = columns.filter(|columns| columns.iter().all(sound));
         let followers = model.boundary.absorbing().filter(|face| face.follows).count();
         let expected = if self.state.steps > 0 { followers } else { 0 };
@@ -251,16 +312,31 @@ impl Resumed<'_> {
             .ok_or_else(|| foreign("its free-field columns are not those of the case"))?;
         let guess = self.guess((&held, &past), &window)?;
         let is_finite = guess.iter().all(|value| value.is_finite());
-        agree(&world, if is_finite { Ok(()) } else { Err(foreign("a nodal displacement is not finite")) })?;
+        agree(
+            &world,
+            if is_finite {
+                Ok(())
+            } else {
+                Err(foreign("a nodal displacement is not finite"))
+            },
+        )?;
         let stepper = Stepper::resume(guess, self.state.progress, schedule);
-        Ok((slabs, points, stepper.ok_or_else(|| foreign("the state of its step control is invalid"))?))
+        Ok((
+            slabs,
+            points,
+            stepper.ok_or_else(|| foreign("the state of its step control is invalid"))?,
+        ))
     }
 
     /// The cut that the run had; `None` if it is not one of the grid that is `held`.
     fn cut<const D: usize>(&self, held: &Grid<D>) -> Option<Slabs> {
         let CheckpointState { slabs, parts, .. } = &self.state;
         let cut = Slabs::new(slabs.clone(), slabs.len().checked_sub(1)?, held.room()[0].clone())?;
-        let cut = if parts.is_empty() { cut } else { cut.parted(parts.clone(), &held.room()[1])? };
+        let cut = if parts.is_empty() {
+            cut
+        } else {
+            cut.parted(parts.clone(), &held.room()[1])?
+        };
         (cut.ranks() == self.found.record.ranks as usize).then(|| cut.reaching(held.beyond()))
     }
 
@@ -299,7 +375,11 @@ impl Resumed<'_> {
     /// The displacement from which the next step starts, m, at the nodes of a `window`: zero where the room that was
     /// `held` under the cut `past` had none. Collective.
     fn guess<const D: usize>(&self, (held, past): (&Grid<D>, &Slabs), window: &Grid<D>) -> Result<Vec<f64>, Refusal> {
-        let (q, layer, row) = (held.order(), held.layer_nodes(), held.layer_nodes() / held.nodes_along(1));
+        let (q, layer, row) = (
+            held.order(),
+            held.layer_nodes(),
+            held.layer_nodes() / held.nodes_along(1),
+        );
         // The file's rows are the layers of all, or rank by rank the rows of nodes that it owned.
         let (of, whole) = ((q, &held.room()[1]), past.parts().is_empty());
         let boxes: Vec<NodeBox> = match whole {
@@ -317,11 +397,15 @@ impl Resumed<'_> {
             start..start + window.nodes_along(axis)
         });
         let needed = |at: &usize| !common(&boxes[*at], &seen).iter().any(Range::is_empty);
-        let (first, last) = ((0..boxes.len()).find(needed).unwrap_or(0), (0..boxes.len()).rfind(needed));
+        let (first, last) = (
+            (0..boxes.len()).find(needed).unwrap_or(0),
+            (0..boxes.len()).rfind(needed),
+        );
         let rows = match whole {
             true => {
-                let own =
-                    last.map_or(held.layers().start..held.layers().start, |_| common(&boxes[0], &seen)[0].clone());
+                let own = last.map_or(held.layers().start..held.layers().start, |_| {
+                    common(&boxes[0], &seen)[0].clone()
+                });
                 own.start - held.layers().start..own.end - held.layers().start
             }
             false => before[first]..last.map_or(before[first], |last| before[last + 1]),

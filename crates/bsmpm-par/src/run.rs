@@ -101,8 +101,11 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         timers: Rc<Timers>,
         mut before: Before,
     ) -> Self {
-        let (start, frame_times, last_frame) =
-            (Instant::now(), bsmpm_scene::model::frame_times(&case), before.last_frame);
+        let (start, frame_times, last_frame) = (
+            Instant::now(),
+            bsmpm_scene::model::frame_times(&case),
+            before.last_frame,
+        );
         let has_gaps = ledger.as_ref().is_some_and(Ledger::has_gaps);
         let newest = (before.resumed && !before.is_branch).then(|| simulation.steps());
         let saving = Saving::new(newest, before.is_branch || has_gaps, simulation.steps());
@@ -197,8 +200,9 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
     fn accept(&mut self, accepted: &Accepted) -> Result<(), StepError> {
         let (step, wall) = (self.simulation.steps(), self.wall());
         self.log.step(step, accepted, wall);
-        let written =
-            self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.step(step, accepted, (self.simulation.cost(), wall)));
+        let written = self.ledger.as_mut().map_or(Ok(()), |ledger| {
+            ledger.step(step, accepted, (self.simulation.cost(), wall))
+        });
         self.require(written);
         if self.saving.is_first(step) {
             self.tell_unused_options();
@@ -226,7 +230,9 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
     fn record(&mut self, report: &StepReport) {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("histories");
-        let Simulation { model, points, halo, .. } = &self.simulation;
+        let Simulation {
+            model, points, halo, ..
+        } = &self.simulation;
         let time = self.simulation.time();
         let row = match self.recorder.row(model, points, (time, report), &**halo) {
             Ok(row) => row,
@@ -236,8 +242,9 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         if let (Some(ledger), Some(front)) = (&mut self.ledger, self.recorder.front(&row)) {
             ledger.front(front);
         }
-        let written =
-            self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.history(step, time, &row, &self.recorder.reported()));
+        let written = self.ledger.as_mut().map_or(Ok(()), |ledger| {
+            ledger.history(step, time, &row, &self.recorder.reported())
+        });
         self.require(written);
     }
 

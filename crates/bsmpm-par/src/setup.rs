@@ -51,7 +51,10 @@ pub fn cut(case: &Case, ranks: usize) -> Option<Cut> {
     let parts = parts(case, ranks)?;
     let slabs = ranks / parts;
     let room = case.room([slabs, parts]);
-    let counts: Vec<f64> = case.points_by_column()[room[0].clone()].iter().map(|&count| count as f64).collect();
+    let counts: Vec<f64> = case.points_by_column()[room[0].clone()]
+        .iter()
+        .map(|&count| count as f64)
+        .collect();
     let layer_nodes = room[1..].iter().map(|cells| cells.len() + case.grid.order).product();
     let slabs = Slabs::cut(&load::by_column(&counts, layer_nodes), slabs)?.starting_at(room[0].start);
     Some((room, slabs, parts))
@@ -71,7 +74,9 @@ pub fn linear(case: &Case, ranks: usize, options: &[String]) -> Choice {
         dissection: dissection && !options.iter().any(|option| decides(option)),
         ksp: linear.ksp.word().into(),
         pc: linear.pc.word().into(),
-        factor: linear.factor.map(|package| if dissection { Factor::Mumps } else { package }.word().into()),
+        factor: linear
+            .factor
+            .map(|package| if dissection { Factor::Mumps } else { package }.word().into()),
         // On one rank, too, where the matrix goes to PETSc: the same factorisation, bit by bit, on any number of ranks.
         applications: linear.applications,
         redundant: case.solver.reproducible && linear.pc.factorises() && (ranks > 1 || !dissection),
@@ -84,7 +89,9 @@ const DISSECTION: Factor = Factor::Dissection;
 /// Whether an option of PETSc is about a preconditioner or a matrix of PETSc's, which need the matrix assembled; those
 /// of KSP, and of reports, are for any.
 fn decides(option: &str) -> bool {
-    ["-pc_", "-mat_", "-sub_", "-mg_", "-redundant_"].iter().any(|prefix| option.starts_with(prefix))
+    ["-pc_", "-mat_", "-sub_", "-mg_", "-redundant_"]
+        .iter()
+        .any(|prefix| option.starts_with(prefix))
 }
 
 /// What the program chooses by itself in a run on so many ranks with further `options` of PETSc.
@@ -114,16 +121,28 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::M
             3 => "partition along x and then along y, which keeps the interfaces between ranks small",
             _ => "more ranks than columns of cells along x: the partition is along y, too",
         };
-        choices.push(choice("ranks", &format!("{} slabs of {parts} parts", ranks / parts), reason));
+        choices.push(choice(
+            "ranks",
+            &format!("{} slabs of {parts} parts", ranks / parts),
+            reason,
+        ));
     }
     choices.extend(linear_choices(case, &linear(case, ranks, options), ranks));
     if weighting(case) == Weighting::Volume {
-        choices.push(choice("weights of averages", "volume", "materials differ in density, or some have none"));
+        choices.push(choice(
+            "weights of averages",
+            "volume",
+            "materials differ in density, or some have none",
+        ));
     }
     if case.footing.is_some() || !case.prescribed.is_empty() {
         let reason = "a multiple of the largest Young's modulus over the smallest cell. The traction is kept from step to step, so \
                       that the total slip is pressure / penalty";
-        choices.push(choice("penalty of rigid strips", &format!("{:.6e} Pa/m", penalty(case)), reason));
+        choices.push(choice(
+            "penalty of rigid strips",
+            &format!("{:.6e} Pa/m", penalty(case)),
+            reason,
+        ));
     }
     if let Some((length, size)) = smoothing(case, bsmpm_scene::model::nominal_steps(case)) {
         let reason = format!(
@@ -139,12 +158,24 @@ fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::M
     let newton = case.solver.nonlinear != bsmpm_scene::Nonlinear::Broyden;
     let mut rows = Vec::new();
     if case.solver.linear.factor == Some(DISSECTION) && !linear.dissection {
-        rows.push(("solver.linear.factor", "mumps", "options after -- select the solver of PETSc"));
+        rows.push((
+            "solver.linear.factor",
+            "mumps",
+            "options after -- select the solver of PETSc",
+        ));
     }
     if linear.redundant && (newton || !linear.dissection) {
         let reason = "solver.reproducible: every rank factorises the whole system, because a parallel factorisation may not be \
                       reproducible to the bit";
-        rows.push((if linear.dissection { "newton_pc_type" } else { "solver.linear.pc" }, "redundant", reason));
+        rows.push((
+            if linear.dissection {
+                "newton_pc_type"
+            } else {
+                "solver.linear.pc"
+            },
+            "redundant",
+            reason,
+        ));
     }
     if case.solver.linear_on(ranks) != case.solver.linear && linear.dissection {
         rows.push(("solver.linear", "direct", "spline multigrid works on one rank only"));
@@ -154,10 +185,18 @@ fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::M
         rows.push(("solver.linear", "incomplete-cholesky", reason));
     }
     if case.solver.reproducible && ranks > 1 && linear.whole_nodes() {
-        rows.push(("solver.reproducible", "false", "multigrid on several ranks may not be reproducible to the bit"));
+        rows.push((
+            "solver.reproducible",
+            "false",
+            "multigrid on several ranks may not be reproducible to the bit",
+        ));
     }
     if linear.factor.as_deref() == Some("mumps") && !linear.dissection {
-        rows.push(("mat_mumps_icntl_7", "2", "ordering by minimum fill, the fastest for plane grids"));
+        rows.push((
+            "mat_mumps_icntl_7",
+            "2",
+            "ordering by minimum fill, the fastest for plane grids",
+        ));
         rows.push(("mat_mumps_icntl_14", "100", "the estimated workspace may be too small"));
     }
     let owned = |(key, value, reason): (&str, &str, &str)| manifest::ManifestChoice {
@@ -198,5 +237,9 @@ fn smoothing(case: &Case, steps: u64) -> Option<(f64, f64)> {
 /// Length (m) along which so many passes of smoothing reach in the largest cells.
 pub fn smoothing_length(case: &Case, passes: f64) -> f64 {
     let longest = |axis: &GridAxis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
-    smooth::length(case.grid.order, case.grid.axes.iter().map(longest).fold(0.0, f64::max), passes)
+    smooth::length(
+        case.grid.order,
+        case.grid.axes.iter().map(longest).fold(0.0, f64::max),
+        passes,
+    )
 }

@@ -19,14 +19,21 @@ pub fn read(world: &SimpleCommunicator, arguments: &Arguments) -> Result<Case, u
     let bytes = broadcast(world, || {
         bsmpm_scene::load(&arguments.case).map_err(|error| {
             say(&format!("{name}: {}", headed(&error.to_string(), "error")));
-            if error.kind() == ErrorKind::InvalidData { CASE } else { MISSING }
+            if error.kind() == ErrorKind::InvalidData {
+                CASE
+            } else {
+                MISSING
+            }
         })
     })?;
     let case = Case::from_bytes(&name, &bytes, &arguments.set).map_err(|errors| {
         if speaks {
             errors.iter().for_each(|error| say(&format!("{error:#}")));
             let plural = if errors.len() == 1 { "error" } else { "errors" };
-            say(&format!("bsmpm-par: {name}: {} {plural}; nothing was run or written", errors.len()));
+            say(&format!(
+                "bsmpm-par: {name}: {} {plural}; nothing was run or written",
+                errors.len()
+            ));
         }
         CASE
     })?;
@@ -39,9 +46,13 @@ fn broadcast(world: &SimpleCommunicator, bytes: impl FnOnce() -> Result<Vec<u8>,
     let root = world.process_at_rank(0);
     let own = if world.rank() == 0 { bytes() } else { Ok(Vec::new()) };
     // Below zero: the exit code.
-    let mut length = own.as_ref().map_or_else(|code| -i64::from(*code), |bytes| bytes.len() as i64);
+    let mut length = own
+        .as_ref()
+        .map_or_else(|code| -i64::from(*code), |bytes| bytes.len() as i64);
     root.broadcast_into(&mut length);
-    let Ok(size) = usize::try_from(length) else { return Err(length.unsigned_abs() as u8) };
+    let Ok(size) = usize::try_from(length) else {
+        return Err(length.unsigned_abs() as u8);
+    };
     let mut shared = own.unwrap_or_default();
     shared.resize(size, 0);
     if size > 0 {
@@ -68,20 +79,40 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
         format!("cells            {}", estimate.cells),
         format!("nodes            {}", estimate.nodes),
         format!("unknowns         at most {}{pressures}", estimate.unknowns),
-        format!("memory           about {} MiB on each of {ranks} rank(s){newton}", each(estimate.bytes)),
-        format!("ranks            at most {}, useful: about {}", case.most_ranks(), estimate.useful_ranks),
+        format!(
+            "memory           about {} MiB on each of {ranks} rank(s){newton}",
+            each(estimate.bytes)
+        ),
+        format!(
+            "ranks            at most {}, useful: about {}",
+            case.most_ranks(),
+            estimate.useful_ranks
+        ),
         format!("nominal steps    {}", bsmpm_scene::model::nominal_steps(case)),
     ];
     if let Some(narrowest) = &case.opening {
         let (cells, path, width) = (narrowest.cells, &narrowest.path, narrowest.brief_width());
-        lines.push(format!("hole or notch    {cells:.1} cells across {path} of {width} m, the fewest of all"));
+        lines.push(format!(
+            "hole or notch    {cells:.1} cells across {path} of {width} m, the fewest of all"
+        ));
     }
-    let noted = case.notes.iter().map(|note| format!("{} = {} ({})", note.key, note.value, note.reason));
+    let noted = case
+        .notes
+        .iter()
+        .map(|note| format!("{} = {} ({})", note.key, note.value, note.reason));
     let chosen = setup::choices(case, ranks, options);
     lines.extend(
-        noted.chain(chosen.iter().map(|choice| format!("{} = {} ({})", choice.key, choice.value, choice.reason))),
+        noted.chain(
+            chosen
+                .iter()
+                .map(|choice| format!("{} = {} ({})", choice.key, choice.value, choice.reason)),
+        ),
     );
     lines.extend(case.renamings.iter().map(|renaming| format!("note: {renaming}")));
-    lines.extend(setup::warnings(case, ranks).iter().map(|warning| headed(warning, "warning")));
+    lines.extend(
+        setup::warnings(case, ranks)
+            .iter()
+            .map(|warning| headed(warning, "warning")),
+    );
     lines.join("\n")
 }

@@ -73,9 +73,18 @@ impl Need {
         let smoothing = 6 * u64::from(is_damped && own.smoothing.is_none());
         let to_come = points * (dilation + smoothing) * size_of::<f64>() as u64;
         let (columns, guess) = simulation.arrays();
-        let room = checkpoint::room(world, &Contents { columns, guess, state: &[] });
+        let room = checkpoint::room(
+            world,
+            &Contents {
+                columns,
+                guess,
+                state: &[],
+            },
+        );
         // What is to be deleted counts as free, not as there.
-        let there = held.filter(|_| !emptied).map_or(0, |held| kept::count(held.path()) as u64);
+        let there = held
+            .filter(|_| !emptied)
+            .map_or(0, |held| kept::count(held.path()) as u64);
         Self {
             frames: frames(case, time, begun),
             frame: HEAD
@@ -123,7 +132,10 @@ impl Need {
 /// Frames from `time` on, those at the start and at the end included.
 fn frames(case: &Case, time: f64, begun: bool) -> u64 {
     let before_end = |wanted: &f64| *wanted > time && *wanted < case.analysis.end;
-    let timed = bsmpm_scene::model::frame_times(case).into_iter().filter(before_end).count() as u64;
+    let timed = bsmpm_scene::model::frame_times(case)
+        .into_iter()
+        .filter(before_end)
+        .count() as u64;
     let counted = match case.output.every {
         Some(Every::Steps(every)) => ((case.analysis.end - time) / case.analysis.dt) as u64 / every,
         _ => 0,
@@ -134,6 +146,8 @@ fn frames(case: &Case, time: f64, begun: bool) -> u64 {
 /// Bytes of the run that `--force` is about to delete.
 fn doomed(held: &OutputDirectory) -> u64 {
     let outputs = held.run().ok().flatten().map_or_else(Vec::new, |run| run.outputs);
-    let sizes = outputs.iter().filter_map(|output| held.path().join(&output.path).metadata().ok());
+    let sizes = outputs
+        .iter()
+        .filter_map(|output| held.path().join(&output.path).metadata().ok());
     sizes.map(|found| found.len()).sum()
 }

@@ -45,7 +45,9 @@ fn of_launcher() -> Option<File> {
 
 /// The pipe behind a descriptor, `None` if something else is behind it.
 fn pipe(descriptor: &Path) -> Option<PathBuf> {
-    fs::read_link(descriptor).ok().filter(|target| target.to_string_lossy().starts_with("pipe:"))
+    fs::read_link(descriptor)
+        .ok()
+        .filter(|target| target.to_string_lossy().starts_with("pipe:"))
 }
 
 fn terminal(descriptor: &Path) -> Option<File> {
@@ -64,7 +66,9 @@ fn is_launcher(process: u32) -> bool {
 
 /// Whether a process has an end of a pipe.
 fn reads(process: u32, pipe: &Path) -> bool {
-    let Ok(descriptors) = fs::read_dir(format!("/proc/{process}/fd")) else { return false };
+    let Ok(descriptors) = fs::read_dir(format!("/proc/{process}/fd")) else {
+        return false;
+    };
     let mut targets = descriptors.flatten().map(|descriptor| fs::read_link(descriptor.path()));
     targets.any(|target| target.is_ok_and(|target| target == pipe))
 }

@@ -24,7 +24,11 @@ fn main() -> ExitCode {
     };
     let world = universe.world();
     let (rank, ranks) = (world.rank() as usize, world.size() as usize);
-    let block: usize = std::env::args().nth(1).expect("a block").parse().expect("a number of bytes");
+    let block: usize = std::env::args()
+        .nth(1)
+        .expect("a block")
+        .parse()
+        .expect("a number of bytes");
     for round in 0..5 {
         let outgoing: Vec<(usize, Vec<u8>)> = (0..ranks).map(|to| (to, message(rank + round, to, block))).collect();
         let incoming = migrate::exchange((&world, &Traffic::default()), &outgoing, block);

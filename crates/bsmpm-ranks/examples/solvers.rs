@@ -39,22 +39,41 @@ fn main() -> ExitCode {
         "mumps" | "redundant" => choice(method, "preonly", "cholesky", Some("mumps".into())),
         _ => choice(method, "preonly", "cholesky", None),
     };
-    let options: Vec<&str> = choice.options().into_iter().chain(further.iter().map(String::as_str)).collect();
+    let options: Vec<&str> = choice
+        .options()
+        .into_iter()
+        .chain(further.iter().map(String::as_str))
+        .collect();
     let petsc = Petsc::initialize(&universe, &options).expect("PETSc starts");
     let slabs = Slabs::cut(&vec![1.0; cells], petsc.ranks()).expect("fewer ranks than columns");
     let axis = || KnotVector::uniform(1.0 / cells as f64, cells, 2).expect("an axis");
-    let grid = Grid::new([axis(), axis()]).expect("a grid").window(slabs.columns(petsc.rank()));
+    let grid = Grid::new([axis(), axis()])
+        .expect("a grid")
+        .window(slabs.columns(petsc.rank()));
     let timers = Rc::new(Timers::default());
     let shared = (Rc::clone(&timers), Rc::new(Requests::of_signals().expect("signals")));
     let halo = Rc::new(MpiHalo::new(universe.world(), &slabs, &grid, shared));
     let mut solver = KspSolver::<2, 2>::new(&petsc, choice, &grid, Rc::clone(&halo), timers);
-    measure(&mut solver, &grid, &*halo, nu, &format!("{method} {nu} {cells} x{}", petsc.ranks()));
+    measure(
+        &mut solver,
+        &grid,
+        &*halo,
+        nu,
+        &format!("{method} {nu} {cells} x{}", petsc.ranks()),
+    );
     ExitCode::SUCCESS
 }
 
 fn choice(method: &str, ksp: &str, pc: &str, factor: Option<String>) -> Choice {
     let (dissection, redundant) = (method == "direct", method == "redundant");
-    Choice { dissection, ksp: ksp.into(), pc: pc.into(), factor, redundant, applications: 0 }
+    Choice {
+        dissection,
+        ksp: ksp.into(),
+        pc: pc.into(),
+        factor,
+        redundant,
+        applications: 0,
+    }
 }
 
 fn measure(solver: &mut dyn LinearSolver, grid: &Grid<2>, halo: &dyn Halo, nu: f64, name: &str) {
@@ -73,7 +92,13 @@ fn measure(solver: &mut dyn LinearSolver, grid: &Grid<2>, halo: &dyn Halo, nu: f
     }
     let before = grid.layers().start * grid.layer_nodes() * 2;
     let rhs: Vec<f64> = (0..free.len())
-        .map(|c| if free[c] { ((before + c) as f64 * 0.618).sin() + f64::from(u8::from(c % 2 == 1)) } else { 0.0 })
+        .map(|c| {
+            if free[c] {
+                ((before + c) as f64 * 0.618).sin() + f64::from(u8::from(c % 2 == 1))
+            } else {
+                0.0
+            }
+        })
         .collect();
     let mut x = vec![0.0; free.len()];
     let start = cpu_seconds();
@@ -88,9 +113,14 @@ fn measure(solver: &mut dyn LinearSolver, grid: &Grid<2>, halo: &dyn Halo, nu: f
     halo.reduce(&mut unknowns);
     halo.maximum(&mut spent);
     let memory = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let peak = memory.lines().find(|line| line.starts_with("VmHWM")).unwrap_or_default();
+    let peak = memory
+        .lines()
+        .find(|line| line.starts_with("VmHWM"))
+        .unwrap_or_default();
     if before == 0 {
-        let [factor, again, trial, solve] = spent[..] else { unreachable!() };
+        let [factor, again, trial, solve] = spent[..] else {
+            unreachable!()
+        };
         println!(
             "{name}: {} unknowns, first {factor:.4}, again {again:.4}, first solution {trial:.4} s ({} factorisations more, \
              leaves {:.1e}), solve {solve:.4} s, {} iterations {peak}",
@@ -105,12 +135,19 @@ fn measure(solver: &mut dyn LinearSolver, grid: &Grid<2>, halo: &dyn Halo, nu: f
 /// Elastic stiffness of a full cell, E = 1 Pa, by 3 x 3 Gauss points.
 fn stiffness(grid: &Grid<2>, cell: usize, nu: f64) -> Vec<f64> {
     let (lame, shear) = (nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 / (1.0 + nu));
-    let gauss = [(-0.6_f64.sqrt(), 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.6_f64.sqrt(), 5.0 / 9.0)];
+    let gauss = [
+        (-0.6_f64.sqrt(), 5.0 / 9.0),
+        (0.0, 8.0 / 9.0),
+        (0.6_f64.sqrt(), 5.0 / 9.0),
+    ];
     let at = grid.cell_at(cell);
     let (corner, size) = grid.cell_box(&at);
     let mut block = vec![0.0; 18 * 18];
     for ((x, wx), (y, wy)) in gauss.iter().flat_map(|x| gauss.iter().map(move |y| (x, y))) {
-        let place = [corner[0] + size[0] * (1.0 + x) / 2.0, corner[1] + size[1] * (1.0 + y) / 2.0];
+        let place = [
+            corner[0] + size[0] * (1.0 + x) / 2.0,
+            corner[1] + size[1] * (1.0 + y) / 2.0,
+        ];
         let (nx, dx) = grid.axes()[0].basis::<3>(place[0], at[0]);
         let (ny, dy) = grid.axes()[1].basis::<3>(place[1], at[1]);
         let grad = |a: usize| [dx[a / 3] * ny[a % 3], nx[a / 3] * dy[a % 3]];
@@ -128,6 +165,10 @@ fn stiffness(grid: &Grid<2>, cell: usize, nu: f64) -> Vec<f64> {
 /// CPU time of this process, s.
 fn cpu_seconds() -> f64 {
     let text = std::fs::read_to_string("/proc/self/schedstat").expect("/proc/self/schedstat");
-    let nanoseconds: f64 = text.split(' ').next().and_then(|number| number.parse().ok()).expect("a number");
+    let nanoseconds: f64 = text
+        .split(' ')
+        .next()
+        .and_then(|number| number.parse().ok())
+        .expect("a number");
     nanoseconds * 1e-9
 }

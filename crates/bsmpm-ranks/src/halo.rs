@@ -48,7 +48,9 @@ impl NodeRuns {
     /// Their numbers in an array of `width` a node.
     fn packed(&self, nodal: &[f64], width: usize) -> Vec<f64> {
         let mut message = Vec::with_capacity(self.count() * width);
-        self.0.iter().for_each(|run| message.extend_from_slice(&nodal[run.start * width..run.end * width]));
+        self.0
+            .iter()
+            .for_each(|run| message.extend_from_slice(&nodal[run.start * width..run.end * width]));
         message
     }
 
@@ -57,7 +59,9 @@ impl NodeRuns {
         let mut message = message.iter();
         for run in &self.0 {
             let own = &mut nodal[run.start * width..run.end * width];
-            own.iter_mut().zip(&mut message).for_each(|(own, other)| *own = both(*own, *other));
+            own.iter_mut()
+                .zip(&mut message)
+                .for_each(|(own, other)| *own = both(*own, *other));
         }
     }
 }
@@ -77,7 +81,10 @@ pub struct Ranks<'a> {
 
 impl Link for Ranks<'_> {
     fn send(&self, to: usize, numbers: &[f64]) {
-        self.halo.timers.traffic().count(TrafficKind::Factor, 1, size_of_val(numbers));
+        self.halo
+            .timers
+            .traffic()
+            .count(TrafficKind::Factor, 1, size_of_val(numbers));
         self.halo.world.process_at_rank(to as i32).send(numbers);
     }
 
@@ -109,7 +116,16 @@ impl MpiHalo {
         };
         let neighbours = slabs.shared(rank, (q, rows)).into_iter().map(neighbour).collect();
         let owned = OwnedNodes::new(own[0].len(), layer, own[1].len() * row);
-        Self { world, rank, slabs: slabs.clone(), owned, layer_nodes: layer, neighbours, timers, requests }
+        Self {
+            world,
+            rank,
+            slabs: slabs.clone(),
+            owned,
+            layer_nodes: layer,
+            neighbours,
+            timers,
+            requests,
+        }
     }
 
     /// The cut of the grid.
@@ -143,7 +159,11 @@ impl MpiHalo {
             return;
         }
         let _timed = self.timers.time("halo");
-        let outgoing: Vec<_> = self.neighbours.iter().map(|other| other.nodes.packed(nodal, width)).collect();
+        let outgoing: Vec<_> = self
+            .neighbours
+            .iter()
+            .map(|other| other.nodes.packed(nodal, width))
+            .collect();
         let incoming = self.exchange(kind, &outgoing, |other| other.nodes.count() * width);
         for (part, other) in incoming.iter().zip(&self.neighbours) {
             other.nodes.unpack(part, (nodal, width), &both);
@@ -166,14 +186,20 @@ impl MpiHalo {
                 .iter()
                 .zip(&mut incoming)
                 .map(|(other, part)| {
-                    self.world.process_at_rank(other.rank as i32).immediate_receive_into(scope, &mut part[..])
+                    self.world
+                        .process_at_rank(other.rank as i32)
+                        .immediate_receive_into(scope, &mut part[..])
                 })
                 .collect();
             let sends: Vec<_> = self
                 .neighbours
                 .iter()
                 .zip(outgoing)
-                .map(|(other, part)| self.world.process_at_rank(other.rank as i32).immediate_send(scope, &part[..]))
+                .map(|(other, part)| {
+                    self.world
+                        .process_at_rank(other.rank as i32)
+                        .immediate_send(scope, &part[..])
+                })
                 .collect();
             receives.into_iter().for_each(|request| {
                 let _ = request.wait();
@@ -235,7 +261,11 @@ impl Halo for MpiHalo {
         }
         let _timed = self.timers.time("halo");
         let (layer, width) = (self.layer_nodes, contributions.width());
-        let outgoing: Vec<_> = self.neighbours.iter().map(|other| other.pieces(contributions)).collect();
+        let outgoing: Vec<_> = self
+            .neighbours
+            .iter()
+            .map(|other| other.pieces(contributions))
+            .collect();
         let incoming = self.exchange(TrafficKind::HaloSum, &outgoing, |other| other.pieces_of_other(width));
         // The columns of lower slabs lie before this rank's: every layer adds its columns in their order.
         let mut nodal = contributions.nodal();
@@ -256,7 +286,11 @@ impl Halo for MpiHalo {
             return;
         }
         let _timed = self.timers.time("halo");
-        let outgoing: Vec<_> = self.neighbours.iter().map(|other| other.mine.packed(nodal, width)).collect();
+        let outgoing: Vec<_> = self
+            .neighbours
+            .iter()
+            .map(|other| other.mine.packed(nodal, width))
+            .collect();
         let incoming = self.exchange(TrafficKind::HaloShare, &outgoing, |other| other.theirs.count() * width);
         for (part, other) in incoming.iter().zip(&self.neighbours) {
             other.theirs.unpack(part, (nodal, width), |_, received| received);
@@ -270,9 +304,12 @@ impl Halo for MpiHalo {
     fn reduce(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
         let own = [&*numbers, &self.requests.share()].concat();
-        self.timers.traffic().count(TrafficKind::Reduction, 0, size_of_val(&own[..]));
+        self.timers
+            .traffic()
+            .count(TrafficKind::Reduction, 0, size_of_val(&own[..]));
         let mut sums = vec![0.0; own.len()];
-        self.world.all_reduce_into(&own[..], &mut sums[..], SystemOperation::sum());
+        self.world
+            .all_reduce_into(&own[..], &mut sums[..], SystemOperation::sum());
         numbers.copy_from_slice(&sums[..numbers.len()]);
         let mut requested = [0.0; WIDTH];
         requested.copy_from_slice(&sums[numbers.len()..]);
@@ -283,18 +320,26 @@ impl Halo for MpiHalo {
         let _timed = self.timers.time("reduction");
         let mut own: Vec<i64> = sums.iter().flat_map(|sum| sum.words()).copied().collect();
         own.extend(self.requests.share().map(|count| count as i64));
-        self.timers.traffic().count(TrafficKind::Reduction, 0, size_of_val(&own[..]));
+        self.timers
+            .traffic()
+            .count(TrafficKind::Reduction, 0, size_of_val(&own[..]));
         let mut all = vec![0; own.len()];
-        self.world.all_reduce_into(&own[..], &mut all[..], SystemOperation::sum());
+        self.world
+            .all_reduce_into(&own[..], &mut all[..], SystemOperation::sum());
         let (words, requested) = all.split_at(sums.len() * WORDS);
         self.requests.agree(std::array::from_fn(|k| requested[k] as f64));
-        words.chunks_exact(WORDS).map(|words| Exact::of_words(words).value()).collect()
+        words
+            .chunks_exact(WORDS)
+            .map(|words| Exact::of_words(words).value())
+            .collect()
     }
 
     fn maximum(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
         let own = numbers.to_vec();
-        self.timers.traffic().count(TrafficKind::Reduction, 0, size_of_val(&own[..]));
+        self.timers
+            .traffic()
+            .count(TrafficKind::Reduction, 0, size_of_val(&own[..]));
         self.world.all_reduce_into(&own[..], numbers, SystemOperation::max());
     }
 
@@ -303,7 +348,9 @@ impl Halo for MpiHalo {
             return numbers.to_vec();
         }
         let _timed = self.timers.time("reduction");
-        self.timers.traffic().count(TrafficKind::Gathering, 0, size_of_val(numbers));
+        self.timers
+            .traffic()
+            .count(TrafficKind::Gathering, 0, size_of_val(numbers));
         let mut counts = vec![0; self.world.size().unsigned_abs() as usize];
         self.world.all_gather_into(&(numbers.len() as i32), &mut counts[..]);
         let starts: Vec<i32> = counts

@@ -42,7 +42,9 @@ pub fn start(end: fn(&SimpleCommunicator, &str) -> !) -> Result<Universe, Launch
     };
     abort_on_panic(end);
     let ranks = universe.world().size().unsigned_abs() as usize;
-    let wanted = LAUNCHED.iter().find_map(|name| std::env::var(name).ok()?.parse::<usize>().ok());
+    let wanted = LAUNCHED
+        .iter()
+        .find_map(|name| std::env::var(name).ok()?.parse::<usize>().ok());
     match wanted {
         Some(wanted) if ranks == 1 && wanted > 1 => Err(LaunchFailure::Apart(wanted)),
         _ => Ok(universe),
@@ -76,9 +78,14 @@ fn prepare(alone: bool) {
 fn abort_on_panic(end: fn(&SimpleCommunicator, &str) -> !) {
     std::panic::set_hook(Box::new(move |panic| {
         let world = SimpleCommunicator::world();
-        let place = panic.location().map_or_else(String::new, |place| format!(" at {place}"));
+        let place = panic
+            .location()
+            .map_or_else(String::new, |place| format!(" at {place}"));
         let text = panic.payload();
-        let text = text.downcast_ref::<&str>().copied().or_else(|| text.downcast_ref::<String>().map(String::as_str));
+        let text = text
+            .downcast_ref::<&str>()
+            .copied()
+            .or_else(|| text.downcast_ref::<String>().map(String::as_str));
         let reason = text.unwrap_or("no reason given");
         end(
             &world,

@@ -81,7 +81,11 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         // Where every rank factorises the whole, the same bits on any number of ranks; else sums depend on the cut
         // anyway.
         let whole = choice.redundant && !choice.dissection;
-        let stencil = if whole { stencil.by_columns(grid, halo.owned()) } else { stencil };
+        let stencil = if whole {
+            stencil.by_columns(grid, halo.owned())
+        } else {
+            stencil
+        };
         let (free, numbers) = (Vec::new(), Vec::new());
         Self {
             petsc,
@@ -120,7 +124,9 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         self.own = owned.clone().filter(|&component| numbered(component)).count();
         let count = self.own as u64;
         let mut before = 0_u64;
-        self.halo.world().exclusive_scan_into(&count, &mut before, SystemOperation::sum());
+        self.halo
+            .world()
+            .exclusive_scan_into(&count, &mut before, SystemOperation::sum());
         let mut next = if self.petsc.rank() == 0 { 0 } else { before };
         let mut numbers = vec![0.0; free.len()]; // one more than the number: 0 is none
         for component in owned.filter(|&component| numbered(component)) {
@@ -128,7 +134,10 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
             numbers[component] = next as f64;
         }
         self.halo.share(&mut numbers, C);
-        self.numbers = numbers.iter().map(|&number| (number > 0.0).then(|| number as usize - 1)).collect();
+        self.numbers = numbers
+            .iter()
+            .map(|&number| (number > 0.0).then(|| number as usize - 1))
+            .collect();
     }
 
     /// Hands the values over; the pattern too, if the unknowns have changed.
@@ -169,7 +178,9 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
             Symmetry::General => &mut self.tallies.general,
         };
         let outcome = system.ksp.set_up();
-        tally.get_or_insert_with(|| Tally::of(&system.ksp, None)).failure(&outcome);
+        tally
+            .get_or_insert_with(|| Tally::of(&system.ksp, None))
+            .failure(&outcome);
         outcome
     }
 
@@ -184,7 +195,9 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
             shell.resize(unknowns).map_err(failed)?;
             self.is_sized = true;
         }
-        let Some((shell, matrix, tally)) = self.shell_system() else { return Err(missing()) };
+        let Some((shell, matrix, tally)) = self.shell_system() else {
+            return Err(missing());
+        };
         shell.set_up(matrix, tally)
     }
 
@@ -197,8 +210,22 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
 
     /// The shell system, what it is to solve, and where that is counted.
     fn shell_system(&mut self) -> Option<(&mut ShellSystem<'p>, StiffnessOperator<'_, D, C>, &mut Tally)> {
-        let Self { halo, grid, stencil, free, timers, .. } = self;
-        let matrix = StiffnessOperator { halo, grid, stencil, free, unknowns: &[], timers };
+        let Self {
+            halo,
+            grid,
+            stencil,
+            free,
+            timers,
+            ..
+        } = self;
+        let matrix = StiffnessOperator {
+            halo,
+            grid,
+            stencil,
+            free,
+            unknowns: &[],
+            timers,
+        };
         let shell = self.shell.as_mut()?;
         let tally = self.tallies.definite.get_or_insert_with(|| shell.tally());
         Some((shell, matrix, tally))
@@ -215,14 +242,30 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
             cycles.resize(unknowns).map_err(failed)?;
             self.is_sized = true;
         }
-        let Some((cycles, matrix, tally)) = self.cycle_system() else { return Err(missing()) };
+        let Some((cycles, matrix, tally)) = self.cycle_system() else {
+            return Err(missing());
+        };
         cycles.set_up(matrix, tally)
     }
 
     /// The system with multigrid, what it is to solve, and where that is counted.
     fn cycle_system(&mut self) -> Option<(&mut CycleSystem<'p, D, C>, StiffnessOperator<'_, D, C>, &mut Tally)> {
-        let Self { halo, grid, stencil, free, timers, .. } = self;
-        let matrix = StiffnessOperator { halo, grid, stencil, free, unknowns: &[], timers };
+        let Self {
+            halo,
+            grid,
+            stencil,
+            free,
+            timers,
+            ..
+        } = self;
+        let matrix = StiffnessOperator {
+            halo,
+            grid,
+            stencil,
+            free,
+            unknowns: &[],
+            timers,
+        };
         let cycles = self.cycles.as_mut()?;
         let tally = self.tallies.definite.get_or_insert_with(|| cycles.tally());
         Some((cycles, matrix, tally))
@@ -238,20 +281,33 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("linear solve");
         let unknowns = self.unknowns();
-        let own: Vec<f64> = unknowns.iter().map(|&at| if self.free[at] { rhs[at] } else { 0.0 }).collect();
+        let own: Vec<f64> = unknowns
+            .iter()
+            .map(|&at| if self.free[at] { rhs[at] } else { 0.0 })
+            .collect();
         let tally = self.tallies.definite.get_or_insert_default();
         let (iterations, mut x) = by(self.definite.as_mut().ok_or_else(missing)?, &own, tally)?;
         if self.choice.is_rough() {
             // Of nodes that keep what is held, coarse functions move that, too.
-            x.iter_mut().zip(&unknowns).filter(|(_, at)| !self.free[**at]).for_each(|(x, _)| *x = 0.0);
+            x.iter_mut()
+                .zip(&unknowns)
+                .filter(|(_, at)| !self.free[**at])
+                .for_each(|(x, _)| *x = 0.0);
         }
         spread::<C>(&self.halo, &unknowns, &x, solution);
-        Ok(Solved { iterations, ..Solved::default() })
+        Ok(Solved {
+            iterations,
+            ..Solved::default()
+        })
     }
 
     /// Components of this rank's unknowns, in the order of their numbers.
     fn unknowns(&self) -> Vec<usize> {
-        self.halo.owned().places::<C>().filter(|&component| self.numbers[component].is_some()).collect()
+        self.halo
+            .owned()
+            .places::<C>()
+            .filter(|&component| self.numbers[component].is_some())
+            .collect()
     }
 }
 
@@ -259,7 +315,11 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
 fn numbered<const C: usize>(choice: &Choice, free: &[bool]) -> impl Fn(usize) -> bool {
     let whole = choice.whole_nodes();
     move |component| {
-        if whole { free[Nodal::<C>::of(Nodal::<C>::node(component))].contains(&true) } else { free[component] }
+        if whole {
+            free[Nodal::<C>::of(Nodal::<C>::node(component))].contains(&true)
+        } else {
+            free[component]
+        }
     }
 }
 
@@ -312,7 +372,8 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         for node in self.halo.owned().nodes() {
             for component in 0..C {
-                self.stencil.add_diagonal(node, component, diagonal[Nodal::<C>::at(node, component)]);
+                self.stencil
+                    .add_diagonal(node, component, diagonal[Nodal::<C>::at(node, component)]);
             }
         }
     }
@@ -353,7 +414,11 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
             return cycles.solve_to(relative, matrix, (rhs, solution), tally);
         }
         match self.choice.is_rough() {
-            true => self.solve_assembled(|system, rhs, tally| system.solve_to(relative, rhs, tally), rhs, solution),
+            true => self.solve_assembled(
+                |system, rhs, tally| system.solve_to(relative, rhs, tally),
+                rhs,
+                solution,
+            ),
             false => self.solve(rhs, solution),
         }
     }
@@ -368,12 +433,18 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("linear solve");
         let (unknowns, halo) = (self.unknowns(), Rc::clone(&self.halo));
-        let own: Vec<f64> = unknowns.iter().map(|&at| if self.free[at] { rhs[at] } else { 0.0 }).collect();
+        let own: Vec<f64> = unknowns
+            .iter()
+            .map(|&at| if self.free[at] { rhs[at] } else { 0.0 })
+            .collect();
         let (mut nodal, mut image) = (vec![0.0; rhs.len()], vec![0.0; rhs.len()]);
         let free = &self.free;
         let mut on_unknowns = |x: &[f64], y: &mut [f64]| {
             spread::<C>(&halo, &unknowns, x, &mut nodal);
-            nodal.iter_mut().zip(free).for_each(|(value, &free)| *value *= f64::from(u8::from(free)));
+            nodal
+                .iter_mut()
+                .zip(free)
+                .for_each(|(value, &free)| *value *= f64::from(u8::from(free)));
             product(&nodal, &mut image);
             for ((y, x), &component) in y.iter_mut().zip(x).zip(&unknowns) {
                 *y = if free[component] { image[component] } else { *x };

@@ -17,7 +17,12 @@ const PRICE: f64 = 6.0;
 pub fn points_by_column<const D: usize>(grid: &Grid<D>, points: &Points<D>) -> Vec<f64> {
     let room = &grid.room()[0];
     let mut counts = vec![0.0; room.len()];
-    for column in points.x.iter().filter_map(|x| grid.axes()[0].cell_of(x[0])).filter(|column| room.contains(column)) {
+    for column in points
+        .x
+        .iter()
+        .filter_map(|x| grid.axes()[0].cell_of(x[0]))
+        .filter(|column| room.contains(column))
+    {
         counts[column - room.start] += 1.0;
     }
     counts
@@ -41,7 +46,11 @@ pub struct Rows<'a, const D: usize> {
 impl<'a, const D: usize> Rows<'a, D> {
     /// None yet.
     pub fn none(grid: &'a Grid<D>, slabs: &'a Slabs) -> Self {
-        Self { grid, slabs, counts: vec![0.0; slabs.slabs() * grid.room()[1].len()] }
+        Self {
+            grid,
+            slabs,
+            counts: vec![0.0; slabs.slabs() * grid.room()[1].len()],
+        }
     }
 
     /// Counts a point at a place, m from the grid's lower corner.
@@ -69,10 +78,17 @@ pub fn parted<const D: usize>(grid: &Grid<D>, slabs: Slabs, points: &[f64], part
     let rows = &grid.room()[1];
     let across: usize = (2..D).map(|axis| grid.room()[axis].len() + grid.order()).product();
     let of_slab = |(slab, points): (usize, &[f64])| {
-        let cut = Slabs::cut(&by_column(points, slabs.layers(slab, grid.order()).len() * across), parts)?;
+        let cut = Slabs::cut(
+            &by_column(points, slabs.layers(slab, grid.order()).len() * across),
+            parts,
+        )?;
         Some(cut.starting_at(rows.start).bounds().to_vec())
     };
-    let bounds = points.chunks_exact(rows.len()).enumerate().map(of_slab).collect::<Option<Vec<_>>>()?;
+    let bounds = points
+        .chunks_exact(rows.len())
+        .enumerate()
+        .map(of_slab)
+        .collect::<Option<Vec<_>>>()?;
     slabs.parted(bounds, rows)
 }
 
@@ -88,12 +104,17 @@ pub fn of_rank(points: usize, nodes: usize) -> f64 {
 
 /// Work of every rank under a cut of columns with so many points, for splines of order `q`.
 pub fn of_slabs(points: &[f64], slabs: &Slabs, (layer_nodes, q): (usize, usize)) -> Vec<f64> {
-    let (nodes, first) = (|rank: usize| slabs.layers(rank, q).len() * layer_nodes, slabs.bounds()[0]);
+    let (nodes, first) = (
+        |rank: usize| slabs.layers(rank, q).len() * layer_nodes,
+        slabs.bounds()[0],
+    );
     let held = |rank: usize| {
         let columns = slabs.columns(rank);
         points[columns.start - first..columns.end - first].iter().sum::<f64>() as usize
     };
-    (0..slabs.ranks()).map(|rank| of_rank(held(rank), nodes(rank))).collect()
+    (0..slabs.ranks())
+        .map(|rank| of_rank(held(rank), nodes(rank)))
+        .collect()
 }
 
 /// The same of slabs with parts, by points in the rows of every slab.
@@ -103,20 +124,28 @@ pub fn of_parts<const D: usize>(points: &[f64], slabs: &Slabs, grid: &Grid<D>) -
     let held = |rank: usize| {
         let (slab, cells) = (slabs.place(rank).0, &slabs.cells(rank, grid.room())[1]);
         let of_slab = &points[slab * rows.len()..(slab + 1) * rows.len()];
-        of_slab[cells.start - rows.start..cells.end - rows.start].iter().sum::<f64>() as usize
+        of_slab[cells.start - rows.start..cells.end - rows.start]
+            .iter()
+            .sum::<f64>() as usize
     };
     let nodes = |rank: usize| {
         let [layers, rows] = slabs.nodes(rank, (q, rows));
         layers.len() * rows.len() * across
     };
-    (0..slabs.ranks()).map(|rank| of_rank(held(rank), nodes(rank))).collect()
+    (0..slabs.ranks())
+        .map(|rank| of_rank(held(rank), nodes(rank)))
+        .collect()
 }
 
 /// Largest load over the mean.
 pub fn imbalance(loads: &[f64]) -> f64 {
     let sum: f64 = loads.iter().sum();
     let most = loads.iter().copied().fold(0.0, f64::max);
-    if sum > 0.0 { most * loads.len() as f64 / sum } else { 1.0 }
+    if sum > 0.0 {
+        most * loads.len() as f64 / sum
+    } else {
+        1.0
+    }
 }
 
 /// Whether a cut under which the largest load is `best` instead of `now` gains more in so many evaluations than it
@@ -141,7 +170,10 @@ mod tests {
         let counts = [36.0, 0.0, 12.0, 8.0];
         let slabs = Slabs::new(vec![0, 1, 4], 2, 0..4).unwrap();
         assert_eq!(of_slabs(&counts, &slabs, (5, 2)), [of_rank(36, 15), of_rank(20, 25)]);
-        assert_eq!(of_slabs(&counts, &slabs.clone().starting_at(3), (5, 2)), [of_rank(36, 15), of_rank(20, 25)]);
+        assert_eq!(
+            of_slabs(&counts, &slabs.clone().starting_at(3), (5, 2)),
+            [of_rank(36, 15), of_rank(20, 25)]
+        );
         // Each window has the ghost layers besides its columns.
         let columns = by_column(&counts, 5);
         assert_eq!(columns[0] + of_rank(0, 10), of_rank(36, 15));
@@ -150,7 +182,9 @@ mod tests {
     #[test]
     fn parts_follow_the_points_of_their_slab_and_have_the_loads_of_their_ranks() {
         let axis = |cells| KnotVector::uniform(1.0, cells, 2).unwrap();
-        let grid = Grid::new([axis(6), axis(5), axis(3)]).unwrap().within([1..5, 0..5, 0..3]);
+        let grid = Grid::new([axis(6), axis(5), axis(3)])
+            .unwrap()
+            .within([1..5, 0..5, 0..3]);
         let slabs = || cut(&grid, &[9.0, 9.0, 9.0, 9.0], 2).unwrap();
         let places = [[1.5, 0.5], [2.5, 0.5], [3.5, 4.5], [4.5, 3.5], [5.5, 4.5], [0.5, 0.5]];
         let x = places.map(|[x, y]| Vector::from([x, y, 1.5]));
@@ -161,8 +195,15 @@ mod tests {
         let counts: Vec<f64> = rows.counts.iter().map(|count| 200.0 * count).collect();
         let slabs = parted(&grid, slabs, &counts, 2).unwrap();
         assert_eq!(slabs.parts(), [vec![0, 1, 5], vec![0, 4, 5]]);
-        let nodes = [3, 6, 6, 3].into_iter().zip([4, 4, 4, 4]).map(|(rows, layers)| rows * layers * 5);
-        let loads: Vec<f64> = [400, 0, 200, 200].into_iter().zip(nodes).map(|(p, n)| of_rank(p, n)).collect();
+        let nodes = [3, 6, 6, 3]
+            .into_iter()
+            .zip([4, 4, 4, 4])
+            .map(|(rows, layers)| rows * layers * 5);
+        let loads: Vec<f64> = [400, 0, 200, 200]
+            .into_iter()
+            .zip(nodes)
+            .map(|(p, n)| of_rank(p, n))
+            .collect();
         assert_eq!(of_parts(&counts, &slabs, &grid), loads);
         assert!(parted(&grid, of, &counts, 6).is_none());
     }

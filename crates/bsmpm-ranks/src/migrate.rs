@@ -73,13 +73,17 @@ pub fn nodal<const D: usize>(
     let mut moved = vec![0.0; to.nodes() * width];
     let NodePlan { send, receive } = NodePlan::new((old, new), rank, (to.order(), &to.room()[1]));
     let numbers = |grid: &Grid<D>, nodes: &NodeBox| {
-        grid.nodes_within(nodes).into_iter().flat_map(move |run| run.start * width..run.end * width)
+        grid.nodes_within(nodes)
+            .into_iter()
+            .flat_map(move |run| run.start * width..run.end * width)
     };
     let mut outgoing = Vec::new();
     for (other, nodes) in send {
         let part = numbers(from, &nodes);
         if other == rank {
-            numbers(to, &nodes).zip(part).for_each(|(slot, at)| moved[slot] = values[at]);
+            numbers(to, &nodes)
+                .zip(part)
+                .for_each(|(slot, at)| moved[slot] = values[at]);
         } else {
             outgoing.push((other, part.flat_map(|at| values[at].to_le_bytes()).collect()));
         }
@@ -102,19 +106,30 @@ pub fn exchange(
 ) -> Vec<(usize, Vec<u8>)> {
     let mut sizes = vec![0_u64; world.size().unsigned_abs() as usize];
     let mut expected = sizes.clone();
-    outgoing.iter().for_each(|(other, message)| sizes[*other] = message.len() as u64);
+    outgoing
+        .iter()
+        .for_each(|(other, message)| sizes[*other] = message.len() as u64);
     world.all_to_all_into(&sizes[..], &mut expected[..]);
     let expected = expected.into_iter().enumerate().filter(|(_, size)| *size > 0);
-    let mut incoming: Vec<(usize, Vec<u8>)> =
-        expected.map(|(other, size)| (other, vec![0; usize::try_from(size).unwrap_or(usize::MAX)])).collect();
+    let mut incoming: Vec<(usize, Vec<u8>)> = expected
+        .map(|(other, size)| (other, vec![0; usize::try_from(size).unwrap_or(usize::MAX)]))
+        .collect();
     let messages = outgoing.iter().map(|(_, message)| message.len().div_ceil(block)).sum();
-    traffic.count(TrafficKind::Migration, messages, outgoing.iter().map(|(_, message)| message.len()).sum());
+    traffic.count(
+        TrafficKind::Migration,
+        messages,
+        outgoing.iter().map(|(_, message)| message.len()).sum(),
+    );
     // Messages between two ranks do not overtake each other.
     mpi::request::scope(|scope| {
         let mut receives = Vec::new();
         for (other, message) in &mut incoming {
             let other = world.process_at_rank(*other as i32);
-            receives.extend(message.chunks_mut(block).map(|part| other.immediate_receive_into(scope, part)));
+            receives.extend(
+                message
+                    .chunks_mut(block)
+                    .map(|part| other.immediate_receive_into(scope, part)),
+            );
         }
         let mut sends = Vec::with_capacity(messages);
         for (other, message) in outgoing {
@@ -143,7 +158,9 @@ mod tests {
         let seen = whole.within([2..9, 3..7, 0..5]);
         let value = |grid: &Grid<3>, node: usize| 1.0 + grid.number_of(node) as f64;
         for (old, cut) in [(seen.window(4..6), 1), (seen.window_of([4..6, 4..5, 0..5]), 2)] {
-            let values: Vec<f64> = (0..old.nodes()).flat_map(|node| [value(&old, node), -value(&old, node)]).collect();
+            let values: Vec<f64> = (0..old.nodes())
+                .flat_map(|node| [value(&old, node), -value(&old, node)])
+                .collect();
             for room in [[0..12, 0..9, 0..7], [3..8, 4..6, 2..3], [1..11, 2..6, 1..6]] {
                 let new = whole.within(room);
                 let (same, moved) = across(&old, &new, &values, 2);

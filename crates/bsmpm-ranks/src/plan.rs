@@ -64,11 +64,22 @@ mod tests {
         let plan = PointPlan::new([1, 0, 1, 3, 0, 1].into_iter(), 1);
         assert_eq!(plan.stay, [0, 2, 5]);
         assert_eq!(plan.leave, [(0, vec![1, 4]), (3, vec![3])]);
-        assert_eq!(PointPlan::new(std::iter::empty(), 2), PointPlan { stay: vec![], leave: vec![] });
+        assert_eq!(
+            PointPlan::new(std::iter::empty(), 2),
+            PointPlan {
+                stay: vec![],
+                leave: vec![]
+            }
+        );
     }
 
     /// Bounds of 4 slabs of 12 columns: even, thinner than the splines reach, and all but one column on one rank.
-    const CUTS: [[usize; 5]; 4] = [[0, 3, 6, 9, 12], [0, 1, 2, 3, 12], [0, 9, 10, 11, 12], [0, 1, 10, 11, 12]];
+    const CUTS: [[usize; 5]; 4] = [
+        [0, 3, 6, 9, 12],
+        [0, 1, 2, 3, 12],
+        [0, 9, 10, 11, 12],
+        [0, 1, 10, 11, 12],
+    ];
     /// Bounds of two parts of 6 rows, slab by slab.
     const PARTS: [[usize; 2]; 3] = [[3, 3], [1, 5], [5, 2]];
 
@@ -77,7 +88,10 @@ mod tests {
         for rank in 0..ranks {
             let plan = NodePlan::new((old, new), rank, of);
             let nodes = |[layers, rows]: &NodeBox| -> Vec<[usize; 2]> {
-                layers.clone().flat_map(|layer| rows.clone().map(move |row| [layer, row])).collect()
+                layers
+                    .clone()
+                    .flat_map(|layer| rows.clone().map(move |row| [layer, row]))
+                    .collect()
             };
             let mut received: Vec<[usize; 2]> = plan.receive.iter().flat_map(|(_, part)| nodes(part)).collect();
             received.sort_unstable();
@@ -101,7 +115,10 @@ mod tests {
             let slabs = Slabs::new(vec![0, at, 12], 2, 0..12).unwrap();
             slabs.parted(parts.map(|at| vec![0, at, 6]).to_vec(), &(0..6)).unwrap()
         };
-        for (old, new) in PARTS.iter().flat_map(|old| PARTS.map(|new| (cut(4, *old), cut(9, new)))) {
+        for (old, new) in PARTS
+            .iter()
+            .flat_map(|old| PARTS.map(|new| (cut(4, *old), cut(9, new))))
+        {
             (1..4).for_each(|q| agrees((&old, &new), 4, q));
         }
     }
@@ -116,7 +133,10 @@ mod tests {
         let [first, last] = [0, 1].map(|rank| NodePlan::new((&old, &new), rank, (2, &(0..1))));
         let received = (boxed(vec![(0, 4..6), (1, 6..7)]), boxed(vec![(0, 5..6), (1, 6..10)]));
         assert_eq!((first.receive, last.receive), received);
-        assert_eq!((first.send, last.send), (boxed(vec![(0, 4..6), (1, 5..6)]), boxed(vec![(0, 6..7), (1, 6..10)])));
+        assert_eq!(
+            (first.send, last.send),
+            (boxed(vec![(0, 4..6), (1, 5..6)]), boxed(vec![(0, 6..7), (1, 6..10)]))
+        );
     }
 
     #[test]

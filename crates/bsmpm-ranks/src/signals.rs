@@ -38,7 +38,11 @@ impl Requests {
 
     /// This rank's share of the next sum over the ranks.
     pub fn share(&self) -> [f64; WIDTH] {
-        [self.stop.load(Ordering::Relaxed), self.save.swap(false, Ordering::Relaxed)].map(f64::from)
+        [
+            self.stop.load(Ordering::Relaxed),
+            self.save.swap(false, Ordering::Relaxed),
+        ]
+        .map(f64::from)
     }
 
     /// Takes the sums of the ranks' shares.

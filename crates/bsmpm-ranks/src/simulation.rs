@@ -95,7 +95,21 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let solver = Solvers::new(petsc, &choice, &model, &halo, &timers);
         let stepper = Stepper::new(model.grid.nodes() * D);
         let (steps, cost) = (0, Cost::default());
-        Self { model, points, halo, universe, petsc, choice, slabs, schedule, stepper, solver, steps, cost, timers }
+        Self {
+            model,
+            points,
+            halo,
+            universe,
+            petsc,
+            choice,
+            slabs,
+            schedule,
+            stepper,
+            solver,
+            steps,
+            cost,
+            timers,
+        }
     }
 
     /// Gives the points a stress at the start, see [`initial`], which `settles` to equilibrium with the materials'
@@ -105,13 +119,21 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         start: StartStress<'_, D>,
         settles: bool,
     ) -> Result<(Equilibrium, Option<Settling>), StepError> {
-        let Self { model, points, halo, solver, .. } = self;
+        let Self {
+            model,
+            points,
+            halo,
+            solver,
+            ..
+        } = self;
         match start {
             StartStress::Given(sigma) => initial::set_stress(model, points, sigma),
             StartStress::Elastic => initial::set_elastic(model, points, (&**halo, solver))?,
             StartStress::Spread(k0) => initial::set_spread(model, points, k0, (&**halo, solver))?,
         }
-        let settling = settles.then(|| initial::settle(model, points, (&**halo, solver))).transpose()?;
+        let settling = settles
+            .then(|| initial::settle(model, points, (&**halo, solver)))
+            .transpose()?;
         initial::hold(model, points, (&**halo, solver))?;
         Ok((initial::balance(model, points, &**halo)?, settling))
     }
@@ -175,12 +197,20 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
 
     /// One accepted step, after which every point is on the rank of its cell; `None` at the end.
     pub fn advance(&mut self) -> Option<Result<Accepted, Failure>> {
-        let (before, load) =
-            (self.timers.traffic().counts(), load::of_rank(self.points.len(), self.model.grid.nodes()));
+        let (before, load) = (
+            self.timers.traffic().counts(),
+            load::of_rank(self.points.len(), self.model.grid.nodes()),
+        );
         let outcome = {
             let _timed = self.timers.time("step");
             let _awake = Awake::over(self.points.len());
-            self.stepper.advance(&self.schedule, &self.model, &mut self.points, &*self.halo, &mut self.solver)?
+            self.stepper.advance(
+                &self.schedule,
+                &self.model,
+                &mut self.points,
+                &*self.halo,
+                &mut self.solver,
+            )?
         };
         if let Ok(accepted) = &outcome {
             self.steps += 1;
@@ -195,7 +225,10 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
                 self.make_room();
                 (cost, _) = self.count(before, load);
             }
-            self.cost = Cost { is_cut_again: is_cut_again || !has_room, ..cost };
+            self.cost = Cost {
+                is_cut_again: is_cut_again || !has_room,
+                ..cost
+            };
         }
         Some(outcome)
     }
@@ -216,12 +249,20 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         self.points.remove(&gone);
         let left = self.points.len();
         let anchored = self.points.anchored();
-        let anchors = self.points.surface.anchors.without(&self.model.surfaces(), &gone, anchored, &*self.halo);
+        let anchors = self
+            .points
+            .surface
+            .anchors
+            .without(&self.model.surfaces(), &gone, anchored, &*self.halo);
         self.points.surface.anchors = anchors;
         let (slabs, rank, grid) = (self.slabs.clone(), self.petsc.rank(), self.model.grid.clone());
         let is_ours = |seed: &Seed<D>| grid.locate(&seed.x).is_none_or(|cell| slabs.owner(&cell) == rank);
         self.points.place(placed(self.columns()).filter(is_ours));
-        let mut numbers = [(before - left) as f64, (self.points.len() - left) as f64, f64::from(self.lacks_room())];
+        let mut numbers = [
+            (before - left) as f64,
+            (self.points.len() - left) as f64,
+            f64::from(self.lacks_room()),
+        ];
         self.halo.reduce(&mut numbers);
         if numbers[1] > 0.0 {
             self.fill(left);
@@ -248,7 +289,9 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     /// Gives the points from `first` on, which have been placed, their water, and enters it. Collective.
     fn fill(&mut self, first: usize) {
         let t = self.time();
-        let Some(water) = self.model.water.as_ref().filter(|water| water.flow.is_some()) else { return };
+        let Some(water) = self.model.water.as_ref().filter(|water| water.flow.is_some()) else {
+            return;
+        };
         water.fill(&mut self.points, first, t);
         let mut placed = self.points.id[first..].to_vec();
         placed.sort_unstable();
@@ -261,7 +304,11 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     /// Anchors surfaces that did not act to what is there now, and puts loads there.
     fn settle_surfaces(&mut self, idle: &Idle) {
         let (boundary, anchored) = (&self.model.boundary, self.points.anchored());
-        let anchors = self.points.surface.anchors.renewed(&self.model.surfaces(), idle, anchored, &*self.halo);
+        let anchors = self
+            .points
+            .surface
+            .anchors
+            .renewed(&self.model.surfaces(), idle, anchored, &*self.halo);
         let places = anchors.places((boundary, &self.model.grid), anchored, &*self.halo);
         let pressure = follower::now::<K, D>(&boundary.loads, (&self.model.grid, &anchors), anchored, &*self.halo);
         let surface = &mut self.points.surface;
@@ -276,7 +323,10 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     /// Goes over to the laws, supports and loads of a further model, which has the same grid. Fails on all ranks if a
     /// point has no stress before.
     pub fn exchange(&mut self, next: Model<K, D>) -> Result<(), StepError> {
-        let next = Model { grid: self.model.grid.clone(), ..next };
+        let next = Model {
+            grid: self.model.grid.clone(),
+            ..next
+        };
         initial::exchange((&self.model, &next), &mut self.points, &*self.halo)?;
         self.model = next;
         self.begin_afresh();
@@ -287,7 +337,13 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     /// free field goes on. Fails on all ranks if there is no equilibrium.
     pub fn hold(&mut self) -> Result<(), StepError> {
         let t = self.time();
-        let Self { model, points, halo, solver, .. } = self;
+        let Self {
+            model,
+            points,
+            halo,
+            solver,
+            ..
+        } = self;
         points.surface.held.clear();
         initial::hold_at(model, points, t, (&**halo, solver))?;
         free_field::go_on(model, points, t)
@@ -295,15 +351,23 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
 
     /// Columns of the whole grid whose points come to this rank's slab.
     fn columns(&self) -> Range<usize> {
-        let (slab, own) = (self.slabs.place(self.petsc.rank()).0, self.slabs.columns(self.petsc.rank()));
-        let end = if slab + 1 == self.slabs.slabs() { self.model.grid.axes()[0].cells() } else { own.end };
+        let (slab, own) = (
+            self.slabs.place(self.petsc.rank()).0,
+            self.slabs.columns(self.petsc.rank()),
+        );
+        let end = if slab + 1 == self.slabs.slabs() {
+            self.model.grid.axes()[0].cells()
+        } else {
+            own.end
+        };
         if slab == 0 { 0..end } else { own.start..end }
     }
 
     /// Whether the grid has no room for a point of this rank.
     fn lacks_room(&self) -> bool {
         let grid = &self.model.grid;
-        grid.occupied(&self.points.x).is_some_and(|occupied| !grid.has_room(&occupied))
+        grid.occupied(&self.points.x)
+            .is_some_and(|occupied| !grid.has_room(&occupied))
     }
 
     /// What has been sent since `before` by all ranks, and how even this one's `load` and the others' are; and whether
@@ -332,13 +396,17 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let mut counts = load::points_by_column(grid, &self.points);
         self.halo.reduce(&mut counts);
         let most = |loads: Vec<f64>| loads.into_iter().fold(0.0, f64::max);
-        let Some(better) = load::cut(grid, &counts, self.slabs.slabs()) else { return false };
+        let Some(better) = load::cut(grid, &counts, self.slabs.slabs()) else {
+            return false;
+        };
         let (better, loads) = if self.slabs.parts().is_empty() {
             let of = |slabs: &Slabs| most(load::of_slabs(&counts, slabs, (grid.layer_nodes(), grid.order())));
             let loads = [of(&self.slabs), of(&better)];
             (better, loads)
         } else {
-            let Some((better, counts)) = self.parted(grid, better) else { return false };
+            let Some((better, counts)) = self.parted(grid, better) else {
+                return false;
+            };
             let mut now = [load::of_rank(self.points.len(), grid.nodes())];
             self.halo.maximum(&mut now);
             let loads = [now[0], most(load::of_parts(&counts, &better, grid))];
@@ -367,7 +435,10 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let mut ends = ends.unwrap_or([[f64::NEG_INFINITY; 2]; D]);
         self.halo.maximum(ends.as_flattened_mut());
         let occupied = ends.map(|[start, end]| -start as usize..end as usize);
-        let grid = self.model.grid.with_room(&occupied, [self.slabs.slabs(), self.slabs.parts_of_slab()]);
+        let grid = self
+            .model
+            .grid
+            .with_room(&occupied, [self.slabs.slabs(), self.slabs.parts_of_slab()]);
         let mut counts = load::points_by_column(&grid, &self.points);
         self.halo.reduce(&mut counts);
         let slabs = load::cut(&grid, &counts, self.slabs.slabs());

@@ -54,19 +54,30 @@ impl Slabs {
             bounds.push(fair.clamp(least, reach.min(cost.len() - (ranks - rank)).max(least)));
         }
         bounds.push(cost.len());
-        Some(Self { bounds, parts: Vec::new(), beyond: 0 })
+        Some(Self {
+            bounds,
+            parts: Vec::new(),
+            beyond: 0,
+        })
     }
 
     /// Slabs that begin at given columns; `None` if they are not one for each rank, all with cells, of all `columns` of
     /// the grid's room.
     pub fn new(bounds: Vec<usize>, ranks: usize, columns: Range<usize>) -> Option<Self> {
         let whole = bounds.len() == ranks + 1 && bounds[0] == columns.start && bounds[ranks] == columns.end;
-        (whole && bounds.is_sorted_by(|a, b| a < b)).then_some(Self { bounds, parts: Vec::new(), beyond: 0 })
+        (whole && bounds.is_sorted_by(|a, b| a < b)).then_some(Self {
+            bounds,
+            parts: Vec::new(),
+            beyond: 0,
+        })
     }
 
     /// The same slabs of columns of which the first is number `first`.
     pub fn starting_at(self, first: usize) -> Self {
-        Self { bounds: self.bounds.iter().map(|bound| bound + first).collect(), ..self }
+        Self {
+            bounds: self.bounds.iter().map(|bound| bound + first).collect(),
+            ..self
+        }
     }
 
     /// The same slabs, whose windows hold `beyond` layers of nodes past those that their cells touch, as those of
@@ -137,7 +148,9 @@ impl Slabs {
     /// The rank that has a cell; past the ends of them all, the rank there.
     pub fn owner<const D: usize>(&self, cell: &[usize; D]) -> usize {
         let slab = stretch(&self.bounds, cell[0]);
-        self.parts.get(slab).map_or(slab, |rows| slab * self.parts_of_slab() + stretch(rows, cell[1]))
+        self.parts
+            .get(slab)
+            .map_or(slab, |rows| slab * self.parts_of_slab() + stretch(rows, cell[1]))
     }
 
     /// Node layers in the window of a rank: those that its cells touch, for splines of order `q`, and those beyond.
@@ -153,14 +166,22 @@ impl Slabs {
     /// Nodes in the window of a rank, where the grid's room has those `rows` of cells.
     pub fn nodes(&self, rank: usize, (q, rows): (usize, &Range<usize>)) -> NodeBox {
         let (slab, part) = self.place(rank);
-        let rows = self.parts.get(slab).map_or(rows.start..rows.end + q, |of| window(of, part, (q, self.beyond)));
+        let rows = self
+            .parts
+            .get(slab)
+            .map_or(rows.start..rows.end + q, |of| window(of, part, (q, self.beyond)));
         [self.layers(rank, q), rows]
     }
 
     /// Nodes that a rank owns.
     pub fn owned(&self, rank: usize, (q, rows): (usize, &Range<usize>)) -> NodeBox {
         let (slab, part) = self.place(rank);
-        [self.owned_layers(rank, q), self.parts.get(slab).map_or(rows.start..rows.end + q, |of| owned(of, part, q))]
+        [
+            self.owned_layers(rank, q),
+            self.parts
+                .get(slab)
+                .map_or(rows.start..rows.end + q, |of| owned(of, part, q)),
+        ]
     }
 
     /// Other ranks that share nodes with `rank`, ascending, and the nodes.
@@ -186,7 +207,9 @@ impl Slabs {
                 theirs: touching(other, layer).len(),
             }
         };
-        intersection(&self.layers(rank, q), &self.layers(other, q)).map(shared).collect()
+        intersection(&self.layers(rank, q), &self.layers(other, q))
+            .map(shared)
+            .collect()
     }
 
     /// Ranks from the first to the last one whose window has a node, given by its layer and its row.
@@ -205,7 +228,10 @@ impl Slabs {
 
 /// The stretch between bounds that has a cell; past either end of them all, the one there.
 fn stretch(bounds: &[usize], cell: usize) -> usize {
-    bounds.partition_point(|&bound| bound <= cell).clamp(1, bounds.len() - 1) - 1
+    bounds
+        .partition_point(|&bound| bound <= cell)
+        .clamp(1, bounds.len() - 1)
+        - 1
 }
 
 /// Stretches whose window has a node, where windows reach so far beyond their cells.
@@ -295,7 +321,12 @@ mod tests {
 
     #[test]
     fn the_columns_that_touch_a_layer_are_those_of_the_ranks_that_share_it() {
-        let cuts = [(vec![0, 4, 9], 2, 0), (vec![0, 1, 2, 5], 3, 0), (vec![0, 3, 4], 1, 0), (vec![0, 2, 3, 6], 2, 1)];
+        let cuts = [
+            (vec![0, 4, 9], 2, 0),
+            (vec![0, 1, 2, 5], 3, 0),
+            (vec![0, 3, 4], 1, 0),
+            (vec![0, 2, 3, 6], 2, 1),
+        ];
         for (bounds, q, beyond) in cuts {
             let (ranks, columns) = (bounds.len() - 1, bounds[bounds.len() - 1]);
             let slabs = Slabs::new(bounds, ranks, 0..columns).unwrap().reaching(beyond);
@@ -308,7 +339,10 @@ mod tests {
                         let shared = layers.iter().find(|shared| shared.layer + slabs.bounds[rank] == layer);
                         shared.map_or(0, |shared| shared.theirs)
                     });
-                    assert_eq!(own + others.sum::<usize>(), intersection(&(0..columns), &touching).len());
+                    assert_eq!(
+                        own + others.sum::<usize>(),
+                        intersection(&(0..columns), &touching).len()
+                    );
                 }
             }
         }
@@ -325,7 +359,9 @@ mod tests {
     /// Three slabs of three parts each, of even and of thin ones, none of which lie side by side.
     fn parted(beyond: usize) -> Slabs {
         let slabs = Slabs::new(vec![2, 6, 7, 11], 3, 2..11).unwrap().reaching(beyond);
-        slabs.parted(vec![vec![1, 4, 7, 10], vec![1, 2, 3, 10], vec![1, 6, 9, 10]], &(1..10)).unwrap()
+        slabs
+            .parted(vec![vec![1, 4, 7, 10], vec![1, 2, 3, 10], vec![1, 6, 9, 10]], &(1..10))
+            .unwrap()
     }
 
     #[test]
@@ -335,18 +371,31 @@ mod tests {
             let windows: Vec<NodeBox> = (0..9).map(|rank| slabs.nodes(rank, (q, &rows))).collect();
             let holds = |nodes: &NodeBox, at: [usize; 2]| (0..2).all(|axis| nodes[axis].contains(&at[axis]));
             for at in (2..11 + q).flat_map(|layer| (1..10 + q).map(move |row| [layer, row])) {
-                let owners: Vec<usize> = (0..9).filter(|&rank| holds(&slabs.owned(rank, (q, &rows)), at)).collect();
-                assert!(owners.len() == 1 && holds(&windows[owners[0]], at), "{at:?}: {owners:?}");
+                let owners: Vec<usize> = (0..9)
+                    .filter(|&rank| holds(&slabs.owned(rank, (q, &rows)), at))
+                    .collect();
+                assert!(
+                    owners.len() == 1 && holds(&windows[owners[0]], at),
+                    "{at:?}: {owners:?}"
+                );
                 let seen: Vec<usize> = (0..9).filter(|&rank| holds(&windows[rank], at)).collect();
                 let touching = slabs.touching(at, q);
-                assert_eq!([touching.start, touching.end - 1], [seen[0], seen[seen.len() - 1]], "{at:?}");
+                assert_eq!(
+                    [touching.start, touching.end - 1],
+                    [seen[0], seen[seen.len() - 1]],
+                    "{at:?}"
+                );
                 if at[0] < 11 && at[1] < 10 {
                     assert_eq!(slabs.owner(&at), owners[0]);
                 }
             }
             for rank in 0..9 {
                 let [columns, rows_of] = slabs.cells(rank, &[2..11, 1..10]);
-                assert!(columns.clone().all(|i| rows_of.clone().all(|j| slabs.owner(&[i, j]) == rank)));
+                assert!(
+                    columns
+                        .clone()
+                        .all(|i| rows_of.clone().all(|j| slabs.owner(&[i, j]) == rank))
+                );
                 for (other, nodes) in slabs.shared(rank, (q, &rows)) {
                     assert!(slabs.shared(other, (q, &rows)).contains(&(rank, nodes)));
                 }
@@ -358,7 +407,11 @@ mod tests {
     fn a_cut_that_leaves_parts_without_cells_or_rows_without_a_part_is_none() {
         let slabs = || Slabs::new(vec![0, 3, 5], 2, 0..5).unwrap();
         assert!(slabs().parted(vec![vec![0, 2, 4], vec![0, 1, 4]], &(0..4)).is_some());
-        for parts in [vec![vec![0, 2, 4]], vec![vec![0, 2, 4], vec![0, 4]], vec![vec![0, 2, 4], vec![0, 0, 4]]] {
+        for parts in [
+            vec![vec![0, 2, 4]],
+            vec![vec![0, 2, 4], vec![0, 4]],
+            vec![vec![0, 2, 4], vec![0, 0, 4]],
+        ] {
             assert!(slabs().parted(parts, &(0..4)).is_none());
         }
         assert!(slabs().parted(vec![vec![0, 2, 4], vec![0, 1, 3]], &(0..4)).is_none());
@@ -379,7 +432,9 @@ mod tests {
     #[test]
     fn no_other_cut_has_a_smaller_largest_cost() {
         let most = |slabs: &Slabs, cost: &[f64]| {
-            (0..3).map(|rank| cost[slabs.columns(rank)].iter().sum::<f64>()).fold(0.0, f64::max)
+            (0..3)
+                .map(|rank| cost[slabs.columns(rank)].iter().sum::<f64>())
+                .fold(0.0, f64::max)
         };
         let costs = [
             [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0],

@@ -60,9 +60,18 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         let patch = offsets.len();
         let at = |k: usize| std::array::from_fn(|axis| k / width.pow((D - 1 - axis) as u32) % width);
         let number = |k: usize| places.number(at(k));
-        let slot = (0..patch * patch).map(|pair| places.of(number(pair / patch), number(pair % patch))).collect();
+        let slot = (0..patch * patch)
+            .map(|pair| places.of(number(pair / patch), number(pair % patch)))
+            .collect();
         let (rows, values) = (vec![NONE; grid.nodes()], Vec::new());
-        Self { places, slot, offsets, rows, values, columns: None }
+        Self {
+            places,
+            slot,
+            offsets,
+            rows,
+            values,
+            columns: None,
+        }
     }
 
     /// Zero stencils of these of the window's nodes only: others take no memory, and what is added to them is lost.
@@ -74,7 +83,9 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
             count - 1
         };
         let all = self.columns.is_some();
-        self.rows = (0..self.rows.len()).map(|node| if all || kept(node) { next() } else { NONE }).collect();
+        self.rows = (0..self.rows.len())
+            .map(|node| if all || kept(node) { next() } else { NONE })
+            .collect();
         self.values.clear();
         self.values.resize(count * self.width(), 0.0);
         self.values.shrink_to(2 * self.values.len());
@@ -87,8 +98,16 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         let stencil = self;
         let none = Contributions::none(grid, stencil.width(), Vec::new());
         let (sums, diagonal) = (none.clone(), vec![0.0; grid.nodes() * C]);
-        let columns = StencilColumns { none, sums, diagonal, owned };
-        let mut stencil = Self { columns: Some(columns), ..stencil };
+        let columns = StencilColumns {
+            none,
+            sums,
+            diagonal,
+            owned,
+        };
+        let mut stencil = Self {
+            columns: Some(columns),
+            ..stencil
+        };
         stencil.keep(|_| true);
         stencil
     }
@@ -100,7 +119,9 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         let diagonal = columns.diagonal.clone();
         for (at, value) in diagonal.into_iter().enumerate() {
             let (node, component) = Nodal::<C>::split(at);
-            self.diagonal(node, component).into_iter().for_each(|entry| *entry += value);
+            self.diagonal(node, component)
+                .into_iter()
+                .for_each(|entry| *entry += value);
         }
     }
 
@@ -118,7 +139,9 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
     fn diagonal(&mut self, node: usize, component: usize) -> Option<&mut f64> {
         let row = self.rows[node];
         let at = (self.places.count() / 2 * C + component) * C + component;
-        (row != NONE).then(|| row * self.width() + at).map(|at| &mut self.values[at])
+        (row != NONE)
+            .then(|| row * self.width() + at)
+            .map(|at| &mut self.values[at])
     }
 
     fn width(&self) -> usize {
@@ -156,7 +179,10 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
                 for i in 0..C {
                     let row = &block[(a * C + i) * count * C + b * C..][..C];
                     let at = (place * C + i) * C;
-                    values[at..at + C].iter_mut().zip(row).for_each(|(value, entry)| *value += entry);
+                    values[at..at + C]
+                        .iter_mut()
+                        .zip(row)
+                        .for_each(|(value, entry)| *value += entry);
                 }
             }
         }
@@ -166,7 +192,10 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
     pub fn add_diagonal(&mut self, node: usize, component: usize, value: f64) {
         match &mut self.columns {
             Some(columns) => columns.diagonal[Nodal::<C>::at(node, component)] += value,
-            None => self.diagonal(node, component).into_iter().for_each(|entry| *entry += value),
+            None => self
+                .diagonal(node, component)
+                .into_iter()
+                .for_each(|entry| *entry += value),
         }
     }
 
@@ -202,7 +231,10 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         let (row, width) = (self.rows[node], self.width());
         if let (true, Some(place)) = (row != NONE, self.places.between(node, other)) {
             let values = &mut self.values[row * width + place * C * C..][..C * C];
-            values.iter_mut().zip(block).for_each(|(value, entry)| *value += weight * entry);
+            values
+                .iter_mut()
+                .zip(block)
+                .for_each(|(value, entry)| *value += weight * entry);
         }
     }
 
@@ -210,12 +242,20 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
     pub fn on_diagonal(&self, component: usize) -> f64 {
         let (node, i) = Nodal::<C>::split(component);
         let at = (self.places.count() / 2 * C + i) * C + i;
-        if self.rows[node] == NONE { 0.0 } else { self.values[self.rows[node] * self.width() + at] }
+        if self.rows[node] == NONE {
+            0.0
+        } else {
+            self.values[self.rows[node] * self.width() + at]
+        }
     }
 
     /// y = A x of the components marked `free`, as far as this window's blocks go; `x` is zero at the others.
     pub fn multiply(&self, free: &[bool], x: &[f64], y: &mut [f64]) {
-        let nodes = self.rows.iter().zip(y.chunks_exact_mut(C).zip(free.chunks_exact(C))).enumerate();
+        let nodes = self
+            .rows
+            .iter()
+            .zip(y.chunks_exact_mut(C).zip(free.chunks_exact(C)))
+            .enumerate();
         for (node, (&row, (y, free))) in nodes {
             let mut image = [0.0; C];
             if row != NONE {
@@ -262,7 +302,9 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
     /// Visits every entry with its global row and column and its place in `values`.
     fn walk(&self, numbers: &Numbering, free: &[bool], mut visit: impl FnMut(usize, usize, usize)) {
         let handed = |a: usize, b: usize| {
-            self.columns.as_ref().is_none_or(|columns| columns.owned.contains(self.places.lowest(a, b)))
+            self.columns
+                .as_ref()
+                .is_none_or(|columns| columns.owned.contains(self.places.lowest(a, b)))
         };
         for (component, row) in numbers.iter().enumerate() {
             let Some(row) = row else { continue };
@@ -294,7 +336,11 @@ mod tests {
     use std::ops::Range;
 
     fn grid() -> Grid<2> {
-        Grid::new([KnotVector::uniform(1.0, 4, 2).unwrap(), KnotVector::uniform(1.0, 3, 2).unwrap()]).unwrap()
+        Grid::new([
+            KnotVector::uniform(1.0, 4, 2).unwrap(),
+            KnotVector::uniform(1.0, 3, 2).unwrap(),
+        ])
+        .unwrap()
     }
 
     /// Stencils of all nodes.
@@ -312,7 +358,9 @@ mod tests {
         let (mut stencil, mut dense) = (all(&grid), vec![0.0; size * size]);
         for cell in 0..grid.cells() {
             let first = grid.first_node(&grid.cell_at(cell));
-            let block: Vec<f64> = (0..18 * 18).map(|entry| ((entry * 7 + cell * 13) % 31) as f64).collect();
+            let block: Vec<f64> = (0..18 * 18)
+                .map(|entry| ((entry * 7 + cell * 13) % 31) as f64)
+                .collect();
             stencil.add(first, &block);
             let component = |k: usize| (first + grid.offsets()[k / 2]) * 2 + k % 2;
             for (entry, value) in block.iter().enumerate() {
@@ -323,7 +371,11 @@ mod tests {
         let (places, values) = (stencil.coordinates(&numbers, &free), stencil.entries(&numbers, &free));
         let mut found = vec![0.0; size * size];
         for ((row, column), value) in places.rows.iter().zip(&places.columns).zip(values) {
-            assert_eq!(std::mem::replace(&mut found[row * size + column], value), 0.0, "each pair stands once");
+            assert_eq!(
+                std::mem::replace(&mut found[row * size + column], value),
+                0.0,
+                "each pair stands once"
+            );
         }
         assert_eq!(found, dense);
         let x: Vec<f64> = (0..size).map(|component| ((component * 5) % 13) as f64).collect();
@@ -342,7 +394,9 @@ mod tests {
         for (cell, across) in [([0, 0], 3), ([2, 1], 3), ([1, 1], 4)] {
             let first = grid.first_node(&cell);
             let nodes: Vec<usize> = (0..12).map(|k| first + k / across * 5 + k % across).collect();
-            let block: Vec<f64> = (0..24 * 24).map(|entry| ((entry * 7 + cell[0] * 13) % 31) as f64).collect();
+            let block: Vec<f64> = (0..24 * 24)
+                .map(|entry| ((entry * 7 + cell[0] * 13) % 31) as f64)
+                .collect();
             stencil.add_among(&nodes, &block);
             let component = |k: usize| nodes[k / 2] * 2 + k % 2;
             for (entry, value) in block.iter().enumerate() {
@@ -383,10 +437,16 @@ mod tests {
                 let sums = &part.columns.as_ref().expect("by columns").sums;
                 for column in 0..4 - first {
                     let found = (number >= first).then(|| sums.of(column, number - first)).flatten();
-                    sum.iter_mut().zip(found.unwrap_or(&[])).for_each(|(sum, value)| *sum += value);
+                    sum.iter_mut()
+                        .zip(found.unwrap_or(&[]))
+                        .for_each(|(sum, value)| *sum += value);
                 }
             }
-            assert_eq!(sum, whole.values[number * layer..(number + 1) * layer], "layer {number}");
+            assert_eq!(
+                sum,
+                whole.values[number * layer..(number + 1) * layer],
+                "layer {number}"
+            );
         }
     }
 
@@ -416,12 +476,19 @@ mod tests {
     fn components_without_a_number_have_neither_row_nor_column() {
         let grid = grid();
         let stencil = all(&grid);
-        let numbers: Numbering =
-            (0..grid.nodes() * 2).map(|component| (component % 2 == 0).then_some(component / 2)).collect();
+        let numbers: Numbering = (0..grid.nodes() * 2)
+            .map(|component| (component % 2 == 0).then_some(component / 2))
+            .collect();
         let free: Vec<bool> = numbers.iter().map(Option::is_some).collect();
         let places = stencil.coordinates(&numbers, &free);
         assert_eq!(places.rows.len(), stencil.entries(&numbers, &free).len());
-        assert!(places.rows.iter().chain(&places.columns).all(|&number| number < grid.nodes()));
+        assert!(
+            places
+                .rows
+                .iter()
+                .chain(&places.columns)
+                .all(|&number| number < grid.nodes())
+        );
     }
 
     #[test]
@@ -429,7 +496,9 @@ mod tests {
         let grid = grid();
         let add = |stencil: &mut Stencil<2, 2>| {
             for cell in 0..grid.cells() {
-                let block: Vec<f64> = (0..18 * 18).map(|entry| ((entry * 7 + cell * 13) % 31) as f64).collect();
+                let block: Vec<f64> = (0..18 * 18)
+                    .map(|entry| ((entry * 7 + cell * 13) % 31) as f64)
+                    .collect();
                 stencil.add(grid.first_node(&grid.cell_at(cell)), &block);
             }
         };
@@ -439,7 +508,11 @@ mod tests {
         add(&mut whole);
         add(&mut some);
         for component in 0..2 * grid.nodes() {
-            let expected: Vec<_> = if kept(component / 2) { whole.row(component).collect() } else { Vec::new() };
+            let expected: Vec<_> = if kept(component / 2) {
+                whole.row(component).collect()
+            } else {
+                Vec::new()
+            };
             assert_eq!(some.row(component).collect::<Vec<_>>(), expected);
         }
         assert_eq!(

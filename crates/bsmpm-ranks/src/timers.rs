@@ -22,7 +22,11 @@ pub struct Timed<'a> {
 impl Timers {
     /// Times `phase` until the value is dropped; phases may nest, each counts its own whole span.
     pub fn time(&self, phase: &'static str) -> Timed<'_> {
-        Timed { timers: self, phase, start: Instant::now() }
+        Timed {
+            timers: self,
+            phase,
+            start: Instant::now(),
+        }
     }
 
     /// Seconds by phase so far.

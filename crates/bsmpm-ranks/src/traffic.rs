@@ -78,7 +78,10 @@ impl TrafficCounts {
             TrafficKind::Migration,
         ]
         .map(|kind| self.of(kind));
-        [exchanges.iter().map(|count| count.messages).sum(), exchanges.iter().map(|count| count.bytes).sum()]
+        [
+            exchanges.iter().map(|count| count.messages).sum(),
+            exchanges.iter().map(|count| count.bytes).sum(),
+        ]
     }
 
     /// What has been added since `before`.
@@ -95,7 +98,9 @@ impl TrafficCounts {
 
     /// Calls, messages and bytes of every kind, one after the other.
     pub fn numbers(&self) -> impl Iterator<Item = f64> {
-        self.0.into_iter().flat_map(|count| [count.calls, count.messages, count.bytes].map(|number| number as f64))
+        self.0
+            .into_iter()
+            .flat_map(|count| [count.calls, count.messages, count.bytes].map(|number| number as f64))
     }
 }
 
@@ -133,11 +138,26 @@ mod tests {
         traffic.count(TrafficKind::Reduction, 0, 24);
         traffic.count(TrafficKind::Migration, 1, 500);
         let counts = traffic.counts();
-        assert_eq!(counts.of(TrafficKind::HaloSum), Count { calls: 2, messages: 4, bytes: 240 });
+        assert_eq!(
+            counts.of(TrafficKind::HaloSum),
+            Count {
+                calls: 2,
+                messages: 4,
+                bytes: 240
+            }
+        );
         assert_eq!((counts.sent(), counts.since(&before).sent()), ([5, 740], [3, 580]));
         assert_eq!(counts.since(&before).of(TrafficKind::Reduction).calls, 1);
         let numbers: Vec<f64> = counts.numbers().collect();
-        let expected = [[2.0, 4.0, 240.0], [0.0; 3], [0.0; 3], [0.0; 3], [1.0, 0.0, 24.0], [0.0; 3], [1.0, 1.0, 500.0]];
+        let expected = [
+            [2.0, 4.0, 240.0],
+            [0.0; 3],
+            [0.0; 3],
+            [0.0; 3],
+            [1.0, 0.0, 24.0],
+            [0.0; 3],
+            [1.0, 1.0, 500.0],
+        ];
         assert_eq!(numbers, expected.concat());
     }
 }

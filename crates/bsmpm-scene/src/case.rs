@@ -121,18 +121,26 @@ impl Case {
         let footing = self.footing.iter().filter_map(|footing| footing.contact);
         let strips = footing.chain(self.prescribed.iter().filter_map(|prescribed| prescribed.contact));
         let rigid = self.rigid.iter().map(|rigid| rigid.friction);
-        faces.chain(strips.map(|contact| contact.law.friction)).chain(rigid).any(|friction| friction > 0.0)
+        faces
+            .chain(strips.map(|contact| contact.law.friction))
+            .chain(rigid)
+            .any(|friction| friction > 0.0)
     }
 
     /// Cells across the width of the footing in quasi-static analysis of ground that yields, of a half at a face of the
     /// grid across both halves; `None` for plates in 3-D, and where the case seeks a limit load, which is extrapolated.
     pub fn cells_across_footing(&self) -> Option<f64> {
-        let yields = self.bodies.iter().any(|body| self.materials[body.material].material.yields());
+        let yields = self
+            .bodies
+            .iter()
+            .any(|body| self.materials[body.material].material.yields());
         let may_fail = yields && self.analysis.kind == AnalysisType::QuasiStatic && self.limit_load.is_none();
         let ends = self.footing.as_ref().filter(|_| may_fail)?.site.ends()?;
         let [from, to] = ends.map(|end| end[0]);
         let axis = &self.grid.axes[0];
-        let is_half = [from, to].into_iter().any(|x| x == axis.lower() || x == axis.lower() + axis.length());
+        let is_half = [from, to]
+            .into_iter()
+            .any(|x| x == axis.lower() || x == axis.lower() + axis.length());
         let width = (to - from).abs() * if is_half { 2.0 } else { 1.0 };
         Some(width / axis.shortest())
     }
@@ -247,7 +255,10 @@ impl Case {
         let strips = self.footing.iter().map(|footing| &footing.path);
         let strips = strips.chain(self.prescribed.iter().map(|prescribed| &prescribed.path));
         let mut paths = strips.chain(self.rigid.iter().map(|rigid| &rigid.path));
-        let turns = self.rigid.iter().any(|rigid| rigid.rotation.iter().any(|(_, angle)| *angle != 0.0));
+        let turns = self
+            .rigid
+            .iter()
+            .any(|rigid| rigid.rotation.iter().any(|(_, angle)| *angle != 0.0));
         turns || paths.any(MotionPath::moves)
     }
 
@@ -261,7 +272,11 @@ impl Case {
         if self.water.is_some() {
             return self.bodies_at_start().map(|body| self.weight_above(body, at, g)).sum();
         }
-        let above = |body: &Body| self.materials[body.material].density.map_or(0.0, |rho| rho * body.region.above(at));
+        let above = |body: &Body| {
+            self.materials[body.material]
+                .density
+                .map_or(0.0, |rho| rho * body.region.above(at))
+        };
         g * self.bodies_at_start().map(above).sum::<f64>()
     }
 }
@@ -324,9 +339,11 @@ impl Solver {
                 applications: 0,
                 ..taken
             },
-            taken if taken.by_size && taken.pc == Pc::Gamg && self.reproducible && ranks > 1 => {
-                Linear { pc: Pc::Bjacobi, applications: 1, ..taken }
-            }
+            taken if taken.by_size && taken.pc == Pc::Gamg && self.reproducible && ranks > 1 => Linear {
+                pc: Pc::Bjacobi,
+                applications: 1,
+                ..taken
+            },
             linear => linear,
         }
     }
@@ -411,7 +428,12 @@ pub struct Checkpoint {
 impl Default for Checkpoint {
     /// Without a word of it in the case: nothing in short runs, at most a quarter of an hour is lost of long ones.
     fn default() -> Self {
-        Self { wall: 900.0, every_steps: None, keep: 2, at_end: false }
+        Self {
+            wall: 900.0,
+            every_steps: None,
+            keep: 2,
+            at_end: false,
+        }
     }
 }
 

@@ -66,7 +66,12 @@ impl Case {
 fn about_mean(mut vectors: Vec<[f64; 3]>, masses: &[f64]) -> Vec<[f64; 3]> {
     let total: f64 = masses.iter().sum();
     for axis in 0..3 {
-        let mean = vectors.iter().zip(masses).map(|(vector, mass)| mass * vector[axis]).sum::<f64>() / total;
+        let mean = vectors
+            .iter()
+            .zip(masses)
+            .map(|(vector, mass)| mass * vector[axis])
+            .sum::<f64>()
+            / total;
         vectors.iter_mut().for_each(|vector| vector[axis] -= mean);
     }
     vectors
@@ -126,7 +131,11 @@ pub(crate) fn near_pairs(bounds: &[[[f64; 3]; 2]], reach: f64) -> impl Iterator<
     (0..order.len()).flat_map(move |k| {
         let i = order[k];
         let end = bounds[i][1][0] + reach;
-        let later: Vec<usize> = order[k + 1..].iter().copied().take_while(|&j| bounds[j][0][0] <= end).collect();
+        let later: Vec<usize> = order[k + 1..]
+            .iter()
+            .copied()
+            .take_while(|&j| bounds[j][0][0] <= end)
+            .collect();
         later.into_iter().map(move |j| (i, j))
     })
 }

@@ -32,7 +32,11 @@ const FREE: [&str; 17] = [
     DIVIDED[2],
 ];
 /// Keys that nothing has been solved with before the stage of `[strength_reduction]` has ended.
-const DIVIDED: [&str; 3] = ["strength_reduction.factor", "strength_reduction.steps", "strength_reduction.drainage"];
+const DIVIDED: [&str; 3] = [
+    "strength_reduction.factor",
+    "strength_reduction.steps",
+    "strength_reduction.drainage",
+];
 /// The key that says which.
 const STAGE: &str = "strength_reduction.stage";
 /// Keys among them that belong to the tables of a run, whose columns stay.
@@ -74,7 +78,9 @@ impl fmt::Display for Difference {
 /// Those of a text that is no case.
 pub fn differences(was: &str, is: &str) -> Result<Vec<Difference>, Vec<Error>> {
     let (was, is) = (values(was)?, values(is)?);
-    let moved = [&was, &is].iter().any(|values| values.keys().any(|key| MOVED.iter().any(|table| below(key, table))));
+    let moved = [&was, &is]
+        .iter()
+        .any(|values| values.keys().any(|key| MOVED.iter().any(|table| below(key, table))));
     let divides_later = was.contains_key(STAGE) && is.contains_key(STAGE);
     let keys: std::collections::BTreeSet<&String> = was.keys().chain(is.keys()).collect();
     let differing = keys.into_iter().filter(|key| match (was.get(*key), is.get(*key)) {
@@ -98,7 +104,8 @@ pub fn differences(was: &str, is: &str) -> Result<Vec<Difference>, Vec<Error>> {
 
 /// Whether a key is `table` or in it.
 fn below(key: &str, table: &str) -> bool {
-    key.strip_prefix(table).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    key.strip_prefix(table)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
 /// A value in SI, and whether it is written or a default.
@@ -134,7 +141,11 @@ fn collect(record: &Record, values: &mut BTreeMap<String, DifferenceValue>) {
             Datum::Named(named) => {
                 named.iter().for_each(|(_, inner)| collect(inner, values));
                 // Their order, too: it is the points' number for them.
-                named.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ")
+                named
+                    .iter()
+                    .map(|(name, _)| name.as_str())
+                    .collect::<Vec<_>>()
+                    .join(", ")
             }
             Datum::Records(inner) => {
                 inner.iter().for_each(|inner| collect(inner, values));
@@ -149,7 +160,13 @@ fn collect(record: &Record, values: &mut BTreeMap<String, DifferenceValue>) {
             Datum::Names(names) => format!("{names:?}"),
             Datum::Flag(flag) => flag.to_string(),
         };
-        values.insert(record.path_of(key), DifferenceValue { shown, written: record.gives(key) });
+        values.insert(
+            record.path_of(key),
+            DifferenceValue {
+                shown,
+                written: record.gives(key),
+            },
+        );
     }
 }
 
@@ -183,7 +200,10 @@ mod tests {
     fn reported(from: &str, to: &str) -> Vec<(String, bool)> {
         assert!(CASE.contains(from), "{from}");
         let found = differences(CASE, &CASE.replace(from, to)).unwrap_or_else(|e| panic!("{e:?}"));
-        found.iter().map(|difference| (difference.to_string(), difference.may_change)).collect()
+        found
+            .iter()
+            .map(|difference| (difference.to_string(), difference.may_change))
+            .collect()
     }
 
     #[test]
@@ -193,7 +213,10 @@ mod tests {
             [("material.soil.poisson was 0.3, and is 0.35".into(), false)]
         );
         let found = reported("[material.soil]", "[material.clay]");
-        assert!(found.contains(&("material.soil.young was 5840000.0, and is not given".into(), false)), "{found:?}");
+        assert!(
+            found.contains(&("material.soil.young was 5840000.0, and is not given".into(), false)),
+            "{found:?}"
+        );
         assert_eq!(reported("cell = 0.1", "cell = 0.05").len(), 1);
     }
 
@@ -221,10 +244,21 @@ mod tests {
     #[test]
     fn a_run_may_go_on_with_another_end_step_or_tolerance_but_not_with_another_motion() {
         let end = ("end = \"1 s\"", "end = \"2 s\"");
-        assert_eq!(reported(end.0, end.1), [("analysis.end was 1.0, and is 2.0".into(), true)]);
+        assert_eq!(
+            reported(end.0, end.1),
+            [("analysis.end was 1.0, and is 2.0".into(), true)]
+        );
         assert!(reported("\"1 ms\"", "\"2 ms\"")[0].1);
-        assert!(reported("[grid]", "[output]\nevery = 0.1\n[grid]").iter().all(|(_, may_change)| *may_change));
-        assert!(!reported("[grid]", "[output]\nresiduals = true\n[grid]").iter().all(|(_, may_change)| *may_change));
+        assert!(
+            reported("[grid]", "[output]\nevery = 0.1\n[grid]")
+                .iter()
+                .all(|(_, may_change)| *may_change)
+        );
+        assert!(
+            !reported("[grid]", "[output]\nresiduals = true\n[grid]")
+                .iter()
+                .all(|(_, may_change)| *may_change)
+        );
         let footing = "[footing]\nfrom = [0.0, 0.5]\nto = [0.1, 0.5]\ndisplacement = [0.0, -0.1]\n[grid]";
         let footing = CASE.replace("[grid]", footing);
         let found = differences(&footing, &footing.replace(end.0, end.1)).unwrap();

@@ -80,8 +80,13 @@ impl Node {
 /// The document in `source`; syntax errors go to `report`, one per line.
 pub(crate) fn parse(source: &Source<'_>, report: &mut Report<'_>) -> DocumentTable {
     let (table, errors) = DeTable::parse_recoverable(source.text);
-    let errors: Vec<SyntaxError<'_>> =
-        errors.iter().map(|error| SyntaxError { span: error.span(), message: error.message() }).collect();
+    let errors: Vec<SyntaxError<'_>> = errors
+        .iter()
+        .map(|error| SyntaxError {
+            span: error.span(),
+            message: error.message(),
+        })
+        .collect();
     syntax::report_all(source, &errors, report);
     let place = |span: std::ops::Range<usize>| Origin::Text(span.start);
     entries(table.get_ref(), &place)
@@ -90,7 +95,10 @@ pub(crate) fn parse(source: &Source<'_>, report: &mut Report<'_>) -> DocumentTab
 /// The value `text` of an override, standing at `origin`.
 pub(crate) fn parse_value(text: &str, origin: Origin) -> Result<Node, String> {
     let value = DeValue::parse(text).map_err(|error| error.message().to_owned())?;
-    Ok(Node { origin, value: convert(value.get_ref(), &|_| origin) })
+    Ok(Node {
+        origin,
+        value: convert(value.get_ref(), &|_| origin),
+    })
 }
 
 type Placing<'a> = dyn Fn(std::ops::Range<usize>) -> Origin + 'a;
@@ -100,7 +108,10 @@ fn entries(table: &DeTable<'_>, place: &Placing<'_>) -> DocumentTable {
         |(key, value): (&toml::Spanned<std::borrow::Cow<'_, str>>, &toml::Spanned<DeValue<'_>>)| DocumentEntry {
             key: key.get_ref().to_string(),
             origin: place(key.span()),
-            node: Node { origin: place(value.span()), value: convert(value.get_ref(), place) },
+            node: Node {
+                origin: place(value.span()),
+                value: convert(value.get_ref(), place),
+            },
         };
     let mut entries: Vec<DocumentEntry> = table.iter().map(entry).collect();
     entries.sort_by_key(|entry| entry.origin);

@@ -14,9 +14,13 @@ pub(crate) fn replace(document: &mut DocumentTable, report: &mut Report<'_>) {
 /// Reads `lambda` and `kappa` of a run that was made before these were the slopes of the specific volume: they were
 /// what is `lambda_star` and `kappa_star` now.
 pub(crate) fn star_slopes(document: &mut DocumentTable) {
-    let Some(Value::Table(materials)) = document.get_mut("material").map(|entry| &mut entry.node.value) else { return };
+    let Some(Value::Table(materials)) = document.get_mut("material").map(|entry| &mut entry.node.value) else {
+        return;
+    };
     for material in &mut materials.entries {
-        let Value::Table(keys) = &mut material.node.value else { continue };
+        let Value::Table(keys) = &mut material.node.value else {
+            continue;
+        };
         if keys.get("void_ratio").is_some() {
             continue;
         }

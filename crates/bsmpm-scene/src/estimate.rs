@@ -138,7 +138,11 @@ impl Systems {
         } else if linear.applications > 0 {
             [entries * ROUGH_ENTRY, 0, 0]
         } else {
-            [entries * ENTRY + factor, again * (entries * REPEATED + factor), entries * BUILT]
+            [
+                entries * ENTRY + factor,
+                again * (entries * REPEATED + factor),
+                entries * BUILT,
+            ]
         };
         // Of water one number of every node more.
         let wet = (unknowns + unknowns / dims as u128) * KRYLOV_OF_WATER;
@@ -151,14 +155,23 @@ impl Systems {
             false if around => [elastic[0] + krylov, elastic[1], elastic[2]],
             false => [entries * ENTRY + 2 * factor + krylov, repeated, entries * BUILT],
         };
-        let [held, repeated, built] = if nonlinear == Nonlinear::Newton { general } else { elastic };
+        let [held, repeated, built] = if nonlinear == Nonlinear::Newton {
+            general
+        } else {
+            elastic
+        };
         let perhaps = match nonlinear {
             Nonlinear::Auto if flows => [wet, 0],
             Nonlinear::Auto if around => [krylov, 0],
             Nonlinear::Auto => [general[0], general[1]],
             _ => [0; 2],
         };
-        Self { held, repeated, built, perhaps }
+        Self {
+            held,
+            repeated,
+            built,
+            perhaps,
+        }
     }
 }
 
@@ -176,7 +189,11 @@ impl Case {
     pub(crate) fn is_nearly_incompressible(&self) -> bool {
         let is_at_rest = self.analysis.regime == Regime::QuasiStatic;
         self.materials.iter().map(|named| &named.material).any(|material| {
-            let most = if is_at_rest && material.yields() { LOCAL_AT_REST } else { LOCAL };
+            let most = if is_at_rest && material.yields() {
+                LOCAL_AT_REST
+            } else {
+                LOCAL
+            };
             material.elastic().poisson > most
         })
     }
@@ -184,7 +201,11 @@ impl Case {
     /// Knot spans along each axis for which a run holds nodes at the start, see [`bsmpm::grid::room`]: at `least` so
     /// many columns, and rows in them.
     pub fn room(&self, least: [usize; 2]) -> Vec<Range<usize>> {
-        if self.grid.dims() == 3 { self.room_in::<3>(least) } else { self.room_in::<2>(least) }
+        if self.grid.dims() == 3 {
+            self.room_in::<3>(least)
+        } else {
+            self.room_in::<2>(least)
+        }
     }
 
     fn room_in<const D: usize>(&self, least: [usize; 2]) -> Vec<Range<usize>> {
@@ -218,16 +239,28 @@ impl Case {
             Geometry::Axisymmetric => 5,
             Geometry::Solid => 9,
         };
-        let averaged = if self.stabilisation.averages() { 2 * components } else { 0 };
+        let averaged = if self.stabilisation.averages() {
+            2 * components
+        } else {
+            0
+        };
         let dilates = self.materials.iter().any(|named| is_dilatant(&named.material));
-        let adjoint = if self.stabilisation.lowers() && dilates { components + 2 } else { 0 };
+        let adjoint = if self.stabilisation.lowers() && dilates {
+            components + 2
+        } else {
+            0
+        };
         (components.pow(2) + averaged + adjoint) * NUMBER
     }
 
     /// Bytes that another rank adds in space, where layers of nodes are large: those on both sides of the cut that rows
     /// reach, with so many `bytes` a node, and of a dissection what it has of the cut.
     fn ghosts(&self, (occupied, reach): (u128, u128), bytes: u128, dissects: bool) -> u128 {
-        let longest = self.room([1; 2]).iter().map(|spans| (spans.len() + self.grid.order) as u128).max();
+        let longest = self
+            .room([1; 2])
+            .iter()
+            .map(|spans| (spans.len() + self.grid.order) as u128)
+            .max();
         let nodes = reach * (occupied / longest.unwrap_or(1));
         let separated = if dissects { 3 * nodes } else { 0 };
         2 * nodes * bytes + separated.pow(2) * CUT
@@ -246,12 +279,25 @@ impl Case {
         let entries = dims * occupied * dims * places;
         let reach = order + self.beyond() as u128;
         let (linear, ranks) = (self.solver.linear_on(ranks), ranks as u128);
-        let by = (&linear, self.solver.reproducible, self.solver.nonlinear, self.grid.dims());
+        let by = (
+            &linear,
+            self.solver.reproducible,
+            self.solver.nonlinear,
+            self.grid.dims(),
+        );
         let systems = Systems::of(by, (dims * occupied, entries), reach, self.flow.is_some());
-        let (point, vectors) = if dims == 3 { (POINT_IN_SPACE, VECTORS * 3 / 2) } else { (POINT, VECTORS) };
+        let (point, vectors) = if dims == 3 {
+            (POINT_IN_SPACE, VECTORS * 3 / 2)
+        } else {
+            (POINT, VECTORS)
+        };
         let lowered = if self.stabilisation.lowers() { LOWERED } else { 0 };
         let is_damped = self.materials.iter().any(|named| named.retardation > 0.0);
-        let smoothing = if is_damped && self.stabilisation.smooths() { 8 * if dims == 3 { 6 } else { 4 } } else { 0 };
+        let smoothing = if is_damped && self.stabilisation.smooths() {
+            8 * if dims == 3 { 6 } else { 4 }
+        } else {
+            0
+        };
         let passing = systems.built.max(points * SAVED);
         let water = self.pressures().map(|(pressures, entries)| {
             // Solved by itself, as a part of the directions.
@@ -308,7 +354,9 @@ pub(crate) fn cells(grid: &GridSpec) -> u128 {
 
 /// Nodes of the grid.
 pub(crate) fn nodes(grid: &GridSpec) -> u128 {
-    (0..grid.dims()).map(|axis| (grid.spans(axis) + grid.order) as u128).product()
+    (0..grid.dims())
+        .map(|axis| (grid.spans(axis) + grid.order) as u128)
+        .product()
 }
 
 /// Nodes with which a node is coupled: those of the cells around it, and of the layers beyond.
@@ -318,7 +366,10 @@ fn places(case: &Case) -> u128 {
 
 /// Nodes of the room that the bodies have at the start.
 fn room_nodes(case: &Case) -> u128 {
-    case.room([1; 2]).iter().map(|cells| (cells.len() + case.grid.order) as u128).product()
+    case.room([1; 2])
+        .iter()
+        .map(|cells| (cells.len() + case.grid.order) as u128)
+        .product()
 }
 
 /// Functions of an order that the bodies' cells touch at the start: exact for boxes, and for shapes without holes or

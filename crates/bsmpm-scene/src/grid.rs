@@ -95,7 +95,12 @@ impl GridSpec {
 
     /// Breakpoints along an axis, m from the first, each as often as it stands in the knot vector.
     pub(crate) fn repeated(&self, axis: usize) -> Vec<f64> {
-        let copies = |i: usize| self.lines[axis].iter().find(|line| line.breakpoint == i).map_or(1, |l| l.multiplicity);
+        let copies = |i: usize| {
+            self.lines[axis]
+                .iter()
+                .find(|line| line.breakpoint == i)
+                .map_or(1, |l| l.multiplicity)
+        };
         let of = |i: usize| std::iter::repeat_n(self.axes[axis].breakpoint(i), copies(i));
         (0..=self.axes[axis].cells()).flat_map(of).collect()
     }
@@ -160,7 +165,11 @@ impl GridAxis {
         let (mut lower, mut upper) = (0, self.cells());
         while lower < upper {
             let middle = lower + (upper - lower) / 2;
-            if past(middle) { upper = middle } else { lower = middle + 1 }
+            if past(middle) {
+                upper = middle
+            } else {
+                lower = middle + 1
+            }
         }
         lower
     }

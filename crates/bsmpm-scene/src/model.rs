@@ -35,7 +35,11 @@ pub fn model<K: Kinematics<D>, const D: usize>(case: &Case) -> Result<Model<K, D
 /// What a step must fulfil.
 pub fn criteria(case: &Case) -> Criteria {
     let solver = &case.solver;
-    Criteria { energy: solver.tolerance, force: solver.force_tolerance, max_iterations: solver.max_iterations }
+    Criteria {
+        energy: solver.tolerance,
+        force: solver.force_tolerance,
+        max_iterations: solver.max_iterations,
+    }
 }
 
 /// The same once the stages until the time `t` have begun.
@@ -56,8 +60,9 @@ pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result
             ramp: gravity.ramp,
             starts_vertical: case.initial.is_some(),
         }),
-        shaking: (!case.shaking.is_empty())
-            .then(|| Shaking { rows: case.shaking.iter().map(|&(t, ground)| (t, vector(ground))).collect() }),
+        shaking: (!case.shaking.is_empty()).then(|| Shaking {
+            rows: case.shaking.iter().map(|&(t, ground)| (t, vector(ground))).collect(),
+        }),
         boundary: boundary::<K, D>(case, &grid, t),
         grid,
         stabilisation: case.stabilisation,
@@ -73,7 +78,10 @@ pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result
             crate::Nonlinear::Newton => Nonlinear::Newton,
         },
         water: water(case, flow),
-        balances_energy: case.histories.iter().any(|history| history.quantity == Quantity::Energy),
+        balances_energy: case
+            .histories
+            .iter()
+            .any(|history| history.quantity == Quantity::Energy),
         kinematics: PhantomData,
     })
 }
@@ -82,15 +90,25 @@ pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result
 /// for no unit weight.
 fn water<const D: usize>(case: &Case, flow: Option<Flow<D>>) -> Option<Water<D>> {
     let still = case.water.as_ref();
-    let unit_weight = still.map(|still| still.unit_weight).or(case.flow.as_ref().map(|flow| flow.unit_weight));
+    let unit_weight = still
+        .map(|still| still.unit_weight)
+        .or(case.flow.as_ref().map(|flow| flow.unit_weight));
     let unit_weight = unit_weight.or(case.carries_pressure().then_some(0.0))?;
-    Some(Water { unit_weight, ambient: still.map_or(Ambient::None, |still| still.from(&case.grid)), flow })
+    Some(Water {
+        unit_weight,
+        ambient: still.map_or(Ambient::None, |still| still.from(&case.grid)),
+        flow,
+    })
 }
 
 /// s  of every material; empty where none is damped.
 fn damping(materials: &[NamedMaterial]) -> Vec<f64> {
     let times = || materials.iter().map(|named| named.retardation);
-    if times().all(|time| time == 0.0) { Vec::new() } else { times().collect() }
+    if times().all(|time| time == 0.0) {
+        Vec::new()
+    } else {
+        times().collect()
+    }
 }
 
 /// The grid of a case.
@@ -112,7 +130,12 @@ fn boundary<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f6
         supports: supports(case, t),
         outlets: outlets(case, t),
         strips: surfaces::strips::<K, D>(case, grid, (penalty(case), t)),
-        resting: case.footing.iter().map(|of| of.rests).chain(case.prescribed.iter().map(|of| of.rests)).collect(),
+        resting: case
+            .footing
+            .iter()
+            .map(|of| of.rests)
+            .chain(case.prescribed.iter().map(|of| of.rests))
+            .collect(),
         rigid: surfaces::rigid(case, t),
         loads: surfaces::loads::<K, D>(case, grid, t),
         reach: reach(case),
@@ -146,13 +169,21 @@ fn supports<const D: usize>(case: &Case, t: f64) -> Vec<Support<D>> {
 /// Faces that let material out: the axis, and whether it is the upper one.
 fn outlets(case: &Case, t: f64) -> Vec<(usize, bool)> {
     let out = |of: &crate::FaceSupport| of.support == crate::Support::Outflow;
-    case.faces_at(t).iter().filter(|of| out(of)).map(|of| (of.face.axis, of.face.upper)).collect()
+    case.faces_at(t)
+        .iter()
+        .filter(|of| out(of))
+        .map(|of| (of.face.axis, of.face.upper))
+        .collect()
 }
 
 /// Of every support once the stages until the time `t` have begun, the axis that its face is normal to and the sign of
 /// the force along it with which it pushes the body; 0 where it may pull, too.
 pub fn faces(case: &Case, t: f64) -> Vec<(usize, f64)> {
-    if case.grid.dims() == 3 { pushes::<3>(case, t) } else { pushes::<2>(case, t) }
+    if case.grid.dims() == 3 {
+        pushes::<3>(case, t)
+    } else {
+        pushes::<2>(case, t)
+    }
 }
 
 fn pushes<const D: usize>(case: &Case, t: f64) -> Vec<(usize, f64)> {
@@ -161,21 +192,44 @@ fn pushes<const D: usize>(case: &Case, t: f64) -> Vec<(usize, f64)> {
         (false, true) => -1.0,
         (false, false) => 1.0,
     };
-    supports(case, t).iter().map(|support| (support.axis, push(support))).collect()
+    supports(case, t)
+        .iter()
+        .map(|support| (support.axis, push(support)))
+        .collect()
 }
 
 /// N/m, of a solid N  reaction of a face below which it does nothing: a strain of 1e-9 of the softest material over the
 /// shortest cell.
 pub fn least_reaction(case: &Case) -> f64 {
-    let softest = case.materials.iter().map(|named| named.material.elastic().young).fold(f64::INFINITY, f64::min);
-    let shortest = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
+    let softest = case
+        .materials
+        .iter()
+        .map(|named| named.material.elastic().young)
+        .fold(f64::INFINITY, f64::min);
+    let shortest = case
+        .grid
+        .axes
+        .iter()
+        .map(GridAxis::shortest)
+        .fold(f64::INFINITY, f64::min);
     1e-9 * softest * (1..case.grid.dims()).map(|_| shortest).product::<f64>()
 }
 
 /// Penalty of the rigid strips, Pa/m.
 pub fn penalty(case: &Case) -> f64 {
-    let stiffest = case.materials.iter().map(|named| named.material.elastic().young).fold(0.0, f64::max);
-    surfaces::penalty(stiffest, case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min))
+    let stiffest = case
+        .materials
+        .iter()
+        .map(|named| named.material.elastic().young)
+        .fold(0.0, f64::max);
+    surfaces::penalty(
+        stiffest,
+        case.grid
+            .axes
+            .iter()
+            .map(GridAxis::shortest)
+            .fold(f64::INFINITY, f64::min),
+    )
 }
 
 /// What bodies have at the start in the columns of one slab, by the numbers of the physics' grid.
@@ -197,7 +251,11 @@ pub fn points<K: Kinematics<D>, const D: usize>(
     let mut points = points.with_state(state_width(case.materials.iter().map(|named| &named.material)));
     if case.carries_pressure() {
         let carried = points.material.iter().zip(&points.x);
-        points.carried_pressure = Some(carried.map(|(&material, x)| carried_pressure(case, material, x)).collect());
+        points.carried_pressure = Some(
+            carried
+                .map(|(&material, x)| carried_pressure(case, material, x))
+                .collect(),
+        );
     }
     points.extent = extents::<K, D>(case, &points);
     points
@@ -208,12 +266,25 @@ fn extents<K: Kinematics<D>, const D: usize>(case: &Case, points: &Points<D>) ->
     let bodies = surfaces::rigid(case, 0.0);
     let grid = grid(case).ok().filter(|_| !bodies.is_empty())?;
     let states: Vec<RigidState> = bodies.iter().map(RigidBody::at_rest).collect();
-    let reaching = Reaching { grid: &grid, points, reach: &reach(case), weight: K::weight };
+    let reaching = Reaching {
+        grid: &grid,
+        points,
+        reach: &reach(case),
+        weight: K::weight,
+    };
     let is_soil = |x: &Vector<D>| {
         let at = placed_at(case.grid.lower(), x);
-        let holds =
-            |region: &Region| if D == 3 { region.contains_in_space(at) } else { region.contains([at[0], at[1]]) };
-        case.bodies.iter().enumerate().any(|(number, body)| case.is_there(number, 0.0) && holds(&body.region))
+        let holds = |region: &Region| {
+            if D == 3 {
+                region.contains_in_space(at)
+            } else {
+                region.contains([at[0], at[1]])
+            }
+        };
+        case.bodies
+            .iter()
+            .enumerate()
+            .any(|(number, body)| case.is_there(number, 0.0) && holds(&body.region))
     };
     Some(rigid::extents((&bodies, &states), &reaching, is_soil))
 }
@@ -221,7 +292,11 @@ fn extents<K: Kinematics<D>, const D: usize>(case: &Case, points: &Points<D>) ->
 /// Pa  pore pressure that a point carries, at `x` (m, from the grid's lower corner) at the start.
 fn carried_pressure<const D: usize>(case: &Case, material: u16, x: &Vector<D>) -> f64 {
     let (ratio, lower) = (case.materials[usize::from(material)].ratio, case.grid.lower());
-    if ratio > 0.0 { ratio * case.overburden(placed_at(lower, x)) } else { 0.0 }
+    if ratio > 0.0 {
+        ratio * case.overburden(placed_at(lower, x))
+    } else {
+        0.0
+    }
 }
 
 /// The points that a stage places in the columns of one slab.
@@ -255,31 +330,63 @@ pub fn schedule(case: &Case) -> Schedule {
     let checks = case.checks.iter().map(|check| check.at);
     let stages = case.stages.iter().map(|stage| stage.at);
     let profiles = case.profiles.iter().flat_map(|profile| profile.times.iter().copied());
-    let times = frame_times(case).into_iter().chain(checks).chain(stages).chain(profiles).chain(turns(case));
+    let times = frame_times(case)
+        .into_iter()
+        .chain(checks)
+        .chain(stages)
+        .chain(profiles)
+        .chain(turns(case));
     let schedule = Schedule::new(case.analysis.dt, case.analysis.end, times);
-    let Some((factor, most)) = case.analysis.growth else { return schedule };
-    schedule.growing(Growth { factor, most, restarts: case.stages.iter().map(|stage| stage.at).collect() })
+    let Some((factor, most)) = case.analysis.growth else {
+        return schedule;
+    };
+    schedule.growing(Growth {
+        factor,
+        most,
+        restarts: case.stages.iter().map(|stage| stage.at).collect(),
+    })
 }
 
 /// Times at which loads, strips, levels, heads and pressures that are given turn, where water flows, beside which there
 /// are no rigid bodies: what lies between the ends of a step would not be seen. A rate has its mean over a step.
 fn turns(case: &Case) -> Vec<f64> {
-    let Some(flow) = case.flow.as_ref().filter(|_| case.analysis.kind == AnalysisType::Consolidation) else {
+    let Some(flow) = case
+        .flow
+        .as_ref()
+        .filter(|_| case.analysis.kind == AnalysisType::Consolidation)
+    else {
         return Vec::new();
     };
     let course = |(number, (ramp, shares)): (usize, (f64, &Shares))| -> Vec<f64> {
         let rows: Vec<f64> = shares.iter().map(|row| row.0).collect();
         let rows = if rows.is_empty() { vec![ramp] } else { rows };
         let begun = |t: f64| case.acts_since(Acting::Load(number), t);
-        let begins = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at)).filter_map(begun);
-        begins.flat_map(|begin| rows.iter().map(move |row| begin + row)).collect()
+        let begins = std::iter::once(0.0)
+            .chain(case.stages.iter().map(|stage| stage.at))
+            .filter_map(begun);
+        begins
+            .flat_map(|begin| rows.iter().map(move |row| begin + row))
+            .collect()
     };
     let tractions = case.tractions.iter().map(|load| (load.ramp, &load.amplitude));
     let loads = tractions.chain(case.point_loads.iter().map(|load| (load.ramp, &load.amplitude)));
     let loads = loads.enumerate().flat_map(course);
-    let strips = case.footing.iter().map(|of| &of.path).chain(case.prescribed.iter().map(|of| &of.path));
-    let given = flow.drains.iter().filter_map(|drain| drain.given.course()).flat_map(Course::times);
-    let levels = case.water.iter().flat_map(|water| water.table.levels()).flatten().map(|row| row.0);
+    let strips = case
+        .footing
+        .iter()
+        .map(|of| &of.path)
+        .chain(case.prescribed.iter().map(|of| &of.path));
+    let given = flow
+        .drains
+        .iter()
+        .filter_map(|drain| drain.given.course())
+        .flat_map(Course::times);
+    let levels = case
+        .water
+        .iter()
+        .flat_map(|water| water.table.levels())
+        .flatten()
+        .map(|row| row.0);
     let moved = strips.flat_map(|path| path.rows.iter().map(|row| row.0));
     loads.chain(moved).chain(given).chain(levels).collect()
 }
@@ -329,7 +436,10 @@ fn groups_of(case: &Case, materials: &[NamedMaterial]) -> Groups {
 pub fn weighting(case: &Case) -> Weighting {
     let wets = |body: &Body| {
         let named = &case.materials[body.material];
-        case.water.is_some() && named.saturated.is_some_and(|saturated| Some(saturated) != named.density)
+        case.water.is_some()
+            && named
+                .saturated
+                .is_some_and(|saturated| Some(saturated) != named.density)
     };
     if case.bodies.iter().any(wets) {
         return Weighting::Volume;

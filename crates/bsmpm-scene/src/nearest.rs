@@ -12,9 +12,14 @@ pub(crate) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) 
     }
     let allowed = (length / 3).clamp(1, 4);
     // With one edit a word of two letters is any other: they may only be exchanged.
-    let known = known.into_iter().filter(|name| length > 2 || sorted(&word) == sorted(&folded(name)));
+    let known = known
+        .into_iter()
+        .filter(|name| length > 2 || sorted(&word) == sorted(&folded(name)));
     let rated = known.map(|name| (strsim::osa_distance(&word, &folded(name)), name));
-    rated.filter(|(distance, _)| *distance <= allowed).min_by_key(|(distance, _)| *distance).map(|(_, name)| name)
+    rated
+        .filter(|(distance, _)| *distance <= allowed)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, name)| name)
 }
 
 fn sorted(word: &str) -> Vec<char> {
@@ -51,7 +56,10 @@ mod tests {
         assert_eq!(nearest("yuong", known), Some("young"));
         assert_eq!(nearest("Poisson", known), Some("poisson"));
         assert_eq!(nearest("points-per-cells", known), Some("points_per_cell"));
-        assert_eq!((nearest("td", ["dt", "tol"]), nearest("nu", ["ru", "mu"])), (Some("dt"), None));
+        assert_eq!(
+            (nearest("td", ["dt", "tol"]), nearest("nu", ["ru", "mu"])),
+            (Some("dt"), None)
+        );
         assert_eq!(nearest("viscosity", known), None);
         assert_eq!(nearest(&"x".repeat(100_000), known), None);
     }

@@ -151,7 +151,11 @@ impl Surroundings<'_> {
         let start = point.at + normal * off;
         let mut directions = self.directions(&normal, point.kind).into_iter();
         let width = directions.find_map(|direction| self.across(&Ray { start, direction }, reach))?;
-        Some(OpeningWall { at: point.at, normal, width })
+        Some(OpeningWall {
+            at: point.at,
+            normal,
+            width,
+        })
     }
 
     /// Unit vectors along which a wall is looked for, the normal first.
@@ -161,8 +165,15 @@ impl Surroundings<'_> {
             return directions;
         }
         let is_flat = self.bounds[1][2] == self.bounds[0][2];
-        let axes = if is_flat { vec![Vector::z()] } else { vec![Vector::x(), Vector::y(), Vector::z()] };
-        let tangents: Vec<Vector<3>> = axes.iter().filter_map(|axis| normal.cross(axis).try_normalize(1e-6)).collect();
+        let axes = if is_flat {
+            vec![Vector::z()]
+        } else {
+            vec![Vector::x(), Vector::y(), Vector::z()]
+        };
+        let tangents: Vec<Vector<3>> = axes
+            .iter()
+            .filter_map(|axis| normal.cross(axis).try_normalize(1e-6))
+            .collect();
         for inclination in INCLINATIONS {
             let (sin, cos) = inclination.sin_cos();
             let inclined = |tangent: &Vector<3>| [normal * cos + tangent * sin, normal * cos - tangent * sin];
@@ -194,7 +205,11 @@ impl Surroundings<'_> {
     fn met(&self, ray: &Ray, [mut open, mut closed]: [f64; 2]) -> f64 {
         for _ in 0..HALVINGS {
             let middle = 0.5 * (open + closed);
-            if self.is_material(ray.at(middle)) { closed = middle } else { open = middle }
+            if self.is_material(ray.at(middle)) {
+                closed = middle
+            } else {
+                open = middle
+            }
         }
         closed
     }

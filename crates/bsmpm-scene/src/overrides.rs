@@ -36,7 +36,12 @@ pub(crate) fn apply(document: &mut DocumentTable, overrides: &[String], report: 
         }
         match parsed(value.trim(), origin) {
             Ok(node) => {
-                let mut setting = Setting { parts: &parts, node, origin, renamed: Vec::new() };
+                let mut setting = Setting {
+                    parts: &parts,
+                    node,
+                    origin,
+                    renamed: Vec::new(),
+                };
                 let set = setting.in_table(document, Some(&ROOT), 0);
                 for (earlier, now) in setting.renamed {
                     report.renamed(earlier, now, key.trim());
@@ -58,7 +63,10 @@ pub(crate) fn apply(document: &mut DocumentTable, overrides: &[String], report: 
 fn parsed(text: &str, origin: Origin) -> Result<Node, String> {
     match document::parse_value(text, origin) {
         Err(message) if text.starts_with(['[', '{', '"', '\'']) => Err(message),
-        Err(_) => Ok(Node { origin, value: Value::Text(text.to_owned()) }),
+        Err(_) => Ok(Node {
+            origin,
+            value: Value::Text(text.to_owned()),
+        }),
         read => read,
     }
 }
@@ -76,7 +84,9 @@ impl<'a> Setting<'a> {
     fn name_of_now(&mut self, schema: Option<&'static Schema>, depth: usize) -> &'a str {
         let name = self.parts[depth];
         let is_unknown = |schema: &&'static Schema| schema.key(name).is_none();
-        let Some(key) = schema.filter(is_unknown).and_then(|schema| schema.renamed(name)) else { return name };
+        let Some(key) = schema.filter(is_unknown).and_then(|schema| schema.renamed(name)) else {
+            return name;
+        };
         self.renamed.push((name, key.name));
         key.name
     }
@@ -89,14 +99,26 @@ impl<'a> Setting<'a> {
     ) -> Result<(), String> {
         let name = self.name_of_now(schema, depth);
         if let Some(schema) = schema {
-            table.entries.retain(|entry| schema.rivals(name).all(|rival| rival != entry.key));
+            table
+                .entries
+                .retain(|entry| schema.rivals(name).all(|rival| rival != entry.key));
         }
         let kind = schema.and_then(|schema| schema.key(name)).map(|key| &key.kind);
         if depth + 1 == self.parts.len() {
             let node = self.node.clone();
             match table.get_mut(name) {
-                Some(entry) => *entry = DocumentEntry { key: name.to_owned(), origin: self.origin, node },
-                None => table.entries.push(DocumentEntry { key: name.to_owned(), origin: self.origin, node }),
+                Some(entry) => {
+                    *entry = DocumentEntry {
+                        key: name.to_owned(),
+                        origin: self.origin,
+                        node,
+                    }
+                }
+                None => table.entries.push(DocumentEntry {
+                    key: name.to_owned(),
+                    origin: self.origin,
+                    node,
+                }),
             }
             return Ok(());
         }
@@ -105,10 +127,19 @@ impl<'a> Setting<'a> {
                 Some(Kind::Tables(_)) => Value::List(Vec::new()),
                 _ => Value::Table(DocumentTable::default()),
             };
-            let node = Node { origin: self.origin, value };
-            table.entries.push(DocumentEntry { key: name.to_owned(), origin: self.origin, node });
+            let node = Node {
+                origin: self.origin,
+                value,
+            };
+            table.entries.push(DocumentEntry {
+                key: name.to_owned(),
+                origin: self.origin,
+                node,
+            });
         }
-        let Some(entry) = table.get_mut(name) else { return Ok(()) };
+        let Some(entry) = table.get_mut(name) else {
+            return Ok(());
+        };
         if self.parts[depth + 1] == "file" && matches!(kind, Some(Kind::Rows(_) | Kind::Course(_))) {
             return Err(UNREAD.to_owned());
         }
@@ -141,7 +172,9 @@ impl<'a> Setting<'a> {
             Value::List(items) => {
                 let (length, last) = (items.len(), depth + 1 == self.parts.len());
                 if part == EACH && length > 0 && !last {
-                    return items.iter_mut().try_for_each(|item| self.in_value(item, schema, depth + 1));
+                    return items
+                        .iter_mut()
+                        .try_for_each(|item| self.in_value(item, schema, depth + 1));
                 }
                 let index: usize = part.parse().map_err(|_| {
                     format!(
@@ -157,8 +190,15 @@ impl<'a> Setting<'a> {
                     ));
                 }
                 if index == length {
-                    let value = if last { self.node.value.clone() } else { Value::Table(DocumentTable::default()) };
-                    items.push(Node { origin: self.origin, value });
+                    let value = if last {
+                        self.node.value.clone()
+                    } else {
+                        Value::Table(DocumentTable::default())
+                    };
+                    items.push(Node {
+                        origin: self.origin,
+                        value,
+                    });
                 }
                 if last {
                     items[index] = self.node.clone();

@@ -47,7 +47,11 @@ impl Case {
     /// The most ranks that the case can have; not every number below has two divisors that fit, see [`Case::parts`].
     pub fn most_ranks(&self) -> usize {
         let [columns, rows] = self.columns_and_rows();
-        if self.parting() == Parting::Never { columns } else { columns * rows }
+        if self.parting() == Parting::Never {
+            columns
+        } else {
+            columns * rows
+        }
     }
 
     fn parting(&self) -> Parting {
@@ -80,12 +84,23 @@ mod tests {
     #[test]
     fn parts_make_the_largest_face_least_or_more_ranks_possible() {
         let parts = |parting: Parting, ranks: usize| parting.parts(ranks, [40, 40], [20, 20]);
-        assert_eq!([1, 2, 3, 4, 6, 16].map(|ranks| parts(Parting::LeastFace, ranks)), [1, 1, 1, 2, 2, 4].map(Some));
+        assert_eq!(
+            [1, 2, 3, 4, 6, 16].map(|ranks| parts(Parting::LeastFace, ranks)),
+            [1, 1, 1, 2, 2, 4].map(Some)
+        );
         assert_eq!([1, 4, 40].map(|ranks| parts(Parting::Needed, ranks)), [Some(1); 3]);
         assert_eq!((parts(Parting::Needed, 42), parts(Parting::Never, 42)), (Some(6), None));
         assert_eq!(parts(Parting::Needed, 41), None, "a prime number");
-        assert_eq!(Parting::LeastFace.parts(4, [40, 2], [40, 2]), Some(1), "slabs of a long body");
-        assert_eq!(Parting::LeastFace.parts(2, [40, 40], [10, 30]), Some(2), "slabs along the other axis");
+        assert_eq!(
+            Parting::LeastFace.parts(4, [40, 2], [40, 2]),
+            Some(1),
+            "slabs of a long body"
+        );
+        assert_eq!(
+            Parting::LeastFace.parts(2, [40, 40], [10, 30]),
+            Some(2),
+            "slabs along the other axis"
+        );
         assert_eq!(Parting::Needed.parts(8, [4, 3], [4, 3]), Some(2));
     }
 }

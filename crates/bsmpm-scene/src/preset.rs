@@ -134,9 +134,21 @@ pub(crate) fn fill(
     report: &mut Report<'_>,
 ) -> bool {
     let accuracy = chosen(document);
-    let is_filled = limit_load::fill(document, accuracy.map(|(accuracy, _)| accuracy), source, overrides, report);
-    let Some((accuracy, origin)) = accuracy else { return is_filled };
-    let choice = Choice { key: ACCURACY, word: accuracy.word(), origin };
+    let is_filled = limit_load::fill(
+        document,
+        accuracy.map(|(accuracy, _)| accuracy),
+        source,
+        overrides,
+        report,
+    );
+    let Some((accuracy, origin)) = accuracy else {
+        return is_filled;
+    };
+    let choice = Choice {
+        key: ACCURACY,
+        word: accuracy.word(),
+        origin,
+    };
     fill_accuracy(document, accuracy, choice, source, overrides, report) || is_filled
 }
 
@@ -159,7 +171,12 @@ fn fill_accuracy(
         return false;
     }
     let scene = PresetScene::of(&record);
-    let mut filling = Completion { document, choice, report, filled: false };
+    let mut filling = Completion {
+        document,
+        choice,
+        report,
+        filled: false,
+    };
     filling.put("grid", &["degree"], &quoted(ORDER), "");
     let cells = scene.cells(preset);
     filling.cells(cells.as_ref(), &scene, preset);
@@ -207,7 +224,9 @@ fn fill_accuracy(
 /// The word that the case gives, if it is one of them, and its place.
 fn chosen(document: &DocumentTable) -> Option<(Accuracy, Origin)> {
     let entry = document.get(ACCURACY)?;
-    let Value::Text(text) = &entry.node.value else { return None };
+    let Value::Text(text) = &entry.node.value else {
+        return None;
+    };
     Some((Accuracy::of(text)?, entry.node.origin))
 }
 
@@ -229,10 +248,23 @@ impl Completion<'_, '_> {
     fn put(&mut self, table: &str, keys: &[&str], value: &str, why: &str) -> bool {
         let origin = self.choice.origin;
         if self.document.get(table).is_none() {
-            let node = Node { origin, value: Value::Table(DocumentTable::default()) };
-            self.document.entries.push(DocumentEntry { key: table.to_owned(), origin, node });
+            let node = Node {
+                origin,
+                value: Value::Table(DocumentTable::default()),
+            };
+            self.document.entries.push(DocumentEntry {
+                key: table.to_owned(),
+                origin,
+                node,
+            });
         }
-        let Some(DocumentEntry { node: Node { value: Value::Table(inner), .. }, .. }) = self.document.get_mut(table)
+        let Some(DocumentEntry {
+            node: Node {
+                value: Value::Table(inner),
+                ..
+            },
+            ..
+        }) = self.document.get_mut(table)
         else {
             return false;
         };
@@ -247,8 +279,16 @@ impl Completion<'_, '_> {
     fn miss(&mut self, table: &str, keys: &[&str], message: String) {
         let given = |table: &DocumentTable| keys.iter().any(|key| table.get(key).is_some());
         match self.document.get(table) {
-            Some(DocumentEntry { node: Node { value: Value::Table(table), .. }, .. }) if given(table) => {}
-            _ => self.report.consequence(self.choice.origin, self.choice.key, message, scene::BASIS),
+            Some(DocumentEntry {
+                node: Node {
+                    value: Value::Table(table),
+                    ..
+                },
+                ..
+            }) if given(table) => {}
+            _ => self
+                .report
+                .consequence(self.choice.origin, self.choice.key, message, scene::BASIS),
         }
     }
 
@@ -258,12 +298,23 @@ impl Completion<'_, '_> {
         match cells {
             Some(cells) => {
                 if self.put("grid", &cells.keys, &cells.value, &cells.why) {
-                    cells.sizes.iter().for_each(|(value, why)| self.tell("grid.knots", value, why));
+                    cells
+                        .sizes
+                        .iter()
+                        .for_each(|(value, why)| self.tell("grid.knots", value, why));
                     self.doubt(cells.too_thin(scene, FEWEST));
-                    points = if cells.is_graded() { points.max(GRADED_POINTS) } else { points };
+                    points = if cells.is_graded() {
+                        points.max(GRADED_POINTS)
+                    } else {
+                        points
+                    };
                 }
             }
-            None => self.miss("grid", &["cell", "knots"], self.choice.cannot_choose("grid.cell", cells::CELLS)),
+            None => self.miss(
+                "grid",
+                &["cell", "knots"],
+                self.choice.cannot_choose("grid.cell", cells::CELLS),
+            ),
         }
         self.points(points);
     }
@@ -285,7 +336,13 @@ impl Completion<'_, '_> {
     fn points(&mut self, points: u64) {
         const KEY: &str = "points_per_cell";
         let (origin, value) = (self.choice.origin, points.to_string());
-        let Some(DocumentEntry { node: Node { value: Value::List(bodies), .. }, .. }) = self.document.get_mut("body")
+        let Some(DocumentEntry {
+            node: Node {
+                value: Value::List(bodies),
+                ..
+            },
+            ..
+        }) = self.document.get_mut("body")
         else {
             return;
         };
@@ -296,7 +353,11 @@ impl Completion<'_, '_> {
             }
         }
         if any {
-            self.tell(&format!("body.*.{KEY}"), &value, "of bodies without a value of their own");
+            self.tell(
+                &format!("body.*.{KEY}"),
+                &value,
+                "of bodies without a value of their own",
+            );
         }
     }
 
@@ -309,7 +370,13 @@ impl Completion<'_, '_> {
 }
 
 fn insert(table: &mut DocumentTable, key: &str, value: &str, origin: Origin) -> bool {
-    let Ok(node) = document::parse_value(value, origin) else { return false };
-    table.entries.push(DocumentEntry { key: key.to_owned(), origin, node });
+    let Ok(node) = document::parse_value(value, origin) else {
+        return false;
+    };
+    table.entries.push(DocumentEntry {
+        key: key.to_owned(),
+        origin,
+        node,
+    });
     true
 }

@@ -57,7 +57,11 @@ impl Case {
         let filled = preset::fill(&mut document, &source, overrides, &mut report);
         let record = record::read(&ROOT, &document, &mut report);
         let as_written = overrides.is_empty() && !filled && !report.has_renamings();
-        let effective = if as_written { text.to_owned() } else { document.to_toml() };
+        let effective = if as_written {
+            text.to_owned()
+        } else {
+            document.to_toml()
+        };
         match validate::case(&record, effective, case_use, &mut report) {
             Some(case) if !report.failed() => Ok(case),
             _ => Err(report.into_errors()),

@@ -46,7 +46,13 @@ struct RecordField {
 impl RecordField {
     /// A key that the file does not give.
     fn absent(key: &'static str, origin: Origin, datum: Option<Datum>) -> Self {
-        Self { key, origin, written: false, is_worded: false, datum }
+        Self {
+            key,
+            origin,
+            written: false,
+            is_worded: false,
+            datum,
+        }
     }
 }
 
@@ -100,13 +106,12 @@ pub(crate) fn read(root: &'static Table, document: &DocumentTable, report: &mut 
         Value::Text(text) => Geometry::of(text),
         _ => None,
     });
-    Context { root, pseudo_time, geometry: geometry.unwrap_or(Geometry::PlaneStrain) }.record(
+    Context {
         root,
-        document,
-        Origin::Nowhere,
-        "",
-        report,
-    )
+        pseudo_time,
+        geometry: geometry.unwrap_or(Geometry::PlaneStrain),
+    }
+    .record(root, document, Origin::Nowhere, "", report)
 }
 
 impl Context {
@@ -119,7 +124,13 @@ impl Context {
         report: &mut Report<'_>,
     ) -> Record {
         slips::report_unknown(self.root, table, written, path, report);
-        let mut record = Record { path: path.to_owned(), origin, root: self.root, table, fields: Vec::new() };
+        let mut record = Record {
+            path: path.to_owned(),
+            origin,
+            root: self.root,
+            table,
+            fields: Vec::new(),
+        };
         for key in table.keys {
             let path = join(path, key.name);
             match (written.get(key.name), key.presence) {
@@ -175,7 +186,9 @@ impl Context {
             report.error(origin, path, message);
             return None;
         };
-        let listed = path.split('.').any(|part| part.starts_with(|c: char| c.is_ascii_digit()));
+        let listed = path
+            .split('.')
+            .any(|part| part.starts_with(|c: char| c.is_ascii_digit()));
         if kind.table().is_none() && !listed {
             report.note(path, text, "default");
         }
@@ -203,11 +216,18 @@ impl Context {
         for entry in &written.entries {
             let path = join(path, &entry.key);
             if !value::is_name(&entry.key) {
-                report.error(entry.origin, &path, format!("E0024: this name is not allowed. Use {}.", Kind::Name));
+                report.error(
+                    entry.origin,
+                    &path,
+                    format!("E0024: this name is not allowed. Use {}.", Kind::Name),
+                );
             }
             match &entry.node.value {
                 Value::Table(inner) => {
-                    named.push((entry.key.clone(), self.record(table, inner, entry.origin, &path, report)));
+                    named.push((
+                        entry.key.clone(),
+                        self.record(table, inner, entry.origin, &path, report),
+                    ));
                 }
                 _ => {
                     report.error(entry.origin, &path, value::expected(&Kind::Table(table), &entry.node));
@@ -264,8 +284,17 @@ fn exclusive<'a>(
     let is_reported = group.keys.iter().any(|key| reported.missing.contains(key));
     if given.is_empty() && group.required && !is_reported {
         reported.missing.extend(group.keys);
-        let message = format!("E0014: none of the keys {} is given. Add one of them.", group.keys.join(", "));
-        report.missing(record.origin, &record.path, group.keys, message, presets(group.has_preset));
+        let message = format!(
+            "E0014: none of the keys {} is given. Add one of them.",
+            group.keys.join(", ")
+        );
+        report.missing(
+            record.origin,
+            &record.path,
+            group.keys,
+            message,
+            presets(group.has_preset),
+        );
     }
 }
 
@@ -278,8 +307,15 @@ fn missing(key: &Key) -> String {
     let is_named = |key: &&Key| matches!(key.presence, Presence::Required) && !key.has_preset;
     let required = table.keys.iter().filter(is_named);
     let groups = table.exclusive.iter().filter(|group| group.required);
-    let names: Vec<String> = required.map(|key| format!("`{}`", key.name)).chain(groups.map(first_two)).collect();
-    format!("E0052: the table {} is missing. Add this table with the keys {}.", table.header, names.join(" and "))
+    let names: Vec<String> = required
+        .map(|key| format!("`{}`", key.name))
+        .chain(groups.map(first_two))
+        .collect();
+    format!(
+        "E0052: the table {} is missing. Add this table with the keys {}.",
+        table.header,
+        names.join(" and ")
+    )
 }
 
 /// Two keys of a group as examples of it.
@@ -315,7 +351,9 @@ impl Record {
 
     /// Every key that has a value, and the value.
     pub(crate) fn all(&self) -> impl Iterator<Item = (&'static str, &Datum)> {
-        self.fields.iter().filter_map(|field| field.datum.as_ref().map(|datum| (field.key, datum)))
+        self.fields
+            .iter()
+            .filter_map(|field| field.datum.as_ref().map(|datum| (field.key, datum)))
     }
 
     /// Whether the file gives the key, even with a wrong value.

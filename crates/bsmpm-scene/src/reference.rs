@@ -89,7 +89,11 @@ impl Page {
     }
 
     fn table(&mut self, table: &Table) {
-        let header = if table.header.contains(['[', '{']) { quoted(table) } else { "Top level".to_owned() };
+        let header = if table.header.contains(['[', '{']) {
+            quoted(table)
+        } else {
+            "Top level".to_owned()
+        };
         self.line(&format!("## {header}\n"));
         self.paragraph(table.doc);
         for key in table.keys {
@@ -103,10 +107,17 @@ impl Page {
 
     fn key(&mut self, key: &Key) {
         if key.presence == Presence::Retired {
-            let text = format!("**`{}`**: This key has no effect any more, because {}. Delete it.", key.name, key.doc);
+            let text = format!(
+                "**`{}`**: This key has no effect any more, because {}. Delete it.",
+                key.name, key.doc
+            );
             return self.wrapped("- ", &text);
         }
-        let symbol = if key.symbol.is_empty() { String::new() } else { format!(" ({})", key.symbol) };
+        let symbol = if key.symbol.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", key.symbol)
+        };
         let mut text = format!("**`{}`**{symbol}: {}", key.name, key.doc);
         if !matches!(key.kind, Kind::Open) {
             let _ = write!(text, " {}.", capitalised(&takes(key)));
@@ -124,7 +135,10 @@ impl Page {
     /// The words of a key, or where they are.
     fn words_of(&mut self, words: Words) {
         if words.words().eq(Measurement::WORDS.words()) {
-            return self.wrapped("  - ", "The words are [at the end of the page](#quantities-of-a-history).");
+            return self.wrapped(
+                "  - ",
+                "The words are [at the end of the page](#quantities-of-a-history).",
+            );
         }
         if is_shared(words) {
             return self.wrapped("  - ", "The words are [those of several keys](#words-of-several-keys).");
@@ -150,8 +164,10 @@ impl Page {
                 continue;
             }
             printed.push(words);
-            let mut keys: Vec<String> =
-                all_words().filter(|(_, of)| are_same(*of, words)).map(|(key, _)| key).collect();
+            let mut keys: Vec<String> = all_words()
+                .filter(|(_, of)| are_same(*of, words))
+                .map(|(key, _)| key)
+                .collect();
             keys.sort();
             keys.dedup();
             self.paragraph(&format!("Words of {}:", keys.join(", ")));
@@ -167,12 +183,18 @@ impl Page {
              of thickness. A quantity with several values has a column for each, whose name ends as listed here.",
         );
         for (word, doc) in Measurement::WORDS.all() {
-            let Some(measured) = Measurement::of(word) else { continue };
+            let Some(measured) = Measurement::of(word) else {
+                continue;
+            };
             self.wrapped("- ", &format!("**`{word}`** ({}): {}", measured.unit(), doc));
             for (suffix, part) in measured.columns().iter().filter(|(suffix, _)| !suffix.is_empty()) {
                 self.wrapped("  - ", &format!("`{suffix}`: {part}"));
             }
-            for (suffix, part) in measured.columns_in(3).iter().filter(|column| !measured.columns().contains(column)) {
+            for (suffix, part) in measured
+                .columns_in(3)
+                .iter()
+                .filter(|column| !measured.columns().contains(column))
+            {
                 self.wrapped("  - ", &format!("`{suffix}`: in 3-D, {part}"));
             }
         }
@@ -182,12 +204,13 @@ impl Page {
 /// Every key that takes words, quoted, and its words.
 fn all_words() -> impl Iterator<Item = (String, Words)> {
     let keys = ROOT.all().into_iter().flat_map(|table| table.keys);
-    keys.filter(|key| key.presence != Presence::Retired).filter_map(|key| match key.kind {
-        Kind::Choice(words) | Kind::ChoiceOr(words, _) | Kind::Choices(words) => {
-            Some((format!("`{}`", key.name), words))
-        }
-        _ => None,
-    })
+    keys.filter(|key| key.presence != Presence::Retired)
+        .filter_map(|key| match key.kind {
+            Kind::Choice(words) | Kind::ChoiceOr(words, _) | Kind::Choices(words) => {
+                Some((format!("`{}`", key.name), words))
+            }
+            _ => None,
+        })
 }
 
 /// Whether two keys have the same words.
@@ -218,7 +241,11 @@ fn choice(group: &Group) -> String {
 
 /// What is appended to a requirement where a preset meets it.
 fn unless_preset(has_preset: bool) -> &'static str {
-    if has_preset { ", unless `accuracy` chooses it" } else { "" }
+    if has_preset {
+        ", unless `accuracy` chooses it"
+    } else {
+        ""
+    }
 }
 
 /// Whether a group is that of the second end of a segment, whose first end has the same group.
@@ -245,19 +272,26 @@ fn takes(key: &Key) -> String {
         Kind::Profile(of, range, table) => ranged(format!("{of}, or {}", quoted(table)), range),
         Kind::Pair(of, range) => ranged(format!("`[x, y]`, each {of}"), range),
         Kind::Vector(of, range) => ranged(format!("`[x, y]`, in 3-D `[x, y, z]`, each {of}"), range),
-        Kind::PairProfile(of, range, table) => {
-            ranged(format!("`[x, y]`, in 3-D `[x, y, z]`, each {of}, or {}", quoted(table)), range)
-        }
+        Kind::PairProfile(of, range, table) => ranged(
+            format!("`[x, y]`, in 3-D `[x, y, z]`, each {of}, or {}", quoted(table)),
+            range,
+        ),
         Kind::Either(of, range) => ranged(format!("{of}, or `[x, y]`, in 3-D `[x, y, z]`"), range),
         Kind::List(of, range) => ranged(format!("a list, each {of}"), range),
         Kind::Rows(columns) => {
             let columns: Vec<String> = columns.iter().map(|(of, range)| column(*of, range)).collect();
-            format!("a list of rows, each `[{}]`, or a [file](#rows-from-a-file)", columns.join(", "))
+            format!(
+                "a list of rows, each `[{}]`, or a [file](#rows-from-a-file)",
+                columns.join(", ")
+            )
         }
         Kind::Course(of) => format!(
             "a list of rows, each `[t, x, y]`, in 3-D `[t, x, y, z]`, a time and {of}, or a [file](#rows-from-a-file)"
         ),
-        Kind::Gradient(of) => format!("{of} per metre of depth, e.g. `\"2 {}/m\"`", of.units().next().unwrap_or("")),
+        Kind::Gradient(of) => format!(
+            "{of} per metre of depth, e.g. `\"2 {}/m\"`",
+            of.units().next().unwrap_or("")
+        ),
         Kind::GradientVector(of) => format!(
             "`[x, y]`, in 3-D `[x, y, z]`, each {of} per metre of depth, e.g. `\"2 {}/m\"`",
             of.units().next().unwrap_or("")
@@ -291,13 +325,23 @@ fn column(of: Dimension, range: &Range) -> String {
 }
 
 fn range_of(name: &str, range: &Range) -> String {
-    let why = if range.why.is_empty() { String::new() } else { format!(" ({})", range.why) };
-    if range.is_any() { why } else { format!(", `{}`{why}", range.condition(name)) }
+    let why = if range.why.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", range.why)
+    };
+    if range.is_any() {
+        why
+    } else {
+        format!(", `{}`{why}", range.condition(name))
+    }
 }
 
 fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+    letters
+        .next()
+        .map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 #[cfg(test)]
@@ -308,8 +352,12 @@ mod tests {
     use crate::{document, record};
 
     /// Geometries and analyses in which a key may have its meaning.
-    const SETTINGS: [[&str; 2]; 4] =
-        [["plane-strain", "dynamic"], ["plane-strain", "quasi-static"], ["3d", "dynamic"], ["3d", "quasi-static"]];
+    const SETTINGS: [[&str; 2]; 4] = [
+        ["plane-strain", "dynamic"],
+        ["plane-strain", "quasi-static"],
+        ["3d", "dynamic"],
+        ["3d", "quasi-static"],
+    ];
 
     /// Errors about `key` in a file with a table that has no other key.
     fn errors_of(key: &'static Key, value: &str, [geometry, analysis]: [&str; 2]) -> Vec<String> {
@@ -321,13 +369,19 @@ mod tests {
         }));
         let text = format!("{} = {value}\n", key.name);
         let setting = format!("geometry = \"{geometry}\"\nanalysis = {{ type = \"{analysis}\" }}\n");
-        let text = if ["geometry", "analysis"].contains(&key.name) { text } else { setting + &text };
+        let text = if ["geometry", "analysis"].contains(&key.name) {
+            text
+        } else {
+            setting + &text
+        };
         let source = Source::new("example.toml", &text);
         let mut report = Report::new(&source, &[]);
         let parsed = document::parse(&source, &mut report);
         record::read(table, &parsed, &mut report);
         let errors = report.into_errors();
-        let of_key = errors.into_iter().filter(|error| error.key.starts_with(key.name) || error.key.is_empty());
+        let of_key = errors
+            .into_iter()
+            .filter(|error| error.key.starts_with(key.name) || error.key.is_empty());
         of_key.map(|error| error.message).collect()
     }
 

@@ -137,7 +137,9 @@ impl Region {
 
     /// Whether a place lies inside, m in the case's coordinates.
     pub(crate) fn contains(&self, at: [f64; 2]) -> bool {
-        self.vertical(at[0]).iter().any(|[lower, upper]| *lower < at[1] && at[1] < *upper)
+        self.vertical(at[0])
+            .iter()
+            .any(|[lower, upper]| *lower < at[1] && at[1] < *upper)
     }
 
     /// What it covers of the vertical line at `x`, in the case's coordinates, upwards.
@@ -147,7 +149,10 @@ impl Region {
             Self::Box { .. } => Vec::new(),
             Self::Outline(outline) => {
                 let found = intervals(&outline.edges, outline.shapes, x - outline.origin[0]);
-                found.into_iter().map(|ends| ends.map(|y| y + outline.origin[1])).collect()
+                found
+                    .into_iter()
+                    .map(|ends| ends.map(|y| y + outline.origin[1]))
+                    .collect()
             }
             Self::Solid(_) => Vec::new(), // in space there is more than one
         }
@@ -174,7 +179,15 @@ impl Outline {
     ) -> Result<Self, String> {
         affordable(&edges, grid, points_per_cell)?;
         let origin = grid.corner();
-        let mut outline = Self { origin, edges, shapes, geometry, bounds, area, tally: CellTally::default() };
+        let mut outline = Self {
+            origin,
+            edges,
+            shapes,
+            geometry,
+            bounds,
+            area,
+            tally: CellTally::default(),
+        };
         let columns = outline.columns(grid).len();
         if columns > MOST_COLUMNS {
             return Err(format!(
@@ -202,7 +215,10 @@ impl Outline {
             columns.end = i + 1;
             tally.cells += column.parts.iter().map(|part| part.rows().len() as u64).sum::<u64>();
             tally.alone += column.alone;
-            total = column.parts.iter().fold(total, |sum, part| sum.saturating_add(part.points(points_per_cell)));
+            total = column
+                .parts
+                .iter()
+                .fold(total, |sum, part| sum.saturating_add(part.points(points_per_cell)));
         }
         tally.before.push(total);
         if self.shapes > 1 {
@@ -227,19 +243,28 @@ impl Outline {
 
     /// Its points in a cell.
     pub(crate) fn lattice(&self, points_per_cell: usize) -> Lattice {
-        Lattice { n: points_per_cell, geometry: self.geometry }
+        Lattice {
+            n: points_per_cell,
+            geometry: self.geometry,
+        }
     }
 }
 
 /// The edges of a rectangle, from `origin`.
 pub(crate) fn rectangle(lower: [f64; 2], upper: [f64; 2], origin: [f64; 2], shape: usize) -> Vec<Edge> {
-    polygon(&[lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]], origin, shape)
+    polygon(
+        &[lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]],
+        origin,
+        shape,
+    )
 }
 
 /// The edges of a polygon, from `origin`.
 pub(crate) fn polygon(corners: &[[f64; 2]], origin: [f64; 2], shape: usize) -> Vec<Edge> {
     let place = |k: usize| [0, 1].map(|axis| corners[k % corners.len()][axis] - origin[axis]);
-    (0..corners.len()).map(|k| Edge::line(place(k), place(k + 1), shape)).collect()
+    (0..corners.len())
+        .map(|k| Edge::line(place(k), place(k + 1), shape))
+        .collect()
 }
 
 /// Cells along an axis that an interval (m from the first) touches, those at whose ends it ends too.

@@ -82,23 +82,42 @@ impl<'a> Report<'a> {
     pub(crate) fn about(&mut self, origin: Origin, key: &str, message: impl Into<String>, mut others: Vec<String>) {
         others.push(key.to_owned());
         let error = self.placed(origin, key, message.into(), None);
-        self.errors.push(ReportedError { origin, error, about: others, causes: Vec::new() });
+        self.errors.push(ReportedError {
+            origin,
+            error,
+            about: others,
+            causes: Vec::new(),
+        });
     }
 
     /// Records an error that is not printed if another one is about one of the `causes`: it only follows from that.
     pub(crate) fn consequence(&mut self, origin: Origin, key: &str, message: impl Into<String>, causes: &[&str]) {
         let causes = causes.iter().map(|cause| (*cause).to_owned()).collect();
         let error = self.placed(origin, key, message.into(), None);
-        self.errors.push(ReportedError { origin, error, about: vec![key.to_owned()], causes });
+        self.errors.push(ReportedError {
+            origin,
+            error,
+            about: vec![key.to_owned()],
+            causes,
+        });
     }
 
     /// Records that some keys of a table are missing, which may follow from errors about them or about `others`.
     pub(crate) fn missing(&mut self, origin: Origin, table: &str, keys: &[&str], message: String, others: &[&str]) {
         let paths: Vec<String> = keys.iter().map(|key| join(table, key)).collect();
-        let causes = paths.iter().cloned().chain(others.iter().map(|cause| (*cause).to_owned())).collect();
+        let causes = paths
+            .iter()
+            .cloned()
+            .chain(others.iter().map(|cause| (*cause).to_owned()))
+            .collect();
         let place = if let [key] = &paths[..] { key } else { table };
         let error = self.placed(origin, place, message, None);
-        self.errors.push(ReportedError { origin, error, about: paths, causes });
+        self.errors.push(ReportedError {
+            origin,
+            error,
+            about: paths,
+            causes,
+        });
     }
 
     /// Records that the name of a key is wrong, and that its value is taken for that of `assumed`.
@@ -109,13 +128,22 @@ impl<'a> Report<'a> {
 
     /// Records that the value of `key` is a word that this version does not have any more.
     pub(crate) fn removed(&mut self, origin: Origin, key: &str, word: &'static RemovedWord) {
-        let RemovedWord { word: text, last, remedy } = word;
+        let RemovedWord {
+            word: text,
+            last,
+            remedy,
+        } = word;
         let message = format!(
             "E0018: the value \"{text}\" does not exist any more; the last version with this value was {last}. \
              {remedy}"
         );
         let error = self.placed(origin, key, message, Some(word));
-        self.errors.push(ReportedError { origin, error, about: vec![key.to_owned()], causes: Vec::new() });
+        self.errors.push(ReportedError {
+            origin,
+            error,
+            about: vec![key.to_owned()],
+            causes: Vec::new(),
+        });
     }
 
     fn placed(&self, origin: Origin, key: &str, message: String, removed: Option<&'static RemovedWord>) -> Error {
@@ -130,7 +158,15 @@ impl<'a> Report<'a> {
         let (file, key) = (self.source.name.to_owned(), shortened(key));
         let code = code_of(&message).map(str::to_owned);
         let message = without_code(&message).to_owned();
-        Error { file, place, key, code, message, removed, excerpt }
+        Error {
+            file,
+            place,
+            key,
+            code,
+            message,
+            removed,
+            excerpt,
+        }
     }
 
     /// Records a warning: its code, the key that it concerns if there is one, and the text (`W0001: KEY: TEXT`).
@@ -146,12 +182,20 @@ impl<'a> Report<'a> {
             let head = code_of(&warning).map_or_else(String::new, |code| format!("{code}: "));
             let words = without_code(&warning);
             let Some((key, text)) = words.split_once(": ").filter(|(key, _)| !key.contains(' ')) else {
-                merged.push(Merged { head, keys: Vec::new(), text: words.to_owned() });
+                merged.push(Merged {
+                    head,
+                    keys: Vec::new(),
+                    text: words.to_owned(),
+                });
                 continue;
             };
             let number = *numbers.entry(format!("{head}{text}")).or_insert(merged.len());
             if number == merged.len() {
-                merged.push(Merged { head, keys: Vec::new(), text: text.to_owned() });
+                merged.push(Merged {
+                    head,
+                    keys: Vec::new(),
+                    text: text.to_owned(),
+                });
             }
             merged[number].keys.push(key.to_owned());
         }
@@ -159,12 +203,19 @@ impl<'a> Report<'a> {
     }
 
     pub(crate) fn note(&mut self, key: impl Into<String>, value: impl Into<String>, reason: impl Into<String>) {
-        self.notes.push(Choice { key: key.into(), value: value.into(), reason: reason.into() });
+        self.notes.push(Choice {
+            key: key.into(),
+            value: value.into(),
+            reason: reason.into(),
+        });
     }
 
     /// Records that the case has an earlier name at a key path.
     pub(crate) fn renamed(&mut self, earlier: &str, now: &str, path: &str) {
-        let known = self.renamings.iter_mut().find(|known| known.earlier == earlier && known.now == now);
+        let known = self
+            .renamings
+            .iter_mut()
+            .find(|known| known.earlier == earlier && known.now == now);
         match known {
             Some(known) if known.paths.iter().any(|other| other == path) => {}
             Some(known) => known.paths.push(path.to_owned()),
@@ -214,7 +265,9 @@ impl<'a> Report<'a> {
     /// Whether a key path is that of a value, or of an item of it, whose key's name was guessed.
     fn is_of_guess(&self, path: &str) -> bool {
         let is_item = |rest: &str| rest.chars().all(|c| c.is_ascii_digit() || c == '.');
-        self.assumed.iter().any(|assumed| path.strip_prefix(assumed.as_str()).is_some_and(is_item))
+        self.assumed
+            .iter()
+            .any(|assumed| path.strip_prefix(assumed.as_str()).is_some_and(is_item))
     }
 
     /// The errors in the order of the file, without repetitions and without those that only follow from others; those
@@ -225,7 +278,12 @@ impl<'a> Report<'a> {
         let mut seen = HashSet::new();
         let once =
             |error: &Error| seen.insert((format!("{:?}", error.place), error.key.clone(), error.message.clone()));
-        let mut errors: Vec<Error> = self.errors.into_iter().map(|reported| reported.error).filter(once).collect();
+        let mut errors: Vec<Error> = self
+            .errors
+            .into_iter()
+            .map(|reported| reported.error)
+            .filter(once)
+            .collect();
         if errors.len() > MOST {
             let more = errors.len() - MOST;
             errors.truncate(MOST);

@@ -49,11 +49,19 @@ pub struct Group {
 }
 
 const fn one_of(keys: &'static [&'static str], required: bool) -> Group {
-    Group { keys, required, has_preset: false }
+    Group {
+        keys,
+        required,
+        has_preset: false,
+    }
 }
 
 const fn one_of_or_preset(keys: &'static [&'static str]) -> Group {
-    Group { keys, required: true, has_preset: true }
+    Group {
+        keys,
+        required: true,
+        has_preset: true,
+    }
 }
 
 /// A key of a table.
@@ -85,7 +93,10 @@ impl Key {
 
     /// The same key, whose value `accuracy` or `purpose` chooses where it is not given.
     const fn or_preset(self) -> Self {
-        Self { has_preset: true, ..self }
+        Self {
+            has_preset: true,
+            ..self
+        }
     }
 
     /// The same key with its symbol in the field.
@@ -113,7 +124,16 @@ impl Key {
 }
 
 const fn key(name: &'static str, kind: Kind, presence: Presence, doc: &'static str) -> Key {
-    Key { name, kind, presence, doc, symbol: "", value: "", earlier: &[], has_preset: false }
+    Key {
+        name,
+        kind,
+        presence,
+        doc,
+        symbol: "",
+        value: "",
+        earlier: &[],
+        has_preset: false,
+    }
 }
 
 /// Whether a key must be given, and what holds if it is not.
@@ -256,7 +276,10 @@ impl Table {
     /// Keys of which none may be given beside `name`.
     pub fn rivals(&self, name: &str) -> impl Iterator<Item = &'static str> {
         let groups = self.exclusive.iter().filter(move |group| group.keys.contains(&name));
-        groups.flat_map(|group| group.keys).copied().filter(move |key| *key != name)
+        groups
+            .flat_map(|group| group.keys)
+            .copied()
+            .filter(move |key| *key != name)
     }
 
     /// This table and all below it, outer ones first.
@@ -291,12 +314,20 @@ impl fmt::Display for Kind {
                 write!(f, "a list of rows, each [{}], or {FILE}", columns.join(", "))
             }
             Self::Course(dimension) => {
-                write!(f, "a list of rows, each [a time, {dimension}, {dimension}] (three in 3-D), or {FILE}")
+                write!(
+                    f,
+                    "a list of rows, each [a time, {dimension}, {dimension}] (three in 3-D), or {FILE}"
+                )
             }
             Self::Measure => f.write_str("a number, or a string with a unit"),
             Self::Pair(dimension, _) => write!(f, "a list of two, each {}", QuantityWords(*dimension)),
             Self::PairProfile(dimension, _, table) => {
-                write!(f, "a list of two (three in 3-D), each {}, or {}", QuantityWords(*dimension), table.header)
+                write!(
+                    f,
+                    "a list of two (three in 3-D), each {}, or {}",
+                    QuantityWords(*dimension),
+                    table.header
+                )
             }
             Self::Vector(dimension, _) => {
                 write!(f, "a list of two (three in 3-D), each {}", QuantityWords(*dimension))
@@ -340,7 +371,12 @@ struct PerMetre(Dimension);
 impl fmt::Display for PerMetre {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let units: Vec<String> = self.0.units().map(|unit| format!("{unit}/m")).collect();
-        write!(f, "a number ({}) or a string with a unit ({})", units[0], units.join(", "))
+        write!(
+            f,
+            "a number ({}) or a string with a unit ({})",
+            units[0],
+            units.join(", ")
+        )
     }
 }
 

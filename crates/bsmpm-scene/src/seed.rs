@@ -12,7 +12,9 @@ use std::ops::Range;
 impl Body {
     /// Cells that the body reaches into, per axis, if it is a box.
     fn extents<'a>(&self, grid: &'a GridSpec) -> Option<[AxisExtent<'a>; 2]> {
-        let Region::Box { lower, upper } = &self.region else { return None };
+        let Region::Box { lower, upper } = &self.region else {
+            return None;
+        };
         Some([0, 1].map(|axis| AxisExtent::new(&grid.axes[axis], lower[axis], upper[axis])))
     }
 
@@ -21,7 +23,12 @@ impl Body {
         match &self.region {
             Region::Outline(outline) => outline.tally().occupied.to_vec(),
             Region::Solid(volume) => volume.tally().occupied.to_vec(),
-            Region::Box { .. } => self.extents(grid).into_iter().flatten().map(|extent| extent.cells).collect(),
+            Region::Box { .. } => self
+                .extents(grid)
+                .into_iter()
+                .flatten()
+                .map(|extent| extent.cells)
+                .collect(),
         }
     }
 
@@ -47,14 +54,22 @@ impl Body {
 impl Case {
     /// Number of material points, without making them.
     pub fn points(&self) -> u64 {
-        self.bodies.iter().map(|body| body.points(&self.grid)).sum::<u128>().try_into().unwrap_or(u64::MAX)
+        self.bodies
+            .iter()
+            .map(|body| body.points(&self.grid))
+            .sum::<u128>()
+            .try_into()
+            .unwrap_or(u64::MAX)
     }
 
     /// Number of material points in every column of knot spans along axis 0, without making them.
     pub fn points_by_column(&self) -> Vec<u64> {
         let of_cells = self.points_by_cells();
         let mut counts = vec![0; self.grid.spans(0)];
-        of_cells.into_iter().enumerate().for_each(|(cell, count)| counts[self.grid.span(0, cell)] = count);
+        of_cells
+            .into_iter()
+            .enumerate()
+            .for_each(|(cell, count)| counts[self.grid.span(0, cell)] = count);
         counts
     }
 
@@ -65,14 +80,19 @@ impl Case {
             let before = match &body.region {
                 Region::Box { .. } => {
                     let in_column = (occupied[1].len() * body.points_per_cell * body.points_per_cell) as u64;
-                    counts[occupied[0].clone()].iter_mut().for_each(|count| *count += in_column);
+                    counts[occupied[0].clone()]
+                        .iter_mut()
+                        .for_each(|count| *count += in_column);
                     continue;
                 }
                 Region::Outline(outline) => &outline.tally().before,
                 Region::Solid(volume) => &volume.tally().before,
             };
             let in_columns = before.windows(2).map(|pair| pair[1] - pair[0]);
-            counts[occupied[0].clone()].iter_mut().zip(in_columns).for_each(|(count, more)| *count += more);
+            counts[occupied[0].clone()]
+                .iter_mut()
+                .zip(in_columns)
+                .for_each(|(count, more)| *count += more);
         }
         counts
     }
@@ -105,11 +125,17 @@ pub fn seed_bodies<'a, K: Kinematics<D>, const D: usize>(
     columns: Range<usize>,
     wanted: impl Fn(usize) -> bool + 'a,
 ) -> impl Iterator<Item = Seed<D>> + 'a {
-    let bodies = case.bodies.iter().zip(case.ids()).enumerate().filter(move |(number, _)| wanted(*number));
+    let bodies = case
+        .bodies
+        .iter()
+        .zip(case.ids())
+        .enumerate()
+        .filter(move |(number, _)| wanted(*number));
     bodies.flat_map(move |(_, (body, ids))| {
         let first_id = ids.start;
-        let of_box =
-            body.extents(&case.grid).map(|extents| of_box::<K, D>(case, body, first_id, extents, columns.clone()));
+        let of_box = body
+            .extents(&case.grid)
+            .map(|extents| of_box::<K, D>(case, body, first_id, extents, columns.clone()));
         let of_outline = match &body.region {
             Region::Outline(outline) => Some(of_outline::<K, D>(case, body, first_id, outline, columns.clone())),
             _ => None,
@@ -118,7 +144,11 @@ pub fn seed_bodies<'a, K: Kinematics<D>, const D: usize>(
             Region::Solid(volume) => Some(of_volume::<K, D>(case, body, first_id, volume, columns.clone())),
             _ => None,
         };
-        of_box.into_iter().flatten().chain(of_outline.into_iter().flatten()).chain(of_volume.into_iter().flatten())
+        of_box
+            .into_iter()
+            .flatten()
+            .chain(of_outline.into_iter().flatten())
+            .chain(of_volume.into_iter().flatten())
     })
 }
 
@@ -137,7 +167,10 @@ fn of_box<'a, K: Kinematics<D>, const D: usize>(
             let cell = (row + (j - up.cells.start)) as u64;
             let count = (body.points_per_cell * body.points_per_cell) as u64;
             let first_id = first_id + cell * count;
-            let lattice = Lattice { n: body.points_per_cell, geometry: case.geometry };
+            let lattice = Lattice {
+                n: body.points_per_cell,
+                geometry: case.geometry,
+            };
             of_cell(lattice, [across.part(i), up.part(j)])
                 .zip(first_id..)
                 .map(move |(place, id)| body.seed::<K, D, 2>(case, id, place))
@@ -164,9 +197,13 @@ fn of_outline<'a, K: Kinematics<D>, const D: usize>(
                 RegionPart::Cut(_, places) => (0..0, places),
             };
             let y = move |j: usize| [grid.axes[1].breakpoint(j), grid.axes[1].breakpoint(j + 1)];
-            whole.flat_map(move |j| of_cell(outline.lattice(n), [x, y(j)])).chain(cut)
+            whole
+                .flat_map(move |j| of_cell(outline.lattice(n), [x, y(j)]))
+                .chain(cut)
         });
-        places.zip(first_id..).map(move |(place, id)| body.seed::<K, D, 2>(case, id, place))
+        places
+            .zip(first_id..)
+            .map(move |(place, id)| body.seed::<K, D, 2>(case, id, place))
     })
 }
 
@@ -182,16 +219,27 @@ fn of_volume<'a, K: Kinematics<D>, const D: usize>(
     (occupied.start.max(columns.start)..occupied.end.min(columns.end)).flat_map(move |i| {
         let first_id = first_id + tally.before[i - occupied.start];
         let places = volume.slab(&case.grid.axes, body.points_per_cell, i);
-        places.into_iter().zip(first_id..).map(move |(place, id)| body.seed::<K, D, 3>(case, id, place))
+        places
+            .into_iter()
+            .zip(first_id..)
+            .map(move |(place, id)| body.seed::<K, D, 3>(case, id, place))
     })
 }
 
 impl Body {
     /// m/s  what its spin makes of a place, m from the grid's lower corner.
     fn spun<const D: usize, const N: usize>(&self, case: &Case, x: [f64; N]) -> Vector<D> {
-        let Some([rate, about]) = self.spin else { return Vector::zeros() };
+        let Some([rate, about]) = self.spin else {
+            return Vector::zeros();
+        };
         let lower = case.grid.lower();
-        let arm = |axis: usize| if axis < D { x[axis] - (about[axis] - lower[axis]) } else { 0.0 };
+        let arm = |axis: usize| {
+            if axis < D {
+                x[axis] - (about[axis] - lower[axis])
+            } else {
+                0.0
+            }
+        };
         let turned = |[a, b]: [usize; 2]| rate[a] * arm(b) - rate[b] * arm(a);
         vector([[1, 2], [2, 0], [0, 1]].map(turned))
     }

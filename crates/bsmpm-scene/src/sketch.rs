@@ -50,7 +50,9 @@ impl Sketch {
             return Self::default();
         }
         let root = record::read(&ROOT, &document, &mut report);
-        let kind = root.record("analysis").and_then(|analysis| analysis.word::<AnalysisType>("type"));
+        let kind = root
+            .record("analysis")
+            .and_then(|analysis| analysis.word::<AnalysisType>("type"));
         let (regime, is_timeless) = (kind.map(AnalysisType::regime), kind.map(AnalysisType::is_timeless));
         let ends = |strip: &Record| Some([strip.pair("from")?, strip.pair("to")?]);
         Self {
@@ -59,7 +61,9 @@ impl Sketch {
             stabilisation: regime.and_then(|_| validate::stabilisation(&root)),
             boundary: validate::boundary(&root),
             footing: root.record("footing").and_then(ends),
-            strength_reduction: root.record("strength_reduction").and_then(|reduction| reduction.number("factor")),
+            strength_reduction: root
+                .record("strength_reduction")
+                .and_then(|reduction| reduction.number("factor")),
             histories: root.records("history").iter().filter_map(SketchedHistory::of).collect(),
         }
     }
@@ -69,7 +73,11 @@ impl SketchedHistory {
     fn of(record: &Record) -> Option<Self> {
         let quantity: Measurement = record.word("quantity")?;
         let name = record.text("name").map_or_else(|| quantity.to_string(), str::to_owned);
-        Some(Self { quantity, name, scale: record.number("scale")? })
+        Some(Self {
+            quantity,
+            name,
+            scale: record.number("scale")?,
+        })
     }
 }
 
@@ -101,28 +109,57 @@ mod tests {
     fn what_is_there_is_reported_though_the_case_is_none() {
         assert!(crate::Case::from_text("case", HALF, &[]).is_err());
         let case = Sketch::of(HALF);
-        assert_eq!((case.regime, case.stabilisation), (Some(Regime::QuasiStatic), Some(Stabilisation::None)));
-        assert_eq!(case.boundary, Some([[Support::Roller, Support::Fixed], [Support::Free; 2], [Support::Free; 2]]));
+        assert_eq!(
+            (case.regime, case.stabilisation),
+            (Some(Regime::QuasiStatic), Some(Stabilisation::None))
+        );
+        assert_eq!(
+            case.boundary,
+            Some([
+                [Support::Roller, Support::Fixed],
+                [Support::Free; 2],
+                [Support::Free; 2]
+            ])
+        );
         assert_eq!(case.footing, Some([[0.0, 10.0], [1.0, 10.0]]));
         assert_eq!(case.strength_reduction, None);
-        assert_eq!(Sketch::of("strength_reduction.factor = 2").strength_reduction, Some(2.0));
-        let [pressure, displacement] = &case.histories[..] else { panic!("{case:?}") };
+        assert_eq!(
+            Sketch::of("strength_reduction.factor = 2").strength_reduction,
+            Some(2.0)
+        );
+        let [pressure, displacement] = &case.histories[..] else {
+            panic!("{case:?}")
+        };
         assert_eq!(
             (pressure.quantity, &*pressure.name, pressure.scale),
             (Measurement::FootingPressure, "p_over_c", 5e-5)
         );
         assert_eq!((&*displacement.name, displacement.scale), ("displacement", 1.0));
         let method = |word: &str| Sketch::of(&format!("{HALF}\n[stabilisation]\nmethod = \"{word}\"")).stabilisation;
-        assert_eq!((method("f-bar"), method("of-another-version")), (Some(Stabilisation::FBar), None));
+        assert_eq!(
+            (method("f-bar"), method("of-another-version")),
+            (Some(Stabilisation::FBar), None)
+        );
     }
 
     #[test]
     fn what_is_no_case_leaves_gaps() {
-        for text in ["", "title = \"A\"\n", "[analysis", "analysis = 3\nhistory = 4\nfooting = [1]"] {
+        for text in [
+            "",
+            "title = \"A\"\n",
+            "[analysis",
+            "analysis = 3\nhistory = 4\nfooting = [1]",
+        ] {
             let case = Sketch::of(text);
-            let nothing = Sketch { boundary: case.boundary, ..Sketch::default() };
+            let nothing = Sketch {
+                boundary: case.boundary,
+                ..Sketch::default()
+            };
             assert_eq!(case, nothing, "{text}");
-            assert!(case.boundary.is_none_or(|axes| axes == [[Support::Free; 2]; 3]), "{text}");
+            assert!(
+                case.boundary.is_none_or(|axes| axes == [[Support::Free; 2]; 3]),
+                "{text}"
+            );
         }
     }
 }

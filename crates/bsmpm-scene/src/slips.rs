@@ -35,8 +35,15 @@ impl Mender<'_, '_> {
     fn rename_misspelt(&mut self, written: &mut DocumentTable, table: &'static Table, path: &str) {
         let mut given: Vec<String> = written.entries.iter().map(|entry| entry.key.clone()).collect();
         let is_unknown = |key: &str| table.key(key).is_none();
-        for entry in written.entries.iter_mut().filter(|entry| is_unknown(&entry.key)).take(MOST_UNKNOWN) {
-            let Some(meant) = meant(table, &entry.key) else { continue };
+        for entry in written
+            .entries
+            .iter_mut()
+            .filter(|entry| is_unknown(&entry.key))
+            .take(MOST_UNKNOWN)
+        {
+            let Some(meant) = meant(table, &entry.key) else {
+                continue;
+            };
             let is_given = |name: &str| given.iter().any(|other| other == name);
             if is_given(meant) || table.rivals(meant).any(is_given) {
                 continue;
@@ -97,10 +104,17 @@ impl Mender<'_, '_> {
             "E0047: expected a list of tables, {}, found a single table. Write two pairs of brackets, [[{}]], even for \
              one table.",
             table.header,
-            if table.header.starts_with("[[") { table.header.trim_matches(['[', ']']) } else { name }
+            if table.header.starts_with("[[") {
+                table.header.trim_matches(['[', ']'])
+            } else {
+                name
+            }
         );
         self.report.error(node.origin, path, message);
-        let item = Node { origin: node.origin, value: Value::Table(std::mem::take(written)) };
+        let item = Node {
+            origin: node.origin,
+            value: Value::Table(std::mem::take(written)),
+        };
         node.value = Value::List(vec![item]);
     }
 
@@ -118,14 +132,29 @@ impl Mender<'_, '_> {
             table.header
         );
         self.report.error(node.origin, path, message);
-        let only = Node { origin: node.origin, value: Value::Table(std::mem::take(written)) };
-        written.entries.push(DocumentEntry { key: "soil".to_owned(), origin: node.origin, node: only });
+        let only = Node {
+            origin: node.origin,
+            value: Value::Table(std::mem::take(written)),
+        };
+        written.entries.push(DocumentEntry {
+            key: "soil".to_owned(),
+            origin: node.origin,
+            node: only,
+        });
     }
 
     /// `[[grid]]` for `[grid]`: the only table of the list is the one that is meant.
     fn take_only_table(&mut self, node: &mut Node, table: &Table, path: &str) {
         let Value::List(items) = &mut node.value else { return };
-        let [Node { value: Value::Table(written), .. }] = &mut items[..] else { return };
+        let [
+            Node {
+                value: Value::Table(written),
+                ..
+            },
+        ] = &mut items[..]
+        else {
+            return;
+        };
         let message = format!(
             "E0048: expected one table, {}, found a list of tables. Write one pair of brackets in place of two.",
             table.header
@@ -140,7 +169,9 @@ impl Mender<'_, '_> {
 fn meant(table: &'static Table, name: &str) -> Option<&'static str> {
     if answer(table, name).is_some() {
         let is_value = |key: &Key| !matches!(key.kind, Kind::Table(_) | Kind::Named(_) | Kind::Tables(_));
-        return answered(table, name).into_iter().find(|name| table.key(name).is_some_and(is_value));
+        return answered(table, name)
+            .into_iter()
+            .find(|name| table.key(name).is_some_and(is_value));
     }
     nearest(name, names(table))
 }
@@ -155,7 +186,11 @@ pub(crate) fn answered(table: &'static Table, name: &str) -> Vec<&'static str> {
 
 /// Names of a table's keys that may be written.
 fn names(table: &'static Table) -> impl Iterator<Item = &'static str> {
-    table.keys.iter().filter(|key| key.presence != Presence::Retired).map(|key| key.name)
+    table
+        .keys
+        .iter()
+        .filter(|key| key.presence != Presence::Retired)
+        .map(|key| key.name)
 }
 
 /// Reports the keys of a table that it does not have.
@@ -169,8 +204,17 @@ pub(crate) fn report_unknown(
     let mut unknown = written.entries.iter().filter(|entry| table.key(&entry.key).is_none());
     for entry in unknown.by_ref().take(MOST_UNKNOWN) {
         let near = nearest(&entry.key, names(table));
-        let meant = answered(table, &entry.key).into_iter().chain(near).map(|name| join(path, name)).collect();
-        report.about(entry.origin, &join(path, &entry.key), unknown_key(root, table, &entry.key), meant);
+        let meant = answered(table, &entry.key)
+            .into_iter()
+            .chain(near)
+            .map(|name| join(path, name))
+            .collect();
+        report.about(
+            entry.origin,
+            &join(path, &entry.key),
+            unknown_key(root, table, &entry.key),
+            meant,
+        );
     }
     if let Some(entry) = unknown.next() {
         let message = format!(
@@ -186,7 +230,11 @@ fn unknown_key(root: &'static Table, table: &'static Table, key: &str) -> String
     if let Some(answer) = answer(table, key) {
         return match code_of(answer) {
             Some(_) => answer.to_owned(),
-            None => format!("E0011: the name `{}` is not a known key of {}. {answer}", shortened(key), table.header),
+            None => format!(
+                "E0011: the name `{}` is not a known key of {}. {answer}",
+                shortened(key),
+                table.header
+            ),
         };
     }
     let (name, header) = (shortened(key), table.header);
@@ -196,5 +244,8 @@ fn unknown_key(root: &'static Table, table: &'static Table, key: &str) -> String
     let elsewhere = root.all().into_iter().find(|other| other.key(key).is_some());
     let hint = elsewhere.map_or(String::new(), |other| format!("; it belongs to {}", other.header));
     let known: Vec<&str> = names(table).collect();
-    format!("E0011: the name `{name}` is not a known key of {header}{hint}. Known keys: {}.", known.join(", "))
+    format!(
+        "E0011: the name `{name}` is not a known key of {header}{hint}. Known keys: {}.",
+        known.join(", ")
+    )
 }

@@ -24,7 +24,9 @@ const EXCERPT: usize = 100;
 /// [`io::ErrorKind::InvalidData`] if a file with rows does not hold them, or too many.
 pub fn load(path: &Path) -> io::Result<Vec<u8>> {
     let bytes = bounded(path)?;
-    let Some(text) = std::str::from_utf8(&bytes).ok().filter(|text| bytes.len() <= MAX_BYTES && text.contains("file"))
+    let Some(text) = std::str::from_utf8(&bytes)
+        .ok()
+        .filter(|text| bytes.len() <= MAX_BYTES && text.contains("file"))
     else {
         return Ok(bytes);
     };
@@ -42,7 +44,10 @@ pub fn load(path: &Path) -> io::Result<Vec<u8>> {
 /// Bytes of a regular file, at most [`MAX_BYTES`] + 1 of them.
 fn bounded(path: &Path) -> io::Result<Vec<u8>> {
     let unread = |error: io::Error| {
-        io::Error::new(error.kind(), format!("E0001: the file cannot be read: {error}. Check its path."))
+        io::Error::new(
+            error.kind(),
+            format!("E0001: the file cannot be read: {error}. Check its path."),
+        )
     };
     if !std::fs::metadata(path).map_err(unread)?.is_file() {
         let message = "E0001: the file cannot be read: it is a directory, pipe or device. Give the name of a file.";
@@ -50,7 +55,9 @@ fn bounded(path: &Path) -> io::Result<Vec<u8>> {
     }
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(unread)?;
-    file.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(unread)?;
+    file.take(MAX_BYTES as u64 + 1)
+        .read_to_end(&mut bytes)
+        .map_err(unread)?;
     Ok(bytes)
 }
 
@@ -94,8 +101,16 @@ pub(crate) struct Source<'a> {
 
 impl<'a> Source<'a> {
     pub(crate) fn new(name: &'a str, text: &'a str) -> Self {
-        let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
-        Self { name, text, starts: std::iter::once(0).chain(breaks).collect() }
+        let breaks = text
+            .bytes()
+            .enumerate()
+            .filter(|(_, byte)| *byte == b'\n')
+            .map(|(at, _)| at + 1);
+        Self {
+            name,
+            text,
+            starts: std::iter::once(0).chain(breaks).collect(),
+        }
     }
 
     /// Line of a byte offset, counted from 1.
@@ -113,8 +128,18 @@ impl<'a> Source<'a> {
         let start = self.starts[line - 1];
         let column = self.text[start..offset].chars().count();
         let skipped = column.saturating_sub(EXCERPT / 2);
-        let shown = self.text[start..].chars().take_while(|c| !matches!(c, '\n' | '\r')).skip(skipped).take(EXCERPT);
+        let shown = self.text[start..]
+            .chars()
+            .take_while(|c| !matches!(c, '\n' | '\r'))
+            .skip(skipped)
+            .take(EXCERPT);
         let shown = shown.map(|c| if c.is_control() { ' ' } else { c }).collect();
-        (Place::Line { line, column: column + 1 }, (shown, column - skipped))
+        (
+            Place::Line {
+                line,
+                column: column + 1,
+            },
+            (shown, column - skipped),
+        )
     }
 }

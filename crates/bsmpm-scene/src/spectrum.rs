@@ -54,7 +54,10 @@ impl Signal {
             sum >= SHARE * total
         };
         // What is constant leaves round-off besides its mean.
-        let place = energy[1..].iter().position(reached).filter(|_| total > ROUND_OFF * energy[0])?;
+        let place = energy[1..]
+            .iter()
+            .position(reached)
+            .filter(|_| total > ROUND_OFF * energy[0])?;
         Some((place + 1) as f64 / (2.0 * end))
     }
 
@@ -79,11 +82,19 @@ impl Signal {
         let next = self.rows.partition_point(|row| row.0 < t);
         let Some((until, to)) = self.rows.get(next).map(|row| (row.0, row.1[number])) else {
             let last = self.rows.last().map_or(0.0, |row| row.1[number]);
-            return if self.kind == InputKind::Acceleration { 0.0 } else { last };
+            return if self.kind == InputKind::Acceleration {
+                0.0
+            } else {
+                last
+            };
         };
         let before = next.checked_sub(1).map(|before| &self.rows[before]);
         let (since, from) = before.map_or((0.0, 0.0), |row| (row.0, row.1[number]));
-        if until > since { from + (to - from) * (t - since) / (until - since) } else { to }
+        if until > since {
+            from + (to - from) * (t - since) / (until - since)
+        } else {
+            to
+        }
     }
 }
 
@@ -94,7 +105,10 @@ fn add_energy(mut velocity: Vec<f64>, energy: &mut [f64]) {
     let mut spectrum = transform.make_output_vec();
     // It fails where lengths differ only.
     if transform.process(&mut velocity, &mut spectrum).is_ok() {
-        energy.iter_mut().zip(&spectrum).for_each(|(sum, value)| *sum += value.norm_sqr());
+        energy
+            .iter_mut()
+            .zip(&spectrum)
+            .for_each(|(sum, value)| *sum += value.norm_sqr());
     }
 }
 
@@ -105,7 +119,10 @@ mod tests {
 
     fn signal(kind: InputKind, end: f64, dt: f64, value: impl Fn(f64) -> f64) -> Signal {
         let count = (end / dt).round() as usize;
-        let rows = (0..=count).map(|k| k as f64 * dt).map(|t| (t, vec![value(t)])).collect();
+        let rows = (0..=count)
+            .map(|k| k as f64 * dt)
+            .map(|t| (t, vec![value(t)]))
+            .collect();
         Signal { kind, rows }
     }
 
@@ -118,7 +135,9 @@ mod tests {
             InputKind::Acceleration => -x.sin(),
         };
         for kind in [InputKind::Force, InputKind::Motion, InputKind::Acceleration] {
-            let found = signal(kind, 4.0, 0.005, |t| value(kind, TAU * 5.0 * t)).frequency(4.0).unwrap();
+            let found = signal(kind, 4.0, 0.005, |t| value(kind, TAU * 5.0 * t))
+                .frequency(4.0)
+                .unwrap();
             assert!((found - 5.0).abs() <= 0.13, "{kind:?}: {found} Hz"); // one interval of the transform
         }
     }
@@ -138,12 +157,21 @@ mod tests {
     /// A load that grows over a tenth of the run is a slow one; one that grows at once has the odd harmonics of a step.
     #[test]
     fn a_load_that_stays_is_no_fast_wave() {
-        let row = |t: f64| Signal { kind: InputKind::Force, rows: vec![(t, vec![1.0])] };
+        let row = |t: f64| Signal {
+            kind: InputKind::Force,
+            rows: vec![(t, vec![1.0])],
+        };
         assert!(row(1.0).frequency(10.0).unwrap() <= 0.5);
         assert!(row(10.0).frequency(10.0).unwrap() <= 0.2);
-        let steady = Signal { kind: InputKind::Motion, rows: vec![(10.0, vec![0.3])] };
+        let steady = Signal {
+            kind: InputKind::Motion,
+            rows: vec![(10.0, vec![0.3])],
+        };
         assert_eq!(steady.frequency(1.0), None);
-        let nothing = Signal { kind: InputKind::Motion, rows: vec![(1.0, vec![0.0])] };
+        let nothing = Signal {
+            kind: InputKind::Motion,
+            rows: vec![(1.0, vec![0.0])],
+        };
         assert_eq!(nothing.frequency(2.0), None);
     }
 }

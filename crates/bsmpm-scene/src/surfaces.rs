@@ -19,7 +19,10 @@ use bsmpm::water::flow::{Course, Drain, DrainedFace, Given, Inflow, Permeability
 
 /// The strip that holds a face of the grid, if any.
 pub fn strip_of_face(case: &Case, face: Face) -> Option<usize> {
-    let found = case.prescribed.iter().position(|prescribed| prescribed.site == Site::Face(face))?;
+    let found = case
+        .prescribed
+        .iter()
+        .position(|prescribed| prescribed.site == Site::Face(face))?;
     Some(found + usize::from(case.footing.is_some()))
 }
 
@@ -40,15 +43,29 @@ pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f
         let height = |point: &SurfacePoint<D>| point.x[D - 1] + case.grid.lower()[D - 1];
         let (values, follows) = match traction.push {
             Push::Stress(stress) => {
-                let pushed = points.iter().map(|point| vector(stress.map(|along| along.at(height(point)))));
+                let pushed = points
+                    .iter()
+                    .map(|point| vector(stress.map(|along| along.at(height(point)))));
                 (pushed.collect(), false)
             }
             Push::Pressure { profile, side } => {
-                let pressed = points.iter().zip(left).map(|(point, left)| left * (side * profile.at(height(point))));
+                let pressed = points
+                    .iter()
+                    .zip(left)
+                    .map(|(point, left)| left * (side * profile.at(height(point))));
                 (pressed.collect(), true)
             }
         };
-        (Load { points, traction: values, follows, ramp: traction.ramp, amplitude: Vec::new() }, &traction.amplitude)
+        (
+            Load {
+                points,
+                traction: values,
+                follows,
+                ramp: traction.ramp,
+                amplitude: Vec::new(),
+            },
+            &traction.amplitude,
+        )
     });
     let forces = case.point_loads.iter().map(|load| {
         let point = SurfacePoint::at(placed(load.at), 1.0 / case.geometry.whole());
@@ -75,7 +92,13 @@ pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f
 fn steady<const D: usize>(load: Load<D>, shares: &Shares, keeps_direction: bool) -> (Load<D>, Vec<Load<D>>) {
     let along = |axis: usize| shares.iter().map(|(t, share)| (*t, share[axis])).collect();
     if keeps_direction {
-        return (Load { amplitude: along(0), ..load }, Vec::new());
+        return (
+            Load {
+                amplitude: along(0),
+                ..load
+            },
+            Vec::new(),
+        );
     }
     let part = |axis: usize| Load {
         traction: load.traction.iter().map(|of| unit::<D>(axis) * of[axis]).collect(),
@@ -110,7 +133,10 @@ fn on_line<K: Kinematics<D>, const D: usize>(
         LoadedLine::Triangles(triangles) => {
             let base = vector::<D, _>(case.grid.lower());
             let point = |triangle: &Triangle| SurfacePoint::of_triangle(triangle.map(|at| vector::<D, _>(at) - base));
-            triangles.iter().map(|triangle| (point(triangle), vector(normal_of(triangle)))).unzip()
+            triangles
+                .iter()
+                .map(|triangle| (point(triangle), vector(normal_of(triangle))))
+                .unzip()
         }
     }
 }
@@ -130,7 +156,9 @@ pub(crate) fn normal_of(triangle: &Triangle) -> [f64; 3] {
 fn course((ramp, amplitude): (f64, &Shares), since: f64) -> Shares {
     let ramp = [(ramp, Vector::from_element(1.0))];
     let rows = if amplitude.is_empty() { &ramp[..] } else { amplitude };
-    std::iter::once((since, Vector::zeros())).chain(rows.iter().map(|(t, share)| (since + t, *share))).collect()
+    std::iter::once((since, Vector::zeros()))
+        .chain(rows.iter().map(|(t, share)| (since + t, *share)))
+        .collect()
 }
 
 /// Points of a circle inside the grid with unit vectors towards its centre, `count` and more in a cell.
@@ -151,9 +179,19 @@ fn around<K: Kinematics<D>, const D: usize>(
         let place = |part: f64| center + outward(part) * radius;
         let (x, [a, b]) = (place(0.5), [0.0, 1.0].map(place));
         let area = length / pieces as f64 * K::weight(&x);
-        (SurfacePoint { x, area, corners: [a, a, b, b] }, -outward(0.5))
+        (
+            SurfacePoint {
+                x,
+                area,
+                corners: [a, a, b, b],
+            },
+            -outward(0.5),
+        )
     };
-    (0..pieces).map(point).filter(|(point, _)| grid.locate(&point.x).is_some()).collect()
+    (0..pieces)
+        .map(point)
+        .filter(|(point, _)| grid.locate(&point.x).is_some())
+        .collect()
 }
 
 /// Where the physics has a drain.
@@ -174,7 +212,11 @@ pub fn drain_places(case: &Case) -> Vec<DrainPlace> {
             surfaces.next().map(DrainPlace::Surface)
         }
     };
-    case.flow.iter().flat_map(|flow| &flow.drains).filter_map(place).collect()
+    case.flow
+        .iter()
+        .flat_map(|flow| &flow.drains)
+        .filter_map(place)
+        .collect()
 }
 
 /// What the case calls a drained surface or, behind those, an inflow, by the numbers that the physics has.
@@ -183,7 +225,10 @@ pub fn name_of_drain(case: &Case, surface: usize) -> String {
     match places.iter().position(|place| *place == DrainPlace::Surface(surface)) {
         Some(number) => format!("drain.{number}"),
         None => {
-            let drains = places.iter().filter(|place| matches!(place, DrainPlace::Surface(_))).count();
+            let drains = places
+                .iter()
+                .filter(|place| matches!(place, DrainPlace::Surface(_)))
+                .count();
             format!("inflow.{}", surface - drains)
         }
     }
@@ -191,7 +236,9 @@ pub fn name_of_drain(case: &Case, surface: usize) -> String {
 
 /// What the case calls a drained face of the grid, by the number that the physics has.
 pub fn name_of_drained_face(case: &Case, face: usize) -> String {
-    let number = drain_places(case).iter().position(|place| *place == DrainPlace::Face(face));
+    let number = drain_places(case)
+        .iter()
+        .position(|place| *place == DrainPlace::Face(face));
     format!("drain.{}", number.unwrap_or_default())
 }
 
@@ -212,14 +259,28 @@ pub fn flow<K: Kinematics<D>, const D: usize>(
         if matches!(drain.site, DrainSite::Face(_)) {
             return None;
         }
-        let parts = drain.site.lines().into_iter().map(|line| on_line::<K, D>(case, grid, &line));
-        let (points, normals) = parts.flat_map(|(points, normals)| points.into_iter().zip(normals)).unzip();
-        Some(Drain { points, normals, given: given(&drain.given), acts: acts(Acting::Drain(number)) })
+        let parts = drain
+            .site
+            .lines()
+            .into_iter()
+            .map(|line| on_line::<K, D>(case, grid, &line));
+        let (points, normals) = parts
+            .flat_map(|(points, normals)| points.into_iter().zip(normals))
+            .unzip();
+        Some(Drain {
+            points,
+            normals,
+            given: given(&drain.given),
+            acts: acts(Acting::Drain(number)),
+        })
     };
     let face = |(number, drain): (usize, &crate::Drain)| match drain.site {
-        DrainSite::Face(Face { axis, upper }) => {
-            Some(DrainedFace { axis, upper, given: given(&drain.given), acts: acts(Acting::Drain(number)) })
-        }
+        DrainSite::Face(Face { axis, upper }) => Some(DrainedFace {
+            axis,
+            upper,
+            given: given(&drain.given),
+            acts: acts(Acting::Drain(number)),
+        }),
         DrainSite::Lines(_) | DrainSite::Circle { .. } | DrainSite::Plate(_) => None,
     };
     let inflow = |(number, inflow): (usize, &crate::Inflow)| {
@@ -230,7 +291,13 @@ pub fn flow<K: Kinematics<D>, const D: usize>(
         };
         let (points, normals) = line.map(|line| on_line::<K, D>(case, grid, &line)).unwrap_or_default();
         let acts = acts(Acting::Inflow(number));
-        Inflow { points, normals, rate: inflow.rate.clone(), runs_off: inflow.runs_off, acts }
+        Inflow {
+            points,
+            normals,
+            rate: inflow.rate.clone(),
+            runs_off: inflow.runs_off,
+            acts,
+        }
     };
     Some(bsmpm::water::flow::Flow {
         bulk: flow.bulk,
@@ -262,8 +329,10 @@ pub fn rigid<const D: usize>(case: &Case, t: f64) -> Vec<RigidBody<D>> {
     let of = |(number, rigid): (usize, &Rigid)| {
         let since = case.acts_since(Acting::Rigid(number), t);
         let begun = since.filter(|since| *since > 0.0 && rigid.force != [0.0; 3]);
-        let later =
-            begun.map(|since| Rigid { amplitude: course((rigid.ramp, &rigid.amplitude), since), ..rigid.clone() });
+        let later = begun.map(|since| Rigid {
+            amplitude: course((rigid.ramp, &rigid.amplitude), since),
+            ..rigid.clone()
+        });
         RigidBody {
             acts: since.is_some(),
             friction: rigid.friction / divided,
@@ -276,9 +345,12 @@ pub fn rigid<const D: usize>(case: &Case, t: f64) -> Vec<RigidBody<D>> {
 /// An outline about a reference point, both in m.
 pub(crate) fn outline(shape: &RigidShape, about: [f64; 2]) -> Outline {
     match shape {
-        RigidShape::Polygon(corners) => {
-            Outline::Polygon(corners.iter().map(|corner| Vector::from(*corner) - Vector::from(about)).collect())
-        }
+        RigidShape::Polygon(corners) => Outline::Polygon(
+            corners
+                .iter()
+                .map(|corner| Vector::from(*corner) - Vector::from(about))
+                .collect(),
+        ),
         RigidShape::Circle { radius, .. } => Outline::Circle(*radius),
         RigidShape::InSpace(solid) => solid.outline(),
     }
@@ -286,13 +358,29 @@ pub(crate) fn outline(shape: &RigidShape, about: [f64; 2]) -> Outline {
 
 /// A rigid body as the physics wants it, of a grid with this lower corner.
 pub(crate) fn rigid_body<const D: usize>(rigid: &Rigid, lower: [f64; 3], geometry: Geometry) -> RigidBody<D> {
-    let mut times: Vec<f64> =
-        rigid.path.rows.iter().map(|row| row.0).chain(rigid.rotation.iter().map(|row| row.0)).collect();
+    let mut times: Vec<f64> = rigid
+        .path
+        .rows
+        .iter()
+        .map(|row| row.0)
+        .chain(rigid.rotation.iter().map(|row| row.0))
+        .collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
     let path = |t: f64| {
-        let stays = || rigid.path.rows.last().map_or_else(Vector::zeros, |(_, moved)| Vector::from(*moved));
-        let rows: Vec<(f64, Vector<3>)> = rigid.path.rows.iter().map(|(t, moved)| (*t, Vector::from(*moved))).collect();
+        let stays = || {
+            rigid
+                .path
+                .rows
+                .last()
+                .map_or_else(Vector::zeros, |(_, moved)| Vector::from(*moved))
+        };
+        let rows: Vec<(f64, Vector<3>)> = rigid
+            .path
+            .rows
+            .iter()
+            .map(|(t, moved)| (*t, Vector::from(*moved)))
+            .collect();
         let moved = between(&rows, Vector::zeros(), t).unwrap_or_else(stays);
         let turned = rigid.rotation.last().map_or(0.0, |(_, angle)| *angle);
         let turned = between(&rigid.rotation, 0.0, t).unwrap_or(turned);
@@ -318,7 +406,11 @@ pub(crate) fn rigid_body<const D: usize>(rigid: &Rigid, lower: [f64; 3], geometr
     let load = match (rigid.force == [0.0; 3], rigid.amplitude.is_empty()) {
         (true, _) => Vec::new(),
         (_, true) => vec![(rigid.ramp, force)],
-        (_, false) => rigid.amplitude.iter().map(|(t, share)| (*t, force.component_mul(share))).collect(),
+        (_, false) => rigid
+            .amplitude
+            .iter()
+            .map(|(t, share)| (*t, force.component_mul(share)))
+            .collect(),
     };
     RigidBody {
         acts: true,
@@ -347,7 +439,10 @@ fn on_plate<K: Kinematics<D>, const D: usize>(
     }
     // Of a disc the part inside the grid.
     let inside = |at: Vector<D>| {
-        at.zip_map(&Vector::from_fn(|axis, _| case.grid.axes[axis].length()), |x, length| x.clamp(0.0, length))
+        at.zip_map(
+            &Vector::from_fn(|axis, _| case.grid.axes[axis].length()),
+            |x, length| x.clamp(0.0, length),
+        )
     };
     surface::within::<K, D>(grid, (&inside(lower), &inside(upper)), (&middle, plate.radius()), count)
 }
@@ -376,7 +471,12 @@ impl Gauge {
     /// The gauge of the case's footing, if there is one.
     pub fn of(case: &Case) -> Option<Self> {
         let footing = case.footing.as_ref()?;
-        let rows = footing.path.rows.iter().map(|(time, moved)| (*time, Vector::from(*moved))).collect();
+        let rows = footing
+            .path
+            .rows
+            .iter()
+            .map(|(time, moved)| (*time, Vector::from(*moved)))
+            .collect();
         let height = case.grid.dims() - 1;
         let (path, down) = (Path { rows }, -unit::<3>(height));
         let whole = path.at(case.analysis.end);
@@ -394,8 +494,18 @@ impl Gauge {
             Site::Face(_) => return None,
         };
         // A base that only slides along itself presses downwards.
-        let side = if normal.dot(&moving).abs() > 1e-9 { normal.dot(&moving) } else { normal.dot(&down) };
-        Some(Self { area, pressing: normal * side.signum(), moving, path, height })
+        let side = if normal.dot(&moving).abs() > 1e-9 {
+            normal.dot(&moving)
+        } else {
+            normal.dot(&down)
+        };
+        Some(Self {
+            area,
+            pressing: normal * side.signum(),
+            moving,
+            path,
+            height,
+        })
     }
 
     /// Mean normal pressure on the base, Pa, compression positive.
@@ -421,5 +531,9 @@ fn padded(of: &[f64]) -> Vector<3> {
 
 /// Largest slip of a step over its motion; 0 where nothing moved.
 pub fn relative_slip(report: &StripReport) -> f64 {
-    if report.motion > 0.0 { report.slip / report.motion } else { 0.0 }
+    if report.motion > 0.0 {
+        report.slip / report.motion
+    } else {
+        0.0
+    }
 }

@@ -50,7 +50,14 @@ const DAY: f64 = 86_400.0;
 const UNITS: [(Dimension, &[(&str, Worth)]); 10] = [
     (
         Dimension::Length,
-        &[("m", Ten(0)), ("cm", Ten(-2)), ("mm", Ten(-3)), ("um", Ten(-6)), ("nm", Ten(-9)), ("km", Ten(3))],
+        &[
+            ("m", Ten(0)),
+            ("cm", Ten(-2)),
+            ("mm", Ten(-3)),
+            ("um", Ten(-6)),
+            ("nm", Ten(-9)),
+            ("km", Ten(3)),
+        ],
     ),
     (
         Dimension::Time,
@@ -79,8 +86,14 @@ const UNITS: [(Dimension, &[(&str, Worth)]); 10] = [
             ("MN/m2", Ten(6)),
         ],
     ),
-    (Dimension::Density, &[("kg/m3", Ten(0)), ("t/m3", Ten(3)), ("g/cm3", Ten(3))]),
-    (Dimension::UnitWeight, &[("N/m3", Ten(0)), ("kN/m3", Ten(3)), ("MN/m3", Ten(6))]),
+    (
+        Dimension::Density,
+        &[("kg/m3", Ten(0)), ("t/m3", Ten(3)), ("g/cm3", Ten(3))],
+    ),
+    (
+        Dimension::UnitWeight,
+        &[("N/m3", Ten(0)), ("kN/m3", Ten(3)), ("MN/m3", Ten(6))],
+    ),
     (Dimension::Angle, &[("deg", Ten(0)), ("rad", Radian)]),
     (
         Dimension::Velocity,
@@ -97,8 +110,19 @@ const UNITS: [(Dimension, &[(&str, Worth)]); 10] = [
             ("m/year", Over(365.25 * DAY)),
         ],
     ),
-    (Dimension::Acceleration, &[("m/s2", Ten(0)), ("cm/s2", Ten(-2)), ("mm/s2", Ten(-3)), ("g", Times(9.806_65))]),
-    (Dimension::LineForce, &[("N/m", Ten(0)), ("kN/m", Ten(3)), ("MN/m", Ten(6))]),
+    (
+        Dimension::Acceleration,
+        &[
+            ("m/s2", Ten(0)),
+            ("cm/s2", Ten(-2)),
+            ("mm/s2", Ten(-3)),
+            ("g", Times(9.806_65)),
+        ],
+    ),
+    (
+        Dimension::LineForce,
+        &[("N/m", Ten(0)), ("kN/m", Ten(3)), ("MN/m", Ten(6))],
+    ),
     (Dimension::Force, &[("N", Ten(0)), ("kN", Ten(3)), ("MN", Ten(6))]),
 ];
 
@@ -151,14 +175,30 @@ const NOT_OFFERED: [(Dimension, &[(&str, Worth)]); 6] = [
         ],
     ),
     (Dimension::UnitWeight, &[("pcf", Over(0.3048 / PSF))]),
-    (Dimension::Velocity, &[("ft/s", Times(0.3048)), ("ft/day", Over(DAY / 0.3048))]),
-    (Dimension::LineForce, &[("lbf/ft", Times(0.3048 * PSF)), ("kip/ft", Times(304.8 * PSF))]),
-    (Dimension::Force, &[("lbf", Times(0.3048 * 0.3048 * PSF)), ("kip", Times(304.8 * 0.3048 * PSF))]),
+    (
+        Dimension::Velocity,
+        &[("ft/s", Times(0.3048)), ("ft/day", Over(DAY / 0.3048))],
+    ),
+    (
+        Dimension::LineForce,
+        &[("lbf/ft", Times(0.3048 * PSF)), ("kip/ft", Times(304.8 * PSF))],
+    ),
+    (
+        Dimension::Force,
+        &[
+            ("lbf", Times(0.3048 * 0.3048 * PSF)),
+            ("kip", Times(304.8 * 0.3048 * PSF)),
+        ],
+    ),
 ];
 
 /// Masses per area, which some write for a stress, and the unit of force per area that is meant.
-const MASSES_PER_AREA: [(&str, &str); 4] =
-    [("t/m2", "tf/m2"), ("kg/cm2", "kgf/cm2"), ("kg/m2", "kgf/m2"), ("ton/m2", "tf/m2")];
+const MASSES_PER_AREA: [(&str, &str); 4] = [
+    ("t/m2", "tf/m2"),
+    ("kg/cm2", "kgf/cm2"),
+    ("kg/m2", "kgf/m2"),
+    ("ton/m2", "tf/m2"),
+];
 
 /// The dimensions that have units, in the order of messages.
 pub(crate) fn dimensions() -> impl Iterator<Item = Dimension> {
@@ -182,7 +222,10 @@ impl Dimension {
 
     /// The dimension whose SI unit is called so.
     pub(crate) fn of_unit(name: &str) -> Option<Self> {
-        UNITS.iter().find(|(_, units)| units[0].0 == name).map(|(dimension, _)| *dimension)
+        UNITS
+            .iter()
+            .find(|(_, units)| units[0].0 == name)
+            .map(|(dimension, _)| *dimension)
     }
 
     /// Largest magnitude that is taken for meant: what is derived from such values stays finite.
@@ -247,7 +290,10 @@ pub fn parse(text: &str, expected: Dimension) -> Result<f64, String> {
 
 /// Value of `text`, a number followed by a unit of the dimension `of` and `/m`, e.g. `"2 kPa/m"`, in SI.
 pub(crate) fn parse_per_metre(text: &str, of: Dimension) -> Result<f64, String> {
-    let upper = text.trim().strip_suffix('m').and_then(|rest| rest.trim_end().strip_suffix('/'));
+    let upper = text
+        .trim()
+        .strip_suffix('m')
+        .and_then(|rest| rest.trim_end().strip_suffix('/'));
     let units: Vec<String> = of.units().map(|unit| format!("{unit}/m")).collect();
     let wrong = || {
         format!(
@@ -275,7 +321,12 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
              (angles in degrees)."
         ));
     }
-    let plain = unit.replace('²', "2").replace('³', "3").replace(['µ', 'μ'], "u").replace('^', "").replace('°', "deg");
+    let plain = unit
+        .replace('²', "2")
+        .replace('³', "3")
+        .replace(['µ', 'μ'], "u")
+        .replace('^', "")
+        .replace('°', "deg");
     if let Some((mass, force)) = MASSES_PER_AREA.iter().find(|(mass, _)| *mass == plain) {
         return Err(format!(
             "E0021: `{mass}` in \"{written}\" is a mass per area, not a stress. Write a force per area: `{force}`."
@@ -284,10 +335,15 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
     let alias = ALIASES.iter().find(|(alias, _)| *alias == plain);
     let plain = alias.map_or(plain, |(_, name)| (*name).to_owned());
     let known = |(dimension, units): &(Dimension, &'static [(&'static str, Worth)])| {
-        units.iter().find(|(name, _)| *name == plain).map(|(_, worth)| (*dimension, *worth))
+        units
+            .iter()
+            .find(|(name, _)| *name == plain)
+            .map(|(_, worth)| (*dimension, *worth))
     };
     let Some((dimension, worth)) = UNITS.iter().chain(&NOT_OFFERED).find_map(known) else {
-        let all = UNITS.iter().filter(|(dimension, _)| meant.is_none_or(|meant| meant == *dimension));
+        let all = UNITS
+            .iter()
+            .filter(|(dimension, _)| meant.is_none_or(|meant| meant == *dimension));
         let near = hint(&plain, all.flat_map(|(_, units)| units.iter().map(|(name, _)| *name)));
         let end = if near.is_empty() { "." } else { &near };
         let known = meant.map_or(String::new(), |dimension| format!(" Known units: {}.", list(dimension)));
@@ -305,9 +361,9 @@ pub(crate) fn finite(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().unwrap_or(f64::NAN);
     let mantissa = text.split(['e', 'E']).next().unwrap_or(text);
     match value {
-        _ if value.is_nan() || text.contains("inf") => {
-            Err(format!("E0010: {written} is infinite or not a number. Write a finite number."))
-        }
+        _ if value.is_nan() || text.contains("inf") => Err(format!(
+            "E0010: {written} is infinite or not a number. Write a finite number."
+        )),
         _ if value.is_infinite() => Err(format!(
             "E0010: {written} is too large: the largest number that the program can read is 1.8e308. Correct the \
                  exponent of the number."
@@ -362,16 +418,27 @@ fn split(text: &str) -> Option<(&str, &str)> {
 }
 
 fn table(dimension: Dimension) -> &'static [(&'static str, Worth)] {
-    UNITS.iter().find(|(known, _)| *known == dimension.units_of()).map_or(&[], |(_, units)| *units)
+    UNITS
+        .iter()
+        .find(|(known, _)| *known == dimension.units_of())
+        .map_or(&[], |(_, units)| *units)
 }
 
 fn list(dimension: Dimension) -> String {
     let units: Vec<&str> = dimension.units().collect();
-    if units.is_empty() { "none: a pure number".to_owned() } else { units.join(", ") }
+    if units.is_empty() {
+        "none: a pure number".to_owned()
+    } else {
+        units.join(", ")
+    }
 }
 
 fn noun(dimension: Dimension) -> String {
-    dimension.to_string().trim_start_matches("an ").trim_start_matches("a ").to_owned()
+    dimension
+        .to_string()
+        .trim_start_matches("an ")
+        .trim_start_matches("a ")
+        .to_owned()
 }
 
 #[cfg(test)]
@@ -425,7 +492,11 @@ mod tests {
             ("2.2 GPa", Stress, 2.2e9),
         ];
         for (text, dimension, value) in rows {
-            assert_eq!(parse(text, dimension).map(f64::to_bits), Ok(f64::to_bits(value)), "{text}");
+            assert_eq!(
+                parse(text, dimension).map(f64::to_bits),
+                Ok(f64::to_bits(value)),
+                "{text}"
+            );
         }
         assert!((parse("0.5 rad", Angle).unwrap() - 0.5_f64.to_degrees()).abs() < 1e-15);
         assert_eq!(parse("-0.0 m", Length).map(f64::to_bits), Ok(0));
@@ -433,11 +504,18 @@ mod tests {
 
     #[test]
     fn growth_per_metre() {
-        for (text, of, value) in [("2 kPa/m", Stress, 2e3), ("-.5deg / m", Angle, -0.5), ("3 kN/m2/m", Stress, 3e3)] {
+        for (text, of, value) in [
+            ("2 kPa/m", Stress, 2e3),
+            ("-.5deg / m", Angle, -0.5),
+            ("3 kN/m2/m", Stress, 3e3),
+        ] {
             assert_eq!(parse_per_metre(text, of), Ok(value), "{text}");
         }
         for (text, says) in [
-            ("2 kPa", "must be a unit per metre, because the value is a change with height. Use one of Pa/m, kPa/m"),
+            (
+                "2 kPa",
+                "must be a unit per metre, because the value is a change with height. Use one of Pa/m, kPa/m",
+            ),
             ("2 m/m", "expected a stress"),
             ("/m", "E0022"),
         ] {
@@ -449,11 +527,19 @@ mod tests {
     #[test]
     fn wrong_units_say_which() {
         let rows = [
-            ("5 kPa", Length, "expected a length (m, cm, mm, um, nm, km), found `kPa`, a unit of stress"),
+            (
+                "5 kPa",
+                Length,
+                "expected a length (m, cm, mm, um, nm, km), found `kPa`, a unit of stress",
+            ),
             ("5 m", Number, "expected a pure number, found `m`, a unit of length"),
             ("5", Length, "has no unit"),
             ("5 KPa", Stress, "did you mean `kPa`?"),
-            ("5 t/m2", Stress, "is a mass per area, not a stress. Write a force per area: `tf/m2`"),
+            (
+                "5 t/m2",
+                Stress,
+                "is a mass per area, not a stress. Write a force per area: `tf/m2`",
+            ),
             ("5 kg/cm2", Stress, "Write a force per area: `kgf/cm2`"),
             (
                 "5 furlong",
@@ -465,12 +551,20 @@ mod tests {
             ("inf m", Length, "E0022"),
             ("1e400 m", Length, "too large"),
             ("1e-400 m", Length, "too small"),
-            ("1e99999999999999999999 m", Length, "too large or too small for the program"),
+            (
+                "1e99999999999999999999 m",
+                Length,
+                "too large or too small for the program",
+            ),
             ("1_000 m", Length, "E0020"),
             ("", Length, "E0022"),
             ("-", Length, "E0022"),
             ("5 \u{202e}m", Length, "\\u{202e}"),
-            ("5 kN", LineForce, "expected a force per metre of thickness (N/m, kN/m, MN/m), found `kN`"),
+            (
+                "5 kN",
+                LineForce,
+                "expected a force per metre of thickness (N/m, kN/m, MN/m), found `kN`",
+            ),
             ("5 kPa", Force, "expected a force (N, kN, MN)"),
             ("5 kPa", LineForce, "expected a force per metre of thickness (N/m"),
         ];

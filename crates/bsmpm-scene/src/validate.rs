@@ -96,25 +96,41 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     let (placed, made) = (grid.as_ref(), bodies.as_deref());
     let mut gravity = gravity(record, regime, end, report);
     let water = water::read(record, (placed, gravity.as_ref()), regime, end, report);
-    let shaking =
-        load::shaking(record, (regime, analysis.as_ref().map(|analysis| (analysis.end, analysis.dt))), report);
+    let shaking = load::shaking(
+        record,
+        (regime, analysis.as_ref().map(|analysis| (analysis.end, analysis.dt))),
+        report,
+    );
     let around = site::AroundStrip {
         grid: placed,
         bodies: made,
         boundary,
         factor,
         end,
-        dt: analysis.as_ref().filter(|of| of.kind != AnalysisType::Consolidation).map(|analysis| analysis.dt),
+        dt: analysis
+            .as_ref()
+            .filter(|of| of.kind != AnalysisType::Consolidation)
+            .map(|analysis| analysis.dt),
     };
     let mut footing = strip::footing(record, around, report);
     let mut prescribed = strip::prescribed(record, around, report);
     let mut rigid = rigid::read_all(record, (around, regime), factor, report);
-    let moved = limit_load::MovedBodies { footing: footing.as_mut(), prescribed: &mut prescribed, rigid: &mut rigid };
+    let moved = limit_load::MovedBodies {
+        footing: footing.as_mut(),
+        prescribed: &mut prescribed,
+        rigid: &mut rigid,
+    };
     let stiffness = limit_load::shrink(record, placed, moved, report);
     let reduction = material::Reduction::of(record, stiffness);
     let geometry = record.word("geometry");
-    let facts =
-        material::CaseFacts { regime, geometry, grid: placed, bodies: made, stages: stages.as_deref(), reduction };
+    let facts = material::CaseFacts {
+        regime,
+        geometry,
+        grid: placed,
+        bodies: made,
+        stages: stages.as_deref(),
+        reduction,
+    };
     let materials = material::read_all(record, facts, report);
     let flow = flow::read(record, materials.as_deref(), (around, stages.as_deref()), report);
     let mut tractions = load::tractions(record, around, report);
@@ -122,13 +138,20 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     let mut initial = load::initial(record, (materials.as_deref(), made), gravity.as_ref(), regime, report);
     if let Some(end) = end.filter(|_| load::is_unloaded(record)) {
         initial = None;
-        load::grow((gravity.as_mut(), &mut tractions, &mut point_loads, &mut rigid), end, report);
+        load::grow(
+            (gravity.as_mut(), &mut tractions, &mut point_loads, &mut rigid),
+            end,
+            report,
+        );
     }
     let stabilisation = stabilisation(record);
     let solver = solver::read(record, regime, (grid.as_ref(), materials.as_deref()), report);
     let output = output::read(record, end, report);
-    let histories =
-        history::read_all(record, (regime, grid.as_ref(), materials.as_deref().zip(bodies.as_deref())), report);
+    let histories = history::read_all(
+        record,
+        (regime, grid.as_ref(), materials.as_deref().zip(bodies.as_deref())),
+        report,
+    );
     let profiles = profile::read_all(record, (regime, grid.as_ref(), end), report);
     let checks = history::checks(record, &histories, end, report);
     let elements = element::read_all(record, (materials.as_deref(), placed), report);
@@ -192,7 +215,15 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     section::warn_of_neighbours(&case, record, report);
     let inside_cells = lines::place(&mut case, record, report);
     solver::fit_weights(&mut case, record, report);
-    limit_load::complete(&mut case, record, limit_load::Preparation { stiffness, inside_cells }, report);
+    limit_load::complete(
+        &mut case,
+        record,
+        limit_load::Preparation {
+            stiffness,
+            inside_cells,
+        },
+        report,
+    );
     meeting::check(&case, record, report);
     opening::check(&mut case, record, report);
     touching::check(&case, record, report);
@@ -208,7 +239,12 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
     axisymmetric::check(&case, record, report);
     waves::check(&case, record, report);
     let renamings = report.take_renamings();
-    Some(Case { renamings, warnings: report.take_warnings(), notes: std::mem::take(&mut report.notes), ..case })
+    Some(Case {
+        renamings,
+        warnings: report.take_warnings(),
+        notes: std::mem::take(&mut report.notes),
+        ..case
+    })
 }
 
 fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>) -> Option<Analysis> {
@@ -218,7 +254,11 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
     let end = match (analysis.gives("end"), kind) {
         (true, _) => analysis.number("end")?,
         (false, AnalysisType::QuasiStatic) => {
-            report.note("analysis.end", "1.0", "default: a quasi-static analysis runs from pseudo-time 0 to 1");
+            report.note(
+                "analysis.end",
+                "1.0",
+                "default: a quasi-static analysis runs from pseudo-time 0 to 1",
+            );
             1.0
         }
         (false, AnalysisType::Dynamic | AnalysisType::InTime | AnalysisType::Consolidation) => {
@@ -283,18 +323,33 @@ fn growth(analysis: &Record, (kind, dt): (AnalysisType, f64), report: &mut Repor
             return None;
         }
     }
-    let most = if analysis.gives("dt_max") { analysis.number("dt_max")? } else { f64::INFINITY };
+    let most = if analysis.gives("dt_max") {
+        analysis.number("dt_max")?
+    } else {
+        f64::INFINITY
+    };
     if most < dt {
-        analysis.error("dt_max", format!("E0260: dt_max = {most} is less than dt = {dt}. Increase dt_max."), report);
+        analysis.error(
+            "dt_max",
+            format!("E0260: dt_max = {most} is less than dt = {dt}. Increase dt_max."),
+            report,
+        );
         return None;
     }
-    let factor = if analysis.gives("growth") { analysis.number("growth")? } else { 1.0 };
+    let factor = if analysis.gives("growth") {
+        analysis.number("growth")?
+    } else {
+        1.0
+    };
     Some((factor > 1.0 && most > dt).then_some((factor, most)))
 }
 
 /// Numerical damping, of which only a dynamic analysis can have any.
 fn newmark(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> Option<Newmark> {
-    let Some(key) = ["spectral_radius", "newmark_gamma"].into_iter().find(|key| analysis.gives(key)) else {
+    let Some(key) = ["spectral_radius", "newmark_gamma"]
+        .into_iter()
+        .find(|key| analysis.gives(key))
+    else {
         return Some(Newmark::default());
     };
     if regime == Regime::QuasiStatic {
@@ -326,7 +381,10 @@ fn wall_velocity(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> 
 pub(crate) fn boundary(record: &Record) -> Option<[[Support; 2]; 3]> {
     let boundary = record.record("boundary")?;
     let mut supports = [[Support::Free; 2]; 3];
-    for (own, sides) in supports.iter_mut().zip(Side::of(record.word("geometry").unwrap_or(Geometry::PlaneStrain))) {
+    for (own, sides) in supports
+        .iter_mut()
+        .zip(Side::of(record.word("geometry").unwrap_or(Geometry::PlaneStrain)))
+    {
         *own = [support(boundary, sides[0])?, support(boundary, sides[1])?];
     }
     Some(supports)
@@ -344,8 +402,14 @@ fn support(boundary: &Record, side: Side) -> Option<Support> {
 fn contacts(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<[[Option<Contact>; 2]; 3]> {
     let boundary = record.record("boundary")?;
     let mut contacts = [[None; 2]; 3];
-    for (own, sides) in contacts.iter_mut().zip(Side::of(record.word("geometry").unwrap_or(Geometry::PlaneStrain))) {
-        *own = [contact(boundary, sides[0], factor, report)?, contact(boundary, sides[1], factor, report)?];
+    for (own, sides) in contacts
+        .iter_mut()
+        .zip(Side::of(record.word("geometry").unwrap_or(Geometry::PlaneStrain)))
+    {
+        *own = [
+            contact(boundary, sides[0], factor, report)?,
+            contact(boundary, sides[1], factor, report)?,
+        ];
     }
     Some(contacts)
 }
@@ -353,7 +417,10 @@ fn contacts(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Op
 /// What a face does if it is in contact, its friction divided by the `factor` of the strength; none after an error.
 fn contact(boundary: &Record, side: Side, factor: Option<f64>, report: &mut Report<'_>) -> Option<Option<Contact>> {
     let Some(face) = boundary.record(side.word()) else {
-        let smooth = Contact { friction: 0.0, lifts: true };
+        let smooth = Contact {
+            friction: 0.0,
+            lifts: true,
+        };
         return Some((support(boundary, side)? == Support::Contact).then_some(smooth));
     };
     Some(Some(law(face, factor, report)?))
@@ -379,13 +446,18 @@ fn law(face: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<Co
 
 fn gravity(record: &Record, regime: Option<Regime>, end: Option<f64>, report: &mut Report<'_>) -> Option<Gravity> {
     let table = record.record("gravity")?;
-    let gravity = Gravity { acceleration: table.vector("acceleration")?, ramp: table.number("ramp")? };
+    let gravity = Gravity {
+        acceleration: table.vector("acceleration")?,
+        ramp: table.number("ramp")?,
+    };
     let Gravity { acceleration, ramp } = gravity;
     let dims = record.word::<Geometry>("geometry")?.dims();
     let is_pseudo_static =
         regime == Some(Regime::QuasiStatic) && !gravity.is_straight(dims) && acceleration[dims - 1] < 0.0;
     if is_pseudo_static {
-        let coefficients = acceleration[..dims - 1].iter().map(|part| format!("{:.4}", -part / acceleration[dims - 1]));
+        let coefficients = acceleration[..dims - 1]
+            .iter()
+            .map(|part| format!("{:.4}", -part / acceleration[dims - 1]));
         let written = coefficients.collect::<Vec<_>>().join(", ");
         report.note(
             "gravity.acceleration",

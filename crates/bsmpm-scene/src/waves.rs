@@ -37,27 +37,56 @@ pub(crate) struct WaveInput {
 
 /// The inputs of a case that a record or a table gives, but for those that make no wave.
 pub(crate) fn inputs(root: &Record) -> Vec<WaveInput> {
-    let Some(end) = root.record("analysis").and_then(|analysis| analysis.number("end")) else { return Vec::new() };
+    let Some(end) = root.record("analysis").and_then(|analysis| analysis.number("end")) else {
+        return Vec::new();
+    };
     let mut found = Vec::new();
     let mut add = |record: &Record, kind: InputKind, rows: &[ListRow], axis: Option<usize>| {
-        let rows = rows.iter().map(|row| (row.numbers[0], row.numbers[1..].to_vec())).collect();
+        let rows = rows
+            .iter()
+            .map(|row| (row.numbers[0], row.numbers[1..].to_vec()))
+            .collect();
         let frequency = Signal { kind, rows }.frequency(end);
-        found.extend(frequency.map(|frequency| WaveInput { name: record.path.clone(), frequency, axis }));
+        found.extend(frequency.map(|frequency| WaveInput {
+            name: record.path.clone(),
+            frequency,
+            axis,
+        }));
     };
-    if let Some((record, rows)) = root.record("shaking").and_then(|of| Some((of, of.rows("acceleration")?))) {
-        add(record, InputKind::Acceleration, rows, guided(root, record, columns(rows)));
+    if let Some((record, rows)) = root
+        .record("shaking")
+        .and_then(|of| Some((of, of.rows("acceleration")?)))
+    {
+        add(
+            record,
+            InputKind::Acceleration,
+            rows,
+            guided(root, record, columns(rows)),
+        );
     }
     for (table, record) in LOADED.into_iter().flat_map(|table| listed(root, table)) {
         for (key, rows) in FORCES.into_iter().filter_map(|key| Some((key, record.rows(key)?))) {
-            let along = if key == "amplitude" { stress(record) } else { columns(rows) };
-            let axis = if table == "traction" { guided(root, record, pressure(record).or(along)) } else { None };
+            let along = if key == "amplitude" {
+                stress(record)
+            } else {
+                columns(rows)
+            };
+            let axis = if table == "traction" {
+                guided(root, record, pressure(record).or(along))
+            } else {
+                None
+            };
             add(record, InputKind::Force, rows, axis);
         }
     }
     let footing = root.record("footing").map(|record| ("footing", record));
     for (table, record) in listed(root, "prescribed").chain(footing) {
         if let Some(rows) = record.rows("path") {
-            let axis = if table == "prescribed" { guided(root, record, columns(rows)) } else { None };
+            let axis = if table == "prescribed" {
+                guided(root, record, columns(rows))
+            } else {
+                None
+            };
             add(record, InputKind::Motion, rows, axis);
         }
     }
@@ -77,7 +106,10 @@ fn only(is_along: impl Fn(usize) -> bool) -> Option<usize> {
 
 /// The only axis along which rows `[t, x, y, ...]` do anything.
 fn columns(rows: &[ListRow]) -> Option<usize> {
-    only(|axis| rows.iter().any(|row| row.numbers.get(1 + axis).is_some_and(|number| *number != 0.0)))
+    only(|axis| {
+        rows.iter()
+            .any(|row| row.numbers.get(1 + axis).is_some_and(|number| *number != 0.0))
+    })
 }
 
 /// The only axis along which a traction acts.
@@ -104,7 +136,9 @@ fn guided(root: &Record, record: &Record, along: Option<usize>) -> Option<usize>
     let boundary = root.record("boundary")?;
     let is_roller = |side: Side| boundary.word(side.word()) == Some(Support::Roller);
     let sides = Side::of(root.word("geometry")?);
-    let is_guided = (0..sides.len()).filter(|of| *of != axis).all(|of| sides[of].into_iter().all(is_roller));
+    let is_guided = (0..sides.len())
+        .filter(|of| *of != axis)
+        .all(|of| sides[of].into_iter().all(is_roller));
     let is_whole = record.gives("face") || record.path == "shaking" || axis < 2 && covers(root, record, 1 - axis);
     (is_guided && is_whole).then_some(axis)
 }
@@ -112,9 +146,14 @@ fn guided(root: &Record, record: &Record, along: Option<usize>) -> Option<usize>
 /// Whether the segment of a table reaches across all bodies along an axis, in a plane.
 fn covers(root: &Record, record: &Record, across: usize) -> bool {
     let corners: Option<Vec<[[f64; 2]; 2]>> = root.records("body").iter().map(crate::preset::around).collect();
-    let Some((corners, ends)) = corners.filter(|corners| !corners.is_empty()).zip(ends(record)) else { return false };
+    let Some((corners, ends)) = corners.filter(|corners| !corners.is_empty()).zip(ends(record)) else {
+        return false;
+    };
     let bounds = region::bounds(&corners.concat());
-    let [lower, upper] = [ends[0][across].min(ends[1][across]), ends[0][across].max(ends[1][across])];
+    let [lower, upper] = [
+        ends[0][across].min(ends[1][across]),
+        ends[0][across].max(ends[1][across]),
+    ];
     let slack = 1e-9 * (bounds[1][across] - bounds[0][across]);
     lower <= bounds[0][across] + slack && upper >= bounds[1][across] - slack
 }

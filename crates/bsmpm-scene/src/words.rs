@@ -61,12 +61,18 @@ pub struct RemovedWord {
 impl Words {
     /// The word of now for a word of an earlier version.
     pub fn renamed(&self, earlier: &str) -> Option<&'static str> {
-        self.earlier.iter().find(|(word, _)| *word == earlier).map(|(_, now)| *now)
+        self.earlier
+            .iter()
+            .find(|(word, _)| *word == earlier)
+            .map(|(_, now)| *now)
     }
 
     /// Words and what they mean.
     pub fn all(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
-        self.auto.into_iter().chain(self.words.iter().copied()).map(|(word, doc)| (word, doc.trim_start()))
+        self.auto
+            .into_iter()
+            .chain(self.words.iter().copied())
+            .map(|(word, doc)| (word, doc.trim_start()))
     }
 
     /// The words.
@@ -77,10 +83,17 @@ impl Words {
 
 /// What the word `auto` leaves to the program is `None`.
 impl<T: Word> Word for Option<T> {
-    const WORDS: Words = Words { auto: Some((AUTO, "Chosen by the program.")), ..T::WORDS };
+    const WORDS: Words = Words {
+        auto: Some((AUTO, "Chosen by the program.")),
+        ..T::WORDS
+    };
 
     fn of(word: &str) -> Option<Self> {
-        if word == AUTO { Some(None) } else { T::of(word).map(Some) }
+        if word == AUTO {
+            Some(None)
+        } else {
+            T::of(word).map(Some)
+        }
     }
 
     fn word(self) -> &'static str {

@@ -132,11 +132,26 @@ fn a_case_with_earlier_names_is_the_same_case_and_each_name_is_noted_once() {
     assert!(now.renamings.is_empty());
     let friction = "material.soil.friction, material.sand.friction and material.cone.friction: `friction` is now called \
     `friction_angle`. Replace the earlier name, which is still read.";
-    assert!(earlier.renamings.iter().any(|note| note == friction), "{:#?}", earlier.renamings);
-    for name in
-        ["\"3d\"", "\"elastic\"", "newmark_gamma", "degree", "fit", "\"gap\"", "centre", "interface", "deactivate"]
-    {
-        let notes = earlier.renamings.iter().filter(|note| note.contains(&format!("is now called `{name}`.")));
+    assert!(
+        earlier.renamings.iter().any(|note| note == friction),
+        "{:#?}",
+        earlier.renamings
+    );
+    for name in [
+        "\"3d\"",
+        "\"elastic\"",
+        "newmark_gamma",
+        "degree",
+        "fit",
+        "\"gap\"",
+        "centre",
+        "interface",
+        "deactivate",
+    ] {
+        let notes = earlier
+            .renamings
+            .iter()
+            .filter(|note| note.contains(&format!("is now called `{name}`.")));
         assert_eq!(notes.count(), 1, "{name}: {:#?}", earlier.renamings);
     }
     for earlier in ["hencky", "lifts", "center", "\"solid\""] {
@@ -147,21 +162,36 @@ fn a_case_with_earlier_names_is_the_same_case_and_each_name_is_noted_once() {
 #[test]
 fn overrides_with_earlier_names_set_the_keys_of_now() {
     let now = now();
-    let case =
-        read(&now, &["material.soil.friction=28", "grid.order=quadratic", "material.rock.model=hencky"]).unwrap();
+    let case = read(
+        &now,
+        &[
+            "material.soil.friction=28",
+            "grid.order=quadratic",
+            "material.rock.model=hencky",
+        ],
+    )
+    .unwrap();
     let expected = read(&now, &["material.soil.friction_angle=28", "grid.degree=quadratic"]).unwrap();
     assert_eq!(differences(&case.text, &expected.text).unwrap(), []);
     assert_eq!(case.renamings.len(), 3, "{:#?}", case.renamings);
-    let case =
-        read(&now, &["rigid.0={ name = 'plate', box = { lower = [2, 2, 3], upper = [4, 4, 3.5] }, friction = 0.1 }"]);
+    let case = read(
+        &now,
+        &["rigid.0={ name = 'plate', box = { lower = [2, 2, 3], upper = [4, 4, 3.5] }, friction = 0.1 }"],
+    );
     assert_eq!(case.unwrap().rigid[0].friction, 0.1);
 }
 
 #[test]
 fn an_earlier_name_beside_that_of_now_is_refused() {
-    let both = now().replace("friction_angle = 30\ndilation", "friction_angle = 30\nfriction = 30\ndilation");
+    let both = now().replace(
+        "friction_angle = 30\ndilation",
+        "friction_angle = 30\nfriction = 30\ndilation",
+    );
     let message = read(&both, &[]).unwrap_err();
-    assert!(message.contains("is the earlier name of the key `friction_angle`, and the case gives both"), "{message}");
+    assert!(
+        message.contains("is the earlier name of the key `friction_angle`, and the case gives both"),
+        "{message}"
+    );
     assert!(!message.contains("E0011"), "{message}");
 }
 
@@ -187,12 +217,27 @@ density = 1800
     let numbers = |case: Case| case.materials[0].material.parameters();
     let textbook = numbers(clay("kappa = 0.04\nlambda = 0.2\nvoid_ratio = 1.5").unwrap());
     let starred = numbers(clay("kappa_star = 0.016\nlambda_star = 0.08").unwrap());
-    assert!(textbook.iter().zip(&starred).all(|(a, b)| (a - b).abs() <= 1e-15 * b.abs()), "{textbook:?} {starred:?}");
+    assert!(
+        textbook
+            .iter()
+            .zip(&starred)
+            .all(|(a, b)| (a - b).abs() <= 1e-15 * b.abs()),
+        "{textbook:?} {starred:?}"
+    );
     let message = clay("kappa = 0.04\nlambda = 0.2").unwrap_err();
-    for part in ["material.clay.kappa", "E0314", "Add `void_ratio`", "`kappa_star` = kappa/(1 + e0)"] {
+    for part in [
+        "material.clay.kappa",
+        "E0314",
+        "Add `void_ratio`",
+        "`kappa_star` = kappa/(1 + e0)",
+    ] {
         assert!(message.contains(part), "{part}: {message}");
     }
-    assert!(clay("kappa_star = 0.04").unwrap_err().contains("Add `lambda_star`, or `lambda` and `void_ratio`"));
+    assert!(
+        clay("kappa_star = 0.04")
+            .unwrap_err()
+            .contains("Add `lambda_star`, or `lambda` and `void_ratio`")
+    );
     // The text of a run that was made before had the starred slopes by these names.
     let before = format!("{CLAY}kappa = 0.016\nlambda = 0.08");
     let now = format!("{CLAY}kappa_star = 0.016\nlambda_star = 0.08");
@@ -208,10 +253,16 @@ fn earlier_names_lead_to_names_of_now() {
             for earlier in key.earlier {
                 assert!(table.key(earlier).is_none(), "{} of {}", earlier, table.header);
             }
-            let (Kind::Choice(words) | Kind::ChoiceOr(words, _) | Kind::Choices(words)) = &key.kind else { continue };
+            let (Kind::Choice(words) | Kind::ChoiceOr(words, _) | Kind::Choices(words)) = &key.kind else {
+                continue;
+            };
             for (earlier, now) in words.earlier {
                 let known: Vec<&str> = words.words().collect();
-                assert!(known.contains(now) && !known.contains(earlier), "{earlier} of {}", key.name);
+                assert!(
+                    known.contains(now) && !known.contains(earlier),
+                    "{earlier} of {}",
+                    key.name
+                );
             }
         }
     }

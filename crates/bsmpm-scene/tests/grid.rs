@@ -22,7 +22,10 @@ fn a_place_on_a_face_has_a_cell_wherever_the_grid_starts() {
             for upper in [grid.upper()[0], written] {
                 missed += usize::from(upper - lower > length);
                 let found = grid.local([upper, grid.upper()[1]]);
-                assert!(found.iter().all(|x| *x <= length && *x >= length - 1e-13), "{lower} {cells}: {found:?}");
+                assert!(
+                    found.iter().all(|x| *x <= length && *x >= length - 1e-13),
+                    "{lower} {cells}: {found:?}"
+                );
             }
             assert_eq!(grid.local([grid.lower()[0], grid.lower()[1]]), [0.0; 2]);
         }

@@ -22,7 +22,11 @@ fn averages_do_not_mix_materials_of_different_stiffness_and_weigh_different_dens
         (&["material.light.young=2e9"][..], 2, Weighting::Volume),
     ] {
         let case = layers(changes);
-        assert_eq!((model::groups(&case).count(), model::weighting(&case)), (groups, weighting), "{changes:?}");
+        assert_eq!(
+            (model::groups(&case).count(), model::weighting(&case)),
+            (groups, weighting),
+            "{changes:?}"
+        );
     }
 }
 
@@ -53,7 +57,10 @@ fn interfaces_beyond_what_was_verified_have_a_warning() {
     assert!(warned(&[EQUAL, "material.light.young=1e13"]).is_empty());
     assert!(warned(&[soft, EQUAL, "material.light.young=1e11"]).is_empty());
     let moving = warned(&[soft, EQUAL, "material.light.young=1.1e11"]);
-    assert!(moving.len() == 1 && moving[0].contains("differs by a factor of 110 "), "{moving:?}");
+    assert!(
+        moving.len() == 1 && moving[0].contains("differs by a factor of 110 "),
+        "{moving:?}"
+    );
     // Inside cells, by moduli and by densities.
     for (changes, count) in [
         ([EQUAL, "material.light.young=2e9"], 1),
@@ -79,7 +86,10 @@ fn shapes(shapes: &[&str]) -> Vec<String> {
         text += &format!("[[body]]\nmaterial = \"m\"\npoints_per_cell = 4\n{shape}\n");
     }
     let warnings = Case::from_text("case.toml", &text, &[]).expect("valid").warnings;
-    warnings.into_iter().filter(|warning| warning.starts_with("W0228")).collect()
+    warnings
+        .into_iter()
+        .filter(|warning| warning.starts_with("W0228"))
+        .collect()
 }
 
 #[test]
@@ -96,11 +106,20 @@ fn bodies_that_are_apart_by_less_than_a_cell_are_warned_of() {
         assert_eq!(shapes(&[GROUND, &block(lower)]), [""; 0], "{lower}");
     }
     assert_eq!(shapes(&[GROUND, "box = { lower = [9, 0], upper = [10, 2] }"]), [""; 0]);
-    assert_eq!(shapes(&[GROUND, "box = { lower = [8.5, 2.5], upper = [10, 4] }"]).len(), 1);
-    assert_eq!(shapes(&[GROUND, "box = { lower = [9, 2.5], upper = [10, 4] }"]), [""; 0]);
+    assert_eq!(
+        shapes(&[GROUND, "box = { lower = [8.5, 2.5], upper = [10, 4] }"]).len(),
+        1
+    );
+    assert_eq!(
+        shapes(&[GROUND, "box = { lower = [9, 2.5], upper = [10, 4] }"]),
+        [""; 0]
+    );
     // A layer that is thinner than a cell fills the gap.
     let layer = "box = { lower = [0, 2], upper = [8, 2.5] }";
-    assert_eq!(shapes(&[GROUND, "box = { lower = [0, 2.5], upper = [8, 4] }", layer]), [""; 0]);
+    assert_eq!(
+        shapes(&[GROUND, "box = { lower = [0, 2.5], upper = [8, 4] }", layer]),
+        [""; 0]
+    );
     // Several gaps are one line, the narrowest first.
     let blocks = [block(2.5), "box = { lower = [5.125, 2.5], upper = [7, 4] }".to_owned()];
     let found = shapes(&[GROUND, &blocks[0], &blocks[1]]);
@@ -131,6 +150,10 @@ fn the_gap_of_other_shapes_is_that_between_their_edges() {
     };
     for (x, warned) in [(4.5, 1), (5.5, 0)] {
         let [one, other] = circles(x);
-        assert_eq!(shapes(&["box = { lower = [0, 0], upper = [8, 1] }", &one, &other]).len(), warned, "{x}");
+        assert_eq!(
+            shapes(&["box = { lower = [0, 0], upper = [8, 1] }", &one, &other]).len(),
+            warned,
+            "{x}"
+        );
     }
 }

@@ -8,7 +8,11 @@ const CLAY: &str = include_str!("../../../cases/limit_load/strip_on_clay.toml");
 const PUNCH: &str = include_str!("../../../cases/limit_load/punch_on_clay.toml");
 
 fn read(text: &str, overrides: &[&str]) -> Result<Case, Vec<Error>> {
-    Case::from_text("case.toml", text, &overrides.iter().map(ToString::to_string).collect::<Vec<_>>())
+    Case::from_text(
+        "case.toml",
+        text,
+        &overrides.iter().map(ToString::to_string).collect::<Vec<_>>(),
+    )
 }
 
 fn valid(text: &str, overrides: &[&str]) -> Case {
@@ -16,8 +20,13 @@ fn valid(text: &str, overrides: &[&str]) -> Case {
 }
 
 fn refused(text: &str, overrides: &[&str], words: &str) {
-    let errors = read(text, overrides).err().unwrap_or_else(|| panic!("{overrides:?} is valid"));
-    assert!(errors.iter().any(|error| error.to_string().contains(words)), "{words}: {errors:#?}");
+    let errors = read(text, overrides)
+        .err()
+        .unwrap_or_else(|| panic!("{overrides:?} is valid"));
+    assert!(
+        errors.iter().any(|error| error.to_string().contains(words)),
+        "{words}: {errors:#?}"
+    );
 }
 
 fn warned(case: &Case, words: &str) -> bool {
@@ -29,13 +38,23 @@ fn it_chooses_points_steps_tolerances_and_the_method_of_the_flow_rule() {
     for (text, method) in [(SAND, Stabilisation::None), (CLAY, Stabilisation::ConsistentFBar)] {
         for accuracy in ["draft", "standard", "reference"] {
             let case = valid(text, &[&format!("accuracy={accuracy}")]);
-            assert_eq!((case.stabilisation, case.grid.order, case.bodies[0].points_per_cell), (method, 2, 2));
+            assert_eq!(
+                (case.stabilisation, case.grid.order, case.bodies[0].points_per_cell),
+                (method, 2, 2)
+            );
             assert_eq!(case.solver.background, 2e-5);
             assert!((case.analysis.dt - 1.0 / 40.0).abs() < 1e-15 && case.solver.force_tolerance <= 1e-4);
         }
-        let by_hand = ["stabilisation.method=f-bar", "analysis.steps=10", "body.0.points_per_cell=3"];
+        let by_hand = [
+            "stabilisation.method=f-bar",
+            "analysis.steps=10",
+            "body.0.points_per_cell=3",
+        ];
         let case = valid(text, &by_hand);
-        assert_eq!((case.stabilisation, case.bodies[0].points_per_cell), (Stabilisation::FBar, 3));
+        assert_eq!(
+            (case.stabilisation, case.bodies[0].points_per_cell),
+            (Stabilisation::FBar, 3)
+        );
         assert_eq!((1.0 / case.analysis.dt).round(), 10.0);
     }
 }
@@ -49,7 +68,11 @@ fn the_ground_becomes_stiff_as_the_displacement_becomes_small() {
     let moved = |case: &Case| case.footing.as_ref().expect("a footing").path.farthest();
     let young = |case: &Case| case.materials[0].material.elastic().young;
     assert!(plain.limit_load.is_none());
-    assert!((moved(&case) - 5e-4 * 0.25).abs() < 1e-3 * moved(&case), "{}", moved(&case));
+    assert!(
+        (moved(&case) - 5e-4 * 0.25).abs() < 1e-3 * moved(&case),
+        "{}",
+        moved(&case)
+    );
     assert!((moved(&case) * sought.stiffness / moved(&plain) - 1.0).abs() < 1e-12);
     assert!((young(&case) / sought.stiffness / young(&plain) - 1.0).abs() < 1e-12);
     // What moves as little as that already keeps its stiffness.
@@ -61,18 +84,36 @@ fn the_ground_becomes_stiff_as_the_displacement_becomes_small() {
 fn loads_are_columns_of_the_history() {
     let case = valid(SAND, &[]);
     let load = &case.limit_load.as_ref().expect("a search").loads[0];
-    assert_eq!((&*load.name, &load.columns[..]), ("footing", &[("N_gamma".to_owned(), 1.0)][..]));
+    assert_eq!(
+        (&*load.name, &load.columns[..]),
+        ("footing", &[("N_gamma".to_owned(), 1.0)][..])
+    );
     let width = load.width.expect("a width");
-    assert_eq!((width.length, width.modelled), (2.0, 0.5), "the roller cuts it in its middle");
+    assert_eq!(
+        (width.length, width.modelled),
+        (2.0, 0.5),
+        "the roller cuts it in its middle"
+    );
     assert!((width.cells - 8.0).abs() < 1e-9, "{width:?}");
     // Without a history of its own there is one more column.
     let case = valid(PUNCH, &[]);
     let load = &case.limit_load.as_ref().expect("a search").loads[0];
     let width = load.width.expect("a width");
-    assert_eq!((&*load.name, width.length, width.modelled), ("punch", 2.0, 0.5), "half of it lies beyond the roller");
+    assert_eq!(
+        (&*load.name, width.length, width.modelled),
+        ("punch", 2.0, 0.5),
+        "half of it lies beyond the roller"
+    );
     assert!((width.cells - 8.0).abs() < 1e-9, "{width:?}");
-    assert_eq!(load.columns, [("punch-load-y".to_owned(), 1.0)], "the soil pushes it up, against its motion");
-    assert!(matches!(case.histories.last().expect("a history").quantity, Quantity::Rigid { body: 0, .. }));
+    assert_eq!(
+        load.columns,
+        [("punch-load-y".to_owned(), 1.0)],
+        "the soil pushes it up, against its motion"
+    );
+    assert!(matches!(
+        case.histories.last().expect("a history").quantity,
+        Quantity::Rigid { body: 0, .. }
+    ));
 }
 
 /// A footing that moves along its base has a force along its motion, and a pressure if it moves along its normal.
@@ -82,9 +123,16 @@ fn the_load_of_a_footing_that_moves_sideways_is_its_force_along_its_motion() {
     let load = &case.limit_load.as_ref().expect("a search").loads[0];
     let columns: Vec<&str> = load.columns.iter().map(|(name, _)| &**name).collect();
     assert_eq!(columns, ["footing-load-x", "footing-load-y"]);
-    assert!((load.columns[0].1 - 0.6).abs() < 1e-12 && (load.columns[1].1 + 0.8).abs() < 1e-12, "{load:?}");
+    assert!(
+        (load.columns[0].1 - 0.6).abs() < 1e-12 && (load.columns[1].1 + 0.8).abs() < 1e-12,
+        "{load:?}"
+    );
     // It moves by less than a thousandth of a cell, so that its end stays on its grid line.
-    assert!(case.warnings.iter().all(|warning| !warning.starts_with("W0226")), "{:?}", case.warnings);
+    assert!(
+        case.warnings.iter().all(|warning| !warning.starts_with("W0226")),
+        "{:?}",
+        case.warnings
+    );
 }
 
 #[test]
@@ -100,12 +148,19 @@ fn motions_along_which_no_limit_load_is_found_are_refused() {
     refused(CLAY, &[wall], "E0450: analysis.purpose: boundary `left`");
     // What cannot be read is no second error.
     let errors = read(CLAY, &["footing.displacement=\"down\""]).expect_err("an error");
-    assert!(errors.iter().all(|error| !error.to_string().contains("E0442")), "{errors:#?}");
+    assert!(
+        errors.iter().all(|error| !error.to_string().contains("E0442")),
+        "{errors:#?}"
+    );
 }
 
 #[test]
 fn what_has_no_limit_load_is_refused() {
-    refused(SAND, &["footing.displacement=[0.0, 0.0]", "footing.interface=rough"], "E0442");
+    refused(
+        SAND,
+        &["footing.displacement=[0.0, 0.0]", "footing.interface=rough"],
+        "E0442",
+    );
     refused(SAND, &["solver.force_tolerance=1e-3"], "E0451");
     refused(SAND, &["strength_reduction.factor=1.2"], "E0445");
     let hardening =
@@ -123,17 +178,26 @@ fn what_has_no_limit_load_is_refused() {
 fn settings_with_which_limit_loads_are_wrong_are_warned_of() {
     assert!(valid(SAND, &[]).warnings.is_empty(), "{:?}", valid(SAND, &[]).warnings);
     assert!(warned(&valid(SAND, &["body.0.points_per_cell=3"]), "W0423"));
-    assert!(warned(&valid(SAND, &["material.sand.dilation_angle=0.0"]), "W0425: material.sand"));
+    assert!(warned(
+        &valid(SAND, &["material.sand.dilation_angle=0.0"]),
+        "W0425: material.sand"
+    ));
     let averaged = "stabilisation.method=consistent-f-bar";
     assert!(warned(&valid(SAND, &[averaged]), "W0426"));
     // Also without the purpose, and not with cohesion.
     let plain = "analysis={ type = \"quasi-static\" }";
     assert!(warned(&valid(SAND, &[averaged, plain]), "W0426"));
-    assert!(!warned(&valid(SAND, &[averaged, "material.sand.cohesion=\"20 kPa\""]), "W0426"));
+    assert!(!warned(
+        &valid(SAND, &[averaged, "material.sand.cohesion=\"20 kPa\""]),
+        "W0426"
+    ));
     // gamma B = 40 kPa.
     let small = valid(SAND, &["material.sand.cohesion=\"0.5 kPa\""]);
     assert!(
-        warned(&small, "W0427: material.sand: the cohesion is small, c / (gamma B) = 1.3e-2"),
+        warned(
+            &small,
+            "W0427: material.sand: the cohesion is small, c / (gamma B) = 1.3e-2"
+        ),
         "{:?}",
         small.warnings
     );

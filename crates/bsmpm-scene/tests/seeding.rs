@@ -26,19 +26,29 @@ fn verify(case: &Case) -> Vec<Seed<2>> {
     let mut ids: Vec<u64> = seeds.iter().map(|seed| seed.id).collect();
     assert_eq!(ids.iter().collect::<HashSet<_>>().len(), seeds.len());
     ids.sort_unstable();
-    assert!(ids.iter().enumerate().all(|(i, id)| i as u64 == *id), "ids count from 0 without gaps");
+    assert!(
+        ids.iter().enumerate().all(|(i, id)| i as u64 == *id),
+        "ids count from 0 without gaps"
+    );
     let area: f64 = case.bodies.iter().map(Body::area).sum();
     let sum: f64 = seeds.iter().map(|seed| seed.volume).sum();
     assert!((sum / area - 1.0).abs() < 1e-12, "{sum} {area}");
     let lower = case.grid.lower();
     for seed in &seeds {
         let x = [seed.x[0] + lower[0], seed.x[1] + lower[1]];
-        let inside =
-            case.bodies.iter().map(Body::bounds).any(|[low, high]| (0..2).all(|i| low[i] < x[i] && x[i] < high[i]));
-        assert!(inside && seed.volume > 0.0 && (seed.mass / seed.volume / 2000.0 - 1.0).abs() < 1e-14, "{seed:?}");
+        let inside = case
+            .bodies
+            .iter()
+            .map(Body::bounds)
+            .any(|[low, high]| (0..2).all(|i| low[i] < x[i] && x[i] < high[i]));
+        assert!(
+            inside && seed.volume > 0.0 && (seed.mass / seed.volume / 2000.0 - 1.0).abs() < 1e-14,
+            "{seed:?}"
+        );
     }
-    let mut parts: Vec<Seed<2>> =
-        (0..columns).flat_map(|column| seed::<PlaneStrain, 2>(case, column..column + 1)).collect();
+    let mut parts: Vec<Seed<2>> = (0..columns)
+        .flat_map(|column| seed::<PlaneStrain, 2>(case, column..column + 1))
+        .collect();
     parts.sort_by_key(|seed| seed.id);
     let mut whole = seeds.clone();
     whole.sort_by_key(|seed| seed.id);
@@ -48,7 +58,11 @@ fn verify(case: &Case) -> Vec<Seed<2>> {
 
 #[test]
 fn whole_cells() {
-    let seeds = verify(&case("lower = [0, 0]\nupper = [2, 2]\ncell = 1", &[[0.0, 0.0, 1.0, 2.0]], 2));
+    let seeds = verify(&case(
+        "lower = [0, 0]\nupper = [2, 2]\ncell = 1",
+        &[[0.0, 0.0, 1.0, 2.0]],
+        2,
+    ));
     let expected = [[0.25, 0.25], [0.25, 0.75], [0.75, 0.25], [0.75, 0.75], [0.25, 1.25]];
     for (seed, x) in seeds.iter().zip(expected) {
         assert_eq!([seed.x[0], seed.x[1]], x);
@@ -71,12 +85,20 @@ fn graded_cells() {
 #[test]
 fn slivers_make_no_points_and_lose_no_area() {
     for off in [0.0, 1e-16, 1e-12, -1e-12, 9e-10, -9e-10] {
-        let case = case("lower = [0, 0]\nupper = [4, 2]\ncell = 1", &[[1.0 + off, 0.0, 3.0 - off, 1.0 + off]], 2);
+        let case = case(
+            "lower = [0, 0]\nupper = [4, 2]\ncell = 1",
+            &[[1.0 + off, 0.0, 3.0 - off, 1.0 + off]],
+            2,
+        );
         assert_eq!(case.points(), 2 * 4, "{off:e}");
         verify(&case);
     }
     for off in [1e-8, 1e-3] {
-        let case = case("lower = [0, 0]\nupper = [4, 2]\ncell = 1", &[[1.0 - off, 0.0, 3.0, 1.0]], 2);
+        let case = case(
+            "lower = [0, 0]\nupper = [4, 2]\ncell = 1",
+            &[[1.0 - off, 0.0, 3.0, 1.0]],
+            2,
+        );
         assert_eq!(case.points(), 3 * 4, "{off:e}");
         verify(&case);
     }
@@ -109,13 +131,27 @@ fn one_point_per_cell_is_warned_of_once_and_only_where_points_lie_far_apart() {
     };
     let warnings = |edge: f64| case("lower = [0, 0]\nupper = [16, 16]\ncell = 1", &boxes(edge), 1).warnings;
     let warned = |edge: f64| -> Vec<String> {
-        warnings(edge).into_iter().filter(|warning| warning.starts_with("W0210")).collect()
+        warnings(edge)
+            .into_iter()
+            .filter(|warning| warning.starts_with("W0210"))
+            .collect()
     };
     assert_eq!(warned(0.5), [""; 0]);
     let found = warned(1.0);
-    assert!(found.len() == 1 && found[0].starts_with("W0210: body.0 and 255 others: "), "{found:?}");
-    let cut = case("lower = [0, 0]\nupper = [2, 2]\ncell = 1", &[[0.0, 0.0, 0.5, 0.75], [0.5, 0.0, 1.0, 0.5]], 1);
-    let found: Vec<_> = cut.warnings.iter().filter(|warning| warning.starts_with("W0210")).collect();
+    assert!(
+        found.len() == 1 && found[0].starts_with("W0210: body.0 and 255 others: "),
+        "{found:?}"
+    );
+    let cut = case(
+        "lower = [0, 0]\nupper = [2, 2]\ncell = 1",
+        &[[0.0, 0.0, 0.5, 0.75], [0.5, 0.0, 1.0, 0.5]],
+        1,
+    );
+    let found: Vec<_> = cut
+        .warnings
+        .iter()
+        .filter(|warning| warning.starts_with("W0210"))
+        .collect();
     assert!(found.len() == 1 && found[0].starts_with("W0210: body.0: "), "{found:?}");
 }
 

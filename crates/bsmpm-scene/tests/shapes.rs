@@ -33,7 +33,10 @@ fn verify(case: &Case, tolerance: f64) -> Vec<Seed<2>> {
     assert_eq!(seeds.len() as u64, case.points());
     assert_eq!(case.points_by_column().iter().sum::<u64>(), case.points());
     let ids: HashSet<u64> = seeds.iter().map(|seed| seed.id).collect();
-    assert!(ids.len() == seeds.len() && ids.iter().all(|id| *id < case.points()), "ids count from 0 without gaps");
+    assert!(
+        ids.len() == seeds.len() && ids.iter().all(|id| *id < case.points()),
+        "ids count from 0 without gaps"
+    );
     let area: f64 = case.bodies.iter().map(Body::area).sum();
     let sum: f64 = seeds.iter().map(|seed| seed.volume).sum();
     assert!((sum / area - 1.0).abs() < tolerance, "{sum} {area}");
@@ -50,7 +53,10 @@ fn verify(case: &Case, tolerance: f64) -> Vec<Seed<2>> {
     seeds.sort_by_key(|seed| seed.id);
     assert_eq!(seeds, parts, "columns one by one give the same points");
     for seed in &mut seeds {
-        assert!(seed.volume > 0.0 && (seed.mass / seed.volume / 2000.0 - 1.0).abs() < 1e-14, "{seed:?}");
+        assert!(
+            seed.volume > 0.0 && (seed.mass / seed.volume / 2000.0 - 1.0).abs() < 1e-14,
+            "{seed:?}"
+        );
         seed.x += bsmpm_scene::model::vector::<2, _>(case.grid.lower());
     }
     seeds
@@ -87,7 +93,10 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
@@ -182,13 +191,23 @@ fn a_polygon_along_the_cells_is_a_box() {
 #[test]
 fn walls_thinner_than_points_lie_apart_are_warned_of() {
     let warned = |thick: f64| {
-        let wall = format!("polygon = [[2.13, 1], [{}, 1], [{}, 9], [6.13, 9]]", 2.13 + thick, 6.13 + thick);
-        case(METRES, &[&wall], 2).warnings.iter().any(|warning| warning.starts_with("W0211"))
+        let wall = format!(
+            "polygon = [[2.13, 1], [{}, 1], [{}, 9], [6.13, 9]]",
+            2.13 + thick,
+            6.13 + thick
+        );
+        case(METRES, &[&wall], 2)
+            .warnings
+            .iter()
+            .any(|warning| warning.starts_with("W0211"))
     };
     assert!(warned(0.05) && !warned(1.0));
     let warned = |thick: f64| {
         let wall = format!("box = {{ lower = [2.13, 1], upper = [{}, 9] }}", 2.13 + thick);
-        case(METRES, &[&wall], 2).warnings.iter().any(|warning| warning.starts_with("W0212"))
+        case(METRES, &[&wall], 2)
+            .warnings
+            .iter()
+            .any(|warning| warning.starts_with("W0212"))
     };
     assert!(warned(0.45) && !warned(0.5));
 }
@@ -218,14 +237,21 @@ fn circles_and_rings() {
         let case = case(METRES, &[&circle], n);
         assert!((case.bodies[0].area() / (pi * radius * radius) - 1.0).abs() < 1e-14);
         for seed in verify(&case, 1e-12) {
-            assert!((seed.x[0] - center[0]).hypot(seed.x[1] - center[1]) < radius, "{seed:?}");
+            assert!(
+                (seed.x[0] - center[0]).hypot(seed.x[1] - center[1]) < radius,
+                "{seed:?}"
+            );
         }
     }
     let ring =
         "circle = { centre = [20, 10], radius = 6 }\nsubtract = [{ circle = { centre = [20, 10], radius = 2.5 } }]";
     let case = case(METRES, &[ring], 3);
     assert!((case.bodies[0].area() / (pi * (36.0 - 6.25)) - 1.0).abs() < 1e-12);
-    assert!(verify(&case, 1e-12).iter().all(|s| (2.5..6.0).contains(&(s.x[0] - 20.0).hypot(s.x[1] - 10.0))));
+    assert!(
+        verify(&case, 1e-12)
+            .iter()
+            .all(|s| (2.5..6.0).contains(&(s.x[0] - 20.0).hypot(s.x[1] - 10.0)))
+    );
 }
 
 #[test]
@@ -237,7 +263,11 @@ fn what_is_cut_out_is_gone_once() {
         { circle = { centre = [30, 10], radius = 5 } } ]";
     let case = case(METRES, &[body], 4);
     let expected = 100.0 - (9.0 + 9.0 - 1.0) - 1.75 - 0.5 * 2.5 * 3.0;
-    assert!((case.bodies[0].area() / expected - 1.0).abs() < 1e-13, "{}", case.bodies[0].area());
+    assert!(
+        (case.bodies[0].area() / expected - 1.0).abs() < 1e-13,
+        "{}",
+        case.bodies[0].area()
+    );
     for seed in verify(&case, 1e-12) {
         let [x, y] = [seed.x[0], seed.x[1]];
         let within = |a: f64, b: f64, c: f64, d: f64| a < x && x < c && b < y && y < d;
@@ -250,7 +280,10 @@ fn what_is_cut_out_is_gone_once() {
 fn random_cuts_against_counted_places() {
     let mut random = Random(4);
     for round in 0..20 {
-        let (whole, cut) = (star(&mut random, [20.0, 10.0], 9.0), star(&mut random, [22.0, 11.0], 6.0));
+        let (whole, cut) = (
+            star(&mut random, [20.0, 10.0], 9.0),
+            star(&mut random, [22.0, 11.0], 6.0),
+        );
         let body = format!("{}\nsubtract = [{{ {} }}]", polygon(&whole), polygon(&cut));
         let case = case(METRES, &[&body], 3);
         let n = 400;
@@ -258,9 +291,16 @@ fn random_cuts_against_counted_places() {
         let places = (0..2 * n).flat_map(|i| (0..n).map(move |j| [place(i), place(j)]));
         let count = places.filter(|at| winds(&whole, *at) && !winds(&cut, *at)).count() as f64 / 400.0;
         let area = case.bodies[0].area();
-        assert!((area - count).abs() < 0.01 * shoelace(&whole) + 0.05, "round {round}: {area} {count}");
+        assert!(
+            (area - count).abs() < 0.01 * shoelace(&whole) + 0.05,
+            "round {round}: {area} {count}"
+        );
         let seeds = verify(&case, 1e-11);
-        assert!(seeds.iter().all(|s| winds(&whole, s.x.into()) && !winds(&cut, s.x.into())));
+        assert!(
+            seeds
+                .iter()
+                .all(|s| winds(&whole, s.x.into()) && !winds(&cut, s.x.into()))
+        );
     }
 }
 
@@ -272,14 +312,21 @@ fn a_cell_without_a_place_inside_has_one_point() {
     let sliver = try_case(METRES, &["polygon = [[1, 1.4], [1.5, 1.4], [1.2, 1.400000001]]"], 2).unwrap_err();
     assert!(sliver[0].message.contains("no material points"), "{sliver:?}");
     let gone = "box = { lower = [1, 1], upper = [2, 2] }\nsubtract = [{ box = { lower = [0, 0], upper = [3, 3] } }]";
-    assert!(try_case(METRES, &[gone], 2).unwrap_err()[0].message.contains("no material points"));
+    assert!(
+        try_case(METRES, &[gone], 2).unwrap_err()[0]
+            .message
+            .contains("no material points")
+    );
 }
 
 #[test]
 fn the_one_point_of_a_cap_is_its_centroid() {
     // What a circle has above y = 12 where no place of the lattice is: chord 2 m, height 0.2 m.
     let radius: f64 = (1.0 + 0.2 * 0.2) / (2.0 * 0.2);
-    let circle = format!("circle = {{ centre = [12.5, {:?}], radius = {radius:?} }}", 12.2 - radius);
+    let circle = format!(
+        "circle = {{ centre = [12.5, {:?}], radius = {radius:?} }}",
+        12.2 - radius
+    );
     let grid = "lower = [0, 0]\nupper = [40, 20]\ncell = [5.0, 4.0]";
     let seeds = verify(&case(grid, &[&circle], 1), 1e-12);
     let caps: Vec<_> = seeds.iter().filter(|seed| seed.x[1] > 12.0).collect();
@@ -288,14 +335,20 @@ fn the_one_point_of_a_cap_is_its_centroid() {
     let centroid = 12.2 - radius + 8.0 / (12.0 * area);
     assert_eq!(caps.len(), 1);
     assert!((caps[0].x[0] - 12.5).abs() < 1e-9, "{:?}", caps[0]);
-    assert!((caps[0].x[1] - centroid).abs() < 1e-9 && (caps[0].volume / area - 1.0).abs() < 1e-9, "{:?}", caps[0]);
+    assert!(
+        (caps[0].x[1] - centroid).abs() < 1e-9 && (caps[0].volume / area - 1.0).abs() < 1e-9,
+        "{:?}",
+        caps[0]
+    );
 }
 
 #[test]
 fn bodies_that_only_seem_to_overlap() {
     let warned = |a: &str, b: &str| {
         let warnings = try_case(METRES, &[a, b], 2).unwrap().warnings;
-        warnings.iter().any(|warning| warning.contains("body.0 and body.1 overlap"))
+        warnings
+            .iter()
+            .any(|warning| warning.contains("body.0 and body.1 overlap"))
     };
     let triangle = "polygon = [[1, 1], [9, 1], [1, 9]]";
     assert!(!warned(triangle, "polygon = [[9, 1], [9, 9], [1, 9]]"));
@@ -340,19 +393,37 @@ fn weight_above_a_place() {
 fn outlines_that_would_take_too_long_are_refused_soon() {
     let started = std::time::Instant::now();
     let comb: Vec<[f64; 2]> = (0..2000)
-        .map(|k| [if k % 4 == 1 || k % 4 == 2 { 39.0 } else { 1.0 }, 1.0 + 0.004 * (k / 2) as f64])
+        .map(|k| {
+            [
+                if k % 4 == 1 || k % 4 == 2 { 39.0 } else { 1.0 },
+                1.0 + 0.004 * (k / 2) as f64,
+            ]
+        })
         .chain([[0.5, 18.0], [0.5, 0.5]])
         .collect();
     let fine = "lower = [0, 0]\nupper = [40, 20]\ncell = 0.002";
     let errors = try_case(fine, &[&polygon(&comb)], 3).unwrap_err();
-    assert!(errors.iter().any(|error| error.code.as_deref() == Some("E0036")), "{errors:?}");
+    assert!(
+        errors.iter().any(|error| error.code.as_deref() == Some("E0036")),
+        "{errors:?}"
+    );
     assert!(try_case(METRES, &[&polygon(&comb)], 3).is_ok());
     let many: Vec<String> = vec!["{ circle = { centre = [1, 1], radius = 1 } }".to_owned(); 6000];
-    let body = format!("box = {{ lower = [1, 1], upper = [2, 2] }}\nsubtract = [{}]", many.join(", "));
+    let body = format!(
+        "box = {{ lower = [1, 1], upper = [2, 2] }}\nsubtract = [{}]",
+        many.join(", ")
+    );
     let errors = try_case(METRES, &[&body], 3).unwrap_err();
-    assert!(errors[0].message.contains("has 12004 edges, but at most 10000"), "{errors:?}");
+    assert!(
+        errors[0].message.contains("has 12004 edges, but at most 10000"),
+        "{errors:?}"
+    );
     let corners: Vec<[f64; 2]> = (0..20_000).map(|k| [f64::from(k), 0.0]).collect();
-    assert!(try_case(METRES, &[&polygon(&corners)], 3).unwrap_err()[0].message.contains("at most 10000"));
+    assert!(
+        try_case(METRES, &[&polygon(&corners)], 3).unwrap_err()[0]
+            .message
+            .contains("at most 10000")
+    );
     assert!(started.elapsed().as_secs() < 20, "{:?}", started.elapsed());
 }
 
@@ -363,7 +434,13 @@ fn bodies_are_cut_at_planes_of_symmetry() {
         "lower = [0, 0]\nupper = [40, 20]\ncell = 1\n[boundary]\nleft = \"roller\"\nbottom = \"roller\"";
     let points = |body: &str| {
         let case = case(ROLLERS, &[body], 2);
-        (case.notes.iter().filter(|note| note.value.starts_with("cut at")).count(), verify(&case, 1e-12))
+        (
+            case.notes
+                .iter()
+                .filter(|note| note.value.starts_with("cut at"))
+                .count(),
+            verify(&case, 1e-12),
+        )
     };
     let circle = "circle = { centre = [0, 0], radius = 9.7 }";
     let by_hand = format!(
@@ -374,14 +451,25 @@ fn bodies_are_cut_at_planes_of_symmetry() {
     assert_eq!((quarter.0, expected.0), (1, 0));
     assert_eq!(quarter.1, expected.1);
     let area: f64 = quarter.1.iter().map(|seed| seed.volume).sum();
-    assert!((area / (0.25 * std::f64::consts::PI * 9.7 * 9.7) - 1.0).abs() < 1e-12, "{area}");
+    assert!(
+        (area / (0.25 * std::f64::consts::PI * 9.7 * 9.7) - 1.0).abs() < 1e-12,
+        "{area}"
+    );
     let half_box = points("box = { lower = [-3.5, 1], upper = [3.5, 4] }");
     assert_eq!(half_box.1, points("box = { lower = [0, 1], upper = [3.5, 4] }").1);
     let half = points("polygon = [[-5.5, 1], [5.5, 1], [0, 9]]").1;
     assert!((half.iter().map(|seed| seed.volume).sum::<f64>() / 22.0 - 1.0).abs() < 1e-12);
     // No symmetry: refused as before; so without a roller.
-    for body in ["box = { lower = [-3, 1], upper = [3.5, 4] }", "circle = { centre = [0.1, 0], radius = 9.7 }"] {
-        assert!(try_case(ROLLERS, &[body], 2).unwrap_err()[0].message.contains("outside the grid"), "{body}");
+    for body in [
+        "box = { lower = [-3, 1], upper = [3.5, 4] }",
+        "circle = { centre = [0.1, 0], radius = 9.7 }",
+    ] {
+        assert!(
+            try_case(ROLLERS, &[body], 2).unwrap_err()[0]
+                .message
+                .contains("outside the grid"),
+            "{body}"
+        );
     }
     assert!(try_case(METRES, &[circle], 2).is_err());
 }
@@ -404,7 +492,10 @@ fn solids_are_cut_at_planes_of_symmetry() {
     let quarter = volume("extrude = { circle = { centre = [0, 0], radius = 2 }, along = \"z\", from = 0, to = 1.5 }");
     assert!((quarter / (1.5 * std::f64::consts::PI) - 1.0).abs() < 1e-9, "{quarter}");
     let eighth = volume("sphere = { centre = [0, 0, 0], radius = 2 }");
-    assert!((eighth / (4.0 / 3.0 * std::f64::consts::PI) - 1.0).abs() < 1e-3, "{eighth}");
+    assert!(
+        (eighth / (4.0 / 3.0 * std::f64::consts::PI) - 1.0).abs() < 1e-3,
+        "{eighth}"
+    );
 }
 
 #[test]

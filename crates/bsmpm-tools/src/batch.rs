@@ -55,7 +55,9 @@ impl Batch<'_> {
 
     /// The outcome of one run, made now unless it is there; its reason is that of a run that did not come to its end.
     fn outcome(&self, order: &RunOrder) -> Outcome {
-        let limit = self.max_wall.map(|limit| ["--max-wall".to_owned(), clock(limit.as_secs())]);
+        let limit = self
+            .max_wall
+            .map(|limit| ["--max-wall".to_owned(), clock(limit.as_secs())]);
         // Its launcher, too, for the cost depends on the ranks.
         let origin = |stamp| format!("{}\n{stamp}\n\n{}", self.solver.command.join(" "), order.case.text);
         let task = LaunchTask {
@@ -68,7 +70,9 @@ impl Batch<'_> {
             force: self.force,
             resume: true,
         };
-        let outcome = self.solver.outcome(&task, |manifest| manifest.case.text == order.case.text);
+        let outcome = self
+            .solver
+            .outcome(&task, |manifest| manifest.case.text == order.case.text);
         let outcome = outcome.unwrap_or_else(|error| Outcome::broken(error.to_string()));
         let reason = match outcome.state {
             RunState::Done => String::new(),

@@ -16,9 +16,14 @@ pub(crate) fn load(path: &Path) -> Result<Vec<u8>, Error> {
     bsmpm_scene::load(path).map_err(|error| match error.kind() {
         ErrorKind::InvalidData => {
             let message = format!("{name}: {}", headed(&error.to_string(), "error"));
-            Error::BadCase { path: path.to_owned(), errors: vec![message] }
+            Error::BadCase {
+                path: path.to_owned(),
+                errors: vec![message],
+            }
         }
-        _ => Error::Missing { reason: with_context(&error.to_string(), &name) },
+        _ => Error::Missing {
+            reason: with_context(&error.to_string(), &name),
+        },
     })
 }
 

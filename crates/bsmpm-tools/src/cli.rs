@@ -66,7 +66,10 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
                 0 => String::new(),
                 rows => format!("{rows} row(s) fail as the matrix expects\n"),
             };
-            print(&format!("\n{known}{} passed, {} failed\n", counts.passed, counts.failed), &[]);
+            print(
+                &format!("\n{known}{} passed, {} failed\n", counts.passed, counts.failed),
+                &[],
+            );
             if counts.failed > 0 {
                 return Err(Error::NotValid { failed: counts.failed });
             }
@@ -102,7 +105,10 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
             // Half a script must not pass for one.
             let failed = bsmpm_io::Error::file("write", Path::new("the standard output"));
             let mut stdout = std::io::stdout();
-            stdout.write_all(&script.unwrap_or_default()).and_then(|()| stdout.flush()).map_err(failed)?;
+            stdout
+                .write_all(&script.unwrap_or_default())
+                .and_then(|()| stdout.flush())
+                .map_err(failed)?;
         }
     }
     Ok(())
@@ -142,10 +148,20 @@ mod tests {
         let mut seen = 0;
         for mut command in super::Cli::command().get_subcommands().cloned() {
             let help = command.render_long_help().to_string();
-            let Some((_, rest)) = help.split_once("Exit codes: ") else { continue };
-            let report = rest.split("\n\n").next().unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
+            let Some((_, rest)) = help.split_once("Exit codes: ") else {
+                continue;
+            };
+            let report = rest
+                .split("\n\n")
+                .next()
+                .unwrap_or_default()
+                .split_whitespace()
+                .collect::<Vec<_>>()
+                .join(" ");
             for part in report.split("; ") {
-                let numbers = part.split(|c: char| !c.is_ascii_digit()).filter_map(|word| word.parse::<u8>().ok());
+                let numbers = part
+                    .split(|c: char| !c.is_ascii_digit())
+                    .filter_map(|word| word.parse::<u8>().ok());
                 assert!(numbers.clone().all(|code| ALL.contains(&code)), "{part}");
                 let is_reported = WORDS.iter().filter(|(words, _)| part.contains(words));
                 is_reported

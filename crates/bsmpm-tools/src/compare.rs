@@ -17,8 +17,19 @@ pub use crate::picture::chart::ChartLevel;
 use runs::Runs;
 
 /// Options that have no meaning for residuals.
-const OF_QUANTITIES: [&str; 11] =
-    ["x", "y", "x_scale", "y_scale", "x_label", "y_label", "lines", "references", "last", "x_values", "at"];
+const OF_QUANTITIES: [&str; 11] = [
+    "x",
+    "y",
+    "x_scale",
+    "y_scale",
+    "x_label",
+    "y_label",
+    "lines",
+    "references",
+    "last",
+    "x_values",
+    "at",
+];
 
 /// What to compare.
 #[derive(Clone, Debug, Args)]
@@ -113,7 +124,10 @@ fn number(text: &str) -> Result<f64, String> {
 
 fn level(text: &str) -> Result<ChartLevel, String> {
     let (value, text) = text.split_once('=').unwrap_or((text, ""));
-    Ok(ChartLevel { value: number(value)?, text: text.trim().trim_matches('"').to_owned() })
+    Ok(ChartLevel {
+        value: number(value)?,
+        text: text.trim().trim_matches('"').to_owned(),
+    })
 }
 
 /// What was made of a comparison.
@@ -142,7 +156,11 @@ pub fn run(arguments: &CompareArguments) -> Result<ComparedFiles, Error> {
         draw(arguments, &runs, path)?;
     }
     let table = arguments.table.then(|| table::text(&runs, &arguments.at));
-    Ok(ComparedFiles { picture, table, notes: runs.notes })
+    Ok(ComparedFiles {
+        picture,
+        table,
+        notes: runs.notes,
+    })
 }
 
 fn draw(arguments: &CompareArguments, runs: &Runs, path: &Path) -> Result<(), Error> {
@@ -152,22 +170,51 @@ fn draw(arguments: &CompareArguments, runs: &Runs, path: &Path) -> Result<(), Er
     let mut curves = Vec::new();
     for (name, places) in &runs.curves {
         let index = names.iter().position(|other| *other == name).unwrap_or(0);
-        let entry = LegendEntry { name: name.clone(), colour: colour::line(index, count), mark };
-        curves.push(ChartCurve { entry, places: places.clone() });
+        let entry = LegendEntry {
+            name: name.clone(),
+            colour: colour::line(index, count),
+            mark,
+        };
+        curves.push(ChartCurve {
+            entry,
+            places: places.clone(),
+        });
     }
     for (index, path) in arguments.references.iter().enumerate() {
-        let colour = if index == 0 { INK } else { colour::line(names.len() + index - 1, count) };
+        let colour = if index == 0 {
+            INK
+        } else {
+            colour::line(names.len() + index - 1, count)
+        };
         let (name, places) = reference::places(path)?;
-        curves.push(ChartCurve { entry: LegendEntry { name, colour, mark: Mark::Points }, places });
+        curves.push(ChartCurve {
+            entry: LegendEntry {
+                name,
+                colour,
+                mark: Mark::Points,
+            },
+            places,
+        });
     }
     let mut legend: Vec<&LegendEntry> = Vec::new();
     for ChartCurve { entry, .. } in &curves {
-        if !legend.iter().any(|other| (&other.name, other.colour) == (&entry.name, entry.colour)) {
+        if !legend
+            .iter()
+            .any(|other| (&other.name, other.colour) == (&entry.name, entry.colour))
+        {
             legend.push(entry);
         }
     }
     let x = (&*runs.x.0, &*runs.x.1);
     let y = (&*runs.y.0, &*runs.y.1);
-    let chart = Chart { title: &runs.title, below: "", x, y, curves: &curves, levels: &arguments.lines, legend };
+    let chart = Chart {
+        title: &runs.title,
+        below: "",
+        x,
+        y,
+        curves: &curves,
+        levels: &arguments.lines,
+        legend,
+    };
     chart.draw().save(path)
 }

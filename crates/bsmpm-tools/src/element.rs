@@ -64,10 +64,18 @@ pub struct ElementArguments {
 pub fn run(arguments: &ElementArguments, report: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
     let path = &arguments.case;
     let mut set = arguments.set.clone();
-    set.extend(arguments.material.iter().map(|name| format!("element.*.material={name:?}")));
+    set.extend(
+        arguments
+            .material
+            .iter()
+            .map(|name| format!("element.*.material={name:?}")),
+    );
     let case = case::parsed_for_element_tests(path, &case::load(path)?, &set)?;
     let courses = chosen(&case, arguments)?;
-    let output = arguments.output.clone().unwrap_or_else(|| case::directory(path, ".element"));
+    let output = arguments
+        .output
+        .clone()
+        .unwrap_or_else(|| case::directory(path, ".element"));
     fs::create_dir_all(&output).map_err(bsmpm_io::Error::file("create", &output))?;
     let mut files = Vec::new();
     for course in &courses {
@@ -76,8 +84,10 @@ pub fn run(arguments: &ElementArguments, report: impl FnMut(&str)) -> Result<(St
         files.push(file);
     }
     files.extend(picture::draw(&case.title, &courses, &output)?);
-    let failed: Vec<String> =
-        courses.iter().filter_map(|course| Some(format!("{}: {}", course.name, course.failure.as_ref()?))).collect();
+    let failed: Vec<String> = courses
+        .iter()
+        .filter_map(|course| Some(format!("{}: {}", course.name, course.failure.as_ref()?)))
+        .collect();
     if failed.is_empty() {
         return Ok((table(&courses), files));
     }
@@ -96,11 +106,18 @@ fn chosen(case: &Case, arguments: &ElementArguments) -> Result<Vec<StressPath>, 
         return Err(Error::Usage { reason });
     }
     if let Some(name) = arguments.tests.iter().find(|name| !known.contains(&name.as_str())) {
-        let reason = format!("E0852: {path} has no element test `{name}`. Use one of: {}.", known.join(", "));
+        let reason = format!(
+            "E0852: {path} has no element test `{name}`. Use one of: {}.",
+            known.join(", ")
+        );
         return Err(Error::Usage { reason });
     }
     let wanted = |name: &String| arguments.tests.is_empty() || arguments.tests.contains(name);
-    case.elements.iter().filter(|test| wanted(&test.name)).map(|test| StressPath::of(case, test)).collect()
+    case.elements
+        .iter()
+        .filter(|test| wanted(&test.name))
+        .map(|test| StressPath::of(case, test))
+        .collect()
 }
 
 /// A row for each test: where its deviator is largest.

@@ -141,13 +141,19 @@ impl Error {
     /// Those of a case, or of reference points, that cannot be read.
     pub(crate) fn unread(what: &str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
         move |source| Self::Missing {
-            reason: format!("E0001: the {what} {} cannot be read: {source}. Check the path.", path.display()),
+            reason: format!(
+                "E0001: the {what} {} cannot be read: {source}. Check the path.",
+                path.display()
+            ),
         }
     }
 
     /// That of a case with errors.
     pub(crate) fn bad_case(path: &Path, errors: &[bsmpm_scene::Error]) -> Self {
-        Self::BadCase { path: path.to_owned(), errors: errors.iter().map(|error| format!("{error:#}")).collect() }
+        Self::BadCase {
+            path: path.to_owned(),
+            errors: errors.iter().map(|error| format!("{error:#}")).collect(),
+        }
     }
 
     /// The [exit code](bsmpm_io::exit) of `bsmpm`: that of a trial or probe that broke is the solver's.

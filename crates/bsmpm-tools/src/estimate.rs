@@ -85,9 +85,14 @@ pub fn run(arguments: &EstimateArguments, mut announce: impl FnMut(&str)) -> Res
     }
     let case = case::parsed(&arguments.case, &case::load(&arguments.case)?, &arguments.set)?;
     let actual = arguments.against.as_deref().map(against::read).transpose()?;
-    let ranks = arguments.ranks.or(actual.as_ref().map(|actual| actual.ranks)).unwrap_or(1) as usize;
+    let ranks = arguments
+        .ranks
+        .or(actual.as_ref().map(|actual| actual.ranks))
+        .unwrap_or(1) as usize;
     if case.parts(ranks, [1; 2]).is_none() {
-        return Err(Error::Usage { reason: case.too_many(ranks) });
+        return Err(Error::Usage {
+            reason: case.too_many(ranks),
+        });
     }
     let speed = kernel::speed();
     let guess = stored::guess(&case, ranks, speed);
@@ -95,7 +100,12 @@ pub fn run(arguments: &EstimateArguments, mut announce: impl FnMut(&str)) -> Res
         guess
     } else {
         let (ranks, command) = (arguments.probed(ranks), &arguments.command()[..]);
-        let plan = probe::ProbePlan { case: &case, ranks, command, may_be_whole: !arguments.no_whole };
+        let plan = probe::ProbePlan {
+            case: &case,
+            ranks,
+            command,
+            may_be_whole: !arguments.no_whole,
+        };
         probe::estimate(&plan, &guess, deadline(arguments.budget), &mut announce)?
     };
     let mut report = EstimateReport::of(&arguments.case, &case, ranks, (speed, &found));
@@ -118,12 +128,20 @@ fn deadline(budget: f64) -> Instant {
 
 impl EstimateArguments {
     fn command(&self) -> Vec<String> {
-        if self.command.is_empty() { vec![command::own_solver()] } else { self.command.clone() }
+        if self.command.is_empty() {
+            vec![command::own_solver()]
+        } else {
+            self.command.clone()
+        }
     }
 
     /// Ranks on which the first steps are run: as many as wanted, if this machine has the cores and starts them itself.
     fn probed(&self, ranks: usize) -> usize {
         let cores = thread::available_parallelism().map_or(1, usize::from);
-        if self.command.is_empty() && ranks <= cores { ranks } else { 1 }
+        if self.command.is_empty() && ranks <= cores {
+            ranks
+        } else {
+            1
+        }
     }
 }

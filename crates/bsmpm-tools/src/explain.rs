@@ -60,7 +60,10 @@ mod tests {
     use super::{ExplainArguments, run};
 
     fn printed(codes: &[&str], all: bool) -> Result<String, crate::Error> {
-        run(&ExplainArguments { codes: codes.iter().map(|&code| code.to_owned()).collect(), all })
+        run(&ExplainArguments {
+            codes: codes.iter().map(|&code| code.to_owned()).collect(),
+            all,
+        })
     }
 
     #[test]
@@ -69,7 +72,10 @@ mod tests {
         for line in list.lines() {
             let (code, title) = line.split_once("  ").unwrap();
             let explanation = printed(&[&code.to_lowercase()], false).unwrap();
-            assert!(explanation.contains(title) && explanation.contains("What to do."), "{explanation}");
+            assert!(
+                explanation.contains(title) && explanation.contains("What to do."),
+                "{explanation}"
+            );
         }
         let catalogue = printed(&[], true).unwrap();
         assert_eq!(catalogue.matches("\n### ").count(), list.lines().count());

@@ -161,7 +161,10 @@ pub(crate) fn factor(arguments: &FosArguments) -> Result<FoundFactor, Error> {
     let middle = || Some(f64::midpoint(finding.last_stable?, finding.first_failed?));
     Ok(FoundFactor {
         factor: finding.estimate.or_else(middle),
-        cost: RunCost { wall_seconds: report.seconds, ..trials().map(FosTrial::cost).sum() },
+        cost: RunCost {
+            wall_seconds: report.seconds,
+            ..trials().map(FosTrial::cost).sum()
+        },
         kept: trials().all(|trial| trial.kept),
     })
 }
@@ -172,7 +175,10 @@ fn found(arguments: &FosArguments, mut report: impl FnMut(&str)) -> Result<(FosR
     let command = command::words(&arguments.command, 1);
     let (plan, jobs) = (arguments.plan()?, command::jobs(arguments.jobs, &command)?);
     // Whatever the number of jobs: threads in BLAS would sum in another order.
-    let solver = SolverProgram { command: &command, side_by_side: true };
+    let solver = SolverProgram {
+        command: &command,
+        side_by_side: true,
+    };
     let question = FosQuestion {
         sought: plan.sought,
         from: plan.from,
@@ -181,18 +187,31 @@ fn found(arguments: &FosArguments, mut report: impl FnMut(&str)) -> Result<(FosR
         region: &arguments.region,
     };
     let subject = Subject::read(&arguments.case, &arguments.set, &question)?;
-    let plan = SearchPlan { softens: subject.softens, ..plan };
+    let plan = SearchPlan {
+        softens: subject.softens,
+        ..plan
+    };
     solver.check()?;
     let output = arguments.directory();
     launch::make(&output)?;
     // Results of an older search must not pass for this one's, should it not come to its end.
-    for path in
-        ["fos.json", "fos.csv"].iter().chain(&picture::NAMES).map(|name| output.join(name)).filter(|path| path.exists())
+    for path in ["fos.json", "fos.csv"]
+        .iter()
+        .chain(&picture::NAMES)
+        .map(|name| output.join(name))
+        .filter(|path| path.exists())
     {
         fs::remove_file(&path).map_err(bsmpm_io::Error::file("delete", &path))?;
     }
     let force = arguments.force;
-    let mut trials = Trials { solver, subject: &subject, output: &output, force, stage: None, pushed: None };
+    let mut trials = Trials {
+        solver,
+        subject: &subject,
+        output: &output,
+        force,
+        stage: None,
+        pushed: None,
+    };
     trials.stage = trials.stage(&mut report)?;
     trials.pushed = trials.pushed()?;
     let (curve, made) = jobs::find(plan, jobs, &trials, |trial| report(&line(trial, plan.sought)))?;
@@ -227,7 +246,11 @@ impl FosArguments {
         let usage = |reason: String| Err(Error::Usage { reason });
         let sought = self.seismic.map_or(Sought::FactorOfSafety, Sought::SeismicCoefficient);
         let ([from, to], width) = sought.range();
-        let (from, to, width) = (self.from.unwrap_or(from), self.to.unwrap_or(to), self.width.unwrap_or(width));
+        let (from, to, width) = (
+            self.from.unwrap_or(from),
+            self.to.unwrap_or(to),
+            self.width.unwrap_or(width),
+        );
         // A stage that came to its end stands.
         let from = if self.stage.is_some() { from.max(1.0) } else { from };
         let least = if sought.is_seismic() { 0.0 } else { LEAST };
@@ -238,19 +261,32 @@ impl FosArguments {
             ));
         }
         if !(NARROWEST <= width && width <= to - from) {
-            return usage(format!("E0831: --width {width} is out of range. Give {NARROWEST} <= WIDTH <= TO - FROM."));
+            return usage(format!(
+                "E0831: --width {width} is out of range. Give {NARROWEST} <= WIDTH <= TO - FROM."
+            ));
         }
-        Ok(SearchPlan { from, to, width, softens: false, sought })
+        Ok(SearchPlan {
+            from,
+            to,
+            width,
+            softens: false,
+            sought,
+        })
     }
 
     fn directory(&self) -> PathBuf {
-        self.output.clone().unwrap_or_else(|| case::directory(&self.case, ".fos"))
+        self.output
+            .clone()
+            .unwrap_or_else(|| case::directory(&self.case, ".fos"))
     }
 }
 
 fn line(trial: &FosTrial, sought: Sought) -> String {
     let kept = if trial.kept { ", kept" } else { "" };
-    let early = trial.end.early().map(|(load, reason)| format!(", stopped at {load:.3} of the load: {reason}"));
+    let early = trial
+        .end
+        .early()
+        .map(|(load, reason)| format!(", stopped at {load:.3} of the load: {reason}"));
     format!(
         "{} {}: displacement {:.4e} after {} iterations, {:.1} s{kept}{}",
         sought.value(),

@@ -46,7 +46,14 @@ impl Index {
     /// Of sizes and values from the finest grid to the coarsest.
     pub fn of(h: [f64; 3], f: [f64; 3]) -> Self {
         let course = course(h, f);
-        let none = Self { course, order: None, extrapolated: None, fine: None, coarse: None, ratio: None };
+        let none = Self {
+            course,
+            order: None,
+            extrapolated: None,
+            fine: None,
+            coarse: None,
+            ratio: None,
+        };
         if !matches!(course, ConvergenceType::Monotone | ConvergenceType::Oscillatory) {
             return none;
         }
@@ -63,7 +70,10 @@ impl Index {
             extrapolated: (course == ConvergenceType::Monotone).then(|| f[0] + (f[0] - f[1]) / (power(0) - 1.0)),
             fine,
             coarse,
-            ratio: fine.zip(coarse).map(|(fine, coarse)| coarse / (power(0) * fine)).filter(|ratio| ratio.is_finite()),
+            ratio: fine
+                .zip(coarse)
+                .map(|(fine, coarse)| coarse / (power(0) * fine))
+                .filter(|ratio| ratio.is_finite()),
             ..none
         }
     }
@@ -149,7 +159,10 @@ mod tests {
             let f = [5.0 + h[0].powf(1.5), 5.0 - h[1].powf(1.5), 5.0 + h[2].powf(1.5)];
             let found = Index::of(h, f);
             assert_eq!((found.course, found.extrapolated), (ConvergenceType::Oscillatory, None));
-            assert!((found.order.unwrap() - 1.5).abs() < 1e-9 && found.fine.is_some(), "{found:?}");
+            assert!(
+                (found.order.unwrap() - 1.5).abs() < 1e-9 && found.fine.is_some(),
+                "{found:?}"
+            );
         }
     }
 
@@ -168,7 +181,10 @@ mod tests {
         }
         // About zero there is no relative band.
         let found = Index::of(h, [0.0, 1.0, 3.0]);
-        assert!(found.fine.is_none() && (found.extrapolated.unwrap() + 1.0).abs() < 1e-12, "{found:?}");
+        assert!(
+            found.fine.is_none() && (found.extrapolated.unwrap() + 1.0).abs() < 1e-12,
+            "{found:?}"
+        );
     }
 
     #[test]

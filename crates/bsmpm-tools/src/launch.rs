@@ -64,9 +64,10 @@ impl SolverProgram<'_> {
     /// Whether a solver that is named by its path is there: to be seen before former runs are deleted for new ones.
     pub fn check(&self) -> Result<(), Error> {
         match self.command.last() {
-            Some(solver) if solver.contains('/') && !Path::new(solver).is_file() => {
-                Err(Error::Launch { program: solver.clone(), source: ErrorKind::NotFound.into() })
-            }
+            Some(solver) if solver.contains('/') && !Path::new(solver).is_file() => Err(Error::Launch {
+                program: solver.clone(),
+                source: ErrorKind::NotFound.into(),
+            }),
             _ => Ok(()),
         }
     }
@@ -84,14 +85,20 @@ impl SolverProgram<'_> {
     /// # Errors
     /// Those of a solver that does not start, and of files. A run that fails is an outcome.
     pub fn outcome(&self, task: &LaunchTask, is_same: impl Fn(&Manifest) -> bool) -> Result<Outcome, Error> {
-        if task.is_there(is_same) { Ok(task.left(None)) } else { self.make(task, &Stop::default()) }
+        if task.is_there(is_same) {
+            Ok(task.left(None))
+        } else {
+            self.make(task, &Stop::default())
+        }
     }
 
     /// The outcome of a run that is made, or gone on with, whatever is there; `stop` may end it early.
     pub fn make(&self, task: &LaunchTask, stop: &Stop) -> Result<Outcome, Error> {
         let log = beside(&task.directory, "log");
         if task.resume && task.is_broken_off() {
-            return self.start(&task.arguments(&["--restart", "auto"]), &log, stop).map(|code| task.left(Some(code)));
+            return self
+                .start(&task.arguments(&["--restart", "auto"]), &log, stop)
+                .map(|code| task.left(Some(code)));
         }
         // What an older run left must not pass for this one's, should it die before it writes.
         if task.directory.join(MANIFEST).exists() {
@@ -103,26 +110,40 @@ impl SolverProgram<'_> {
             make(parent)?;
         }
         let origin = task.origin.as_deref().unwrap_or_default();
-        atomic::replace(&beside(&task.directory, "origin"), |file| file.write_all(origin.as_bytes()))?;
+        atomic::replace(&beside(&task.directory, "origin"), |file| {
+            file.write_all(origin.as_bytes())
+        })?;
         let from = task.from.as_ref().map(|path| path.display().to_string());
         let how = from.as_ref().map_or(vec!["--force"], |path| vec!["--restart", path]);
-        self.start(&task.arguments(&how), &log, stop).map(|code| task.left(Some(code)))
+        self.start(&task.arguments(&how), &log, stop)
+            .map(|code| task.left(Some(code)))
     }
 
     fn start(&self, arguments: &[String], log: &Path, stop: &Stop) -> Result<u8, Error> {
         let out = File::create(log).map_err(bsmpm_io::Error::file("write", log))?;
         let both = out.try_clone().map_err(bsmpm_io::Error::file("write", log))?;
-        let (program, first) = self
-            .command
-            .split_first()
-            .ok_or_else(|| Error::Launch { program: String::new(), source: ErrorKind::NotFound.into() })?;
+        let (program, first) = self.command.split_first().ok_or_else(|| Error::Launch {
+            program: String::new(),
+            source: ErrorKind::NotFound.into(),
+        })?;
         let mut command = Command::new(program);
         if self.side_by_side {
             command.envs(SIDE_BY_SIDE.into_iter().filter(|(name, _)| env::var_os(name).is_none()));
         }
-        let command = command.args(first).args(arguments).stdin(Stdio::null()).stdout(out).stderr(both);
-        let status = stop.status(command).map_err(|source| Error::Launch { program: program.clone(), source })?;
-        Ok(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(u8::MAX))
+        let command = command
+            .args(first)
+            .args(arguments)
+            .stdin(Stdio::null())
+            .stdout(out)
+            .stderr(both);
+        let status = stop.status(command).map_err(|source| Error::Launch {
+            program: program.clone(),
+            source,
+        })?;
+        Ok(status
+            .code()
+            .and_then(|code| u8::try_from(code).ok())
+            .unwrap_or(u8::MAX))
     }
 }
 
@@ -130,9 +151,16 @@ impl LaunchTask<'_> {
     /// Those of bsmpm-par; `how` says what becomes of what is there.
     pub fn arguments(&self, how: &[&str]) -> Vec<String> {
         let set = self.set.iter().flat_map(|set| ["--set", set]);
-        let words = set.chain(["--quiet"]).chain(self.further.iter().map(String::as_str)).chain(how.iter().copied());
-        let words = [self.case.display().to_string()].into_iter().chain(words.map(str::to_owned));
-        words.chain(["--output".to_owned(), self.directory.display().to_string()]).collect()
+        let words = set
+            .chain(["--quiet"])
+            .chain(self.further.iter().map(String::as_str))
+            .chain(how.iter().copied());
+        let words = [self.case.display().to_string()]
+            .into_iter()
+            .chain(words.map(str::to_owned));
+        words
+            .chain(["--output".to_owned(), self.directory.display().to_string()])
+            .collect()
     }
 
     /// What its directory holds; `code` is what its process ended with, if it was made now.
@@ -144,15 +172,17 @@ impl LaunchTask<'_> {
     /// made again.
     pub fn is_there(&self, is_same: impl Fn(&Manifest) -> bool) -> bool {
         self.before().is_some_and(|manifest| {
-            let is_whole =
-                manifest.exit_code.is_some_and(|code| [DONE, CHECK, INDICATOR, NO_CONVERGENCE, LEFT].contains(&code));
+            let is_whole = manifest
+                .exit_code
+                .is_some_and(|code| [DONE, CHECK, INDICATOR, NO_CONVERGENCE, LEFT].contains(&code));
             is_whole && is_same(&manifest)
         })
     }
 
     /// Whether the run was stopped, or killed, before its end.
     fn is_broken_off(&self) -> bool {
-        self.before().is_some_and(|manifest| manifest.exit_code.is_none_or(|code| code == STOPPED))
+        self.before()
+            .is_some_and(|manifest| manifest.exit_code.is_none_or(|code| code == STOPPED))
     }
 
     /// What is there from before, if it counts and was made from what would be taken now.
@@ -179,5 +209,7 @@ fn found(program: &str) -> Option<PathBuf> {
     if program.contains('/') {
         return Some(PathBuf::from(program));
     }
-    env::split_paths(&env::var_os("PATH")?).map(|folder| folder.join(program)).find(|file| file.is_file())
+    env::split_paths(&env::var_os("PATH")?)
+        .map(|folder| folder.join(program))
+        .find(|file| file.is_file())
 }

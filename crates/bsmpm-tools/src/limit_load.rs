@@ -81,7 +81,12 @@ pub fn run(arguments: &LimitLoadArguments, mut say: impl FnMut(&str)) -> Result<
     let batch = options.batch(&command, path, &output)?;
     let outcomes = batch.run(&orders, command::ranks(&command), |index, outcome| {
         let (cell, cpu) = (orders[index].case.grid.shortest(), outcome.cost.cpu_seconds);
-        say(format!("cells of {cell:.4} m: {}, {cpu:.1} CPU s {}", outcome.words(), outcome.reason).trim_end());
+        say(format!(
+            "cells of {cell:.4} m: {}, {cpu:.1} CPU s {}",
+            outcome.words(),
+            outcome.reason
+        )
+        .trim_end());
     });
     let grids = arguments.grids as usize;
     for (order, outcome) in orders.iter().zip(&outcomes).take(grids) {
@@ -100,7 +105,11 @@ pub fn run(arguments: &LimitLoadArguments, mut say: impl FnMut(&str)) -> Result<
     let report = LimitLoadReport::of(&orders[..grids], &outcomes[..grids], without_cohesion)?;
     let mut files = save(&output, NAME, &report.csv(), &report)?;
     files.extend(picture::draw(&report, &orders[..grids], &outcomes[..grids], &output)?);
-    Ok(FoundLimitLoads { text: report.text(), files, is_reached: report.is_reached() })
+    Ok(FoundLimitLoads {
+        text: report.text(),
+        files,
+        is_reached: report.is_reached(),
+    })
 }
 
 fn ended(order: &RunOrder, outcome: &Outcome) -> Result<(), Error> {
@@ -120,12 +129,20 @@ impl LimitLoadArguments {
         let sought = own.limit_load.iter();
         let small: Vec<&String> = sought.flat_map(|sought| &sought.small_cohesions).collect();
         if !small.is_empty() {
-            all.push(small.iter().map(|name| format!("material.{name}.cohesion=0.0")).collect());
+            all.push(
+                small
+                    .iter()
+                    .map(|name| format!("material.{name}.cohesion=0.0"))
+                    .collect(),
+            );
         }
         let order = |further: Vec<String>| {
             let named = further.len();
             let set = [&set[..], &further].concat();
-            let refused = |errors| Error::BadCase { path: self.case.clone(), errors };
+            let refused = |errors| Error::BadCase {
+                path: self.case.clone(),
+                errors,
+            };
             RunOrder::read(&self.case, bytes, set, named).map_err(refused)
         };
         all.into_iter().map(order).collect()
@@ -134,8 +151,15 @@ impl LimitLoadArguments {
 
 /// The settings of the case's grid with each cell divided into so many parts, in as many steps.
 fn refined(own: &Case, parts: usize) -> Vec<String> {
-    let mut set = if is_graded(own) { divided(own, parts) } else { divided_equally(own, parts) };
+    let mut set = if is_graded(own) {
+        divided(own, parts)
+    } else {
+        divided_equally(own, parts)
+    };
     // Steps that a preset chooses would follow the cells.
-    set.push(format!("analysis.steps={}", (own.analysis.end / own.analysis.dt).round()));
+    set.push(format!(
+        "analysis.steps={}",
+        (own.analysis.end / own.analysis.dt).round()
+    ));
     set
 }

@@ -53,7 +53,14 @@ pub struct PlotArguments {
 impl PlotArguments {
     /// All pictures of a run as its case wants them.
     pub fn of(directory: PathBuf) -> Self {
-        Self { directory, times: Vec::new(), field: None, range: None, section: None, reference: None }
+        Self {
+            directory,
+            times: Vec::new(),
+            field: None,
+            range: None,
+            section: None,
+            reference: None,
+        }
     }
 }
 
@@ -61,12 +68,18 @@ impl PlotArguments {
 pub(crate) fn time(text: &str) -> Result<f64, String> {
     let number = text.trim().trim_end_matches('s').trim_end();
     let time: f64 = number.parse().map_err(|_| "expected a time in seconds".to_owned())?;
-    if time.is_finite() { Ok(time) } else { Err("expected a finite time".to_owned()) }
+    if time.is_finite() {
+        Ok(time)
+    } else {
+        Err("expected a finite time".to_owned())
+    }
 }
 
 fn ends(text: &str) -> Result<(f64, f64), String> {
     let number = |part: &str| part.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-    let ends = text.split_once(',').and_then(|(lower, upper)| Some((number(lower)?, number(upper)?)));
+    let ends = text
+        .split_once(',')
+        .and_then(|(lower, upper)| Some((number(lower)?, number(upper)?)));
     ends.filter(|(lower, upper)| lower < upper)
         .ok_or_else(|| "expected two numbers MIN,MAX with MIN below MAX".to_owned())
 }
@@ -100,7 +113,10 @@ fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error
     let mut names = above::draw(&record, &frames)?;
     // Given ends of the colours are those of the first field.
     let ranges = [arguments.range].into_iter().chain(std::iter::repeat(None));
-    let coloured: Vec<_> = fields(&record, &frames, arguments.field).into_iter().zip(ranges).collect();
+    let coloured: Vec<_> = fields(&record, &frames, arguments.field)
+        .into_iter()
+        .zip(ranges)
+        .collect();
     for &(field, range) in &coloured {
         names.extend(space::draw(&record, &frames, field, range)?);
     }
@@ -130,12 +146,19 @@ fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error
 
 /// The wanted field, or those that show how a scene of this kind stands; the plastic strain only if there is any.
 fn fields(record: &RunRecord, frames: &[Frame], wanted: Option<FieldName>) -> Vec<FieldName> {
-    let vertical = if record.is_solid() { FieldName::StressZz } else { FieldName::StressYy };
+    let vertical = if record.is_solid() {
+        FieldName::StressZz
+    } else {
+        FieldName::StressYy
+    };
     match (wanted, record.regime()) {
         (Some(field), _) => vec![field],
         (None, Regime::Dynamic) => vec![vertical],
         (None, Regime::QuasiStatic) => {
-            let strains: Option<Vec<_>> = frames.iter().map(|frame| FieldName::PlasticStrain.values(frame)).collect();
+            let strains: Option<Vec<_>> = frames
+                .iter()
+                .map(|frame| FieldName::PlasticStrain.values(frame))
+                .collect();
             let has_strain = strains.is_some_and(|strains| strains.iter().flatten().any(|&strain| strain != 0.0));
             let strain = has_strain.then_some(FieldName::PlasticStrain);
             [vertical].into_iter().chain(strain).collect()

@@ -63,15 +63,26 @@ impl RunRecord {
 
     /// What they are called, with their unit.
     pub fn axes(&self) -> [(&'static str, &'static str); 2] {
-        let names = if self.manifest.case.geometry == "axisymmetric" { ["r", "y", "z"] } else { ["x", "y", "z"] };
+        let names = if self.manifest.case.geometry == "axisymmetric" {
+            ["r", "y", "z"]
+        } else {
+            ["x", "y", "z"]
+        };
         self.plane().map(|axis| (names[axis], "m"))
     }
 
     /// Whether inertia acts: as the case says, else by the unit of time, which a quasi-static analysis does not have.
     pub fn regime(&self) -> Regime {
         let by_unit = || {
-            let unit = [&self.history, &self.steps].into_iter().flatten().find_map(|table| table.unit("time"));
-            if unit == Some("-") { Regime::QuasiStatic } else { Regime::Dynamic }
+            let unit = [&self.history, &self.steps]
+                .into_iter()
+                .flatten()
+                .find_map(|table| table.unit("time"));
+            if unit == Some("-") {
+                Regime::QuasiStatic
+            } else {
+                Regime::Dynamic
+            }
         };
         self.case.regime.unwrap_or_else(by_unit)
     }
@@ -92,27 +103,45 @@ impl RunRecord {
     }
 
     fn all_columns(&self) -> impl Iterator<Item = Recorded<'_>> {
-        let columns = self.history.iter().flat_map(|table| table.headings.iter().zip(&table.values));
+        let columns = self
+            .history
+            .iter()
+            .flat_map(|table| table.headings.iter().zip(&table.values));
         columns.map(|(TableColumn { name, unit }, values)| {
             let scale = self.history_of(name).map_or(1.0, |history| history.scale);
-            Recorded { name, unit, scale, values }
+            Recorded {
+                name,
+                unit,
+                scale,
+                values,
+            }
         })
     }
 
     /// The case's table that a column comes from: of several names that it begins with, the longest.
     fn history_of(&self, column: &str) -> Option<&SketchedHistory> {
-        let of_column = self.case.histories.iter().filter(|history| bears(column, &history.name));
+        let of_column = self
+            .case
+            .histories
+            .iter()
+            .filter(|history| bears(column, &history.name));
         of_column.max_by_key(|history| history.name.len())
     }
 
     /// Whether time is a pseudo-time without unit.
     fn is_timeless(&self) -> bool {
-        self.case.is_timeless.unwrap_or_else(|| self.regime() == Regime::QuasiStatic)
+        self.case
+            .is_timeless
+            .unwrap_or_else(|| self.regime() == Regime::QuasiStatic)
     }
 
     /// The axis label of time.
     pub fn time_label(&self) -> (&'static str, &'static str) {
-        if self.is_timeless() { ("Pseudo-time", "-") } else { ("Time", "s") }
+        if self.is_timeless() {
+            ("Pseudo-time", "-")
+        } else {
+            ("Time", "s")
+        }
     }
 
     /// A moment in words, for titles and legends.
@@ -122,7 +151,10 @@ impl RunRecord {
         }
         // From two of them on, in the units in which consolidation is spoken of.
         let units = [("years", YEAR), ("d", DAY)];
-        let (unit, length) = units.into_iter().find(|(_, length)| time >= 2.0 * length).unwrap_or(("s", 1.0));
+        let (unit, length) = units
+            .into_iter()
+            .find(|(_, length)| time >= 2.0 * length)
+            .unwrap_or(("s", 1.0));
         format!("t = {} {unit}", short(time / length))
     }
 
@@ -151,14 +183,19 @@ impl RunRecord {
         let mut chosen: Vec<usize> = wanted.iter().filter_map(|&time| self.nearest(time)).collect();
         if wanted.is_empty() {
             let case = self.manifest.picture_times.iter();
-            chosen = case.filter_map(|&time| self.nearest(time).filter(|&index| self.is_at(index, time))).collect();
+            chosen = case
+                .filter_map(|&time| self.nearest(time).filter(|&index| self.is_at(index, time)))
+                .collect();
         }
         if chosen.is_empty() && !self.entries.is_empty() {
             chosen = vec![last.div_ceil(3), (2 * last).div_ceil(3), last];
         }
         chosen.sort_unstable();
         chosen.dedup();
-        chosen.iter().map(|&index| Ok(vtu::read(&self.directory.join(&self.entries[index].file))?)).collect()
+        chosen
+            .iter()
+            .map(|&index| Ok(vtu::read(&self.directory.join(&self.entries[index].file))?))
+            .collect()
     }
 
     fn nearest(&self, time: f64) -> Option<usize> {
@@ -174,7 +211,9 @@ impl RunRecord {
 
 /// Whether a column of `history.csv` is called as a history is, or as one of its components, `name-...`.
 fn bears(column: &str, name: &str) -> bool {
-    column.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
+    column
+        .strip_prefix(name)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
 }
 
 /// A column of `history.csv` that records a quantity of the case.
@@ -196,12 +235,18 @@ impl<'a> Recorded<'a> {
         }
         let name = self.name.replace(['-', '_'], " ");
         let mut letters = name.chars();
-        letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+        letters
+            .next()
+            .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
     }
 
     /// The unit of an axis: a scaled column has one of the case's own, which is not known.
     pub fn shown_unit(&self) -> &'a str {
-        if self.unit.starts_with("scaled ") { "-" } else { self.unit }
+        if self.unit.starts_with("scaled ") {
+            "-"
+        } else {
+            self.unit
+        }
     }
 }
 
@@ -211,7 +256,9 @@ fn formula(name: &str) -> String {
         "gamma" => "γ".to_owned(),
         "delta" => "δ".to_owned(),
         "sigma" => "σ".to_owned(),
-        _ => factor.strip_suffix('2').map_or_else(|| factor.to_owned(), |base| format!("{base}²")),
+        _ => factor
+            .strip_suffix('2')
+            .map_or_else(|| factor.to_owned(), |base| format!("{base}²")),
     };
     let product = |text: &str| text.split('_').map(factor).collect::<Vec<_>>().join(" ");
     match name.split_once("_over_") {
@@ -250,9 +297,21 @@ mod tests {
 
     fn record(text: &str) -> RunRecord {
         let mut manifest = Manifest::begin("0.1.0", Vec::new(), ManifestCase::new("", "", "", text.to_owned()));
-        manifest.grid = Some(GridExtent { lower: vec![0.0; 2], upper: vec![5.0, 11.0], cell: vec![0.1; 2] });
+        manifest.grid = Some(GridExtent {
+            lower: vec![0.0; 2],
+            upper: vec![5.0, 11.0],
+            cell: vec![0.1; 2],
+        });
         let (directory, entries) = (PathBuf::new(), Vec::new());
-        RunRecord { directory, manifest, case: Sketch::of(text), across: 1, entries, history: None, steps: None }
+        RunRecord {
+            directory,
+            manifest,
+            case: Sketch::of(text),
+            across: 1,
+            entries,
+            history: None,
+            steps: None,
+        }
     }
 
     #[test]

@@ -18,13 +18,26 @@ pub(crate) fn columns(path: &Path) -> Result<Columns, Error> {
 pub(crate) fn places(path: &Path) -> Result<(String, Vec<(f64, f64)>), Error> {
     let text = fs::read_to_string(path).map_err(Error::unread("reference", path))?;
     let is_comment = |line: &&str| line.trim_start().starts_with('#');
-    let pairs = text.lines().map(|line| if is_comment(&line) { String::new() } else { first_two(line) });
+    let pairs = text.lines().map(|line| {
+        if is_comment(&line) {
+            String::new()
+        } else {
+            first_two(line)
+        }
+    });
     let pairs = pairs.collect::<Vec<_>>().join("\n");
     let table = parsed(path, &pairs, "it needs two columns x,y below a line with their names")?;
-    let places: Vec<_> = table.values[0].iter().copied().zip(table.values[1].iter().copied()).collect();
+    let places: Vec<_> = table.values[0]
+        .iter()
+        .copied()
+        .zip(table.values[1].iter().copied())
+        .collect();
     if places.is_empty() {
         let reason = "it has a line of names, but no points".to_owned();
-        return Err(Error::BadReference { path: path.to_owned(), reason });
+        return Err(Error::BadReference {
+            path: path.to_owned(),
+            reason,
+        });
     }
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().replace('_', " "));
     Ok((stem.unwrap_or_default(), places))
@@ -36,7 +49,10 @@ fn parsed(path: &Path, text: &str, needed: &str) -> Result<Columns, Error> {
         true => Ok(table),
         false => Err(needed.to_owned()),
     });
-    table.map_err(|reason| Error::BadReference { path: path.to_owned(), reason })
+    table.map_err(|reason| Error::BadReference {
+        path: path.to_owned(),
+        reason,
+    })
 }
 
 /// The first two cells of a line.

@@ -38,7 +38,10 @@ struct ReportColumn {
 
 impl<'a, T> ReportTable<'a, T> {
     pub fn of(rows: &'a [T]) -> Self {
-        Self { rows, columns: Vec::new() }
+        Self {
+            rows,
+            columns: Vec::new(),
+        }
     }
 
     /// A column of texts at its left side.
@@ -75,7 +78,13 @@ impl<'a, T> ReportTable<'a, T> {
     /// Columns as wide as they must be, two spaces apart, all behind an indent.
     pub fn text(&self, indent: &str) -> String {
         let width = |column: &ReportColumn| {
-            column.cells.iter().chain([&column.heading]).map(|cell| cell.chars().count()).max().unwrap_or(0)
+            column
+                .cells
+                .iter()
+                .chain([&column.heading])
+                .map(|cell| cell.chars().count())
+                .max()
+                .unwrap_or(0)
         };
         let cell = |(column, cell): (&ReportColumn, &String)| match column.align {
             Align::Left => format!("{cell:<width$}", width = width(column)),
@@ -91,7 +100,11 @@ impl<'a, T> ReportTable<'a, T> {
         let escaped = |(_, cell): (&ReportColumn, &String)| cell.replace('|', "\\|");
         let rows = (0..self.rows.len()).map(|row| line(self.cells(row).map(escaped).collect()));
         let headings = line(self.headings().map(escaped).collect());
-        format!("{headings}|{}\n{}", " --- |".repeat(self.columns.len()), rows.collect::<String>())
+        format!(
+            "{headings}|{}\n{}",
+            " --- |".repeat(self.columns.len()),
+            rows.collect::<String>()
+        )
     }
 
     /// Comma-separated values. The headings are quoted where they must be only.
@@ -119,13 +132,18 @@ pub(crate) fn or_dash<C: ToString>(value: Option<C>) -> String {
 /// Five digits, without an exponent where that is readable.
 pub(crate) fn number(value: f64) -> String {
     let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    if rounded != 0.0 && !(1e-3..1e7).contains(&rounded.abs()) { format!("{rounded:e}") } else { rounded.to_string() }
+    if rounded != 0.0 && !(1e-3..1e7).contains(&rounded.abs()) {
+        format!("{rounded:e}")
+    } else {
+        rounded.to_string()
+    }
 }
 
 /// The word that stands for a variant in JSON.
 pub(crate) fn word(variant: impl Serialize) -> String {
     let word = serde_json::to_value(variant).ok();
-    word.and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default()
+    word.and_then(|word| word.as_str().map(str::to_owned))
+        .unwrap_or_default()
 }
 
 /// bytes  in MiB
@@ -152,25 +170,43 @@ mod tests {
 
     fn table() -> ReportTable<'static, (&'static str, &'static str)> {
         let mut table = ReportTable::of(&ROWS);
-        table.column("a", |row| row.0).right("value", |row| row.1).column("twice", |row| row.1.repeat(2));
+        table
+            .column("a", |row| row.0)
+            .right("value", |row| row.1)
+            .column("twice", |row| row.1.repeat(2));
         table
     }
 
     #[test]
     fn columns_are_as_wide_as_they_must_be() {
-        assert_eq!(table().text(" "), " a        value  twice\n [1, 2]       3  33\n \"q\" | r\n");
-        assert_eq!(table().only(&["twice", "value"]).text(""), "value  twice\n    3  33\n\n");
+        assert_eq!(
+            table().text(" "),
+            " a        value  twice\n [1, 2]       3  33\n \"q\" | r\n"
+        );
+        assert_eq!(
+            table().only(&["twice", "value"]).text(""),
+            "value  twice\n    3  33\n\n"
+        );
     }
 
     #[test]
     fn what_would_end_a_cell_is_quoted() {
-        assert_eq!(table().only(&["a", "value"]).csv(Quoted::Needed), "a,value\n\"[1, 2]\",3\n\"\"\"q\"\" | r\",\n");
+        assert_eq!(
+            table().only(&["a", "value"]).csv(Quoted::Needed),
+            "a,value\n\"[1, 2]\",3\n\"\"\"q\"\" | r\",\n"
+        );
         assert_eq!(table().only(&["value"]).csv(Quoted::All), "value\n\"3\"\n\"\"\n");
-        assert_eq!(table().only(&["a"]).markdown(), "| a |\n| --- |\n| [1, 2] |\n| \"q\" \\| r |\n");
+        assert_eq!(
+            table().only(&["a"]).markdown(),
+            "| a |\n| --- |\n| [1, 2] |\n| \"q\" \\| r |\n"
+        );
     }
 
     #[test]
     fn a_variant_has_the_word_of_json() {
-        assert_eq!(word(crate::grid_convergence::ConvergenceType::OscillatoryDiverging), "oscillatory-diverging");
+        assert_eq!(
+            word(crate::grid_convergence::ConvergenceType::OscillatoryDiverging),
+            "oscillatory-diverging"
+        );
     }
 }

@@ -67,12 +67,16 @@ pub struct SlurmArguments {
 pub fn run(arguments: &SlurmArguments, mut report: impl FnMut(&str)) -> Result<Option<Vec<u8>>, Error> {
     let path = &arguments.case;
     let case = case::parsed(path, &case::load(path)?, &arguments.set)?;
-    case.warnings_on(arguments.ranks as usize).iter().for_each(|warning| report(warning));
+    case.warnings_on(arguments.ranks as usize)
+        .iter()
+        .for_each(|warning| report(warning));
     if let Some(doubt) = doubt(&case, arguments.ranks.into()) {
         report(&doubt);
     }
     let script = arguments.script();
-    let Some(file) = &arguments.script else { return Ok(Some(script)) };
+    let Some(file) = &arguments.script else {
+        return Ok(Some(script));
+    };
     let written = File::create_new(file).and_then(|mut file| file.write_all(&script));
     written.map_err(bsmpm_io::Error::file("write", file))?;
     Ok(None)
@@ -135,8 +139,15 @@ impl SlurmArguments {
     /// The command line of the run.
     fn words(&self, wall: &str) -> Vec<Vec<u8>> {
         let own = ["srun".to_owned(), "bsmpm-par".to_owned()];
-        let command = if self.command.is_empty() { &own[..] } else { &self.command };
-        let output = self.output.clone().unwrap_or_else(|| case::directory(&self.case, ".out"));
+        let command = if self.command.is_empty() {
+            &own[..]
+        } else {
+            &self.command
+        };
+        let output = self
+            .output
+            .clone()
+            .unwrap_or_else(|| case::directory(&self.case, ".out"));
         let mut words: Vec<Vec<u8>> = command.iter().map(|word| word.as_bytes().to_vec()).collect();
         words.push(file(&self.case));
         words.extend([b"-o".to_vec(), file(&output), b"--restart".to_vec(), b"auto".to_vec()]);
@@ -147,18 +158,37 @@ impl SlurmArguments {
 
     /// A name that neither Slurm nor its log file's name can take for something else.
     fn job_name(&self) -> String {
-        let given = self.name.as_deref().map(OsStr::new).or(self.case.file_stem()).unwrap_or_default();
-        let plain = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-') { c } else { '_' };
+        let given = self
+            .name
+            .as_deref()
+            .map(OsStr::new)
+            .or(self.case.file_stem())
+            .unwrap_or_default();
+        let plain = |c: char| {
+            if c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-') {
+                c
+            } else {
+                '_'
+            }
+        };
         let name: String = given.to_string_lossy().chars().map(plain).take(LONGEST_NAME).collect();
         let name = name.trim_start_matches(['-', '.']);
-        if name.is_empty() { "bsmpm".to_owned() } else { name.to_owned() }
+        if name.is_empty() {
+            "bsmpm".to_owned()
+        } else {
+            name.to_owned()
+        }
     }
 }
 
 /// A path that is no option.
 fn file(path: &Path) -> Vec<u8> {
     let bytes = path.as_os_str().as_bytes();
-    if bytes.starts_with(b"-") { [b"./", bytes].concat() } else { bytes.to_vec() }
+    if bytes.starts_with(b"-") {
+        [b"./", bytes].concat()
+    } else {
+        bytes.to_vec()
+    }
 }
 
 /// A word as the shell reads it back, byte for byte.
@@ -167,8 +197,13 @@ fn quoted(word: &[u8]) -> Vec<u8> {
     if !word.is_empty() && word.iter().all(is_plain) {
         return word.to_vec();
     }
-    let inner = word.iter().flat_map(|byte| if *byte == b'\'' { b"'\\''".to_vec() } else { vec![*byte] });
-    std::iter::once(b'\'').chain(inner).chain(std::iter::once(b'\'')).collect()
+    let inner = word
+        .iter()
+        .flat_map(|byte| if *byte == b'\'' { b"'\\''".to_vec() } else { vec![*byte] });
+    std::iter::once(b'\'')
+        .chain(inner)
+        .chain(std::iter::once(b'\''))
+        .collect()
 }
 
 /// HH:MM:SS
@@ -181,10 +216,17 @@ fn limit(text: &str) -> Result<Duration, String> {
     let wrong = || format!("`{text}` is not a time limit. Use HH:MM:SS or D-HH:MM:SS");
     let number = |part: &str, most: u64| {
         let is_number = part.len() <= 5 && part.bytes().all(|byte| byte.is_ascii_digit());
-        part.parse().ok().filter(|number| is_number && *number <= most).ok_or_else(wrong)
+        part.parse()
+            .ok()
+            .filter(|number| is_number && *number <= most)
+            .ok_or_else(wrong)
     };
-    let (days, rest) = text.split_once('-').map_or((None, text), |(days, rest)| (Some(days), rest));
-    let [hours, minutes, seconds] = rest.split(':').collect::<Vec<_>>()[..] else { return Err(wrong()) };
+    let (days, rest) = text
+        .split_once('-')
+        .map_or((None, text), |(days, rest)| (Some(days), rest));
+    let [hours, minutes, seconds] = rest.split(':').collect::<Vec<_>>()[..] else {
+        return Err(wrong());
+    };
     let days: u64 = days.map_or(Ok(0), |days| number(days, 365))?;
     let hours: u64 = number(hours, 9999)?;
     let seconds = (24 * days + hours) * 3600 + number(minutes, 59)? * 60 + number(seconds, 59)?;

@@ -87,7 +87,10 @@ pub struct SweepArguments {
 
 /// A share, as `2%` or `0.02`.
 fn share(text: &str) -> Result<f64, String> {
-    let (number, unit) = text.trim().strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+    let (number, unit) = text
+        .trim()
+        .strip_suffix('%')
+        .map_or((text, 1.0), |number| (number, 0.01));
     let share = number.trim().parse().map(|number: f64| unit * number);
     share
         .ok()
@@ -124,7 +127,9 @@ pub fn run(arguments: &SweepArguments, mut report: impl FnMut(&str)) -> Result<(
     files.push(page);
     files.extend(pictures(&report, &output)?);
     if !report.has_result() {
-        return Err(Error::NoResult { table: output.join("sweep.csv") });
+        return Err(Error::NoResult {
+            table: output.join("sweep.csv"),
+        });
     }
     let mut text = report.text();
     if let Some(file) = &arguments.write {
@@ -133,7 +138,12 @@ pub fn run(arguments: &SweepArguments, mut report: impl FnMut(&str)) -> Result<(
                 written_back(&plan.bytes, &row.set, file)?;
                 files.push(file.clone());
             }
-            None => text += &format!("{} is not written, because no setting is accurate enough\n", file.display()),
+            None => {
+                text += &format!(
+                    "{} is not written, because no setting is accurate enough\n",
+                    file.display()
+                )
+            }
         }
     }
     Ok((text, files))
@@ -143,14 +153,21 @@ pub fn run(arguments: &SweepArguments, mut report: impl FnMut(&str)) -> Result<(
 fn outcomes(batch: &Batch, plan: &SweepPlan, ranks: usize, report: &mut dyn FnMut(&str)) -> Vec<Outcome> {
     let mut outcomes: Vec<Option<Outcome>> = plan.points.iter().map(|point| refused(point, batch, ranks)).collect();
     let wanted: Vec<usize> = (0..outcomes.len()).filter(|&index| outcomes[index].is_none()).collect();
-    let orders: Vec<RunOrder> =
-        wanted.iter().filter_map(|&index| plan.points[index].order.as_ref().ok()).cloned().collect();
+    let orders: Vec<RunOrder> = wanted
+        .iter()
+        .filter_map(|&index| plan.points[index].order.as_ref().ok())
+        .cloned()
+        .collect();
     let (count, mut ended) = (orders.len(), 0);
     let mut tell = |index: usize, outcome: &Outcome| {
         ended += 1;
         let kept = if outcome.kept { ", kept" } else { "" };
         let (name, cpu) = (plan.points[wanted[index]].name(), outcome.cost.cpu_seconds);
-        let line = format!("{ended}/{count}  {name}: {}, {cpu:.1} CPU s{kept} {}", outcome.words(), outcome.reason);
+        let line = format!(
+            "{ended}/{count}  {name}: {}, {cpu:.1} CPU s{kept} {}",
+            outcome.words(),
+            outcome.reason
+        );
         report(line.trim_end());
     };
     let made = if plan.quantities.iter().any(SweepQuantity::is_factor) {
@@ -158,7 +175,10 @@ fn outcomes(batch: &Batch, plan: &SweepPlan, ranks: usize, report: &mut dyn FnMu
     } else {
         batch.run(&orders, ranks, &mut tell)
     };
-    wanted.iter().zip(made).for_each(|(&index, outcome)| outcomes[index] = Some(outcome));
+    wanted
+        .iter()
+        .zip(made)
+        .for_each(|(&index, outcome)| outcomes[index] = Some(outcome));
     outcomes.into_iter().flatten().collect()
 }
 
@@ -169,7 +189,11 @@ fn refused(point: &Point, batch: &Batch, ranks: usize) -> Option<Outcome> {
         Ok(order) => {
             let (needed, allowed) = (order.load(ranks).memory, batch.limits.memory);
             let reason = || {
-                format!("it needs about {:.0} MiB, and {:.0} MiB are available", mebibytes(needed), mebibytes(allowed))
+                format!(
+                    "it needs about {:.0} MiB, and {:.0} MiB are available",
+                    mebibytes(needed),
+                    mebibytes(allowed)
+                )
             };
             (needed > allowed).then(|| Outcome::never(RunState::Memory, reason()))
         }
@@ -191,10 +215,20 @@ fn measured(quantities: &[SweepQuantity], mut outcomes: Vec<Outcome>) -> (Vec<Op
 
 /// A picture for each quantity that has errors.
 fn pictures(report: &SweepReport, output: &Path) -> Result<Vec<PathBuf>, Error> {
-    let plain = |c: char| if c.is_ascii_alphanumeric() || ".-_".contains(c) { c } else { '-' };
+    let plain = |c: char| {
+        if c.is_ascii_alphanumeric() || ".-_".contains(c) {
+            c
+        } else {
+            '-'
+        }
+    };
     let mut drawn = Vec::new();
     for (index, name) in report.quantities.iter().enumerate() {
-        let name: String = if report.quantities.len() > 1 { format!("_{name}") } else { String::new() };
+        let name: String = if report.quantities.len() > 1 {
+            format!("_{name}")
+        } else {
+            String::new()
+        };
         let path = output.join(format!("sweep{}.png", name.chars().map(plain).collect::<String>()));
         if picture::draw(report, index, &path)? {
             drawn.push(path);
@@ -219,7 +253,9 @@ fn written_back(bytes: &[u8], set: &[String], file: &Path) -> Result<(), Error> 
     let run = case::parsed(file, bytes, set)?;
     let differences = bsmpm_scene::differences(&run.text, &text).map_err(|errors| Error::bad_case(file, &errors))?;
     if let Some(difference) = differences.first() {
-        return Err(usage(format!("the written case would differ from the run: {difference}")));
+        return Err(usage(format!(
+            "the written case would differ from the run: {difference}"
+        )));
     }
     Ok(atomic::replace(file, |file| file.write_all(text.as_bytes()))?)
 }
@@ -230,7 +266,14 @@ mod tests {
 
     #[test]
     fn shares_are_read() {
-        assert_eq!((share("2%"), share("0.05"), share(" 2.5 %")), (Ok(0.02), Ok(0.05), Ok(0.025)));
-        assert!(["", "x", "-1%", "0", "inf", "nan"].iter().all(|text| share(text).is_err()));
+        assert_eq!(
+            (share("2%"), share("0.05"), share(" 2.5 %")),
+            (Ok(0.02), Ok(0.05), Ok(0.025))
+        );
+        assert!(
+            ["", "x", "-1%", "0", "inf", "nan"]
+                .iter()
+                .all(|text| share(text).is_err())
+        );
     }
 }

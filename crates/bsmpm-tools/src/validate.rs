@@ -76,15 +76,28 @@ struct MatrixPart<'a> {
 pub fn run(arguments: &ValidateArguments, mut report: impl FnMut(&str)) -> Result<MatrixCounts, Error> {
     let matrix = ValidationMatrix::read(&arguments.matrix)?;
     let parts = parts(&matrix, arguments)?;
-    let solver = SolverProgram { command: &arguments.command, side_by_side: false };
+    let solver = SolverProgram {
+        command: &arguments.command,
+        side_by_side: false,
+    };
     solver.check()?; // before former runs are deleted for new ones that cannot be
     let base = arguments.matrix.parent().unwrap_or(Path::new(""));
     launch::make(&arguments.output)?;
-    let launcher = Launcher { solver, base, output: &arguments.output, force: arguments.force };
+    let launcher = Launcher {
+        solver,
+        base,
+        output: &arguments.output,
+        force: arguments.force,
+    };
     let mut rows: Vec<TableRow> = Vec::new();
     let mut figures: Vec<TableFigure> = Vec::new();
     let mut undrawn = 0;
-    for MatrixPart { study, runs, rows: wanted } in parts {
+    for MatrixPart {
+        study,
+        runs,
+        rows: wanted,
+    } in parts
+    {
         let mut outcomes = BTreeMap::new();
         for run in runs {
             outcomes.insert(run.name.clone(), launcher.outcome(study, run)?);
@@ -149,7 +162,11 @@ fn draw(
         match figure::draw(figure, &study.title, outcomes, base, output) {
             Ok(true) => {
                 let caption = format!("{}: {}", study.title, figure.axes());
-                figures.push(TableFigure { theme: study.theme.clone(), caption, file: figure.file.clone() });
+                figures.push(TableFigure {
+                    theme: study.theme.clone(),
+                    caption,
+                    file: figure.file.clone(),
+                });
             }
             Ok(false) => {}
             Err(error) => undrawn.push(format!("{} is not drawn: {error}", figure.file)),
@@ -157,7 +174,9 @@ fn draw(
     }
     let bodies = study.plot.iter().filter_map(|plot| {
         let drawn = draw_body(plot, outcomes, output);
-        drawn.err().map(|error| format!("{} of {} is not drawn: {error}", plot.field, plot.run))
+        drawn
+            .err()
+            .map(|error| format!("{} of {} is not drawn: {error}", plot.field, plot.run))
     });
     undrawn.extend(bodies);
     undrawn
@@ -173,7 +192,10 @@ fn case_of<'a>(study: &'a MatrixStudy, row: &matrix::MatrixRow) -> &'a str {
 fn path_between(directory: &Path, file: &Path) -> String {
     let parts = |path: &Path| {
         let mut parts: Vec<String> = Vec::new();
-        for part in std::path::absolute(path).unwrap_or_else(|_| path.to_owned()).components() {
+        for part in std::path::absolute(path)
+            .unwrap_or_else(|_| path.to_owned())
+            .components()
+        {
             match part {
                 Component::ParentDir => _ = parts.pop(),
                 Component::Normal(name) => parts.push(name.to_string_lossy().into_owned()),
@@ -204,12 +226,21 @@ fn judged(
         Err(Lack::NotReached(reason) | Lack::Other(reason)) => (None, Some(reason)),
     };
     let mut remarks: Vec<String> = remark.into_iter().collect();
-    remarks.extend(row.known.iter().map(|known| format!("known to be {} to {}: {}", known.min, known.max, known.why)));
+    remarks.extend(
+        row.known
+            .iter()
+            .map(|known| format!("known to be {} to {}: {}", known.min, known.max, known.why)),
+    );
     remarks.extend(failed);
     remarks.extend(of_row.iter().filter_map(|outcome| outcome.stopped.clone()));
     remarks.dedup();
-    let last = row.last_run().and_then(|name| outcomes.get(name)).map(|outcome| &outcome.run);
-    let sizes = last.and_then(|run| run.manifest.as_ref()).map(|manifest| &manifest.sizes);
+    let last = row
+        .last_run()
+        .and_then(|name| outcomes.get(name))
+        .map(|outcome| &outcome.run);
+    let sizes = last
+        .and_then(|run| run.manifest.as_ref())
+        .map(|manifest| &manifest.sizes);
     TableRow {
         theme: study.theme.clone(),
         study: study.title.clone(),
@@ -245,15 +276,22 @@ fn verdict(row: &matrix::MatrixRow, found: &Result<MeasuredNumber, Lack>, is_bro
 
 /// The pictures of the body of a run, copied beside the table.
 fn draw_body(plot: &matrix::Plot, outcomes: &BTreeMap<String, MatrixOutcome>, output: &Path) -> Result<(), Error> {
-    let Some(outcome) = outcomes.get(&plot.run).filter(|outcome| outcome.run.has_rows()) else { return Ok(()) };
-    let Some(directory) = &outcome.run.directory else { return Ok(()) };
+    let Some(outcome) = outcomes.get(&plot.run).filter(|outcome| outcome.run.has_rows()) else {
+        return Ok(());
+    };
+    let Some(directory) = &outcome.run.directory else {
+        return Ok(());
+    };
     let arguments = crate::plot::PlotArguments {
         times: plot.times.clone(),
         field: FieldName::from_str(&plot.field, true).ok(),
         range: plot.range,
         ..crate::plot::PlotArguments::of(directory.clone())
     };
-    for name in crate::plot::draw(&arguments)?.iter().filter(|name| name.starts_with(&plot.field)) {
+    for name in crate::plot::draw(&arguments)?
+        .iter()
+        .filter(|name| name.starts_with(&plot.field))
+    {
         let to = output.join(format!("{}_{name}", plot.run));
         let from = directory.join(name);
         fs::copy(&from, &to).map_err(bsmpm_io::Error::file("copy", &from))?;
@@ -275,7 +313,10 @@ mod tests {
     #[test]
     fn a_path_leads_from_the_table_to_the_case() {
         let between = |directory: &str, file: &str| path_between(Path::new(directory), Path::new(file));
-        assert_eq!(between("target/validation", "cases/validation/../footing.toml"), "../../cases/footing.toml");
+        assert_eq!(
+            between("target/validation", "cases/validation/../footing.toml"),
+            "../../cases/footing.toml"
+        );
         assert_eq!(between("/a/b", "/a/c/d.toml"), "../c/d.toml");
         assert_eq!(between(".", "./d.toml"), "d.toml");
     }

@@ -4,7 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-const CRATES: [&str; 6] = ["bsmpm", "bsmpm-scene", "bsmpm-io", "bsmpm-ranks", "bsmpm-par", "bsmpm-tools"];
+const CRATES: [&str; 6] = [
+    "bsmpm",
+    "bsmpm-scene",
+    "bsmpm-io",
+    "bsmpm-ranks",
+    "bsmpm-par",
+    "bsmpm-tools",
+];
 /// Words before the name of an item.
 const ITEMS: [&str; 8] = ["struct", "enum", "union", "trait", "type", "fn", "const", "static"];
 /// Names for names that are followed; one that leads back to itself ends here.
@@ -19,7 +26,10 @@ type Arrows = BTreeMap<(Segments, Segments), BTreeSet<String>>;
 
 /// The words and signs of a source without comments, texts, characters and lifetimes; `::` is one sign.
 fn tokens(text: &str) -> Vec<&str> {
-    let word_of = |text: &str| text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
+    let word_of = |text: &str| {
+        text.find(|c: char| !c.is_alphanumeric() && c != '_')
+            .unwrap_or(text.len())
+    };
     let (mut found, mut rest) = (Vec::new(), text);
     while let Some(c) = rest.chars().next() {
         let up_to = |end: &str, from: usize| rest[from..].find(end).map_or(rest.len(), |at| from + at + end.len());
@@ -50,7 +60,10 @@ fn quoted(text: &str, quote: char) -> usize {
         is_escaped = c == '\\' && !is_escaped;
         is_end
     };
-    text.char_indices().skip(1).find(|(_, c)| ends(*c)).map_or(text.len(), |(at, _)| at + 1)
+    text.char_indices()
+        .skip(1)
+        .find(|(_, c)| ends(*c))
+        .map_or(text.len(), |(at, _)| at + 1)
 }
 
 /// The tokens but for items under `#[cfg(test)]`, or under `all(test, ..)`.
@@ -141,7 +154,11 @@ impl Module {
             for (name, path) in uses {
                 let path = outside(path, inline.len());
                 module.paths.push(path.clone());
-                if name == "*" { module.globs.push(path) } else { drop(module.names.insert(name, path)) }
+                if name == "*" {
+                    module.globs.push(path)
+                } else {
+                    drop(module.names.insert(name, path))
+                }
             }
             before = token;
         }
@@ -151,7 +168,11 @@ impl Module {
 
 /// A path from within so many inline modules as it is from their file.
 fn outside(mut path: Segments, inline: usize) -> Segments {
-    let supers = path.iter().take(inline).take_while(|segment| *segment == "super").count();
+    let supers = path
+        .iter()
+        .take(inline)
+        .take_while(|segment| *segment == "super")
+        .count();
     path.splice(..supers, (supers > 0).then(|| "self".to_owned()));
     path
 }
@@ -168,7 +189,14 @@ impl Tree {
             let files = [format!("{folder}{name}.rs"), format!("{folder}{name}/mod.rs")];
             let found = files.into_iter().find(|file| sources.contains_key(file));
             let found = found.unwrap_or_else(|| panic!("{file} declares {name}, which is not there"));
-            self.load(sources, ([path.clone(), vec![name.clone()]].concat(), found, &format!("{folder}{name}/")));
+            self.load(
+                sources,
+                (
+                    [path.clone(), vec![name.clone()]].concat(),
+                    found,
+                    &format!("{folder}{name}/"),
+                ),
+            );
         }
         self.0.insert(path, (file, module));
     }
@@ -177,7 +205,9 @@ impl Tree {
     /// of its beginning, as of other crates, that is `at`.
     fn owner(&self, at: &[String], path: &[String], names: usize) -> (Segments, bool) {
         let here = |is_module| (at.to_vec(), is_module);
-        let Some((first, rest)) = path.split_first() else { return here(true) };
+        let Some((first, rest)) = path.split_first() else {
+            return here(true);
+        };
         let module = &self.0[at].1;
         let child = [at, &path[..1]].concat();
         match first.as_str() {
@@ -191,7 +221,9 @@ impl Tree {
             _ => {
                 let globs = module.globs.iter().map(|glob| self.owner(at, glob, names - 1));
                 let mut holders = globs.filter(|(glob, is_module)| *is_module && glob != at && self.holds(glob, first));
-                holders.next().map_or(here(false), |(glob, _)| self.owner(&glob, path, names - 1))
+                holders
+                    .next()
+                    .map_or(here(false), |(glob, _)| self.owner(&glob, path, names - 1))
             }
         }
     }
@@ -218,12 +250,23 @@ impl Tree {
 /// The circles, each with its files and arrows in a text of its own.
 fn circles(sources: &Sources) -> Vec<String> {
     let is_root = |file: &str| ["lib.rs", "main.rs"].contains(&file) || file.starts_with("bin/");
-    sources.keys().filter(|file| is_root(file)).flat_map(|root| circles_from(sources, root)).collect()
+    sources
+        .keys()
+        .filter(|file| is_root(file))
+        .flat_map(|root| circles_from(sources, root))
+        .collect()
 }
 
 fn circles_from(sources: &Sources, root: &str) -> Vec<String> {
     let mut tree = Tree::default();
-    tree.load(sources, (Vec::new(), root.to_owned(), if root.starts_with("bin/") { "bin/" } else { "" }));
+    tree.load(
+        sources,
+        (
+            Vec::new(),
+            root.to_owned(),
+            if root.starts_with("bin/") { "bin/" } else { "" },
+        ),
+    );
     let arrows = tree.arrows();
     let reached = |from: &Segments| {
         let (mut reached, mut next) = (BTreeSet::new(), vec![from.clone()]);
@@ -234,18 +277,34 @@ fn circles_from(sources: &Sources, root: &str) -> Vec<String> {
         reached
     };
     let reached: BTreeMap<&Segments, _> = tree.0.keys().map(|from| (from, reached(from))).collect();
-    let of = |at: &Segments| reached[at].iter().filter(|to| reached[to].contains(at)).cloned().collect();
-    let parts: BTreeSet<BTreeSet<Segments>> =
-        tree.0.keys().map(of).filter(|part: &BTreeSet<_>| !part.is_empty()).collect();
+    let of = |at: &Segments| {
+        reached[at]
+            .iter()
+            .filter(|to| reached[to].contains(at))
+            .cloned()
+            .collect()
+    };
+    let parts: BTreeSet<BTreeSet<Segments>> = tree
+        .0
+        .keys()
+        .map(of)
+        .filter(|part: &BTreeSet<_>| !part.is_empty())
+        .collect();
     let file = |at: &Segments| tree.0[at].0.as_str();
     let describe = |part: BTreeSet<Segments>| {
-        let within = arrows.iter().filter(|((from, to), _)| part.contains(from) && part.contains(to));
+        let within = arrows
+            .iter()
+            .filter(|((from, to), _)| part.contains(from) && part.contains(to));
         let arrow = |((from, to), paths): (&(Segments, Segments), &BTreeSet<String>)| {
             let paths: Vec<&str> = paths.iter().map(String::as_str).collect();
             format!("\n  {} -> {}: {}", file(from), file(to), paths.join(", "))
         };
         let files: Vec<&str> = part.iter().map(file).collect();
-        format!("circle of {}{}", files.join(", "), within.map(arrow).collect::<String>())
+        format!(
+            "circle of {}{}",
+            files.join(", "),
+            within.map(arrow).collect::<String>()
+        )
     };
     parts.into_iter().map(describe).collect()
 }
@@ -267,9 +326,15 @@ fn collect(folder: &Path, name: &str, sources: &mut Sources) {
 fn no_files_of_a_crate_go_round_in_a_circle() {
     let found = CRATES.iter().flat_map(|name| {
         let mut sources = Sources::new();
-        collect(&Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name).join("src"), "", &mut sources);
+        collect(
+            &Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name).join("src"),
+            "",
+            &mut sources,
+        );
         assert!(sources.contains_key("lib.rs"), "{name} has no lib.rs");
-        circles(&sources).into_iter().map(move |circle| format!("{name}: {circle}"))
+        circles(&sources)
+            .into_iter()
+            .map(move |circle| format!("{name}: {circle}"))
     });
     let found: Vec<String> = found.collect();
     assert!(found.is_empty(), "\n{}", found.join("\n"));
@@ -277,18 +342,38 @@ fn no_files_of_a_crate_go_round_in_a_circle() {
 
 /// The circles of made-up files.
 fn made(files: &[(&str, &str)]) -> Vec<String> {
-    circles(&files.iter().map(|(file, text)| ((*file).to_owned(), (*text).to_owned())).collect())
+    circles(
+        &files
+            .iter()
+            .map(|(file, text)| ((*file).to_owned(), (*text).to_owned()))
+            .collect(),
+    )
 }
 
 const LIB: (&str, &str) = ("lib.rs", "mod a;\nmod b;\n");
 
 #[test]
 fn a_circle_is_found_with_its_arrows() {
-    let c = ("b/c.rs", "pub fn f<'a>(x: &'a str) -> char { let _ = crate::a::A::<u8>::new(x); '\"' }");
-    let found =
-        made(&[LIB, ("a.rs", "use crate::{b::{self, B as Other}};\npub struct A;"), ("b.rs", "mod c; use c::*;"), c]);
-    assert!(found.is_empty(), "from a to b, from c to a, but not from b to c: {found:?}");
-    let found = made(&[LIB, ("a.rs", "use crate::b::c::f;\npub struct A;"), ("b.rs", "pub mod c;"), c]);
+    let c = (
+        "b/c.rs",
+        "pub fn f<'a>(x: &'a str) -> char { let _ = crate::a::A::<u8>::new(x); '\"' }",
+    );
+    let found = made(&[
+        LIB,
+        ("a.rs", "use crate::{b::{self, B as Other}};\npub struct A;"),
+        ("b.rs", "mod c; use c::*;"),
+        c,
+    ]);
+    assert!(
+        found.is_empty(),
+        "from a to b, from c to a, but not from b to c: {found:?}"
+    );
+    let found = made(&[
+        LIB,
+        ("a.rs", "use crate::b::c::f;\npub struct A;"),
+        ("b.rs", "pub mod c;"),
+        c,
+    ]);
     let expected = "circle of a.rs, b/c.rs\n  a.rs -> b/c.rs: crate::b::c::f\n  b/c.rs -> a.rs: crate::a::A";
     assert_eq!(found, [expected]);
 }
@@ -296,8 +381,12 @@ fn a_circle_is_found_with_its_arrows() {
 #[test]
 fn parent_and_child_are_no_circle() {
     assert!(
-        made(&[("lib.rs", "mod a;"), ("a.rs", "mod b; pub use b::B; struct A;"), ("a/b.rs", "use super::A;")])
-            .is_empty()
+        made(&[
+            ("lib.rs", "mod a;"),
+            ("a.rs", "mod b; pub use b::B; struct A;"),
+            ("a/b.rs", "use super::A;")
+        ])
+        .is_empty()
     );
 }
 
@@ -307,7 +396,10 @@ fn a_re_export_leads_to_the_file_that_defines() {
         let b = format!("mod c; {export}");
         let files = [LIB, ("a.rs", "use crate::b::C; pub struct A;"), ("b.rs", &b)];
         let circle = made(&[&files[..], &[("b/c.rs", "use crate::a::A; pub struct C;")]].concat());
-        assert!(circle.len() == 1 && circle[0].starts_with("circle of a.rs, b/c.rs\n"), "{export}: {circle:?}");
+        assert!(
+            circle.len() == 1 && circle[0].starts_with("circle of a.rs, b/c.rs\n"),
+            "{export}: {circle:?}"
+        );
         let none = made(&[&files[..], &[("b/c.rs", "pub struct C;")]].concat());
         assert!(none.is_empty(), "{export}: {none:?}");
     }
@@ -316,7 +408,14 @@ fn a_re_export_leads_to_the_file_that_defines() {
 #[test]
 fn a_variant_is_no_module() {
     let a = "use crate::b::Kind;\npub enum Way { b, B }\nfn f() { let _ = (Way::b, Kind::a, Kind::B); }";
-    assert!(made(&[LIB, ("a.rs", a), ("b.rs", "pub enum Kind { a, B }\nfn f() { let _ = Kind::a; }")]).is_empty());
+    assert!(
+        made(&[
+            LIB,
+            ("a.rs", a),
+            ("b.rs", "pub enum Kind { a, B }\nfn f() { let _ = Kind::a; }")
+        ])
+        .is_empty()
+    );
 }
 
 #[test]
@@ -326,7 +425,15 @@ fn tests_comments_and_texts_do_not_count() {
         #[cfg(all(test, unix))] use crate::a::{A, B};
         #[cfg(test)] #[allow(unused)] mod tests { use crate::a::A; fn f() { let _ = [1; 2]; } }"##;
     assert!(made(&[LIB, ("a.rs", "use crate::b::T;"), ("b.rs", b)]).is_empty());
-    assert_eq!(made(&[LIB, ("a.rs", "use crate::b::T;"), ("b.rs", &format!("{b} use crate::a::A;"))]).len(), 1);
+    assert_eq!(
+        made(&[
+            LIB,
+            ("a.rs", "use crate::b::T;"),
+            ("b.rs", &format!("{b} use crate::a::A;"))
+        ])
+        .len(),
+        1
+    );
 }
 
 #[test]

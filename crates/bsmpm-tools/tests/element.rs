@@ -11,7 +11,13 @@ const CASE: &str = "../../cases/element_tests.toml";
 
 fn arguments(case: &Path, output: &Path) -> ElementArguments {
     let (tests, set) = (Vec::new(), Vec::new());
-    ElementArguments { case: case.to_owned(), tests, material: None, output: Some(output.to_owned()), set }
+    ElementArguments {
+        case: case.to_owned(),
+        tests,
+        material: None,
+        output: Some(output.to_owned()),
+        set,
+    }
 }
 
 #[test]
@@ -24,10 +30,19 @@ fn the_example_gives_the_strengths_that_its_comments_tell() {
     let sin = 35_f64.to_radians().sin();
     for (name, cell) in [("drained-100", 1e5), ("drained-200", 2e5)] {
         let found = read(name);
-        assert_eq!((found.unit("deviator"), found.unit("strain-yy")), (Some("Pa"), Some("-")));
+        assert_eq!(
+            (found.unit("deviator"), found.unit("strain-yy")),
+            (Some("Pa"), Some("-"))
+        );
         let last = *found.get("deviator").unwrap().last().unwrap();
         assert!((last / (2.0 * sin / (1.0 - sin) * cell) - 1.0).abs() < 1e-9, "{last}");
-        assert!(found.get("stress-xx").unwrap().iter().all(|stress| (stress + cell).abs() < 1e-3));
+        assert!(
+            found
+                .get("stress-xx")
+                .unwrap()
+                .iter()
+                .all(|stress| (stress + cell).abs() < 1e-3)
+        );
     }
     let undrained = read("undrained");
     let water = undrained.get("pore-pressure").unwrap();
@@ -50,9 +65,15 @@ fn one_test_of_another_material_by_options() {
     arguments.material = Some("clay".to_owned());
     arguments.set = vec!["material.clay.cohesion=20 kPa".to_owned()];
     let (table, files) = run(&arguments, |_| {}).unwrap();
-    assert!(files.len() == 2 && table.contains("clay") && !table.contains("sand"), "{table}");
+    assert!(
+        files.len() == 2 && table.contains("clay") && !table.contains("sand"),
+        "{table}"
+    );
     let found = table::read(&files[0]).unwrap();
-    let (last, volume) = (*found.get("deviator").unwrap().last().unwrap(), found.get("volume-strain").unwrap());
+    let (last, volume) = (
+        *found.get("deviator").unwrap().last().unwrap(),
+        found.get("volume-strain").unwrap(),
+    );
     assert!((last * volume[100].exp() / 4e4 - 1.0).abs() < 1e-9, "{last}");
     arguments.tests = vec!["drained".to_owned()];
     assert!(matches!(run(&arguments, |_| {}), Err(Error::Usage { reason }) if reason.contains("drained-100")));
@@ -84,7 +105,10 @@ fn a_strength_by_depth_in_a_solid_is_that_of_the_height_along_z() {
     fs::write(&case, text).unwrap();
     let (_, files) = run(&arguments(&case, directory.path()), |_| {}).unwrap();
     let found = table::read(&files[0]).unwrap();
-    let (last, volume) = (found.get("deviator").unwrap().last(), found.get("volume-strain").unwrap().last());
+    let (last, volume) = (
+        found.get("deviator").unwrap().last(),
+        found.get("volume-strain").unwrap().last(),
+    );
     let kirchhoff = last.unwrap() * volume.unwrap().exp();
     assert!((kirchhoff / (2.0 * 26e3) - 1.0).abs() < 1e-9, "{kirchhoff}");
 }
@@ -99,7 +123,10 @@ fn what_a_material_cannot_carry_ends_the_test_with_code_80() {
     let mut reported = String::new();
     let error = run(&arguments, |line| reported.push_str(line)).unwrap_err();
     assert_eq!(error.exit_code(), 80);
-    assert!(error.to_string().contains("stress-yy") && reported.contains("drained-100"), "{error}, {reported}");
+    assert!(
+        error.to_string().contains("stress-yy") && reported.contains("drained-100"),
+        "{error}, {reported}"
+    );
     let found = table::read(&directory.path().join("drained-100.csv")).unwrap();
     let last = *found.get("deviator").unwrap().last().unwrap();
     assert!(last > 2.6e5 && last < 2.7e5, "{last}");
@@ -110,7 +137,10 @@ fn a_case_without_tests_says_how_to_write_one() {
     let directory = tempfile::tempdir().unwrap();
     let case: PathBuf = "../../cases/short/slope_stability.toml".into();
     let error = run(&arguments(&case, directory.path()), |_| {}).unwrap_err();
-    assert!(error.exit_code() == 2 && error.to_string().contains("[element.NAME]"), "{error}");
+    assert!(
+        error.exit_code() == 2 && error.to_string().contains("[element.NAME]"),
+        "{error}"
+    );
 }
 
 /// A test has its own pressure: it asks neither for the stress of the ground at the start nor for its weight.

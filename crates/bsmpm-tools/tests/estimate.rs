@@ -28,9 +28,16 @@ const EVALUATION: f64 = 2e-3;
 /// No test of its own: the solver, when the variable says so.
 #[test]
 fn stub() {
-    let Some(folder) = env::var_os(STUB).map(PathBuf::from) else { return };
+    let Some(folder) = env::var_os(STUB).map(PathBuf::from) else {
+        return;
+    };
     let arguments: Vec<String> = env::args().skip_while(|word| word != "--").skip(1).collect();
-    let after = |name: &str| arguments.windows(2).find(|pair| pair[0] == name).map(|pair| pair[1].clone());
+    let after = |name: &str| {
+        arguments
+            .windows(2)
+            .find(|pair| pair[0] == name)
+            .map(|pair| pair[1].clone())
+    };
     let bytes = fs::read(&arguments[0]).unwrap();
     let case = bsmpm_scene::Case::from_bytes(&arguments[0], &bytes, &[]).unwrap();
     let code: u8 = fs::read_to_string(folder.join("code")).unwrap().parse().unwrap();
@@ -71,7 +78,10 @@ fn write_run(case: &bsmpm_scene::Case, directory: &Path, most: u64) -> bool {
     manifest.sizes = [("points".to_owned(), case.points()), ("unknowns".to_owned(), 321)].into();
     manifest.timers.insert("wall".into(), manifest.summary.cpu_seconds);
     let stopped = schedule.next(time).is_some();
-    manifest.finish(if stopped { Status::Stopped } else { Status::Finished }, if stopped { 75 } else { 0 });
+    manifest.finish(
+        if stopped { Status::Stopped } else { Status::Finished },
+        if stopped { 75 } else { 0 },
+    );
     manifest.write(directory.path()).unwrap();
     stopped
 }
@@ -106,7 +116,10 @@ impl Bench {
         bench.write("column.toml", COLUMN);
         bench.write("code", &code.to_string());
         let program = env::current_exe().unwrap();
-        let script = format!("#!/bin/sh\nexec '{}' --exact stub --nocapture -- \"$@\"\n", program.display());
+        let script = format!(
+            "#!/bin/sh\nexec '{}' --exact stub --nocapture -- \"$@\"\n",
+            program.display()
+        );
         bench.write("solver", &script);
         fs::set_permissions(bench.path("solver"), fs::Permissions::from_mode(0o755)).unwrap();
         bench
@@ -123,7 +136,12 @@ impl Bench {
     fn estimate(&self, options: &[&str]) -> Output {
         let arguments = [&["estimate"], options, &["--", "./solver"]].concat();
         let mut command = Command::new(env!("CARGO_BIN_EXE_bsmpm"));
-        command.current_dir(self.0.path()).env(STUB, self.0.path()).args(arguments).output().unwrap()
+        command
+            .current_dir(self.0.path())
+            .env(STUB, self.0.path())
+            .args(arguments)
+            .output()
+            .unwrap()
     }
 
     #[track_caller]
@@ -140,11 +158,17 @@ fn a_cost_that_follows_the_law_is_found_and_nothing_is_left() {
     let found = bench.json(&[]);
     // 20 evaluations a step, by the line through 8 and 12 of the coarse forms; 4 more of the step itself.
     let evaluations = found["work"]["evaluations"].as_f64().unwrap();
-    assert!((evaluations / (20.0 * STEPS_OF_COLUMN as f64) - 1.0).abs() < 0.02, "{found}");
+    assert!(
+        (evaluations / (20.0 * STEPS_OF_COLUMN as f64) - 1.0).abs() < 0.02,
+        "{found}"
+    );
     let cpu = found["cpu_seconds"]["value"].as_f64().unwrap();
     let law = START + EVALUATION * 24.0 * STEPS_OF_COLUMN as f64;
     assert!((cpu / law - 1.0).abs() < 0.02, "{cpu} {law}");
-    assert_eq!((found["points"].as_u64(), found["unknowns"].as_u64()), (Some(800), Some(321)));
+    assert_eq!(
+        (found["points"].as_u64(), found["unknowns"].as_u64()),
+        (Some(800), Some(321))
+    );
     assert!(found["cpu_seconds"]["high"].as_f64().unwrap() <= 1.51 * cpu);
     let last = fs::read_to_string(bench.path("last")).unwrap();
     assert!(!Path::new(&last).exists() && !Path::new(&last).parent().unwrap().exists());
@@ -159,9 +183,18 @@ fn a_finished_run_is_set_beside_it() {
     assert!((found["ratio"].as_f64().unwrap() - 1.0).abs() < 0.02, "{found}");
     let output = bench.estimate(&["column.toml", "--no-probe", "--against", "column.out"]);
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(text.contains("actual, 1 rank(s)") && text.contains("estimated / actual"), "{text}");
-    let reported =
-        bench.estimate(&["column.toml", "--no-probe", "--against", "column.out", "--set", "grid.degree=cubic"]);
+    assert!(
+        text.contains("actual, 1 rank(s)") && text.contains("estimated / actual"),
+        "{text}"
+    );
+    let reported = bench.estimate(&[
+        "column.toml",
+        "--no-probe",
+        "--against",
+        "column.out",
+        "--set",
+        "grid.degree=cubic",
+    ]);
     assert!(String::from_utf8(reported.stderr).unwrap().contains("W0854"));
 }
 
@@ -182,7 +215,12 @@ fn errors_have_the_codes_of_the_other_commands() {
     assert_eq!(code(&["nowhere.toml"]), Some(66));
     assert_eq!(code(&["column.toml", "--against", "nowhere"]), Some(66));
     assert_eq!(code(&["column.toml", "--set", "grid.degree=quartic"]), Some(65));
-    for bad in [&["--budget", "-1"][..], &["--budget", "nan"], &["--ranks", "0"], &["--ranks", "59"]] {
+    for bad in [
+        &["--budget", "-1"][..],
+        &["--budget", "nan"],
+        &["--ranks", "0"],
+        &["--ranks", "59"],
+    ] {
         assert_eq!(code(&[&["column.toml"], bad].concat()), Some(2), "{bad:?}");
     }
     fs::remove_file(bench.path("solver")).unwrap();

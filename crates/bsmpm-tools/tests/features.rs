@@ -38,9 +38,21 @@ impl Verdict {
 
 /// A block of soil in the lower part of the grid with a feature.
 fn case_text(feature: &Feature, geometry: &str, analysis: &str) -> String {
-    let block = if geometry == "3d" { BLOCK_IN_SPACE } else { BLOCK_IN_PLANE };
-    let extra = if geometry == "3d" { feature.extra_in_space.unwrap_or(feature.extra) } else { feature.extra };
-    let fit = if geometry == "plane-strain" { "plane-strain" } else { "outer" };
+    let block = if geometry == "3d" {
+        BLOCK_IN_SPACE
+    } else {
+        BLOCK_IN_PLANE
+    };
+    let extra = if geometry == "3d" {
+        feature.extra_in_space.unwrap_or(feature.extra)
+    } else {
+        feature.extra
+    };
+    let fit = if geometry == "plane-strain" {
+        "plane-strain"
+    } else {
+        "outer"
+    };
     let middle = if geometry == "axisymmetric" { "0.0" } else { "4.0" };
     let [time, soil, tables] = match analysis {
         "quasi-static" => ["steps = 10", "", ""],
@@ -52,7 +64,10 @@ fn case_text(feature: &Feature, geometry: &str, analysis: &str) -> String {
     block
         .replace("{GEOMETRY}", geometry)
         .replace("{TOP}", feature.top)
-        .replace("{ANALYSIS}", &format!("type = \"{analysis}\"\n{time}\n{}", feature.analysis_keys))
+        .replace(
+            "{ANALYSIS}",
+            &format!("type = \"{analysis}\"\n{time}\n{}", feature.analysis_keys),
+        )
         .replace("{BOTTOM}", feature.bottom.unwrap_or("fixed"))
         .replace("{RIGHT}", feature.right.unwrap_or("roller"))
         .replace("{LAW}", feature.law.unwrap_or(MOHR_COULOMB))
@@ -69,7 +84,11 @@ fn judge(feature: &Feature, geometry: &str, analysis: &str) -> (Verdict, String)
         Ok(case) => case,
         Err(errors) => return (Verdict::No, errors.iter().map(|error| format!("{error}\n")).collect()),
     };
-    let refusals = if feature.is_factor_of_safety { fos::refusals(&case, None) } else { Vec::new() };
+    let refusals = if feature.is_factor_of_safety {
+        fos::refusals(&case, None)
+    } else {
+        Vec::new()
+    };
     if !refusals.is_empty() {
         return (Verdict::No, refusals.join("\n"));
     }
@@ -77,20 +96,35 @@ fn judge(feature: &Feature, geometry: &str, analysis: &str) -> (Verdict, String)
     let general =
         Case::from_text("case.toml", &case_text(&Feature::NONE, geometry, analysis), &[]).map(|case| case.warnings);
     let general = general.unwrap_or_default();
-    let own: Vec<String> = case.warnings.into_iter().filter(|warning| !general.contains(warning)).collect();
-    if own.is_empty() { (Verdict::Yes, String::new()) } else { (Verdict::Warning, own.join("\n")) }
+    let own: Vec<String> = case
+        .warnings
+        .into_iter()
+        .filter(|warning| !general.contains(warning))
+        .collect();
+    if own.is_empty() {
+        (Verdict::Yes, String::new())
+    } else {
+        (Verdict::Warning, own.join("\n"))
+    }
 }
 
 /// The row of a feature: the geometries in any analysis, then dynamic and consolidation in any geometry.
 fn row(feature: &Feature) -> String {
     let best_of = |pairs: Vec<(&str, &str)>| {
-        let verdicts = pairs.into_iter().map(|(geometry, analysis)| judge(feature, geometry, analysis).0);
+        let verdicts = pairs
+            .into_iter()
+            .map(|(geometry, analysis)| judge(feature, geometry, analysis).0);
         verdicts.max().unwrap_or(Verdict::No).word()
     };
     let of_geometry = |geometry| best_of(ANALYSES.map(|analysis| (geometry, analysis)).to_vec());
     let of_analysis = |analysis| best_of(GEOMETRIES.map(|geometry| (geometry, analysis)).to_vec());
     let geometries = GEOMETRIES.map(of_geometry).join(" | ");
-    format!("| {} | {geometries} | {} | {} |\n", feature.name, of_analysis("dynamic"), of_analysis("consolidation"))
+    format!(
+        "| {} | {geometries} | {} | {} |\n",
+        feature.name,
+        of_analysis("dynamic"),
+        of_analysis("consolidation")
+    )
 }
 
 fn table() -> String {
@@ -112,7 +146,10 @@ fn the_table_in_the_readme_is_what_the_reader_says() {
         fs::write(readme(), format!("{before}{BEGIN}{new}{END}{after}")).unwrap();
         return;
     }
-    assert!(old == new, "the table of features has changed, renew it as its comment says:\n{new}");
+    assert!(
+        old == new,
+        "the table of features has changed, renew it as its comment says:\n{new}"
+    );
 }
 
 /// Without this a slip in a row would read as a feature that is not available.

@@ -32,7 +32,10 @@ impl Scratch {
         std::fs::create_dir(scratch.path("bin")).unwrap();
         // Both tell what they were called with, every word ended by a NUL.
         scratch.program("srun", "printf '%s\\0' \"$@\" >>srun.arguments\nexit \"$(cat code)\"");
-        scratch.program("scontrol", "printf '%s\\0' \"$@\" >>scontrol.arguments\nexit \"$(cat requeued)\"");
+        scratch.program(
+            "scontrol",
+            "printf '%s\\0' \"$@\" >>scontrol.arguments\nexit \"$(cat requeued)\"",
+        );
         std::fs::write(scratch.path("case.toml"), CASE).unwrap();
         scratch
     }
@@ -49,7 +52,12 @@ impl Scratch {
 
     fn bsmpm(&self, arguments: &[&OsStr]) -> Output {
         let mut command = Command::new(env!("CARGO_BIN_EXE_bsmpm"));
-        command.arg("slurm").args(arguments).current_dir(self.0.path()).output().unwrap()
+        command
+            .arg("slurm")
+            .args(arguments)
+            .current_dir(self.0.path())
+            .output()
+            .unwrap()
     }
 
     /// The script for these words of a command line.
@@ -66,7 +74,11 @@ impl Scratch {
         std::fs::write(self.path("requeued"), requeued.to_string()).unwrap();
         let path = format!("{}:/usr/bin:/bin", self.path("bin").display());
         let mut command = Command::new("bash");
-        command.arg("job.sh").env("PATH", path).env("SLURM_JOB_ID", "4711").current_dir(self.0.path());
+        command
+            .arg("job.sh")
+            .env("PATH", path)
+            .env("SLURM_JOB_ID", "4711")
+            .current_dir(self.0.path());
         let output = command.output().unwrap();
         let arguments = |name: &str| {
             let bytes = std::fs::read(self.path(name)).unwrap_or_default();
@@ -75,7 +87,11 @@ impl Scratch {
             words.pop();
             words
         };
-        (output.status.code(), arguments("srun.arguments"), arguments("scontrol.arguments"))
+        (
+            output.status.code(),
+            arguments("srun.arguments"),
+            arguments("scontrol.arguments"),
+        )
     }
 }
 
@@ -136,15 +152,34 @@ fn only_75_is_queued_again() {
 #[test]
 fn options_arrive_in_the_job() {
     let scratch = Scratch::new();
-    let arguments =
-        ["case.toml", "-n", "4", "-t", "1-00:10:00", "-o", "my run", "--name", "a b/$c", "--set", "grid.cell=0.25 m"];
+    let arguments = [
+        "case.toml",
+        "-n",
+        "4",
+        "-t",
+        "1-00:10:00",
+        "-o",
+        "my run",
+        "--name",
+        "a b/$c",
+        "--set",
+        "grid.cell=0.25 m",
+    ];
     let script = scratch.script(&[&arguments[..], &["--", "srun", "--mpi=pmix", "/opt/x y/bsmpm-par"]].concat());
-    for line in ["--job-name=a_b__c", "--ntasks=4", "--time=24:10:00", "--signal=USR1@300"] {
+    for line in [
+        "--job-name=a_b__c",
+        "--ntasks=4",
+        "--time=24:10:00",
+        "--signal=USR1@300",
+    ] {
         assert!(script.contains(&format!("#SBATCH {line}\n")), "{script}");
     }
     sound(&scratch, script.as_bytes());
     let (_, arguments, _) = scratch.job(script.as_bytes(), 0, 0);
-    let arguments: Vec<String> = arguments.into_iter().map(|word| String::from_utf8(word).unwrap()).collect();
+    let arguments: Vec<String> = arguments
+        .into_iter()
+        .map(|word| String::from_utf8(word).unwrap())
+        .collect();
     let expected = [
         "--mpi=pmix",
         "/opt/x y/bsmpm-par",
@@ -162,9 +197,11 @@ fn options_arrive_in_the_job() {
 #[test]
 fn short_jobs_stop_in_time_too() {
     let scratch = Scratch::new();
-    for (time, notice, wall) in
-        [("00:20:00", 300, "00:10:00"), ("00:10:00", 150, "00:05:00"), ("00:02:00", 30, "00:01:00")]
-    {
+    for (time, notice, wall) in [
+        ("00:20:00", 300, "00:10:00"),
+        ("00:10:00", 150, "00:05:00"),
+        ("00:02:00", 30, "00:01:00"),
+    ] {
         let script = scratch.script(&["case.toml", "-n", "4", "-t", time]);
         assert!(
             script.contains(&format!("USR1@{notice}\n")) && script.contains(&format!("--max-wall {wall}\n")),
@@ -191,15 +228,32 @@ fn s2_hostile_names_are_words_and_nothing_else() {
         let script = output.stdout;
         sound(&scratch, &script);
         // Lines of Slurm's own before the first command: the same as for any other name.
-        let head = script.split(|byte| *byte == b'\n').take_while(|line| !line.starts_with(b"export"));
-        assert_eq!(head.filter(|line| line.starts_with(b"#SBATCH --")).count(), 6, "{name:?}");
-        let job_name =
-            script.split(|byte| *byte == b'\n').nth(1).unwrap().strip_prefix(b"#SBATCH --job-name=").unwrap();
+        let head = script
+            .split(|byte| *byte == b'\n')
+            .take_while(|line| !line.starts_with(b"export"));
+        assert_eq!(
+            head.filter(|line| line.starts_with(b"#SBATCH --")).count(),
+            6,
+            "{name:?}"
+        );
+        let job_name = script
+            .split(|byte| *byte == b'\n')
+            .nth(1)
+            .unwrap()
+            .strip_prefix(b"#SBATCH --job-name=")
+            .unwrap();
         let is_plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"._-".contains(byte);
-        assert!(!job_name.is_empty() && job_name.iter().all(is_plain) && job_name[0] != b'-', "{job_name:?}");
+        assert!(
+            !job_name.is_empty() && job_name.iter().all(is_plain) && job_name[0] != b'-',
+            "{job_name:?}"
+        );
         let (code, arguments, _) = scratch.job(&script, 0, 0);
         assert_eq!(code, Some(0));
-        assert_eq!(OsString::from_vec(arguments[1].clone()), path.as_os_str(), "byte for byte");
+        assert_eq!(
+            OsString::from_vec(arguments[1].clone()),
+            path.as_os_str(),
+            "byte for byte"
+        );
         assert_eq!(arguments[3], b"$(touch pwned)");
         assert!(!scratch.path("pwned").exists());
     }
@@ -220,7 +274,11 @@ fn a_wrong_case_or_command_line_writes_nothing() {
     std::fs::write(scratch.path("bad.toml"), CASE.replace("[grid]", "[gird]")).unwrap();
     let rows: [(&[&str], i32, &str); 8] = [
         (&["bad.toml", "-n", "2", "-t", "01:00:00"], 65, "did you mean `grid`?"),
-        (&["case.toml", "-n", "2", "-t", "01:00:00", "--set", "grid.cell=0"], 65, "error E0010: grid.cell"),
+        (
+            &["case.toml", "-n", "2", "-t", "01:00:00", "--set", "grid.cell=0"],
+            65,
+            "error E0010: grid.cell",
+        ),
         (&["none.toml", "-n", "2", "-t", "01:00:00"], 66, "none.toml"),
         (&["case.toml", "-n", "0", "-t", "01:00:00"], 2, "0"),
         (&["case.toml", "-n", "2", "-t", "90"], 2, "Use HH:MM:SS or D-HH:MM:SS"),
@@ -230,12 +288,18 @@ fn a_wrong_case_or_command_line_writes_nothing() {
     ];
     for (arguments, code, says) in rows {
         let script = scratch.path("job.sh");
-        let all: Vec<&OsStr> =
-            arguments.iter().map(OsStr::new).chain([OsStr::new("--script"), script.as_os_str()]).collect();
+        let all: Vec<&OsStr> = arguments
+            .iter()
+            .map(OsStr::new)
+            .chain([OsStr::new("--script"), script.as_os_str()])
+            .collect();
         let output = scratch.bsmpm(&all);
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
-        assert!(said.contains(says) && output.stdout.is_empty() && !script.exists(), "{arguments:?}: {said}");
+        assert!(
+            said.contains(says) && output.stdout.is_empty() && !script.exists(),
+            "{arguments:?}: {said}"
+        );
     }
 }
 
@@ -261,6 +325,14 @@ fn more_ranks_than_the_case_has_use_for_are_warned_of() {
         String::from_utf8(output.stderr).unwrap()
     };
     assert_eq!(warned("1"), "");
-    assert!(warned("8").contains("W0856: the run is not faster on 8 ranks than on about 1"), "{}", warned("8"));
-    assert!(warned("67").contains("W0855") && warned("67").contains("at most 11 ranks"), "{}", warned("67"));
+    assert!(
+        warned("8").contains("W0856: the run is not faster on 8 ranks than on about 1"),
+        "{}",
+        warned("8")
+    );
+    assert!(
+        warned("67").contains("W0855") && warned("67").contains("at most 11 ranks"),
+        "{}",
+        warned("67")
+    );
 }

@@ -25,9 +25,15 @@ fn blocks() {
     );
     println!("| --- | --- | --- | --- |");
     for nodes in [4, 6, 8] {
-        let strips = [1.0, 0.5, 0.25].map(|ratio| format!("{:.3}", strip(ratio, nodes))).join(", ");
-        let pipes = [1.0, 2.0, 3.0].map(|depth| format!("{:.3}", pipe(depth, nodes))).join(", ");
-        let plates = [1.0, 2.0, 3.0].map(|depth| format!("{:.3}", plate(depth, 0.25, nodes))).join(", ");
+        let strips = [1.0, 0.5, 0.25]
+            .map(|ratio| format!("{:.3}", strip(ratio, nodes)))
+            .join(", ");
+        let pipes = [1.0, 2.0, 3.0]
+            .map(|depth| format!("{:.3}", pipe(depth, nodes)))
+            .join(", ");
+        let plates = [1.0, 2.0, 3.0]
+            .map(|depth| format!("{:.3}", plate(depth, 0.25, nodes)))
+            .join(", ");
         println!("| 1/{nodes} of the width | {strips} | {pipes} | {plates} |");
     }
     println!("\n| nodes, m | first pit, second pit |\n| --- | --- |");
@@ -38,17 +44,37 @@ fn blocks() {
 
 fn footings() {
     println!("\n| N, lower and upper bound | cells of B/40 at the edge | B/100 |\n| --- | --- | --- |");
-    let disc = Footing { round: true, rough: false, outline: FLAT, depth: 0.0, side: 0.0, below: 1.0 };
+    let disc = Footing {
+        round: true,
+        rough: false,
+        outline: FLAT,
+        depth: 0.0,
+        side: 0.0,
+        below: 1.0,
+    };
     row("smooth disc", &disc);
     row("rough disc", &Footing { rough: true, ..disc });
     for below in [1.0, 0.5, 0.25] {
-        row(&format!("smooth strip, {below} of the strength below"), &Footing { round: false, below, ..disc });
+        row(
+            &format!("smooth strip, {below} of the strength below"),
+            &Footing {
+                round: false,
+                below,
+                ..disc
+            },
+        );
     }
     let depths = [0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.5, 1.0];
     let layers = depths.map(|z| (0.25, z));
     let one_clay = [0.0, 0.125, 0.5, 1.0].map(|z| (1.0, z));
     for (below, z) in layers.into_iter().chain(one_clay) {
-        let spudcan = Footing { outline: SPUDCAN, depth: 2.0 * z, side: 0.3, below, ..disc };
+        let spudcan = Footing {
+            outline: SPUDCAN,
+            depth: 2.0 * z,
+            side: 0.3,
+            below,
+            ..disc
+        };
         row(&format!("spudcan, z = {z} B, {below} of the strength below"), &spudcan);
     }
 }

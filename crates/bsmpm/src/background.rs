@@ -65,10 +65,16 @@ impl Background {
             let cell = grid.cell_at(patch.cell);
             let (lower, size) = grid.cell_box(&cell);
             let factor = self.coefficient * modulus(patch) * K::weight(&(lower + size * 0.5));
-            SoftCell { form: forms.of(&cell), factor }
+            SoftCell {
+                form: forms.of(&cell),
+                factor,
+            }
         };
         let cells = shape.patches().iter().map(soft).collect();
-        Blocks { cells, forms: forms.found }
+        Blocks {
+            cells,
+            forms: forms.found,
+        }
     }
 }
 
@@ -90,7 +96,12 @@ impl Blocks {
     pub fn work<const D: usize>(&self, shape: &Shape<D>, u: &[f64]) -> Exact {
         let mut works: Vec<f64> = Vec::with_capacity(self.cells.len());
         self.each_product::<D>(shape, u, |_, u, forces| {
-            works.push(u.iter().zip(forces).map(|(u, force)| (0..D).map(|i| u[i] * force[i]).sum::<f64>()).sum());
+            works.push(
+                u.iter()
+                    .zip(forces)
+                    .map(|(u, force)| (0..D).map(|i| u[i] * force[i]).sum::<f64>())
+                    .sum(),
+            );
         });
         works.into_iter().collect()
     }
@@ -114,7 +125,10 @@ impl Blocks {
             self.forms.multiply(numbers, &u_of, &mut forces[..cells.len() * size]);
             let products = u_of.chunks(size).zip(forces.chunks_mut(size));
             for ((soft, patch), (own, forces)) in cells.iter().zip(patches).zip(products) {
-                forces.as_flattened_mut().iter_mut().for_each(|force| *force *= soft.factor);
+                forces
+                    .as_flattened_mut()
+                    .iter_mut()
+                    .for_each(|force| *force *= soft.factor);
                 product(patch.first_node, own, forces);
             }
         }

@@ -53,22 +53,38 @@ impl<const D: usize> Support<D> {
 
     /// These velocities prescribed, m per unit of time.
     pub fn moving(axis: usize, upper: bool, velocity: [Option<f64>; D]) -> Self {
-        Self { axis, upper, velocity, contact: None, absorbs: false, follows: false }
+        Self {
+            axis,
+            upper,
+            velocity,
+            contact: None,
+            absorbs: false,
+            follows: false,
+        }
     }
 
     /// Nothing held, but what the contact does.
     pub fn contact(axis: usize, upper: bool, contact: Contact) -> Self {
-        Self { contact: Some(contact), ..Self::moving(axis, upper, [None; D]) }
+        Self {
+            contact: Some(contact),
+            ..Self::moving(axis, upper, [None; D])
+        }
     }
 
     /// Nothing held but the state of the start; waves leave.
     pub fn absorbing(axis: usize, upper: bool) -> Self {
-        Self { absorbs: true, ..Self::moving(axis, upper, [None; D]) }
+        Self {
+            absorbs: true,
+            ..Self::moving(axis, upper, [None; D])
+        }
     }
 
     /// Beside a free field: what differs from its motion leaves.
     pub fn free_field(axis: usize, upper: bool) -> Self {
-        Self { follows: true, ..Self::absorbing(axis, upper) }
+        Self {
+            follows: true,
+            ..Self::absorbing(axis, upper)
+        }
     }
 
     /// The normal component held.
@@ -103,7 +119,9 @@ pub struct Boundary<const D: usize> {
 impl<const D: usize> Boundary<D> {
     /// m  how far point `p`, as it is deformed, reaches to each side along an axis.
     pub fn reach_along(&self, grid: &Grid<D>, points: &Points<D>, p: usize, axis: usize) -> f64 {
-        let start = grid.locate(&(points.x[p] - points.u[p])).or_else(|| grid.locate(&points.x[p]));
+        let start = grid
+            .locate(&(points.x[p] - points.u[p]))
+            .or_else(|| grid.locate(&points.x[p]));
         let share = self.reach.get(usize::from(points.material[p])).copied().unwrap_or(0.5);
         let half = start.map_or(Vector::zeros(), |cell| grid.cell_box(&cell).1 * share);
         let F = points.F.at(p);
@@ -113,10 +131,21 @@ impl<const D: usize> Boundary<D> {
     /// A place of the material's surface, or that on the face which holds the material where the place lies beyond it,
     /// as one that is reported by the material beside it may.
     pub fn kept_in(&self, grid: &Grid<D>, mut x: Vector<D>) -> Vector<D> {
-        for Support { axis, upper, velocity, contact, .. } in &self.supports {
+        for Support {
+            axis,
+            upper,
+            velocity,
+            contact,
+            ..
+        } in &self.supports
+        {
             if velocity[*axis] == Some(0.0) || contact.is_some() {
                 let length = grid.axes()[*axis].length();
-                x[*axis] = if *upper { x[*axis].min(length) } else { x[*axis].max(0.0) };
+                x[*axis] = if *upper {
+                    x[*axis].min(length)
+                } else {
+                    x[*axis].max(0.0)
+                };
             }
         }
         x
@@ -144,13 +173,17 @@ impl<const D: usize> Boundary<D> {
         let mut moves = self.supports.iter().any(is_driven);
         for strip in self.strips.iter().filter(|strip| strip.acts()) {
             let places = [t - last_dt, t, t + dt].map(|t| strip.path.at(t));
-            let Some(velocity) = steady_velocity(&places, last_dt, dt) else { return false };
+            let Some(velocity) = steady_velocity(&places, last_dt, dt) else {
+                return false;
+            };
             moves |= velocity.norm() > 0.0;
         }
         for body in self.rigid.iter().filter(|body| body.acts) {
             let prescribed = |t: f64| body.pick(&Vector::zeros(), &body.on_path(t));
             let places = [t - last_dt, t, t + dt].map(prescribed);
-            let Some(velocity) = steady_velocity(&places, last_dt, dt) else { return false };
+            let Some(velocity) = steady_velocity(&places, last_dt, dt) else {
+                return false;
+            };
             moves |= velocity.norm() > 0.0;
         }
         moves
@@ -161,7 +194,11 @@ impl<const D: usize> Boundary<D> {
         let at_rest = |strip: &Strip<D>| vec![Vector::zeros(); strip.points.len()];
         Surface {
             traction: self.strips.iter().map(at_rest).collect(),
-            position: self.loads.iter().map(|load| load.points.iter().map(|point| point.x).collect()).collect(),
+            position: self
+                .loads
+                .iter()
+                .map(|load| load.points.iter().map(|point| point.x).collect())
+                .collect(),
             pressure: self.loads.iter().map(Load::at_rest).collect(),
             anchors: Anchors::default(),
             held: Vec::new(),
@@ -174,9 +211,14 @@ impl<const D: usize> Boundary<D> {
     /// Whether anything that acts has friction: faces, strips or rigid bodies.
     pub fn has_friction(&self) -> bool {
         let faces = self.supports.iter().filter_map(|support| support.contact);
-        let strips = self.strips.iter().filter(|strip| strip.acts()).filter_map(|strip| strip.contact);
+        let strips = self
+            .strips
+            .iter()
+            .filter(|strip| strip.acts())
+            .filter_map(|strip| strip.contact);
         let laws = faces.chain(strips.map(|contact| contact.law)).map(|law| law.friction);
-        laws.chain(self.rigid.iter().filter(|body| body.acts).map(|body| body.friction)).any(|friction| friction > 0.0)
+        laws.chain(self.rigid.iter().filter(|body| body.acts).map(|body| body.friction))
+            .any(|friction| friction > 0.0)
     }
 
     /// The faces of the grid that no material leaves, per axis the lower and the upper one: their normal component is
@@ -184,7 +226,10 @@ impl<const D: usize> Boundary<D> {
     pub fn closed(&self) -> [[bool; 2]; D] {
         let mut closed = [[false; 2]; D];
         for support in &self.supports {
-            let held = support.contact.map(|contact| !contact.lifts).or(support.absorbs.then_some(true));
+            let held = support
+                .contact
+                .map(|contact| !contact.lifts)
+                .or(support.absorbs.then_some(true));
             closed[support.axis][usize::from(support.upper)] =
                 held.unwrap_or(support.velocity[support.axis] == Some(0.0));
         }
@@ -256,17 +301,23 @@ impl<const D: usize> Boundary<D> {
         let in_contact = |(support, _): &(&Support<D>, &mut [Exact])| support.contact.is_some();
         // Who holds goes first, then what pushes, then what has friction.
         for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
-            sum((support, sums), &|_, component| component == support.axis && holds(support, component));
+            sum((support, sums), &|_, component| {
+                component == support.axis && holds(support, component)
+            });
         }
         for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
             let pushes = |node: usize| {
                 let within = reaction.get(Nodal::<D>::at(grid.off_edges(node, support.axis), support.axis));
                 within.is_some_and(|&within| if support.upper { within < 0.0 } else { within > 0.0 })
             };
-            sum((support, sums), &|node, component| component == support.axis && pushes(node));
+            sum((support, sums), &|node, component| {
+                component == support.axis && pushes(node)
+            });
         }
         for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
-            sum((support, sums), &|_, component| component != support.axis && holds(support, component));
+            sum((support, sums), &|_, component| {
+                component != support.axis && holds(support, component)
+            });
         }
         for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
             sum((support, sums), &|_, component| component == support.axis);
@@ -274,13 +325,20 @@ impl<const D: usize> Boundary<D> {
         // Along an edge in space that it shares with a face with friction, a smooth one decides nothing.
         for has_friction in [true, false] {
             let of = |(support, _): &(&Support<D>, &mut [Exact])| {
-                support.contact.is_some_and(|contact| (contact.friction > 0.0) == has_friction)
+                support
+                    .contact
+                    .is_some_and(|contact| (contact.friction > 0.0) == has_friction)
             };
             for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(of) {
                 sum((support, sums), &|_, component| component != support.axis);
             }
         }
-        for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(|(s, _)| s.absorbs) {
+        for (support, sums) in self
+            .supports
+            .iter()
+            .zip(sums.chunks_exact_mut(D))
+            .filter(|(s, _)| s.absorbs)
+        {
             sum((support, sums), &|_, _| true);
         }
         halo.total(&sums).chunks_exact(D).map(<[f64]>::to_vec).collect()

@@ -86,13 +86,18 @@ pub struct Stepper {
 impl Stepper {
     /// At time 0, with no displacement to start from.
     pub fn new(unknowns: usize) -> Self {
-        Self { guess: vec![0.0; unknowns], at: Progress::default() }
+        Self {
+            guess: vec![0.0; unknowns],
+            at: Progress::default(),
+        }
     }
 
     /// Where another one stood; `None` where none can have stood. A nominal step whose end `schedule` no longer has is
     /// given up for those that it has.
     pub fn resume(guess: Vec<f64>, mut at: Progress, schedule: &Schedule) -> Option<Self> {
-        let times = [at.t, at.guess_dt].into_iter().chain(at.nominal.into_iter().flat_map(|(from, to)| [from, to]));
+        let times = [at.t, at.guess_dt]
+            .into_iter()
+            .chain(at.nominal.into_iter().flat_map(|(from, to)| [from, to]));
         let budget = at.budget.map_or([0.0; 6], |budget| budget.numbers());
         let sound = times.chain(budget).all(f64::is_finite) && at.cuts <= MOST_CUTS && at.tick < TICKS;
         if !sound || !at.tick.is_multiple_of(TICKS >> at.cuts) {
@@ -132,7 +137,12 @@ impl Stepper {
     ) -> Option<Result<Accepted, Failure>> {
         if let Err(made) = self.at.budget.map_or(Ok(()), |budget| budget.require()) {
             let counts = Counts::default();
-            return Some(Err(Failure { t: self.at.t, dt: self.at.guess_dt, attempts: vec![made], counts }));
+            return Some(Err(Failure {
+                t: self.at.t,
+                dt: self.at.guess_dt,
+                attempts: vec![made],
+                counts,
+            }));
         }
         let (from, to) = match self.at.nominal {
             Some(nominal) => nominal,
@@ -147,13 +157,28 @@ impl Stepper {
         let mut has_drag = false; // the next attempt has the background's whole drag
         loop {
             let size = TICKS >> self.at.cuts;
-            let end =
-                if self.at.tick + size == TICKS { to } else { from + (to - from) * fraction(self.at.tick + size) };
+            let end = if self.at.tick + size == TICKS {
+                to
+            } else {
+                from + (to - from) * fraction(self.at.tick + size)
+            };
             let dt = end - self.at.t;
             let mut guess = self.scaled_guess(dt);
-            let resisted = if has_drag { Resisted::Displacement } else { self.resisted(model, dt) };
+            let resisted = if has_drag {
+                Resisted::Displacement
+            } else {
+                self.resisted(model, dt)
+            };
             let model = self.with_sudden_forces(model.over(dt));
-            match step(&model, points, &mut guess, (self.at.t, dt), resisted, (halo, solver), &mut counts) {
+            match step(
+                &model,
+                points,
+                &mut guess,
+                (self.at.t, dt),
+                resisted,
+                (halo, solver),
+                &mut counts,
+            ) {
                 Ok(report) => {
                     (self.guess, self.at.guess_dt, self.at.t) = (guess, dt, end);
                     if let (Some(budget), Some(turnover)) = (&mut self.at.budget, &report.turnover) {
@@ -162,14 +187,28 @@ impl Stepper {
                             budget.exchange(&outflow.stored);
                         }
                     }
-                    self.accept(size, report.first_guess && report.iterations * 2 <= model.criteria.max_iterations);
-                    return Some(Ok(Accepted { t: end, dt, report, counts, rejected }));
+                    self.accept(
+                        size,
+                        report.first_guess && report.iterations * 2 <= model.criteria.max_iterations,
+                    );
+                    return Some(Ok(Accepted {
+                        t: end,
+                        dt,
+                        report,
+                        counts,
+                        rejected,
+                    }));
                 }
                 Err(StepError::Interrupted) => {
                     // As if it had never begun: who goes on from here later makes the same attempts.
                     (self.at.cuts, self.at.easy, self.at.budget) = before;
                     rejected.push(StepError::Interrupted);
-                    return Some(Err(Failure { t: self.at.t, dt, attempts: rejected, counts }));
+                    return Some(Err(Failure {
+                        t: self.at.t,
+                        dt,
+                        attempts: rejected,
+                        counts,
+                    }));
                 }
                 Err(error) => {
                     let hopeless = matches!(
@@ -189,7 +228,12 @@ impl Stepper {
                     if hopeless || self.at.cuts == MOST_CUTS {
                         // Who goes on from here, with another nominal step, starts as this one did.
                         (self.at.cuts, self.at.easy, _) = before;
-                        return Some(Err(Failure { t: self.at.t, dt, attempts: rejected, counts }));
+                        return Some(Err(Failure {
+                            t: self.at.t,
+                            dt,
+                            attempts: rejected,
+                            counts,
+                        }));
                     }
                     self.at.cuts += 1;
                     self.at.easy = 0;
@@ -204,7 +248,14 @@ impl Stepper {
         model: Cow<'a, Model<K, D>>,
     ) -> Cow<'a, Model<K, D>> {
         let begins = self.at.guess_dt == 0.0 && self.at.t > 0.0 && model.regime == Regime::Dynamic;
-        if begins { Cow::Owned(Model { newmark: Newmark::of_the_end(), ..model.into_owned() }) } else { model }
+        if begins {
+            Cow::Owned(Model {
+                newmark: Newmark::of_the_end(),
+                ..model.into_owned()
+            })
+        } else {
+            model
+        }
     }
 
     /// What the background resists in a step of this length: the change from the last step where motion that is

@@ -112,7 +112,16 @@ impl Element {
         if response.branch() != Branch::Elastic && response.plastic_increment() > AT_YIELD {
             return Err(ElementError::BeyondYield(response.plastic_increment()));
         }
-        Ok(Self { law, b_e, state, gap: 0.0, strain: [0.0; 4], sigma, pore_pressure: 0.0, plastic_strain: 0.0 })
+        Ok(Self {
+            law,
+            b_e,
+            state,
+            gap: 0.0,
+            strain: [0.0; 4],
+            sigma,
+            pore_pressure: 0.0,
+            plastic_strain: 0.0,
+        })
     }
 
     /// Logarithmic strains along x, y and z since the start, positive in extension, and the shear γ.
@@ -172,7 +181,9 @@ impl Element {
             while done < 1.0 {
                 let share = (step as f64 + (done + part).min(1.0)) / control.steps as f64;
                 let undrained = control.undrained.then_some(volume);
-                self.law = own.over(part * control.duration / control.steps as f64).unwrap_or_else(|| own.clone());
+                self.law = own
+                    .over(part * control.duration / control.steps as f64)
+                    .unwrap_or_else(|| own.clone());
                 match self.solve(&wanted(share), undrained) {
                     Ok(found) => {
                         self.accept(found);
@@ -191,17 +202,29 @@ impl Element {
     }
 
     fn accept(&mut self, found: Attempt) {
-        let Attempt { strain, pore_pressure, response, sigma, .. } = found;
+        let Attempt {
+            strain,
+            pore_pressure,
+            response,
+            sigma,
+            ..
+        } = found;
         response.advance(&mut self.state);
         self.b_e = response.b_e();
-        self.gap = if self.law.separation() == Separation::Closing { response.gap() } else { 0.0 };
+        self.gap = if self.law.separation() == Separation::Closing {
+            response.gap()
+        } else {
+            0.0
+        };
         self.plastic_strain += response.plastic_increment();
         (self.strain, self.pore_pressure, self.sigma) = (strain, pore_pressure, sigma);
     }
 
     /// Newton's method for what is not given. `undrained`: the volume that stays.
     fn solve(&self, wanted: &[Target; COMPONENTS], undrained: Option<f64>) -> Result<Attempt, String> {
-        let free: Vec<usize> = (0..COMPONENTS).filter(|&k| matches!(wanted[k], Target::Stress(_))).collect();
+        let free: Vec<usize> = (0..COMPONENTS)
+            .filter(|&k| matches!(wanted[k], Target::Stress(_)))
+            .collect();
         let mut strain = self.strain;
         for (strain, target) in strain.iter_mut().zip(wanted) {
             if let Target::Strain(given) = target {
@@ -212,17 +235,27 @@ impl Element {
         let attempt = |strain, pore| self.attempt((strain, pore), (wanted, &free, undrained));
         let mut now = attempt(strain, self.pore_pressure)?;
         for _ in 0..ITERATIONS {
-            let size = (0..COMPONENTS).map(|k| total(&now.sigma, now.pore_pressure, k).abs()).fold(0.0, f64::max);
+            let size = (0..COMPONENTS)
+                .map(|k| total(&now.sigma, now.pore_pressure, k).abs())
+                .fold(0.0, f64::max);
             let size = size.max(now.sigma.0.iter().fold(0.0, |most: f64, s| most.max(s.abs())));
             if now.residual.amax() * young <= BALANCED[0] * size + BALANCED[1] * young {
                 return Ok(now);
             }
-            let by = self.correction(&now, (&free, undrained.is_some())).ok_or("the stiffness is not finite")?;
+            let by = self
+                .correction(&now, (&free, undrained.is_some()))
+                .ok_or("the stiffness is not finite")?;
             let mut length = 1.0;
             now = loop {
                 let mut strain = now.strain;
-                free.iter().enumerate().for_each(|(row, &k)| strain[k] += length * by[row]);
-                let pore = if undrained.is_some() { length * young * by[free.len()] } else { 0.0 };
+                free.iter()
+                    .enumerate()
+                    .for_each(|(row, &k)| strain[k] += length * by[row]);
+                let pore = if undrained.is_some() {
+                    length * young * by[free.len()]
+                } else {
+                    0.0
+                };
                 match attempt(strain, now.pore_pressure + pore) {
                     Ok(next) if next.residual.norm() < now.residual.norm() => break next,
                     _ if length * 2_f64.powi(HALVINGS as i32) <= 1.0 => return Err(not_carried(&now, &free, wanted)),
@@ -238,10 +271,15 @@ impl Element {
         (strain, pore_pressure): ([f64; COMPONENTS], f64),
         (wanted, free, undrained): (&[Target; COMPONENTS], &[usize], Option<f64>),
     ) -> Result<Attempt, String> {
-        let before = deformation(&self.strain).try_inverse().ok_or("the point has no volume")?;
+        let before = deformation(&self.strain)
+            .try_inverse()
+            .ok_or("the point has no volume")?;
         let step = deformation(&strain) * before;
         let b_trial = Symmetric::of(&(step * self.b_e.full() * step.transpose())).scaled((2.0 / 3.0 * self.gap).exp());
-        let response = self.law.respond(&b_trial, &self.state).map_err(|error| error.to_string())?;
+        let response = self
+            .law
+            .respond(&b_trial, &self.state)
+            .map_err(|error| error.to_string())?;
         let sigma = response.tau().scaled((-(strain[0] + strain[1] + strain[2])).exp());
         let young = self.law.elastic().young;
         let mut residual: Vec<f64> = Vec::with_capacity(COMPONENTS + 1);
@@ -254,14 +292,23 @@ impl Element {
         if residual.iter().any(|number| !number.is_finite()) {
             return Err("the stress is not finite".to_owned());
         }
-        Ok(Attempt { strain, pore_pressure, response, sigma, residual })
+        Ok(Attempt {
+            strain,
+            pore_pressure,
+            response,
+            sigma,
+            residual,
+        })
     }
 
     /// The smallest correction of what is free, strains and the pore pressure over Young's modulus, by the consistent
     /// tangent: `dσ = dτ/J - σ tr l`.
     fn correction(&self, now: &Attempt, (free, undrained): (&[usize], bool)) -> Option<DVector<f64>> {
         let size = now.residual.len();
-        let (young, volume) = (self.law.elastic().young, (now.strain[0] + now.strain[1] + now.strain[2]).exp());
+        let (young, volume) = (
+            self.law.elastic().young,
+            (now.strain[0] + now.strain[1] + now.strain[2]).exp(),
+        );
         let mut jacobian = DMatrix::zeros(size, size);
         for (column, &k) in free.iter().enumerate() {
             let l = velocity(now.strain[3], k);
@@ -288,7 +335,10 @@ fn not_carried(now: &Attempt, free: &[usize], wanted: &[Target; COMPONENTS]) -> 
     let found = free.iter().filter_map(|&k| {
         let Target::Stress(given) = wanted[k] else { return None };
         let name = ["xx", "yy", "zz", "xy"][k];
-        Some(format!("stress-{name} is {:.6e} Pa for {given:.6e} Pa", total(&now.sigma, now.pore_pressure, k)))
+        Some(format!(
+            "stress-{name} is {:.6e} Pa for {given:.6e} Pa",
+            total(&now.sigma, now.pore_pressure, k)
+        ))
     });
     found.collect::<Vec<_>>().join(", ")
 }

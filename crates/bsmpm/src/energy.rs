@@ -53,14 +53,25 @@ impl Flows {
 
 impl<T> Flows<T> {
     fn each(&mut self) -> [&mut T; 7] {
-        let Self { external, plastic, transfer, integration, smoothing, background, penalty } = self;
+        let Self {
+            external,
+            plastic,
+            transfer,
+            integration,
+            smoothing,
+            background,
+            penalty,
+        } = self;
         [external, plastic, transfer, integration, smoothing, background, penalty]
     }
 }
 
 impl AddAssign for Flows {
     fn add_assign(&mut self, mut other: Self) {
-        self.each().into_iter().zip(other.each()).for_each(|(sum, step)| *sum += *step);
+        self.each()
+            .into_iter()
+            .zip(other.each())
+            .for_each(|(sum, step)| *sum += *step);
     }
 }
 
@@ -82,7 +93,10 @@ impl Stored {
         halo: &dyn Halo,
     ) -> Self {
         let sums = halo.total(&[kinetic(points), elastic(model, points, t)]);
-        Self { kinetic: sums[0], elastic: sums[1] }
+        Self {
+            kinetic: sums[0],
+            elastic: sums[1],
+        }
     }
 }
 
@@ -98,7 +112,10 @@ pub struct Books {
 impl Books {
     /// Opened in a state.
     pub fn open(stored: Stored) -> Self {
-        Self { start: stored.kinetic + stored.elastic, flows: Flows::default() }
+        Self {
+            start: stored.kinetic + stored.elastic,
+            flows: Flows::default(),
+        }
     }
 
     /// Enters what points that were placed bring along, and those that were removed take away.
@@ -133,10 +150,20 @@ impl Draft {
         (found, answers): (&Found<K, D>, &[Answer]),
         (t, dt): (f64, f64),
     ) -> Self {
-        let Problem { model, nodes, attachments, points, halo, .. } = *problem;
+        let Problem {
+            model,
+            nodes,
+            attachments,
+            points,
+            halo,
+            ..
+        } = *problem;
         let u = &found.u[..];
         let supports = over_layers(halo, D, |c| found.reaction[c] * u[c]);
-        let mut flows = Flows { external: supports, ..Flows::<Exact>::default() };
+        let mut flows = Flows {
+            external: supports,
+            ..Flows::<Exact>::default()
+        };
         let [closing, friction_work] = nodes.contacts.work(u, &found.reaction, halo);
         flows.external -= &closing;
         flows.integration -= &closing;
@@ -153,7 +180,13 @@ impl Draft {
             friction_work += &friction;
         }
         if let Some(inertia) = &nodes.inertia {
-            friction_work.extend(nodes.dashpots.work::<D>(inertia, u, halo).into_iter().map(|work| 0.5 * work));
+            friction_work.extend(
+                nodes
+                    .dashpots
+                    .work::<D>(inertia, u, halo)
+                    .into_iter()
+                    .map(|work| 0.5 * work),
+            );
         }
         add_gravity(&mut flows, problem, u, (t, dt));
         add_water(&mut flows, problem, u, (t, dt));
@@ -185,7 +218,15 @@ impl Draft {
             elastic += &water.held;
         }
         let dry = nodes.pores.is_some().then(|| points.mass.to_vec());
-        let mut draft = Self { flows, damped, elastic, dry, friction_work, t, dt };
+        let mut draft = Self {
+            flows,
+            damped,
+            elastic,
+            dry,
+            friction_work,
+            t,
+            dt,
+        };
         if model.balances_energy {
             draft.add_losses(problem, (found, answers));
         }
@@ -198,7 +239,13 @@ impl Draft {
         problem: &Problem<'_, K, D>,
         (found, answers): (&Found<K, D>, &[Answer]),
     ) {
-        let Problem { model, shape, nodes, points, .. } = *problem;
+        let Problem {
+            model,
+            shape,
+            nodes,
+            points,
+            ..
+        } = *problem;
         let (flows, u) = (&mut self.flows, &found.u[..]);
         let (pressures, volume) = (Pressures::of(problem, &found.trial), problem.volume());
         let work_of = |p: usize, grad: K::Gradient| {
@@ -229,11 +276,21 @@ impl Draft {
         surface: &Surface<D>,
         halo: &dyn Halo,
     ) -> (Option<Flows>, Turnover) {
-        let Self { flows: mut own, damped, elastic: strained, dry, friction_work, t, dt } = self;
+        let Self {
+            flows: mut own,
+            damped,
+            elastic: strained,
+            dry,
+            friction_work,
+            t,
+            dt,
+        } = self;
         let moving = kinetic(points);
         if let Some((dry, motion)) = dry.zip(points.motion.as_ref()) {
             let masses = points.mass.iter().zip(dry);
-            let brought = masses.zip(&motion.v).map(|((mass, dry), v)| 0.5 * (mass - dry) * v.norm_squared());
+            let brought = masses
+                .zip(&motion.v)
+                .map(|((mass, dry), v)| 0.5 * (mass - dry) * v.norm_squared());
             let brought: Exact = brought.collect();
             own.external += &brought;
             own.transfer += &brought;
@@ -243,7 +300,14 @@ impl Draft {
         // of friction and dashpots half is left out of the bound on what is made.
         external -= &friction_work;
         let round_off = round_off(model, points);
-        let mut sums = vec![external, own.plastic.clone(), damped, moving.clone(), strained, round_off];
+        let mut sums = vec![
+            external,
+            own.plastic.clone(),
+            damped,
+            moving.clone(),
+            strained,
+            round_off,
+        ];
         if model.balances_energy {
             own.transfer -= &moving;
             own.smoothing -= &elastic(model, points, t + dt);
@@ -252,12 +316,24 @@ impl Draft {
         let sums = halo.total(&sums);
         // The loads' points are the same on every rank.
         let (loads, loads_grown) = load::work(&model.boundary.loads, (&points.surface, surface), (t, dt));
-        let stored = Stored { kinetic: sums[3], elastic: sums[4] };
-        let turnover =
-            Turnover { external: sums[0] + loads, plastic: sums[1], damped: sums[2], stored, round_off: sums[5] };
+        let stored = Stored {
+            kinetic: sums[3],
+            elastic: sums[4],
+        };
+        let turnover = Turnover {
+            external: sums[0] + loads,
+            plastic: sums[1],
+            damped: sums[2],
+            stored,
+            round_off: sums[5],
+        };
         let flows = model.balances_energy.then(|| {
             let mut flows = Flows::default();
-            flows.each().into_iter().zip(&sums[6..]).for_each(|(flow, sum)| *flow = *sum);
+            flows
+                .each()
+                .into_iter()
+                .zip(&sums[6..])
+                .for_each(|(flow, sum)| *flow = *sum);
             flows.external += loads;
             flows.integration -= loads_grown;
             flows
@@ -268,13 +344,19 @@ impl Draft {
 
 /// Energy of a strain that is nothing but round-off.
 fn round_off<K, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Exact {
-    let young: Vec<f64> = model.materials.iter().map(|material| material.elastic().young).collect();
+    let young: Vec<f64> = model
+        .materials
+        .iter()
+        .map(|material| material.elastic().young)
+        .collect();
     let of = |p: usize| points.volume[p] * young[usize::from(points.material[p])];
     threads::sum(points.len(), |p| of(p) * ROUND_OFF.powi(2))
 }
 
 fn kinetic<const D: usize>(points: &Points<D>) -> Exact {
-    let Some(motion) = &points.motion else { return Exact::ZERO };
+    let Some(motion) = &points.motion else {
+        return Exact::ZERO;
+    };
     threads::sum(points.len(), |p| 0.5 * points.mass[p] * motion.v[p].norm_squared())
 }
 
@@ -293,7 +375,9 @@ fn add_gravity<K: Kinematics<D>, const D: usize>(
     u: &[f64],
     (t, dt): (f64, f64),
 ) {
-    let (Some(before), Some(after)) = (problem.model.body_force(t), problem.model.body_force(t + dt)) else { return };
+    let (Some(before), Some(after)) = (problem.model.body_force(t), problem.model.body_force(t + dt)) else {
+        return;
+    };
     let moved = transfer::to_points::<D, D, _>(problem.shape, u, |p, du| Vector::from(du) * problem.points.mass[p]);
     let by = [0.5 * (before + after), -0.5 * (after - before)];
     let [external, integration] = threads::sums(moved.len(), |p| by.map(|force| force.dot(&moved[p])));
@@ -307,12 +391,20 @@ fn add_water<K: Kinematics<D>, const D: usize>(
     u: &[f64],
     (t, dt): (f64, f64),
 ) {
-    let Problem { model, points, shape, .. } = *problem;
+    let Problem {
+        model, points, shape, ..
+    } = *problem;
     if let Some(work) = carried::work::<K, D>(model, (shape, points), problem.volume(), u, [t, t + dt]) {
-        flows.external.extend(work.iter().map(|[before, after]| 0.5 * (before + after)));
-        flows.integration.extend(work.iter().map(|[before, after]| -0.5 * (after - before)));
+        flows
+            .external
+            .extend(work.iter().map(|[before, after]| 0.5 * (before + after)));
+        flows
+            .integration
+            .extend(work.iter().map(|[before, after]| -0.5 * (after - before)));
     }
-    let (Some(before), Some(after)) = (model.still_water(t), model.still_water(t + dt)) else { return };
+    let (Some(before), Some(after)) = (model.still_water(t), model.still_water(t + dt)) else {
+        return;
+    };
     let work = transfer::to_points::<D, D, _>(problem.shape, u, |p, du| {
         let follows = model.follows_water(points, p);
         let point = (p, model.span(points, p));

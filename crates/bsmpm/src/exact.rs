@@ -40,7 +40,11 @@ impl Exact {
         }
         let fraction = bits & ((1 << 52) - 1);
         // A normal number is (2^52 + fraction) 2^(exponent - 1) units, one below the normal ones fraction units.
-        let (significand, shift) = if exponent == 0 { (fraction, 0) } else { (fraction | 1 << 52, exponent - 1) };
+        let (significand, shift) = if exponent == 0 {
+            (fraction, 0)
+        } else {
+            (fraction | 1 << 52, exponent - 1)
+        };
         let (digit, spread) = ((shift / BITS) as usize, u128::from(significand) << (shift % BITS));
         let sign = if number.is_sign_negative() { -1 } else { 1 };
         for (k, word) in self.words[digit..digit + 3].iter_mut().enumerate() {
@@ -64,7 +68,9 @@ impl Exact {
             return -self.negated().value();
         }
         // The highest digit that is not zero and the two behind it hold 65 bits at least.
-        let Some(top) = digits.iter().rposition(|&digit| digit != 0) else { return 0.0 };
+        let Some(top) = digits.iter().rposition(|&digit| digit != 0) else {
+            return 0.0;
+        };
         let leading = (0..3).rev().fold(0_u128, |sum, k| {
             let place = (top + k).checked_sub(2);
             sum << BITS | place.map_or(0, |place| digits[place] as u128)
@@ -93,13 +99,18 @@ impl Exact {
     /// # Panics
     /// If there are not [`WORDS`] of them.
     pub fn of_words(words: &[i64]) -> Self {
-        Self { words: words.try_into().expect("as many words as a sum has") }
+        Self {
+            words: words.try_into().expect("as many words as a sum has"),
+        }
     }
 }
 
 impl AddAssign<&Exact> for Exact {
     fn add_assign(&mut self, other: &Exact) {
-        self.words.iter_mut().zip(&other.words).for_each(|(sum, word)| *sum += word);
+        self.words
+            .iter_mut()
+            .zip(&other.words)
+            .for_each(|(sum, word)| *sum += word);
     }
 }
 
@@ -107,7 +118,10 @@ impl SubAssign<&Exact> for Exact {
     fn sub_assign(&mut self, other: &Exact) {
         // What is no number stays none.
         let none = self.words[DIGITS].max(other.words[DIGITS]);
-        self.words.iter_mut().zip(&other.words).for_each(|(sum, word)| *sum -= word);
+        self.words
+            .iter_mut()
+            .zip(&other.words)
+            .for_each(|(sum, word)| *sum -= word);
         self.words[DIGITS] = none;
     }
 }
@@ -136,7 +150,19 @@ mod tests {
 
     #[test]
     fn single_floats_come_back_as_they_are() {
-        let edges = [0.0, 1.0, -1.0, 0.1, -3.7e-200, f64::MAX, f64::MIN, f64::MIN_POSITIVE, 5e-324, -5e-324, 4.1e-311];
+        let edges = [
+            0.0,
+            1.0,
+            -1.0,
+            0.1,
+            -3.7e-200,
+            f64::MAX,
+            f64::MIN,
+            f64::MIN_POSITIVE,
+            5e-324,
+            -5e-324,
+            4.1e-311,
+        ];
         for number in edges {
             assert_eq!(value(&[number]), number, "{number:e}");
         }
@@ -154,7 +180,9 @@ mod tests {
     fn the_order_and_the_parts_change_no_bit() {
         let mut seed = 7_u64;
         let mut random = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             let mantissa = (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
             mantissa * 2.0_f64.powi((seed % 120) as i32 - 60)
         };
@@ -175,7 +203,9 @@ mod tests {
 
     #[test]
     fn a_power_of_two_changes_no_digit() {
-        let numbers: Vec<f64> = (1..400).map(|k| (f64::from(k) * 0.37).sin() / f64::from(k * k)).collect();
+        let numbers: Vec<f64> = (1..400)
+            .map(|k| (f64::from(k) * 0.37).sin() / f64::from(k * k))
+            .collect();
         let sum = value(&numbers);
         for power in -200..200 {
             let unit = 2.0_f64.powi(power);

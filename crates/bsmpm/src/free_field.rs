@@ -67,7 +67,13 @@ impl<const D: usize> FreeField<D> {
 
     /// Drives the sides in the step.
     pub fn drive(&self, nodes: &mut Nodes<D>) {
-        for Beside { face, force, start, velocity } in &self.beside {
+        for Beside {
+            face,
+            force,
+            start,
+            velocity,
+        } in &self.beside
+        {
             nodes.dashpots.drive(*face, &less(force, start.as_deref()), velocity);
         }
     }
@@ -116,9 +122,24 @@ fn beside<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, face: &Support<
         - model.grid.axes()[axis].breakpoint(face.last_cell(&model.grid));
     axes[axis] = KnotVector::uniform(width, 1, model.grid.order()).map_err(wrong)?;
     let grid = Grid::new(axes).map_err(wrong)?.reaching(model.grid.beyond());
-    let supports = model.boundary.supports.iter().filter(|support| support.axis != axis).copied().collect();
-    let boundary = Boundary { supports, reach: model.boundary.reach.clone(), ..Boundary::default() };
-    Ok(Model { grid, boundary, balances_energy: false, ..model.clone() })
+    let supports = model
+        .boundary
+        .supports
+        .iter()
+        .filter(|support| support.axis != axis)
+        .copied()
+        .collect();
+    let boundary = Boundary {
+        supports,
+        reach: model.boundary.reach.clone(),
+        ..Boundary::default()
+    };
+    Ok(Model {
+        grid,
+        boundary,
+        balances_energy: false,
+        ..model.clone()
+    })
 }
 
 /// The column as it begins at the time `t`, and the force of its stress on the face if something holds that; one
@@ -131,7 +152,12 @@ fn begin<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Result<(Points<D>, Option<Vec<Vector<D>>>), StepError> {
     let last = face.last_cell(&model.grid);
-    let at_face = |p: &usize| model.grid.locate(&points.x[*p]).is_some_and(|cell| cell[face.axis] == last);
+    let at_face = |p: &usize| {
+        model
+            .grid
+            .locate(&points.x[*p])
+            .is_some_and(|cell| cell[face.axis] == last)
+    };
     let own: Vec<u32> = (0..points.len()).filter(at_face).map(|p| p as u32).collect();
     let mut column = everywhere(points.only(&own), halo);
     let lower = model.grid.axes()[face.axis].breakpoint(last);
@@ -157,13 +183,20 @@ fn hold<K: Kinematics<D>, const D: usize>(
     for held in &mut column.surface.held {
         let row = held.len() / (alone.grid.order() + 1);
         let first = held[..row].to_vec();
-        held.chunks_exact_mut(row).for_each(|layer| layer.copy_from_slice(&first));
+        held.chunks_exact_mut(row)
+            .for_each(|layer| layer.copy_from_slice(&first));
     }
     let shape = Shape::at(&alone.grid, column)?;
     let nodes = Nodes::map(alone, &shape, column, (t, 0.0), &tied)?;
     let attachments = StripAttachments::at(&[], &column.surface, (&alone.grid, &nodes.free), (t, 0.0));
-    let problem =
-        Problem { model: alone, shape: &shape, nodes: &nodes, attachments: &attachments, points: column, halo: &tied };
+    let problem = Problem {
+        model: alone,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points: column,
+        halo: &tied,
+    };
     let trial = Trial::of(alone, &shape, &nodes, column, &vec![0.0; nodes.free.len()], &tied);
     force(&problem, &trial, face)
 }
@@ -203,23 +236,50 @@ fn advance<K: Kinematics<D>, const D: usize>(
         inertia.newmark = Newmark::of_the_end();
     }
     let attachments = StripAttachments::at(&[], &column.surface, (&alone.grid, &nodes.free), (t, dt));
-    let problem =
-        Problem { model: alone, shape: &shape, nodes: &nodes, attachments: &attachments, points: &column, halo: &tied };
-    let guess: Vec<f64> = nodes.inertia.iter().flat_map(|inertia| inertia.v.iter().map(|v| v * dt)).collect();
+    let problem = Problem {
+        model: alone,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points: &column,
+        halo: &tied,
+    };
+    let guess: Vec<f64> = nodes
+        .inertia
+        .iter()
+        .flat_map(|inertia| inertia.v.iter().map(|v| v * dt))
+        .collect();
     let found = solve::find(&problem, &guess, &mut solver, &mut Counts::default())?;
     commit::check_inside(alone, &shape, &column, &found.u, &tied)?;
     let force = force(&problem, &found.trial, face)?;
     let layer = tied.owned().places::<D>();
-    let velocity_of = |c: usize| nodes.inertia.as_ref().map_or(0.0, |inertia| inertia.velocity(c, found.u[c]));
+    let velocity_of = |c: usize| {
+        nodes
+            .inertia
+            .as_ref()
+            .map_or(0.0, |inertia| inertia.velocity(c, found.u[c]))
+    };
     let velocity: Vec<f64> = layer.map(velocity_of).collect();
     let velocity = velocity.chunks_exact(D).map(Vector::from_column_slice).collect();
     let answers = commit::answers(alone, &found.trial, &column, &tied)?;
     let across: Vec<f64> = column.x.iter().map(|x| x[face.axis]).collect();
     commit::commit(alone, (&shape, &nodes), (found, answers), &mut column, &tied);
     // Nothing differs across the column: its material stays before the face.
-    column.x.iter_mut().zip(across).for_each(|(x, across)| x[face.axis] = across);
+    column
+        .x
+        .iter_mut()
+        .zip(across)
+        .for_each(|(x, across)| x[face.axis] = across);
     column.sort_by_cell(&alone.grid);
-    Ok((column, Beside { face: 0, force, start: None, velocity }))
+    Ok((
+        column,
+        Beside {
+            face: 0,
+            force,
+            start: None,
+            velocity,
+        },
+    ))
 }
 
 /// N  of every node of the face, what the stress of the column does there: the flux that the internal forces of the
@@ -229,18 +289,33 @@ fn force<K: Kinematics<D>, const D: usize>(
     trial: &Trial<K, D>,
     face: &Support<D>,
 ) -> Result<Vec<Vector<D>>, StepError> {
-    let Problem { model, shape, points, halo, .. } = *problem;
+    let Problem {
+        model,
+        shape,
+        points,
+        halo,
+        ..
+    } = *problem;
     let (pressures, volume) = (Pressures::of(problem, trial), problem.volume());
     let width = model.grid.axes()[face.axis].length();
     let outward = if face.upper { 1.0 } else { -1.0 };
     let flux = |p: usize| {
         let response = trial.respond(model, points, p);
-        let response = response.map_err(|source| StepError::Material { id: points.id[p], source })?;
+        let response = response.map_err(|source| StepError::Material {
+            id: points.id[p],
+            source,
+        })?;
         let tau = pressures.acting::<K, D>(p, volume[p], response.tau());
         let flux = K::flux(&trial.damped(model, points, (p, &response), tau), &trial.dF(p));
-        Ok(std::array::from_fn(|i| outward * flux[(i, face.axis)] * volume[p] / width))
+        Ok(std::array::from_fn(|i| {
+            outward * flux[(i, face.axis)] * volume[p] / width
+        }))
     };
     let fluxes: Vec<[f64; D]> = (0..points.len()).map(flux).collect::<Result<_, StepError>>()?;
     let nodal = halo.sum(&transfer::to_nodes::<D, D>(shape, |p| fluxes[p]));
-    Ok(halo.owned().nodes().map(|node| Vector::from_column_slice(&nodal[Nodal::<D>::of(node)])).collect())
+    Ok(halo
+        .owned()
+        .nodes()
+        .map(|node| Vector::from_column_slice(&nodal[Nodal::<D>::of(node)]))
+        .collect())
 }

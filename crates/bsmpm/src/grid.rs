@@ -48,7 +48,12 @@ impl<const D: usize> Grid<D> {
             return Err(GridError::MixedOrders);
         }
         let room = axes.each_ref().map(|axis| 0..axis.cells());
-        Ok(Self { window: room.clone(), axes, room, beyond: 0 })
+        Ok(Self {
+            window: room.clone(),
+            axes,
+            room,
+            beyond: 0,
+        })
     }
 
     /// The same grid, whose windows hold `beyond` layers of nodes past those that their cells touch, as far as there
@@ -66,7 +71,12 @@ impl<const D: usize> Grid<D> {
     /// the window is all of it.
     pub fn within(&self, room: [Range<usize>; D]) -> Self {
         debug_assert!((0..D).all(|axis| !room[axis].is_empty() && room[axis].end <= self.axes[axis].cells()));
-        Self { axes: self.axes.clone(), window: room.clone(), room, beyond: self.beyond }
+        Self {
+            axes: self.axes.clone(),
+            window: room.clone(),
+            room,
+            beyond: self.beyond,
+        }
     }
 
     /// The same grid seen through the cells `columns` along axis 0.
@@ -177,7 +187,9 @@ impl<const D: usize> Grid<D> {
     #[inline]
     pub fn cell_index(&self, cell: &[usize; D]) -> usize {
         let start = cell[0] - self.window[0].start;
-        (1..D).fold(start, |index, axis| index * self.window[axis].len() + cell[axis] - self.window[axis].start)
+        (1..D).fold(start, |index, axis| {
+            index * self.window[axis].len() + cell[axis] - self.window[axis].start
+        })
     }
 
     /// Cell along each axis (global) of a local index.
@@ -194,7 +206,9 @@ impl<const D: usize> Grid<D> {
     /// Local index of the first of a cell's (q+1)^D nodes; the others stand at [`Grid::offsets`] from it.
     pub fn first_node(&self, cell: &[usize; D]) -> usize {
         let start = cell[0] - self.window[0].start;
-        (1..D).fold(start, |index, axis| index * self.nodes_along(axis) + cell[axis] - self.window[axis].start)
+        (1..D).fold(start, |index, axis| {
+            index * self.nodes_along(axis) + cell[axis] - self.window[axis].start
+        })
     }
 
     /// Functions (along each axis) of a cell (global), in the order of its nodes, axis 0 slowest.
@@ -231,7 +245,9 @@ impl<const D: usize> Grid<D> {
     /// open knot vector makes exactly one layer of nodes interpolate.
     pub fn face_nodes(&self, axis: usize, upper: bool) -> Vec<usize> {
         let wanted = if upper { self.axes[axis].functions() - 1 } else { 0 };
-        (0..self.nodes()).filter(|&node| self.node_at(node)[axis] == wanted).collect()
+        (0..self.nodes())
+            .filter(|&node| self.node_at(node)[axis] == wanted)
+            .collect()
     }
 
     /// The nearest node of the window in the same layer across `axis` that is on none of the other axes' faces.
@@ -264,7 +280,9 @@ impl<const D: usize> Grid<D> {
     pub fn node_index(&self, node: &[usize; D]) -> Option<usize> {
         let first = self.node_at(0);
         (0..D).try_fold(0, |index, axis| {
-            let along = node[axis].checked_sub(first[axis]).filter(|&along| along < self.nodes_along(axis))?;
+            let along = node[axis]
+                .checked_sub(first[axis])
+                .filter(|&along| along < self.nodes_along(axis))?;
             Some(index * self.nodes_along(axis) + along)
         })
     }
@@ -290,7 +308,9 @@ impl<const D: usize> Grid<D> {
     /// Number of a node (local) among those of the whole grid.
     pub fn number_of(&self, node: usize) -> usize {
         let node = self.node_at(node);
-        (1..D).fold(node[0], |number, axis| number * self.axes[axis].functions() + node[axis])
+        (1..D).fold(node[0], |number, axis| {
+            number * self.axes[axis].functions() + node[axis]
+        })
     }
 
     /// The node of the window that has a number among those of the whole grid; `None` outside the window.
@@ -332,6 +352,9 @@ impl<const D: usize> Grid<D> {
 
     /// Smallest edge of any cell, m.
     pub fn smallest_edge(&self) -> f64 {
-        self.axes.iter().map(KnotVector::smallest_cell).fold(f64::INFINITY, f64::min)
+        self.axes
+            .iter()
+            .map(KnotVector::smallest_cell)
+            .fold(f64::INFINITY, f64::min)
     }
 }

@@ -54,7 +54,10 @@ pub fn set_stress<K: Kinematics<D>, const D: usize>(
 ) {
     for p in 0..points.len() {
         let stress = sigma(points.material[p], &points.x[p]);
-        assert!(Packed::<D, Symmetric>::holds(&stress), "a stress at the start leaves the plane: {stress:?}");
+        assert!(
+            Packed::<D, Symmetric>::holds(&stress),
+            "a stress at the start leaves the plane: {stress:?}"
+        );
         let law = model.materials[usize::from(points.material[p])].at(points.height(p));
         let state = points.state.as_mut().map_or(&mut [][..], |state| state.of_point_mut(p));
         points.b_e.set(p, b_e_of(&law, &stress, state));
@@ -71,7 +74,9 @@ pub fn exchange<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Result<(), StepError> {
     let law = |model: &Model<K, D>, points: &Points<D>, p: usize| {
-        model.materials[usize::from(points.material[p])].at(points.height(p)).into_owned()
+        model.materials[usize::from(points.material[p])]
+            .at(points.height(p))
+            .into_owned()
     };
     let mut exchanged = || {
         for p in 0..points.len() {
@@ -80,7 +85,12 @@ pub fn exchange<K: Kinematics<D>, const D: usize>(
                 continue;
             }
             let response = before.respond(points, p, &points.b_e.at(p));
-            let tau = response.map_err(|source| StepError::Material { id: points.id[p], source })?.tau();
+            let tau = response
+                .map_err(|source| StepError::Material {
+                    id: points.id[p],
+                    source,
+                })?
+                .tau();
             if new.separation() != Separation::Closing
                 && let Some(gap) = &mut points.gap
             {
@@ -145,7 +155,9 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
             Symmetric::of(&K::gradient::<f64>(&grad))
         });
     }
-    let (_, traction) = start.attachments.conclude((&model.boundary.strips, &model.grid), &points.surface, &u, halo);
+    let (_, traction) = start
+        .attachments
+        .conclude((&model.boundary.strips, &model.grid), &points.surface, &u, halo);
     points.surface.traction = traction;
     for (p, strain) in strains.iter().enumerate() {
         points.b_e.set(p, exponential(strain));
@@ -177,7 +189,11 @@ pub fn hold_at<K: Kinematics<D>, const D: usize>(
         return Ok(());
     }
     let at_rest = &model.at_rest();
-    let Undeformed { shape, mut nodes, mut attachments } = Undeformed::at(at_rest, points, t, halo)?;
+    let Undeformed {
+        shape,
+        mut nodes,
+        mut attachments,
+    } = Undeformed::at(at_rest, points, t, halo)?;
     let (guess, counts) = (vec![0.0; model.grid.nodes() * D], &mut Counts::default());
     let around = (&mut attachments, &*points);
     let found = contact::find(at_rest, &shape, &mut nodes, around, &guess, (halo, solver), counts)?;
@@ -194,8 +210,13 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
 ) -> Result<Equilibrium, StepError> {
     let model = &model.at_rest();
     let yields = |p: usize| match model.respond(points, p, &points.b_e.at(p)) {
-        Ok(response) => Ok(u32::from(response.branch() != Branch::Elastic && response.plastic_increment() > ON)),
-        Err(source) => Err(StepError::Material { id: points.id[p], source }),
+        Ok(response) => Ok(u32::from(
+            response.branch() != Branch::Elastic && response.plastic_increment() > ON,
+        )),
+        Err(source) => Err(StepError::Material {
+            id: points.id[p],
+            source,
+        }),
     };
     let counted = (0..points.len()).try_fold(0.0, |sum, p| Ok(sum + f64::from(yields(p)?)));
     let mut yielding = [agreed(halo, counted, StepError::OtherRank)?];
@@ -205,8 +226,15 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
     halo.reduce(&mut yielding);
     let reactions = model.boundary.reactions(&model.grid, &balance.reaction, halo);
     let (strips, _) =
-        start.attachments.conclude((&model.boundary.strips, &model.grid), &points.surface, &at_rest, halo);
-    Ok(Equilibrium { force: balance.measure(), yielding: yielding[0] as u64, reactions, strips })
+        start
+            .attachments
+            .conclude((&model.boundary.strips, &model.grid), &points.surface, &at_rest, halo);
+    Ok(Equilibrium {
+        force: balance.measure(),
+        yielding: yielding[0] as u64,
+        reactions,
+        strips,
+    })
 }
 
 /// Whether forces at time 0 are out of balance, by more than the tolerance and round-off.
@@ -216,7 +244,10 @@ pub fn is_pushed<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Result<bool, StepError> {
     let shaking = model.shaking.clone();
-    let model = &Model { shaking, ..model.at_rest() };
+    let model = &Model {
+        shaking,
+        ..model.at_rest()
+    };
     let start = Undeformed::of(model, points, halo)?;
     let problem = start.problem(model, points, halo);
     let balance = Residual::of(&problem, &vec![0.0; model.grid.nodes() * D]).balance;
@@ -254,10 +285,18 @@ impl<const D: usize> Undeformed<D> {
             nodes.f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
         }
         let movable = nodes.movable();
-        let mut attachments =
-            StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, 0.0));
+        let mut attachments = StripAttachments::at(
+            &model.boundary.strips,
+            &points.surface,
+            (&model.grid, &movable),
+            (t, 0.0),
+        );
         attachments.wet(nodes.pore_pressure.as_ref());
-        Ok(Self { shape, nodes, attachments })
+        Ok(Self {
+            shape,
+            nodes,
+            attachments,
+        })
     }
 
     fn problem<'a, K>(
@@ -266,7 +305,14 @@ impl<const D: usize> Undeformed<D> {
         points: &'a Points<D>,
         halo: &'a dyn Halo,
     ) -> Problem<'a, K, D> {
-        Problem { model, shape: &self.shape, nodes: &self.nodes, attachments: &self.attachments, points, halo }
+        Problem {
+            model,
+            shape: &self.shape,
+            nodes: &self.nodes,
+            attachments: &self.attachments,
+            points,
+            halo,
+        }
     }
 }
 
@@ -285,7 +331,10 @@ fn elastic_residual<K: Kinematics<D>, const D: usize>(
 }
 
 fn elastic_at<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, p: usize) -> Elastic {
-    model.materials[usize::from(points.material[p])].at(points.height(p)).elastic().clone()
+    model.materials[usize::from(points.material[p])]
+        .at(points.height(p))
+        .elastic()
+        .clone()
 }
 
 /// D eps: lambda tr(eps) I + 2 mu eps, Pa.
@@ -293,7 +342,9 @@ fn stress_of(elastic: &Elastic, strain: &Symmetric) -> Symmetric {
     let (lambda, mu) = elastic.lame();
     let [xx, yy, zz, ..] = strain.0;
     let mut stress = strain.scaled(2.0 * mu);
-    stress.0[..3].iter_mut().for_each(|normal| *normal += lambda * (xx + yy + zz));
+    stress.0[..3]
+        .iter_mut()
+        .for_each(|normal| *normal += lambda * (xx + yy + zz));
     stress
 }
 
@@ -301,7 +352,9 @@ fn stress_of(elastic: &Elastic, strain: &Symmetric) -> Symmetric {
 fn strain_of(elastic: &Elastic, stress: &Symmetric) -> Symmetric {
     let [xx, yy, zz, ..] = stress.0;
     let mut strain = stress.scaled((1.0 + elastic.poisson) / elastic.young);
-    strain.0[..3].iter_mut().for_each(|normal| *normal -= elastic.poisson / elastic.young * (xx + yy + zz));
+    strain.0[..3]
+        .iter_mut()
+        .for_each(|normal| *normal -= elastic.poisson / elastic.young * (xx + yy + zz));
     strain
 }
 

@@ -42,7 +42,11 @@ pub trait Kinematics<const D: usize>: Copy + Debug + Default + Send + Sync + 'st
     #[inline(always)]
     fn dilate<R: Real>(dF: &Tensor<R>, ratio: R) -> Tensor<R> {
         let root = ratio.cube_root();
-        of_rows(scaled(row(dF, 0), root), scaled(row(dF, 1), root), scaled(row(dF, 2), root))
+        of_rows(
+            scaled(row(dF, 0), root),
+            scaled(row(dF, 1), root),
+            scaled(row(dF, 2), root),
+        )
     }
 
     /// The part of a tensor that works on gradients: the adjoint of [`Kinematics::gradient`].
@@ -61,7 +65,14 @@ pub trait Kinematics<const D: usize>: Copy + Debug + Default + Send + Sync + 'st
         let b = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
         let F = [row(dF, 0), row(dF, 1), row(dF, 2)];
         let [x, y, z] = [times(b, F[0]), times(b, F[1]), times(b, F[2])];
-        Symmetric([dot(x, F[0]), dot(y, F[1]), dot(z, F[2]), dot(x, F[1]), dot(y, F[2]), dot(x, F[2])])
+        Symmetric([
+            dot(x, F[0]),
+            dot(y, F[1]),
+            dot(z, F[2]),
+            dot(x, F[1]),
+            dot(y, F[2]),
+            dot(x, F[2]),
+        ])
     }
 
     /// Elastic stiffness of a node pair from T = sum V0 g_a (x) g_b, g their numbers: where these are derivatives,

@@ -34,13 +34,19 @@ pub fn run<W: InLanes>(work: W) -> W::Output {
 /// # Errors
 /// A name that this machine does not know, or a choice that comes too late.
 pub fn choose(name: &str) -> std::result::Result<(), String> {
-    let (_, level) = levels().into_iter().find(|level| level.0 == name).ok_or("this machine has no such vectors")?;
+    let (_, level) = levels()
+        .into_iter()
+        .find(|level| level.0 == name)
+        .ok_or("this machine has no such vectors")?;
     LEVEL.set(level).map_err(|_| "lanes run already".to_owned())
 }
 
 /// What `work` leaves with each instruction set of this machine, by its name; for tests.
 pub fn with_each<W: InLanes + Clone>(work: &W) -> Vec<(&'static str, W::Output)> {
-    levels().into_iter().map(|(name, level)| (name, run_at(level, work.clone()))).collect()
+    levels()
+        .into_iter()
+        .map(|(name, level)| (name, run_at(level, work.clone())))
+        .collect()
 }
 
 /// Instruction sets of this machine.
@@ -54,7 +60,9 @@ fn levels() -> Vec<(&'static str, Level)> {
     ];
     #[cfg(not(target_arch = "x86_64"))]
     let all = [("widest", Some(widest))];
-    all.into_iter().filter_map(|(name, level)| Some((name, level?))).collect()
+    all.into_iter()
+        .filter_map(|(name, level)| Some((name, level?)))
+        .collect()
 }
 
 #[inline(always)]
@@ -82,7 +90,10 @@ fn vectorised<S: Simd, W: InLanes>(simd: S, work: W) -> W::Output {
 /// The points of a range, eight at a time; lanes beyond the end repeat the last one.
 #[inline(always)]
 pub fn eights(points: Range<usize>) -> impl Iterator<Item = Eight> {
-    points.clone().step_by(LANES).map(move |first| Eight { first, last: points.end - 1 })
+    points.clone().step_by(LANES).map(move |first| Eight {
+        first,
+        last: points.end - 1,
+    })
 }
 
 /// Eight consecutive points, or fewer.
@@ -289,6 +300,9 @@ impl<S: Simd> Lanes<S> {
     /// The number of each lane.
     #[inline(always)]
     pub fn from_fn(simd: S, at: impl Fn(usize) -> f64) -> Self {
-        Self(f64x8::simd_from(simd, [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)]))
+        Self(f64x8::simd_from(
+            simd,
+            [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)],
+        ))
     }
 }

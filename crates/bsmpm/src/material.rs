@@ -352,7 +352,11 @@ pub const MOST_STATE: usize = 8;
 
 /// Numbers of state that the points of these materials carry.
 pub fn state_width<'a>(materials: impl IntoIterator<Item = &'a Material>) -> usize {
-    materials.into_iter().map(|material| material.state().len()).max().unwrap_or(0)
+    materials
+        .into_iter()
+        .map(|material| material.state().len())
+        .max()
+        .unwrap_or(0)
 }
 
 impl Material {
@@ -368,7 +372,11 @@ impl Material {
     /// Young's modulus at `height` over that of [`Material::elastic`].
     #[inline]
     pub fn relative_stiffness(&self, height: f64) -> f64 {
-        if let Self::Graded(law) = self { law.relative_stiffness(height) } else { 1.0 }
+        if let Self::Graded(law) = self {
+            law.relative_stiffness(height)
+        } else {
+            1.0
+        }
     }
 
     /// Young's modulus at a height, Pa.

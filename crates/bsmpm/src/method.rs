@@ -48,7 +48,11 @@ impl Criteria {
     /// of.
     pub fn judged(&self, energy: f64, (force, material): (f64, Option<usize>)) -> String {
         let of = material.map_or_else(String::new, |material| format!(" of material {material}"));
-        format!("energy residual {}, force residual{of} {}", against(energy, self.energy), against(force, self.force))
+        format!(
+            "energy residual {}, force residual{of} {}",
+            against(energy, self.energy),
+            against(force, self.force)
+        )
     }
 
     /// What the measure of the water must be below, where it flows: |R| over the largest of what is stored, flows and

@@ -87,7 +87,11 @@ impl<const D: usize> Gravity<D> {
 
     /// Part of the ramp that is over at time `t`.
     fn ramped(&self, t: f64) -> f64 {
-        if self.ramp > 0.0 { (t / self.ramp).clamp(0.0, 1.0) } else { 1.0 }
+        if self.ramp > 0.0 {
+            (t / self.ramp).clamp(0.0, 1.0)
+        } else {
+            1.0
+        }
     }
 }
 
@@ -179,7 +183,9 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
 
     /// Still water at time `t`, if there is any: it weighs as much as gravity has grown, and nothing without.
     pub fn still_water(&self, t: f64) -> Option<StillWater<'_>> {
-        let Water { unit_weight, ambient, .. } = self.water.as_ref().filter(|water| water.ambient != Ambient::None)?;
+        let Water {
+            unit_weight, ambient, ..
+        } = self.water.as_ref().filter(|water| water.ambient != Ambient::None)?;
         let grown = self.gravity.as_ref().map_or(0.0, |gravity| gravity.grown(t));
         Some(StillWater::new(ambient, unit_weight * grown, t))
     }
@@ -200,8 +206,14 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         if self.materials.iter().all(|material| over(material).is_none()) {
             return Cow::Borrowed(self);
         }
-        let materials = self.materials.iter().map(|material| over(material).unwrap_or_else(|| material.clone()));
-        Cow::Owned(Self { materials: materials.collect(), ..self.clone() })
+        let materials = self
+            .materials
+            .iter()
+            .map(|material| over(material).unwrap_or_else(|| material.clone()));
+        Cow::Owned(Self {
+            materials: materials.collect(),
+            ..self.clone()
+        })
     }
 
     /// Largest Young's modulus, Pa.
@@ -228,7 +240,12 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         K: Clone,
     {
         let boundary = self.boundary.at_rest(self.gravity.map(|gravity| gravity.acceleration));
-        Self { regime: Regime::QuasiStatic, shaking: None, boundary, ..self.clone() }
+        Self {
+            regime: Regime::QuasiStatic,
+            shaking: None,
+            boundary,
+            ..self.clone()
+        }
     }
 
     /// The model as at rest, with the pore pressures of the start: nothing flows before the first step, and ground does
@@ -239,8 +256,16 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
     {
         let mut model = self.at_rest();
         let Boundary { strips, resting, .. } = &mut model.boundary;
-        strips.iter_mut().zip(resting).filter(|(_, resting)| **resting).for_each(|(strip, _)| strip.penalty = 0.0);
-        model.water.iter_mut().flat_map(|water| &mut water.flow).for_each(|flow| flow.motion = Motion::Held);
+        strips
+            .iter_mut()
+            .zip(resting)
+            .filter(|(_, resting)| **resting)
+            .for_each(|(strip, _)| strip.penalty = 0.0);
+        model
+            .water
+            .iter_mut()
+            .flat_map(|water| &mut water.flow)
+            .for_each(|flow| flow.motion = Motion::Held);
         model
     }
 
@@ -252,20 +277,32 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
             return Span::default();
         }
         let start = points.x[p] - points.u[p];
-        let reach = self.boundary.reach.get(usize::from(points.material[p])).zip(self.grid.locate(&start));
+        let reach = self
+            .boundary
+            .reach
+            .get(usize::from(points.material[p]))
+            .zip(self.grid.locate(&start));
         reach.map_or_else(Span::default, |(share, cell)| {
             let (lower, edges) = self.grid.cell_box(&cell);
             let parts = edges * (2.0 * share);
             let filled = points.volume[p] / (parts.product() * K::weight(&start));
             let span = Span::of(start[D - 1] - lower[D - 1], parts[D - 1], filled);
             let stretched = self.boundary.reach_along(&self.grid, points, p, D - 1) / (0.5 * parts[D - 1]);
-            Span { reach: span.reach * stretched, ..span }
+            Span {
+                reach: span.reach * stretched,
+                ..span
+            }
         })
     }
 
     /// What shows how far the points reach.
     pub fn reaching<'a>(&'a self, points: &'a Points<D>) -> Reaching<'a, D> {
-        Reaching { grid: &self.grid, points, reach: &self.boundary.reach, weight: K::weight }
+        Reaching {
+            grid: &self.grid,
+            points,
+            reach: &self.boundary.reach,
+            weight: K::weight,
+        }
     }
 
     /// Whether all points have one Young's modulus.
@@ -279,14 +316,25 @@ impl<K, const D: usize> Model<K, D> {
     /// All that has points on surfaces of bodies.
     pub fn surfaces(&self) -> Surfaces<'_, D> {
         let flow = self.water.as_ref().and_then(|water| water.flow.as_ref());
-        let water = flow.into_iter().flat_map(|flow| flow.surfaces().map(|(points, _)| points)).collect();
+        let water = flow
+            .into_iter()
+            .flat_map(|flow| flow.surfaces().map(|(points, _)| points))
+            .collect();
         let dry = flow.map_or_else(Vec::new, |flow| flow.soils.iter().map(Option::is_none).collect());
-        Surfaces { boundary: &self.boundary, water, dry }
+        Surfaces {
+            boundary: &self.boundary,
+            water,
+            dry,
+        }
     }
 
     /// What the nodes' own weights are made of: mass in dynamics.
     pub fn inertial_weighting(&self) -> Weighting {
-        if self.regime == Regime::Dynamic { Weighting::Mass } else { self.weighting }
+        if self.regime == Regime::Dynamic {
+            Weighting::Mass
+        } else {
+            self.weighting
+        }
     }
 
     /// The points in the groups that averages may mix.

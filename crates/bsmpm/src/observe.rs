@@ -57,7 +57,11 @@ pub fn percentile<const D: usize>(
         let middle = 0.5 * (lower + upper);
         let mut below = [part.of(points).filter(|&p| points.x[p][axis] <= middle).count() as f64];
         halo.reduce(&mut below);
-        if below[0] >= wanted { upper = middle } else { lower = middle }
+        if below[0] >= wanted {
+            upper = middle
+        } else {
+            lower = middle
+        }
     }
     upper
 }
@@ -71,9 +75,17 @@ pub fn largest_displacement<const D: usize>(points: &Points<D>, part: &Part, hal
 /// (m); 0 if there are none.
 pub fn surface<const D: usize>(grid: &Grid<D>, (points, part): (&Points<D>, &Part), x: f64, halo: &dyn Halo) -> f64 {
     let axis = &grid.axes()[0];
-    let half = axis.cell_of(x).map_or(0.0, |cell| 0.5 * (axis.breakpoint(cell + 1) - axis.breakpoint(cell)));
+    let half = axis
+        .cell_of(x)
+        .map_or(0.0, |cell| 0.5 * (axis.breakpoint(cell + 1) - axis.breakpoint(cell)));
     let at = |p: usize| &points.x[p];
-    largest(points, part, halo, |p| if (at(p)[0] - x).abs() <= half { at(p)[D - 1] } else { 0.0 })
+    largest(points, part, halo, |p| {
+        if (at(p)[0] - x).abs() <= half {
+            at(p)[D - 1]
+        } else {
+            0.0
+        }
+    })
 }
 
 /// Largest displacement of any point of a part along the last axis, m; 0 if none has risen.
@@ -101,7 +113,9 @@ pub fn mass<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) ->
 
 /// Momentum of the points of a part, kg m/s; zero in quasi-static scenes.
 pub fn momentum<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> Vector<D> {
-    let Some(motion) = &points.motion else { return Vector::zeros() };
+    let Some(motion) = &points.motion else {
+        return Vector::zeros();
+    };
     Vector::from(total(points, part, halo, |p, axis| motion.v[p][axis] * points.mass[p]))
 }
 
@@ -115,7 +129,9 @@ pub fn centre_of_mass<const D: usize>(points: &Points<D>, part: &Part, halo: &dy
 /// Kinetic energy of the points of a part, J: sum m v^2 / 2; zero in quasi-static scenes.
 pub fn kinetic_energy<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> f64 {
     let Some(motion) = &points.motion else { return 0.0 };
-    let [energy] = total(points, part, halo, |p, _| 0.5 * points.mass[p] * motion.v[p].norm_squared());
+    let [energy] = total(points, part, halo, |p, _| {
+        0.5 * points.mass[p] * motion.v[p].norm_squared()
+    });
     energy
 }
 
@@ -129,16 +145,24 @@ pub fn mean_stress<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn H
 /// Mean displacement of the points of a part since displacements were last set to zero, m, weighted with their present
 /// volumes; zero without points.
 pub fn mean_displacement<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> Vector<D> {
-    let along: [f64; 4] =
-        means(points, part, halo, |p, axis| if axis < D { points.displacement(p)[axis] } else { 0.0 });
+    let along: [f64; 4] = means(points, part, halo, |p, axis| {
+        if axis < D { points.displacement(p)[axis] } else { 0.0 }
+    });
     Vector::from_fn(|axis, _| along[axis])
 }
 
 /// Mean velocity of the points of a part, m/s, weighted with their present volumes; zero without points and in
 /// quasi-static scenes.
 pub fn mean_velocity<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> Vector<D> {
-    let Some(motion) = &points.motion else { return Vector::zeros() };
-    let along: [f64; 4] = means(points, part, halo, |p, axis| if axis < D { motion.v[p][axis] } else { 0.0 });
+    let Some(motion) = &points.motion else {
+        return Vector::zeros();
+    };
+    let along: [f64; 4] = means(
+        points,
+        part,
+        halo,
+        |p, axis| if axis < D { motion.v[p][axis] } else { 0.0 },
+    );
     Vector::from_fn(|axis, _| along[axis])
 }
 
@@ -182,7 +206,11 @@ pub fn angular_momentum<const D: usize>(
     let Some(motion) = &points.motion else { return [0.0; 3] };
     total(points, part, halo, |p, k| {
         let (arm, v, [a, b]) = (points.x[p] - place, motion.v[p], [[1, 2], [2, 0], [0, 1]][k]);
-        if a.max(b) < D { points.mass[p] * (arm[a] * v[b] - arm[b] * v[a]) } else { 0.0 }
+        if a.max(b) < D {
+            points.mass[p] * (arm[a] * v[b] - arm[b] * v[a])
+        } else {
+            0.0
+        }
     })
 }
 
@@ -194,7 +222,17 @@ pub fn nearest<const D: usize>(
     wanted: impl Fn(u64) -> bool,
     halo: &dyn Halo,
 ) -> Option<u64> {
-    nearest_by(points, |p| if wanted(points.id[p]) { (points.x[p] - at).norm_squared() } else { f64::INFINITY }, halo)
+    nearest_by(
+        points,
+        |p| {
+            if wanted(points.id[p]) {
+                (points.x[p] - at).norm_squared()
+            } else {
+                f64::INFINITY
+            }
+        },
+        halo,
+    )
 }
 
 /// Id of the point whose `distance` is the smallest, if that is finite; of equally near ones the smallest id.
@@ -202,7 +240,9 @@ fn nearest_by<const D: usize>(points: &Points<D>, distance: impl Fn(usize) -> f6
     let mut closest = [-(0..points.len()).map(&distance).fold(f64::INFINITY, f64::min)];
     halo.maximum(&mut closest);
     let candidates = (0..points.len()).filter(|&p| closest[0].is_finite() && -distance(p) == closest[0]);
-    let mut id = [candidates.map(|p| -(points.id[p] as f64)).fold(f64::NEG_INFINITY, f64::max)];
+    let mut id = [candidates
+        .map(|p| -(points.id[p] as f64))
+        .fold(f64::NEG_INFINITY, f64::max)];
     halo.maximum(&mut id);
     id[0].is_finite().then(|| -id[0] as u64)
 }

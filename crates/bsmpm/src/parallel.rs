@@ -96,7 +96,10 @@ pub fn dots(halo: &dyn Halo, width: usize, pairs: &[(&[f64], &[f64])]) -> Vec<f6
 
 /// Sum over the components of this rank's own nodes, `width` a node: plainly within a layer, exactly over the layers.
 pub fn over_layers(halo: &dyn Halo, width: usize, term: impl Fn(usize) -> f64) -> Exact {
-    halo.owned().runs().map(|run| (run.start * width..run.end * width).map(&term).sum::<f64>()).collect()
+    halo.owned()
+        .runs()
+        .map(|run| (run.start * width..run.end * width).map(&term).sum::<f64>())
+        .collect()
 }
 
 /// The outcome of this rank, or `other` where only another rank failed: nobody goes on while another has returned.

@@ -222,19 +222,31 @@ impl<const D: usize> Located<D> for Points<D> {
 impl<const D: usize> Points<D> {
     /// The points as surfaces are anchored to them.
     pub fn anchored(&self) -> Anchored<'_, D> {
-        Anchored { id: &self.id, material: &self.material, x: &self.x, u: &self.u, F: &self.F }
+        Anchored {
+            id: &self.id,
+            material: &self.material,
+            x: &self.x,
+            u: &self.u,
+            F: &self.F,
+        }
     }
 
     /// Stress-free points at rest or with their initial velocity; with `dynamic` they carry velocity and acceleration.
     pub fn from_seeds(seeds: impl IntoIterator<Item = Seed<D>>, dynamic: bool) -> Self {
-        let mut points = Self { motion: dynamic.then(Motion::default), ..Self::default() };
+        let mut points = Self {
+            motion: dynamic.then(Motion::default),
+            ..Self::default()
+        };
         seeds.into_iter().for_each(|seed| points.push(&seed));
         points
     }
 
     /// The same points with `width` numbers of state each, at their start: 0. None for 0.
     pub fn with_state(self, width: usize) -> Self {
-        let state = (width > 0).then(|| Rows { width, numbers: vec![0.0; width * self.len()] });
+        let state = (width > 0).then(|| Rows {
+            width,
+            numbers: vec![0.0; width * self.len()],
+        });
         Self { state, ..self }
     }
 
@@ -245,7 +257,11 @@ impl<const D: usize> Points<D> {
 
     /// The points `kept`, in that order, without what is the same on every rank.
     pub fn only(&self, kept: &[u32]) -> Self {
-        let mut some = Self { surface: Surface::default(), free_field: Vec::new(), ..self.clone() };
+        let mut some = Self {
+            surface: Surface::default(),
+            free_field: Vec::new(),
+            ..self.clone()
+        };
         some.columns().into_iter().for_each(|column| column.reorder(kept));
         some
     }
@@ -299,7 +315,9 @@ impl<const D: usize> Points<D> {
     /// What smoothing made of a point's elastic strain after the last step, as a left Cauchy-Green tensor.
     #[inline]
     pub fn smoothing_of(&self, p: usize) -> Symmetric {
-        self.smoothing.as_ref().map_or(Symmetric::IDENTITY, |smoothing| smoothing.at(p))
+        self.smoothing
+            .as_ref()
+            .map_or(Symmetric::IDENTITY, |smoothing| smoothing.at(p))
     }
 
     /// State of a point's law; its variables are the first ones.

@@ -34,25 +34,41 @@ pub fn fitted<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Vec<f64> {
     let lower = shape.lowered(grid, points);
-    let volume: Vec<f64> = (0..points.len()).map(|p| points.volume[p] * points.F.at(p).determinant()).collect();
+    let volume: Vec<f64> = (0..points.len())
+        .map(|p| points.volume[p] * points.F.at(p).determinant())
+        .collect();
     let integrals = |factor: &dyn Fn(usize) -> f64| -> Vec<f64> {
-        let weights: Vec<f64> = volume.iter().enumerate().map(|(p, volume)| volume * factor(p)).collect();
+        let weights: Vec<f64> = volume
+            .iter()
+            .enumerate()
+            .map(|(p, volume)| volume * factor(p))
+            .collect();
         halo.sum(&transfer::to_nodes(&lower, |p| [weights[p]]))
     };
     let own = integrals(&|_| 1.0);
     let outside = outside(grid, boundary, &lower, halo);
     let inside = |node: usize| !outside[node] && own[node] > 0.0;
-    let missing: Vec<f64> = (0..own.len()).map(|node| grid.lowered_volume::<K>(node) - own[node]).collect();
+    let missing: Vec<f64> = (0..own.len())
+        .map(|node| grid.lowered_volume::<K>(node) - own[node])
+        .collect();
     let mut chebyshev = Chebyshev::new(own.len());
     let mut found = vec![0.0; own.len()];
     for _ in 0..PASSES {
         let change: Vec<f64> = transfer::to_points::<D, 1, _>(&lower, &found, |_, [change]| change);
         let changed = integrals(&|p| change[p]);
-        let rest = |node: usize| if inside(node) { (missing[node] - changed[node]) / own[node] } else { 0.0 };
+        let rest = |node: usize| {
+            if inside(node) {
+                (missing[node] - changed[node]) / own[node]
+            } else {
+                0.0
+            }
+        };
         chebyshev.advance(&mut found, rest);
     }
     let [least, most] = FACTORS;
-    transfer::to_points::<D, 1, _>(&lower, &found, |p, [change]| points.volume[p] * (1.0 + change).clamp(least, most))
+    transfer::to_points::<D, 1, _>(&lower, &found, |p, [change]| {
+        points.volume[p] * (1.0 + change).clamp(least, most)
+    })
 }
 
 /// Which functions reach into cells that have empty neighbours.
@@ -62,7 +78,10 @@ fn outside<const D: usize>(grid: &Grid<D>, boundary: &Boundary<D>, lower: &Shape
     let mut marks = vec![0.0; grid.nodes()];
     for patch in lower.patches() {
         if !occupied.surround(&grid.cell_at(patch.cell), &closed) {
-            lower.offsets().iter().for_each(|offset| marks[patch.first_node + offset] = 1.0);
+            lower
+                .offsets()
+                .iter()
+                .for_each(|offset| marks[patch.first_node + offset] = 1.0);
         }
     }
     halo.max(&mut marks, 1);
@@ -84,7 +103,10 @@ impl Chebyshev {
     const EIGENVALUES: [f64; 2] = [0.05, 1.0];
 
     fn new(nodes: usize) -> Self {
-        Self { way: vec![0.0; nodes], rho: 0.0 }
+        Self {
+            way: vec![0.0; nodes],
+            rho: 0.0,
+        }
     }
 
     /// The next pass, `rest` being what is left of the right-hand side over the lumped form.

@@ -61,7 +61,11 @@ pub fn three<T>(of: impl Fn(usize) -> T) -> [T; 3] {
 /// Of the first where the mask holds, of the second elsewhere.
 #[inline(always)]
 pub fn choose<R: Real>(mask: R::Mask, first: [R; 3], second: [R; 3]) -> [R; 3] {
-    [R::choose(mask, first[0], second[0]), R::choose(mask, first[1], second[1]), R::choose(mask, first[2], second[2])]
+    [
+        R::choose(mask, first[0], second[0]),
+        R::choose(mask, first[1], second[1]),
+        R::choose(mask, first[2], second[2]),
+    ]
 }
 
 impl Real for f64 {

@@ -15,7 +15,11 @@ where
     let before = if next == 0 { (0.0, start) } else { rows[next - 1] };
     let after = rows.get(next)?;
     let is_later = after.0 > before.0;
-    Some(if is_later { before.1 + (after.1 - before.1) * ((t - before.0) / (after.0 - before.0)) } else { after.1 })
+    Some(if is_later {
+        before.1 + (after.1 - before.1) * ((t - before.0) / (after.0 - before.0))
+    } else {
+        after.1
+    })
 }
 
 /// Whether what is given by rows turns sharply in a step, its start included and its end not: where the slope changes
@@ -28,7 +32,10 @@ where
     let slope = |from: (f64, T), to: (f64, T)| (to.1 - from.1) * (to.0 - from.0).max(f64::MIN_POSITIVE).recip();
     let is_sharp = |k: usize| {
         let (before, row) = (if k == 0 { (0.0, start) } else { rows[k - 1] }, rows[k]);
-        let (comes, goes) = (slope(before, row), slope(row, *rows.get(k + 1).unwrap_or(&(f64::MAX, row.1))));
+        let (comes, goes) = (
+            slope(before, row),
+            slope(row, *rows.get(k + 1).unwrap_or(&(f64::MAX, row.1))),
+        );
         size(goes - comes) > 0.5 * f64::max(size(comes), size(goes))
     };
     (0..rows.len()).any(|k| (t - slack..end - slack).contains(&rows[k].0) && is_sharp(k))
@@ -54,7 +61,10 @@ impl Growth {
 
     /// Steps after which they no longer grow, and the time that these take.
     fn bound(&self, dt: f64) -> (f64, f64) {
-        ((self.most / dt).ln() / self.factor.ln(), (self.most - dt) / (self.factor - 1.0))
+        (
+            (self.most / dt).ln() / self.factor.ln(),
+            (self.most - dt) / (self.factor - 1.0),
+        )
     }
 
     /// Steps that lie within `time` from their start, a real number.
@@ -91,14 +101,21 @@ impl Schedule {
         wanted.push(end);
         wanted.sort_by(f64::total_cmp);
         wanted.dedup_by(|later, earlier| (*later - *earlier) < SAME * dt);
-        Self { dt, growth: None, wanted }
+        Self {
+            dt,
+            growth: None,
+            wanted,
+        }
     }
 
     /// The same with steps that grow. Between two wanted times there are as few as may be, none longer than a step
     /// that grows from the start (or the last restart) would be there, and each longer than the one before by the same
     /// factor, up to the bound.
     pub fn growing(self, growth: Growth) -> Self {
-        Self { growth: Some(growth), ..self }
+        Self {
+            growth: Some(growth),
+            ..self
+        }
     }
 
     /// End of the run.
@@ -122,7 +139,11 @@ impl Schedule {
         }
         let steps = ((t - from) / self.dt + SAME).floor() + 1.0;
         let station = from + steps * self.dt;
-        Some(if station > target - SAME * self.dt { target } else { station })
+        Some(if station > target - SAME * self.dt {
+            target
+        } else {
+            station
+        })
     }
 
     /// The same between two wanted times, of steps that grow.
@@ -133,7 +154,11 @@ impl Schedule {
         let count = (last - first - SAME).ceil().max(1.0);
         let each = (last - first) / count;
         let done = ((steps(t) - first) / each + SAME).floor() + 1.0;
-        if done >= count { target } else { start + growth.time(self.dt, first + done * each) }
+        if done >= count {
+            target
+        } else {
+            start + growth.time(self.dt, first + done * each)
+        }
     }
 }
 
@@ -155,31 +180,59 @@ mod tests {
 
     /// Each step over the one before it, the wanted times passed over.
     fn ratios(stations: &[f64]) -> Vec<f64> {
-        let steps: Vec<f64> =
-            std::iter::once(0.0).chain(stations.iter().copied()).zip(stations).map(|(from, to)| to - from).collect();
+        let steps: Vec<f64> = std::iter::once(0.0)
+            .chain(stations.iter().copied())
+            .zip(stations)
+            .map(|(from, to)| to - from)
+            .collect();
         steps.windows(2).map(|pair| pair[1] / pair[0]).collect()
     }
 
     #[test]
     fn steps_grow_to_their_bound_and_hit_what_is_wanted() {
-        let growth = Growth { factor: 1.2, most: 50.0, restarts: Vec::new() };
+        let growth = Growth {
+            factor: 1.2,
+            most: 50.0,
+            restarts: Vec::new(),
+        };
         let schedule = Schedule::new(1.0, 1000.0, [100.0]).growing(growth);
         let found = stations(&schedule);
         assert!(found.contains(&100.0) && found.last() == Some(&1000.0));
-        let longest = std::iter::once(&0.0).chain(&found).zip(&found).map(|(from, to)| to - from).fold(0.0, f64::max);
-        assert!((found[0] - 1.0).abs() < 0.1 && found[0] <= 1.0 + 1e-9 && longest <= 50.0 + 1e-9, "{found:?}");
+        let longest = std::iter::once(&0.0)
+            .chain(&found)
+            .zip(&found)
+            .map(|(from, to)| to - from)
+            .fold(0.0, f64::max);
+        assert!(
+            (found[0] - 1.0).abs() < 0.1 && found[0] <= 1.0 + 1e-9 && longest <= 50.0 + 1e-9,
+            "{found:?}"
+        );
         // 100 = (1.2^16.7 - 1)/0.2: 17 steps; the bound of 50 is reached at 245, after 21.5 from the start.
         assert_eq!(found.iter().position(|&t| t == 100.0), Some(16));
-        assert!(ratios(&found)[..15].iter().all(|ratio| *ratio > 1.15 && *ratio < 1.2 + 1e-9), "{:?}", ratios(&found));
+        assert!(
+            ratios(&found)[..15]
+                .iter()
+                .all(|ratio| *ratio > 1.15 && *ratio < 1.2 + 1e-9),
+            "{:?}",
+            ratios(&found)
+        );
         assert_eq!(found.len(), 17 + 20);
     }
 
     #[test]
     fn growing_steps_are_a_function_of_time_alone() {
-        let growth = |restarts: Vec<f64>| Growth { factor: 1.3, most: f64::INFINITY, restarts };
+        let growth = |restarts: Vec<f64>| Growth {
+            factor: 1.3,
+            most: f64::INFINITY,
+            restarts,
+        };
         let schedule = Schedule::new(1e-3, 6.3e8, [86_400.0, 3e8]).growing(growth(Vec::new()));
         let found = stations(&schedule);
-        assert!(found.len() < 120 && found.windows(2).all(|pair| pair[0] < pair[1]), "{}", found.len());
+        assert!(
+            found.len() < 120 && found.windows(2).all(|pair| pair[0] < pair[1]),
+            "{}",
+            found.len()
+        );
         // From every one of them on, as from the start.
         for (k, &t) in found.iter().enumerate().take(found.len() - 1) {
             assert_eq!(schedule.next(t), Some(found[k + 1]));
@@ -188,7 +241,10 @@ mod tests {
         let found = stations(&again);
         let at = found.iter().position(|&t| t == 5e3).unwrap();
         let (first, after) = (found[0], found[at + 1] - 5e3);
-        assert!((after / first - 1.0).abs() < 0.3 && after <= 1.0 + 1e-9, "{first} {after}");
+        assert!(
+            (after / first - 1.0).abs() < 0.3 && after <= 1.0 + 1e-9,
+            "{first} {after}"
+        );
     }
 
     #[test]
@@ -205,8 +261,20 @@ mod tests {
     fn rows_turn_where_a_slope_changes_by_half_and_not_where_they_follow_a_curve() {
         let turn = |rows: &[(f64, f64)], step| turns(rows, 0.0, f64::abs, step);
         let ramp = [(1.0, 2.0), (2.0, 3.2), (3.0, 3.2), (3.1, 9.0)];
-        let found = [(0.0, 1.0), (1.0, 2.0), (1.5, 2.5), (2.0, 2.9), (2.2, 3.0), (3.0, 3.1), (3.1, 5.0), (3.2, 5.0)];
-        assert_eq!(found.map(|step| turn(&ramp, step)), [false, false, true, true, false, true, true, false]);
+        let found = [
+            (0.0, 1.0),
+            (1.0, 2.0),
+            (1.5, 2.5),
+            (2.0, 2.9),
+            (2.2, 3.0),
+            (3.0, 3.1),
+            (3.1, 5.0),
+            (3.2, 5.0),
+        ];
+        assert_eq!(
+            found.map(|step| turn(&ramp, step)),
+            [false, false, true, true, false, true, true, false]
+        );
         // A row on the end of a step, but for round-off, is of the next one.
         assert!(!turn(&ramp, (1.0, 2.0 + 1e-15)) && turn(&ramp, (2.0 + 1e-15, 2.5)));
         let wave: Vec<(f64, f64)> = (0..=40).map(|k| f64::from(k) * 0.05).map(|t| (t, t.sin())).collect();

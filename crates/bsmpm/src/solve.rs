@@ -35,7 +35,10 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
 ) -> Result<Found<K, D>, StepError> {
-    let (last, zero) = (admissible(problem.nodes, guess), admissible(problem.nodes, &vec![0.0; guess.len()]));
+    let (last, zero) = (
+        admissible(problem.nodes, guess),
+        admissible(problem.nodes, &vec![0.0; guess.len()]),
+    );
     let mut differs = [f64::from(u8::from(last != zero))];
     problem.halo.maximum(&mut differs);
     let flows = problem.nodes.pores.is_some();
@@ -53,8 +56,15 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         found = search(problem, Nonlinear::Newton, last, (solver, counts));
     }
     if goes_on(&found) && differs[0] > 0.0 {
-        let method = if method == Nonlinear::Auto { Nonlinear::Newton } else { method };
-        found = search(problem, method, zero, (solver, counts)).map(|found| Found { first_guess: false, ..found });
+        let method = if method == Nonlinear::Auto {
+            Nonlinear::Newton
+        } else {
+            method
+        };
+        found = search(problem, method, zero, (solver, counts)).map(|found| Found {
+            first_guess: false,
+            ..found
+        });
     }
     if let Ok(found) = &mut found {
         problem.nodes.extend(&problem.model.grid, &mut found.u, problem.halo);
@@ -99,7 +109,11 @@ fn search<K: Kinematics<D>, const D: usize>(
         }
     }
     // Secants alone that come to their limit might have gone on.
-    let found = if patient { Err(failure) } else { settled(problem, failure, counts, &convergence) };
+    let found = if patient {
+        Err(failure)
+    } else {
+        settled(problem, failure, counts, &convergence)
+    };
     found.map_err(|failure| *failure.error)
 }
 
@@ -113,9 +127,14 @@ fn settled<K: Kinematics<D>, const D: usize>(
     if failure.error.is_final() {
         return Err(failure);
     }
-    let Some(u) = convergence.settled() else { return Err(failure) };
+    let Some(u) = convergence.settled() else {
+        return Err(failure);
+    };
     let residual = evaluate(problem, u, counts);
-    Ok(Found { settled: true, ..Found::new(u.clone(), residual, convergence) })
+    Ok(Found {
+        settled: true,
+        ..Found::new(u.clone(), residual, convergence)
+    })
 }
 
 /// Secants on the stiffness at `u`, where they start.

@@ -46,7 +46,11 @@ impl Groups {
             }) as u16
         };
         let of: Vec<u16> = materials.iter().map(&mut number).collect();
-        if kinds.len() > 1 { Self { of, count: kinds.len() } } else { Self::default() }
+        if kinds.len() > 1 {
+            Self { of, count: kinds.len() }
+        } else {
+            Self::default()
+        }
     }
 
     /// Number of groups.
@@ -57,7 +61,9 @@ impl Groups {
     /// Group of a material.
     #[inline]
     pub fn of(&self, material: u16) -> usize {
-        self.of.get(usize::from(material)).map_or(0, |&group| usize::from(group))
+        self.of
+            .get(usize::from(material))
+            .map_or(0, |&group| usize::from(group))
     }
 }
 
@@ -73,7 +79,9 @@ impl<'a> Grouped<'a> {
 
     /// Points of these materials.
     pub fn by(groups: &'a Groups, material: &'a [u16]) -> Self {
-        Self { by: (groups.count() > 1).then_some((groups, material)) }
+        Self {
+            by: (groups.count() > 1).then_some((groups, material)),
+        }
     }
 
     /// Number of groups.
@@ -95,7 +103,10 @@ impl<'a> Grouped<'a> {
             let first = start;
             let group = (first < points.end).then(|| self.of(first))?;
             let differs = |p: &usize| self.of(*p) != group;
-            start = self.by.and_then(|_| (first..points.end).find(differs)).unwrap_or(points.end);
+            start = self
+                .by
+                .and_then(|_| (first..points.end).find(differs))
+                .unwrap_or(points.end);
             Some((group, first..start))
         })
     }

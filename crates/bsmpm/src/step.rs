@@ -70,12 +70,30 @@ pub fn step<K: Kinematics<D>, const D: usize>(
         inertia.newmark = Newmark::of_the_end();
     }
     let movable = nodes.movable();
-    let mut attachments =
-        StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &movable), (t, dt));
+    let mut attachments = StripAttachments::at(
+        &model.boundary.strips,
+        &points.surface,
+        (&model.grid, &movable),
+        (t, dt),
+    );
     attachments.wet(nodes.pore_pressure.as_ref());
-    let found =
-        solve::contact::find(model, &shape, &mut nodes, (&mut attachments, points), guess, (halo, solver), counts)?; // (3)-(9)
-    let problem = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo };
+    let found = solve::contact::find(
+        model,
+        &shape,
+        &mut nodes,
+        (&mut attachments, points),
+        guess,
+        (halo, solver),
+        counts,
+    )?; // (3)-(9)
+    let problem = Problem {
+        model,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points,
+        halo,
+    };
     commit::check_inside(model, &shape, points, &found.u, halo)?;
     let (strips, traction) =
         attachments.conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
@@ -85,19 +103,37 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     }
     let carried = nodes.rigid.carried(&found.u, points.len(), halo);
     let held = nodes.rigid.held(&found.u, halo);
-    let mut report = StepReport { dt, strips, rigid, ..StepReport::of(&problem, &found) };
+    let mut report = StepReport {
+        dt,
+        strips,
+        rigid,
+        ..StepReport::of(&problem, &found)
+    };
     if !model.boundary.moves(t, dt) {
         report.background_share = report::background_share(&problem, &found);
     }
     let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo);
-    let position = load::moved(&model.boundary.loads, &points.surface, (&model.grid, &nodes.active), &found.u, halo);
+    let position = load::moved(
+        &model.boundary.loads,
+        &points.surface,
+        (&model.grid, &nodes.active),
+        &found.u,
+        halo,
+    );
     let pressure = nodes.followers.tractions::<K>(
         (&model.boundary.loads, &model.grid),
         points,
         (&found.u, &|p| found.trial.dF(p)),
         halo,
     );
-    let mut surface = Surface { traction, position, pressure, anchors, bodies, ..points.surface.clone() };
+    let mut surface = Surface {
+        traction,
+        position,
+        pressure,
+        anchors,
+        bodies,
+        ..points.surface.clone()
+    };
     let (answers, state) = commit::answers(model, &found.trial, points, halo)?;
     report.second_order_works = commit::second_order_works(model, points, &answers, halo);
     if let Some([_, internal]) = &mut report.background {
@@ -109,17 +145,27 @@ pub fn step<K: Kinematics<D>, const D: usize>(
         return Err(StepError::Interrupted);
     }
     // (10), (11)
-    let Committed { u, advance, smoothed, content, beside_fixed } =
-        commit::commit(model, (&shape, &nodes), (found, (answers, state)), points, halo);
+    let Committed {
+        u,
+        advance,
+        smoothed,
+        content,
+        beside_fixed,
+    } = commit::commit(model, (&shape, &nodes), (found, (answers, state)), points, halo);
     *guess = u;
-    if let Some(extent) = nodes.rigid.extents_after(&held, &surface.bodies, &model.reaching(points)) {
+    if let Some(extent) = nodes
+        .rigid
+        .extents_after(&held, &surface.bodies, &model.reaching(points))
+    {
         points.extent = Some(extent);
     }
     if carried.is_some() {
         points.tangential_force = carried;
     }
     let account = draft.map(|draft| draft.close(model, points, &surface, halo));
-    let places = surface.anchors.places((&model.boundary, &model.grid), points.anchored(), halo);
+    let places = surface
+        .anchors
+        .places((&model.boundary, &model.grid), points.anchored(), halo);
     let strips = &model.boundary.strips;
     for number in 0..strips.len() {
         report.strips[number].left_behind = places.left_behind(number, strips, t + dt, &model.grid);
@@ -129,12 +175,24 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     if let Some(water) = &mut report.water {
         water.stored = content;
         surface.crossed.add(1.0, &water.crossed);
-        let flowed = || Flowed { dt, crossed: water.crossed.clone(), left: water.left };
+        let flowed = || Flowed {
+            dt,
+            crossed: water.crossed.clone(),
+            left: water.left,
+        };
         surface.flowed = is_smooth(model).then(flowed);
     }
     points.surface = surface;
     points.free_field = free_field.columns;
     let outflow = Outflow::of(model, (points, t + dt), halo);
     let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
-    Ok(StepReport { energy, turnover, advance, smoothed, beside_fixed, outflow, ..report })
+    Ok(StepReport {
+        energy,
+        turnover,
+        advance,
+        smoothed,
+        beside_fixed,
+        outflow,
+        ..report
+    })
 }

@@ -31,7 +31,10 @@ pub(crate) fn of_chunks<T: Send>(points: usize, of: impl Fn(usize, Range<usize>)
     by_chunks(points, &|chunk, points| {
         *parts[chunk].lock().expect("the chunk's only thread") = Some(of(chunk, points))
     });
-    parts.into_iter().filter_map(|part| part.into_inner().expect("no thread panicked")).collect()
+    parts
+        .into_iter()
+        .filter_map(|part| part.into_inner().expect("no thread panicked"))
+        .collect()
 }
 
 /// A value of every point, in their order.
@@ -71,7 +74,9 @@ pub(crate) fn added<const N: usize>(parts: Vec<[Exact; N]>) -> [Exact; N] {
 
 /// Largest value among the points, 0 without any that is larger.
 pub fn largest(points: usize, value: impl Fn(usize) -> f64 + Sync) -> f64 {
-    of_chunks(points, |_, points| points.map(&value).fold(0.0, f64::max)).into_iter().fold(0.0, f64::max)
+    of_chunks(points, |_, points| points.map(&value).fold(0.0, f64::max))
+        .into_iter()
+        .fold(0.0, f64::max)
 }
 
 /// Rows of the points, of `width` items each, by chunks for a thread at a time.
@@ -84,7 +89,9 @@ pub fn change<T: Send>(rows: &mut [T], width: usize, change: impl Fn(usize, &mut
     let (points, rows) = (rows.len() / width, apart(rows, width));
     by_chunks(points, &|chunk, points| {
         let rows = &mut **rows[chunk].lock().expect("the chunk's only thread");
-        points.zip(rows.chunks_exact_mut(width)).for_each(|(p, row)| change(p, row));
+        points
+            .zip(rows.chunks_exact_mut(width))
+            .for_each(|(p, row)| change(p, row));
     });
 }
 

@@ -51,7 +51,11 @@ fn set(file: hid_t, name: &CString, at: usize, bits: u64) {
             assert!(H5Dwrite(array, *H5T_STD_U16LE, 0, 0, H5P_DEFAULT, numbers.as_ptr().cast()) >= 0);
         } else {
             // Numbers of a kind that both sides share are copied bit by bit.
-            let kind = if name.as_bytes() == b"id" { *H5T_STD_U64LE } else { *H5T_IEEE_F64LE };
+            let kind = if name.as_bytes() == b"id" {
+                *H5T_STD_U64LE
+            } else {
+                *H5T_IEEE_F64LE
+            };
             let mut numbers = vec![0_u64; count];
             assert!(H5Dread(array, kind, 0, 0, H5P_DEFAULT, numbers.as_mut_ptr().cast()) >= 0);
             numbers[at] = bits;
@@ -66,14 +70,22 @@ fn forge(file: hid_t, name: &CString, kind: &str) {
     // SAFETY: an open file and valid texts.
     unsafe {
         if kind != "stranger" {
-            assert!(H5Ldelete(file, name.as_ptr(), H5P_DEFAULT) >= 0, "the array can be removed");
+            assert!(
+                H5Ldelete(file, name.as_ptr(), H5P_DEFAULT) >= 0,
+                "the array can be removed"
+            );
         }
         let done = match kind {
             "missing" => 0,
             "group" => H5Gclose(H5Gcreate2(file, name.as_ptr(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)),
-            "external-link" => {
-                H5Lcreate_external(c"/etc/passwd".as_ptr(), c"/x".as_ptr(), file, name.as_ptr(), H5P_DEFAULT, 0)
-            }
+            "external-link" => H5Lcreate_external(
+                c"/etc/passwd".as_ptr(),
+                c"/x".as_ptr(),
+                file,
+                name.as_ptr(),
+                H5P_DEFAULT,
+                0,
+            ),
             "soft-link" => H5Lcreate_soft(c"/u".as_ptr(), file, name.as_ptr(), H5P_DEFAULT, H5P_DEFAULT),
             "cycle" => H5Lcreate_soft(name.as_ptr(), file, name.as_ptr(), H5P_DEFAULT, H5P_DEFAULT),
             "group-cycle" => H5Lcreate_hard(file, c"/".as_ptr(), file, name.as_ptr(), H5P_DEFAULT, H5P_DEFAULT),

@@ -58,7 +58,10 @@ fn check(action: &str, code: c_int) -> Result<()> {
 
 /// HDF5's own words for the last call that failed.
 fn failed(action: &str) -> Error {
-    Error::Library { action: action.to_owned(), reason: words() }
+    Error::Library {
+        action: action.to_owned(),
+        reason: words(),
+    }
 }
 
 fn words() -> String {
@@ -77,15 +80,25 @@ fn words() -> String {
     unsafe { H5Ewalk2(H5E_DEFAULT, H5E_direction_t::H5E_WALK_UPWARD, Some(note), list) };
     words.dedup();
     words.truncate(3);
-    if words.is_empty() { "it gave no reason".to_owned() } else { words.join("; ") }
+    if words.is_empty() {
+        "it gave no reason".to_owned()
+    } else {
+        words.join("; ")
+    }
 }
 
 fn text(text: &str) -> Result<CString> {
-    CString::new(text).map_err(|_| Error::Foreign { item: format!("{text:?}"), reason: "holds a zero byte".to_owned() })
+    CString::new(text).map_err(|_| Error::Foreign {
+        item: format!("{text:?}"),
+        reason: "holds a zero byte".to_owned(),
+    })
 }
 
 fn path(path: &Path) -> Result<CString> {
-    let foreign = |_| Error::Foreign { item: path.display().to_string(), reason: "holds a NUL".to_owned() };
+    let foreign = |_| Error::Foreign {
+        item: path.display().to_string(),
+        reason: "holds a NUL".to_owned(),
+    };
     CString::new(path.as_os_str().as_bytes()).map_err(foreign)
 }
 
@@ -119,7 +132,10 @@ fn shared(world: &SimpleCommunicator) -> Result<Id> {
     // SAFETY: the class exists once the library runs; the communicator lives, and HDF5 duplicates it.
     unsafe {
         let access = Id::new("set up the access", H5Pcreate(*H5P_CLS_FILE_ACCESS))?;
-        check("set up the access", H5Pset_fapl_mpio(access.0, world.as_raw(), mpi::ffi::RSMPI_INFO_NULL))?;
+        check(
+            "set up the access",
+            H5Pset_fapl_mpio(access.0, world.as_raw(), mpi::ffi::RSMPI_INFO_NULL),
+        )?;
         Ok(access)
     }
 }
@@ -138,20 +154,30 @@ impl File {
         let (access, name) = (shared(world)?, path(file)?);
         // SAFETY: valid text and property list.
         let id = unsafe { H5Fcreate(name.as_ptr(), H5F_ACC_TRUNC, H5P_DEFAULT, access.0) };
-        if id < 0 { Err(failed("create the file")) } else { Ok(Self(id)) }
+        if id < 0 {
+            Err(failed("create the file"))
+        } else {
+            Ok(Self(id))
+        }
     }
 
     pub(crate) fn open(world: &SimpleCommunicator, file: &Path) -> Result<Self> {
         let (access, name) = (shared(world)?, path(file)?);
         // SAFETY: valid text and property list.
         let id = unsafe { H5Fopen(name.as_ptr(), H5F_ACC_RDONLY, access.0) };
-        if id < 0 { Err(failed("open the file")) } else { Ok(Self(id)) }
+        if id < 0 {
+            Err(failed("open the file"))
+        } else {
+            Ok(Self(id))
+        }
     }
 
     /// Closes the file; its arrays must be closed.
     pub(crate) fn close(self) -> Result<()> {
         // SAFETY: open. Every rank's part goes to the disk, not only what the first one's system holds.
-        check("write the file", unsafe { H5Fflush(self.0, H5F_scope_t::H5F_SCOPE_GLOBAL) })?;
+        check("write the file", unsafe {
+            H5Fflush(self.0, H5F_scope_t::H5F_SCOPE_GLOBAL)
+        })?;
         // SAFETY: open, and closed only here.
         check("close the file", unsafe { H5Fclose(self.0) })
     }
@@ -171,8 +197,19 @@ impl File {
                 check(action, H5Pset_chunk(layout.0, 2, chunk.as_ptr()))?;
                 check(action, H5Pset_fletcher32(layout.0))?;
             }
-            let id = H5Dcreate2(self.0, name.as_ptr(), kind(shape.number), space.0, H5P_DEFAULT, layout.0, H5P_DEFAULT);
-            Ok(Array { id: Id::new(action, id)?, number: shape.number })
+            let id = H5Dcreate2(
+                self.0,
+                name.as_ptr(),
+                kind(shape.number),
+                space.0,
+                H5P_DEFAULT,
+                layout.0,
+                H5P_DEFAULT,
+            );
+            Ok(Array {
+                id: Id::new(action, id)?,
+                number: shape.number,
+            })
         }
     }
 
@@ -180,7 +217,9 @@ impl File {
     pub(crate) fn names(&self) -> Result<Vec<String>> {
         let mut group = H5G_info_t::default();
         // SAFETY: an open file; the pointer is valid.
-        check("read the file's contents", unsafe { H5Gget_info(self.0, &raw mut group) })?;
+        check("read the file's contents", unsafe {
+            H5Gget_info(self.0, &raw mut group)
+        })?;
         (0..group.nlinks).map(|index| self.name(index)).collect()
     }
 
@@ -191,21 +230,46 @@ impl File {
         // SAFETY: an open file, valid texts, and a buffer of the length that is given.
         let length = unsafe {
             let (by, order) = (H5_index_t::H5_INDEX_NAME, H5_iter_order_t::H5_ITER_INC);
-            H5Lget_name_by_idx(self.0, root.as_ptr(), by, order, index, name.as_mut_ptr().cast(), NAME, H5P_DEFAULT)
+            H5Lget_name_by_idx(
+                self.0,
+                root.as_ptr(),
+                by,
+                order,
+                index,
+                name.as_mut_ptr().cast(),
+                NAME,
+                H5P_DEFAULT,
+            )
         };
         check(action, if length < 0 { -1 } else { 0 })?;
-        let foreign = |item: &str, reason: &str| Error::Foreign { item: item.to_owned(), reason: reason.to_owned() };
-        let name = CStr::from_bytes_until_nul(&name).ok().and_then(|name| name.to_str().ok());
+        let foreign = |item: &str, reason: &str| Error::Foreign {
+            item: item.to_owned(),
+            reason: reason.to_owned(),
+        };
+        let name = CStr::from_bytes_until_nul(&name)
+            .ok()
+            .and_then(|name| name.to_str().ok());
         let name = name.filter(|name| isize::try_from(name.len()) == Ok(length as isize) && !name.is_empty());
-        let name = name.ok_or_else(|| foreign("a name in the file", "is none of ours"))?.to_owned();
+        let name = name
+            .ok_or_else(|| foreign("a name in the file", "is none of ours"))?
+            .to_owned();
         // SAFETY: an open file, a valid text and pointer.
-        check(action, unsafe { H5Lget_info1(self.0, text(&name)?.as_ptr(), &raw mut link, H5P_DEFAULT) })?;
-        if link.type_ == H5L_type_t::H5L_TYPE_HARD { Ok(name) } else { Err(foreign(&name, "is linked, not there")) }
+        check(action, unsafe {
+            H5Lget_info1(self.0, text(&name)?.as_ptr(), &raw mut link, H5P_DEFAULT)
+        })?;
+        if link.type_ == H5L_type_t::H5L_TYPE_HARD {
+            Ok(name)
+        } else {
+            Err(foreign(&name, "is linked, not there"))
+        }
     }
 
     /// An array of the file and its shape, if it is one that this library could have written.
     pub(crate) fn array(&self, name: &str) -> Result<(Array, Shape)> {
-        let foreign = |reason: &str| Error::Foreign { item: format!("the array {name}"), reason: reason.to_owned() };
+        let foreign = |reason: &str| Error::Foreign {
+            item: format!("the array {name}"),
+            reason: reason.to_owned(),
+        };
         let label = text(name)?;
         // SAFETY: an open file and a valid text; opening the object before the array distinguishes a group or type.
         let id = unsafe {

@@ -23,7 +23,10 @@ impl<'u> Hdf5<'u> {
     /// # Errors
     /// [`Error::Library`] if it does not start.
     pub fn initialize(universe: &'u Universe) -> Result<Self> {
-        let hdf5 = Self { universe, _one_thread: PhantomData };
+        let hdf5 = Self {
+            universe,
+            _one_thread: PhantomData,
+        };
         hdf5.agree(handle::start())?;
         Ok(hdf5)
     }
@@ -36,7 +39,11 @@ impl<'u> Hdf5<'u> {
     pub(crate) fn agree<T>(&self, mine: Result<T>) -> Result<T> {
         let (own, mut most) = (u8::from(mine.is_err()), 0_u8);
         self.world().all_reduce_into(&own, &mut most, SystemOperation::max());
-        if most > 0 { mine.and(Err(Error::OtherRank)) } else { mine }
+        if most > 0 {
+            mine.and(Err(Error::OtherRank))
+        } else {
+            mine
+        }
     }
 
     /// Where a rank's rows begin, and the rows of all. Collective.

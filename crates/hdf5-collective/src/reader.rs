@@ -32,7 +32,10 @@ impl<'h> Reader<'h> {
     /// [`Error::Foreign`] if there is anything that [`crate::Writer`] never writes.
     pub fn arrays(&self) -> Result<Vec<(String, Shape)>> {
         let shape = |name: String| self.file.array(&name).map(|(_, shape)| (name, shape));
-        let all = self.file.names().and_then(|names| names.into_iter().map(shape).collect());
+        let all = self
+            .file
+            .names()
+            .and_then(|names| names.into_iter().map(shape).collect());
         self.hdf5.agree(all)
     }
 
@@ -43,7 +46,11 @@ impl<'h> Reader<'h> {
     /// [`Error::Library`] if they cannot be read, [`Error::Foreign`] if the array has another shape.
     pub fn share(&self, name: &str, shape: Shape) -> Result<Vec<u8>> {
         let world = self.hdf5.world();
-        let rows = share(shape.rows, world.rank().unsigned_abs().into(), world.size().unsigned_abs().into());
+        let rows = share(
+            shape.rows,
+            world.rank().unsigned_abs().into(),
+            world.size().unsigned_abs().into(),
+        );
         self.hdf5.agree(self.rows(name, shape, rows))
     }
 
@@ -56,7 +63,10 @@ impl<'h> Reader<'h> {
     }
 
     fn rows(&self, name: &str, shape: Shape, rows: Range<u64>) -> Result<Vec<u8>> {
-        let foreign = |reason: &str| Error::Foreign { item: format!("the array {name}"), reason: reason.to_owned() };
+        let foreign = |reason: &str| Error::Foreign {
+            item: format!("the array {name}"),
+            reason: reason.to_owned(),
+        };
         let (array, found) = self.file.array(name)?;
         if found != shape {
             return Err(foreign("has another shape than expected"));
@@ -65,7 +75,10 @@ impl<'h> Reader<'h> {
             return Err(foreign("has fewer rows than expected"));
         }
         let count = rows.end - rows.start;
-        let size = shape.row_bytes().zip(usize::try_from(count).ok()).and_then(|(size, count)| size.checked_mul(count));
+        let size = shape
+            .row_bytes()
+            .zip(usize::try_from(count).ok())
+            .and_then(|(size, count)| size.checked_mul(count));
         let mut bytes = vec![0; size.ok_or_else(|| foreign("is too large"))?];
         array.read((rows.start, count, shape.width), &mut bytes)?;
         Ok(bytes)

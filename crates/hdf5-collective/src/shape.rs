@@ -51,15 +51,24 @@ impl Shape {
     /// checksum and a place in the index, and the array a header.
     fn room(&self) -> u64 {
         let chunks = self.rows.div_ceil(CHUNK);
-        let rows = if chunks > 1 { chunks.saturating_mul(CHUNK) } else { self.rows };
-        let numbers = rows.saturating_mul(self.width).saturating_mul(self.number.bytes() as u64);
+        let rows = if chunks > 1 {
+            chunks.saturating_mul(CHUNK)
+        } else {
+            self.rows
+        };
+        let numbers = rows
+            .saturating_mul(self.width)
+            .saturating_mul(self.number.bytes() as u64);
         numbers.saturating_add(chunks.saturating_mul(256)).saturating_add(8192)
     }
 }
 
 /// Bytes of a file with arrays of these shapes, rather too many.
 pub fn room(shapes: impl IntoIterator<Item = Shape>) -> u64 {
-    shapes.into_iter().map(|shape| shape.room()).fold(1 << 14, u64::saturating_add)
+    shapes
+        .into_iter()
+        .map(|shape| shape.room())
+        .fold(1 << 14, u64::saturating_add)
 }
 
 #[cfg(test)]
@@ -68,7 +77,13 @@ mod tests {
 
     #[test]
     fn room_counts_whole_chunks_and_no_more_than_there_are_numbers() {
-        let of = |rows| room([Shape { number: Number::F64, rows, width: 2 }]);
+        let of = |rows| {
+            room([Shape {
+                number: Number::F64,
+                rows,
+                width: 2,
+            }])
+        };
         let around = of(0);
         assert_eq!(of(100) - around, 1600 + 256);
         assert_eq!(of(CHUNK + 1) - around, 2 * (16 * CHUNK + 256));

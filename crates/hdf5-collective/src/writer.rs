@@ -29,16 +29,27 @@ impl<'h> Writer<'h> {
     /// # Errors
     /// [`Error::Torn`] when it cannot be written, [`Error::Foreign`] when this rank has no whole rows.
     pub fn write(&mut self, name: &str, (number, width): (Number, u64), rows: &[u8]) -> Result<Shape> {
-        let foreign = |reason: &str| Error::Foreign { item: format!("the array {name}"), reason: reason.to_owned() };
+        let foreign = |reason: &str| Error::Foreign {
+            item: format!("the array {name}"),
+            reason: reason.to_owned(),
+        };
         let size = Shape { number, rows: 0, width }.row_bytes().filter(|&size| size > 0);
-        let whole = size.filter(|size| rows.len().is_multiple_of(*size)).ok_or_else(|| foreign("has no whole rows"));
+        let whole = size
+            .filter(|size| rows.len().is_multiple_of(*size))
+            .ok_or_else(|| foreign("has no whole rows"));
         let count = (rows.len() / self.hdf5.agree(whole)?) as u64;
         let (start, total) = self.hdf5.place(count);
-        let shape = Shape { number, rows: total, width };
+        let shape = Shape {
+            number,
+            rows: total,
+            width,
+        };
         // Other ranks may wait within HDF5 for one that fails here, too.
         let array = self.file.add(name, shape).map_err(|error| torn(name, &error))?;
         if total > 0 {
-            array.write((start, count, width), rows).map_err(|error| torn(name, &error))?;
+            array
+                .write((start, count, width), rows)
+                .map_err(|error| torn(name, &error))?;
         }
         Ok(shape)
     }
@@ -53,5 +64,8 @@ impl<'h> Writer<'h> {
 }
 
 fn torn(name: &str, error: &Error) -> Error {
-    Error::Torn { name: name.to_owned(), reason: error.to_string() }
+    Error::Torn {
+        name: name.to_owned(),
+        reason: error.to_string(),
+    }
 }

@@ -33,7 +33,10 @@ pub enum Error {
         iterations: usize,
     },
     /// A number does not fit PETSc's integer.
-    #[error("{what} = {value} does not fit the {}-bit indices of this PETSc", crate::petsc_int_bits())]
+    #[error(
+        "{what} = {value} does not fit the {}-bit indices of this PETSc",
+        crate::petsc_int_bits()
+    )]
     TooLarge {
         /// the quantity
         what: &'static str,
@@ -110,7 +113,10 @@ pub(crate) unsafe extern "C" fn keep_error(
     let keep = |caught: &RefCell<Caught>| {
         if let Ok(mut caught) = caught.try_borrow_mut() {
             if kind == ffi::PETSC_ERROR_INITIAL {
-                *caught = Caught { message: message.trim().to_owned(), trace: Vec::new() };
+                *caught = Caught {
+                    message: message.trim().to_owned(),
+                    trace: Vec::new(),
+                };
             }
             caught.trace.push(format!("{func} ({file}:{line})"));
         }
@@ -151,7 +157,12 @@ pub(crate) fn int(what: &'static str, value: usize) -> Result<ffi::PetscInt> {
 pub(crate) fn indices(what: &'static str, values: &[usize], bound: usize) -> Result<Vec<ffi::PetscInt>> {
     let convert = |(entry, &index): (usize, &usize)| {
         if index >= bound {
-            return Err(Error::OutOfRange { what, entry, index, bound });
+            return Err(Error::OutOfRange {
+                what,
+                entry,
+                index,
+                bound,
+            });
         }
         int(what, index)
     };
@@ -160,7 +171,11 @@ pub(crate) fn indices(what: &'static str, values: &[usize], bound: usize) -> Res
 
 /// Refuses a length other than the expected one.
 pub(crate) fn same_length(what: &'static str, got: usize, expected: usize) -> Result<()> {
-    if got == expected { Ok(()) } else { Err(Error::Length { what, got, expected }) }
+    if got == expected {
+        Ok(())
+    } else {
+        Err(Error::Length { what, got, expected })
+    }
 }
 
 /// `value` as a C string.

@@ -66,7 +66,15 @@ impl<'p> Ksp<'p> {
         let mut raw = ptr::null_mut();
         // SAFETY: PETSc runs; the pointer is valid.
         check(unsafe { ffi::KSPCreate(petsc.comm(), &mut raw) })?;
-        Ok(Self { petsc, raw, local_rows: None, shell: None, pc_slot: None, is_ready: false, reads_options: false })
+        Ok(Self {
+            petsc,
+            raw,
+            local_rows: None,
+            shell: None,
+            pc_slot: None,
+            is_ready: false,
+            reads_options: false,
+        })
     }
 
     /// Solves with `matrix` from now on, and builds the preconditioner from it. PETSc shares the

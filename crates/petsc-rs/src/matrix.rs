@@ -105,7 +105,15 @@ impl<'p> Matrix<'p> {
             _ => same_length("last block of local rows", local_rows % block, 0),
         };
         petsc.agree(whole)?;
-        let mut matrix = Self { petsc, raw: ptr::null_mut(), owned: 0..0, global, block, pattern, entries: 0 };
+        let mut matrix = Self {
+            petsc,
+            raw: ptr::null_mut(),
+            owned: 0..0,
+            global,
+            block,
+            pattern,
+            entries: 0,
+        };
         let (m, n) = (int("matrix rows", local_rows)?, int("matrix rows", global)?);
         // SAFETY: PETSc runs; the handle is created before it is used; null handles are destroyable.
         check(unsafe { ffi::MatCreate(petsc.comm(), &mut matrix.raw) })?;
@@ -203,7 +211,9 @@ impl<'p> Matrix<'p> {
     }
 
     fn agree_lengths(&self, vectors: &[&Vector]) -> Result<()> {
-        let checked = vectors.iter().try_for_each(|v| same_length("vector", v.local_len(), self.local_rows()));
+        let checked = vectors
+            .iter()
+            .try_for_each(|v| same_length("vector", v.local_len(), self.local_rows()));
         self.petsc.agree(checked)
     }
 

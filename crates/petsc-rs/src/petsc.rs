@@ -52,8 +52,10 @@ impl<'u> Petsc<'u> {
             .map(c_string)
             .collect::<Result<Vec<_>>>()?;
         let mut pointers: Vec<_> = texts.iter().map(|text| text.as_ptr().cast_mut()).collect();
-        let mut count = c_int::try_from(pointers.len())
-            .map_err(|_| Error::TooLarge { what: "number of options", value: pointers.len() })?;
+        let mut count = c_int::try_from(pointers.len()).map_err(|_| Error::TooLarge {
+            what: "number of options",
+            value: pointers.len(),
+        })?;
         pointers.push(ptr::null_mut());
 
         for name in OPTION_VARIABLES {
@@ -77,7 +79,12 @@ impl<'u> Petsc<'u> {
             ffi::PetscInitialize(&mut count, &mut argv, ptr::null(), ptr::null())
         })?;
         let views = Cell::new(options.iter().any(|option| is_view(option)));
-        Ok(Self { universe, _arguments: (texts, pointers), views, _one_thread: PhantomData })
+        Ok(Self {
+            universe,
+            _arguments: (texts, pointers),
+            views,
+            _one_thread: PhantomData,
+        })
     }
 
     /// Takes note of an option that was set.
@@ -107,7 +114,9 @@ impl<'u> Petsc<'u> {
     /// The largest number of all ranks. Collective.
     pub(crate) fn most(&self, mine: i32) -> i32 {
         let mut most = mine;
-        self.universe.world().all_reduce_into(&mine, &mut most, SystemOperation::max());
+        self.universe
+            .world()
+            .all_reduce_into(&mine, &mut most, SystemOperation::max());
         most
     }
 
@@ -153,5 +162,7 @@ pub const fn petsc_int_bits() -> u32 {
 
 /// Whether an option makes a solver open a viewer.
 fn is_view(option: &str) -> bool {
-    ["_view", "_converged_reason", "_converged_rate"].iter().any(|part| option.contains(part))
+    ["_view", "_converged_reason", "_converged_rate"]
+        .iter()
+        .any(|part| option.contains(part))
 }

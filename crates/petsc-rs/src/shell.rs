@@ -54,7 +54,11 @@ impl<T: ?Sized> Drop for Loan<'_, T> {
 impl<T: ?Sized> Slot<T> {
     /// A place for what works on vectors of which this rank has `rows` entries.
     pub fn new(rows: usize) -> Box<Self> {
-        Box::new(Self { lent: Cell::new(None), rows: Cell::new(rows), panic: RefCell::new(None) })
+        Box::new(Self {
+            lent: Cell::new(None),
+            rows: Cell::new(rows),
+            panic: RefCell::new(None),
+        })
     }
 
     /// Vectors have so many entries here from now on.
@@ -76,7 +80,9 @@ impl<T: ?Sized> Slot<T> {
 
     /// What `work` makes of the callback; an error code without one, and where it panicked.
     fn with(&self, work: impl FnOnce(&mut T) -> ffi::PetscErrorCode) -> ffi::PetscErrorCode {
-        let Some(mut callback) = self.lent.take() else { return FAILED };
+        let Some(mut callback) = self.lent.take() else {
+            return FAILED;
+        };
         // SAFETY: `lend` was given an exclusive borrow that outlives the call of PETSc that led here; while it is used
         // the place is empty, so that nothing else reaches it.
         let outcome = catch_unwind(AssertUnwindSafe(|| work(unsafe { callback.as_mut() })));
@@ -119,8 +125,15 @@ pub(crate) struct Shell<'p> {
 impl<'p> Shell<'p> {
     /// A matrix of which this rank has `rows` rows. Collective.
     pub fn new(petsc: &'p Petsc, rows: usize) -> Result<Self> {
-        let (local, global) = (int("matrix rows", rows)?, int("matrix rows", petsc.total("matrix rows", rows)?)?);
-        let mut shell = Self { raw: ptr::null_mut(), slot: Box::into_raw(Slot::new(rows)), _petsc: PhantomData };
+        let (local, global) = (
+            int("matrix rows", rows)?,
+            int("matrix rows", petsc.total("matrix rows", rows)?)?,
+        );
+        let mut shell = Self {
+            raw: ptr::null_mut(),
+            slot: Box::into_raw(Slot::new(rows)),
+            _petsc: PhantomData,
+        };
         let place = shell.slot.cast::<c_void>();
         // SAFETY: PETSc runs; the slot outlives the matrix, and only `multiply` reads it.
         check(unsafe { ffi::MatCreateShell(petsc.comm(), local, local, global, global, place, &mut shell.raw) })?;
@@ -229,7 +242,11 @@ unsafe fn pc_slot<'s>(pc: ffi::PC) -> std::result::Result<&'s Slot<dyn ShellPc>,
     // SAFETY: the handle and the pointer are valid.
     let code = unsafe { ffi::PCShellGetContext(pc, (&raw mut place).cast()) };
     // SAFETY: a slot by the contract, which is only shared.
-    if code == 0 { Ok(unsafe { &*place.cast::<Slot<dyn ShellPc>>() }) } else { Err(code) }
+    if code == 0 {
+        Ok(unsafe { &*place.cast::<Slot<dyn ShellPc>>() })
+    } else {
+        Err(code)
+    }
 }
 
 /// Notes in the preconditioner whether it has failed; KSP looks there.
@@ -267,9 +284,17 @@ unsafe fn on_arrays(
     let done = match rows {
         0 => work(&[], &mut []),
         // SAFETY: PETSc's arrays hold `rows` entries each and do not overlap, as the vectors are distinct.
-        rows => work(unsafe { slice::from_raw_parts(from, rows) }, unsafe { slice::from_raw_parts_mut(to, rows) }),
+        rows => work(unsafe { slice::from_raw_parts(from, rows) }, unsafe {
+            slice::from_raw_parts_mut(to, rows)
+        }),
     };
     // SAFETY: the arrays of the calls above, once each.
-    let codes = unsafe { [done, ffi::VecRestoreArrayRead(x, &mut from), ffi::VecRestoreArray(y, &mut to)] };
+    let codes = unsafe {
+        [
+            done,
+            ffi::VecRestoreArrayRead(x, &mut from),
+            ffi::VecRestoreArray(y, &mut to),
+        ]
+    };
     codes.into_iter().find(|code| *code != 0).unwrap_or(0)
 }

@@ -20,7 +20,12 @@ impl<'p> Vector<'p> {
     pub fn new(petsc: &'p Petsc, local: usize) -> Result<Self> {
         let global = petsc.total("vector length", local)?;
         let (local, length) = (int("vector length", local)?, int("vector length", global)?);
-        let mut vector = Self { petsc, raw: ptr::null_mut(), owned: 0..0, global };
+        let mut vector = Self {
+            petsc,
+            raw: ptr::null_mut(),
+            owned: 0..0,
+            global,
+        };
         // SAFETY: PETSc runs; the handle is created before it is used; null handles are destroyable.
         check(unsafe { ffi::VecCreate(petsc.comm(), &mut vector.raw) })?;
         // SAFETY: the handle is valid; the type's name is NUL-terminated.

@@ -167,7 +167,9 @@ fn vectors(petsc: &Petsc) -> Result<(), String> {
 fn coo_equals_csr(petsc: &Petsc) -> Result<(), String> {
     let (rows, columns, values) = entries(petsc, 1.0);
     let first = petsc.rank() * LOCAL;
-    let starts: Vec<usize> = (first..=first + LOCAL).map(|row| rows.partition_point(|&r| r < row)).collect();
+    let starts: Vec<usize> = (first..=first + LOCAL)
+        .map(|row| rows.partition_point(|&r| r < row))
+        .collect();
     let mut csr = Matrix::from_csr(petsc, LOCAL, 1, &starts, &columns, &values).map_err(text)?;
     let coo = poisson(petsc)?;
     let (x, mut y, mut z) = (wavy(petsc)?, wavy(petsc)?, wavy(petsc)?);
@@ -219,7 +221,11 @@ fn direct(petsc: &Petsc) -> Result<(), String> {
 fn iterative(petsc: &Petsc) -> Result<(), String> {
     let matrix = poisson(petsc)?;
     let mut ksp = solver(petsc, &matrix, ["cg", "bjacobi", ""])?;
-    let mut tolerances = Tolerances { relative: 1e-11, absolute: 0.0, max_iterations: 1000 };
+    let mut tolerances = Tolerances {
+        relative: 1e-11,
+        absolute: 0.0,
+        max_iterations: 1000,
+    };
     ksp.set_tolerances(tolerances).map_err(text)?;
     ksp.set_norm(NormType::Unpreconditioned).map_err(text)?;
     solve_well(petsc, &mut ksp, &matrix)?;
@@ -228,7 +234,11 @@ fn iterative(petsc: &Petsc) -> Result<(), String> {
     ksp.set_tolerances(tolerances).map_err(text)?;
     let (b, mut x) = (wavy(petsc)?, wavy(petsc)?);
     match ksp.solve(&b, &mut x) {
-        Err(Error::Diverged { reason: -3, iterations: 2, name }) => expect(name == "DIVERGED_ITS", &name),
+        Err(Error::Diverged {
+            reason: -3,
+            iterations: 2,
+            name,
+        }) => expect(name == "DIVERGED_ITS", &name),
         other => Err(format!("too few iterations: {other:?}")),
     }
 }
@@ -246,24 +256,41 @@ fn product(petsc: &Petsc) -> Result<(), String> {
     let wanted: Vec<f64> = (0..LOCAL).map(|i| 1.0 + (i as f64).sin()).collect();
     let mut right = vec![0.0; LOCAL];
     times(&wanted, &mut right);
-    let (mut b, mut x) = (Vector::new(petsc, LOCAL).map_err(text)?, Vector::new(petsc, LOCAL).map_err(text)?);
+    let (mut b, mut x) = (
+        Vector::new(petsc, LOCAL).map_err(text)?,
+        Vector::new(petsc, LOCAL).map_err(text)?,
+    );
     b.copy_from(&right).map_err(text)?;
     let mut ksp = Ksp::new(petsc).map_err(text)?;
     ksp.set_operator(&matrix).map_err(text)?;
     ksp.set_type("fgmres").map_err(text)?;
     ksp.set_pc_type("redundant").map_err(text)?;
-    let tight = Tolerances { relative: 1e-12, absolute: 0.0, max_iterations: 100 };
+    let tight = Tolerances {
+        relative: 1e-12,
+        absolute: 0.0,
+        max_iterations: 100,
+    };
     ksp.set_tolerances(tight).map_err(text)?;
     let error = |x: &Vector| x.read(|x| x.iter().zip(&wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max));
     for _ in 0..2 {
         let info = ksp.solve_with(&mut { times }, &b, &mut x).map_err(text)?;
-        expect(info.reason > 0 && info.iterations <= petsc.ranks() + 2, &format!("{info:?}"))?;
+        expect(
+            info.reason > 0 && info.iterations <= petsc.ranks() + 2,
+            &format!("{info:?}"),
+        )?;
         let worst = error(&x).map_err(text)?;
         expect(worst < 1e-8, &format!("off by {worst:e}"))?;
     }
-    ksp.set_tolerances(Tolerances { max_iterations: 1, ..tight }).map_err(text)?;
+    ksp.set_tolerances(Tolerances {
+        max_iterations: 1,
+        ..tight
+    })
+    .map_err(text)?;
     let info = ksp.solve_with(&mut { times }, &b, &mut x).map_err(text)?;
-    expect(info.reason < 0 && info.iterations == 1, &format!("stopped early: {info:?}"))
+    expect(
+        info.reason < 0 && info.iterations == 1,
+        &format!("stopped early: {info:?}"),
+    )
 }
 
 fn serial_cholesky(petsc: &Petsc) -> Result<(), String> {
@@ -345,9 +372,12 @@ fn refused(petsc: &Petsc) -> Result<(), String> {
     expect(matrix.mult(&x, &mut b).is_err(), "short product")?;
     let odd = Matrix::from_coo(petsc, LOCAL, 3, &[], &[]).err();
     expect(matches!(odd, Some(Error::Length { .. })), "broken block")?;
-    for (starts, columns) in
-        [([0, 2, 2], vec![1, 0]), ([0, 3, 2], vec![0, 1]), ([1, 2, 2], vec![0, 1]), ([0, 1, 9], vec![0, 1])]
-    {
+    for (starts, columns) in [
+        ([0, 2, 2], vec![1, 0]),
+        ([0, 3, 2], vec![0, 1]),
+        ([1, 2, 2], vec![0, 1]),
+        ([0, 1, 9], vec![0, 1]),
+    ] {
         let values = vec![1.0; columns.len()];
         let csr = Matrix::from_csr(petsc, 2, 1, &starts, &columns, &values);
         expect(csr.is_err(), &format!("CSR {starts:?} {columns:?}"))?;
@@ -374,7 +404,11 @@ fn silent(petsc: &Petsc) -> Result<(), String> {
     expect(matches!(package, Some(Error::Unsupported(_))), "jacobi factor")?;
     let nul = ksp.set_options_prefix("a\0b").err();
     expect(nul == Some(Error::Nul("a\0b".into())), "NUL byte")?;
-    let petsc_says = ksp.set_tolerances(Tolerances { relative: 2.0, absolute: 0.0, max_iterations: 1 });
+    let petsc_says = ksp.set_tolerances(Tolerances {
+        relative: 2.0,
+        absolute: 0.0,
+        max_iterations: 1,
+    });
     expect(petsc_says.is_err(), "relative tolerance of 2")
 }
 

@@ -38,7 +38,12 @@ pub fn text(u: &mut Unstructured<'_>) -> Result<String> {
     let mut text = String::from("geometry = \"plane-strain\"\n");
     let dynamic = analysis(u, &mut text)?;
     let grid = grid(u, &mut text)?;
-    let start = *u.choose(&[FuzzStart::Nothing, FuzzStart::Nothing, FuzzStart::AtRest, FuzzStart::Elastic])?;
+    let start = *u.choose(&[
+        FuzzStart::Nothing,
+        FuzzStart::Nothing,
+        FuzzStart::AtRest,
+        FuzzStart::Elastic,
+    ])?;
     let materials = u.int_in_range(1..=2)?;
     for number in 0..materials {
         material(u, number, (dynamic, start), &mut text)?;
@@ -65,7 +70,13 @@ fn quoted<'a>(u: &mut Unstructured<'_>, words: &[&'a str]) -> Result<&'a str> {
 fn analysis(u: &mut Unstructured<'_>, text: &mut String) -> Result<bool> {
     let dynamic = u.arbitrary()?;
     let (kind, steps) = (if dynamic { "dynamic" } else { "quasi-static" }, u.int_in_range(1..=4)?);
-    line(text, &format!("analysis = {{ type = \"{kind}\", end = {:?}, steps = {steps} ", size(u, -6.0, 3.0)?));
+    line(
+        text,
+        &format!(
+            "analysis = {{ type = \"{kind}\", end = {:?}, steps = {steps} ",
+            size(u, -6.0, 3.0)?
+        ),
+    );
     text.pop();
     match u.int_in_range(0..=3)? {
         0 if dynamic => write!(text, ", spectral_radius = {:?}", between(u, 0.0, 1.0)?),
@@ -94,9 +105,15 @@ fn grid(u: &mut Unstructured<'_>, text: &mut String) -> Result<FuzzGrid> {
         let knots = [axis(0)?, axis(1)?];
         upper = [0, 1].map(|axis| knots[axis][knots[axis].len() - 1]);
         let [x, y] = knots;
-        line(text, &format!("grid = {{ knots = {{ x = {x:?}, y = {y:?} }}, order = \"{order}\" }}"));
+        line(
+            text,
+            &format!("grid = {{ knots = {{ x = {x:?}, y = {y:?} }}, order = \"{order}\" }}"),
+        );
     } else {
-        line(text, &format!("grid = {{ lower = {lower:?}, upper = {upper:?}, cell = {h:?}, order = \"{order}\" }}"));
+        line(
+            text,
+            &format!("grid = {{ lower = {lower:?}, upper = {upper:?}, cell = {h:?}, order = \"{order}\" }}"),
+        );
     }
     Ok(FuzzGrid { lower, upper, h })
 }
@@ -108,12 +125,22 @@ fn material(
     text: &mut String,
 ) -> Result<()> {
     let model = quoted(u, &["elastic", "mohr-coulomb", "tresca", "drucker-prager", "von-mises"])?;
-    let poisson = if u.ratio(1, 8)? { 0.5 - size(u, -9.0, -1.0)? } else { between(u, -0.5, 0.499)? };
+    let poisson = if u.ratio(1, 8)? {
+        0.5 - size(u, -9.0, -1.0)?
+    } else {
+        between(u, -0.5, 0.499)?
+    };
     let young = size(u, 0.0, 11.0)?;
-    line(text, &format!("[material.m{number}]\nmodel = \"{model}\"\npoisson = {poisson:?}"));
+    line(
+        text,
+        &format!("[material.m{number}]\nmodel = \"{model}\"\npoisson = {poisson:?}"),
+    );
     if u.ratio(1, 6)? {
         let growth = young * signed(u, -4.0, 0.0)?;
-        line(text, &format!("young = {{ value = {young:?}, at_y = 0.0, per_metre = {growth:?} }}"));
+        line(
+            text,
+            &format!("young = {{ value = {young:?}, at_y = 0.0, per_metre = {growth:?} }}"),
+        );
     } else {
         line(text, &format!("young = {young:?}"));
     }
@@ -122,7 +149,11 @@ fn material(
         let (strength, hardening) = (young * size(u, -8.0, 0.0)?, young * size(u, -8.0, 0.0)?);
         line(text, &format!("yield_stress = {strength:?}\nhardening = {hardening:?}"));
     } else if model != "elastic" {
-        let cohesion = if closing || u.ratio(1, 4)? { 0.0 } else { young * size(u, -8.0, 0.0)? };
+        let cohesion = if closing || u.ratio(1, 4)? {
+            0.0
+        } else {
+            young * size(u, -8.0, 0.0)?
+        };
         line(text, &format!("cohesion = {cohesion:?}"));
     }
     if closing {
@@ -130,7 +161,13 @@ fn material(
     }
     if ["mohr-coulomb", "drucker-prager"].contains(&model) {
         let friction = between(u, if closing { 1.0 } else { 0.0 }, 60.0)?;
-        line(text, &format!("friction_angle = {friction:?}\ndilation_angle = {:?}", friction * between(u, 0.0, 1.0)?));
+        line(
+            text,
+            &format!(
+                "friction_angle = {friction:?}\ndilation_angle = {:?}",
+                friction * between(u, 0.0, 1.0)?
+            ),
+        );
     }
     if dynamic || u.ratio(3, 4)? {
         line(text, &format!("density = {:?}", size(u, 0.0, 5.0)?));
@@ -144,11 +181,20 @@ fn material(
 fn bodies(u: &mut Unstructured<'_>, grid: &FuzzGrid, materials: usize, text: &mut String) -> Result<()> {
     for _ in 0..u.int_in_range(1..=2)? {
         let (material, points) = (u.int_in_range(0..=materials - 1)?, u.int_in_range(1..=4_u8)?);
-        line(text, &format!("[[body]]\nmaterial = \"m{material}\"\npoints_per_cell = {points}"));
+        line(
+            text,
+            &format!("[[body]]\nmaterial = \"m{material}\"\npoints_per_cell = {points}"),
+        );
         let [a, b] = [grid.place(u)?, grid.place(u)?];
         match u.int_in_range(0..=7)? {
             0 => line(text, &format!("polygon = [{a:?}, {b:?}, {:?}]", grid.place(u)?)),
-            1 => line(text, &format!("circle = {{ center = {a:?}, radius = {:?} }}", grid.h * size(u, -1.0, 0.5)?)),
+            1 => line(
+                text,
+                &format!(
+                    "circle = {{ center = {a:?}, radius = {:?} }}",
+                    grid.h * size(u, -1.0, 0.5)?
+                ),
+            ),
             _ => {
                 let lower = [a[0].min(b[0]), a[1].min(b[1])];
                 let upper = [a[0].max(b[0]), a[1].max(b[1])];
@@ -156,7 +202,10 @@ fn bodies(u: &mut Unstructured<'_>, grid: &FuzzGrid, materials: usize, text: &mu
             }
         }
         if u.ratio(1, 4)? {
-            line(text, &format!("velocity = [{:?}, {:?}]", signed(u, -3.0, 3.0)?, signed(u, -3.0, 3.0)?));
+            line(
+                text,
+                &format!("velocity = [{:?}, {:?}]", signed(u, -3.0, 3.0)?, signed(u, -3.0, 3.0)?),
+            );
         }
     }
     Ok(())
@@ -183,10 +232,21 @@ fn gravity(u: &mut Unstructured<'_>, start: FuzzStart, text: &mut String) -> Res
     if start == FuzzStart::Nothing && u.ratio(1, 4)? {
         return Ok(());
     }
-    let across = if start != FuzzStart::AtRest && u.ratio(1, 4)? { signed(u, -3.0, 2.0)? } else { 0.0 };
-    let down = if start == FuzzStart::AtRest { -size(u, -1.0, 2.5)? } else { signed(u, -1.0, 2.5)? };
+    let across = if start != FuzzStart::AtRest && u.ratio(1, 4)? {
+        signed(u, -3.0, 2.0)?
+    } else {
+        0.0
+    };
+    let down = if start == FuzzStart::AtRest {
+        -size(u, -1.0, 2.5)?
+    } else {
+        signed(u, -1.0, 2.5)?
+    };
     let ramp = if start == FuzzStart::Nothing { ramp(u)? } else { 0.0 };
-    line(text, &format!("[gravity]\nacceleration = [{across:?}, {down:?}]\nramp = {ramp:?}"));
+    line(
+        text,
+        &format!("[gravity]\nacceleration = [{across:?}, {down:?}]\nramp = {ramp:?}"),
+    );
     match start {
         FuzzStart::Nothing => {}
         FuzzStart::AtRest => line(text, &format!("[initial]\nk0 = {:?}", between(u, 0.0, 3.0)?)),
@@ -200,14 +260,23 @@ fn loads(u: &mut Unstructured<'_>, grid: &FuzzGrid, text: &mut String) -> Result
     if u.ratio(1, 6)? {
         let stress = [signed(u, 0.0, 9.0)?, signed(u, 0.0, 9.0)?];
         let (from, to, ramp) = (grid.place(u)?, grid.place(u)?, ramp(u)?);
-        line(text, &format!("[[traction]]\nfrom = {from:?}\nto = {to:?}\nstress = {stress:?}\nramp = {ramp:?}"));
+        line(
+            text,
+            &format!("[[traction]]\nfrom = {from:?}\nto = {to:?}\nstress = {stress:?}\nramp = {ramp:?}"),
+        );
     }
     if u.ratio(1, 6)? {
         let (at, force) = (grid.place(u)?, [signed(u, 0.0, 9.0)?, signed(u, 0.0, 9.0)?]);
-        line(text, &format!("[[point_load]]\nat = {at:?}\nforce = {force:?}\nramp = {:?}", ramp(u)?));
+        line(
+            text,
+            &format!("[[point_load]]\nat = {at:?}\nforce = {force:?}\nramp = {:?}", ramp(u)?),
+        );
     }
     if u.ratio(1, 8)? {
-        line(text, &format!("[strength_reduction]\nfactor = {:?}", between(u, 0.1, 5.0)?));
+        line(
+            text,
+            &format!("[strength_reduction]\nfactor = {:?}", between(u, 0.1, 5.0)?),
+        );
     }
     Ok(())
 }
@@ -217,7 +286,10 @@ fn strips(u: &mut Unstructured<'_>, grid: &FuzzGrid, free: [bool; 4], text: &mut
     let segment = |u: &mut Unstructured<'_>| Ok(format!("from = {:?}\nto = {:?}", grid.place(u)?, grid.place(u)?));
     if u.ratio(1, 4)? {
         let (segment, base, moved) = (segment(u)?, quoted(u, &["smooth", "rough"])?, grid.motion(u)?);
-        line(text, &format!("[footing]\n{segment}\ndisplacement = {moved:?}\nbase = \"{base}\""));
+        line(
+            text,
+            &format!("[footing]\n{segment}\ndisplacement = {moved:?}\nbase = \"{base}\""),
+        );
     }
     if u.ratio(1, 6)? {
         let number = u.int_in_range(0..=3)?;
@@ -226,24 +298,55 @@ fn strips(u: &mut Unstructured<'_>, grid: &FuzzGrid, free: [bool; 4], text: &mut
         } else {
             segment(u)?
         };
-        let (way, components) = (quoted(u, &["displacement", "velocity"])?, quoted(u, &["all", "normal"])?);
-        line(text, &format!("[[prescribed]]\n{site}\n{way} = {:?}\ncomponents = \"{components}\"", grid.motion(u)?));
+        let (way, components) = (
+            quoted(u, &["displacement", "velocity"])?,
+            quoted(u, &["all", "normal"])?,
+        );
+        line(
+            text,
+            &format!(
+                "[[prescribed]]\n{site}\n{way} = {:?}\ncomponents = \"{components}\"",
+                grid.motion(u)?
+            ),
+        );
     }
     Ok(())
 }
 
 /// Stabilisation and iteration; few iterations, so that many cases are tried.
 fn solver(u: &mut Unstructured<'_>, text: &mut String) -> Result<()> {
-    let methods = ["none", "f-bar", "f-bar-zhao", "modified-f-bar", "consistent-f-bar", "subgrid-f-bar"];
+    let methods = [
+        "none",
+        "f-bar",
+        "f-bar-zhao",
+        "modified-f-bar",
+        "consistent-f-bar",
+        "subgrid-f-bar",
+    ];
     line(text, &format!("[stabilisation]\nmethod = \"{}\"", quoted(u, &methods)?));
     let nonlinear = quoted(u, &["auto", "broyden", "newton"])?;
-    line(text, &format!("[solver]\nnonlinear = \"{nonlinear}\"\nmax_iterations = {}", u.int_in_range(1..=16)?));
+    line(
+        text,
+        &format!(
+            "[solver]\nnonlinear = \"{nonlinear}\"\nmax_iterations = {}",
+            u.int_in_range(1..=16)?
+        ),
+    );
     if u.arbitrary()? {
         let tolerances = [size(u, -12.0, -1.0)?, size(u, -9.0, -1.0)?];
-        line(text, &format!("tolerance = {:?}\nforce_tolerance = {:?}", tolerances[0], tolerances[1]));
+        line(
+            text,
+            &format!("tolerance = {:?}\nforce_tolerance = {:?}", tolerances[0], tolerances[1]),
+        );
     }
     if u.arbitrary()? {
-        line(text, &format!("background = {:?}", if u.ratio(1, 4)? { 0.0 } else { size(u, -9.0, 0.0)? }));
+        line(
+            text,
+            &format!(
+                "background = {:?}",
+                if u.ratio(1, 4)? { 0.0 } else { size(u, -9.0, 0.0)? }
+            ),
+        );
     }
     if u.ratio(1, 4)? {
         line(text, "[[history]]\nquantity = \"energy\"");

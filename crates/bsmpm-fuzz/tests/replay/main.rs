@@ -21,7 +21,9 @@ fn corpus(target: &Target) -> Vec<(String, Vec<u8>)> {
             std::fs::read(entry.path()).expect("a file that can be read"),
         )
     };
-    let mut files: Vec<_> = entries.map(|entry| read(entry.expect("a folder that can be read"))).collect();
+    let mut files: Vec<_> = entries
+        .map(|entry| read(entry.expect("a folder that can be read")))
+        .collect();
     files.sort();
     files
 }

@@ -14,12 +14,19 @@ pub struct Mutator {
 
 impl Mutator {
     pub fn new(corpus: Vec<Vec<u8>>) -> Self {
-        Self { corpus, last: Vec::new(), state: 1 }
+        Self {
+            corpus,
+            last: Vec::new(),
+            state: 1,
+        }
     }
 
     /// Uniform in 0..below, by the linear congruential generator of Knuth's MMIX.
     fn draw(&mut self, below: usize) -> usize {
-        self.state = self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.state = self
+            .state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.state >> 33) as usize % below.max(1)
     }
 
@@ -33,7 +40,11 @@ impl Mutator {
     }
 
     pub fn next(&mut self) -> Vec<u8> {
-        let mut data = if self.draw(2) == 0 && !self.last.is_empty() { self.last.clone() } else { self.input() };
+        let mut data = if self.draw(2) == 0 && !self.last.is_empty() {
+            self.last.clone()
+        } else {
+            self.input()
+        };
         for _ in 0..=self.draw(4) {
             self.mutate(&mut data);
         }

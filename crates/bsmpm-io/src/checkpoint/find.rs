@@ -51,9 +51,15 @@ pub fn named(path: &Path) -> Result<FoundCheckpoint, Error> {
     let mut bytes = Vec::new();
     let (source, size) = open(&record)?;
     if size > RECORD_LIMIT {
-        return Err(Error::checkpoint(&record, format!("its {size} bytes are not the record of a checkpoint")));
+        return Err(Error::checkpoint(
+            &record,
+            format!("its {size} bytes are not the record of a checkpoint"),
+        ));
     }
-    source.take(RECORD_LIMIT).read_to_end(&mut bytes).map_err(|error| unreadable(&record, &error))?;
+    source
+        .take(RECORD_LIMIT)
+        .read_to_end(&mut bytes)
+        .map_err(|error| unreadable(&record, &error))?;
     let record = CheckpointRecord::parse(&record, &bytes)?;
     verify(&arrays, &record)?;
     Ok(FoundCheckpoint { path: arrays, record })
@@ -62,13 +68,21 @@ pub fn named(path: &Path) -> Result<FoundCheckpoint, Error> {
 fn verify(path: &Path, record: &CheckpointRecord) -> Result<(), Error> {
     let (source, size) = open(path)?;
     if size != record.bytes {
-        return Err(Error::checkpoint(path, format!("it has {size} bytes instead of {}", record.bytes)));
+        return Err(Error::checkpoint(
+            path,
+            format!("it has {size} bytes instead of {}", record.bytes),
+        ));
     }
     let mut hasher = blake3::Hasher::new();
-    hasher.update_reader(source.take(size)).map_err(|error| unreadable(path, &error))?;
+    hasher
+        .update_reader(source.take(size))
+        .map_err(|error| unreadable(path, &error))?;
     let found = hasher.finalize().to_hex();
     if found.as_str() != record.blake3 {
-        return Err(Error::checkpoint(path, "it is damaged (its checksum is not that of its record)"));
+        return Err(Error::checkpoint(
+            path,
+            "it is damaged (its checksum is not that of its record)",
+        ));
     }
     Ok(())
 }
@@ -77,9 +91,14 @@ fn verify(path: &Path, record: &CheckpointRecord) -> Result<(), Error> {
 fn open(path: &Path) -> Result<(File, u64), Error> {
     let flags = OFlags::NONBLOCK.bits() as i32;
     let opened = OpenOptions::new().read(true).custom_flags(flags).open(path);
-    let (file, found) =
-        opened.and_then(|file| file.metadata().map(|found| (file, found))).map_err(|error| unreadable(path, &error))?;
-    if found.is_file() { Ok((file, found.len())) } else { Err(Error::checkpoint(path, "it is not a plain file")) }
+    let (file, found) = opened
+        .and_then(|file| file.metadata().map(|found| (file, found)))
+        .map_err(|error| unreadable(path, &error))?;
+    if found.is_file() {
+        Ok((file, found.len()))
+    } else {
+        Err(Error::checkpoint(path, "it is not a plain file"))
+    }
 }
 
 fn unreadable(path: &Path, error: &std::io::Error) -> Error {

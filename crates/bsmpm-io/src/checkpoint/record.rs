@@ -99,7 +99,10 @@ impl CheckpointRecord {
     pub(super) fn text(&self) -> serde_json::Result<String> {
         let body = serde_json::to_string_pretty(self)?;
         let [before, between, after] = FRAME;
-        Ok(format!("{before}{}{between}{body}{after}", blake3::hash(body.as_bytes()).to_hex()))
+        Ok(format!(
+            "{before}{}{between}{body}{after}",
+            blake3::hash(body.as_bytes()).to_hex()
+        ))
     }
 
     /// The record that a file's bytes hold, if they are the bytes that were written, of this form, and make sense.
@@ -118,7 +121,9 @@ impl CheckpointRecord {
         }
         let RecordForm { schema } = serde_json::from_slice(body).map_err(wrong)?;
         if schema != SCHEMA {
-            return Err(refused(format!("it has format {schema}, and this program reads format {SCHEMA}")));
+            return Err(refused(format!(
+                "it has format {schema}, and this program reads format {SCHEMA}"
+            )));
         }
         let record: Self = serde_json::from_slice(body).map_err(wrong)?;
         record.sense().map_err(refused)?;
@@ -134,7 +139,10 @@ impl CheckpointRecord {
         if let Some(array) = self.arrays.iter().find(|array| array.width == 0) {
             return Err(format!("rows of the array \"{}\" hold nothing", array.name));
         }
-        let sum = self.arrays.iter().try_fold(0_u64, |sum, array| sum.checked_add(array.bytes()?));
+        let sum = self
+            .arrays
+            .iter()
+            .try_fold(0_u64, |sum, array| sum.checked_add(array.bytes()?));
         match sum.filter(|&sum| sum <= self.bytes) {
             Some(_) if self.time().is_finite() => Ok(()),
             Some(_) => Err(format!("its time is {}", self.time())),

@@ -102,7 +102,10 @@ impl Store {
         }
         sync(&folder)?;
         sync(directory)?;
-        Ok(Self { folder, keep: keep.max(1) })
+        Ok(Self {
+            folder,
+            keep: keep.max(1),
+        })
     }
 
     /// Where it is.
@@ -130,8 +133,15 @@ impl Store {
     /// # Errors
     /// [`Error::Space`] where it has not; [`Error::File`] when the system refuses otherwise. Nothing is left then.
     pub fn begin(&self, step: u64, bytes: u64) -> Result<Pending, Error> {
-        let name = |ending| self.folder.join(format!("{TEMPORARY}{}-{}{ending}", process::id(), stem(step)));
-        let pending = Pending { step, path: name(".h5"), record: name(".json") };
+        let name = |ending| {
+            self.folder
+                .join(format!("{TEMPORARY}{}-{}{ending}", process::id(), stem(step)))
+        };
+        let pending = Pending {
+            step,
+            path: name(".h5"),
+            record: name(".json"),
+        };
         File::create(&pending.path).map_err(Error::file("create", &pending.path))?;
         pending.reserve(bytes)?;
         Ok(pending)
@@ -156,7 +166,10 @@ impl Store {
         write_record(&pending.record, &record).map_err(Error::file("write", &pending.record))?;
         at(Phase::Recorded);
         let place = |ending| file(&self.folder, pending.step, ending);
-        let found = FoundCheckpoint { path: place(".h5"), record };
+        let found = FoundCheckpoint {
+            path: place(".h5"),
+            record,
+        };
         fs::rename(&pending.path, &found.path).map_err(Error::file("write", &found.path))?;
         at(Phase::Named);
         fs::rename(&pending.record, place(".json")).map_err(Error::file("write", &place(".json")))?;
@@ -173,7 +186,9 @@ impl Store {
     fn purge(&self, newest: u64) -> Result<(), Error> {
         let list = |ending| steps(&self.folder, ending).map_err(Error::file("read", &self.folder));
         let older = list(".json")?.into_iter().filter(|&step| step <= newest);
-        let Some(last) = older.take(self.keep).last() else { return Ok(()) };
+        let Some(last) = older.take(self.keep).last() else {
+            return Ok(());
+        };
         for ending in [".json", ".h5"] {
             for step in list(ending)?.into_iter().filter(|&step| step < last) {
                 remove(&file(&self.folder, step, ending))?;
@@ -211,12 +226,19 @@ impl Pending {
     /// # Errors
     /// [`Error::Space`] where there is none; [`Error::File`] when the system refuses otherwise.
     pub fn reserve(&self, needed: u64) -> Result<(), Error> {
-        let lacks = |available: String| Error::Space { path: self.path.clone(), needed, available };
+        let lacks = |available: String| Error::Space {
+            path: self.path.clone(),
+            needed,
+            available,
+        };
         // Beyond the limit the system would not refuse but end the process.
         if let Some(limit) = getrlimit(Resource::Fsize).current.filter(|&limit| limit < needed) {
             return Err(lacks(format!("the system limits files to {limit} bytes")));
         }
-        let file = File::options().write(true).open(&self.path).map_err(Error::file("open", &self.path))?;
+        let file = File::options()
+            .write(true)
+            .open(&self.path)
+            .map_err(Error::file("open", &self.path))?;
         match fallocate(&file, FallocateFlags::empty(), 0, needed) {
             // Not every file system can promise room.
             Ok(()) | Err(Errno::OPNOTSUPP | Errno::NOSYS) => Ok(()),
@@ -236,12 +258,31 @@ impl Drop for Pending {
 
 fn free(path: &Path) -> String {
     let folder = path.parent().unwrap_or(path);
-    disk::free(folder).map_or_else(|_| "the disk has less".into(), |bytes| format!("the disk has {bytes} bytes left"))
+    disk::free(folder).map_or_else(
+        |_| "the disk has less".into(),
+        |bytes| format!("the disk has {bytes} bytes left"),
+    )
 }
 
 fn record(facts: &Facts, arrays: Vec<RecordedArray>, (bytes, blake3): (u64, String)) -> CheckpointRecord {
-    let Facts { version, case, ranks, step, time } = facts.clone();
-    CheckpointRecord { schema: SCHEMA, version, step, time_bits: time.to_bits(), case, ranks, bytes, blake3, arrays }
+    let Facts {
+        version,
+        case,
+        ranks,
+        step,
+        time,
+    } = facts.clone();
+    CheckpointRecord {
+        schema: SCHEMA,
+        version,
+        step,
+        time_bits: time.to_bits(),
+        case,
+        ranks,
+        bytes,
+        blake3,
+        arrays,
+    }
 }
 
 fn sync_and_hash(path: &Path) -> io::Result<(u64, String)> {
@@ -259,7 +300,9 @@ fn write_record(path: &Path, record: &CheckpointRecord) -> io::Result<()> {
 }
 
 fn sync(folder: &Path) -> Result<(), Error> {
-    File::open(folder).and_then(|folder| folder.sync_all()).map_err(Error::file("write", folder))
+    File::open(folder)
+        .and_then(|folder| folder.sync_all())
+        .map_err(Error::file("write", folder))
 }
 
 /// Whether there was a file to be removed.

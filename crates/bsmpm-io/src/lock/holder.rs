@@ -47,7 +47,12 @@ impl Holder {
     pub fn this_process() -> Self {
         let line = |path: &str| fs::read_to_string(path).unwrap_or_default().trim().to_owned();
         let namespace = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
-        let job = |name: &&str| std::env::var(name).ok().filter(|id| !id.is_empty()).map(|id| format!("{name}={id}"));
+        let job = |name: &&str| {
+            std::env::var(name)
+                .ok()
+                .filter(|id| !id.is_empty())
+                .map(|id| format!("{name}={id}"))
+        };
         Self {
             host: line("/proc/sys/kernel/hostname"),
             boot: line("/proc/sys/kernel/random/boot_id"),
@@ -55,7 +60,10 @@ impl Holder {
             pid: std::process::id(),
             started: start_of(std::process::id()),
             job: JOBS.iter().find_map(job),
-            restarts: std::env::var(RESTARTS).ok().and_then(|count| count.parse().ok()).unwrap_or(0),
+            restarts: std::env::var(RESTARTS)
+                .ok()
+                .and_then(|count| count.parse().ok())
+                .unwrap_or(0),
             since: utc(SystemTime::now()),
         }
     }
@@ -124,7 +132,11 @@ fn start_of(pid: u32) -> Option<u64> {
     // The name, in brackets, may hold anything; the state is the first field behind it, the start the 20th.
     let mut fields = stat.rsplit_once(')')?.1.split_whitespace();
     let state = fields.next()?;
-    if ["Z", "X"].contains(&state) { None } else { fields.nth(18)?.parse().ok() }
+    if ["Z", "X"].contains(&state) {
+        None
+    } else {
+        fields.nth(18)?.parse().ok()
+    }
 }
 
 #[cfg(test)]
@@ -148,9 +160,15 @@ mod tests {
     fn this_process_lives_and_one_that_started_at_another_time_does_not() {
         let own = Holder::this_process();
         assert_eq!(own.fate(&own, user()), Fate::Alive);
-        let reused = Holder { started: own.started.map(|start| start + 1), ..own.clone() };
+        let reused = Holder {
+            started: own.started.map(|start| start + 1),
+            ..own.clone()
+        };
         assert!(matches!(reused.fate(&own, user()), Fate::Gone(_)));
-        let earlier = Holder { boot: "another".into(), ..own.clone() };
+        let earlier = Holder {
+            boot: "another".into(),
+            ..own.clone()
+        };
         assert!(matches!(earlier.fate(&own, user()), Fate::Gone(_)));
     }
 
@@ -159,7 +177,11 @@ mod tests {
         let own = Holder::this_process();
         let mut child = std::process::Command::new("sleep").arg("100").spawn().unwrap();
         let started = start_of(child.id());
-        let holder = Holder { pid: child.id(), started, ..own.clone() };
+        let holder = Holder {
+            pid: child.id(),
+            started,
+            ..own.clone()
+        };
         assert_eq!(holder.fate(&own, user()), Fate::Alive);
         child.kill().unwrap();
         while start_of(child.id()).is_some() {
@@ -168,27 +190,75 @@ mod tests {
         assert!(matches!(holder.fate(&own, user()), Fate::Gone(_)), "a zombie");
         child.wait().unwrap();
         assert!(matches!(holder.fate(&own, user()), Fate::Gone(_)));
-        assert_eq!(holder.fate(&own, user() + 1), Fate::Unseen, "another user's may be hidden");
+        assert_eq!(
+            holder.fate(&own, user() + 1),
+            Fate::Unseen,
+            "another user's may be hidden"
+        );
     }
 
     #[test]
     fn what_is_elsewhere_is_unseen_unless_this_job_has_been_started_again() {
-        let own = Holder { job: Some("SLURM_JOB_ID=7".into()), restarts: 1, ..Holder::this_process() };
-        let before = Holder { restarts: 0, ..own.clone() };
-        for elsewhere in
-            [Holder { host: "other".into(), ..before.clone() }, Holder { namespace: "other".into(), ..before.clone() }]
-        {
+        let own = Holder {
+            job: Some("SLURM_JOB_ID=7".into()),
+            restarts: 1,
+            ..Holder::this_process()
+        };
+        let before = Holder {
+            restarts: 0,
+            ..own.clone()
+        };
+        for elsewhere in [
+            Holder {
+                host: "other".into(),
+                ..before.clone()
+            },
+            Holder {
+                namespace: "other".into(),
+                ..before.clone()
+            },
+        ] {
             assert!(matches!(elsewhere.fate(&own, user()), Fate::Gone(_)));
             // Another step of the same start, which may go on.
-            assert_eq!(Holder { restarts: 1, ..elsewhere.clone() }.fate(&own, user()), Fate::Unseen);
+            assert_eq!(
+                Holder {
+                    restarts: 1,
+                    ..elsewhere.clone()
+                }
+                .fate(&own, user()),
+                Fate::Unseen
+            );
             let uncounted = Some("PBS_JOBID=7".to_owned());
-            let [then, now] = [&elsewhere, &own].map(|holder| Holder { job: uncounted.clone(), ..holder.clone() });
-            assert!(matches!(Holder { restarts: 1, ..then }.fate(&now, user()), Fate::Gone(_)));
+            let [then, now] = [&elsewhere, &own].map(|holder| Holder {
+                job: uncounted.clone(),
+                ..holder.clone()
+            });
+            assert!(matches!(
+                Holder { restarts: 1, ..then }.fate(&now, user()),
+                Fate::Gone(_)
+            ));
             for job in [None, Some("SLURM_JOB_ID=8".to_owned())] {
-                assert_eq!(Holder { job, ..elsewhere.clone() }.fate(&own, user()), Fate::Unseen);
+                assert_eq!(
+                    Holder {
+                        job,
+                        ..elsewhere.clone()
+                    }
+                    .fate(&own, user()),
+                    Fate::Unseen
+                );
             }
-            let jobless = Holder { job: None, ..own.clone() };
-            assert_eq!(Holder { job: None, ..elsewhere.clone() }.fate(&jobless, user()), Fate::Unseen);
+            let jobless = Holder {
+                job: None,
+                ..own.clone()
+            };
+            assert_eq!(
+                Holder {
+                    job: None,
+                    ..elsewhere.clone()
+                }
+                .fate(&jobless, user()),
+                Fate::Unseen
+            );
         }
     }
 }

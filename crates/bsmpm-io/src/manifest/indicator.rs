@@ -55,7 +55,12 @@ impl Indicator {
     #[must_use]
     pub fn limited(self, limits: Option<[f64; 2]>, accepted: bool) -> Self {
         let failed = limits.is_some_and(|[least, most]| !(least..=most).contains(&self.value));
-        Self { limits, failed, accepted: failed && accepted, ..self }
+        Self {
+            limits,
+            failed,
+            accepted: failed && accepted,
+            ..self
+        }
     }
 
     /// Whether it ends the run with a code of its own.
@@ -64,6 +69,9 @@ impl Indicator {
     }
 
     pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
-        [self.value].into_iter().chain(self.usual).chain(self.limits.into_iter().flatten())
+        [self.value]
+            .into_iter()
+            .chain(self.usual)
+            .chain(self.limits.into_iter().flatten())
     }
 }

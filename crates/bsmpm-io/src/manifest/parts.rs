@@ -42,7 +42,13 @@ impl ManifestCase {
     /// A case with the hash of its text.
     pub fn new(file: &str, title: &str, geometry: &str, text: String) -> Self {
         let blake3 = blake3::hash(text.as_bytes()).to_hex().to_string();
-        Self { file: file.to_owned(), title: title.to_owned(), geometry: geometry.to_owned(), text, blake3 }
+        Self {
+            file: file.to_owned(),
+            title: title.to_owned(),
+            geometry: geometry.to_owned(),
+            text,
+            blake3,
+        }
     }
 }
 
@@ -102,7 +108,10 @@ impl ManifestLimitLoad {
     pub fn part(&self) -> String {
         let is_force = !self.unit.ends_with("Pa");
         match is_force && self.modelled < 1.0 {
-            true => format!(" (the modelled {} of it)", if self.modelled < 0.5 { "quarter" } else { "half" }),
+            true => format!(
+                " (the modelled {} of it)",
+                if self.modelled < 0.5 { "quarter" } else { "half" }
+            ),
             false => String::new(),
         }
     }
@@ -417,7 +426,10 @@ pub struct ManifestFailure {
 
 impl ManifestFailure {
     pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
-        let place = self.worst.iter().flat_map(|worst| worst.position.iter().copied().chain(worst.force));
+        let place = self
+            .worst
+            .iter()
+            .flat_map(|worst| worst.position.iter().copied().chain(worst.force));
         self.residuals.iter().copied().flatten().chain(place).chain([self.time])
     }
 }

@@ -13,11 +13,22 @@ const ROWS: u64 = 500;
 const ROOM: u64 = 1 << 15;
 
 fn arrays() -> Vec<RecordedArray> {
-    vec![RecordedArray { name: "x".into(), number: ArrayNumber::F64, rows: ROWS, width: 2 }]
+    vec![RecordedArray {
+        name: "x".into(),
+        number: ArrayNumber::F64,
+        rows: ROWS,
+        width: 2,
+    }]
 }
 
 fn facts(step: u64) -> Facts {
-    Facts { version: "0.1.0".into(), case: "c0ffee".into(), ranks: 2, step, time: 0.1 * step as f64 }
+    Facts {
+        version: "0.1.0".into(),
+        case: "c0ffee".into(),
+        ranks: 2,
+        step,
+        time: 0.1 * step as f64,
+    }
 }
 
 /// What stands in for the arrays' file of a step.
@@ -46,7 +57,10 @@ fn one() -> (tempfile::TempDir, PathBuf) {
 fn refused(path: &Path, damage: &str) {
     let error = checkpoint::named(path).expect_err(damage);
     assert_eq!(error.exit_code(), 76, "{damage}: {error}");
-    assert!(error.to_string().contains(path.file_stem().unwrap().to_str().unwrap()), "{damage}: {error}");
+    assert!(
+        error.to_string().contains(path.file_stem().unwrap().to_str().unwrap()),
+        "{damage}: {error}"
+    );
 }
 
 #[test]
@@ -54,12 +68,22 @@ fn a_checkpoint_is_found_again_as_it_was_written_and_the_newest_few_are_kept() {
     let directory = tempfile::tempdir().unwrap();
     let store = store(directory.path(), 2);
     assert_eq!(checkpoint::newest(store.folder()).unwrap().0, None);
-    let written: Vec<FoundCheckpoint> = [3, 12, 1_000_000_007].map(|step| write(&store, step, &|_| ()).unwrap()).into();
+    let written: Vec<FoundCheckpoint> = [3, 12, 1_000_000_007]
+        .map(|step| write(&store, step, &|_| ()).unwrap())
+        .into();
     assert_eq!(written[2].record.time().to_bits(), (0.1 * 1_000_000_007_f64).to_bits());
     let (found, damaged) = checkpoint::newest(store.folder()).unwrap();
     assert_eq!((found.as_ref(), damaged.len()), (Some(&written[2]), 0));
-    assert_eq!(checkpoint::named(&written[1].path.with_extension("json")).unwrap(), written[1]);
-    let names = ["step_000000012.h5", "step_000000012.json", "step_1000000007.h5", "step_1000000007.json"];
+    assert_eq!(
+        checkpoint::named(&written[1].path.with_extension("json")).unwrap(),
+        written[1]
+    );
+    let names = [
+        "step_000000012.h5",
+        "step_000000012.json",
+        "step_1000000007.h5",
+        "step_1000000007.json",
+    ];
     assert_eq!(super::listing(store.folder()), names);
     assert_eq!(store.existing(&facts(12)).unwrap().as_ref(), Some(&written[1]));
 }
@@ -72,7 +96,9 @@ fn a_truncated_file_is_refused_at_every_length_and_the_one_before_it_found() {
     let path = write(&store, 7, &|_| ()).unwrap().path;
     for path in [path.clone(), path.with_extension("json")] {
         let whole = fs::read(&path).unwrap();
-        let lengths = [0, 1, 511, 512, whole.len() - 1].into_iter().chain((1..36).map(|part| whole.len() * part / 36));
+        let lengths = [0, 1, 511, 512, whole.len() - 1]
+            .into_iter()
+            .chain((1..36).map(|part| whole.len() * part / 36));
         for length in lengths.map(|length| length.min(whole.len() - 1)) {
             fs::write(&path, &whole[..length]).unwrap();
             refused(&path, &format!("{length} bytes"));
@@ -92,7 +118,9 @@ fn every_flipped_bit_is_noticed() {
     // A generator of Knuth's, so that every run makes the same flips.
     let mut seed = 1_u64;
     let mut random = |below: usize| {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (seed >> 33) as usize % below
     };
     let record = path.with_extension("json");
@@ -141,7 +169,11 @@ fn forge(path: &Path, change: impl Fn(&mut serde_json::Value)) {
     change(&mut whole["record"]);
     let body = whole["record"].to_string();
     let hash = blake3::hash(body.as_bytes());
-    fs::write(path.with_extension("json"), format!("{{\"blake3\":\"{hash}\",\"record\":{body}}}\n")).unwrap();
+    fs::write(
+        path.with_extension("json"),
+        format!("{{\"blake3\":\"{hash}\",\"record\":{body}}}\n"),
+    )
+    .unwrap();
 }
 
 #[test]
@@ -149,13 +181,22 @@ fn records_that_make_no_sense_are_refused_before_anything_is_read() {
     type Change = (&'static str, fn(&mut serde_json::Value));
     let changes: [Change; 9] = [
         ("format 5", |record| record["schema"] = 5.into()),
-        ("cannot be in a file", |record| record["arrays"][0]["rows"] = (1_u64 << 40).into()),
-        ("cannot be in a file", |record| record["arrays"][0]["rows"] = u64::MAX.into()),
-        ("cannot be in a file", |record| record["arrays"][0]["width"] = (1_u64 << 62).into()),
+        ("cannot be in a file", |record| {
+            record["arrays"][0]["rows"] = (1_u64 << 40).into()
+        }),
+        ("cannot be in a file", |record| {
+            record["arrays"][0]["rows"] = u64::MAX.into()
+        }),
+        ("cannot be in a file", |record| {
+            record["arrays"][0]["width"] = (1_u64 << 62).into()
+        }),
         ("hold nothing", |record| record["arrays"][0]["width"] = 0.into()),
         ("invalid value", |record| record["arrays"][0]["rows"] = (-1).into()),
         ("twice", |record| {
-            record["arrays"] = [&record["arrays"][0], &record["arrays"][0]].into_iter().cloned().collect()
+            record["arrays"] = [&record["arrays"][0], &record["arrays"][0]]
+                .into_iter()
+                .cloned()
+                .collect()
         }),
         ("time", |record| record["time_bits"] = f64::NAN.to_bits().into()),
         ("unknown field", |record| record["more"] = 1.into()),
@@ -166,7 +207,10 @@ fn records_that_make_no_sense_are_refused_before_anything_is_read() {
         checkpoint::named(&path).unwrap();
         forge(&path, change);
         let error = checkpoint::named(&path).expect_err(reason);
-        assert!(error.exit_code() == 76 && error.to_string().contains(reason), "{reason}: {error}");
+        assert!(
+            error.exit_code() == 76 && error.to_string().contains(reason),
+            "{reason}: {error}"
+        );
     }
 }
 
@@ -192,11 +236,19 @@ fn a_writer_that_stops_in_any_phase_leaves_a_good_checkpoint_and_its_remains_go(
         assert!(copied.get());
         let after = store(image.path(), 1);
         let (found, damaged) = checkpoint::newest(after.folder()).unwrap();
-        let step = if [Phase::Committed, Phase::Kept].contains(phase) { 2 } else { 1 };
+        let step = if [Phase::Committed, Phase::Kept].contains(phase) {
+            2
+        } else {
+            1
+        };
         assert_eq!((found.unwrap().record.step, damaged.len()), (step, 0), "{phase:?}");
         write(&after, 2, &|_| ()).unwrap();
         write(&after, 3, &|_| ()).unwrap();
-        assert_eq!(super::listing(after.folder()), ["step_000000003.h5", "step_000000003.json"], "{phase:?}");
+        assert_eq!(
+            super::listing(after.folder()),
+            ["step_000000003.h5", "step_000000003.json"],
+            "{phase:?}"
+        );
     }
 }
 
@@ -219,7 +271,10 @@ fn a_checkpoint_that_no_disk_has_room_for_is_refused_and_leaves_nothing() {
     let store = store(directory.path(), 2);
     let before = super::listing(store.folder());
     let error = store.begin(8, 1 << 60).unwrap_err();
-    assert!(matches!(error, Error::Space { needed, .. } if needed == 1 << 60), "{error}");
+    assert!(
+        matches!(error, Error::Space { needed, .. } if needed == 1 << 60),
+        "{error}"
+    );
     assert_eq!(error.exit_code(), 74);
     assert_eq!(super::listing(store.folder()), before);
 }
@@ -236,10 +291,19 @@ fn a_damaged_checkpoint_of_the_same_step_makes_way() {
 
 #[test]
 fn a_checkpoint_of_another_case_or_of_other_ranks_makes_way_too() {
-    for other in [Facts { case: "bad".into(), ..facts(7) }, Facts { ranks: 3, ..facts(7) }] {
+    for other in [
+        Facts {
+            case: "bad".into(),
+            ..facts(7)
+        },
+        Facts { ranks: 3, ..facts(7) },
+    ] {
         let (directory, _path) = one();
         assert_eq!(store(directory.path(), 2).existing(&other).unwrap(), None);
-        assert_eq!(checkpoint::newest(&directory.path().join("checkpoint")).unwrap().0, None);
+        assert_eq!(
+            checkpoint::newest(&directory.path().join("checkpoint")).unwrap().0,
+            None
+        );
     }
 }
 
@@ -250,5 +314,8 @@ fn what_is_later_than_a_step_is_forgotten() {
     let written: Vec<FoundCheckpoint> = [3, 12, 20].map(|step| write(&store, step, &|_| ()).unwrap()).into();
     fs::write(&written[2].path, "damaged").unwrap();
     checkpoint::forget_beyond(directory.path(), 3).unwrap();
-    assert_eq!(super::listing(store.folder()), ["step_000000003.h5", "step_000000003.json"]);
+    assert_eq!(
+        super::listing(store.folder()),
+        ["step_000000003.h5", "step_000000003.json"]
+    );
 }

@@ -11,8 +11,11 @@ use bsmpm_io::manifest::{Manifest, ManifestCase};
 use crate::listing;
 
 fn manifest(outputs: &[&str]) -> Manifest {
-    let mut manifest =
-        Manifest::begin("0.1.0", vec![], ManifestCase::new("a.toml", "A", "plane-strain", String::new()));
+    let mut manifest = Manifest::begin(
+        "0.1.0",
+        vec![],
+        ManifestCase::new("a.toml", "A", "plane-strain", String::new()),
+    );
     outputs.iter().for_each(|output| manifest.name_output(output));
     manifest
 }
@@ -25,11 +28,22 @@ fn claim(path: &Path, existing: Existing) -> Result<OutputDirectory, Error> {
 fn run() -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
     fs::create_dir(dir.path().join("frames")).unwrap();
-    for file in ["history.csv", "frames.pvd", "frames/step_000000000.vtu", "notes.txt", "frames/notes.txt", "mine.csv"]
-    {
+    for file in [
+        "history.csv",
+        "frames.pvd",
+        "frames/step_000000000.vtu",
+        "notes.txt",
+        "frames/notes.txt",
+        "mine.csv",
+    ] {
         fs::write(dir.path().join(file), file).unwrap();
     }
-    let named = ["history.csv", "frames.pvd", "frames/step_000000000.vtu", "frames/step_000000009.vtu"];
+    let named = [
+        "history.csv",
+        "frames.pvd",
+        "frames/step_000000000.vtu",
+        "frames/step_000000009.vtu",
+    ];
     manifest(&named).write(dir.path()).unwrap();
     dir
 }
@@ -49,8 +63,14 @@ fn a_new_directory_is_made_and_claimed_once() {
 fn of_many_that_claim_at_once_one_succeeds() {
     let dir = tempfile::tempdir().unwrap();
     let attempts = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..8).map(|_| scope.spawn(|| claim(dir.path(), Existing::Refuse).is_ok())).collect();
-        threads.into_iter().map(|thread| thread.join().unwrap()).filter(|&claimed| claimed).count()
+        let threads: Vec<_> = (0..8)
+            .map(|_| scope.spawn(|| claim(dir.path(), Existing::Refuse).is_ok()))
+            .collect();
+        threads
+            .into_iter()
+            .map(|thread| thread.join().unwrap())
+            .filter(|&claimed| claimed)
+            .count()
     });
     assert_eq!(attempts, 1);
     Manifest::read(dir.path()).unwrap();
@@ -58,14 +78,23 @@ fn of_many_that_claim_at_once_one_succeeds() {
 
 #[test]
 fn any_file_of_a_run_is_enough_to_refuse() {
-    for file in
-        ["run.json", "history.csv", "steps.csv", "residuals.csv", "frames.pvd", "frames/a.vtu", "checkpoint/a.h5"]
-    {
+    for file in [
+        "run.json",
+        "history.csv",
+        "steps.csv",
+        "residuals.csv",
+        "frames.pvd",
+        "frames/a.vtu",
+        "checkpoint/a.h5",
+    ] {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join(file);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(&path, "").unwrap();
-        assert!(matches!(claim(dir.path(), Existing::Refuse), Err(Error::Occupied { .. })), "{file}");
+        assert!(
+            matches!(claim(dir.path(), Existing::Refuse), Err(Error::Occupied { .. })),
+            "{file}"
+        );
         assert!(claim(dir.path(), Existing::Delete).is_err(), "{file}");
         assert!(path.exists());
     }
@@ -78,7 +107,10 @@ fn any_file_of_a_run_is_enough_to_refuse() {
 fn force_deletes_what_is_named_and_nothing_else() {
     let dir = run();
     claim(dir.path(), Existing::Delete).unwrap();
-    assert_eq!(listing(dir.path()), ["frames/notes.txt", "mine.csv", "notes.txt", "run.json"]);
+    assert_eq!(
+        listing(dir.path()),
+        ["frames/notes.txt", "mine.csv", "notes.txt", "run.json"]
+    );
     assert_eq!(Manifest::read(dir.path()).unwrap().outputs, []);
 }
 
@@ -119,7 +151,10 @@ fn a_hostile_manifest_deletes_nothing() {
         fs::create_dir(dir.path().join("folder.csv")).unwrap();
         manifest(&["history.csv", name]).write(dir.path()).unwrap();
         let error = claim(dir.path(), Existing::Delete).unwrap_err();
-        assert!(matches!(&error, Error::UnsafeOutput { name: reported, .. } if reported == name), "{name}: {error}");
+        assert!(
+            matches!(&error, Error::UnsafeOutput { name: reported, .. } if reported == name),
+            "{name}: {error}"
+        );
         assert_eq!(error.exit_code(), 73);
         assert!(dir.path().join("history.csv").exists(), "{name}");
         assert!(absolute.exists(), "{name}");
@@ -131,7 +166,10 @@ fn a_path_that_is_a_file_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("file");
     fs::write(&path, "").unwrap();
-    assert!(matches!(claim(&path, Existing::Delete), Err(Error::NotDirectory { .. })));
+    assert!(matches!(
+        claim(&path, Existing::Delete),
+        Err(Error::NotDirectory { .. })
+    ));
     let error = claim(&path.join("below"), Existing::Refuse).unwrap_err();
     assert!(matches!(&error, Error::Directory { action: "create", .. }), "{error}");
     assert_eq!(error.exit_code(), 73);
@@ -147,7 +185,10 @@ fn a_directory_that_was_only_held_is_as_if_it_had_never_been() {
     fs::write(path.join("notes.txt"), "").unwrap();
     drop(held);
     assert_eq!(listing(&path), ["notes.txt"]);
-    assert_eq!(OutputDirectory::hold(&path, Unseen::Respect).unwrap().run().unwrap(), None);
+    assert_eq!(
+        OutputDirectory::hold(&path, Unseen::Respect).unwrap().run().unwrap(),
+        None
+    );
 }
 
 #[test]
@@ -158,7 +199,14 @@ fn a_run_that_goes_on_loses_what_was_written_since_and_nothing_else() {
     held().go_on(&manifest(&["history.csv", "frames.pvd"])).unwrap();
     assert_eq!(
         listing(dir.path()),
-        ["frames.pvd", "frames/notes.txt", "history.csv", "mine.csv", "notes.txt", "run.json"]
+        [
+            "frames.pvd",
+            "frames/notes.txt",
+            "history.csv",
+            "mine.csv",
+            "notes.txt",
+            "run.json"
+        ]
     );
     manifest(&["history.csv", "../mine.csv"]).write(dir.path()).unwrap();
     let error = held().go_on(&manifest(&["history.csv"])).unwrap_err();

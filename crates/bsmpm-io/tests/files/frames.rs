@@ -21,7 +21,11 @@ fn frame(points: usize) -> Frame {
             Field::real("velocity", 3, delicate(3 * points)),
             Field::real("stress", 6, delicate(6 * points)),
             Field::real("pressure", 1, delicate(points)),
-            Field { name: "material".into(), components: 1, values: FieldValues::U16(vec![65_535; points]) },
+            Field {
+                name: "material".into(),
+                components: 1,
+                values: FieldValues::U16(vec![65_535; points]),
+            },
             Field {
                 name: "id".into(),
                 components: 1,
@@ -32,9 +36,20 @@ fn frame(points: usize) -> Frame {
 }
 
 fn bits(frame: &Frame) -> Vec<u64> {
-    let mut bits: Vec<_> = frame.position.as_flattened().iter().map(|value| value.to_bits()).collect();
+    let mut bits: Vec<_> = frame
+        .position
+        .as_flattened()
+        .iter()
+        .map(|value| value.to_bits())
+        .collect();
     for (name, components) in [("velocity", 3), ("stress", 6), ("pressure", 1)] {
-        bits.extend(frame.real(name, components).unwrap().iter().map(|value| value.to_bits()));
+        bits.extend(
+            frame
+                .real(name, components)
+                .unwrap()
+                .iter()
+                .map(|value| value.to_bits()),
+        );
     }
     bits.push(frame.time.to_bits());
     bits
@@ -73,7 +88,12 @@ fn write_parts(path: &Path, frame: &Frame, announced: usize, parts: &[std::ops::
     let mut parts = parts.iter().map(|range| part(frame, range.clone()));
     vtu::write_parts(
         path,
-        Parts { head: frame.without_points(), points: announced, names: &[], next: &mut || parts.next() },
+        Parts {
+            head: frame.without_points(),
+            points: announced,
+            names: &[],
+            next: &mut || parts.next(),
+        },
     )
 }
 
@@ -85,7 +105,10 @@ fn a_frame_has_the_same_bytes_in_whatever_parts_it_comes() {
     vtu::write(&whole, &frame).unwrap();
     for parts in [&[0..1, 1..1, 1..999, 999..1000][..], &[0..333, 333..666, 666..1000]] {
         write_parts(&apart, &frame, 1000, parts).unwrap();
-        assert!(std::fs::read(&whole).unwrap() == std::fs::read(&apart).unwrap(), "{parts:?}");
+        assert!(
+            std::fs::read(&whole).unwrap() == std::fs::read(&apart).unwrap(),
+            "{parts:?}"
+        );
     }
 }
 
@@ -97,11 +120,17 @@ fn a_frame_of_other_than_the_announced_points_replaces_nothing() {
     let before = std::fs::read(&path).unwrap();
     for (announced, parts) in [(9, [0..4, 4..8]), (9, [0..5, 5..10]), (0, [0..1, 1..2])] {
         let refused = write_parts(&path, &frame(10), announced, &parts).unwrap_err();
-        assert!(matches!(refused, Error::Length { expected, .. } if expected == announced), "{refused}");
+        assert!(
+            matches!(refused, Error::Length { expected, .. } if expected == announced),
+            "{refused}"
+        );
     }
     let mut bad = frame(10);
     bad.position[7][0] = f64::NAN;
-    assert!(matches!(write_parts(&path, &bad, 10, &[0..5, 5..10]), Err(Error::PointNotFinite { .. })));
+    assert!(matches!(
+        write_parts(&path, &bad, 10, &[0..5, 5..10]),
+        Err(Error::PointNotFinite { .. })
+    ));
     assert_eq!(std::fs::read(&path).unwrap(), before);
     assert_eq!(listing(dir.path()), ["frame.vtu"]);
 }
@@ -126,10 +155,17 @@ fn a_number_that_is_not_finite_is_named_and_nothing_is_written() {
     let path = dir.path().join("bad.vtu");
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let mut bad = frame(9);
-        let FieldValues::F64(stress) = &mut bad.fields[1].values else { unreachable!() };
+        let FieldValues::F64(stress) = &mut bad.fields[1].values else {
+            unreachable!()
+        };
         stress[6 * 7 + 3] = value;
         match vtu::write(&path, &bad) {
-            Err(Error::PointNotFinite { field, component: 3, point, .. }) => {
+            Err(Error::PointNotFinite {
+                field,
+                component: 3,
+                point,
+                ..
+            }) => {
                 assert_eq!((field.as_str(), point), ("stress", u64::MAX - 7));
             }
             other => panic!("{other:?}"),
@@ -137,7 +173,10 @@ fn a_number_that_is_not_finite_is_named_and_nothing_is_written() {
         let mut bad = frame(2);
         bad.position[1][2] = value;
         assert!(matches!(vtu::write(&path, &bad), Err(Error::PointNotFinite { .. })));
-        bad = Frame { time: value, ..frame(2) };
+        bad = Frame {
+            time: value,
+            ..frame(2)
+        };
         assert_eq!(vtu::write(&path, &bad).unwrap_err().exit_code(), 81);
     }
     assert_eq!(listing(dir.path()), [""; 0]);
@@ -148,7 +187,14 @@ fn fields_that_do_not_fit_are_refused() {
     let path = tempfile::tempdir().unwrap().path().join("bad.vtu");
     let mut short = frame(3);
     short.fields.push(Field::real("volume", 1, vec![1.0; 2]));
-    assert!(matches!(vtu::write(&path, &short), Err(Error::Length { expected: 3, found: 2, .. })));
+    assert!(matches!(
+        vtu::write(&path, &short),
+        Err(Error::Length {
+            expected: 3,
+            found: 2,
+            ..
+        })
+    ));
     for name in ["", "a\"b", "a<b", "velocity"] {
         let mut named = frame(1);
         named.fields.push(Field::real(name, 1, vec![1.0]));
@@ -179,10 +225,26 @@ fn the_list_names_every_frame_with_its_exact_time() {
     let mut frames = Frames::create(dir.path()).unwrap();
     let times = [0.0, 0.1 + 0.2, 0.607];
     for (step, time) in times.into_iter().enumerate() {
-        frames.write(&Frame { step: step as u64, time, ..frame(2) }).unwrap();
+        frames
+            .write(&Frame {
+                step: step as u64,
+                time,
+                ..frame(2)
+            })
+            .unwrap();
     }
-    frames.write(&Frame { step: 2, time: 0.607, ..frame(3) }).unwrap();
-    let bad = Frame { step: 3, time: f64::NAN, ..frame(2) };
+    frames
+        .write(&Frame {
+            step: 2,
+            time: 0.607,
+            ..frame(3)
+        })
+        .unwrap();
+    let bad = Frame {
+        step: 3,
+        time: f64::NAN,
+        ..frame(2)
+    };
     assert!(frames.write(&bad).is_err());
     let entries = read_collection(dir.path()).unwrap();
     assert_eq!(entries, frames.entries());
@@ -197,7 +259,10 @@ fn a_list_that_leads_out_of_the_directory_is_refused() {
     for file in ["../secret.vtu", "/etc/passwd", "frames/../../a.vtu", ""] {
         let text = format!("<VTKFile><DataSet timestep=\"0\" file=\"{file}\"/></VTKFile>");
         std::fs::write(dir.path().join("frames.pvd"), text).unwrap();
-        assert!(matches!(read_collection(dir.path()), Err(Error::Format { .. })), "{file}");
+        assert!(
+            matches!(read_collection(dir.path()), Err(Error::Format { .. })),
+            "{file}"
+        );
     }
 }
 
@@ -206,22 +271,46 @@ fn the_list_goes_on_with_the_frames_that_are_there() {
     let dir = tempfile::tempdir().unwrap();
     let mut frames = Frames::create(dir.path()).unwrap();
     for step in 0..4 {
-        frames.write(&Frame { step, time: step as f64, ..frame(2) }).unwrap();
+        frames
+            .write(&Frame {
+                step,
+                time: step as f64,
+                ..frame(2)
+            })
+            .unwrap();
     }
     let entries = frames.entries().to_vec();
     std::fs::remove_file(dir.path().join(Frames::file(1))).unwrap();
     let mut again = Frames::resume(dir.path(), entries[..3].to_vec()).unwrap();
-    assert_eq!(read_collection(dir.path()).unwrap(), [entries[0].clone(), entries[2].clone()]);
-    again.write(&Frame { step: 3, time: 3.0, ..frame(2) }).unwrap();
+    assert_eq!(
+        read_collection(dir.path()).unwrap(),
+        [entries[0].clone(), entries[2].clone()]
+    );
+    again
+        .write(&Frame {
+            step: 3,
+            time: 3.0,
+            ..frame(2)
+        })
+        .unwrap();
     assert_eq!(again.entries().len(), 3);
 }
 
 /// A manifest, and a step's frame in two parts.
 fn begin(frames: &mut Frames, manifest: &mut Manifest, step: u64, points: usize) -> Result<(), Error> {
-    let frame = Frame { step, time: step as f64, ..frame(points) };
+    let frame = Frame {
+        step,
+        time: step as f64,
+        ..frame(points)
+    };
     let mut parts = [0..1, 1..points].into_iter().map(|range| part(&frame, range));
     manifest.name_output(&Frames::file(step));
-    let parts = Parts { head: frame.without_points(), points, names: &[], next: &mut || parts.next() };
+    let parts = Parts {
+        head: frame.without_points(),
+        points,
+        names: &[],
+        next: &mut || parts.next(),
+    };
     frames.begin(parts, manifest).map(|ended| manifest.complete(ended))
 }
 
@@ -231,10 +320,16 @@ fn frames_that_a_thread_ends_are_those_that_are_written_at_once() {
     let case = ManifestCase::new("a.toml", "A", "plane-strain", String::new());
     let mut manifest = Manifest::begin("0.1.0", vec![], case);
     std::fs::create_dir(dir.path().join("frames")).unwrap();
-    std::fs::write(dir.path().join("frames/.step_000000007.vtu.tmp"), "what a killed run has left").unwrap();
+    std::fs::write(
+        dir.path().join("frames/.step_000000007.vtu.tmp"),
+        "what a killed run has left",
+    )
+    .unwrap();
     let mut frames = Frames::create(dir.path()).unwrap();
     // A burst of them, the last one of a step that is there already.
-    let steps = (10..210).map(|step| (step, 2)).chain([(0, 2), (1, 3), (2, 4), (3, 5), (3, 6)]);
+    let steps = (10..210)
+        .map(|step| (step, 2))
+        .chain([(0, 2), (1, 3), (2, 4), (3, 5), (3, 6)]);
     for (step, points) in steps {
         begin(&mut frames, &mut manifest, step, points).unwrap();
         let names = std::fs::read_dir(dir.path().join("frames")).unwrap();
@@ -244,16 +339,35 @@ fn frames_that_a_thread_ends_are_those_that_are_written_at_once() {
     let ended = frames.ended(true).unwrap();
     manifest.complete(ended);
     assert_eq!(read_collection(dir.path()).unwrap(), frames.entries());
-    assert_eq!(frames.entries()[200..].iter().map(|entry| entry.time).collect::<Vec<_>>(), [0.0, 1.0, 2.0, 3.0]);
+    assert_eq!(
+        frames.entries()[200..]
+            .iter()
+            .map(|entry| entry.time)
+            .collect::<Vec<_>>(),
+        [0.0, 1.0, 2.0, 3.0]
+    );
     assert_eq!(vtu::read(&dir.path().join(Frames::file(3))).unwrap().position.len(), 6);
     for output in &manifest.outputs {
         let bytes = std::fs::read(dir.path().join(&output.path)).unwrap();
         assert_eq!(output.bytes, Some(bytes.len() as u64), "{output:?}");
-        assert_eq!(output.blake3, Some(blake3::hash(&bytes).to_hex().to_string()), "{output:?}");
+        assert_eq!(
+            output.blake3,
+            Some(blake3::hash(&bytes).to_hex().to_string()),
+            "{output:?}"
+        );
     }
     let named = Manifest::read(dir.path()).unwrap().outputs;
-    assert!(named.iter().map(|output| &output.path).eq(manifest.outputs.iter().map(|output| &output.path)));
-    assert_eq!(std::fs::read_dir(dir.path().join("frames")).unwrap().count(), 204, "no temporary file");
+    assert!(
+        named
+            .iter()
+            .map(|output| &output.path)
+            .eq(manifest.outputs.iter().map(|output| &output.path))
+    );
+    assert_eq!(
+        std::fs::read_dir(dir.path().join("frames")).unwrap().count(),
+        204,
+        "no temporary file"
+    );
     assert!(frames.ended(true).unwrap().is_empty());
 }
 
@@ -275,6 +389,10 @@ fn what_a_thread_could_not_end_is_an_error_of_the_next_frame_or_of_the_end() {
     assert!(behind.is_err() != failed.is_err(), "{behind:?} {failed:?}");
     assert!(frames.ended(true).unwrap().is_empty());
     assert_eq!(frames.entries().len(), 1);
-    assert_eq!(read_collection(dir.path()).unwrap().len(), 1, "it lists the frames before only");
+    assert_eq!(
+        read_collection(dir.path()).unwrap().len(),
+        1,
+        "it lists the frames before only"
+    );
     assert_eq!(listing(&dir.path().join("frames")).len(), 1, "no temporary file");
 }

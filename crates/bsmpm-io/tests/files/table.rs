@@ -5,7 +5,11 @@ use bsmpm_io::steps::StepRow;
 use bsmpm_io::table::{self, Cell, CsvTable, TableColumn};
 
 fn columns() -> [TableColumn; 3] {
-    [TableColumn::new("step", ""), TableColumn::new("time", "s"), TableColumn::new("footing-pressure", "Pa")]
+    [
+        TableColumn::new("step", ""),
+        TableColumn::new("time", "s"),
+        TableColumn::new("footing-pressure", "Pa"),
+    ]
 }
 
 #[test]
@@ -17,11 +21,19 @@ fn every_float_reads_back_to_the_bit_and_is_in_the_file_at_once() {
     // A linear congruential walk through the bit patterns.
     let mut state = 1_u64;
     for _ in 0..1000 {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         numbers.extend(Some(f64::from_bits(state)).filter(|value| value.is_finite()));
     }
     for (step, &value) in numbers.iter().enumerate() {
-        table.row(&[Cell::Int(step as u64), Cell::Float(step as f64 * 0.1), Cell::Float(value)]).unwrap();
+        table
+            .row(&[
+                Cell::Int(step as u64),
+                Cell::Float(step as f64 * 0.1),
+                Cell::Float(value),
+            ])
+            .unwrap();
         if step < 10 {
             assert_eq!(table::read(&path).unwrap().values[0].len(), step + 1);
         }
@@ -31,7 +43,11 @@ fn every_float_reads_back_to_the_bit_and_is_in_the_file_at_once() {
     assert_eq!(read.unit("footing-pressure"), Some("Pa"));
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(read.get("footing-pressure").unwrap()), bits(&numbers));
-    assert!(std::fs::read_to_string(&path).unwrap().starts_with("step,time,footing-pressure\n# -,s,Pa\n0,0.0,0.3"));
+    assert!(
+        std::fs::read_to_string(&path)
+            .unwrap()
+            .starts_with("step,time,footing-pressure\n# -,s,Pa\n0,0.0,0.3")
+    );
 }
 
 #[test]
@@ -42,10 +58,22 @@ fn a_bad_row_leaves_the_file_as_it_was() {
     table.row(&[Cell::Int(0), Cell::Float(0.0), Cell::Float(1.5)]).unwrap();
     let before = std::fs::read(&path).unwrap();
     for value in [f64::NAN, f64::INFINITY] {
-        let error = table.row(&[Cell::Int(7), Cell::Float(0.1), Cell::Float(value)]).unwrap_err();
-        assert!(matches!(&error, Error::NotFinite { item, .. } if item == "footing-pressure in step 7"), "{error}");
+        let error = table
+            .row(&[Cell::Int(7), Cell::Float(0.1), Cell::Float(value)])
+            .unwrap_err();
+        assert!(
+            matches!(&error, Error::NotFinite { item, .. } if item == "footing-pressure in step 7"),
+            "{error}"
+        );
     }
-    assert!(matches!(table.row(&[Cell::Int(1)]), Err(Error::Length { expected: 3, found: 1, .. })));
+    assert!(matches!(
+        table.row(&[Cell::Int(1)]),
+        Err(Error::Length {
+            expected: 3,
+            found: 1,
+            ..
+        })
+    ));
     assert_eq!(std::fs::read(&path).unwrap(), before);
 }
 
@@ -55,11 +83,17 @@ fn headings_that_would_break_the_file_are_refused() {
     let path = dir.path().join("history.csv");
     for name in ["", "a,b", "a\nb", "\"a\"", "#a", " a", "step"] {
         let columns = [TableColumn::new("step", ""), TableColumn::new(name, "m")];
-        assert!(matches!(CsvTable::create(&path, &columns), Err(Error::Name { .. })), "{name:?}");
+        assert!(
+            matches!(CsvTable::create(&path, &columns), Err(Error::Name { .. })),
+            "{name:?}"
+        );
     }
     assert!(!path.exists());
     CsvTable::create(&path, &columns()).unwrap();
-    assert!(matches!(CsvTable::create(&path, &columns()), Err(Error::File { action: "create", .. })));
+    assert!(matches!(
+        CsvTable::create(&path, &columns()),
+        Err(Error::File { action: "create", .. })
+    ));
 }
 
 #[test]
@@ -68,8 +102,11 @@ fn a_row_that_is_being_written_is_left_out_and_a_damaged_one_is_reported() {
     let path = dir.path().join("history.csv");
     std::fs::write(&path, "step,time\n# -,s\n0,0.0\n1,0.2").unwrap();
     assert_eq!(table::read(&path).unwrap().values, [[0.0], [0.0]]);
-    for (text, line) in [("step,time\n0,0\n1\n2,2\n", "line 3"), ("a\n1\nNaN\n", "line 3"), ("\n", "no line of names")]
-    {
+    for (text, line) in [
+        ("step,time\n0,0\n1\n2,2\n", "line 3"),
+        ("a\n1\nNaN\n", "line 3"),
+        ("\n", "no line of names"),
+    ] {
         std::fs::write(&path, text).unwrap();
         let error = table::read(&path).unwrap_err();
         assert!(error.to_string().contains(line), "{error}");
@@ -152,10 +189,19 @@ fn a_table_that_is_not_the_marked_one_is_refused_and_stays() {
     other[whole.len() - 2] ^= 1;
     for found in [&whole[..whole.len() - 1], &other, b""] {
         std::fs::write(&path, found).unwrap();
-        assert!(matches!(CsvTable::resume(&path, &columns(), &mark), Err(Error::Format { .. })));
+        assert!(matches!(
+            CsvTable::resume(&path, &columns(), &mark),
+            Err(Error::Format { .. })
+        ));
         assert_eq!(std::fs::read(&path).unwrap(), found);
     }
     std::fs::write(&path, &whole).unwrap();
-    assert!(matches!(CsvTable::resume(&path, &columns()[..2], &mark), Err(Error::Format { .. })), "other columns");
+    assert!(
+        matches!(
+            CsvTable::resume(&path, &columns()[..2], &mark),
+            Err(Error::Format { .. })
+        ),
+        "other columns"
+    );
     assert!(CsvTable::resume(&path, &columns(), &mark).is_ok());
 }

@@ -43,14 +43,31 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
     /// Prints a row for every phase, under the displacement `guess` (m, nodal) of the last step: what flowed then flows
     /// on.
     pub fn run(&self, guess: &[f64], solver: &mut dyn LinearSolver) -> Result<(), StepError> {
-        let Self { model, points, halo, times, .. } = *self;
+        let Self {
+            model,
+            points,
+            halo,
+            times,
+            ..
+        } = *self;
         let shape = Shape::at(&model.grid, points)?;
         let mut nodes = Nodes::map(model, &shape, points, times, halo)?;
         let field = FreeField::after(model, points, times, halo)?;
         field.drive(&mut nodes);
-        let attachments =
-            StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), times);
-        let problem = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo };
+        let attachments = StripAttachments::at(
+            &model.boundary.strips,
+            &points.surface,
+            (&model.grid, &nodes.free),
+            times,
+        );
+        let problem = Problem {
+            model,
+            shape: &shape,
+            nodes: &nodes,
+            attachments: &attachments,
+            points,
+            halo,
+        };
         let along = |(c, &guess): (usize, &f64)| match nodes.prescribed[c] {
             Some(prescribed) => prescribed,
             None if nodes.free[c] => guess,
@@ -58,15 +75,23 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
         };
         let u: Vec<f64> = guess.iter().enumerate().map(along).collect();
         let traffic = Traffic::of(model);
-        self.row("(1) shape functions, sorting apart", None, || drop(black_box(Shape::at(&model.grid, points))));
-        self.row("(2) points to nodes", None, || drop(black_box(Nodes::map(model, &shape, points, times, halo))));
+        self.row("(1) shape functions, sorting apart", None, || {
+            drop(black_box(Shape::at(&model.grid, points)))
+        });
+        self.row("(2) points to nodes", None, || {
+            drop(black_box(Nodes::map(model, &shape, points, times, halo)))
+        });
         if !field.columns.is_empty() {
             self.row("columns of the free field", None, || {
                 drop(black_box(FreeField::after(model, points, times, halo)))
             });
         }
         self.row("(4a) gather of grad u", Some(traffic.gradients), || {
-            drop(black_box(transfer::gradients::<K, D, _>((&shape, &points.x), &u, |_, grad| grad)))
+            drop(black_box(transfer::gradients::<K, D, _>(
+                (&shape, &points.x),
+                &u,
+                |_, grad| grad,
+            )))
         });
         if model.stabilisation.averages() {
             self.row("(4c-e) average of F-bar", Some(traffic.average), || {
@@ -74,14 +99,20 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
             });
         }
         let trial = Trial::of(model, &shape, &nodes, points, &u, halo);
-        self.row("(4f-i), (5a) constitution in lanes, and scatter of the internal force", Some(traffic.force), || {
-            drop(black_box(InternalForce::of(&problem, &trial).f_int))
-        });
-        self.row("(4f-i) constitution point by point, with what a step keeps of it", None, || {
-            for p in 0..points.len() {
-                let _ = black_box(trial.respond(model, points, p).map(|response| response.tau()));
-            }
-        });
+        self.row(
+            "(4f-i), (5a) constitution in lanes, and scatter of the internal force",
+            Some(traffic.force),
+            || drop(black_box(InternalForce::of(&problem, &trial).f_int)),
+        );
+        self.row(
+            "(4f-i) constitution point by point, with what a step keeps of it",
+            None,
+            || {
+                for p in 0..points.len() {
+                    let _ = black_box(trial.respond(model, points, p).map(|response| response.tau()));
+                }
+            },
+        );
         self.row("(5a) scatter of the internal force", Some(0), || {
             drop(black_box(transfer::divergence::<K, D>((&shape, &points.x), |p| {
                 K::flux(&points.sigma.at(p), &points.F.at(p))
@@ -127,12 +158,20 @@ impl Traffic {
         let width = model.grid.order() + 1;
         let (functions, tensor) = (2 * D * width, D * K::Gradient::SLOPES);
         // Without functions of their own averages read the rows with the derivatives between.
-        let averaging = if model.stabilisation.lowers() { D * (width - 1) } else { functions };
+        let averaging = if model.stabilisation.lowers() {
+            D * (width - 1)
+        } else {
+            functions
+        };
         let averages = model.stabilisation.averages();
         let mean = usize::from(averages);
         Self {
             gradients: number * (functions + tensor),
-            average: if averages { number * (tensor + 1 + 2 * averaging + 1) } else { 0 },
+            average: if averages {
+                number * (tensor + 1 + 2 * averaging + 1)
+            } else {
+                0
+            },
             force: number * (2 * tensor + mean + 1 + functions) + size_of::<u16>(),
         }
     }
@@ -177,6 +216,9 @@ impl LinearSolver for Nowhere {
         _rhs: &[f64],
         _solution: &mut [f64],
     ) -> Result<Krylov, SolveError> {
-        Ok(Krylov { iterations: 0, residual: 0.0 })
+        Ok(Krylov {
+            iterations: 0,
+            residual: 0.0,
+        })
     }
 }

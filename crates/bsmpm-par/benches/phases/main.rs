@@ -23,14 +23,19 @@ use std::process::ExitCode;
 use std::rc::Rc;
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let arguments: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|argument| argument != "--bench")
+        .collect();
     let [case, checkpoint, seconds, rest @ ..] = &arguments[..] else {
         // `cargo bench` and `cargo test --benches` start it without a case: there is nothing to measure.
         println!("usage: phases CASE CHECKPOINT SECONDS [--set KEY=VALUE]...");
         return ExitCode::SUCCESS;
     };
     let set: Vec<String> = rest.iter().filter(|argument| *argument != "--set").cloned().collect();
-    let Ok(universe) = launch::start() else { return ExitCode::FAILURE };
+    let Ok(universe) = launch::start() else {
+        return ExitCode::FAILURE;
+    };
     let seconds = seconds.parse().map_err(Into::into);
     match seconds.and_then(|seconds| measure(&universe, (case, &set), (checkpoint, seconds))) {
         Ok(()) => ExitCode::SUCCESS,
@@ -59,23 +64,35 @@ fn state<K: Kinematics<D>, const D: usize>(
     let mut points = Points::holding(&names, width);
     let opened = Opened::new((&hdf5, universe.world()), &found).map_err(refused)?;
     opened.points(points.named_columns()).map_err(refused)?;
-    let state = opened.state().and_then(|text| checkpoint::CheckpointState::parse(path, &text)).map_err(refused)?;
+    let state = opened
+        .state()
+        .and_then(|text| checkpoint::CheckpointState::parse(path, &text))
+        .map_err(refused)?;
     model.grid = state.within(&model.grid).ok_or("the checkpoint is of another grid")?;
     if !state.parts.is_empty() {
         return Err("the checkpoint is of slabs that are cut into parts".into());
     }
     let layers = model.grid.layers().len();
-    let guess = opened.guess((layers, model.grid.layer_nodes() * D), 0..layers).map_err(refused)?;
+    let guess = opened
+        .guess((layers, model.grid.layer_nodes() * D), 0..layers)
+        .map_err(refused)?;
     opened.close().map_err(refused)?;
     points.surface = state.surface().ok_or("the checkpoint's surfaces are of another case")?;
-    let columns = state.free_field.iter().map(|column| column.points(width)).collect::<Option<_>>();
+    let columns = state
+        .free_field
+        .iter()
+        .map(|column| column.points(width))
+        .collect::<Option<_>>();
     points.free_field = columns.ok_or("the columns of the checkpoint's free field are not whole")?;
     points.sort_by_cell(&model.grid);
     Ok((points, guess, found.record.time()))
 }
 
 fn measure(universe: &Universe, (case, set): (&str, &[String]), how: (&str, f64)) -> Result<(), Box<dyn Error>> {
-    rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global()?;
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .use_current_thread()
+        .build_global()?;
     let text = bsmpm_scene::load(Path::new(case))?;
     let case = Case::from_bytes(case, &text, set).map_err(|errors| format!("{errors:?}"))?;
     match case.geometry {
@@ -95,7 +112,12 @@ fn measure_in<K: Kinematics<D>, const D: usize>(
     let columns = model.grid.columns();
     let slabs = Slabs::new(vec![columns.start, columns.end], 1, columns).ok_or("no columns")?;
     let (timers, requests) = (Rc::new(Timers::default()), Rc::new(Requests::default()));
-    let halo = Rc::new(MpiHalo::new(universe.world(), &slabs, &model.grid, (Rc::clone(&timers), requests)));
+    let halo = Rc::new(MpiHalo::new(
+        universe.world(),
+        &slabs,
+        &model.grid,
+        (Rc::clone(&timers), requests),
+    ));
     let choice = setup::linear(case, 1, &[]);
     let petsc = Petsc::initialize(universe, &choice.options())?;
     let mut solver = KspSolver::<D, D>::new(&petsc, choice, &model.grid, Rc::clone(&halo), timers);
@@ -105,8 +127,13 @@ fn measure_in<K: Kinematics<D>, const D: usize>(
         time
     );
     println!("| --- | --- | --- | --- |");
-    let bench =
-        kernels::Bench { model: &model, points: &points, halo: &*halo, times: (time, case.analysis.dt), seconds };
+    let bench = kernels::Bench {
+        model: &model,
+        points: &points,
+        halo: &*halo,
+        times: (time, case.analysis.dt),
+        seconds,
+    };
     bench.run(&guess, &mut solver)?;
     println!(
         "| bytes of a point; with its shape functions and two trial states | {} | | |",

@@ -32,11 +32,22 @@ pub fn find(world: &SimpleCommunicator, wanted: Wanted<'_>) -> Result<(Option<Fo
     let (found, passed_over) = agree(world, looked)?;
     let refusal =
         |error: serde_json::Error| Refusal::new(exit::BUG, format!("a record cannot be sent to all ranks: {error}"));
-    let record = agree(world, serde_json::to_vec(&found.as_ref().map(|found| &found.record)).map_err(refusal))?;
-    let path = found.as_ref().map_or_else(Vec::new, |found| found.path.as_os_str().as_bytes().to_vec());
+    let record = agree(
+        world,
+        serde_json::to_vec(&found.as_ref().map(|found| &found.record)).map_err(refusal),
+    )?;
+    let path = found
+        .as_ref()
+        .map_or_else(Vec::new, |found| found.path.as_os_str().as_bytes().to_vec());
     let (record, path) = (broadcast(world, 0, record), broadcast(world, 0, path));
     let record: Option<CheckpointRecord> = agree(world, serde_json::from_slice(&record).map_err(refusal))?;
-    Ok((record.map(|record| FoundCheckpoint { path: OsString::from_vec(path).into(), record }), passed_over))
+    Ok((
+        record.map(|record| FoundCheckpoint {
+            path: OsString::from_vec(path).into(),
+            record,
+        }),
+        passed_over,
+    ))
 }
 
 fn look(wanted: Wanted<'_>) -> Result<(Option<FoundCheckpoint>, Vec<String>), Refusal> {
@@ -68,8 +79,16 @@ impl<'h> Opened<'h> {
         visible(&world, found)?;
         let reader = agree(&world, Reader::open(hdf5, &found.path).map_err(library))?;
         let arrays = reader.arrays().map_err(library);
-        let arrays = agree(&world, arrays.and_then(|arrays| recorded(arrays, found).map_err(refused)))?;
-        Ok(Self { reader, world, arrays, path: found.path.clone() })
+        let arrays = agree(
+            &world,
+            arrays.and_then(|arrays| recorded(arrays, found).map_err(refused)),
+        )?;
+        Ok(Self {
+            reader,
+            world,
+            arrays,
+            path: found.path.clone(),
+        })
     }
 
     /// The text. Collective.
@@ -77,7 +96,11 @@ impl<'h> Opened<'h> {
     /// # Errors
     /// The same on all ranks (76): it is no text, or cannot be read.
     pub fn state(&self) -> Result<Vec<u8>, Refusal> {
-        let text = |rows| Shape { number: hdf5_collective::Number::U8, rows, width: 1 };
+        let text = |rows| Shape {
+            number: hdf5_collective::Number::U8,
+            rows,
+            width: 1,
+        };
         let shape = self.shape(STATE, |found| text(found.rows))?;
         self.read(self.reader.range(STATE, shape, 0..shape.rows))
     }
@@ -89,10 +112,16 @@ impl<'h> Opened<'h> {
     /// The same on all ranks (76): the file holds other columns than are wanted, or numbers that the columns leave out;
     /// or they cannot be read.
     pub fn points(&self, columns: Vec<(&'static str, &mut dyn Column)>) -> Result<(), Refusal> {
-        let held = self.arrays.iter().filter(|(name, _)| ![STATE, GUESS].contains(&name.as_str()));
+        let held = self
+            .arrays
+            .iter()
+            .filter(|(name, _)| ![STATE, GUESS].contains(&name.as_str()));
         if held.count() != columns.len() {
             let names: Vec<&str> = self.arrays.iter().map(|(name, _)| name.as_str()).collect();
-            let reason = format!("it holds the arrays {}, which are not those that are needed", names.join(", "));
+            let reason = format!(
+                "it holds the arrays {}, which are not those that are needed",
+                names.join(", ")
+            );
             return Err(refused(&self.path, &reason));
         }
         let rows = self.rows(columns.first().map_or(STATE, |(name, _)| name))?;
@@ -117,10 +146,17 @@ impl<'h> Opened<'h> {
     /// # Errors
     /// The same on all ranks (76): it is not there, is of other nodes, or cannot be read.
     pub fn guess(&self, (count, width): (usize, usize), rows: Range<usize>) -> Result<Vec<f64>, Refusal> {
-        let held = Shape { number: hdf5_collective::Number::F64, rows: count as u64, width: width as u64 };
+        let held = Shape {
+            number: hdf5_collective::Number::F64,
+            rows: count as u64,
+            width: width as u64,
+        };
         let shape = self.shape(GUESS, |_| held)?;
         let bytes = self.read(self.reader.range(GUESS, shape, rows.start as u64..rows.end as u64))?;
-        Ok(bytes.chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap_or_default())).collect())
+        Ok(bytes
+            .chunks_exact(8)
+            .map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap_or_default()))
+            .collect())
     }
 
     /// Closes the file. Collective.
@@ -128,16 +164,28 @@ impl<'h> Opened<'h> {
     /// # Errors
     /// The same on all ranks (76) if HDF5 cannot.
     pub fn close(self) -> Result<(), Refusal> {
-        let Self { reader, world, path, .. } = self;
-        agree(&world, reader.close().map_err(|error| refused(&path, &error.to_string())))
+        let Self {
+            reader, world, path, ..
+        } = self;
+        agree(
+            &world,
+            reader.close().map_err(|error| refused(&path, &error.to_string())),
+        )
     }
 
     fn read(&self, read: hdf5_collective::Result<Vec<u8>>) -> Result<Vec<u8>, Refusal> {
-        agree(&self.world, read.map_err(|error| refused(&self.path, &error.to_string())))
+        agree(
+            &self.world,
+            read.map_err(|error| refused(&self.path, &error.to_string())),
+        )
     }
 
     fn find(&self, name: &str) -> Result<Shape, Refusal> {
-        let found = self.arrays.iter().find(|(held, _)| held == name).map(|&(_, shape)| shape);
+        let found = self
+            .arrays
+            .iter()
+            .find(|(held, _)| held == name)
+            .map(|&(_, shape)| shape);
         found.ok_or_else(|| refused(&self.path, &format!("it holds no array {name}")))
     }
 
@@ -159,10 +207,16 @@ impl<'h> Opened<'h> {
 /// Refuses a file that not all ranks see as the first one has: the library would wait for a rank that cannot open it,
 /// or each would read another. Collective.
 fn visible(world: &SimpleCommunicator, found: &FoundCheckpoint) -> Result<(), Refusal> {
-    let size = std::fs::File::open(&found.path).and_then(|file| file.metadata()).map(|there| there.len());
+    let size = std::fs::File::open(&found.path)
+        .and_then(|file| file.metadata())
+        .map(|there| there.len());
     let own = match size {
         Ok(bytes) if bytes == found.record.bytes => Ok(()),
-        Ok(bytes) => Err(format!("rank {} sees {bytes} bytes, its record says {}", world.rank(), found.record.bytes)),
+        Ok(bytes) => Err(format!(
+            "rank {} sees {bytes} bytes, its record says {}",
+            world.rank(),
+            found.record.bytes
+        )),
         Err(error) => Err(format!("rank {} cannot read it: {error}", world.rank())),
     };
     agree(world, own.map_err(|reason| refused(&found.path, &reason)))
@@ -178,5 +232,9 @@ fn recorded(arrays: Vec<(String, Shape)>, found: &FoundCheckpoint) -> Result<Vec
     if let Some((name, _)) = arrays.iter().find(|array| !recorded(array)) {
         return Err(format!("the array {name} is not as its record says"));
     }
-    if arrays.len() == found.record.arrays.len() { Ok(arrays) } else { Err("arrays of its record are missing".into()) }
+    if arrays.len() == found.record.arrays.len() {
+        Ok(arrays)
+    } else {
+        Err("arrays of its record are missing".into())
+    }
 }

@@ -23,7 +23,10 @@ impl Display for Refusal {
 
 impl From<bsmpm_io::Error> for Refusal {
     fn from(error: bsmpm_io::Error) -> Self {
-        Self { code: error.exit_code(), reason: error.to_string() }
+        Self {
+            code: error.exit_code(),
+            reason: error.to_string(),
+        }
     }
 }
 
@@ -39,7 +42,10 @@ impl Refusal {
     }
 
     pub(crate) fn new(code: u8, reason: impl Into<String>) -> Self {
-        Self { code, reason: reason.into() }
+        Self {
+            code,
+            reason: reason.into(),
+        }
     }
 }
 
@@ -48,7 +54,9 @@ pub(crate) fn agree<T>(world: &SimpleCommunicator, mine: Result<T, Refusal>) -> 
     let own = mine.as_ref().err().map_or(0, |refusal| refusal.code.max(1));
     let mut codes = vec![0_u8; world.size().unsigned_abs() as usize];
     world.all_gather_into(&own, &mut codes[..]);
-    let Some(first) = codes.iter().position(|&code| code > 0) else { return mine };
+    let Some(first) = codes.iter().position(|&code| code > 0) else {
+        return mine;
+    };
     let text = mine.err().map_or_else(Vec::new, |refusal| refusal.reason.into_bytes());
     let reason = broadcast(world, first, text);
     Err(Refusal::new(codes[first], String::from_utf8_lossy(&reason)))

@@ -25,7 +25,12 @@ pub fn require<const D: usize>(
     (materials, present, left): (usize, Option<&[Range<u64>]>, u64),
 ) -> Result<(), Refusal> {
     let refused = |reason: String| Refusal::unusable(file, &reason);
-    agree(world, finite(points).and_then(|()| possible(points, grid, materials)).map_err(refused))?;
+    agree(
+        world,
+        finite(points)
+            .and_then(|()| possible(points, grid, materials))
+            .map_err(refused),
+    )?;
     let all = 0..u64::MAX;
     let present = present.unwrap_or(std::slice::from_ref(&all));
     agree(world, once(world, &points.id, (present, left)).map_err(refused))
@@ -33,10 +38,14 @@ pub fn require<const D: usize>(
 
 fn finite<const D: usize>(points: &mut Points<D>) -> Result<(), String> {
     let real = |column: &dyn Column| column.number() == Number::F64;
-    let found = points.named_columns().into_iter().filter(|(_, column)| real(&**column)).find_map(|(name, column)| {
-        let (p, value) = infinite(&*column)?;
-        Some((name, p, value))
-    });
+    let found = points
+        .named_columns()
+        .into_iter()
+        .filter(|(_, column)| real(&**column))
+        .find_map(|(name, column)| {
+            let (p, value) = infinite(&*column)?;
+            Some((name, p, value))
+        });
     let describe = |(name, p, value): (&str, usize, f64)| format!("{name} of point {} is {value}", points.id[p]);
     found.map_or(Ok(()), |found| Err(describe(found)))
 }
@@ -70,7 +79,9 @@ fn once(world: &SimpleCommunicator, ids: &[u64], (present, left): (&[Range<u64>]
     world.all_reduce_into(&own, &mut all, SystemOperation::sum());
     let expected: u64 = present.iter().map(|range| range.end - range.start).sum();
     if expected < all || (expected > all + left && expected != u64::MAX) {
-        return Err(format!("it has {all} points, where the case has {expected} at that time"));
+        return Err(format!(
+            "it has {all} points, where the case has {expected} at that time"
+        ));
     }
     let place = |id: u64| {
         let mut before = 0;
@@ -90,11 +101,15 @@ fn once(world: &SimpleCommunicator, ids: &[u64], (present, left): (&[Range<u64>]
     world.all_reduce_into(&seen[..], &mut seen_by_all[..], SystemOperation::bitwise_or());
     let bit = |at: u64| seen_by_all[(at / WORD) as usize] >> (at % WORD) & 1;
     // As many points as numbers: if no more are missing than may be, none is there twice.
-    let mut missing =
-        (0..).zip(present.iter().cloned().flatten()).take(places as usize).filter(|(at, _)| bit(*at) == 0);
+    let mut missing = (0..)
+        .zip(present.iter().cloned().flatten())
+        .take(places as usize)
+        .filter(|(at, _)| bit(*at) == 0);
     match missing.nth((places - all) as usize) {
         None => Ok(()),
         Some(_) if left > 0 => Err(format!("it has {all} points, of which one is there twice")),
-        Some((_, id)) => Err(format!("it has {all} points, but none is point {id}: another is there twice")),
+        Some((_, id)) => Err(format!(
+            "it has {all} points, but none is point {id}: another is there twice"
+        )),
     }
 }

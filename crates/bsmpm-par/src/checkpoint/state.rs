@@ -108,18 +108,30 @@ pub struct FlowedState {
 
 impl FlowedState {
     pub(crate) fn of(Flowed { dt, crossed, left }: &Flowed) -> Self {
-        Self { dt: *dt, crossed: CrossedState::of(crossed), left: *left }
+        Self {
+            dt: *dt,
+            crossed: CrossedState::of(crossed),
+            left: *left,
+        }
     }
 
     fn flow(&self) -> Flowed {
-        Flowed { dt: self.dt, crossed: self.crossed.volumes(), left: self.left }
+        Flowed {
+            dt: self.dt,
+            crossed: self.crossed.volumes(),
+            left: self.left,
+        }
     }
 }
 
 /// The length of a step, s, of which there is more than none.
 fn length<'de, From: Deserializer<'de>>(from: From) -> Result<f64, From::Error> {
     let dt = f64::deserialize(from)?;
-    if dt > 0.0 { Ok(dt) } else { Err(From::Error::custom(format_args!("its last step of flow took {dt} s"))) }
+    if dt > 0.0 {
+        Ok(dt)
+    } else {
+        Err(From::Error::custom(format_args!("its last step of flow took {dt} s")))
+    }
 }
 
 /// Water that has gone through surfaces of the ground, m3 per metre; nothing of a run without any.
@@ -138,13 +150,35 @@ pub struct CrossedState {
 }
 
 impl CrossedState {
-    pub(crate) fn of(Crossed { drains, faces, inflows, removed }: &Crossed) -> Self {
-        Self { drains: drains.clone(), faces: faces.clone(), inflows: inflows.clone(), removed: *removed }
+    pub(crate) fn of(
+        Crossed {
+            drains,
+            faces,
+            inflows,
+            removed,
+        }: &Crossed,
+    ) -> Self {
+        Self {
+            drains: drains.clone(),
+            faces: faces.clone(),
+            inflows: inflows.clone(),
+            removed: *removed,
+        }
     }
 
     fn volumes(&self) -> Crossed {
-        let Self { drains, faces, inflows, removed } = self.clone();
-        Crossed { drains, faces, inflows, removed }
+        let Self {
+            drains,
+            faces,
+            inflows,
+            removed,
+        } = self.clone();
+        Crossed {
+            drains,
+            faces,
+            inflows,
+            removed,
+        }
     }
 
     fn is_none(&self) -> bool {
@@ -254,26 +288,41 @@ impl CheckpointState {
             let sound = |line: &[usize; 2]| inner.contains(&line[0]) && (2..=grid.order).contains(&line[1]);
             of(axis).iter().all(sound) && of(axis).is_sorted_by(|a, b| a[0] < b[0])
         };
-        let line = |&[breakpoint, multiplicity]: &[usize; 2]| Line { breakpoint, multiplicity };
+        let line = |&[breakpoint, multiplicity]: &[usize; 2]| Line {
+            breakpoint,
+            multiplicity,
+        };
         let all = std::array::from_fn(|axis| of(axis).iter().map(line).collect());
         (self.lines.len() <= all.len() && (0..all.len()).all(fits)).then_some(all)
     }
 
     /// The grid with the room that the run had; `None` if it is no part of that grid.
     pub fn within<const D: usize>(&self, grid: &Grid<D>) -> Option<Grid<D>> {
-        let Some(room) = &self.room else { return Some(grid.clone()) };
+        let Some(room) = &self.room else {
+            return Some(grid.clone());
+        };
         let room: [[usize; 2]; D] = room.as_slice().try_into().ok()?;
         let fits = |axis: usize| room[axis][0] < room[axis][1] && room[axis][1] <= grid.axes()[axis].cells();
-        (0..D).all(fits).then(|| grid.within(room.map(|[start, end]| start..end)))
+        (0..D)
+            .all(fits)
+            .then(|| grid.within(room.map(|[start, end]| start..end)))
     }
 
     /// The surfaces; `None` if they are of another dimension.
     pub fn surface<const D: usize>(&self) -> Option<Surface<D>> {
         let [strips, loads] = self.anchors.clone();
-        let anchors = Anchors { strips, loads, water: self.water_anchors.clone() };
+        let anchors = Anchors {
+            strips,
+            loads,
+            water: self.water_anchors.clone(),
+        };
         // Without any, as many empty lists as there are loads.
         let of_loads = |lists: &[Vec<Row>]| {
-            if lists.is_empty() { Some(vec![Vec::new(); self.position.len()]) } else { vectors(lists) }
+            if lists.is_empty() {
+                Some(vec![Vec::new(); self.position.len()])
+            } else {
+                vectors(lists)
+            }
         };
         Some(Surface {
             traction: vectors(&self.traction)?,
@@ -291,7 +340,13 @@ impl CheckpointState {
     fn rigid_state(&self, body: usize) -> RigidState {
         let [x, y, angle, vx, vy, spin, slipped, work] = self.rigid[body];
         let acceleration = self.rigid_accelerations.get(body).copied().flatten().map(Vector::from);
-        RigidState { moved: [x, y, angle].into(), velocity: [vx, vy, spin].into(), acceleration, slipped, work }
+        RigidState {
+            moved: [x, y, angle].into(),
+            velocity: [vx, vy, spin].into(),
+            acceleration,
+            slipped,
+            work,
+        }
     }
 }
 
@@ -317,7 +372,10 @@ fn follow_nothing(pressure: &[Vec<Vec<Row>>; 2]) -> bool {
 
 /// The components of the vectors of all strips or loads.
 pub(crate) fn rows<const D: usize>(lists: &[Vec<Vector<D>>]) -> Vec<Vec<Row>> {
-    lists.iter().map(|list| list.iter().map(|vector| vector.as_slice().to_vec()).collect()).collect()
+    lists
+        .iter()
+        .map(|list| list.iter().map(|vector| vector.as_slice().to_vec()).collect())
+        .collect()
 }
 
 /// The vectors again; `None` if one has another number of components.
@@ -404,15 +462,28 @@ mod tests {
 
     #[test]
     fn step_control_reads_back_and_that_of_a_version_without_a_budget_is_read() {
-        let budget =
-            Budget { start: 0.1, external: 1.0 / 3.0, plastic: 2e-17, damped: 0.7, largest: 1e3, growth: 0.01 };
-        let kept = StateForm(Progress { t: 0.3, budget: Some(budget), ..Progress::default() });
+        let budget = Budget {
+            start: 0.1,
+            external: 1.0 / 3.0,
+            plastic: 2e-17,
+            damped: 0.7,
+            largest: 1e3,
+            growth: 0.01,
+        };
+        let kept = StateForm(Progress {
+            t: 0.3,
+            budget: Some(budget),
+            ..Progress::default()
+        });
         let text = serde_json::to_string(&kept).unwrap();
         assert_eq!(serde_json::from_str::<StateForm>(&text).unwrap(), kept);
         let old = r#"{"t":0.3,"guess_dt":0.0,"nominal":null,"tick":0,"cuts":0,"easy":0}"#;
         assert_eq!(
             serde_json::from_str::<StateForm>(old).unwrap(),
-            StateForm(Progress { t: 0.3, ..Progress::default() })
+            StateForm(Progress {
+                t: 0.3,
+                ..Progress::default()
+            })
         );
         let unknown = old.replace("easy", "hard");
         assert!(serde_json::from_str::<StateForm>(&unknown).is_err());
@@ -422,8 +493,17 @@ mod tests {
     fn a_step_of_flow_took_time() {
         let kept = |dt: f64| format!(r#"{{"dt":{dt},"crossed":{{"drains":[],"faces":[],"inflows":[]}},"left":0.0}}"#);
         let flow = serde_json::from_str::<FlowedState>(&kept(0.5)).unwrap().flow();
-        assert_eq!(flow, Flowed { dt: 0.5, ..Flowed::default() });
+        assert_eq!(
+            flow,
+            Flowed {
+                dt: 0.5,
+                ..Flowed::default()
+            }
+        );
         let refused = serde_json::from_str::<FlowedState>(&kept(0.0)).unwrap_err();
-        assert!(refused.to_string().contains("its last step of flow took 0 s"), "{refused}");
+        assert!(
+            refused.to_string().contains("its last step of flow took 0 s"),
+            "{refused}"
+        );
     }
 }

@@ -51,17 +51,26 @@ pub fn write(
         Some(Begun::Existing(found)) => (Some(found), None),
         Some(Begun::Pending(pending)) => (None, Some(pending)),
     };
-    let own = pending.as_ref().map_or_else(Vec::new, |pending| pending.path().as_os_str().as_bytes().to_vec());
+    let own = pending
+        .as_ref()
+        .map_or_else(Vec::new, |pending| pending.path().as_os_str().as_bytes().to_vec());
     let path = broadcast(world, 0, own);
     if path.is_empty() {
         return Ok(existing);
     }
     let path = PathBuf::from(OsStr::from_bytes(&path));
     visible(world, &path)?;
-    let fill = Fill { hdf5, world, path: &path, at };
+    let fill = Fill {
+        hdf5,
+        world,
+        path: &path,
+        at,
+    };
     fill.all(pending.as_ref(), room, contents)?;
     let arrays = shapes.into_iter().map(|(name, shape)| named(name, shape)).collect();
-    let committed = store.zip(pending).map(|(store, pending)| store.commit(pending, facts, arrays, at));
+    let committed = store
+        .zip(pending)
+        .map(|(store, pending)| store.commit(pending, facts, arrays, at));
     agree(world, committed.transpose().map_err(Refusal::from))
 }
 
@@ -84,7 +93,11 @@ pub(crate) fn room(world: &SimpleCommunicator, contents: &Contents<'_>) -> u64 {
 
 /// The arrays of all ranks. Collective.
 fn shapes(world: &SimpleCommunicator, contents: &Contents<'_>) -> Vec<(&'static str, Shape)> {
-    let mut own: Vec<u64> = contents.columns.iter().map(|(_, column)| column.rows() as u64).collect();
+    let mut own: Vec<u64> = contents
+        .columns
+        .iter()
+        .map(|(_, column)| column.rows() as u64)
+        .collect();
     let (guess, width) = (&contents.guess.0, contents.guess.1);
     own.push((guess.len() / width) as u64);
     let mut all = vec![0; own.len()];
@@ -94,9 +107,21 @@ fn shapes(world: &SimpleCommunicator, contents: &Contents<'_>) -> Vec<(&'static 
         let (number, width) = form(column);
         Shape { number, rows, width }
     };
-    let columns = contents.columns.iter().zip(all).map(|((name, column), rows)| (*name, shape((&**column, rows))));
-    let text = Shape { number: hdf5_collective::Number::U8, rows: contents.state.len() as u64, width: 1 };
-    let guess = Shape { number: hdf5_collective::Number::F64, rows: layers, width: width as u64 };
+    let columns = contents
+        .columns
+        .iter()
+        .zip(all)
+        .map(|((name, column), rows)| (*name, shape((&**column, rows))));
+    let text = Shape {
+        number: hdf5_collective::Number::U8,
+        rows: contents.state.len() as u64,
+        width: 1,
+    };
+    let guess = Shape {
+        number: hdf5_collective::Number::F64,
+        rows: layers,
+        width: width as u64,
+    };
     columns.chain([(GUESS, guess), (STATE, text)]).collect()
 }
 
@@ -111,12 +136,21 @@ fn visible(world: &SimpleCommunicator, path: &Path) -> Result<(), Refusal> {
              an output directory that all hosts share."
         )
     };
-    agree(world, opened.map(|_| ()).map_err(|error| Refusal::new(exit::WRITE, failure(error))))
+    agree(
+        world,
+        opened
+            .map(|_| ())
+            .map_err(|error| Refusal::new(exit::WRITE, failure(error))),
+    )
 }
 
 /// No number that is not finite ever reaches a file.
 fn finite(step: u64, contents: &Contents<'_>) -> Result<(), Refusal> {
-    for (name, column) in contents.columns.iter().filter(|(_, column)| column.number() == Number::F64) {
+    for (name, column) in contents
+        .columns
+        .iter()
+        .filter(|(_, column)| column.number() == Number::F64)
+    {
         if let Some((point, value)) = infinite(&**column) {
             let reason = format!(
                 "E0725: the checkpoint of step {step} cannot be written: `{name}` of material point {point} is {value}. The run ends. \
@@ -140,7 +174,9 @@ fn finite(step: u64, contents: &Contents<'_>) -> Result<(), Refusal> {
 /// The first row of a column of floats that holds a number which is not finite, and that number.
 pub(super) fn infinite(column: &dyn Column) -> Option<(usize, f64)> {
     let bytes = rows(column);
-    let mut numbers = bytes.chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap_or_default()));
+    let mut numbers = bytes
+        .chunks_exact(8)
+        .map(|bytes| f64::from_le_bytes(bytes.try_into().unwrap_or_default()));
     let at = numbers.clone().position(|value| !value.is_finite())?;
     Some((at / column.width(), numbers.nth(at)?))
 }

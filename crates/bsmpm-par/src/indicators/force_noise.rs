@@ -30,8 +30,10 @@ pub(super) fn of(case: &Case, history: &Columns) -> Option<Indicator> {
 
 fn is_force(quantity: &Quantity) -> bool {
     let measured = quantity.measurement();
-    matches!(measured, Measurement::Reaction | Measurement::FootingForce | Measurement::RigidForce)
-        || measured == Measurement::FootingPressure
+    matches!(
+        measured,
+        Measurement::Reaction | Measurement::FootingForce | Measurement::RigidForce
+    ) || measured == Measurement::FootingPressure
 }
 
 /// The largest of its components, each over its own magnitude; those that are next to nothing are not judged.
@@ -41,13 +43,18 @@ fn noise(force: &History, times: &[f64], history: &Columns) -> Option<f64> {
     let columns: Vec<&[f64]> = names.filter_map(|name| history.get(&name)).collect();
     let largest = columns.iter().map(|values| magnitude(values)).fold(0.0, f64::max);
     let judged = columns.into_iter().filter(|values| magnitude(values) > SMALL * largest);
-    judged.filter_map(|values| Some(deviation(times, values)? / magnitude(values))).reduce(f64::max)
+    judged
+        .filter_map(|values| Some(deviation(times, values)? / magnitude(values)))
+        .reduce(f64::max)
 }
 
 /// Standard deviation of the errors of values.
 fn deviation(times: &[f64], values: &[f64]) -> Option<f64> {
     let rows = times.windows(5).zip(values.windows(5));
-    let mut differences: Vec<f64> = rows.filter(|(times, _)| are_even(times)).map(|(_, five)| fourth(five)).collect();
+    let mut differences: Vec<f64> = rows
+        .filter(|(times, _)| are_even(times))
+        .map(|(_, five)| fourth(five))
+        .collect();
     if differences.len() < LEAST {
         return None;
     }
@@ -57,7 +64,9 @@ fn deviation(times: &[f64], values: &[f64]) -> Option<f64> {
 
 fn are_even(times: &[f64]) -> bool {
     let step = times[1] - times[0];
-    times.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() <= EQUAL * step)
+    times
+        .windows(2)
+        .all(|pair| (pair[1] - pair[0] - step).abs() <= EQUAL * step)
 }
 
 /// Magnitude of the fourth difference.
@@ -85,7 +94,9 @@ mod tests {
         // Values of a linear congruential generator, uniform in -0.5 to 0.5: a standard deviation of 0.289.
         let mut state = 1_u64;
         let mut error = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
         };
         let curve: Vec<f64> = times(2000).iter().map(|t| 0.3 * t + error()).collect();

@@ -33,7 +33,10 @@ const FORMS: [(&str, Form); 13] = [
 ];
 
 fn form(name: &str) -> Form {
-    FORMS.iter().find(|(known, _)| *known == name).map_or(Form::Percent, |&(_, form)| form)
+    FORMS
+        .iter()
+        .find(|(known, _)| *known == name)
+        .map_or(Form::Percent, |&(_, form)| form)
 }
 
 /// The indicator with its code, what was measured, and what to do, from a text with places for the value, its range and
@@ -42,18 +45,29 @@ pub(super) fn worded(name: &str, text: &str, which: &str, found: Indicator) -> I
     let code = code_of(text).unwrap_or_default().to_owned();
     let text = without_code(text);
     // The range stands in the first sentence.
-    let end = text.find("{range}").and_then(|range| Some(range + text[range..].find(". ")?));
+    let end = text
+        .find("{range}")
+        .and_then(|range| Some(range + text[range..].find(". ")?));
     let (measure, advice) = end.map_or((text, ""), |end| (&text[..end], &text[end + 2..]));
     let form = form(name);
-    let measure = measure.replace("{which}", which).replace("{value}", &form.of(found.value));
+    let measure = measure
+        .replace("{which}", which)
+        .replace("{value}", &form.of(found.value));
     let meaning = measure.replace("{range}", &form.range_of(&found));
     let advice = advice.to_owned();
-    Indicator { code, meaning, advice, ..found }
+    Indicator {
+        code,
+        meaning,
+        advice,
+        ..found
+    }
 }
 
 /// All of them in a line.
 pub fn line(indicators: &BTreeMap<String, Indicator>) -> String {
-    let all = indicators.iter().map(|(name, found)| format!("{name} {}", form(name).of(found.value)));
+    let all = indicators
+        .iter()
+        .map(|(name, found)| format!("{name} {}", form(name).of(found.value)));
     format!("Indicators: {}.", all.collect::<Vec<_>>().join(", "))
 }
 
@@ -98,7 +112,11 @@ impl Form {
             Self::Times => format!("at most {most}"),
             _ if least == 0.0 => format!("below {}", self.of(most)),
             _ if most >= UNBOUNDED => format!("at least {}", self.of(least)),
-            _ => format!("{} to {}", brief(least * if self == Self::Percent { 100.0 } else { 1.0 }), self.of(most)),
+            _ => format!(
+                "{} to {}",
+                brief(least * if self == Self::Percent { 100.0 } else { 1.0 }),
+                self.of(most)
+            ),
         }
     }
 }
@@ -110,7 +128,11 @@ const UNBOUNDED: f64 = 1e3;
 fn brief(number: f64) -> String {
     let rounded: f64 = format!("{number:.1e}").parse().unwrap_or(number);
     let size = rounded.abs();
-    if size == 0.0 || (1e-3..1e6).contains(&size) { format!("{rounded}") } else { format!("{rounded:e}") }
+    if size == 0.0 || (1e-3..1e6).contains(&size) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
 }
 
 #[cfg(test)]
@@ -137,6 +159,9 @@ mod tests {
         );
         assert_eq!(Form::Number.range([10.0, 1e6]), "at least 10");
         assert_eq!(Form::Percent.of(1.2e-7), "1.2e-5 %");
-        assert_eq!(Form::Times.of(1.5) + " " + &Form::Times.range([0.0, 1.0]), "1.50 times the tolerance at most 1");
+        assert_eq!(
+            Form::Times.of(1.5) + " " + &Form::Times.range([0.0, 1.0]),
+            "1.50 times the tolerance at most 1"
+        );
     }
 }

@@ -10,11 +10,18 @@ use bsmpm_scene::words::Word;
 
 /// The manifest of a new run of a case.
 pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Manifest {
-    let file = arguments.case.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let file = arguments
+        .case
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
     let described = manifest::ManifestCase::new(&file, &case.title, case.geometry.word(), case.text.clone());
     let mut manifest = Manifest::begin(
         env!("CARGO_PKG_VERSION"),
-        std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
+        std::env::args_os()
+            .map(|argument| argument.to_string_lossy().into_owned())
+            .collect(),
         described,
     );
     let axes = &case.grid.axes;
@@ -26,9 +33,13 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
         cell: axes.iter().map(longest).collect(),
     });
     let estimate = case.estimate(ranks);
-    manifest.sizes = [("points", estimate.points), ("cells", estimate.cells), ("nodes", estimate.nodes)]
-        .map(|(k, v)| (k.into(), v))
-        .into();
+    manifest.sizes = [
+        ("points", estimate.points),
+        ("cells", estimate.cells),
+        ("nodes", estimate.nodes),
+    ]
+    .map(|(k, v)| (k.into(), v))
+    .into();
     manifest.picture_times.clone_from(&case.output.times);
     manifest.choices = case
         .notes
@@ -62,7 +73,10 @@ pub(crate) fn versions() -> std::collections::BTreeMap<String, String> {
     let mpi = mpi::environment::library_version().unwrap_or_default();
     let hdf5 = hdf5_collective::version();
     [
-        ("petsc", format!("{major}.{minor}.{subminor}, {}-bit indices", petsc_rs::petsc_int_bits())),
+        (
+            "petsc",
+            format!("{major}.{minor}.{subminor}, {}-bit indices", petsc_rs::petsc_int_bits()),
+        ),
         ("mpi", mpi.split(',').next().unwrap_or_default().trim().to_owned()),
         ("hdf5", format!("{}.{}.{}", hdf5.0, hdf5.1, hdf5.2)),
         ("blas", machine::blas().unwrap_or_else(|| "unknown".into())),

@@ -35,7 +35,9 @@ impl Ledger {
         let known = news.len();
         let tables = headings.resume(&here, &resumed.state, &mut news)?;
         let older = manifest.warnings.clone();
-        manifest.warnings.extend(news.iter().filter(|warning| !older.contains(warning)).cloned());
+        manifest
+            .warnings
+            .extend(news.iter().filter(|warning| !older.contains(warning)).cloned());
         Ok(Self {
             residuals: tables.residuals,
             water_flows: case.flow.is_some(),
@@ -64,7 +66,9 @@ impl Ledger {
     /// How far the files have come; all of them are on the disk then. The manifest is written with the names of the
     /// checkpoint of that step.
     pub fn files(&mut self, step: u64) -> Result<Files, Error> {
-        checkpoint::names(step).iter().for_each(|name| self.manifest.name_output(name));
+        checkpoint::names(step)
+            .iter()
+            .for_each(|name| self.manifest.name_output(name));
         self.write_manifest()?;
         Ok(Files {
             manifest: self.manifest.clone(),
@@ -89,9 +93,20 @@ impl Ledger {
     pub fn checkpointed(&mut self, found: &FoundCheckpoint) -> Result<(), Error> {
         let path = self.directory.path();
         let folder = format!("{}/", checkpoint::FOLDER);
-        self.manifest.outputs.retain(|output| !output.path.starts_with(&folder) || path.join(&output.path).exists());
-        let name = found.path.strip_prefix(path).ok().map(|path| path.to_string_lossy().into_owned());
-        for output in self.manifest.outputs.iter_mut().filter(|output| Some(&output.path) == name.as_ref()) {
+        self.manifest
+            .outputs
+            .retain(|output| !output.path.starts_with(&folder) || path.join(&output.path).exists());
+        let name = found
+            .path
+            .strip_prefix(path)
+            .ok()
+            .map(|path| path.to_string_lossy().into_owned());
+        for output in self
+            .manifest
+            .outputs
+            .iter_mut()
+            .filter(|output| Some(&output.path) == name.as_ref())
+        {
             (output.bytes, output.blake3) = (Some(found.record.bytes), Some(found.record.blake3.clone()));
         }
         self.manifest.checkpoint = name;
@@ -126,8 +141,12 @@ impl Headings {
         let residuals = self.residuals.as_ref().zip(files.residuals.as_ref());
         let profiles = self.profiles.iter().zip(&files.profiles);
         Ok(Tables {
-            profiles: profiles.map(|((file, of), mark)| table(file, of, mark)).collect::<Result<_, _>>()?,
-            residuals: residuals.map(|(headings, mark)| table(RESIDUALS, headings, mark)).transpose()?,
+            profiles: profiles
+                .map(|((file, of), mark)| table(file, of, mark))
+                .collect::<Result<_, _>>()?,
+            residuals: residuals
+                .map(|(headings, mark)| table(RESIDUALS, headings, mark))
+                .transpose()?,
             history: table(HISTORY, &self.history, &files.history)?,
             steps: table(STEPS, &self.steps, &files.steps)?,
         })
@@ -135,11 +154,16 @@ impl Headings {
 
     /// Nothing of a run is touched whose tables are not those of the checkpoint.
     fn verify(&self, directory: &Path, files: &Files) -> Result<(), Error> {
-        let marked =
-            [(HISTORY, Some(&self.history), Some(&files.history)), (STEPS, Some(&self.steps), Some(&files.steps))];
+        let marked = [
+            (HISTORY, Some(&self.history), Some(&files.history)),
+            (STEPS, Some(&self.steps), Some(&files.steps)),
+        ];
         let residuals = (RESIDUALS, self.residuals.as_ref(), files.residuals.as_ref());
-        let profiles =
-            self.profiles.iter().zip(&files.profiles).map(|((file, of), mark)| (&**file, Some(of), Some(mark)));
+        let profiles = self
+            .profiles
+            .iter()
+            .zip(&files.profiles)
+            .map(|((file, of), mark)| (&**file, Some(of), Some(mark)));
         for (name, headings, mark) in marked.into_iter().chain([residuals]).chain(profiles) {
             let path = directory.join(name);
             if let (Some(headings), Some(mark), true) = (headings, mark, path.exists()) {
@@ -165,7 +189,9 @@ fn claim(
         return held.go_on(manifest);
     }
     let there = resumed.directory();
-    there.as_ref().map_or(Ok(()), |there| headings.verify(there, &resumed.state.files))?;
+    there
+        .as_ref()
+        .map_or(Ok(()), |there| headings.verify(there, &resumed.state.files))?;
     manifest.outputs.retain(|output| !output.path.contains('/'));
     let directory = held.claim(Existing::Refuse, manifest)?;
     there.map_or(Ok(()), |there| copy_tables(&there, &here, headings))?;
@@ -178,15 +204,24 @@ fn manifest(new: Manifest, resumed: &Resumed<'_>) -> (Manifest, Vec<String>) {
     let old = resumed.state.files.manifest.clone();
     let mut checks = new.checks.clone();
     for check in &mut checks {
-        let same = old.checks.iter().find(|past| past.quantity == check.quantity && past.at == check.at);
+        let same = old
+            .checks
+            .iter()
+            .find(|past| past.quantity == check.quantity && past.at == check.at);
         check.value = same.and_then(|past| past.value);
     }
-    let news = new.warnings.iter().filter(|warning| !old.warnings.contains(warning)).chain(&resumed.warnings);
+    let news = new
+        .warnings
+        .iter()
+        .filter(|warning| !old.warnings.contains(warning))
+        .chain(&resumed.warnings);
     let news: Vec<String> = news.cloned().collect();
     let mut sizes = old.sizes;
     sizes.extend(new.sizes.clone());
     let path = &resumed.found.path;
-    let checkpoint = resumed.directory().and_then(|there| path.strip_prefix(there).ok().map(Path::to_owned));
+    let checkpoint = resumed
+        .directory()
+        .and_then(|there| path.strip_prefix(there).ok().map(Path::to_owned));
     let checkpoint = checkpoint.as_ref().unwrap_or(path).to_string_lossy().into_owned();
     let mut restarts = resumed.restarts.clone();
     restarts.push(ManifestRestart {

@@ -21,7 +21,9 @@ impl Ledger {
     /// that move the ground by little.
     pub(super) fn stiffness(&mut self, number: u64, accepted: &Accepted) {
         let report = &accepted.report;
-        let Some([elastic, actual]) = report.second_order_works.filter(|_| self.judges_stiffness) else { return };
+        let Some([elastic, actual]) = report.second_order_works.filter(|_| self.judges_stiffness) else {
+            return;
+        };
         let stages = &self.manifest.stages;
         let begins = |stage: &ManifestStage| stage.step + 1 == number;
         let weakens = |stage: &ManifestStage| stage.strength_reduction.is_some() || !stage.exchanged.is_empty();
@@ -31,9 +33,15 @@ impl Ledger {
         let start = stages.last().map_or(0.0, |stage| stage.time);
         let summary = &mut self.manifest.summary;
         // A checkpoint of an older program has no such sums, and small steps would seem large.
-        let Some(before) = summary.advances.or((number == 1).then_some(0.0)) else { return };
+        let Some(before) = summary.advances.or((number == 1).then_some(0.0)) else {
+            return;
+        };
         let advances = before + report.advance;
-        let of_stage = if begins_stage { 0.0 } else { summary.stage_advances.unwrap_or(0.0) } + report.advance;
+        let of_stage = if begins_stage {
+            0.0
+        } else {
+            summary.stage_advances.unwrap_or(0.0)
+        } + report.advance;
         (summary.advances, summary.stage_advances) = (Some(advances), Some(of_stage));
         let is_fast = report.advance * (accepted.t - start) > LEAST_RATE * of_stage * accepted.dt;
         let is_large = report.advance > LEAST_ADVANCE * advances;

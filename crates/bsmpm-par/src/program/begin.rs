@@ -119,7 +119,11 @@ fn crowded(world: &SimpleCommunicator, threads: u32) -> Option<String> {
 /// The output directory, on rank 0, which from now on is nobody else's. Collective.
 fn hold(universe: &Universe, arguments: &Arguments) -> Result<Option<OutputDirectory>, Refusal> {
     let world = universe.world();
-    let unseen = if arguments.break_lock { Unseen::Break } else { Unseen::Respect };
+    let unseen = if arguments.break_lock {
+        Unseen::Break
+    } else {
+        Unseen::Respect
+    };
     let held = (world.rank() == 0).then(|| OutputDirectory::hold(&arguments.directory(), unseen));
     agree(&world, held.transpose().map_err(Refusal::from))
 }
@@ -135,7 +139,11 @@ fn scene<'p, K: Kinematics<D>, const D: usize>(
     shared: (Rc<Timers>, Rc<Requests>),
 ) -> Result<Scene<'p, K, D>, Refusal> {
     let universe = seam.0;
-    let at = if let RunStart::Resumed(resumed) = start { resumed.state.progress.t } else { 0.0 };
+    let at = if let RunStart::Resumed(resumed) = start {
+        resumed.state.progress.t
+    } else {
+        0.0
+    };
     let mut model = model_at::<K, D>(case, at).map_err(|error| Refusal::new(exit::CASE, error.to_string()))?;
     let schedule = schedule(case);
     if let RunStart::Resumed(resumed) = start {
@@ -156,7 +164,12 @@ fn scene<'p, K: Kinematics<D>, const D: usize>(
     model.grid = model.grid.within(std::array::from_fn(|axis| room[axis].clone()));
     let world = universe.world();
     let rank = world.rank().unsigned_abs() as usize;
-    let slabs = parted::<K, D>((&world, rank), case, &model.grid, (slabs.reaching(model.grid.beyond()), parts));
+    let slabs = parted::<K, D>(
+        (&world, rank),
+        case,
+        &model.grid,
+        (slabs.reaching(model.grid.beyond()), parts),
+    );
     let slabs = slabs.ok_or_else(|| Refusal::new(exit::CASE, case.too_many(world.size().unsigned_abs() as usize)))?;
     let is_ours = |x: &Vector<D>| model.grid.locate(x).is_none_or(|cell| slabs.owner(&cell) == rank);
     let points = points::<K, D>(case, slabs.columns(rank), is_ours);
@@ -187,7 +200,9 @@ fn parted<K: Kinematics<D>, const D: usize>(
 
 /// What there was before.
 fn before(start: &RunStart<'_>, directory: &Path) -> Before {
-    let RunStart::Resumed(resumed) = start else { return Before::default() };
+    let RunStart::Resumed(resumed) = start else {
+        return Before::default();
+    };
     let Resumed { state, .. } = &**resumed;
     Before {
         resumed: true,

@@ -52,7 +52,10 @@ impl<const D: usize> FollowedPoint<D> {
     /// differ in length points may lie far from the place.
     pub(super) fn of(id: Option<u64>, at: Vector<D>, grid: &GridSpec) -> Self {
         let is_graded = grid.axes.iter().any(|axis| axis.longest() > EQUAL * axis.shortest());
-        Self { id: id.unwrap_or(u64::MAX), place: id.filter(|_| is_graded).map(|_| at) }
+        Self {
+            id: id.unwrap_or(u64::MAX),
+            place: id.filter(|_| is_graded).map(|_| at),
+        }
     }
 
     /// A field there: at the place, if it is in material, else of the point; zero where there is no such point.
@@ -147,14 +150,33 @@ pub(super) fn section<K: Kinematics<D>, const D: usize>(
     fixed: bool,
     halo: &dyn Halo,
 ) -> Vec<f64> {
-    let placed = |end: &Vector<D>| if fixed { Some(*end) } else { observe::moved(points, end, halo) };
-    let lines = at_start.lines.iter().map(|[from, to]| Some([placed(from)?, placed(to)?]));
+    let placed = |end: &Vector<D>| {
+        if fixed {
+            Some(*end)
+        } else {
+            observe::moved(points, end, halo)
+        }
+    };
+    let lines = at_start
+        .lines
+        .iter()
+        .map(|[from, to]| Some([placed(from)?, placed(to)?]));
     let present = lines.collect::<Option<_>>().map(|lines| Section { lines, ..at_start });
-    let forces =
-        present.map_or_else(SectionForces::default, |of| observe::section_forces::<K, D>(grid, points, &of, halo));
-    let SectionForces { normal, shear, torsion, bending } = forces;
+    let forces = present.map_or_else(SectionForces::default, |of| {
+        observe::section_forces::<K, D>(grid, points, &of, halo)
+    });
+    let SectionForces {
+        normal,
+        shear,
+        torsion,
+        bending,
+    } = forces;
     let in_plane = [normal, shear[0], bending[0]];
-    if D == 2 { in_plane.into() } else { vec![normal, shear[0], shear[1], torsion, bending[0], bending[1]] }
+    if D == 2 {
+        in_plane.into()
+    } else {
+        vec![normal, shear[0], shear[1], torsion, bending[0], bending[1]]
+    }
 }
 
 pub(super) fn both(noise: noise::Noise) -> Vec<f64> {

@@ -86,7 +86,11 @@ pub(super) fn rigid<K: Kinematics<D>, const D: usize>(
     let at_start = || {
         let body = &model.boundary.rigid[body];
         let state = body.at_rest();
-        RigidReport { moved: body.on_path(t), velocity: state.velocity, ..RigidReport::default() }
+        RigidReport {
+            moved: body.on_path(t),
+            velocity: state.velocity,
+            ..RigidReport::default()
+        }
     };
     let found = report.rigid.get(body).copied().unwrap_or_else(at_start);
     match what {

@@ -48,7 +48,9 @@ impl There {
 pub(super) fn look(run: Option<&Manifest>, case: &Case) -> Result<There, Refusal> {
     let Some(run) = run else { return Ok(There::Nothing) };
     let changed = admissible("the run in the output directory", run, case)?;
-    let further = changed.iter().any(|change| change.key == "analysis.end" && is_later(change));
+    let further = changed
+        .iter()
+        .any(|change| change.key == "analysis.end" && is_later(change));
     let ended = match (run.status, run.exit_code) {
         (Status::Finished, _) => Some(exit::DONE),
         (Status::Failed, Some(code @ (exit::CHECK | exit::INDICATOR))) => Some(code),
@@ -59,7 +61,9 @@ pub(super) fn look(run: Option<&Manifest>, case: &Case) -> Result<There, Refusal
 
 fn is_later(change: &Difference) -> bool {
     let number = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
-    number(&change.was).zip(number(&change.is)).is_none_or(|(was, is)| is > was)
+    number(&change.was)
+        .zip(number(&change.is))
+        .is_none_or(|(was, is)| is > was)
 }
 
 /// How a run begins again in whose directory there is no checkpoint: only if it was killed or stopped before it had
@@ -69,7 +73,9 @@ pub(super) fn afresh(run: Option<&Manifest>, passed_over: &[String], ranks: i32)
     if let Some(bad) = passed_over.first() {
         return refused(bad.clone());
     }
-    let Some(run) = run else { return Ok(Beginning::default()) };
+    let Some(run) = run else {
+        return Ok(Beginning::default());
+    };
     if let Some(gone) = &run.checkpoint {
         return refused(format!(
             "E0724: checkpoint `{gone}`, which run.json names, is missing. The run cannot be continued. Restore the \
@@ -111,8 +117,11 @@ pub(super) fn admissible(what: &str, past: &Manifest, case: &Case) -> Result<Vec
     let refused = |reason: String| Refusal::new(exit::CHECKPOINT, reason);
     let differences = bsmpm_scene::differences(&past.case.text, &case.text);
     let differences = differences.map_err(|errors| refused(unreadable(what, &errors)))?;
-    let bound: Vec<String> =
-        differences.iter().filter(|difference| !difference.may_change).map(ToString::to_string).collect();
+    let bound: Vec<String> = differences
+        .iter()
+        .filter(|difference| !difference.may_change)
+        .map(ToString::to_string)
+        .collect();
     if bound.is_empty() {
         return Ok(differences);
     }
@@ -125,7 +134,9 @@ pub(super) fn admissible(what: &str, past: &Manifest, case: &Case) -> Result<Vec
 
 /// Why the case of an earlier run is not read any more.
 fn unreadable(what: &str, errors: &[Error]) -> String {
-    let removed = errors.iter().find_map(|error| error.removed.map(|removed| (&error.key, removed)));
+    let removed = errors
+        .iter()
+        .find_map(|error| error.removed.map(|removed| (&error.key, removed)));
     match removed {
         None => format!(
             "E0727: this version of the program cannot read the case of {what}. The run cannot be continued. Use the \
@@ -264,10 +275,22 @@ mod tests {
         // A version that did not choose.
         assert_eq!(mass(&past, &today), MassMatrix::Lumped);
         today.keep_mass(MassMatrix::Lumped);
-        let noted: Vec<&str> = today.notes.iter().filter(|note| note.key == MASS).map(|note| &*note.value).collect();
+        let noted: Vec<&str> = today
+            .notes
+            .iter()
+            .filter(|note| note.key == MASS)
+            .map(|note| &*note.value)
+            .collect();
         assert_eq!((today.analysis.mass, &*noted), (MassMatrix::Lumped, &["lumped"][..]));
-        assert_eq!(mass(&past, &case(&["analysis.mass=consistent"])), MassMatrix::Consistent);
-        let chosen = |value: &str| ManifestChoice { key: MASS.into(), value: value.into(), reason: String::new() };
+        assert_eq!(
+            mass(&past, &case(&["analysis.mass=consistent"])),
+            MassMatrix::Consistent
+        );
+        let chosen = |value: &str| ManifestChoice {
+            key: MASS.into(),
+            value: value.into(),
+            reason: String::new(),
+        };
         for (value, expected) in [("lumped", MassMatrix::Lumped), ("consistent", MassMatrix::Consistent)] {
             past.choices = vec![chosen(value)];
             assert_eq!(mass(&past, &case(&[])), expected);

@@ -24,7 +24,10 @@ pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, case:
     let iterated = failure.attempts.iter().rev().find(iterated);
     let (history, tolerances) = match iterated {
         Some(StepError::NotConverged { history, criteria, .. }) => (
-            history.iter().map(|m| FailureMeasures::new(m.energy, m.force)).collect(),
+            history
+                .iter()
+                .map(|m| FailureMeasures::new(m.energy, m.force))
+                .collect(),
             Some(FailureMeasures::new(criteria.energy, criteria.force)),
         ),
         _ => (Vec::new(), None),
@@ -50,7 +53,11 @@ fn loose(error: &StepError, case: &Case) -> Option<String> {
 
 /// The error whose places are reported: the last one, or where that names none the last that iterated.
 fn places_of<'a>(last: &'a StepError, iterated: Option<&'a StepError>) -> &'a StepError {
-    if matches!(last, StepError::Solve(_)) { iterated.unwrap_or(last) } else { last }
+    if matches!(last, StepError::Solve(_)) {
+        iterated.unwrap_or(last)
+    } else {
+        last
+    }
 }
 
 /// Order among the places, number, force or 0, x, y and z.
@@ -59,8 +66,11 @@ type NodePlace = [f64; 6];
 /// The nodes whose forces are the least balanced, or the points that the ranks name, of all ranks.
 fn worst(world: &SimpleCommunicator, error: &StepError, grid: &GridSpec) -> Vec<Worst> {
     let (lower, dims) = (grid.lower(), grid.dims());
-    let kind =
-        if matches!(error, StepError::NotConverged { .. } | StepError::Unbalanced { .. }) { "node" } else { "point" };
+    let kind = if matches!(error, StepError::NotConverged { .. } | StepError::Unbalanced { .. }) {
+        "node"
+    } else {
+        "point"
+    };
     let at = |x: &[f64]| -> [f64; 3] { std::array::from_fn(|axis| lower[axis] + x.get(axis).copied().unwrap_or(0.0)) };
     let mut own: Vec<NodePlace> = match error {
         StepError::NotConverged { worst, .. } | StepError::Unbalanced { worst, .. } => worst
@@ -83,7 +93,10 @@ fn worst(world: &SimpleCommunicator, error: &StepError, grid: &GridSpec) -> Vec<
     let own: Vec<f64> = own.into_iter().flatten().collect();
     let mut all = vec![0.0_f64; own.len() * world.size().unsigned_abs() as usize];
     world.all_gather_into(&own[..], &mut all[..]);
-    let mut places: Vec<&[f64]> = all.chunks_exact(6).filter(|place| place.iter().all(|n| n.is_finite())).collect();
+    let mut places: Vec<&[f64]> = all
+        .chunks_exact(6)
+        .filter(|place| place.iter().all(|n| n.is_finite()))
+        .collect();
     places.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let named = |place: &&[f64]| Worst {
         kind: kind.into(),
@@ -96,7 +109,13 @@ fn worst(world: &SimpleCommunicator, error: &StepError, grid: &GridSpec) -> Vec<
 
 fn advice(error: &StepError, case: &Case) -> Vec<String> {
     let lines: &[&str] = match error {
-        StepError::NotConverged { iterations, force, material, criteria, .. } => {
+        StepError::NotConverged {
+            iterations,
+            force,
+            material,
+            criteria,
+            ..
+        } => {
             let name = material.map(|number| case.materials[number].name.as_str());
             return not_converged(*iterations, *force, name, criteria, case);
         }
@@ -232,7 +251,10 @@ fn against_motion(rigid: &Rigid) -> String {
 /// Pa  Cohesion of a law that has one.
 fn cohesion(material: &Material) -> Option<f64> {
     let material = material.at(0.0);
-    let number = material.parameter_names().iter().position(|variable| variable.name == "cohesion")?;
+    let number = material
+        .parameter_names()
+        .iter()
+        .position(|variable| variable.name == "cohesion")?;
     material.parameters().get(number).copied()
 }
 
@@ -245,7 +267,10 @@ fn not_converged(
     criteria: &Criteria,
     case: &Case,
 ) -> Vec<String> {
-    let mut lines: Vec<String> = against_no_cohesion(case).into_iter().chain(against_local_failure(case)).collect();
+    let mut lines: Vec<String> = against_no_cohesion(case)
+        .into_iter()
+        .chain(against_local_failure(case))
+        .collect();
     if case.rigid.iter().any(|body| body.friction > 0.0) {
         // What stops is what the state became in steps too coarse, not how far the step goes.
         lines.push("Use several times as many steps from the start, as a rough rigid body needs short steps.".into());
@@ -263,7 +288,9 @@ fn not_converged(
         ));
     }
     if let (true, Some(name)) = (force >= criteria.force, material) {
-        lines.push(format!("Look at the body of `material.{name}`: its forces do not balance."));
+        lines.push(format!(
+            "Look at the body of `material.{name}`: its forces do not balance."
+        ));
     }
     lines.extend(
         [

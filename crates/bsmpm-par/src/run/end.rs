@@ -33,7 +33,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             "stop",
             "Stopped by a signal before the initial stress was computed. There is no state to continue from: start the run again.",
         );
-        let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.close(Status::Stopped, exit::STOPPED));
+        let written = self
+            .ledger
+            .as_mut()
+            .map_or(Ok(()), |ledger| ledger.close(Status::Stopped, exit::STOPPED));
         self.require(written);
         exit::STOPPED
     }
@@ -63,7 +66,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         warnings.into_iter().for_each(|warning| run.warn(warning));
         run.judge_itself();
         if let Some(ledger) = &mut run.ledger {
-            let ending = ledger.manifest().indicators.iter().filter(|(_, found)| found.ends_run());
+            let ending = ledger
+                .manifest()
+                .indicators
+                .iter()
+                .filter(|(_, found)| found.ends_run());
             let ending: Vec<_> = ending.collect();
             for (_, found) in &ending {
                 run.log.failure(&indicators::description(found));
@@ -80,7 +87,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             [false, true] => (Status::Failed, exit::INDICATOR),
             [false, false] => (Status::Finished, exit::DONE),
         };
-        if run.case.output.checkpoint.at_end { run.end(status, code) } else { run.close(status, code) }
+        if run.case.output.checkpoint.at_end {
+            run.end(status, code)
+        } else {
+            run.close(status, code)
+        }
     }
 
     /// Ends the run with a frame and a checkpoint of the last converged state.
@@ -114,7 +125,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         }
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("indicators");
-        let Simulation { model, points, halo, .. } = &self.simulation;
+        let Simulation {
+            model, points, halo, ..
+        } = &self.simulation;
         let (time, budget) = (self.simulation.time(), self.simulation.progress().budget);
         match IndicatorState::of((model, points, time), (&self.recorder, budget), &**halo) {
             Ok(state) => {
@@ -157,7 +170,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 /// How the linear solves `before` ended and those since then.
 fn linear(before: &BTreeMap<String, SolverNames>, tallies: &Tallies) -> BTreeMap<String, SolverNames> {
     let mut all = before.clone();
-    let kinds = [("stiffness", &tallies.definite), ("newton", &tallies.general), ("water", &tallies.water)];
+    let kinds = [
+        ("stiffness", &tallies.definite),
+        ("newton", &tallies.general),
+        ("water", &tallies.water),
+    ];
     for (name, tally) in kinds {
         let Some(tally) = tally else { continue };
         let solver = all.entry(name.to_owned()).or_default();

@@ -33,7 +33,12 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     /// Ends the run whose points could not be given their stress at the start.
     pub(super) fn fail_at_start(self, error: StepError) -> u8 {
-        let failure = Failure { t: 0.0, dt: 0.0, attempts: vec![error], counts: Counts::default() };
+        let failure = Failure {
+            t: 0.0,
+            dt: 0.0,
+            attempts: vec![error],
+            counts: Counts::default(),
+        };
         let (run, code) = self.give_up(&failure, "the initial stress failed");
         run.close(Status::Failed, code)
     }
@@ -42,7 +47,12 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     pub(super) fn fail_at_stage(self, error: StepError) -> u8 {
         let t = self.simulation.time();
         let subject = format!("the stage at t = {} failed", self.moment(t));
-        let failure = Failure { t, dt: 0.0, attempts: vec![error], counts: Counts::default() };
+        let failure = Failure {
+            t,
+            dt: 0.0,
+            attempts: vec![error],
+            counts: Counts::default(),
+        };
         let (run, code) = self.give_up(&failure, &subject);
         run.close(Status::Failed, code)
     }
@@ -55,12 +65,22 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let error = report.attempts.last().map_or("", String::as_str);
         let cause = without_code(error);
         let head = code_of(error).map_or_else(String::new, |code| format!("{code}: "));
-        let advice = report.advice.first().map_or_else(String::new, |advice| format!(" {advice}"));
+        let advice = report
+            .advice
+            .first()
+            .map_or_else(String::new, |advice| format!(" {advice}"));
         self.log.failure(&format!("{head}{subject}: {cause}{advice}"));
         if let Some(place) = report.worst.first() {
             let at: Vec<String> = place.position.iter().map(|x| short(*x)).collect();
-            let kind = if place.kind == "point" { "material point" } else { "node" };
-            self.log.cause("place", &format!("Location: {kind} {} at [{}] m.", place.id, at.join(", ")));
+            let kind = if place.kind == "point" {
+                "material point"
+            } else {
+                "node"
+            };
+            self.log.cause(
+                "place",
+                &format!("Location: {kind} {} at [{}] m.", place.id, at.join(", ")),
+            );
         }
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| ledger.failure(&report));
         self.require(written);

@@ -35,7 +35,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             if !wanted(self, profile) {
                 continue;
             }
-            let Simulation { model, points, halo, .. } = &self.simulation;
+            let Simulation {
+                model, points, halo, ..
+            } = &self.simulation;
             let rows = profile::rows(profile, (model, self.case.grid.lower(), time), points, &**halo);
             let ledger = self.ledger.as_mut();
             let written = ledger.map_or(Ok(()), |ledger| ledger.profile(number, (step, time), &rows));
@@ -47,8 +49,17 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     pub(super) fn names(&self) -> Vec<(&'static str, Vec<String>)> {
         let case = &self.case;
         let materials = case.materials.iter().map(|material| material.name.clone()).collect();
-        let bodies = || case.bodies.iter().map(|body| body.name.clone().unwrap_or_default()).collect();
-        let of_bodies = case.output.fields.contains(&FrameField::Body).then(|| (FrameField::Body.field(), bodies()));
+        let bodies = || {
+            case.bodies
+                .iter()
+                .map(|body| body.name.clone().unwrap_or_default())
+                .collect()
+        };
+        let of_bodies = case
+            .output
+            .fields
+            .contains(&FrameField::Body)
+            .then(|| (FrameField::Body.field(), bodies()));
         let of_materials = (!case.output.fields.is_empty()).then_some(("material", materials));
         of_materials.into_iter().chain(of_bodies).collect()
     }
@@ -59,26 +70,60 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let begin = Instant::now();
         let (step, time) = (self.simulation.steps(), self.simulation.time());
         let world = self.universe.world();
-        let Simulation { model, points, halo, .. } = &self.simulation;
-        let projected = self.case.output.projected_pressure.then(|| projected_pressure(model, points, &**halo));
-        let projected = projected.transpose().unwrap_or_else(|error| launch::end(&world, exit::BUG, &error));
-        let moment = FrameMoment { step, time, lower: gather::spatial(&vector::<D, _>(self.case.grid.lower())) };
+        let Simulation {
+            model, points, halo, ..
+        } = &self.simulation;
+        let projected = self
+            .case
+            .output
+            .projected_pressure
+            .then(|| projected_pressure(model, points, &**halo));
+        let projected = projected
+            .transpose()
+            .unwrap_or_else(|error| launch::end(&world, exit::BUG, &error));
+        let moment = FrameMoment {
+            step,
+            time,
+            lower: gather::spatial(&vector::<D, _>(self.case.grid.lower())),
+        };
         let (names, fields) = (self.names(), &self.case.output.fields);
-        let bodies = if fields.contains(&FrameField::Body) { self.case.ids() } else { Vec::new() };
+        let bodies = if fields.contains(&FrameField::Body) {
+            self.case.ids()
+        } else {
+            Vec::new()
+        };
         let water = PoreWater::of(model, points, time);
         let flows = water.filter(|_| fields.contains(&FrameField::Flux));
         let fluxes = flows.map(|water| water.fluxes::<K>(&model.grid, &**halo)).transpose();
-        let fluxes = fluxes.unwrap_or_else(|error| launch::end(&world, exit::BUG, &error)).unwrap_or_default();
-        let around = Around { materials: &model.materials, bodies: &bodies, water, fluxes: &fluxes, fields };
+        let fluxes = fluxes
+            .unwrap_or_else(|error| launch::end(&world, exit::BUG, &error))
+            .unwrap_or_default();
+        let around = Around {
+            materials: &model.materials,
+            bodies: &bodies,
+            water,
+            fluxes: &fluxes,
+            fields,
+        };
         let mut frame = Gathering::new(&world, (points, around), projected.as_deref(), moment);
         let written = match &mut self.ledger {
             Some(ledger) => {
                 let (head, points) = (frame.head(), frame.points());
                 ledger.manifest().frame_units = frame.units(self.case.geometry.volume_unit());
-                ledger.manifest().frame_names =
-                    names.iter().map(|(field, names)| ((*field).to_owned(), names.clone())).collect();
-                let names: Vec<_> = names.into_iter().map(|(field, names)| (format!("{field}_names"), names)).collect();
-                ledger.frame(Parts { head, points, names: &names, next: &mut || frame.block() })
+                ledger.manifest().frame_names = names
+                    .iter()
+                    .map(|(field, names)| ((*field).to_owned(), names.clone()))
+                    .collect();
+                let names: Vec<_> = names
+                    .into_iter()
+                    .map(|(field, names)| (format!("{field}_names"), names))
+                    .collect();
+                ledger.frame(Parts {
+                    head,
+                    points,
+                    names: &names,
+                    next: &mut || frame.block(),
+                })
             }
             None => {
                 while frame.block().is_some() {}

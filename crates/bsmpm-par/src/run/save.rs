@@ -28,7 +28,14 @@ impl Saving {
     /// At the start of a run after `first` steps, whose newest checkpoint is of that step; another one is wanted soon
     /// if the directory has none, or none that fits its tables.
     pub fn new(newest: Option<u64>, soon: bool, first: u64) -> Self {
-        Self { newest, soon, first, last: Instant::now(), cost: launch::age().as_secs_f64(), frame: 0.0 }
+        Self {
+            newest,
+            soon,
+            first,
+            last: Instant::now(),
+            cost: launch::age().as_secs_f64(),
+            frame: 0.0,
+        }
     }
 
     /// Notes what a frame took.
@@ -62,12 +69,22 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let soon = self.saving.soon && self.saving.newest != Some(steps);
         // Nor need every rank have the environment of the one that was given a fault.
         let reject = self.fault.is_some_and(|fault| fault.rejects(steps + 1));
-        let mut clock = [end, self.saving.last.elapsed().as_secs_f64(), f64::from(soon), f64::from(reject)];
+        let mut clock = [
+            end,
+            self.saving.last.elapsed().as_secs_f64(),
+            f64::from(soon),
+            f64::from(reject),
+        ];
         self.simulation.halo.maximum(&mut clock);
-        let counted = wanted.every_steps.is_some_and(|every| steps > 0 && steps.is_multiple_of(every));
+        let counted = wanted
+            .every_steps
+            .is_some_and(|every| steps > 0 && steps.is_multiple_of(every));
         Due {
             stop: self.arguments.max_steps.is_some_and(|most| steps >= most)
-                || self.arguments.max_wall.is_some_and(|limit| clock[0] > limit.as_secs_f64()),
+                || self
+                    .arguments
+                    .max_wall
+                    .is_some_and(|limit| clock[0] > limit.as_secs_f64()),
             checkpoint: counted || clock[1] > wanted.wall || clock[2] > 0.0,
             reject: clock[3] > 0.0,
         }
@@ -78,7 +95,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         if !self.simulation.halo.requests().take_save() {
             return Ok(());
         }
-        self.log.line("save", "Writing a frame and a checkpoint, as requested by a signal.");
+        self.log
+            .line("save", "Writing a frame and a checkpoint, as requested by a signal.");
         self.frame_if_new();
         self.checkpoint()
     }
@@ -110,7 +128,13 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             self.require(written);
         }
         let (last, cost) = (Instant::now(), begin.elapsed().as_secs_f64());
-        self.saving = Saving { newest: Some(step), soon: false, last, cost, ..self.saving };
+        self.saving = Saving {
+            newest: Some(step),
+            soon: false,
+            last,
+            cost,
+            ..self.saving
+        };
         Ok(())
     }
 
@@ -118,7 +142,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let world = self.universe.world();
         let text = checkpoint::agree(&world, self.state(step))?;
         let text = checkpoint::broadcast(&world, 0, text);
-        let case = self.ledger.as_mut().map_or_else(String::new, |ledger| ledger.manifest().case.blake3.clone());
+        let case = self
+            .ledger
+            .as_mut()
+            .map_or_else(String::new, |ledger| ledger.manifest().case.blake3.clone());
         let facts = Facts {
             version: env!("CARGO_PKG_VERSION").into(),
             case,
@@ -126,18 +153,29 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             step,
             time: self.simulation.time(),
         };
-        let store = self.ledger.as_mut().map(super::Ledger::store).transpose().map_err(Refusal::from);
+        let store = self
+            .ledger
+            .as_mut()
+            .map(super::Ledger::store)
+            .transpose()
+            .map_err(Refusal::from);
         let store = checkpoint::agree(&world, store)?;
         let (fault, writes) = (self.fault, world.rank() == 0);
         let strike = |phase: Phase| fault.iter().for_each(|fault| fault.strike_in(writes, step, phase));
         let (columns, guess) = self.simulation.arrays();
-        let contents = Contents { columns, guess, state: &text };
+        let contents = Contents {
+            columns,
+            guess,
+            state: &text,
+        };
         checkpoint::write((self.hdf5, &world), store, &facts, &contents, &strike)
     }
 
     /// The text of a checkpoint; nothing on ranks without files.
     fn state(&mut self, step: u64) -> Result<Vec<u8>, Refusal> {
-        let Some(ledger) = &mut self.ledger else { return Ok(Vec::new()) };
+        let Some(ledger) = &mut self.ledger else {
+            return Ok(Vec::new());
+        };
         let (simulation, surface) = (&self.simulation, &self.simulation.points.surface);
         let state = CheckpointState {
             steps: step,
@@ -151,7 +189,15 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 .take(self.case.grid.dims())
                 .map(|lines| lines.iter().map(|line| [line.breakpoint, line.multiplicity]).collect())
                 .collect(),
-            room: Some(simulation.model.grid.room().iter().map(|range| [range.start, range.end]).collect()),
+            room: Some(
+                simulation
+                    .model
+                    .grid
+                    .room()
+                    .iter()
+                    .map(|range| [range.start, range.end])
+                    .collect(),
+            ),
             progress: simulation.progress(),
             traction: rows(&surface.traction),
             anchors: [surface.anchors.strips.clone(), surface.anchors.loads.clone()],
@@ -164,7 +210,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             rigid: surface.bodies.iter().map(rigid_numbers).collect(),
             rigid_accelerations: rigid_accelerations(&surface.bodies),
             pressure: [
-                if surface.pressure.iter().all(Vec::is_empty) { Vec::new() } else { rows(&surface.pressure) },
+                if surface.pressure.iter().all(Vec::is_empty) {
+                    Vec::new()
+                } else {
+                    rows(&surface.pressure)
+                },
                 Vec::new(),
             ],
             record: self.recorder.state(),

@@ -21,8 +21,12 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     fn begin_stage(&mut self, stage: &Stage) -> Result<(), StepError> {
         let stored = |simulation: &Simulation<'_, K, D>| {
-            let Simulation { model, points, halo, .. } = simulation;
-            model.balances_energy.then(|| Stored::of(model, (points, stage.at), &**halo))
+            let Simulation {
+                model, points, halo, ..
+            } = simulation;
+            model
+                .balances_energy
+                .then(|| Stored::of(model, (points, stage.at), &**halo))
         };
         let before = stored(&self.simulation);
         let next = model::model_at(&self.case, stage.at);
@@ -31,8 +35,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         if stage.exchanges() {
             self.simulation.exchange(next)?;
         }
-        let [removed, added] =
-            self.simulation.begin_stage(taken, |columns| model::placed::<K, D>(&self.case, stage, columns), &idle);
+        let [removed, added] = self.simulation.begin_stage(
+            taken,
+            |columns| model::placed::<K, D>(&self.case, stage, columns),
+            &idle,
+        );
         if !stage.only_resets() {
             self.simulation.hold()?;
         }
@@ -47,8 +54,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let (step, time) = (self.simulation.steps(), self.simulation.time());
         let name = stage.name.as_deref().map_or(String::new(), |name| format!(" {name}"));
         let material = |number: usize| &self.case.materials[number].name;
-        let exchanged: Vec<String> =
-            stage.materials.iter().map(|&(from, to)| format!("{} follows {}", material(from), material(to))).collect();
+        let exchanged: Vec<String> = stage
+            .materials
+            .iter()
+            .map(|&(from, to)| format!("{} follows {}", material(from), material(to)))
+            .collect();
         let faces: Vec<String> = stage
             .faces
             .iter()
@@ -66,10 +76,15 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             (!exchanged.is_empty()).then(|| exchanged.join(", ")),
             strength_reduction.map(|factor| format!("strength divided by {factor}")),
             stage.rests.then(|| "the water is at rest".to_owned()),
-            stage.resets_displacements.then(|| "displacements set to zero".to_owned()),
+            stage
+                .resets_displacements
+                .then(|| "displacements set to zero".to_owned()),
         ];
         let changes: Vec<String> = changes.into_iter().flatten().collect();
-        self.log.line("stage", &format!("Stage{name} at t = {}: {}.", self.moment(time), changes.join(", ")));
+        self.log.line(
+            "stage",
+            &format!("Stage{name} at t = {}: {}.", self.moment(time), changes.join(", ")),
+        );
         if let Some(ledger) = &mut self.ledger {
             let name = stage.name.clone();
             let reset = stage.resets_displacements;

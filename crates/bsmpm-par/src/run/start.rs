@@ -33,11 +33,15 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             );
         }
         for note in &self.case.notes {
-            self.log.detail("detail", &format!("{} = {} ({})", note.key, note.value, note.reason));
+            self.log
+                .detail("detail", &format!("{} = {} ({})", note.key, note.value, note.reason));
         }
         if self.before.resumed {
             let (step, time) = (self.simulation.steps(), self.simulation.time());
-            self.log.line("restart", &format!("Continuing from step {step} at t = {}.", self.moment(time)));
+            self.log.line(
+                "restart",
+                &format!("Continuing from step {step} at t = {}.", self.moment(time)),
+            );
             return Ok(());
         }
         let mut report = StepReport::default();
@@ -62,9 +66,15 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let (unbalance, yielding) = (start.force, start.yielding);
         let settling = settling.map(|Settling { rounds, evaluations }| ManifestSettling { rounds, evaluations });
         if let Some(ledger) = &mut self.ledger {
-            ledger.manifest().initial = Some(ManifestInitial { unbalance, yielding, settling });
+            ledger.manifest().initial = Some(ManifestInitial {
+                unbalance,
+                yielding,
+                settling,
+            });
         }
-        let rounds = settling.map_or(String::new(), |it| format!(", reached in {} equilibrium iterations", it.rounds));
+        let rounds = settling.map_or(String::new(), |it| {
+            format!(", reached in {} equilibrium iterations", it.rounds)
+        });
         self.log.detail(
             "initial",
             &format!(

@@ -23,7 +23,12 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Misspelt options of PETSc would do nothing in silence.
     pub(super) fn tell_unused_options(&mut self) {
         let unused = self.simulation.unused_options();
-        let given = |name: &String| self.arguments.petsc.iter().any(|option| option.strip_prefix('-') == Some(name));
+        let given = |name: &String| {
+            self.arguments
+                .petsc
+                .iter()
+                .any(|option| option.strip_prefix('-') == Some(name))
+        };
         let misspelt: Vec<String> = unused.into_iter().filter(given).collect();
         for name in misspelt {
             let warning = format!(
@@ -72,12 +77,19 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                     true => most - (grid.upper()[face.axis] - grid.lower()[face.axis]),
                     false => -least,
                 };
-                start.zip(now).is_some_and(|(start, now)| past(now) > past(start).max(0.0) + slack)
+                start
+                    .zip(now)
+                    .is_some_and(|(start, now)| past(now) > past(start).max(0.0) + slack)
             };
             let faces = self.case.faces_at(accepted.t).into_iter();
             let mut holding = faces.filter(|of| !matches!(of.support, Support::Free | Support::Outflow));
-            let Some(through) = holding.find(|of| of.face.axis < D && further(of.face)) else { continue };
-            let (name, side) = (self.case.rigid[number].name.clone(), through.face.side(self.case.geometry));
+            let Some(through) = holding.find(|of| of.face.axis < D && further(of.face)) else {
+                continue;
+            };
+            let (name, side) = (
+                self.case.rigid[number].name.clone(),
+                through.face.side(self.case.geometry),
+            );
             let t = self.moment(accepted.t);
             self.warned_rigid.insert(known);
             self.warn(format!(
@@ -96,7 +108,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 continue;
             }
             let points = on.points.len();
-            let (name, t) = (bsmpm_scene::surfaces::name_of_strip(&self.case, number), self.moment(accepted.t));
+            let (name, t) = (
+                bsmpm_scene::surfaces::name_of_strip(&self.case, number),
+                self.moment(accepted.t),
+            );
             let mut kind = number;
             let warning = if strip.held == 0 {
                 format!(
@@ -126,10 +141,14 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     /// A drain or an inflow most of which has no ground near lets nothing through there.
     pub(super) fn tell_drains(&mut self, accepted: &Accepted) {
-        let (Some(water), t) = (&accepted.report.water, self.moment(accepted.t)) else { return };
+        let (Some(water), t) = (&accepted.report.water, self.moment(accepted.t)) else {
+            return;
+        };
         let model = &self.simulation.model;
         let flow = model.water.as_ref().and_then(|water| water.flow.as_ref());
-        let Some(flow) = flow.filter(|flow| flow.motion == Motion::Flows) else { return };
+        let Some(flow) = flow.filter(|flow| flow.motion == Motion::Flows) else {
+            return;
+        };
         let acts: Vec<bool> = flow.acting().collect();
         let wanted = self.simulation.model.surfaces().water;
         let points: Vec<usize> = wanted.iter().map(|points| points.len()).collect();
@@ -158,8 +177,15 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     /// Ground that goes away from a drained face of the grid leaves its drain there. `known`: of the first.
     fn tell_drained_faces(&mut self, accepted: &Accepted, known: usize) {
-        let (Some(water), t) = (&accepted.report.water, self.moment(accepted.t)) else { return };
-        let flow = self.simulation.model.water.as_ref().and_then(|water| water.flow.as_ref());
+        let (Some(water), t) = (&accepted.report.water, self.moment(accepted.t)) else {
+            return;
+        };
+        let flow = self
+            .simulation
+            .model
+            .water
+            .as_ref()
+            .and_then(|water| water.flow.as_ref());
         let acts: Vec<bool> = flow.map_or_else(Vec::new, |flow| flow.faces.iter().map(|face| face.acts).collect());
         for (number, face) in water.faces.iter().enumerate().filter(|(number, _)| acts[*number]) {
             let (sealed, off) = (face.held == 0, face.off as f64 > LEFT * face.near as f64);
@@ -193,7 +219,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     /// Material that leaves is reported when the first does, and counted in the manifest.
     pub(super) fn tell_outflow(&mut self, accepted: &Accepted) {
-        let Some(outflow) = &accepted.report.outflow else { return };
+        let Some(outflow) = &accepted.report.outflow else {
+            return;
+        };
         if self.recorder.left().points == 0 {
             let t = self.moment(accepted.t);
             let message = format!("Material leaves the grid from t = {t} on. Its amount is in run.json (`outflow`).");
@@ -203,7 +231,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let lost = self.recorder.let_out(outflow, points, &**halo);
         let Outlet { points, mass } = self.recorder.left();
         if let Some(ledger) = &mut self.ledger {
-            ledger.manifest().outflow = Some(ManifestOutflow { points, mass: mass * self.case.geometry.whole() });
+            ledger.manifest().outflow = Some(ManifestOutflow {
+                points,
+                mass: mass * self.case.geometry.whole(),
+            });
         }
         for name in lost {
             let t = self.moment(accepted.t);

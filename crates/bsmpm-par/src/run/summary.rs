@@ -26,12 +26,20 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// The limit of the command line that has been reached.
     pub(super) fn limit(&self) -> StopCause {
         let most = self.arguments.max_steps;
-        if most.is_some_and(|most| self.simulation.steps() >= most) { StopCause::MaxSteps } else { StopCause::MaxWall }
+        if most.is_some_and(|most| self.simulation.steps() >= most) {
+            StopCause::MaxSteps
+        } else {
+            StopCause::MaxWall
+        }
     }
 
     /// The unit of the time, behind a number.
     pub(super) fn time_unit(&self) -> &'static str {
-        if self.case.analysis.kind.is_timeless() { "" } else { " s" }
+        if self.case.analysis.kind.is_timeless() {
+            ""
+        } else {
+            " s"
+        }
     }
 
     /// A time with its unit.
@@ -95,7 +103,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         };
         let (t, steps) = (self.moment(self.simulation.time()), summary.steps);
         if code == exit::STOPPED && steps == 0 {
-            return format!("Stopped before the first step was complete, after {}.", duration(self.wall()));
+            return format!(
+                "Stopped before the first step was complete, after {}.",
+                duration(self.wall())
+            );
         }
         let mean = summary.iterations as f64 / steps.max(1) as f64;
         let cuts = match summary.cutbacks {
@@ -116,7 +127,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         };
         let ranks = self.universe.world().size().unsigned_abs() as usize;
         let command = self.arguments.continuing(ranks);
-        let state = if self.simulation.steps() == 0 { "initial" } else { "last converged" };
+        let state = if self.simulation.steps() == 0 {
+            "initial"
+        } else {
+            "last converged"
+        };
         format!("The run was stopped by {cause}. Its {state} state is saved. To continue: {command}")
     }
 }
@@ -126,8 +141,12 @@ fn counted(codes: &[Option<&str>]) -> Option<String> {
     let first = codes.iter().flatten().next().unwrap_or(&"CODE");
     match codes.len() {
         0 => None,
-        1 => Some(format!("1 warning, listed in run.json. It is explained by `bsmpm explain {first}`.")),
-        all => Some(format!("{all} warnings, listed in run.json. They are explained by `bsmpm explain CODE`.")),
+        1 => Some(format!(
+            "1 warning, listed in run.json. It is explained by `bsmpm explain {first}`."
+        )),
+        all => Some(format!(
+            "{all} warnings, listed in run.json. They are explained by `bsmpm explain CODE`."
+        )),
     }
 }
 

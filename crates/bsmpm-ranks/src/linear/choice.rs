@@ -102,7 +102,11 @@ impl Choice {
 
     /// The program's own preconditioner of definite systems, if it is one.
     fn shell(&self) -> Option<&'static str> {
-        if self.dissection { Some("dissection") } else { self.is_geometric().then_some("multigrid of splines") }
+        if self.dissection {
+            Some("dissection")
+        } else {
+            self.is_geometric().then_some("multigrid of splines")
+        }
     }
 
     /// Sets a solver up; what the options say goes before. A general matrix preconditions a Krylov method.
@@ -143,7 +147,9 @@ pub fn probe<'p>(petsc: &'p Petsc<'p>, choice: &Choice) -> petsc_rs::Result<()> 
         choice.apply(&mut ksp, Symmetry::Definite)?;
         ksp.set_shell_operator(1)?;
         let mut product = |x: &[f64], y: &mut [f64]| y.copy_from_slice(x);
-        return ksp.solve_with_pc((&mut product, &mut Identity), |b| b.fill(1.0)).map(|_| ());
+        return ksp
+            .solve_with_pc((&mut product, &mut Identity), |b| b.fill(1.0))
+            .map(|_| ());
     }
     let own = [petsc.rank()];
     let mut matrix = Matrix::from_coo(petsc, 1, 1, &own, &own)?;

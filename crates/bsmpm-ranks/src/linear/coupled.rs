@@ -35,13 +35,19 @@ impl<'p, const D: usize> Solvers<'p, D> {
     /// How the solves have ended so far.
     pub fn tallies(&self) -> Tallies {
         let water = self.water.as_ref().and_then(|water| water.tallies().definite.clone());
-        Tallies { water, ..self.displacements.tallies().clone() }
+        Tallies {
+            water,
+            ..self.displacements.tallies().clone()
+        }
     }
 
     /// Goes on counting where other solvers of the run have ended.
     pub fn count_on(&mut self, tallies: Tallies) {
         if let Some(water) = &mut self.water {
-            water.count_on(Tallies { definite: tallies.water.clone(), ..Tallies::default() });
+            water.count_on(Tallies {
+                definite: tallies.water.clone(),
+                ..Tallies::default()
+            });
         }
         self.displacements.count_on(tallies);
     }

@@ -25,7 +25,13 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         let mut ksp = Ksp::new(petsc)?;
         choice.apply(&mut ksp, Symmetry::Definite)?;
         let cycles = choice.applications.max(1);
-        Ok(Self { ksp, ksp_type: choice.ksp.clone(), cycles, multigrid: None, unknowns: Vec::new() })
+        Ok(Self {
+            ksp,
+            ksp_type: choice.ksp.clone(),
+            cycles,
+            multigrid: None,
+            unknowns: Vec::new(),
+        })
     }
 
     /// Other components are unknown. Collective.
@@ -43,14 +49,30 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
 
     /// Makes the levels of a matrix, of which the unknowns are filled in. Collective.
     pub fn set_up(&mut self, matrix: StiffnessOperator<'_, D, C>, tally: &mut Tally) -> Result<(), SolveError> {
-        let Self { ksp, multigrid, unknowns, cycles, .. } = self;
+        let Self {
+            ksp,
+            multigrid,
+            unknowns,
+            cycles,
+            ..
+        } = self;
         *multigrid = None;
         ksp.shell_operator_changed().map_err(failed)?;
-        let mut pc = Cycles { multigrid, cycles: *cycles, matrix: StiffnessOperator { unknowns, ..matrix } };
+        let mut pc = Cycles {
+            multigrid,
+            cycles: *cycles,
+            matrix: StiffnessOperator { unknowns, ..matrix },
+        };
         let outcome = ksp.set_up_with_pc(&mut pc);
         tally.failure(&outcome);
         let message = || "a part of the stiffness is not positive definite".to_owned();
-        outcome.map_err(|error| if multigrid.is_none() { SolveError::Failed(message()) } else { failed(error) })
+        outcome.map_err(|error| {
+            if multigrid.is_none() {
+                SolveError::Failed(message())
+            } else {
+                failed(error)
+            }
+        })
     }
 
     /// The nodal solution for a nodal right-hand side, or what is applied in place of one. Collective.
@@ -60,21 +82,42 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         (rhs, solution): (&[f64], &mut [f64]),
         tally: &mut Tally,
     ) -> Result<Solved, SolveError> {
-        let Self { ksp, multigrid, unknowns, cycles, ksp_type } = self;
+        let Self {
+            ksp,
+            multigrid,
+            unknowns,
+            cycles,
+            ksp_type,
+        } = self;
         let matrix = StiffnessOperator { unknowns, ..matrix };
-        let mut pc = Cycles { multigrid, cycles: *cycles, matrix };
-        let outcome = ksp.solve_with_pc((&mut |x, y| matrix.multiply(x, y), &mut pc), |b| gather(unknowns, rhs, b));
+        let mut pc = Cycles {
+            multigrid,
+            cycles: *cycles,
+            matrix,
+        };
+        let outcome = ksp.solve_with_pc((&mut |x, y| matrix.multiply(x, y), &mut pc), |b| {
+            gather(unknowns, rhs, b)
+        });
         tally.count(ksp, &outcome);
         let info = outcome.map_err(failed)?;
-        ksp.solution(|x| spread::<C>(matrix.halo, unknowns, x, solution)).map_err(failed)?;
+        ksp.solution(|x| spread::<C>(matrix.halo, unknowns, x, solution))
+            .map_err(failed)?;
         if ksp_type == PREONLY {
             let finite = solution.iter().all(|x| x.is_finite());
-            return if finite { Ok(Solved::default()) } else { Err(SolveError::NotFinite) };
+            return if finite {
+                Ok(Solved::default())
+            } else {
+                Err(SolveError::NotFinite)
+            };
         }
         let (left, right) = matrix.norms(rhs, solution);
         trusted(left, right)?;
         let residual = (right > 0.0).then(|| left / right);
-        Ok(Solved { iterations: info.iterations, factorisations: 0, residual })
+        Ok(Solved {
+            iterations: info.iterations,
+            factorisations: 0,
+            residual,
+        })
     }
 
     /// Solution to the residual `relative` by conjugate gradients around the cycles.
@@ -85,13 +128,23 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         (rhs, solution): (&[f64], &mut [f64]),
         tally: &mut Tally,
     ) -> Result<Solved, SolveError> {
-        let tolerances = Tolerances { relative: 0.1 * relative, absolute: 0.0, max_iterations: MOST_ITERATIONS };
+        let tolerances = Tolerances {
+            relative: 0.1 * relative,
+            absolute: 0.0,
+            max_iterations: MOST_ITERATIONS,
+        };
         let usual = std::mem::replace(&mut self.ksp_type, "cg".into());
         self.ksp.set_tolerances(tolerances).map_err(failed)?;
-        self.ksp.set_type("cg").and_then(|()| self.ksp.set_norm(NormType::Unpreconditioned)).map_err(failed)?;
+        self.ksp
+            .set_type("cg")
+            .and_then(|()| self.ksp.set_norm(NormType::Unpreconditioned))
+            .map_err(failed)?;
         let found = self.solve(matrix, (rhs, solution), tally);
         self.ksp_type = usual;
-        self.ksp.set_type(&self.ksp_type).and_then(|()| self.ksp.set_norm(NormType::None)).map_err(failed)?;
+        self.ksp
+            .set_type(&self.ksp_type)
+            .and_then(|()| self.ksp.set_norm(NormType::None))
+            .map_err(failed)?;
         found
     }
 }
@@ -108,18 +161,37 @@ struct Cycles<'a, const D: usize, const C: usize> {
 
 impl<const D: usize, const C: usize> ShellPc for Cycles<'_, D, C> {
     fn set_up(&mut self) -> Result<(), PcFailure> {
-        let StiffnessOperator { grid, stencil, free, timers, .. } = self.matrix;
+        let StiffnessOperator {
+            grid,
+            stencil,
+            free,
+            timers,
+            ..
+        } = self.matrix;
         let _timed = timers.time("factorisation");
         *self.multigrid = Multigrid::new(grid, (stencil, free));
-        if self.multigrid.is_some() { Ok(()) } else { Err(PcFailure::ZeroPivot) }
+        if self.multigrid.is_some() {
+            Ok(())
+        } else {
+            Err(PcFailure::ZeroPivot)
+        }
     }
 
     fn apply(&mut self, r: &[f64], z: &mut [f64]) -> Result<(), PcFailure> {
-        let StiffnessOperator { stencil, free, unknowns, timers, .. } = self.matrix;
+        let StiffnessOperator {
+            stencil,
+            free,
+            unknowns,
+            timers,
+            ..
+        } = self.matrix;
         let _timed = timers.time("linear solve");
         let multigrid = self.multigrid.as_ref().ok_or(PcFailure::Other)?;
         let (mut rhs, mut solution) = (vec![0.0; free.len()], vec![0.0; free.len()]);
-        unknowns.iter().zip(r).for_each(|(&component, value)| rhs[component] = *value);
+        unknowns
+            .iter()
+            .zip(r)
+            .for_each(|(&component, value)| rhs[component] = *value);
         multigrid.apply((stencil, free), self.cycles, &rhs, &mut solution);
         gather(unknowns, &solution, z);
         Ok(())

@@ -70,7 +70,10 @@ impl<const D: usize, const C: usize> StiffnessOperator<'_, D, C> {
 
 /// Entries of the `unknowns` in a nodal array.
 pub(super) fn gather(unknowns: &[usize], nodal: &[f64], values: &mut [f64]) {
-    values.iter_mut().zip(unknowns).for_each(|(value, &component)| *value = nodal[component]);
+    values
+        .iter_mut()
+        .zip(unknowns)
+        .for_each(|(value, &component)| *value = nodal[component]);
 }
 
 /// The factor of a definite matrix, and what its applications leave beside their result.
@@ -115,11 +118,20 @@ pub(super) struct DissectionPc<'a, const D: usize, const C: usize> {
 
 impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
     fn factorise(&mut self, precision: Precision) -> Result<(), SolveError> {
-        let StiffnessOperator { halo, grid, stencil, free, timers, .. } = self.matrix;
+        let StiffnessOperator {
+            halo,
+            grid,
+            stencil,
+            free,
+            timers,
+            ..
+        } = self.matrix;
         let (link, _timed) = (halo.link(), timers.time("factorisation"));
         if !self.factor.is_planned {
             let rank = halo.world().rank().unsigned_abs() as usize;
-            self.factor.dissection.plan::<D, C>(&link, (halo.slabs(), rank), grid, free);
+            self.factor
+                .dissection
+                .plan::<D, C>(&link, (halo.slabs(), rank), grid, free);
             self.factor.is_planned = true;
         }
         let mut largest = [stencil.largest_diagonal()];
@@ -128,7 +140,11 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
         self.factor.standing = Standing::Untried;
         let pivot =
             |what: &str| SolveError::Failed(format!("a pivot {what} is not positive: the stiffness is not definite"));
-        agreed(halo, if good { Ok(()) } else { Err(pivot("here")) }, pivot("of another rank"))
+        agreed(
+            halo,
+            if good { Ok(()) } else { Err(pivot("here")) },
+            pivot("of another rank"),
+        )
     }
 
     /// The solution for the nodal right-hand side. The first one tries the factor: if it is not near, one of double
@@ -158,7 +174,12 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
     fn back_substitute(&mut self) {
         let _timed = self.matrix.timers.time("linear solve");
         let owned = self.matrix.halo.owned();
-        let DissectionFactor { dissection, rhs, solution, .. } = &mut *self.factor;
+        let DissectionFactor {
+            dissection,
+            rhs,
+            solution,
+            ..
+        } = &mut *self.factor;
         let own = |component: usize| owned.contains(Nodal::<C>::node(component));
         dissection.solve(&self.matrix.halo.link(), own, rhs, solution);
     }
@@ -184,7 +205,10 @@ impl<const D: usize, const C: usize> ShellPc for DissectionPc<'_, D, C> {
         rhs.clear();
         rhs.resize(count, 0.0);
         solution.resize(count, 0.0);
-        unknowns.iter().zip(r).for_each(|(&component, value)| rhs[component] = *value);
+        unknowns
+            .iter()
+            .zip(r)
+            .for_each(|(&component, value)| rhs[component] = *value);
         let outcome = self.solve();
         gather(unknowns, &self.factor.solution, z);
         self.report(outcome, PcFailure::Other)

@@ -56,7 +56,11 @@ impl Dissection {
         let inner = std::array::from_fn(|axis| {
             let (at, of) = places.get(axis).copied().unwrap_or((0, 1));
             let start = if at == 0 { 0 } else { q.min(counts[axis]) };
-            let end = if at + 1 == of { counts[axis] } else { grid.cells_along()[axis].len() };
+            let end = if at + 1 == of {
+                counts[axis]
+            } else {
+                grid.cells_along()[axis].len()
+            };
             start..end.max(start)
         });
         self.plan = Plan::new::<D, C>(counts, q, &inner, free);
@@ -85,17 +89,38 @@ impl Dissection {
     ) -> bool {
         let unit = f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits());
         self.scale = if unit.is_normal() { 1.0 / unit } else { 1.0 };
-        let Self { plan, factor, reduction, desks, scale, .. } = self;
+        let Self {
+            plan,
+            factor,
+            reduction,
+            desks,
+            scale,
+            ..
+        } = self;
         let room = factor.restart(precision, plan.entries());
         desks.resize_with(rayon::current_num_threads(), Mutex::default);
-        let (rest, good) = Elimination { plan, stencil, scale: *scale, desks }.run(room);
+        let (rest, good) = Elimination {
+            plan,
+            stencil,
+            scale: *scale,
+            desks,
+        }
+        .run(room);
         reduction.factorise(link, precision, rest) && good
     }
 
     /// Solves for the nodal right-hand side whose `owned` components are this rank's, with the last factorisation; the
     /// solution is right at all nodes of the window. Collective.
     pub fn solve(&mut self, link: &dyn Link, owned: impl Fn(usize) -> bool, rhs: &[f64], solution: &mut [f64]) {
-        let Self { plan, factor, reduction, scratch, work, scale, .. } = self;
+        let Self {
+            plan,
+            factor,
+            reduction,
+            scratch,
+            work,
+            scale,
+            ..
+        } = self;
         let own = |component: usize| if owned(component) { rhs[component] * *scale } else { 0.0 };
         work.clear();
         work.extend(plan.order.iter().map(|&component| own(component as usize)));
@@ -104,6 +129,9 @@ impl Dissection {
         reduction.solve(link, &mut work[plan.eliminated()..]);
         triangles.backward(work, scratch);
         solution.fill(0.0);
-        plan.order.iter().zip(&*work).for_each(|(&component, value)| solution[component as usize] = *value);
+        plan.order
+            .iter()
+            .zip(&*work)
+            .for_each(|(&component, value)| solution[component as usize] = *value);
     }
 }

@@ -44,18 +44,32 @@ impl<const D: usize, const C: usize> Multigrid<D, C> {
         let (mut levels, mut grid, mut own) = (Vec::new(), grid.clone(), None::<(Stencil<D, C>, Vec<bool>)>);
         loop {
             let operator = own.as_ref().map_or(finest, |(stencil, free)| (stencil, &free[..]));
-            let coarser = if count(operator.1) > FEW { Transfer::new(&grid) } else { None };
+            let coarser = if count(operator.1) > FEW {
+                Transfer::new(&grid)
+            } else {
+                None
+            };
             let along: [usize; D] = std::array::from_fn(|axis| grid.nodes_along(axis));
             let Some((coarse, transfer)) = coarser else {
                 let whole = along.iter().copied().fold(1, usize::max);
                 let patches = Patches::new(operator, along, (whole, whole))?;
-                levels.push(Level { own, patches, bound: 1.0, coarser: None });
+                levels.push(Level {
+                    own,
+                    patches,
+                    bound: 1.0,
+                    coarser: None,
+                });
                 return Some(Self { levels });
             };
             let patches = Patches::new(operator, along, PATCH)?;
             let bound = largest_eigenvalue(operator, &patches);
             let next = transfer.galerkin(operator, &coarse);
-            levels.push(Level { own: own.take(), patches, bound, coarser: Some(transfer) });
+            levels.push(Level {
+                own: own.take(),
+                patches,
+                bound,
+                coarser: Some(transfer),
+            });
             (grid, own) = (coarse, Some(next));
         }
     }
@@ -75,9 +89,14 @@ impl<const D: usize, const C: usize> Multigrid<D, C> {
 
     fn cycle(&self, number: usize, finest: Operator<'_, D, C>, b: &[f64], x: &mut [f64]) {
         let level = &self.levels[number];
-        let operator = level.own.as_ref().map_or(finest, |(stencil, free)| (stencil, &free[..]));
+        let operator = level
+            .own
+            .as_ref()
+            .map_or(finest, |(stencil, free)| (stencil, &free[..]));
         x.fill(0.0);
-        let Some(transfer) = &level.coarser else { return level.patches.add(b, x) };
+        let Some(transfer) = &level.coarser else {
+            return level.patches.add(b, x);
+        };
         let mut left = b.to_vec();
         let last = level.smooth(operator, &mut left, x);
         subtract_product(operator, &last, &mut left);
@@ -85,7 +104,10 @@ impl<const D: usize, const C: usize> Multigrid<D, C> {
         let mut below = vec![0.0; coarse.len()];
         self.cycle(number + 1, finest, &coarse, &mut below);
         let mut step = transfer.prolong::<C>(&below);
-        step.iter_mut().zip(operator.1).filter(|(_, free)| !**free).for_each(|(step, _)| *step = 0.0);
+        step.iter_mut()
+            .zip(operator.1)
+            .filter(|(_, free)| !**free)
+            .for_each(|(step, _)| *step = 0.0);
         subtract_product(operator, &step, &mut left);
         x.iter_mut().zip(&step).for_each(|(x, step)| *x += step);
         level.smooth(operator, &mut left, x);

@@ -23,7 +23,12 @@ impl<'p> ShellSystem<'p> {
         let mut ksp = Ksp::new(petsc)?;
         choice.apply(&mut ksp, Symmetry::Definite)?;
         let is_preonly = ksp.type_name()?.as_deref() == Some("preonly");
-        Ok(Self { ksp, is_preonly, factor: DissectionFactor::default(), unknowns: Vec::new() })
+        Ok(Self {
+            ksp,
+            is_preonly,
+            factor: DissectionFactor::default(),
+            unknowns: Vec::new(),
+        })
     }
 
     /// Other components of this rank are unknown. Collective.
@@ -55,10 +60,15 @@ impl<'p> ShellSystem<'p> {
         matrix: StiffnessOperator<'_, D, C>,
         tally: &mut Tally,
     ) -> Result<(), SolveError> {
-        let Self { ksp, factor, unknowns, .. } = self;
+        let Self {
+            ksp, factor, unknowns, ..
+        } = self;
         factor.cause = None;
         ksp.shell_operator_changed().map_err(failed)?;
-        let mut pc = DissectionPc { factor, matrix: StiffnessOperator { unknowns, ..matrix } };
+        let mut pc = DissectionPc {
+            factor,
+            matrix: StiffnessOperator { unknowns, ..matrix },
+        };
         let outcome = ksp.set_up_with_pc(&mut pc);
         tally.failure(&outcome);
         outcome.map_err(|error| pc.factor.cause.take().unwrap_or_else(|| failed(error)))
@@ -71,11 +81,15 @@ impl<'p> ShellSystem<'p> {
         (rhs, solution): (&[f64], &mut [f64]),
         tally: &mut Tally,
     ) -> Result<Solved, SolveError> {
-        let Self { ksp, factor, unknowns, .. } = self;
+        let Self {
+            ksp, factor, unknowns, ..
+        } = self;
         let matrix = StiffnessOperator { unknowns, ..matrix };
         (factor.cause, factor.further, factor.residual) = (None, 0, None);
         let mut pc = DissectionPc { factor, matrix };
-        let outcome = ksp.solve_with_pc((&mut |x, y| matrix.multiply(x, y), &mut pc), |b| gather(unknowns, rhs, b));
+        let outcome = ksp.solve_with_pc((&mut |x, y| matrix.multiply(x, y), &mut pc), |b| {
+            gather(unknowns, rhs, b)
+        });
         tally.count(ksp, &outcome);
         let info = outcome.map_err(|error| pc.factor.cause.take().unwrap_or_else(|| failed(error)))?;
         let mut residual = factor.residual;
@@ -83,11 +97,16 @@ impl<'p> ShellSystem<'p> {
             // What the preconditioner gave, ghost nodes included: nothing need be exchanged.
             solution.copy_from_slice(&factor.solution);
         } else {
-            ksp.solution(|x| spread::<C>(matrix.halo, unknowns, x, solution)).map_err(failed)?;
+            ksp.solution(|x| spread::<C>(matrix.halo, unknowns, x, solution))
+                .map_err(failed)?;
             let (left, right) = matrix.norms(rhs, solution);
             trusted(left, right)?;
             residual = (right > 0.0).then(|| left / right);
         }
-        Ok(Solved { iterations: info.iterations, factorisations: factor.further, residual })
+        Ok(Solved {
+            iterations: info.iterations,
+            factorisations: factor.further,
+            residual,
+        })
     }
 }

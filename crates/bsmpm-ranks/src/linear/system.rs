@@ -44,7 +44,15 @@ impl<'p> System<'p> {
         let vector = || Vector::new(petsc, matrix.local_rows());
         let (b, x, r) = (vector()?, vector()?, vector()?);
         let (applications, ksp_type) = (choice.applications, choice.ksp.clone());
-        Ok(Self { matrix, ksp, b, x, r, applications, ksp_type })
+        Ok(Self {
+            matrix,
+            ksp,
+            b,
+            x,
+            r,
+            applications,
+            ksp_type,
+        })
     }
 
     /// The preconditioner applied to a right-hand side, and to what that leaves, so often as the choice says: a fixed,
@@ -78,7 +86,11 @@ impl<'p> System<'p> {
         rhs: &[f64],
         tally: &mut Tally,
     ) -> Result<(usize, Vec<f64>), SolveError> {
-        let tolerances = Tolerances { relative: 0.1 * relative, absolute: 0.0, max_iterations: MOST_ITERATIONS };
+        let tolerances = Tolerances {
+            relative: 0.1 * relative,
+            absolute: 0.0,
+            max_iterations: MOST_ITERATIONS,
+        };
         let set = |ksp: &mut Ksp<'p>, name: &str, norm| ksp.set_type(name).and_then(|()| ksp.set_norm(norm));
         self.ksp.set_tolerances(tolerances).map_err(failed)?;
         set(&mut self.ksp, "cg", NormType::Unpreconditioned).map_err(failed)?;
@@ -107,7 +119,11 @@ impl<'p> System<'p> {
         tally: &mut Tally,
     ) -> Result<(Krylov, Vec<f64>), SolveError> {
         self.b.copy_from(rhs).map_err(failed)?;
-        let tolerances = Tolerances { relative, absolute: 0.0, max_iterations: MOST_PRODUCTS };
+        let tolerances = Tolerances {
+            relative,
+            absolute: 0.0,
+            max_iterations: MOST_PRODUCTS,
+        };
         self.ksp.set_tolerances(tolerances).map_err(failed)?;
         let outcome = self.ksp.solve_with(product, &self.b, &mut self.x);
         tally.count(&self.ksp, &outcome);
@@ -119,7 +135,13 @@ impl<'p> System<'p> {
         if !residual.is_finite() {
             return Err(SolveError::NotFinite);
         }
-        Ok((Krylov { iterations: info.iterations, residual }, x))
+        Ok((
+            Krylov {
+                iterations: info.iterations,
+                residual,
+            },
+            x,
+        ))
     }
 }
 

@@ -20,7 +20,11 @@ impl Tally {
         let name = |name: petsc_rs::Result<Option<String>>| name.ok().flatten().unwrap_or_default();
         let pc = name(ksp.pc_type_name());
         let pc = shell.map_or_else(|| pc.clone(), |shell| format!("{pc} ({shell})"));
-        Self { ksp: name(ksp.type_name()), pc, reasons: BTreeMap::new() }
+        Self {
+            ksp: name(ksp.type_name()),
+            pc,
+            reasons: BTreeMap::new(),
+        }
     }
 
     /// Counts a solve.

@@ -38,7 +38,13 @@ impl<const D: usize> Places<D> {
             })
         });
         let kind = kind.collect();
-        Self { functions, half, reach, inside, kind }
+        Self {
+            functions,
+            half,
+            reach,
+            inside,
+            kind,
+        }
     }
 
     /// Places of a stencil.
@@ -69,7 +75,8 @@ impl<const D: usize> Places<D> {
 
     /// Number of a node in a box as wide along every axis as a stencil's; differences of two are those of their places.
     pub fn number(&self, at: [usize; D]) -> usize {
-        at.into_iter().fold(0, |number, step| number * (2 * self.half + 1) + step)
+        at.into_iter()
+            .fold(0, |number, step| number * (2 * self.half + 1) + step)
     }
 
     /// The same of a node of the window.

@@ -59,10 +59,14 @@ impl DrainSite {
     pub fn lines(&self) -> Vec<LoadedLine> {
         match self {
             Self::Face(_) => Vec::new(),
-            Self::Lines(pieces) => {
-                pieces.iter().map(|[from, to]| LoadedLine::Segment { from: *from, to: *to }).collect()
-            }
-            Self::Circle { center, radius } => vec![LoadedLine::Circle { center: *center, radius: *radius }],
+            Self::Lines(pieces) => pieces
+                .iter()
+                .map(|[from, to]| LoadedLine::Segment { from: *from, to: *to })
+                .collect(),
+            Self::Circle { center, radius } => vec![LoadedLine::Circle {
+                center: *center,
+                radius: *radius,
+            }],
             Self::Plate(plate) => vec![LoadedLine::Plate(*plate)],
         }
     }
@@ -86,11 +90,15 @@ impl Case {
         let (Some(flow), Some(water)) = (self.flow.as_ref().filter(|flow| flow.retains()), &self.water) else {
             return 0.0;
         };
-        let Some((height, _)) = water.table.table(at[0], 0.0) else { return 0.0 };
+        let Some((height, _)) = water.table.table(at[0], 0.0) else {
+            return 0.0;
+        };
         let up = self.grid.dims() - 1;
         let suction = (water.unit_weight * (at[up] - height)).clamp(0.0, flow.suction);
         let soil = flow.soils[usize::from(material)].as_ref();
-        soil.map_or(0.0, |soil| soil.retained(-suction, water.unit_weight).effective * suction)
+        soil.map_or(0.0, |soil| {
+            soil.retained(-suction, water.unit_weight).effective * suction
+        })
     }
 }
 

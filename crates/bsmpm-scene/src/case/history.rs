@@ -242,7 +242,10 @@ impl Face {
     pub fn of(side: Side, geometry: Geometry) -> Option<Self> {
         let axes = Side::of(geometry).iter().enumerate();
         let at = |(axis, sides): (usize, &[Side; 2])| {
-            sides.iter().position(|own| *own == side).map(|upper| Self { axis, upper: upper == 1 })
+            sides.iter().position(|own| *own == side).map(|upper| Self {
+                axis,
+                upper: upper == 1,
+            })
         };
         axes.into_iter().find_map(at)
     }
@@ -324,19 +327,31 @@ impl History {
     /// What the physics' numbers are multiplied with.
     pub fn factor(&self) -> f64 {
         let measured = self.quantity.measurement();
-        let whole = self.geometry.unit(measured.unit()).map_or(1.0, |_| self.geometry.whole());
+        let whole = self
+            .geometry
+            .unit(measured.unit())
+            .map_or(1.0, |_| self.geometry.whole());
         self.scale * whole
     }
 
     /// Its columns in the history file.
     pub fn columns(&self) -> Vec<Column> {
         let measured = self.quantity.measurement();
-        let unit = |unit: &str| if self.scale == 1.0 { unit.to_owned() } else { format!("scaled {unit}") };
+        let unit = |unit: &str| {
+            if self.scale == 1.0 {
+                unit.to_owned()
+            } else {
+                format!("scaled {unit}")
+            }
+        };
         let dims = self.geometry.dims();
         let column = |(number, (suffix, _)): (usize, &(&str, &str))| {
             let in_plane = measured.unit_of(number, dims);
             let unit = unit(self.geometry.unit(in_plane).unwrap_or(in_plane));
-            Column { name: format!("{}{suffix}", self.name), unit }
+            Column {
+                name: format!("{}{suffix}", self.name),
+                unit,
+            }
         };
         measured.columns_in(dims).iter().enumerate().map(column).collect()
     }

@@ -28,7 +28,10 @@ impl MotionPath {
 
     /// m  the largest displacement of any row
     pub fn farthest(&self) -> f64 {
-        self.rows.iter().map(|(_, moved)| moved[0].hypot(moved[1]).hypot(moved[2])).fold(0.0, f64::max)
+        self.rows
+            .iter()
+            .map(|(_, moved)| moved[0].hypot(moved[1]).hypot(moved[2]))
+            .fold(0.0, f64::max)
     }
 
     /// Ends it where it is at the time `until`.
@@ -74,7 +77,9 @@ impl Plate {
 
     /// m  of a disc
     pub fn radius(&self) -> f64 {
-        (0..3).map(|axis| 0.5 * (self.upper[axis] - self.lower[axis])).fold(0.0, f64::max)
+        (0..3)
+            .map(|axis| 0.5 * (self.upper[axis] - self.lower[axis]))
+            .fold(0.0, f64::max)
     }
 
     /// m2  of the part of it within a box
@@ -154,7 +159,11 @@ pub enum Site {
 impl Site {
     /// m  ends of a segment
     pub fn ends(&self) -> Option<[[f64; 2]; 2]> {
-        if let Self::Segment { from, to } = *self { Some([from, to]) } else { None }
+        if let Self::Segment { from, to } = *self {
+            Some([from, to])
+        } else {
+            None
+        }
     }
 }
 
@@ -164,7 +173,9 @@ pub type Shares = Vec<(f64, Vector<3>)>;
 
 /// Whether a load keeps its direction, reversed at most.
 pub(crate) fn keeps_direction(shares: &Shares) -> bool {
-    shares.iter().all(|(_, share)| *share == Vector::<3>::from_element(share[0]))
+    shares
+        .iter()
+        .all(|(_, share)| *share == Vector::<3>::from_element(share[0]))
 }
 
 /// A load on the body's surface that follows the body.
@@ -240,7 +251,10 @@ impl Traction {
             LoadedLine::Plate(plate) => [plate.lower[2], plate.upper[2]],
             LoadedLine::Triangles(all) => {
                 let heights = || all.iter().flatten().map(|corner| corner[2]);
-                [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max)]
+                [
+                    heights().fold(f64::INFINITY, f64::min),
+                    heights().fold(f64::NEG_INFINITY, f64::max),
+                ]
             }
         };
         let [low, high] = ends.map(|height| match self.push {

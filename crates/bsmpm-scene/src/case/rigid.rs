@@ -102,9 +102,11 @@ impl RigidSolid {
         match self {
             Self::Box { lower, upper } => [0, 1, 2].map(|axis| 0.5 * (lower[axis] + upper[axis])),
             Self::Sphere { center, .. } => *center,
-            Self::Revolved { about: [x, y], corners } => {
-                [*x, *y, corners.iter().map(|corner| corner[1]).fold(f64::INFINITY, f64::min)]
-            }
+            Self::Revolved { about: [x, y], corners } => [
+                *x,
+                *y,
+                corners.iter().map(|corner| corner[1]).fold(f64::INFINITY, f64::min),
+            ],
             Self::Terrain(_) => [0.0; 3],
         }
     }

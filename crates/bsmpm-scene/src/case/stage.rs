@@ -90,7 +90,9 @@ const SAME: f64 = 1e-6;
 impl Case {
     /// The stages that begin at the time `t` at which a step has ended.
     pub fn stages_at(&self, t: f64) -> impl Iterator<Item = &Stage> {
-        self.stages.iter().filter(move |stage| (stage.at - t).abs() <= SAME * self.analysis.dt)
+        self.stages
+            .iter()
+            .filter(move |stage| (stage.at - t).abs() <= SAME * self.analysis.dt)
     }
 
     fn has_begun(&self, stage: &Stage, t: f64) -> bool {
@@ -105,10 +107,17 @@ impl Case {
             (named != [false; 2]).then_some(!named[0])
         });
         let at_start = (comes_later != Some(true)).then_some(0.0);
-        self.stages.iter().filter(|stage| self.has_begun(stage, t)).fold(at_start, |since, stage| {
-            let [releases, applies] = stage.switches(what);
-            if applies { Some(stage.at) } else { since.filter(|_| !releases) }
-        })
+        self.stages
+            .iter()
+            .filter(|stage| self.has_begun(stage, t))
+            .fold(at_start, |since, stage| {
+                let [releases, applies] = stage.switches(what);
+                if applies {
+                    Some(stage.at)
+                } else {
+                    since.filter(|_| !releases)
+                }
+            })
     }
 
     /// What does not act before a stage that begins at the time `t`: tractions, then point loads; drains on surfaces of
@@ -116,12 +125,22 @@ impl Case {
     pub fn idle_before(&self, t: f64) -> Idle {
         let before = self.just_before(t);
         let is_idle = |what: Acting| self.acts_since(what, before).is_none();
-        let (drains, inflows) = self.flow.as_ref().map_or((&[][..], 0), |flow| (&flow.drains[..], flow.inflows.len()));
+        let (drains, inflows) = self
+            .flow
+            .as_ref()
+            .map_or((&[][..], 0), |flow| (&flow.drains[..], flow.inflows.len()));
         let loads = 0..self.tractions.len() + self.point_loads.len();
         let surfaces = (0..drains.len()).filter(|&number| !matches!(drains[number].site, DrainSite::Face(_)));
         Idle {
-            loads: loads.chain(self.turning_loads()).map(|load| is_idle(Acting::Load(load))).collect(),
-            water: surfaces.map(Acting::Drain).chain((0..inflows).map(Acting::Inflow)).map(is_idle).collect(),
+            loads: loads
+                .chain(self.turning_loads())
+                .map(|load| is_idle(Acting::Load(load)))
+                .collect(),
+            water: surfaces
+                .map(Acting::Drain)
+                .chain((0..inflows).map(Acting::Inflow))
+                .map(is_idle)
+                .collect(),
         }
     }
 
@@ -129,15 +148,20 @@ impl Case {
     /// steady direction for each, behind all others.
     pub(crate) fn turning_loads(&self) -> impl Iterator<Item = usize> {
         let tractions = self.tractions.iter().map(|of| &of.amplitude);
-        let all = tractions.chain(self.point_loads.iter().map(|of| &of.amplitude)).enumerate();
+        let all = tractions
+            .chain(self.point_loads.iter().map(|of| &of.amplitude))
+            .enumerate();
         let turning = all.filter(|(_, shares)| !keeps_direction(shares));
         turning.flat_map(|(number, _)| std::iter::repeat_n(number, self.grid.dims() - 1))
     }
 
     /// What the file calls the loads that act in full from the start.
     pub fn sudden_loads(&self) -> Vec<String> {
-        let tractions =
-            self.tractions.iter().enumerate().map(|(k, of)| (format!("traction.{k}"), of.ramp, &of.amplitude));
+        let tractions = self
+            .tractions
+            .iter()
+            .enumerate()
+            .map(|(k, of)| (format!("traction.{k}"), of.ramp, &of.amplitude));
         let forces = self.point_loads.iter().enumerate();
         let forces = forces.map(|(k, of)| (format!("point_load.{k}"), of.ramp, &of.amplitude));
         let is_sudden = |ramp: f64, amplitude: &Shares| match amplitude.first() {
@@ -148,7 +172,11 @@ impl Case {
         let all = tractions.chain(forces).enumerate();
         let sudden = all.filter(|(load, (_, ramp, amplitude))| is_sudden(*ramp, amplitude) && acts(*load));
         let is_pushed = |gravity: &Gravity| gravity.ramp == 0.0 && !gravity.is_straight(self.grid.dims());
-        let inertia = self.gravity.as_ref().is_some_and(is_pushed).then(|| "the horizontal gravity".to_owned());
+        let inertia = self
+            .gravity
+            .as_ref()
+            .is_some_and(is_pushed)
+            .then(|| "the horizontal gravity".to_owned());
         sudden.map(|(_, (name, ..))| name).chain(inertia).collect()
     }
 
@@ -157,7 +185,9 @@ impl Case {
         let times = std::iter::once(0.0).chain(self.stages.iter().map(|stage| stage.at));
         let acting: Vec<f64> = times.filter(|t| self.acts_since(what, *t).is_some()).collect();
         let stays = |body: &usize| acting.iter().all(|t| self.is_there(*body, *t));
-        (0..self.bodies.len()).filter(stays).any(|body| holds(&self.bodies[body]))
+        (0..self.bodies.len())
+            .filter(stays)
+            .any(|body| holds(&self.bodies[body]))
     }
 
     /// What the strength of the start is divided by once the stages until the time `t` have begun.
@@ -170,7 +200,9 @@ impl Case {
     /// What water that may flow does once the stages until the time `t` have begun.
     pub(crate) fn water_at(&self, t: f64) -> Motion {
         let rests = self.stages.iter().any(|stage| stage.rests && self.has_begun(stage, t));
-        self.flow.as_ref().map_or(Motion::Flows, |flow| if rests { flow.at_rest } else { flow.motion })
+        self.flow
+            .as_ref()
+            .map_or(Motion::Flows, |flow| if rests { flow.at_rest } else { flow.motion })
     }
 
     /// When the stage of a name ends (s, or pseudo-time): as the next one begins. `"start"`, of what is before the
@@ -191,10 +223,18 @@ impl Case {
         // From the last row before which it has another value; it begins with none.
         let rests = |rows: &Shares| {
             let values = std::iter::once(Vector::zeros()).chain(rows.iter().map(|row| row.1));
-            rows.iter().zip(values).filter(|(row, before)| row.1 != *before).map(|(row, _)| row.0).fold(0.0, f64::max)
+            rows.iter()
+                .zip(values)
+                .filter(|(row, before)| row.1 != *before)
+                .map(|(row, _)| row.0)
+                .fold(0.0, f64::max)
         };
         let tractions = self.tractions.iter().map(|load| load.ramp.max(rests(&load.amplitude)));
-        let loads = tractions.chain(self.point_loads.iter().map(|load| load.ramp.max(rests(&load.amplitude))));
+        let loads = tractions.chain(
+            self.point_loads
+                .iter()
+                .map(|load| load.ramp.max(rests(&load.amplitude))),
+        );
         let acting = loads
             .enumerate()
             .filter_map(|(load, grows)| self.acts_since(Acting::Load(load), before).map(|since| since + grows));
@@ -211,14 +251,18 @@ impl Case {
     pub(crate) fn grows_from(&self, load: usize) -> bool {
         let tractions = self.tractions.iter().map(|of| (of.ramp, &of.amplitude));
         let mut all = tractions.chain(self.point_loads.iter().map(|of| (of.ramp, &of.amplitude)));
-        all.nth(load).is_some_and(|(ramp, amplitude)| ramp > 0.0 || !amplitude.is_empty())
+        all.nth(load)
+            .is_some_and(|(ramp, amplitude)| ramp > 0.0 || !amplitude.is_empty())
     }
 
     /// When the ground begins to shake, s; without end if it does not.
     pub(crate) fn shakes_from(&self) -> f64 {
         let first = self.shaking.iter().position(|(_, ground)| *ground != [0.0; 3]);
         // Linear between rows, from none at 0.
-        first.map_or(f64::INFINITY, |first| if first == 0 { 0.0 } else { self.shaking[first - 1].0 })
+        first.map_or(
+            f64::INFINITY,
+            |first| if first == 0 { 0.0 } else { self.shaking[first - 1].0 },
+        )
     }
 
     /// Whether a strip that acts until a time moves later.
@@ -226,7 +270,9 @@ impl Case {
         let before = self.just_before(until);
         let footing = self.footing.iter().map(|of| &of.path);
         let paths = footing.chain(self.prescribed.iter().map(|of| &of.path));
-        let acting = paths.enumerate().filter(|(strip, _)| self.acts_since(Acting::Strip(*strip), before).is_some());
+        let acting = paths
+            .enumerate()
+            .filter(|(strip, _)| self.acts_since(Acting::Strip(*strip), before).is_some());
         let moves = |path: &MotionPath| {
             let next = path.rows.partition_point(|row| row.0 <= until * (1.0 + 1e-9));
             let last = next.checked_sub(1).map_or([0.0; 3], |last| path.rows[last].1);
@@ -245,11 +291,17 @@ impl Case {
         let (mut faces, divided) = (Vec::new(), self.divided_at(t));
         for (axis, upper) in (0..self.geometry.dims()).flat_map(|axis| [(axis, false), (axis, true)]) {
             let face = Face { axis, upper };
-            let (support, contact) = (self.boundary[axis][usize::from(upper)], self.contacts[axis][usize::from(upper)]);
+            let (support, contact) = (
+                self.boundary[axis][usize::from(upper)],
+                self.contacts[axis][usize::from(upper)],
+            );
             let mut begun = self.stages.iter().rev().filter(|stage| self.has_begun(stage, t));
             let changed = begun.find_map(|stage| stage.faces.iter().find(|of| of.face == face));
             let mut of = *changed.unwrap_or(&FaceSupport { face, support, contact });
-            of.contact = of.contact.map(|contact| Contact { friction: contact.friction / divided, ..contact });
+            of.contact = of.contact.map(|contact| Contact {
+                friction: contact.friction / divided,
+                ..contact
+            });
             faces.push(of);
         }
         faces
@@ -266,7 +318,11 @@ impl Case {
     pub fn materials_at(&self, t: f64) -> Vec<NamedMaterial> {
         let divided = self.divided_at(t);
         let mut followed: Vec<usize> = (0..self.materials.len()).collect();
-        let exchanges = self.stages.iter().filter(|stage| self.has_begun(stage, t)).flat_map(|stage| &stage.materials);
+        let exchanges = self
+            .stages
+            .iter()
+            .filter(|stage| self.has_begun(stage, t))
+            .flat_map(|stage| &stage.materials);
         exchanges.for_each(|&(from, to)| followed[from] = to);
         let of = |(own, followed): (&NamedMaterial, usize)| NamedMaterial {
             density: own.density,
@@ -286,19 +342,34 @@ impl Case {
             (0..self.bodies.len()).any(|body| self.bodies[body].material == number && self.is_there(body, t))
         };
         let there: Vec<bool> = (0..self.materials.len()).map(is_there).collect();
-        self.materials_at(t).into_iter().zip(there).filter_map(|(named, is_there)| is_there.then_some(named))
+        self.materials_at(t)
+            .into_iter()
+            .zip(there)
+            .filter_map(|(named, is_there)| is_there.then_some(named))
     }
 
     /// Whether a face, a strip or a rigid body has friction once the stages until the time `t` have begun.
     pub fn has_friction_at(&self, t: f64) -> bool {
         let acts = |what: Acting| self.acts_since(what, t).is_some();
         let footing = self.footing.iter().map(|footing| footing.contact);
-        let strips = footing.chain(self.prescribed.iter().map(|prescribed| prescribed.contact)).enumerate();
+        let strips = footing
+            .chain(self.prescribed.iter().map(|prescribed| prescribed.contact))
+            .enumerate();
         let strips = strips.filter(|(number, _)| acts(Acting::Strip(*number)));
         let strips = strips.filter_map(|(_, contact)| Some(contact?.law.friction));
-        let rigid = self.rigid.iter().enumerate().filter(|(number, _)| acts(Acting::Rigid(*number)));
-        let faces = self.faces_at(t).into_iter().filter_map(|face| Some(face.contact?.friction));
-        faces.chain(strips).chain(rigid.map(|(_, rigid)| rigid.friction)).any(|friction| friction > 0.0)
+        let rigid = self
+            .rigid
+            .iter()
+            .enumerate()
+            .filter(|(number, _)| acts(Acting::Rigid(*number)));
+        let faces = self
+            .faces_at(t)
+            .into_iter()
+            .filter_map(|face| Some(face.contact?.friction));
+        faces
+            .chain(strips)
+            .chain(rigid.map(|(_, rigid)| rigid.friction))
+            .any(|friction| friction > 0.0)
     }
 
     /// Whether bodies follow the law of a material at some time.
@@ -318,12 +389,18 @@ impl Case {
 
     /// Whether a body is there from the start to the end.
     pub fn lasts(&self, body: usize) -> bool {
-        self.stages.iter().all(|stage| !stage.add.contains(&body) && !stage.remove.contains(&body))
+        self.stages
+            .iter()
+            .all(|stage| !stage.add.contains(&body) && !stage.remove.contains(&body))
     }
 
     /// The bodies that are there before the first step.
     pub fn bodies_at_start(&self) -> impl Iterator<Item = &Body> {
-        self.bodies.iter().enumerate().filter(|(number, _)| self.is_there(*number, 0.0)).map(|(_, body)| body)
+        self.bodies
+            .iter()
+            .enumerate()
+            .filter(|(number, _)| self.is_there(*number, 0.0))
+            .map(|(_, body)| body)
     }
 
     /// Ids of every body's points: they count body by body.

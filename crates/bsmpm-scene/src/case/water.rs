@@ -43,28 +43,52 @@ impl Case {
         let named = &self.materials[body.material];
         let density = named.density.unwrap_or(0.0);
         let table = self.water.as_ref().and_then(|water| water.table.table(at[0], 0.0));
-        let Some((saturated, (table, slope))) = named.saturated.zip(table) else { return density };
+        let Some((saturated, (table, slope))) = named.saturated.zip(table) else {
+            return density;
+        };
         // The lower side of its cell along an axis, and the length of its part of that.
         let part = |(axis, at): (&GridAxis, f64)| {
-            let cell = axis.first_cell(|cell| axis.lower() + axis.breakpoint(cell + 1) > at).min(axis.cells() - 1);
-            (axis.lower() + axis.breakpoint(cell), axis.cell(cell) / body.points_per_cell as f64)
+            let cell = axis
+                .first_cell(|cell| axis.lower() + axis.breakpoint(cell + 1) > at)
+                .min(axis.cells() - 1);
+            (
+                axis.lower() + axis.breakpoint(cell),
+                axis.cell(cell) / body.points_per_cell as f64,
+            )
         };
         let parts: Vec<(f64, f64)> = self.grid.axes.iter().zip(at).map(part).collect();
         let up = parts.len() - 1;
         let filled = volume / parts.iter().map(|(_, length)| length).product::<f64>();
-        let flows = self.flow.as_ref().is_some_and(|flow| flow.soils[body.material].is_some());
-        let span = if flows { Span::default() } else { Span::of(at[up] - parts[up].0, parts[up].1, filled) };
+        let flows = self
+            .flow
+            .as_ref()
+            .is_some_and(|flow| flow.soils[body.material].is_some());
+        let span = if flows {
+            Span::default()
+        } else {
+            Span::of(at[up] - parts[up].0, parts[up].1, filled)
+        };
         density + span.under(slope).share_below(table - at[up]) * (saturated - density)
     }
 
     /// Pa  weight of a body vertically above `at` (m, in the case's coordinates) under the acceleration `g` (m/s2),
     /// less the water's uplift.
     pub(super) fn weight_above(&self, body: &Body, at: [f64; 3], g: f64) -> f64 {
-        let (named, all, up) = (&self.materials[body.material], body.region.above(at), self.grid.dims() - 1);
-        let Some((water, table)) = self.water.as_ref().zip(self.table(at[0])) else { return 0.0 };
+        let (named, all, up) = (
+            &self.materials[body.material],
+            body.region.above(at),
+            self.grid.dims() - 1,
+        );
+        let Some((water, table)) = self.water.as_ref().zip(self.table(at[0])) else {
+            return 0.0;
+        };
         let mut surface = at;
         surface[up] = table;
-        let dry = if table > at[up] { body.region.above(surface) } else { all };
+        let dry = if table > at[up] {
+            body.region.above(surface)
+        } else {
+            all
+        };
         let density = named.density.unwrap_or(0.0);
         let saturated = named.saturated.unwrap_or(density);
         g * density * dry + (g * saturated - water.unit_weight) * (all - dry)

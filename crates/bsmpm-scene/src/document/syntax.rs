@@ -13,7 +13,11 @@ pub(super) struct SyntaxError<'a> {
 
 /// Reports the errors, one for each line; behind a bracket that is not closed nothing is sure, and nothing reported.
 pub(super) fn report_all(source: &Source<'_>, errors: &[SyntaxError<'_>], report: &mut Report<'_>) {
-    let unclosed = if errors.is_empty() { None } else { unclosed_bracket(source.text) };
+    let unclosed = if errors.is_empty() {
+        None
+    } else {
+        unclosed_bracket(source.text)
+    };
     let mut last_line = None;
     let mut duplicates: Vec<&str> = Vec::new();
     // Where a table that is given twice begins, whose keys are not given twice then.
@@ -33,8 +37,12 @@ pub(super) fn report_all(source: &Source<'_>, errors: &[SyntaxError<'_>], report
         let line = source.line(span.start);
         let is_behind = unclosed.as_ref().is_some_and(|bracket| bracket.at <= span.start);
         let name = &source.text[span.clone()];
-        let is_in_repeated = repeated
-            .is_some_and(|from| source.text[from..span.start].lines().skip(1).all(|line| header(line).is_none()));
+        let is_in_repeated = repeated.is_some_and(|from| {
+            source.text[from..span.start]
+                .lines()
+                .skip(1)
+                .all(|line| header(line).is_none())
+        });
         let is_repeated = error.message == DUPLICATE && (duplicates.contains(&name) || is_in_repeated);
         if is_behind || is_repeated || last_line == Some(line) {
             continue;
@@ -71,13 +79,24 @@ fn explained(source: &Source<'_>, span: &std::ops::Range<usize>, message: &str) 
     if message == DUPLICATE {
         return duplicate(source, span, line);
     }
-    let value = line.split_once('=').map_or("", |(_, value)| value.split('#').next().unwrap_or(value).trim());
+    let value = line
+        .split_once('=')
+        .map_or("", |(_, value)| value.split('#').next().unwrap_or(value).trim());
     if let Some(number) = with_decimal_comma(value) {
-        return format!("E0042: `{}` has a decimal comma. Write a decimal point: {number}.", shortened(value));
+        return format!(
+            "E0042: `{}` has a decimal comma. Write a decimal point: {number}.",
+            shortened(value)
+        );
     }
-    if let Some(value) = [value, item_at(source.text, span.start)].into_iter().find(|value| is_number_with_unit(value))
+    if let Some(value) = [value, item_at(source.text, span.start)]
+        .into_iter()
+        .find(|value| is_number_with_unit(value))
     {
-        return format!("E0043: `{}` has a unit, but no quotes. Write \"{}\".", shortened(value), shortened(value));
+        return format!(
+            "E0043: `{}` has a unit, but no quotes. Write \"{}\".",
+            shortened(value),
+            shortened(value)
+        );
     }
     let remedy = match source.line(span.start) {
         1 => "Check that this is a case file, and correct the line.",
@@ -105,7 +124,9 @@ fn with_decimal_comma(value: &str) -> Option<String> {
 
 /// Whether a value is a number, a blank and a word.
 fn is_number_with_unit(value: &str) -> bool {
-    let Some((number, unit)) = value.split_once(' ') else { return false };
+    let Some((number, unit)) = value.split_once(' ') else {
+        return false;
+    };
     let is_unit = unit.chars().all(|c| c.is_alphanumeric() || "/^%°²³ ".contains(c));
     number.parse::<f64>().is_ok() && is_unit && unit.starts_with(|c: char| c.is_alphabetic() || "%°".contains(c))
 }
@@ -145,7 +166,11 @@ fn duplicate(source: &Source<'_>, span: &std::ops::Range<usize>, line: &str) -> 
 
 /// The brackets of a header in words.
 fn pairs(is_list: bool) -> &'static str {
-    if is_list { "two pairs of brackets" } else { "one pair of brackets" }
+    if is_list {
+        "two pairs of brackets"
+    } else {
+        "one pair of brackets"
+    }
 }
 
 /// The header of a table, or of one of a list.
@@ -206,7 +231,11 @@ fn unclosed_bracket(text: &str) -> Option<UnclosedBracket> {
         if let Some(&(at, opening)) = open.first()
             && (header(line).is_some() || is_in_list && is_entry(line))
         {
-            return Some(UnclosedBracket { at, opening, behind: start });
+            return Some(UnclosedBracket {
+                at,
+                opening,
+                behind: start,
+            });
         }
         let value = if open.is_empty() { value_of(line) } else { Some(0) };
         start = match value {
@@ -216,7 +245,11 @@ fn unclosed_bracket(text: &str) -> Option<UnclosedBracket> {
         start = text[start..].find('\n').map_or(text.len(), |length| start + length + 1);
     }
     let (at, opening) = *open.first()?;
-    Some(UnclosedBracket { at, opening, behind: text.len() })
+    Some(UnclosedBracket {
+        at,
+        opening,
+        behind: text.len(),
+    })
 }
 
 /// Byte at which the value of an entry begins in its line, if the line is one.
@@ -250,7 +283,11 @@ fn scan_value(text: &str, from: usize, open: &mut Vec<(usize, char)>) -> Option<
 fn end_of_string(text: &str, start: usize) -> Option<usize> {
     let quote = &text[start..=start];
     let long = quote.repeat(3);
-    let delimiter = if text[start..].starts_with(&long) { long.as_str() } else { quote };
+    let delimiter = if text[start..].starts_with(&long) {
+        long.as_str()
+    } else {
+        quote
+    };
     let mut at = start + delimiter.len();
     loop {
         let rest = &text[at..];
@@ -265,7 +302,9 @@ fn end_of_string(text: &str, start: usize) -> Option<usize> {
 
 /// Whether a line begins with a key and `=`.
 fn is_entry(line: &str) -> bool {
-    let Some((key, _)) = line.split_once('=') else { return false };
+    let Some((key, _)) = line.split_once('=') else {
+        return false;
+    };
     let key = key.trim();
     key.starts_with(|c: char| c.is_ascii_alphabetic())
         && key.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c))
@@ -307,7 +346,10 @@ mod tests {
             "case.toml:1:14: error E0044: `a` is given twice, here and in line 1. Delete one of them."
         );
         let table = only("[m.s]\na = 1\n[m.s]\nb = 2\n");
-        assert!(table.contains("the table [m.s] is given twice, here and in line 1."), "{table}");
+        assert!(
+            table.contains("the table [m.s] is given twice, here and in line 1."),
+            "{table}"
+        );
         let list = only("[body]\na=1\n[[body]]\na=2\n[[body]]\na=3\n");
         assert!(list.contains("Write [[body]] in both lines."), "{list}");
     }

@@ -23,7 +23,13 @@ impl DocumentTable {
                 value => _ = writeln!(text, "{key} = {}", inline(value)),
             }
         }
-        let below = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+        let below = |key: &str| {
+            if path.is_empty() {
+                key.to_owned()
+            } else {
+                format!("{path}.{key}")
+            }
+        };
         for (key, table) in tables {
             let path = below(&key);
             _ = writeln!(text, "\n[{path}]");

@@ -34,7 +34,10 @@ impl PlaneShape {
     pub(crate) fn of(record: &Record) -> Option<Self> {
         if let Some(shape) = record.record("box") {
             let ([x, y], [to_x, to_y]) = (shape.pair("lower")?, shape.pair("upper")?);
-            return Some(Self { corners: vec![[x, y], [to_x, y], [to_x, to_y], [x, to_y]], is_round: false });
+            return Some(Self {
+                corners: vec![[x, y], [to_x, y], [to_x, to_y], [x, to_y]],
+                is_round: false,
+            });
         }
         if let Some(circle) = record.record("circle") {
             let ([x, y], radius) = (circle.pair("centre")?, circle.number("radius")?);
@@ -44,11 +47,20 @@ impl PlaneShape {
                 let (sin, cos) = (k as f64 * angle).sin_cos();
                 [x + radius * cos, y + radius * sin]
             };
-            return Some(Self { corners: (0..SIDES).map(corner).collect(), is_round: true });
+            return Some(Self {
+                corners: (0..SIDES).map(corner).collect(),
+                is_round: true,
+            });
         }
-        let corners: Vec<[f64; 2]> =
-            record.rows("polygon")?.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();
-        (corners.len() >= 3).then_some(Self { corners, is_round: false })
+        let corners: Vec<[f64; 2]> = record
+            .rows("polygon")?
+            .iter()
+            .map(|row| [row.numbers[0], row.numbers[1]])
+            .collect();
+        (corners.len() >= 3).then_some(Self {
+            corners,
+            is_round: false,
+        })
     }
 
     /// Whether a place lies inside: a ray to the right crosses its sides an odd number of times.
@@ -86,10 +98,18 @@ impl PlaneShape {
         for (edge, side) in self.sides().enumerate().step_by(every) {
             let Some([a, b]) = clipped(side, bounds) else { continue };
             let along = Vector::from([b[0] - a[0], b[1] - a[1], 0.0]);
-            let Some(normal) = Vector::from([-along[1], along[0], 0.0]).try_normalize(0.0) else { continue };
+            let Some(normal) = Vector::from([-along[1], along[0], 0.0]).try_normalize(0.0) else {
+                continue;
+            };
             for piece in 0..pieces {
                 let at = Vector::from([a[0], a[1], 0.0]) + along * ((piece as f64 + 0.5) / pieces as f64);
-                points.push(SurfacePoint { at, normal, half: along * (0.5 / pieces as f64), edge, kind });
+                points.push(SurfacePoint {
+                    at,
+                    normal,
+                    half: along * (0.5 / pieces as f64),
+                    edge,
+                    kind,
+                });
             }
         }
         points
@@ -117,7 +137,10 @@ fn clipped([a, b]: [[f64; 2]; 2], [lower, upper]: [[f64; 2]; 2]) -> Option<[[f64
 impl PlaneBody {
     pub(crate) fn of(record: &Record) -> Option<Self> {
         let cuts: Option<Vec<PlaneShape>> = record.records("subtract").iter().map(PlaneShape::of).collect();
-        Some(Self { whole: PlaneShape::of(record)?, cuts: cuts? })
+        Some(Self {
+            whole: PlaneShape::of(record)?,
+            cuts: cuts?,
+        })
     }
 
     pub(crate) fn contains(&self, at: [f64; 2]) -> bool {

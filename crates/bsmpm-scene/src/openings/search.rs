@@ -65,7 +65,9 @@ pub(crate) fn in_plane(root: &Record, faces: &GridFaces) -> Vec<BodyOpening> {
             let Some(body) = body else { continue };
             let bounds = body.bounds().map(flat);
             let is_there = |other: usize, at: [f64; 2]| bodies[other].as_ref().is_some_and(|body| body.contains(at));
-            let others: Vec<usize> = (0..bodies.len()).filter(|&other| other != number && there[other]).collect();
+            let others: Vec<usize> = (0..bodies.len())
+                .filter(|&other| other != number && there[other])
+                .collect();
             let is_other = |[x, y, _]: [f64; 3]| {
                 others.iter().any(|&other| is_there(other, [x, y])) || rigid.iter().any(|shape| shape.contains([x, y]))
             };
@@ -89,17 +91,30 @@ pub(crate) fn in_plane(root: &Record, faces: &GridFaces) -> Vec<BodyOpening> {
 
 /// Those of the bodies of a case in space: of what is cut out of them.
 pub(crate) fn in_space(case: &Case, root: &Record, faces: &GridFaces) -> Vec<BodyOpening> {
-    let boxes: Vec<[[f64; 3]; 2]> = case.rigid.iter().filter_map(|rigid| solid_corners(&rigid.shape)).collect();
+    let boxes: Vec<[[f64; 3]; 2]> = case
+        .rigid
+        .iter()
+        .filter_map(|rigid| solid_corners(&rigid.shape))
+        .collect();
     let is_in = |[lower, upper]: &[[f64; 3]; 2], at: [f64; 3]| {
         (0..3).all(|axis| lower[axis] <= at[axis] && at[axis] <= upper[axis])
     };
     let mut found: Vec<BodyOpening> = Vec::new();
     for there in phases(root) {
-        for (number, record) in root.records("body").iter().enumerate().filter(|(number, _)| there[*number]) {
+        for (number, record) in root
+            .records("body")
+            .iter()
+            .enumerate()
+            .filter(|(number, _)| there[*number])
+        {
             let region = &case.bodies[number].region;
-            let others: Vec<usize> = (0..case.bodies.len()).filter(|&other| other != number && there[other]).collect();
+            let others: Vec<usize> = (0..case.bodies.len())
+                .filter(|&other| other != number && there[other])
+                .collect();
             let is_other = |at: [f64; 3]| {
-                others.iter().any(|&other| case.bodies[other].region.contains_in_space(at))
+                others
+                    .iter()
+                    .any(|&other| case.bodies[other].region.contains_in_space(at))
                     || boxes.iter().any(|corners| is_in(corners, at))
             };
             let surroundings = Surroundings {
@@ -157,5 +172,9 @@ pub(crate) fn phases(root: &Record) -> Vec<Vec<bool>> {
 /// Whether a key of a stage names a body.
 fn names(stage: &Record, key: &str, body: &Record) -> bool {
     let name = body.text("name");
-    stage.names(key).unwrap_or_default().iter().any(|listed| Some(listed.as_str()) == name)
+    stage
+        .names(key)
+        .unwrap_or_default()
+        .iter()
+        .any(|listed| Some(listed.as_str()) == name)
 }

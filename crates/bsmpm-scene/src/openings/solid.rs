@@ -36,15 +36,29 @@ pub(crate) fn surface_points(record: &Record, bounds: [[f64; 3]; 2]) -> Option<V
         let corner = |numbers: &[f64], k: usize| Vector::from([0, 1, 2].map(|axis| scale * numbers[3 * k + axis]));
         let rows = shape.rows("triangles")?;
         let every = rows.len().div_ceil(MOST_TRIANGLES).max(1);
-        let triangles = rows.iter().step_by(every).map(|row| [0, 1, 2].map(|k| corner(&row.numbers, k)));
-        return Some(triangles.enumerate().filter_map(|(edge, corners)| triangle(corners, edge)).collect());
+        let triangles = rows
+            .iter()
+            .step_by(every)
+            .map(|row| [0, 1, 2].map(|k| corner(&row.numbers, k)));
+        return Some(
+            triangles
+                .enumerate()
+                .filter_map(|(edge, corners)| triangle(corners, edge))
+                .collect(),
+        );
     }
     Some(Vec::new())
 }
 
 fn triangle([a, b, c]: [Vector<3>; 3], edge: usize) -> Option<SurfacePoint> {
     let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
-    Some(SurfacePoint { at: (a + b + c) / 3.0, normal, half: Vector::zeros(), edge, kind: SurfaceKind::Smooth })
+    Some(SurfacePoint {
+        at: (a + b + c) / 3.0,
+        normal,
+        half: Vector::zeros(),
+        edge,
+        kind: SurfaceKind::Smooth,
+    })
 }
 
 /// Middles of the faces of a cuboid, as far as they lie within another one, m.
@@ -58,7 +72,13 @@ fn cuboid(corners: [[f64; 3]; 2], bounds: [[f64; 3]; 2]) -> Vec<SurfacePoint> {
         let normal = Vector::<3>::from_fn(|component, _| f64::from(u8::from(component == axis)));
         let mut half = 0.5 * (upper - lower);
         half[axis] = 0.0;
-        SurfacePoint { at, normal, half, edge, kind: SurfaceKind::Flat }
+        SurfacePoint {
+            at,
+            normal,
+            half,
+            edge,
+            kind: SurfaceKind::Flat,
+        }
     };
     (0..6).map(face).collect()
 }
@@ -72,7 +92,13 @@ fn sphere(center: Vector<3>, radius: f64) -> Vec<SurfacePoint> {
             let (sin, cos) = (azimuth as f64 * std::f64::consts::TAU / AZIMUTHS as f64).sin_cos();
             let normal = Vector::from([up.cos() * cos, up.cos() * sin, up.sin()]);
             let (edge, half) = (points.len(), Vector::zeros());
-            points.push(SurfacePoint { at: center + normal * radius, normal, half, edge, kind: SurfaceKind::Round });
+            points.push(SurfacePoint {
+                at: center + normal * radius,
+                normal,
+                half,
+                edge,
+                kind: SurfaceKind::Round,
+            });
         }
     }
     points
@@ -81,7 +107,9 @@ fn sphere(center: Vector<3>, radius: f64) -> Vec<SurfacePoint> {
 /// Sides of an outline at the middle of its length within a cuboid (m), and its ends.
 fn extruded(shape: &Record, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> {
     let outline = PlaneShape::of(shape)?;
-    let along = [Axis::X, Axis::Y, Axis::Z].iter().position(|axis| Some(*axis) == shape.word::<Axis>("along"))?;
+    let along = [Axis::X, Axis::Y, Axis::Z]
+        .iter()
+        .position(|axis| Some(*axis) == shape.word::<Axis>("along"))?;
     let (from, to) = (shape.number("from")?, shape.number("to")?);
     let [across, up] = plane(along);
     let placed = |flat: Vector<3>| {
@@ -100,10 +128,16 @@ fn extruded(shape: &Record, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> 
         edge: point.edge,
         kind: point.kind,
     };
-    let mut points: Vec<SurfacePoint> =
-        outline.surface(bounds.map(|corner| [corner[across], corner[up]])).into_iter().map(side).collect();
+    let mut points: Vec<SurfacePoint> = outline
+        .surface(bounds.map(|corner| [corner[across], corner[up]]))
+        .into_iter()
+        .map(side)
+        .collect();
     let count = outline.corners.len();
-    let sum = outline.corners.iter().fold([0.0; 2], |sum, corner| [sum[0] + corner[0], sum[1] + corner[1]]);
+    let sum = outline
+        .corners
+        .iter()
+        .fold([0.0; 2], |sum, corner| [sum[0] + corner[0], sum[1] + corner[1]]);
     let center = placed(Vector::from([sum[0] / count as f64, sum[1] / count as f64, 0.0]));
     for (end, edge) in [(from, count), (to, count + 1)] {
         points.push(SurfacePoint {

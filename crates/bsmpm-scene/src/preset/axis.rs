@@ -51,7 +51,11 @@ impl Spacing {
         fixed.sort_by(f64::total_cmp);
         let mut breakpoints = vec![lower];
         for pair in fixed.windows(2) {
-            let inner = if self.fine.is_empty() { self.equal(pair)? } else { self.growing(pair)? };
+            let inner = if self.fine.is_empty() {
+                self.equal(pair)?
+            } else {
+                self.growing(pair)?
+            };
             breakpoints.extend(inner.into_iter().chain([pair[1]]));
         }
         ((breakpoints.len() as f64) <= MOST).then_some(breakpoints)
@@ -81,6 +85,11 @@ impl Spacing {
             ends.pop();
         }
         let whole = ends.pop()?;
-        Some(ends.get(1..)?.iter().map(|end| pair[0] + length * (end / whole)).collect())
+        Some(
+            ends.get(1..)?
+                .iter()
+                .map(|end| pair[0] + length * (end / whole))
+                .collect(),
+        )
     }
 }

@@ -37,8 +37,12 @@ impl Cells {
 
     /// m  the longest edge along an axis within a part of it
     pub(super) fn longest(&self, axis: usize, [lower, upper]: [f64; 2]) -> f64 {
-        let Some(breakpoints) = &self.breakpoints else { return self.edge };
-        let cells = breakpoints[axis].windows(2).filter(|cell| cell[0] < upper && cell[1] > lower);
+        let Some(breakpoints) = &self.breakpoints else {
+            return self.edge;
+        };
+        let cells = breakpoints[axis]
+            .windows(2)
+            .filter(|cell| cell[0] < upper && cell[1] > lower);
         cells.map(|cell| cell[1] - cell[0]).fold(0.0, f64::max)
     }
 
@@ -50,7 +54,9 @@ impl Cells {
             (x.min(y), self.longest(axis, [lower[axis], upper[axis]]))
         };
         let bodies = scene.root.records("body").iter().filter_map(around).map(thin);
-        bodies.filter(|(side, edge)| *side < fewest * edge).min_by(|a, b| a.0.total_cmp(&b.0))
+        bodies
+            .filter(|(side, edge)| *side < fewest * edge)
+            .min_by(|a, b| a.0.total_cmp(&b.0))
     }
 }
 
@@ -71,7 +77,10 @@ impl PresetScene<'_> {
     pub(super) fn cells(&self, preset: &Preset) -> Option<Cells> {
         let [lower, upper] = self.bounds()?;
         let side = (upper[0] - lower[0]).min(upper[1] - lower[1]);
-        let (size, why) = (side / preset.across, format!("{} cells across the bodies ({side} m)", preset.across));
+        let (size, why) = (
+            side / preset.across,
+            format!("{} cells across the bodies ({side} m)", preset.across),
+        );
         let (size, why) = self.wave_cell(size).unwrap_or((size, why));
         let mut zones = self.zones(preset, size)?;
         zones.extend(self.at_openings(preset, size));
@@ -82,13 +91,23 @@ impl PresetScene<'_> {
             return self.squares(size, why);
         }
         zones.extend(self.at_corners(preset, size));
-        if zones.is_empty() { self.equal(size, why) } else { self.graded(preset, (size, &why), &zones) }
+        if zones.is_empty() {
+            self.equal(size, why)
+        } else {
+            self.graded(preset, (size, &why), &zones)
+        }
     }
 
     /// Equal cells of about `size` (m). Along an axis between two faces that stay they come out whole.
     fn equal(&self, size: f64, why: String) -> Option<Cells> {
         let (ends, wanted) = (self.ends()?, self.wanted());
-        let edge = |axis: usize| Some(if self.stays(axis)? { whole(ends[axis], size) } else { size });
+        let edge = |axis: usize| {
+            Some(if self.stays(axis)? {
+                whole(ends[axis], size)
+            } else {
+                size
+            })
+        };
         let edges = [edge(0)?, edge(1)?];
         if !edges.iter().all(|edge| *edge > 0.0 && edge.is_finite()) {
             return None;
@@ -97,7 +116,11 @@ impl PresetScene<'_> {
             return Some(of_edges(edges, why));
         }
         let along = |axis: usize| {
-            let spacing = Spacing { cell: edges[axis], growth: 1.0, fine: Vec::new() };
+            let spacing = Spacing {
+                cell: edges[axis],
+                growth: 1.0,
+                fine: Vec::new(),
+            };
             spacing.breakpoints(ends[axis], &wanted[axis])
         };
         let why = format!("{why}, adjusted by up to half a cell to interfaces and to the ends of footings and loads");
@@ -122,15 +145,25 @@ impl PresetScene<'_> {
         let fitted = |edge: f64| [0, 1].map(|axis| if stays[axis] { whole(ends[axis], edge) } else { edge });
         let is_square = |[x, y]: &[f64; 2]| x.max(*y) <= SQUARE * x.min(*y);
         let all: Vec<[f64; 2]> = given.into_iter().chain(divided).map(fitted).filter(is_square).collect();
-        let edges = all.iter().find(|edges| self.on_lines(**edges) == Some(true)).or(all.first())?;
-        Some(of_edges(*edges, format!("{why}; equal squares, as a material has a band_width")))
+        let edges = all
+            .iter()
+            .find(|edges| self.on_lines(**edges) == Some(true))
+            .or(all.first())?;
+        Some(of_edges(
+            *edges,
+            format!("{why}; equal squares, as a material has a band_width"),
+        ))
     }
 
     /// Whether both faces across an axis stay where they are.
     fn stays(&self, axis: usize) -> Option<bool> {
         let boundary = self.root.record("boundary")?;
-        let moved: Vec<Side> =
-            self.root.records("prescribed").iter().filter_map(|motion| motion.word("face")).collect();
+        let moved: Vec<Side> = self
+            .root
+            .records("prescribed")
+            .iter()
+            .filter_map(|motion| motion.word("face"))
+            .collect();
         let gives_way = |side: Side| boundary.word(side.word()) == Some(Support::Free) && !moved.contains(&side);
         Some(!Side::ALL[axis].into_iter().any(gives_way))
     }
@@ -153,13 +186,21 @@ impl PresetScene<'_> {
         let (ends, mut wanted, growth) = (self.ends()?, self.wanted(), preset.growth);
         for segment in self.segments().filter(|segment| !segment.is_rigid()) {
             // The surface under a strip, or the wall beside it.
-            segment.along().into_iter().for_each(|along| wanted[1 - along].push(segment.ends[0][1 - along]));
+            segment
+                .along()
+                .into_iter()
+                .for_each(|along| wanted[1 - along].push(segment.ends[0][1 - along]));
         }
         let along = |axis: usize| {
             let fine: Vec<Fine> = zones.iter().map(|zone| zone.ranges[axis]).collect();
             let edges = fine.iter().flat_map(|range| [range.lower, range.upper]);
             let wanted: Vec<f64> = wanted[axis].iter().copied().chain(edges).collect();
-            Spacing { cell: size, growth, fine }.breakpoints(ends[axis], &wanted)
+            Spacing {
+                cell: size,
+                growth,
+                fine,
+            }
+            .breakpoints(ends[axis], &wanted)
         };
         let around = match (zones.iter().any(|zone| zone.acts), zones.iter().all(|zone| zone.acts)) {
             (_, true) => "footings and loads",
@@ -173,18 +214,30 @@ impl PresetScene<'_> {
         for Zone { ranges, why, acts } in zones {
             let edges = [0, 1].map(|axis| cells.longest(axis, [ranges[axis].lower, ranges[axis].upper]));
             let range = |axis: usize| {
-                let [lower, upper] =
-                    [ranges[axis].lower.max(ends[axis][0]), ranges[axis].upper.min(ends[axis][1])].map(brief);
+                let [lower, upper] = [
+                    ranges[axis].lower.max(ends[axis][0]),
+                    ranges[axis].upper.min(ends[axis][1]),
+                ]
+                .map(brief);
                 format!("{} = {lower} to {upper}", NAMES[axis])
             };
             if *acts {
                 cells.edge = edges.into_iter().fold(cells.edge, f64::min);
             }
-            let value = format!("{} by {} m at {}, {}", brief(edges[0]), brief(edges[1]), range(0), range(1));
+            let value = format!(
+                "{} by {} m at {}, {}",
+                brief(edges[0]),
+                brief(edges[1]),
+                range(0),
+                range(1)
+            );
             cells.sizes.push((value, why.clone()));
         }
         let longest = [0, 1].map(|axis| brief(cells.longest(axis, ends[axis])));
-        cells.sizes.push((format!("up to {} by {} m elsewhere", longest[0], longest[1]), String::new()));
+        cells.sizes.push((
+            format!("up to {} by {} m elsewhere", longest[0], longest[1]),
+            String::new(),
+        ));
         Some(cells)
     }
 
@@ -198,7 +251,11 @@ impl PresetScene<'_> {
             let range = |axis: usize| {
                 let along = || places.iter().map(|place| place[axis]);
                 let lower = along().fold(f64::INFINITY, f64::min) - reach;
-                Fine { lower, upper: along().fold(f64::NEG_INFINITY, f64::max) + reach, cell }
+                Fine {
+                    lower,
+                    upper: along().fold(f64::NEG_INFINITY, f64::max) + reach,
+                    cell,
+                }
             };
             let half = if cut { ", half of it modelled" } else { "" };
             let why = format!(
@@ -208,7 +265,11 @@ impl PresetScene<'_> {
                 brief(width),
                 preset.reach
             );
-            (cell > 0.0 && cell < size).then(|| Zone { ranges: [range(0), range(1)], why, acts: true })
+            (cell > 0.0 && cell < size).then(|| Zone {
+                ranges: [range(0), range(1)],
+                why,
+                acts: true,
+            })
         };
         Some(self.segments().filter_map(zone).collect())
     }
@@ -218,13 +279,21 @@ impl PresetScene<'_> {
         let zone = |opening: PresetOpening| {
             let (cell, reach) = (opening.width / preset.opening, preset.reach * opening.width);
             let [lower, upper] = opening.bounds;
-            let range = |axis: usize| Fine { lower: lower[axis] - reach, upper: upper[axis] + reach, cell };
+            let range = |axis: usize| Fine {
+                lower: lower[axis] - reach,
+                upper: upper[axis] + reach,
+                cell,
+            };
             let (across, width) = (preset.opening, brief(opening.width));
             let why = format!(
                 "{across} cells across the hole or notch {} ({width} m), and {} widths around it",
                 opening.name, preset.reach
             );
-            (cell > 0.0 && cell < size).then(|| Zone { ranges: [range(0), range(1)], why, acts: false })
+            (cell > 0.0 && cell < size).then(|| Zone {
+                ranges: [range(0), range(1)],
+                why,
+                acts: false,
+            })
         };
         self.openings().into_iter().filter_map(zone).collect()
     }
@@ -233,10 +302,21 @@ impl PresetScene<'_> {
     fn at_corners(&self, preset: &Preset, size: f64) -> Vec<Zone> {
         let (cell, reach) = (size / preset.corner, AT_CORNER * size / preset.corner);
         let zone = |at: [f64; 2]| {
-            let range = |axis: usize| Fine { lower: at[axis] - reach, upper: at[axis] + reach, cell };
+            let range = |axis: usize| Fine {
+                lower: at[axis] - reach,
+                upper: at[axis] + reach,
+                cell,
+            };
             let place = at.map(brief);
-            let why = format!("1/{} of the other cells, at the re-entrant corner {place:?}", preset.corner);
-            Zone { ranges: [range(0), range(1)], why, acts: false }
+            let why = format!(
+                "1/{} of the other cells, at the re-entrant corner {place:?}",
+                preset.corner
+            );
+            Zone {
+                ranges: [range(0), range(1)],
+                why,
+                acts: false,
+            }
         };
         self.re_entrant_corners().into_iter().map(zone).collect()
     }
@@ -247,10 +327,15 @@ impl PresetScene<'_> {
         let [from, to] = segment.ends;
         let length = (to[0] - from[0]).hypot(to[1] - from[1]);
         let at_roller = |axis: usize, side: usize| {
-            let support = self.root.record("boundary").and_then(|boundary| boundary.word(Side::ALL[axis][side].word()));
+            let support = self
+                .root
+                .record("boundary")
+                .and_then(|boundary| boundary.word(Side::ALL[axis][side].word()));
             support == Some(Support::Roller) && segment.ends.iter().any(|end| end[axis] == ends[axis][side])
         };
-        let cut = segment.along().is_some_and(|axis| at_roller(axis, 0) != at_roller(axis, 1));
+        let cut = segment
+            .along()
+            .is_some_and(|axis| at_roller(axis, 0) != at_roller(axis, 1));
         (if cut { 2.0 * length } else { length }, cut)
     }
 
@@ -266,7 +351,10 @@ impl PresetScene<'_> {
     fn wanted(&self) -> [Vec<f64>; 2] {
         let mut wanted = [Vec::new(), Vec::new()];
         for segment in self.segments() {
-            wanted.iter_mut().zip(segment.lines()).for_each(|(wanted, lines)| wanted.extend(lines));
+            wanted
+                .iter_mut()
+                .zip(segment.lines())
+                .for_each(|(wanted, lines)| wanted.extend(lines));
         }
         if self.materials().count() > 1 {
             for (a, b) in self.sides() {
@@ -285,15 +373,37 @@ fn whole([lower, upper]: [f64; 2], size: f64) -> f64 {
 
 /// Equal cells with these edges (m).
 fn of_edges([x, y]: [f64; 2], why: String) -> Cells {
-    let value = if x == y { format!("{x:?}") } else { format!("[{x:?}, {y:?}]") };
-    Cells { keys: ["cell", "knots"], value, edge: x.min(y), why, sizes: Vec::new(), breakpoints: None }
+    let value = if x == y {
+        format!("{x:?}")
+    } else {
+        format!("[{x:?}, {y:?}]")
+    };
+    Cells {
+        keys: ["cell", "knots"],
+        value,
+        edge: x.min(y),
+        why,
+        sizes: Vec::new(),
+        breakpoints: None,
+    }
 }
 
 /// Cells with these breakpoints (m).
 fn of_breakpoints(breakpoints: [Vec<f64>; 2], why: String) -> Option<Cells> {
-    let shortest = |of: &[f64]| of.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+    let shortest = |of: &[f64]| {
+        of.windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .fold(f64::INFINITY, f64::min)
+    };
     let edge = shortest(&breakpoints[0]).min(shortest(&breakpoints[1]));
     let value = format!("{{ x = {:?}, y = {:?} }}", breakpoints[0], breakpoints[1]);
-    let cells = Cells { keys: ["knots", "cell"], value, edge, why, sizes: Vec::new(), breakpoints: Some(breakpoints) };
+    let cells = Cells {
+        keys: ["knots", "cell"],
+        value,
+        edge,
+        why,
+        sizes: Vec::new(),
+        breakpoints: Some(breakpoints),
+    };
     (edge > 0.0).then_some(cells)
 }

@@ -49,15 +49,22 @@ impl PresetScene<'_> {
         let rigid: Vec<PlaneShape> = self.root.records("rigid").iter().filter_map(PlaneShape::of).collect();
         let mut found: Vec<[f64; 2]> = Vec::new();
         for there in openings::phases(self.root) {
-            let there: Vec<&PlaneBody> =
-                bodies.iter().zip(&there).filter_map(|(body, there)| body.as_ref().filter(|_| *there)).collect();
+            let there: Vec<&PlaneBody> = bodies
+                .iter()
+                .zip(&there)
+                .filter_map(|(body, there)| body.as_ref().filter(|_| *there))
+                .collect();
             for body in &there {
                 let planes = faces.planes(body.bounds().map(|[x, y]| [x, y, 0.0]));
                 let is_material = |at: [f64; 2]| {
                     let [x, y, _] = openings::folded(&planes, [at[0], at[1], 0.0]);
                     there.iter().any(|body| body.contains([x, y]))
                 };
-                for (at, side) in body.shapes().filter(|shape| !shape.is_round).flat_map(|shape| shape.vertices()) {
+                for (at, side) in body
+                    .shapes()
+                    .filter(|shape| !shape.is_round)
+                    .flat_map(|shape| shape.vertices())
+                {
                     let around = places(at, NEAR * side).filter(|at| is_material(*at)).count();
                     let is_held = places(at, NEAR * side).any(|at| rigid.iter().any(|body| body.contains(at)));
                     if (RE_ENTRANT..DIRECTIONS).contains(&around) && !is_held && !found.contains(&at) {
@@ -73,7 +80,11 @@ impl PresetScene<'_> {
     fn faces(&self) -> Option<GridFaces> {
         let [x, y] = self.ends()?;
         let corners = [0, 1].map(|side| [x[side], y[side], 0.0]);
-        Some(GridFaces { corners, supports: validate::boundary(self.root)?, dims: 2 })
+        Some(GridFaces {
+            corners,
+            supports: validate::boundary(self.root)?,
+            dims: 2,
+        })
     }
 }
 

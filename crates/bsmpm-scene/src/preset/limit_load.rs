@@ -31,18 +31,40 @@ pub(super) fn fill(
     overrides: &[String],
     report: &mut Report<'_>,
 ) -> bool {
-    let Some((purpose, origin)) = chosen(document) else { return false };
+    let Some((purpose, origin)) = chosen(document) else {
+        return false;
+    };
     // Its errors are reported when the filled document is read.
     let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
     let scene = PresetScene::of(&record);
-    let choice = Choice { key: KEY, word: purpose.word(), origin };
-    let mut filling = Completion { document, choice, report, filled: false };
+    let choice = Choice {
+        key: KEY,
+        word: purpose.word(),
+        origin,
+    };
+    let mut filling = Completion {
+        document,
+        choice,
+        report,
+        filled: false,
+    };
     filling.put("grid", &["degree"], &quoted(ORDER), "");
     filling.points(POINTS);
-    filling.put("analysis", &["steps", "dt"], STEPS, "with fewer, steps near failure do not converge and are halved");
+    filling.put(
+        "analysis",
+        &["steps", "dt"],
+        STEPS,
+        "with fewer, steps near failure do not converge and are halved",
+    );
     let (method, why) = match scene.dilates() {
-        true => (Stabilisation::None, "averages of the volumetric strain are wrong in dilating soil"),
-        false => (Stabilisation::ConsistentFBar, "prevents volumetric locking of plastic flow without dilation"),
+        true => (
+            Stabilisation::None,
+            "averages of the volumetric strain are wrong in dilating soil",
+        ),
+        false => (
+            Stabilisation::ConsistentFBar,
+            "prevents volumetric locking of plastic flow without dilation",
+        ),
     };
     filling.put("stabilisation", &["method"], &quoted(method), why);
     let [energy, force] = match accuracy {
@@ -51,13 +73,20 @@ pub(super) fn fill(
     };
     filling.put("solver", &["tolerance"], energy, "");
     filling.put("solver", &["force_tolerance"], force, "");
-    filling.put("solver", &["background"], BACKGROUND, "small enough that the limit load does not depend on it");
+    filling.put(
+        "solver",
+        &["background"],
+        BACKGROUND,
+        "small enough that the limit load does not depend on it",
+    );
     filling.filled
 }
 
 /// The word that the case gives, if it is one of them, and its place.
 fn chosen(document: &DocumentTable) -> Option<(Purpose, Origin)> {
-    let Value::Table(analysis) = &document.get("analysis")?.node.value else { return None };
+    let Value::Table(analysis) = &document.get("analysis")?.node.value else {
+        return None;
+    };
     let node = &analysis.get("purpose")?.node;
     let Value::Text(text) = &node.value else { return None };
     Some((Purpose::of(text)?, node.origin))

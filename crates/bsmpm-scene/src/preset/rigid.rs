@@ -37,11 +37,17 @@ impl Outline {
     fn of(rigid: &Record) -> Option<Self> {
         if let Some(rows) = rigid.rows("polygon") {
             let corners: Vec<[f64; 2]> = rows.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();
-            return (!corners.is_empty()).then(|| Self { bounds: region::bounds(&corners), corners });
+            return (!corners.is_empty()).then(|| Self {
+                bounds: region::bounds(&corners),
+                corners,
+            });
         }
         let circle = rigid.record("circle")?;
         let (center, radius) = (circle.pair("centre")?, circle.number("radius")?);
-        Some(Self { corners: Vec::new(), bounds: [-radius, radius].map(|by| center.map(|at| at + by)) })
+        Some(Self {
+            corners: Vec::new(),
+            bounds: [-radius, radius].map(|by| center.map(|at| at + by)),
+        })
     }
 
     fn size(&self) -> [f64; 2] {
@@ -50,7 +56,8 @@ impl Outline {
 
     fn edge(&self, (axis, upper): Edge) -> [[f64; 2]; 2] {
         let at = self.bounds[usize::from(upper)][axis];
-        self.bounds.map(|end| if axis == 0 { [at, end[1]] } else { [end[0], at] })
+        self.bounds
+            .map(|end| if axis == 0 { [at, end[1]] } else { [end[0], at] })
     }
 
     /// Whether one of the rectangles lies at an edge when it has gone a way.
@@ -68,10 +75,18 @@ impl Outline {
 
 /// m  from the reference point to the corner that is farthest from it
 pub(super) fn radius(rigid: &Record) -> Option<f64> {
-    let Outline { corners, bounds: [lower, upper] } = Outline::of(rigid)?;
-    let about = rigid.pair("about").unwrap_or([0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis])));
+    let Outline {
+        corners,
+        bounds: [lower, upper],
+    } = Outline::of(rigid)?;
+    let about = rigid
+        .pair("about")
+        .unwrap_or([0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis])));
     let all = corners.iter().chain([&lower, &upper]);
-    Some(all.map(|at| (at[0] - about[0]).hypot(at[1] - about[1])).fold(0.0, f64::max))
+    Some(
+        all.map(|at| (at[0] - about[0]).hypot(at[1] - about[1]))
+            .fold(0.0, f64::max),
+    )
 }
 
 impl RigidExtent {
@@ -81,16 +96,40 @@ impl RigidExtent {
         let outline = Outline::of(rigid)?;
         let size = outline.size();
         let edges = [0, 1].into_iter().flat_map(|axis| [(axis, false), (axis, true)]);
-        let met: Vec<Edge> = edges.filter(|edge| ways.iter().any(|way| outline.meets(*edge, way, bodies))).collect();
-        let far = ways.iter().fold([0.0_f64; 2], |far, way| [0, 1].map(|axis| far[axis].max(way[axis].abs())));
-        let across = usize::from(if far == [0.0; 2] { size[0] < size[1] } else { far[0] > far[1] });
-        let first = met.iter().find(|(axis, _)| *axis == 1 - across).copied().unwrap_or((1 - across, false));
-        let between = |axis: &usize| [false, true].iter().all(|up| outline.meets((*axis, *up), &[0.0; 2], bodies));
-        let thickness = [0, 1].into_iter().filter(between).map(|axis| size[axis]).fold(f64::INFINITY, f64::min);
+        let met: Vec<Edge> = edges
+            .filter(|edge| ways.iter().any(|way| outline.meets(*edge, way, bodies)))
+            .collect();
+        let far = ways.iter().fold([0.0_f64; 2], |far, way| {
+            [0, 1].map(|axis| far[axis].max(way[axis].abs()))
+        });
+        let across = usize::from(if far == [0.0; 2] {
+            size[0] < size[1]
+        } else {
+            far[0] > far[1]
+        });
+        let first = met
+            .iter()
+            .find(|(axis, _)| *axis == 1 - across)
+            .copied()
+            .unwrap_or((1 - across, false));
+        let between = |axis: &usize| {
+            [false, true]
+                .iter()
+                .all(|up| outline.meets((*axis, *up), &[0.0; 2], bodies))
+        };
+        let thickness = [0, 1]
+            .into_iter()
+            .filter(between)
+            .map(|axis| size[axis])
+            .fold(f64::INFINITY, f64::min);
         let is_on = |(axis, up): &Edge, corner: &[f64; 2]| corner[*axis] == outline.bounds[usize::from(*up)][*axis];
         let sides = outline.corners.iter().zip(outline.corners.iter().cycle().skip(1));
         let lines = sides.filter(|(a, b)| met.iter().any(|edge| is_on(edge, a) && is_on(edge, b)));
-        let angles = rigid.rows("rotation").unwrap_or_default().iter().map(|row| row.numbers[1].abs());
+        let angles = rigid
+            .rows("rotation")
+            .unwrap_or_default()
+            .iter()
+            .map(|row| row.numbers[1].abs());
         (!met.is_empty()).then_some(Self {
             ends: outline.edge(first),
             corners: met.iter().flat_map(|edge| outline.edge(*edge)).collect(),

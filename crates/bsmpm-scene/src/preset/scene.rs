@@ -90,14 +90,22 @@ impl<'a> PresetScene<'a> {
         let (steps, why) = match analysis.word("type")? {
             AnalysisType::Dynamic => {
                 let (crossed, way) = (preset.crossed, analysis.number("end")? * self.shear_wave()?);
-                (way / (crossed * cell), format!("a shear wave travels {crossed} cells in a step"))
+                (
+                    way / (crossed * cell),
+                    format!("a shear wave travels {crossed} cells in a step"),
+                )
             }
             AnalysisType::QuasiStatic | AnalysisType::InTime => {
                 let steps = |moved: (f64, f64)| moved.0 / (moved.1 * cell);
-                let moved = self.moved(preset).reduce(|a, b| if steps(b) > steps(a) { b } else { a });
+                let moved = self
+                    .moved(preset)
+                    .reduce(|a, b| if steps(b) > steps(a) { b } else { a });
                 let (steps, advance) = moved.map_or((0.0, 0.0), |moved| (steps(moved), moved.1));
                 if steps > preset.steps {
-                    (steps, format!("prescribed motions advance at most {advance} cells in a step"))
+                    (
+                        steps,
+                        format!("prescribed motions advance at most {advance} cells in a step"),
+                    )
                 } else {
                     (preset.steps, "the least number of this preset".to_owned())
                 }
@@ -105,7 +113,11 @@ impl<'a> PresetScene<'a> {
             // Water needs first steps that suit its own pace, which no rule knows.
             AnalysisType::Consolidation => return None,
         };
-        let (steps, why) = match self.interval().map(|interval| self.end() / interval).filter(|rows| *rows > steps) {
+        let (steps, why) = match self
+            .interval()
+            .map(|interval| self.end() / interval)
+            .filter(|rows| *rows > steps)
+        {
             Some(rows) => (rows, "one step for each row of [shaking] or of a load".to_owned()),
             None => (steps, why),
         };
@@ -116,19 +128,30 @@ impl<'a> PresetScene<'a> {
 
     /// What there is to lock, if any.
     pub(super) fn locks(&self) -> Option<&'static str> {
-        if self.materials().filter_map(|material| material.word("model")).any(LawName::is_plastic) {
+        if self
+            .materials()
+            .filter_map(|material| material.word("model"))
+            .any(LawName::is_plastic)
+        {
             return Some("prevents volumetric locking of plastic material");
         }
-        let stiff =
-            |material: &Record| material.number("poisson").is_some_and(|poisson| poisson > NEARLY_INCOMPRESSIBLE);
-        self.materials().any(stiff).then_some("prevents volumetric locking of nearly incompressible material")
+        let stiff = |material: &Record| {
+            material
+                .number("poisson")
+                .is_some_and(|poisson| poisson > NEARLY_INCOMPRESSIBLE)
+        };
+        self.materials()
+            .any(stiff)
+            .then_some("prevents volumetric locking of nearly incompressible material")
     }
 
     /// Whether a material of the bodies dilates as it yields.
     pub(super) fn dilates(&self) -> bool {
         let is_positive = |angle: f64| angle > 0.0;
         let dilates = |material: &Record| {
-            let profile = material.record("dilation_angle").and_then(|profile| profile.number("value"));
+            let profile = material
+                .record("dilation_angle")
+                .and_then(|profile| profile.number("value"));
             material.number("dilation_angle").or(profile).is_some_and(is_positive)
         };
         self.materials().any(dilates)
@@ -140,7 +163,10 @@ impl<'a> PresetScene<'a> {
 
     /// Whether displacements are divided until they are small against cells.
     pub(super) fn seeks_limit_load(&self) -> bool {
-        self.root.record("analysis").and_then(|analysis| analysis.word("purpose")) == Some(Purpose::LimitLoad)
+        self.root
+            .record("analysis")
+            .and_then(|analysis| analysis.word("purpose"))
+            == Some(Purpose::LimitLoad)
     }
 
     /// m  corners of the rectangle around all bodies, whatever is cut out of them
@@ -159,13 +185,27 @@ impl<'a> PresetScene<'a> {
         });
         let footing = root.record("footing").map(|record| ("footing".to_owned(), record));
         let strips = footing.into_iter().chain(listed).filter_map(|(name, record)| {
-            Some(GradedSegment { name, record, ends: [record.pair("from")?, record.pair("to")?], rigid: None })
+            Some(GradedSegment {
+                name,
+                record,
+                ends: [record.pair("from")?, record.pair("to")?],
+                rigid: None,
+            })
         });
         let bodies: Vec<[[f64; 2]; 2]> = root.records("body").iter().filter_map(around).collect();
-        let rigid = root.records("rigid").iter().enumerate().filter(|(_, record)| !record.gives("free"));
+        let rigid = root
+            .records("rigid")
+            .iter()
+            .enumerate()
+            .filter(|(_, record)| !record.gives("free"));
         let rigid = rigid.filter_map(move |(number, record)| {
             let extent = RigidExtent::of(record, &self.ways(record), &bodies)?;
-            Some(GradedSegment { name: format!("rigid.{number}"), record, ends: extent.ends, rigid: Some(extent) })
+            Some(GradedSegment {
+                name: format!("rigid.{number}"),
+                record,
+                ends: extent.ends,
+                rigid: Some(extent),
+            })
         });
         strips.chain(rigid)
     }
@@ -178,7 +218,9 @@ impl<'a> PresetScene<'a> {
         }
         let knots = grid.record("knots")?;
         let axes = ["x", "y"].into_iter().filter_map(|axis| knots.numbers(axis));
-        axes.flat_map(|axis| axis.windows(2).map(|pair| pair[1] - pair[0])).reduce(f64::min).filter(|edge| *edge > 0.0)
+        axes.flat_map(|axis| axis.windows(2).map(|pair| pair[1] - pair[0]))
+            .reduce(f64::min)
+            .filter(|edge| *edge > 0.0)
     }
 
     /// m  how far each strip, face or rigid body would come in the whole run at its fastest; part of a cell that it may
@@ -187,7 +229,11 @@ impl<'a> PresetScene<'a> {
         let end = self.end();
         let norm = |[x, y]: [f64; 2]| x.hypot(y);
         let (of_strips, of_faces) = (STRIP_ADVANCE, preset.advance);
-        let moved = self.root.record("footing").into_iter().chain(self.root.records("prescribed"));
+        let moved = self
+            .root
+            .record("footing")
+            .into_iter()
+            .chain(self.root.records("prescribed"));
         moved.chain(self.root.records("rigid")).map(move |record| {
             let places = rows(record);
             let speed = |pair: &[(f64, [f64; 2])]| {
@@ -209,7 +255,10 @@ impl<'a> PresetScene<'a> {
         if self.seeks_limit_load() {
             return moved;
         }
-        for pair in rows(record).windows(2).filter(|pair| pair[0].0 < end && pair[1].0 > pair[0].0) {
+        for pair in rows(record)
+            .windows(2)
+            .filter(|pair| pair[0].0 < end && pair[1].0 > pair[0].0)
+        {
             let part = ((end - pair[0].0) / (pair[1].0 - pair[0].0)).min(1.0);
             moved.push([0, 1].map(|k| pair[0].1[k] + part * (pair[1].1[k] - pair[0].1[k])));
         }
@@ -227,15 +276,23 @@ impl<'a> PresetScene<'a> {
         let ways = self.ways(segment.record);
         let around = |way: &[f64; 2]| [-swing, swing].map(|by| way.map(|at| at + by));
         let ways = ways.iter().flat_map(around);
-        ways.flat_map(|way| ends.iter().map(move |at| [at[0] + way[0], at[1] + way[1]])).collect()
+        ways.flat_map(|way| ends.iter().map(move |at| [at[0] + way[0], at[1] + way[1]]))
+            .collect()
     }
 
     /// s  the shortest time between two rows of the ground's acceleration or of a load
     fn interval(&self) -> Option<f64> {
-        let loads = self.root.records("traction").iter().chain(self.root.records("point_load"));
+        let loads = self
+            .root
+            .records("traction")
+            .iter()
+            .chain(self.root.records("point_load"));
         let keys = ["amplitude", "stress_path", "pressure_path", "force_path"];
         let amplitudes = loads.flat_map(|load| keys.into_iter().filter_map(|key| load.rows(key)));
-        let shaking = self.root.record("shaking").and_then(|shaking| shaking.rows("acceleration"));
+        let shaking = self
+            .root
+            .record("shaking")
+            .and_then(|shaking| shaking.rows("acceleration"));
         let pairs = amplitudes.chain(shaking).flat_map(|rows| rows.windows(2));
         let intervals = pairs.map(|pair| pair[1].numbers[0] - pair[0].numbers[0]);
         intervals.filter(|interval| *interval > 0.0).reduce(f64::min)
@@ -248,39 +305,58 @@ impl<'a> PresetScene<'a> {
 
     /// s  the end, or what it is of pseudo-time
     fn end(&self) -> f64 {
-        self.root.record("analysis").and_then(|analysis| analysis.number("end")).unwrap_or(1.0)
+        self.root
+            .record("analysis")
+            .and_then(|analysis| analysis.number("end"))
+            .unwrap_or(1.0)
     }
 
     /// Materials that bodies are made of.
     pub(super) fn materials(&self) -> impl Iterator<Item = &Record> {
         let bodies = self.root.records("body");
         let is_used = move |name: &str| bodies.iter().any(|body| body.text("material") == Some(name));
-        self.root.named("material").iter().filter(move |(name, _)| is_used(name)).map(|(_, material)| material)
+        self.root
+            .named("material")
+            .iter()
+            .filter(move |(name, _)| is_used(name))
+            .map(|(_, material)| material)
     }
 
     /// m/s  fastest shear wave in the bodies' materials, at the stiffest height
     fn shear_wave(&self) -> Option<f64> {
         let [lower, upper] = self.bounds()?;
         let speed = |material: &Record| shear_wave(material, [lower[1], upper[1]]);
-        self.materials().filter_map(speed).filter(|speed| speed.is_finite()).reduce(f64::max)
+        self.materials()
+            .filter_map(speed)
+            .filter(|speed| speed.is_finite())
+            .reduce(f64::max)
     }
 }
 
 /// m/s  shear wave in a material, as fast as it is between two heights
 pub(super) fn shear_wave(material: &Record, heights: [f64; 2]) -> Option<f64> {
-    let density = material.number("density").or_else(|| Some(material.number("unit_weight")? / STANDARD_GRAVITY))?;
-    let young = material.number("young").or_else(|| stiffest(material.record("young")?, heights))?;
+    let density = material
+        .number("density")
+        .or_else(|| Some(material.number("unit_weight")? / STANDARD_GRAVITY))?;
+    let young = material
+        .number("young")
+        .or_else(|| stiffest(material.record("young")?, heights))?;
     Some((young / (2.0 * (1.0 + material.number("poisson")?)) / density).sqrt())
 }
 
 /// m  how far the corner of a rigid body that is farthest from its reference point would turn in the whole run at its
 /// fastest
 fn turned(record: &Record, end: f64) -> f64 {
-    let Some(turns) = record.rows("rotation") else { return 0.0 };
-    let all: Vec<(f64, f64)> =
-        std::iter::once((0.0, 0.0)).chain(turns.iter().map(|row| (row.numbers[0], row.numbers[1]))).collect();
+    let Some(turns) = record.rows("rotation") else {
+        return 0.0;
+    };
+    let all: Vec<(f64, f64)> = std::iter::once((0.0, 0.0))
+        .chain(turns.iter().map(|row| (row.numbers[0], row.numbers[1])))
+        .collect();
     let pairs = all.windows(2).filter(|pair| pair[0].0 < end && pair[1].0 > pair[0].0);
-    let fastest = pairs.map(|pair| (pair[1].1 - pair[0].1).abs() / (pair[1].0 - pair[0].0)).fold(0.0, f64::max);
+    let fastest = pairs
+        .map(|pair| (pair[1].1 - pair[0].1).abs() / (pair[1].0 - pair[0].0))
+        .fold(0.0, f64::max);
     fastest * end * rigid::radius(record).unwrap_or(0.0)
 }
 
@@ -288,13 +364,17 @@ fn turned(record: &Record, end: f64) -> f64 {
 fn sides(body: &Record) -> Vec<([f64; 2], [f64; 2])> {
     let corners: Vec<[f64; 2]> = match (body.record("box"), body.rows("polygon")) {
         (Some(shape), _) => {
-            let (Some(lower), Some(upper)) = (shape.pair("lower"), shape.pair("upper")) else { return Vec::new() };
+            let (Some(lower), Some(upper)) = (shape.pair("lower"), shape.pair("upper")) else {
+                return Vec::new();
+            };
             vec![lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]]
         }
         (None, Some(rows)) => rows.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect(),
         (None, None) => Vec::new(),
     };
-    (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()])).collect()
+    (0..corners.len())
+        .map(|k| (corners[k], corners[(k + 1) % corners.len()]))
+        .collect()
 }
 
 /// m  corners of a body's rectangle
@@ -306,18 +386,28 @@ pub(crate) fn around(body: &Record) -> Option<[[f64; 2]; 2]> {
         let (center, radius) = (circle.pair("centre")?, circle.number("radius")?);
         return Some([-radius, radius].map(|reach| center.map(|x| x + reach)));
     }
-    let corners: Vec<[f64; 2]> = body.rows("polygon")?.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();
+    let corners: Vec<[f64; 2]> = body
+        .rows("polygon")?
+        .iter()
+        .map(|row| [row.numbers[0], row.numbers[1]])
+        .collect();
     (!corners.is_empty()).then(|| region::bounds(&corners))
 }
 
 /// s, m  Times and displacements of a path, from none at the start on.
 fn rows(record: &Record) -> Vec<(f64, [f64; 2])> {
     let row = |row: &ListRow| (row.numbers[0], [row.numbers[1], row.numbers[2]]);
-    std::iter::once((0.0, [0.0; 2])).chain(record.rows("path").unwrap_or_default().iter().map(row)).collect()
+    std::iter::once((0.0, [0.0; 2]))
+        .chain(record.rows("path").unwrap_or_default().iter().map(row))
+        .collect()
 }
 
 /// Pa  the largest value of a profile between two heights
 fn stiffest(profile: &Record, heights: [f64; 2]) -> Option<f64> {
-    let (value, at, growth) = (profile.number("value")?, profile.number("at_y")?, profile.number("per_metre")?);
+    let (value, at, growth) = (
+        profile.number("value")?,
+        profile.number("at_y")?,
+        profile.number("per_metre")?,
+    );
     heights.map(|y| value + growth * (at - y)).into_iter().reduce(f64::max)
 }

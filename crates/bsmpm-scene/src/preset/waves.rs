@@ -19,11 +19,19 @@ impl PresetScene<'_> {
             return None;
         }
         let order = super::ORDER;
-        let order = self.root.record("grid").and_then(|grid| grid.word("degree")).unwrap_or(order);
+        let order = self
+            .root
+            .record("grid")
+            .and_then(|grid| grid.word("degree"))
+            .unwrap_or(order);
         let fewest = fewest_cells(self.mass(), order.degree());
         let inputs = inputs(self.root);
-        let cells = inputs.iter().filter_map(|input| Some((input, self.slowest(input)? / (input.frequency * fewest))));
-        let (input, cell) = cells.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, cell)| *cell < size)?;
+        let cells = inputs
+            .iter()
+            .filter_map(|input| Some((input, self.slowest(input)? / (input.frequency * fewest))));
+        let (input, cell) = cells
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .filter(|(_, cell)| *cell < size)?;
         let (part, frequency) = (100.0 * SHARE, input.frequency);
         let why = format!(
             "{fewest} cells in the wavelength at {frequency:.3} Hz, below which {} has {part} % of its energy",
@@ -48,7 +56,11 @@ impl PresetScene<'_> {
         }
         let is_elastic = |material: &Record| material.word("model") == Some(LawName::Hencky);
         let waves = self.root.record("shaking").is_some() || self.materials().all(is_elastic);
-        if waves && !self.touches() { MassMatrix::Consistent } else { MassMatrix::Lumped }
+        if waves && !self.touches() {
+            MassMatrix::Consistent
+        } else {
+            MassMatrix::Lumped
+        }
     }
 
     /// Whether a face of the grid, a strip or a rigid body is in contact with material.
@@ -58,12 +70,18 @@ impl PresetScene<'_> {
             is_table || boundary.word(side.word()) == Some(Support::Contact)
         };
         let mut boundaries = self.root.record("boundary").into_iter();
-        let strips = self.root.record("footing").into_iter().chain(self.root.records("prescribed"));
+        let strips = self
+            .root
+            .record("footing")
+            .into_iter()
+            .chain(self.root.records("prescribed"));
         boundaries.any(|boundary| Side::ALL.as_flattened().iter().any(|side| in_contact(boundary, *side)))
             || !self.root.records("rigid").is_empty()
-            || strips
-                .into_iter()
-                .any(|strip| ["interface", "components"].into_iter().any(|key| strip.record(key).is_some()))
+            || strips.into_iter().any(|strip| {
+                ["interface", "components"]
+                    .into_iter()
+                    .any(|key| strip.record(key).is_some())
+            })
     }
 
     /// m/s  slowest elastic wave that an input makes in the bodies' materials, at the middle of their height
@@ -72,9 +90,15 @@ impl PresetScene<'_> {
         let speeds = self.materials().filter_map(|material| {
             let shear = super::scene::shear_wave(material, [0.5 * (lower[1] + upper[1]); 2])?;
             let poisson = material.number("poisson")?;
-            let ratio = if input.axis.is_some() { (2.0 - 2.0 * poisson) / (1.0 - 2.0 * poisson) } else { 1.0 };
+            let ratio = if input.axis.is_some() {
+                (2.0 - 2.0 * poisson) / (1.0 - 2.0 * poisson)
+            } else {
+                1.0
+            };
             Some(shear * ratio.sqrt())
         });
-        speeds.filter(|speed| speed.is_finite() && *speed > 0.0).reduce(f64::min)
+        speeds
+            .filter(|speed| speed.is_finite() && *speed > 0.0)
+            .reduce(f64::min)
     }
 }

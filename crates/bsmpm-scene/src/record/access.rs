@@ -50,24 +50,38 @@ impl Record {
             Kind::Choice(words) | Kind::ChoiceOr(words, _) => words.words().eq(T::WORDS.words()),
             _ => false,
         };
-        if let Datum::Word(word) = self.datum(key, is_of)? { T::of(word) } else { None }
+        if let Datum::Word(word) = self.datum(key, is_of)? {
+            T::of(word)
+        } else {
+            None
+        }
     }
 
     /// What the words of a key's list stand for; `T` is the choice that the schema names.
     pub(crate) fn choices<T: Word>(&self, key: &str) -> Option<Vec<T>> {
         let is_of = |kind: &Kind| matches!(kind, Kind::Choices(words) if words.words().eq(T::WORDS.words()));
-        let Datum::Names(words) = self.datum(key, is_of)? else { return None };
+        let Datum::Names(words) = self.datum(key, is_of)? else {
+            return None;
+        };
         words.iter().map(|word| T::of(word)).collect()
     }
 
     /// The same of a key that may be absent; the outer option is `None` after an error.
     pub(crate) fn word_if_given<T: Word>(&self, key: &str) -> Option<Option<T>> {
-        if self.gives(key) { self.word(key).map(Some) } else { Some(None) }
+        if self.gives(key) {
+            self.word(key).map(Some)
+        } else {
+            Some(None)
+        }
     }
 
     pub(crate) fn named(&self, key: &str) -> &[(String, Record)] {
         let named = self.datum(key, |kind| matches!(kind, Kind::Named(_)));
-        if let Some(Datum::Named(named)) = named { named } else { &[] }
+        if let Some(Datum::Named(named)) = named {
+            named
+        } else {
+            &[]
+        }
     }
 
     /// All tables of a key that may stand several times, or once.

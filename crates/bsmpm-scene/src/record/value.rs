@@ -30,7 +30,14 @@ pub(super) fn read(
 ) -> Option<Datum> {
     let name = path.rsplit('.').next().unwrap_or(path);
     let dims = geometry.dims();
-    let mut reader = ValueReader { kind, path, name, pseudo_time, geometry, report };
+    let mut reader = ValueReader {
+        kind,
+        path,
+        name,
+        pseudo_time,
+        geometry,
+        report,
+    };
     match kind {
         Kind::Quantity(dimension, range) => reader.quantity(node, *dimension, range).map(Datum::Number),
         Kind::Profile(dimension, range, _) => reader.quantity(node, *dimension, range).map(Datum::Number),
@@ -56,7 +63,9 @@ pub(super) fn read(
         Kind::List(dimension, range) => reader.quantities(node, *dimension, range, None),
         Kind::Either(dimension, range) => match node.value {
             Value::List(_) => reader.quantities(node, *dimension, range, Some(dims)),
-            _ => reader.quantity(node, *dimension, range).map(|number| Datum::Numbers(vec![number])),
+            _ => reader
+                .quantity(node, *dimension, range)
+                .map(|number| Datum::Numbers(vec![number])),
         },
         Kind::Count(least, most) => reader.count(node, *least, *most),
         Kind::Choice(words) | Kind::ChoiceOr(words, _) => reader.choice(node, words),
@@ -89,7 +98,10 @@ pub(super) fn read(
 
 /// What is wrong with a value of another type than its kind.
 pub(super) fn expected(kind: &Kind, node: &Node) -> String {
-    format!("E0013: the value has the wrong form: expected {kind}, found {}.", node.show())
+    format!(
+        "E0013: the value has the wrong form: expected {kind}, found {}.",
+        node.show()
+    )
 }
 
 /// What is wrong with a whole number that has more digits than one can have.
@@ -147,8 +159,18 @@ impl ValueReader<'_, '_> {
 
     /// What a solid wants three numbers of.
     fn not_of_three<T>(&mut self, node: &Node, dimension: Dimension) -> Option<T> {
-        let unit = if dimension == Dimension::LineForce { ", in N" } else { "" };
-        self.fail(node, format!("{} Give three components in 3-D, [x, y, z]{unit}.", expected(self.kind, node)))
+        let unit = if dimension == Dimension::LineForce {
+            ", in N"
+        } else {
+            ""
+        };
+        self.fail(
+            node,
+            format!(
+                "{} Give three components in 3-D, [x, y, z]{unit}.",
+                expected(self.kind, node)
+            ),
+        )
     }
 
     fn quantity(&mut self, node: &Node, dimension: Dimension, range: &Range) -> Option<f64> {
@@ -165,10 +187,17 @@ impl ValueReader<'_, '_> {
         };
         if !range.contains(value) {
             let allowed = range.condition(self.name) + &self.si(dimension);
-            let why = if range.why.is_empty() { String::new() } else { format!(": {}", range.why) };
+            let why = if range.why.is_empty() {
+                String::new()
+            } else {
+                format!(": {}", range.why)
+            };
             return self.fail(
                 node,
-                format!("E0010: {} is outside the allowed range ({allowed}){why}. Correct the value.", node.show()),
+                format!(
+                    "E0010: {} is outside the allowed range ({allowed}){why}. Correct the value.",
+                    node.show()
+                ),
             );
         }
         let divides = dimension == Dimension::Time || !range.contains(0.0);
@@ -240,7 +269,9 @@ impl ValueReader<'_, '_> {
     }
 
     fn gradient(&mut self, node: &Node, dimension: Dimension) -> Option<f64> {
-        let Value::Text(text) = &node.value else { return self.quantity(node, dimension, &Range::ANY) };
+        let Value::Text(text) = &node.value else {
+            return self.quantity(node, dimension, &Range::ANY);
+        };
         match unit::parse_per_metre(text, dimension) {
             Ok(value) => self.bounded(node, value, dimension),
             Err(message) => self.fail(node, message),
@@ -253,7 +284,11 @@ impl ValueReader<'_, '_> {
             Value::Table(table) if table.get("file").is_some() => return self.unread(node),
             _ => return self.unexpected(node),
         };
-        if let Some(message) = columns.iter().enumerate().find_map(|(k, (of, _))| self.heading(items, k, *of)) {
+        if let Some(message) = columns
+            .iter()
+            .enumerate()
+            .find_map(|(k, (of, _))| self.heading(items, k, *of))
+        {
             return self.fail(node, message);
         }
         let mut read: Vec<Option<ListRow>> = Vec::with_capacity(items.len());
@@ -282,7 +317,9 @@ impl ValueReader<'_, '_> {
             self.worded(cell, text, dimension).err().map(|message| (unit, message))
         };
         let (unit, message) = unit_of(rows.first().filter(|_| rows.len() > 1)?)?;
-        let is_of_all = rows[1..].iter().all(|row| unit_of(row).is_some_and(|(other, _)| other == unit));
+        let is_of_all = rows[1..]
+            .iter()
+            .all(|row| unit_of(row).is_some_and(|(other, _)| other == unit));
         let number = column + 1;
         let all = with_context(&message, &format!("column {number} of all {} rows", rows.len()));
         is_of_all.then(|| all + " In a data file, change the unit in the heading.")
@@ -293,9 +330,15 @@ impl ValueReader<'_, '_> {
             Value::List(items) if items.len() == columns.len() => items,
             _ => return self.unexpected(node),
         };
-        let read = items.iter().zip(columns).map(|(item, (dimension, range))| self.quantity(item, *dimension, range));
+        let read = items
+            .iter()
+            .zip(columns)
+            .map(|(item, (dimension, range))| self.quantity(item, *dimension, range));
         let read: Vec<Option<f64>> = read.collect();
-        Some(ListRow { origin: node.origin, numbers: read.into_iter().collect::<Option<_>>()? })
+        Some(ListRow {
+            origin: node.origin,
+            numbers: read.into_iter().collect::<Option<_>>()?,
+        })
     }
 
     fn quantities(&mut self, node: &Node, dimension: Dimension, range: &Range, length: Option<usize>) -> Option<Datum> {
@@ -310,7 +353,9 @@ impl ValueReader<'_, '_> {
 
     fn measure(&mut self, node: &Node) -> Option<Datum> {
         let Value::Text(text) = &node.value else {
-            return self.quantity(node, Dimension::Number, &Range::ANY).map(|number| Datum::Measure(number, None));
+            return self
+                .quantity(node, Dimension::Number, &Range::ANY)
+                .map(|number| Datum::Measure(number, None));
         };
         match unit::parse_any(text, None) {
             Ok((number, dimension)) => Some(Datum::Measure(number, Some(dimension))),
@@ -319,7 +364,9 @@ impl ValueReader<'_, '_> {
     }
 
     fn count(&mut self, node: &Node, least: u64, most: u64) -> Option<Datum> {
-        let Value::Integer(text) = &node.value else { return self.unexpected(node) };
+        let Value::Integer(text) = &node.value else {
+            return self.unexpected(node);
+        };
         match text.parse::<u64>() {
             Ok(count) if (least..=most).contains(&count) => Some(Datum::Count(count)),
             _ => {
@@ -335,7 +382,9 @@ impl ValueReader<'_, '_> {
     }
 
     fn choice(&mut self, node: &Node, words: &Words) -> Option<Datum> {
-        let Value::Text(text) = &node.value else { return self.unexpected(node) };
+        let Value::Text(text) = &node.value else {
+            return self.unexpected(node);
+        };
         if let Some(word) = words.words().find(|word| word == text) {
             return Some(Datum::Word(word));
         }
@@ -344,7 +393,10 @@ impl ValueReader<'_, '_> {
             return None;
         }
         if words.later.contains(&text.as_str()) {
-            return self.fail(node, format!("E0012: the value \"{text}\" is not available yet. Use {}.", self.kind));
+            return self.fail(
+                node,
+                format!("E0012: the value \"{text}\" is not available yet. Use {}.", self.kind),
+            );
         }
         let meant = words.misnomers.iter().find(|(word, _)| word == text);
         let near = match (meant, hint(text, words.words())) {
@@ -355,18 +407,27 @@ impl ValueReader<'_, '_> {
         };
         self.fail(
             node,
-            format!("E0017: this value is not allowed: expected {}, found {}{near}", self.kind, node.show()),
+            format!(
+                "E0017: this value is not allowed: expected {}, found {}{near}",
+                self.kind,
+                node.show()
+            ),
         )
     }
 
     /// Words of a list, in its order; none twice.
     fn choices(&mut self, node: &Node, words: &Words) -> Option<Datum> {
-        let Value::List(items) = &node.value else { return self.unexpected(node) };
+        let Value::List(items) = &node.value else {
+            return self.unexpected(node);
+        };
         let mut found: Vec<String> = Vec::new();
         for item in items {
             let word = match self.choice(item, words)? {
                 Datum::Word(word) if found.iter().any(|other| other == word) => {
-                    return self.fail(item, format!("E0019: the list has \"{word}\" twice. Delete one of them."));
+                    return self.fail(
+                        item,
+                        format!("E0019: the list has \"{word}\" twice. Delete one of them."),
+                    );
                 }
                 Datum::Word(word) => word,
                 _ => return None,

@@ -83,7 +83,10 @@ pub(crate) fn of_cell(lattice: Lattice, [across, up]: [[f64; 2]; 2]) -> impl Ite
     let n = lattice.n;
     let count = n * n;
     let area = (across[1] - across[0]) * (up[1] - up[0]) / count as f64;
-    (0..count).map(move |k| CellPlace { x: [lattice.across(across, k / n), place(up, k % n, n)], area })
+    (0..count).map(move |k| CellPlace {
+        x: [lattice.across(across, k / n), place(up, k % n, n)],
+        area,
+    })
 }
 
 /// Place of lattice point `k` of `n` between two ends.
@@ -95,8 +98,20 @@ pub(crate) fn place([lower, upper]: [f64; 2], k: usize, n: usize) -> f64 {
 pub(crate) fn column(edges: &[Edge], shapes: usize, (grid, lattice): (&GridSpec, Lattice), i: usize) -> CellColumn {
     let (across, up) = (&grid.axes[0], &grid.axes[1]);
     let x = [across.breakpoint(i), across.breakpoint(i + 1)];
-    let near: Vec<Near> = edges.iter().filter_map(|edge| Some(Near { edge: *edge, span: edge.span(x)? })).collect();
-    let mut column = CellColumn { parts: Vec::new(), area: 0.0, alone: 0.0 };
+    let near: Vec<Near> = edges
+        .iter()
+        .filter_map(|edge| {
+            Some(Near {
+                edge: *edge,
+                span: edge.span(x)?,
+            })
+        })
+        .collect();
+    let mut column = CellColumn {
+        parts: Vec::new(),
+        area: 0.0,
+        alone: 0.0,
+    };
     if near.is_empty() {
         return column;
     }
@@ -173,7 +188,15 @@ impl CellStrip {
         let across: Vec<f64> = (0..lattice.n).map(|k| lattice.across(x, k)).collect();
         let lines = across.iter().map(|&x| at(x)).collect();
         let middle = at(0.5 * (x[0] + x[1]));
-        Self { x, near, shapes, n: lattice.n, across, lines, middle }
+        Self {
+            x,
+            near,
+            shapes,
+            n: lattice.n,
+            across,
+            lines,
+            middle,
+        }
     }
 
     /// Points of the cell between two heights, the area that is covered of it, and whether one point stands for all.
@@ -189,7 +212,10 @@ impl CellStrip {
         for a in 0..self.n {
             let edges = self.edges(part(self.x, a, self.n), y[1]);
             for b in 0..self.n {
-                let window = Window { x: part(self.x, a, self.n), y: part(y, b, self.n) };
+                let window = Window {
+                    x: part(self.x, a, self.n),
+                    y: part(y, b, self.n),
+                };
                 let x = [self.across[a], place(y, b, self.n)];
                 let mut area = self.covered(&edges, &window, &mut sum);
                 let covered = covers(&self.lines[a], x[1]);
@@ -197,14 +223,24 @@ impl CellStrip {
                     area = covered.then_some(sub);
                     sum.area += area.unwrap_or(0.0);
                 }
-                let Some(area) = area.filter(|area| *area > 0.0) else { continue };
+                let Some(area) = area.filter(|area| *area > 0.0) else {
+                    continue;
+                };
                 let inside = covered && area > SLIVER * sub;
                 let clear = |near: &Near| near.span[1] < y[0] || near.edge.distance(x) > SLIVER * size;
-                if inside && edges.iter().all(clear) { &mut places } else { &mut left }.push(CellPlace { x, area });
+                if inside && edges.iter().all(clear) {
+                    &mut places
+                } else {
+                    &mut left
+                }
+                .push(CellPlace { x, area });
             }
         }
         if places.is_empty() && sum.area > SLIVER * sub * (self.n * self.n) as f64 {
-            places.push(CellPlace { x: self.within(&sum), area: sum.area });
+            places.push(CellPlace {
+                x: self.within(&sum),
+                area: sum.area,
+            });
             return (places, sum.area, true);
         }
         left.iter().for_each(|left| give(&mut places, left));
@@ -223,7 +259,10 @@ impl CellStrip {
             let [low, high] = near.span;
             low <= window.y[1]
                 && high >= window.y[0]
-                && near.edge.span(window.x).is_some_and(|[low, high]| low <= window.y[1] && high >= window.y[0])
+                && near
+                    .edge
+                    .span(window.x)
+                    .is_some_and(|[low, high]| low <= window.y[1] && high >= window.y[0])
         };
         if !near.iter().any(touches) {
             return None;
@@ -238,13 +277,23 @@ impl CellStrip {
     fn within(&self, sum: &SliceSum) -> [f64; 2] {
         let centroid = sum.moment.map(|moment| moment / sum.area);
         let line = intervals(self.near.iter().map(|near| &near.edge), self.shapes, centroid[0]);
-        if covers(&line, centroid[1]) { centroid } else { sum.within }
+        if covers(&line, centroid[1]) {
+            centroid
+        } else {
+            sum.within
+        }
     }
 }
 
 /// Part `k` of `n` equal ones of an interval.
 pub(super) fn part([lower, upper]: [f64; 2], k: usize, n: usize) -> [f64; 2] {
-    [k, k + 1].map(|k| if k == n { upper } else { lower + (upper - lower) * (k as f64 / n as f64) })
+    [k, k + 1].map(|k| {
+        if k == n {
+            upper
+        } else {
+            lower + (upper - lower) * (k as f64 / n as f64)
+        }
+    })
 }
 
 /// Gives the area of a place to the nearest of others, the first of several: planes keep the points that they had, for

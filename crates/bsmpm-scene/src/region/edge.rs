@@ -34,7 +34,10 @@ impl std::ops::Sub for Bulge {
 
     fn sub(self, other: Self) -> Self {
         let moment = [self.moment[0] - other.moment[0], self.moment[1] - other.moment[1]];
-        Self { area: self.area - other.area, moment }
+        Self {
+            area: self.area - other.area,
+            moment,
+        }
     }
 }
 
@@ -48,7 +51,12 @@ impl Edge {
     /// Both halves of a circle.
     pub(crate) fn circle(center: [f64; 2], radius: f64, shape: usize) -> [Self; 2] {
         let [a, b] = [-radius, radius].map(|reach| [center[0] + reach, center[1]]);
-        [false, true].map(|upper| Self { a, b, shape, arc: Some(Arc { center, radius, upper }) })
+        [false, true].map(|upper| Self {
+            a,
+            b,
+            shape,
+            arc: Some(Arc { center, radius, upper }),
+        })
     }
 
     /// Whether it is straight.
@@ -69,8 +77,16 @@ impl Edge {
     /// The same edge, moved by some way.
     pub(crate) fn moved(self, by: [f64; 2]) -> Self {
         let moved = |at: [f64; 2]| [at[0] + by[0], at[1] + by[1]];
-        let arc = self.arc.map(|arc| Arc { center: moved(arc.center), ..arc });
-        Self { a: moved(self.a), b: moved(self.b), arc, ..self }
+        let arc = self.arc.map(|arc| Arc {
+            center: moved(arc.center),
+            ..arc
+        });
+        Self {
+            a: moved(self.a),
+            b: moved(self.b),
+            arc,
+            ..self
+        }
     }
 
     /// Its height at `x` between its ends; beyond them that of the nearer end.
@@ -117,7 +133,10 @@ impl Edge {
                 both(center[0], (radius - dy) * (radius + dy))
             }
             None if self.a[1] == self.b[1] => [None; 2],
-            None => [Some(self.a[0] + (y - self.a[1]) * ((self.b[0] - self.a[0]) / (self.b[1] - self.a[1]))), None],
+            None => [
+                Some(self.a[0] + (y - self.a[1]) * ((self.b[0] - self.a[0]) / (self.b[1] - self.a[1]))),
+                None,
+            ],
         }
     }
 
@@ -134,7 +153,9 @@ impl Edge {
     /// Area between the edge and its chord from `x[0]` to `x[1]`, m², and its first moments, m³; negative where the
     /// edge lies below.
     pub(crate) fn bulge(&self, x: [f64; 2]) -> Bulge {
-        let Some(Arc { center, radius, upper }) = self.arc else { return Bulge::default() };
+        let Some(Arc { center, radius, upper }) = self.arc else {
+            return Bulge::default();
+        };
         let sign = if upper { 1.0 } else { -1.0 };
         let along = [x[1] - x[0], self.y(x[1]) - self.y(x[0])];
         let chord = along[0].hypot(along[1]);
@@ -142,7 +163,10 @@ impl Edge {
         let area = sign * 0.5 * radius * radius * (angle - angle.sin());
         // About the centre of its circle a segment has chord³/12 along its axis, which is across the chord.
         let about_center = [-along[1], along[0]].map(|across| across * chord * chord / 12.0);
-        Bulge { area, moment: [0, 1].map(|axis| about_center[axis] + center[axis] * area) }
+        Bulge {
+            area,
+            moment: [0, 1].map(|axis| about_center[axis] + center[axis] * area),
+        }
     }
 
     /// Distance of a place from the edge (from the whole circle, if it is half of one), m.
@@ -160,7 +184,11 @@ impl Edge {
 
 /// `middle` plus and minus the root of `square`.
 fn both(middle: f64, square: f64) -> [Option<f64>; 2] {
-    if square < 0.0 { [None; 2] } else { [Some(middle - square.sqrt()), Some(middle + square.sqrt())] }
+    if square < 0.0 {
+        [None; 2]
+    } else {
+        [Some(middle - square.sqrt()), Some(middle + square.sqrt())]
+    }
 }
 
 fn line_and_line(one: &Edge, other: &Edge) -> Option<f64> {

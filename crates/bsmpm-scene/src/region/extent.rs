@@ -27,13 +27,25 @@ impl<'a> AxisExtent<'a> {
         let ends = [lower.max(0.0), upper.min(axis.length())];
         let start = axis.first_cell(|i| axis.breakpoint(i + 1) > ends[0] + SLIVER * axis.cell(i));
         let end = axis.first_cell(|i| axis.breakpoint(i) >= ends[1] - SLIVER * axis.cell(i));
-        Self { axis, ends, cells: start..end.max(start) }
+        Self {
+            axis,
+            ends,
+            cells: start..end.max(start),
+        }
     }
 
     /// Ends of the body's part of a cell, m; the outermost parts take up slivers, so that nothing is lost.
     pub(crate) fn part(&self, cell: usize) -> [f64; 2] {
-        let lower = if cell == self.cells.start { self.ends[0] } else { self.axis.breakpoint(cell) };
-        let upper = if cell + 1 == self.cells.end { self.ends[1] } else { self.axis.breakpoint(cell + 1) };
+        let lower = if cell == self.cells.start {
+            self.ends[0]
+        } else {
+            self.axis.breakpoint(cell)
+        };
+        let upper = if cell + 1 == self.cells.end {
+            self.ends[1]
+        } else {
+            self.axis.breakpoint(cell + 1)
+        };
         [lower, upper]
     }
 }

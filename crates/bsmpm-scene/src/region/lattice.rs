@@ -56,8 +56,15 @@ impl Lines<'_> {
     /// Those of a part of a cell.
     fn of(&self, sides: [[f64; 2]; 2]) -> Vec<VerticalLine> {
         let [along_x, along_y] = [0, 1].map(|axis| shares(sides[axis], &self.ends[axis], LINES));
-        let at = |x: f64, y: f64, area: f64| VerticalLine { x: [x, y], area, covered: (self.covers)([x, y]) };
-        along_x.iter().flat_map(|&(x, width)| along_y.iter().map(move |&(y, depth)| at(x, y, width * depth))).collect()
+        let at = |x: f64, y: f64, area: f64| VerticalLine {
+            x: [x, y],
+            area,
+            covered: (self.covers)([x, y]),
+        };
+        along_x
+            .iter()
+            .flat_map(|&(x, width)| along_y.iter().map(move |&(y, depth)| at(x, y, width * depth)))
+            .collect()
     }
 }
 
@@ -78,7 +85,11 @@ fn rows(parts: &[Vec<VerticalLine>], up: &GridAxis) -> Range<usize> {
     let covered = || parts.iter().flatten().flat_map(|line| &line.covered);
     let lower = covered().map(|line| line[0]).fold(f64::INFINITY, f64::min);
     let upper = covered().map(|line| line[1]).fold(f64::NEG_INFINITY, f64::max);
-    if lower < upper { reached(up, [lower, upper]) } else { 0..0 }
+    if lower < upper {
+        reached(up, [lower, upper])
+    } else {
+        0..0
+    }
 }
 
 type Centre = ([f64; 2], Vec<[f64; 2]>);
@@ -97,7 +108,11 @@ fn cell((parts, centres): (&[Vec<VerticalLine>], &[Centre]), z: [f64; 2], n: usi
             whole &= volume >= (1.0 - SLIVER) * full;
             let at = [*x, *y, place(z, c, n)];
             let inside = middle.iter().any(|[lower, upper]| *lower < at[2] && at[2] < *upper);
-            let list = if inside && volume > SLIVER * full { &mut places } else { &mut left };
+            let list = if inside && volume > SLIVER * full {
+                &mut places
+            } else {
+                &mut left
+            };
             if volume > 0.0 {
                 list.push(CellPlace { x: at, area: volume });
             }
@@ -113,13 +128,21 @@ fn cell((parts, centres): (&[Vec<VerticalLine>], &[Centre]), z: [f64; 2], n: usi
             balance(&mut places, sum.centroid(), SLIVER * (z[1] - z[0]));
         }
     }
-    LatticeCell { row, whole, alone, places }
+    LatticeCell {
+        row,
+        whole,
+        alone,
+        places,
+    }
 }
 
 impl VerticalLine {
     /// What is covered of it between two heights.
     fn within(&self, [from, to]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
-        let within = self.covered.iter().map(move |[lower, upper]| [lower.max(from), upper.min(to)]);
+        let within = self
+            .covered
+            .iter()
+            .map(move |[lower, upper]| [lower.max(from), upper.min(to)]);
         within.filter(|[lower, upper]| lower < upper)
     }
 }
@@ -154,21 +177,36 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 /// height or in the middle of what a line has.
 fn nearest_inside(parts: &[Vec<VerticalLine>], z: [f64; 2], to: [f64; 3]) -> [f64; 3] {
     let on = |line: &VerticalLine, [lower, upper]: [f64; 2]| {
-        let height = if lower < to[2] && to[2] < upper { to[2] } else { 0.5 * (lower + upper) };
+        let height = if lower < to[2] && to[2] < upper {
+            to[2]
+        } else {
+            0.5 * (lower + upper)
+        };
         [line.x[0], line.x[1], height]
     };
-    let pieces = parts.iter().flatten().flat_map(|line| line.within(z).map(move |ends| on(line, ends)));
-    pieces.min_by(|a, b| distance(*a, to).total_cmp(&distance(*b, to))).unwrap_or(to)
+    let pieces = parts
+        .iter()
+        .flatten()
+        .flat_map(|line| line.within(z).map(move |ends| on(line, ends)));
+    pieces
+        .min_by(|a, b| distance(*a, to).total_cmp(&distance(*b, to)))
+        .unwrap_or(to)
 }
 
 /// Shares out what is left among places: each to the nearest, in equal parts to those that are equally near, so that
 /// what is symmetric stays so.
 fn share(places: &mut [CellPlace<3>], left: &[CellPlace<3>]) {
     for of in left {
-        let nearest = places.iter().map(|place| distance(place.x, of.x)).fold(f64::INFINITY, f64::min);
+        let nearest = places
+            .iter()
+            .map(|place| distance(place.x, of.x))
+            .fold(f64::INFINITY, f64::min);
         let near = |place: &&mut CellPlace<3>| distance(place.x, of.x) <= nearest * (1.0 + SLIVER);
         let count = places.iter_mut().filter(near).count() as f64;
-        places.iter_mut().filter(near).for_each(|place| place.area += of.area / count);
+        places
+            .iter_mut()
+            .filter(near)
+            .for_each(|place| place.area += of.area / count);
     }
 }
 
@@ -186,7 +224,10 @@ fn balance(places: &mut [CellPlace<3>], to: [f64; 3], least: f64) {
         let mean = places.iter().map(|place| place.area * place.x[axis]).sum::<f64>() / volume;
         let square = |place: &CellPlace<3>| place.area * (place.x[axis] - mean).powi(2);
         let variance = places.iter().map(square).sum::<f64>() / volume;
-        let reach = places.iter().map(|place| (place.x[axis] - mean).abs()).fold(0.0, f64::max);
+        let reach = places
+            .iter()
+            .map(|place| (place.x[axis] - mean).abs())
+            .fold(0.0, f64::max);
         if reach <= least {
             continue;
         }
@@ -197,6 +238,8 @@ fn balance(places: &mut [CellPlace<3>], to: [f64; 3], least: f64) {
                 slope = -most / arm;
             }
         }
-        places.iter_mut().for_each(|place| place.area *= 1.0 + slope * (place.x[axis] - mean));
+        places
+            .iter_mut()
+            .for_each(|place| place.area *= 1.0 + slope * (place.x[axis] - mean));
     }
 }

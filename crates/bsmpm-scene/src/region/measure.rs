@@ -33,10 +33,13 @@ pub(super) fn volume(shapes: &[&SolidShape], bounds: [[f64; 3]; 2], covered: imp
 fn along(shape: &SolidShape) -> Vec<f64> {
     let [lower, upper] = shape.bounds();
     match shape {
-        SolidShape::Prism { outline, along: 1 | 2, .. } => corners(outline, 0),
-        SolidShape::Revolved { outline, about } => {
-            corners(outline, 0).into_iter().flat_map(|r| [about[0] - r, about[0] + r]).collect()
-        }
+        SolidShape::Prism {
+            outline, along: 1 | 2, ..
+        } => corners(outline, 0),
+        SolidShape::Revolved { outline, about } => corners(outline, 0)
+            .into_iter()
+            .flat_map(|r| [about[0] - r, about[0] + r])
+            .collect(),
         SolidShape::Terrain(raster) => raster.posts(0),
         SolidShape::Surface(surface) => of_corners(surface.corners(0).collect(), [lower[0], upper[0]]),
         _ => vec![lower[0], upper[0]],
@@ -47,7 +50,9 @@ fn along(shape: &SolidShape) -> Vec<f64> {
 fn across(shape: &SolidShape, x: f64) -> Vec<f64> {
     let [lower, upper] = shape.bounds();
     let chord = |center: [f64; 2], radius: f64| {
-        let half = ((radius - (x - center[0])) * (radius + (x - center[0]))).max(0.0).sqrt();
+        let half = ((radius - (x - center[0])) * (radius + (x - center[0])))
+            .max(0.0)
+            .sqrt();
         [center[1] - half, center[1] + half]
     };
     match shape {
@@ -64,7 +69,11 @@ fn across(shape: &SolidShape, x: f64) -> Vec<f64> {
 }
 
 fn corners(outline: &Section, axis: usize) -> Vec<f64> {
-    outline.edges.iter().flat_map(|edge| [edge.a[axis], edge.b[axis]]).collect()
+    outline
+        .edges
+        .iter()
+        .flat_map(|edge| [edge.a[axis], edge.b[axis]])
+        .collect()
 }
 
 fn of_corners(mut corners: Vec<f64>, [lower, upper]: [f64; 2]) -> Vec<f64> {
@@ -81,7 +90,11 @@ fn in_pieces(f: &dyn Fn(f64) -> f64, (sides, mut breaks): ([f64; 2], Vec<f64>), 
     breaks.extend(sides);
     breaks.retain(|at| sides[0] <= *at && *at <= sides[1]);
     breaks.sort_by(f64::total_cmp);
-    breaks.windows(2).filter(|piece| piece[0] < piece[1]).map(|piece| integral(f, [piece[0], piece[1]], allowed)).sum()
+    breaks
+        .windows(2)
+        .filter(|piece| piece[0] < piece[1])
+        .map(|piece| integral(f, [piece[0], piece[1]], allowed))
+        .sum()
 }
 
 /// A function's integral by Simpson's rule, in halves until they are the whole but for what is allowed. Its ends are
@@ -90,7 +103,10 @@ fn integral(f: &dyn Fn(f64) -> f64, [lower, upper]: [f64; 2], allowed: f64) -> f
     let inside = 1e-9 * (upper - lower);
     let at = |x: f64| (x, f(x.clamp(lower + inside, upper - inside)));
     let simpson = |[a, b, c]: [(f64, f64); 3]| (c.0 - a.0) / 6.0 * (a.1 + 4.0 * b.1 + c.1);
-    let (mut done, mut open) = (0.0, vec![([at(lower), at(0.5 * (lower + upper)), at(upper)], allowed, HALVINGS)]);
+    let (mut done, mut open) = (
+        0.0,
+        vec![([at(lower), at(0.5 * (lower + upper)), at(upper)], allowed, HALVINGS)],
+    );
     while let Some(([a, b, c], allowed, halvings)) = open.pop() {
         let halves = [[a, at(0.5 * (a.0 + b.0)), b], [b, at(0.5 * (b.0 + c.0)), c]];
         let sum = halves.map(simpson).iter().sum::<f64>();

@@ -27,7 +27,9 @@ pub(crate) struct Raster {
 impl Raster {
     /// Places of the posts along an axis, m.
     pub(super) fn posts(&self, axis: usize) -> Vec<f64> {
-        (0..self.count[axis]).map(|k| self.lower[axis] + self.spacing[axis] * k as f64).collect()
+        (0..self.count[axis])
+            .map(|k| self.lower[axis] + self.spacing[axis] * k as f64)
+            .collect()
     }
 
     /// Of rows [x, y, z] in any order, on a level. Says what is wrong with them.
@@ -68,7 +70,11 @@ impl Raster {
             let is_off = (0..2).any(|axis| (part[axis] - part[axis].round()).abs() > ROUNDING);
             let place = post[1] * count[0] + post[0];
             if is_off || !top[place].is_nan() {
-                let what = if is_off { "is not on the regular grid of the other points" } else { "is given twice" };
+                let what = if is_off {
+                    "is not on the regular grid of the other points"
+                } else {
+                    "is given twice"
+                };
                 let [x, y, _] = row;
                 return Err(format!(
                     "E0032: the point x = {x} m, y = {y} m {what}. Correct this row, or interpolate all heights to a \
@@ -78,7 +84,14 @@ impl Raster {
             top[place] = row[2];
         }
         let base = vec![level; top.len()];
-        Self { lower: [ends[0][0], ends[1][0]], spacing, count, top, base }.checked()
+        Self {
+            lower: [ends[0][0], ends[1][0]],
+            spacing,
+            count,
+            top,
+            base,
+        }
+        .checked()
     }
 
     /// On the heights of another one with the same posts.
@@ -118,12 +131,22 @@ impl Raster {
 
     /// Its top as a rigid surface.
     pub(crate) fn surface(self) -> Terrain {
-        Terrain { lower: self.lower, spacing: self.spacing, count: self.count, heights: self.top }
+        Terrain {
+            lower: self.lower,
+            spacing: self.spacing,
+            count: self.count,
+            heights: self.top,
+        }
     }
 
     pub(crate) fn moved(self, by: [f64; 3]) -> Self {
         let up = |heights: Vec<f64>| heights.into_iter().map(|height| height + by[2]).collect();
-        Self { lower: [0, 1].map(|axis| self.lower[axis] + by[axis]), top: up(self.top), base: up(self.base), ..self }
+        Self {
+            lower: [0, 1].map(|axis| self.lower[axis] + by[axis]),
+            top: up(self.top),
+            base: up(self.base),
+            ..self
+        }
     }
 
     /// Lower and upper corner of the cuboid around it.
@@ -139,7 +162,9 @@ impl Raster {
         let [columns, rows] = self.count;
         let thick = |x: usize, y: usize| self.top[y * columns + x] - self.base[y * columns + x];
         let cell = |x: usize, y: usize| 0.25 * (thick(x, y) + thick(x + 1, y) + thick(x, y + 1) + thick(x + 1, y + 1));
-        let sum: f64 = (0..rows - 1).map(|y| (0..columns - 1).map(|x| cell(x, y)).sum::<f64>()).sum();
+        let sum: f64 = (0..rows - 1)
+            .map(|y| (0..columns - 1).map(|x| cell(x, y)).sum::<f64>())
+            .sum();
         sum * self.spacing[0] * self.spacing[1]
     }
 
@@ -179,10 +204,16 @@ mod tests {
             let [base, found] = raster.vertical(at).unwrap();
             assert!((found - top(at[0], at[1])).abs() < 1e-12 && base == 0.5);
         }
-        assert_eq!((raster.vertical([12.0, 0.0]), raster.vertical([10.1, -1.1])), (None, None));
+        assert_eq!(
+            (raster.vertical([12.0, 0.0]), raster.vertical([10.1, -1.1])),
+            (None, None)
+        );
         // The mean of x is 11, of y 0.5, of x y 5.5.
         assert!((raster.volume() - 6.0 * (2.5 + 1.1 - 0.1 + 0.05 * 5.5)).abs() < 1e-12);
-        let slide = Raster::new(&rows(|x, y| top(x, y) + (x - 10.5).max(0.0)), 0.0).unwrap().on(raster).unwrap();
+        let slide = Raster::new(&rows(|x, y| top(x, y) + (x - 10.5).max(0.0)), 0.0)
+            .unwrap()
+            .on(raster)
+            .unwrap();
         assert_eq!(slide.vertical([10.2, 0.0]), None);
         assert!((slide.volume() - 3.0 * 1.125).abs() < 1e-9, "{}", slide.volume());
         let moved = slide.clone().moved([1.0, 2.0, 3.0]);
@@ -204,6 +235,10 @@ mod tests {
         let mut twice = rows(|_, _| 1.0);
         twice[3] = twice[2];
         says(&twice, 0.0, "is given twice");
-        says(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]], 0.0, "two points along x and two along y");
+        says(
+            &[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]],
+            0.0,
+            "two points along x and two along y",
+        );
     }
 }

@@ -25,7 +25,12 @@ pub(crate) fn fault(corners: &[[f64; 2]]) -> Option<PolygonFault> {
     }
     let [lower, upper] = bounds(corners);
     let thinnest = 1e-12 * (upper[0] - lower[0]).hypot(upper[1] - lower[1]);
-    let (p, q) = (corners[0], *corners.iter().max_by(|a, b| far(corners[0], a).total_cmp(&far(corners[0], b)))?);
+    let (p, q) = (
+        corners[0],
+        *corners
+            .iter()
+            .max_by(|a, b| far(corners[0], a).total_cmp(&far(corners[0], b)))?,
+    );
     if corners.iter().all(|r| turn(p, q, *r).abs() <= thinnest * far(p, &q)) {
         return Some(PolygonFault::Flat);
     }
@@ -38,7 +43,9 @@ pub(crate) fn fault(corners: &[[f64; 2]]) -> Option<PolygonFault> {
         }
     };
     let mut pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
-    pairs.find(|(i, j)| crossing(*i, *j)).map(|(i, j)| PolygonFault::Crossing(i, j))
+    pairs
+        .find(|(i, j)| crossing(*i, *j))
+        .map(|(i, j)| PolygonFault::Crossing(i, j))
 }
 
 /// Lower and upper corner of the rectangle around places.

@@ -13,8 +13,11 @@ const PIECES: usize = 32;
 pub(crate) fn skin(of: &Region, all: &[&Region], grid: &GridSpec) -> Vec<[[f64; 2]; 2]> {
     let cell = grid.shortest();
     let (off, lower) = (BESIDE * cell, grid.lower());
-    let corners: Vec<[f64; 2]> =
-        all.iter().flat_map(|region| region.edges(grid).0).flat_map(|edge| [edge.a, edge.b]).collect();
+    let corners: Vec<[f64; 2]> = all
+        .iter()
+        .flat_map(|region| region.edges(grid).0)
+        .flat_map(|edge| [edge.a, edge.b])
+        .collect();
     let holds = |at: [f64; 2]| {
         let at = [0, 1].map(|axis| lower[axis] + at[axis]);
         all.iter().any(|region| region.contains(at))
@@ -23,12 +26,20 @@ pub(crate) fn skin(of: &Region, all: &[&Region], grid: &GridSpec) -> Vec<[[f64; 
         let along = [q[0] - p[0], q[1] - p[1]];
         let length = along[0].hypot(along[1]);
         let middle = [0, 1].map(|axis| 0.5 * (p[axis] + q[axis]));
-        let beside =
-            |side: f64| [middle[0] - side * off * along[1] / length, middle[1] + side * off * along[0] / length];
+        let beside = |side: f64| {
+            [
+                middle[0] - side * off * along[1] / length,
+                middle[1] + side * off * along[0] / length,
+            ]
+        };
         length > off && holds(beside(1.0)) != holds(beside(-1.0))
     };
     let edges = of.edges(grid).0;
-    edges.iter().flat_map(|edge| pieces(edge, &corners, (cell, off))).filter(is_bare).collect()
+    edges
+        .iter()
+        .flat_map(|edge| pieces(edge, &corners, (cell, off)))
+        .filter(is_bare)
+        .collect()
 }
 
 /// An edge in straight pieces between the corners that lie on it.
@@ -37,11 +48,18 @@ fn pieces(edge: &Edge, corners: &[[f64; 2]], (cell, off): (f64, f64)) -> Vec<[[f
         let along = [edge.b[0] - edge.a[0], edge.b[1] - edge.a[1]];
         let square = along[0].powi(2) + along[1].powi(2);
         let part = |at: &[f64; 2]| ((at[0] - edge.a[0]) * along[0] + (at[1] - edge.a[1]) * along[1]) / square;
-        let mut parts: Vec<f64> = corners.iter().filter(|at| edge.distance(**at) < off).map(part).collect();
+        let mut parts: Vec<f64> = corners
+            .iter()
+            .filter(|at| edge.distance(**at) < off)
+            .map(part)
+            .collect();
         parts.extend([0.0, 1.0]);
         parts.sort_by(f64::total_cmp);
         parts.dedup_by(|b, a| (*b - *a) * square.sqrt() < off);
-        parts.iter().map(|part| [0, 1].map(|axis| edge.a[axis] + part.clamp(0.0, 1.0) * along[axis])).collect()
+        parts
+            .iter()
+            .map(|part| [0, 1].map(|axis| edge.a[axis] + part.clamp(0.0, 1.0) * along[axis]))
+            .collect()
     } else {
         arc(edge, cell)
     };

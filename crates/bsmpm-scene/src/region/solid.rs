@@ -59,7 +59,12 @@ impl Section {
         let pair = |k: usize| (corners[k], corners[(k + 1) % corners.len()]);
         let beside = |([r, z], [s, w]): ([f64; 2], [f64; 2])| (w - z) * (r * r + r * s + s * s);
         let turned = PI / 3.0 * (0..corners.len()).map(|k| beside(pair(k))).sum::<f64>().abs();
-        Self { edges: super::polygon(corners, [0.0; 2], 0), bounds: bounds(corners), area: area(corners), turned }
+        Self {
+            edges: super::polygon(corners, [0.0; 2], 0),
+            bounds: bounds(corners),
+            area: area(corners),
+            turned,
+        }
     }
 
     /// A circle.
@@ -76,7 +81,11 @@ impl Section {
     fn moved(self, by: [f64; 2]) -> Self {
         let moved = |at: [f64; 2]| [at[0] + by[0], at[1] + by[1]];
         let edges = self.edges.into_iter().map(|edge| edge.moved(by)).collect();
-        Self { edges, bounds: self.bounds.map(moved), ..self }
+        Self {
+            edges,
+            bounds: self.bounds.map(moved),
+            ..self
+        }
     }
 
     /// What it covers of the line at `x`, upwards.
@@ -90,16 +99,26 @@ impl SolidShape {
     pub(crate) fn moved(self, by: [f64; 3]) -> Self {
         let moved = |at: [f64; 3]| [0, 1, 2].map(|axis| at[axis] + by[axis]);
         match self {
-            Self::Box { corners } => Self::Box { corners: corners.map(moved) },
+            Self::Box { corners } => Self::Box {
+                corners: corners.map(moved),
+            },
             Self::Prism { outline, along, ends } => {
                 let [across, up] = plane(along);
                 let outline = outline.moved([by[across], by[up]]);
-                Self::Prism { outline, along, ends: ends.map(|end| end + by[along]) }
+                Self::Prism {
+                    outline,
+                    along,
+                    ends: ends.map(|end| end + by[along]),
+                }
             }
-            Self::Sphere { center, radius } => Self::Sphere { center: moved(center), radius },
-            Self::Revolved { outline, about } => {
-                Self::Revolved { outline: outline.moved([0.0, by[2]]), about: [about[0] + by[0], about[1] + by[1]] }
-            }
+            Self::Sphere { center, radius } => Self::Sphere {
+                center: moved(center),
+                radius,
+            },
+            Self::Revolved { outline, about } => Self::Revolved {
+                outline: outline.moved([0.0, by[2]]),
+                about: [about[0] + by[0], about[1] + by[1]],
+            },
             Self::Terrain(raster) => Self::Terrain(Box::new(raster.moved(by))),
             Self::Surface(surface) => Self::Surface(Box::new(surface.moved(by))),
         }
@@ -129,7 +148,9 @@ impl SolidShape {
     /// Its volume, m³.
     pub(crate) fn volume(&self) -> f64 {
         match self {
-            Self::Box { corners: [lower, upper] } => (0..3).map(|axis| upper[axis] - lower[axis]).product(),
+            Self::Box {
+                corners: [lower, upper],
+            } => (0..3).map(|axis| upper[axis] - lower[axis]).product(),
             Self::Prism { outline, ends, .. } => outline.area * (ends[1] - ends[0]),
             Self::Sphere { radius, .. } => 4.0 / 3.0 * PI * radius.powi(3),
             Self::Revolved { outline, .. } => outline.turned,
@@ -142,18 +163,36 @@ impl SolidShape {
     pub(crate) fn vertical(&self, [x, y]: [f64; 2]) -> Vec<[f64; 2]> {
         let within = |[lower, upper]: [f64; 2], at: f64| lower <= at && at < upper;
         match self {
-            Self::Box { corners: [lower, upper] } => {
+            Self::Box {
+                corners: [lower, upper],
+            } => {
                 let there = within([lower[0], upper[0]], x) && within([lower[1], upper[1]], y);
                 if there { vec![[lower[2], upper[2]]] } else { Vec::new() }
             }
-            Self::Prism { outline, along: 0, ends } if within(*ends, x) => outline.at(y),
-            Self::Prism { outline, along: 1, ends } if within(*ends, y) => outline.at(x),
-            Self::Prism { outline, along: 2, ends } if outline.at(x).iter().any(|line| within(*line, y)) => vec![*ends],
+            Self::Prism {
+                outline,
+                along: 0,
+                ends,
+            } if within(*ends, x) => outline.at(y),
+            Self::Prism {
+                outline,
+                along: 1,
+                ends,
+            } if within(*ends, y) => outline.at(x),
+            Self::Prism {
+                outline,
+                along: 2,
+                ends,
+            } if outline.at(x).iter().any(|line| within(*line, y)) => vec![*ends],
             Self::Prism { .. } => Vec::new(),
             Self::Sphere { center, radius } => {
                 let away = (x - center[0]).hypot(y - center[1]);
                 let half = ((radius - away) * (radius + away)).max(0.0).sqrt();
-                if half > 0.0 { vec![[center[2] - half, center[2] + half]] } else { Vec::new() }
+                if half > 0.0 {
+                    vec![[center[2] - half, center[2] + half]]
+                } else {
+                    Vec::new()
+                }
             }
             Self::Revolved { outline, about } => outline.at((x - about[0]).hypot(y - about[1])),
             Self::Terrain(raster) => raster.vertical([x, y]).into_iter().collect(),
@@ -164,10 +203,15 @@ impl SolidShape {
     /// The outline and the ends of the same shape along an axis, if it is a prism or cuboid there.
     pub(crate) fn along(&self, axis: usize) -> Option<(Section, [f64; 2])> {
         match self {
-            Self::Box { corners: [lower, upper] } => {
+            Self::Box {
+                corners: [lower, upper],
+            } => {
                 let [across, up] = plane(axis);
                 let ([a, b], [c, d]) = ([lower[across], lower[up]], [upper[across], upper[up]]);
-                Some((Section::polygon(&[[a, b], [c, b], [c, d], [a, d]]), [lower[axis], upper[axis]]))
+                Some((
+                    Section::polygon(&[[a, b], [c, b], [c, d], [a, d]]),
+                    [lower[axis], upper[axis]],
+                ))
             }
             Self::Prism { outline, along, ends } if *along == axis => Some((outline.clone(), *ends)),
             _ => None,
@@ -183,7 +227,9 @@ pub(crate) const fn plane(along: usize) -> [usize; 2] {
 /// What is left of intervals, which ascend, where others are cut out.
 pub(crate) fn less(of: Vec<[f64; 2]>, cut: &[[f64; 2]]) -> Vec<[f64; 2]> {
     cut.iter().fold(of, |left, [from, to]| {
-        let pieces = left.into_iter().flat_map(|[lower, upper]| [[lower, upper.min(*from)], [lower.max(*to), upper]]);
+        let pieces = left
+            .into_iter()
+            .flat_map(|[lower, upper]| [[lower, upper.min(*from)], [lower.max(*to), upper]]);
         pieces.filter(|[lower, upper]| lower < upper).collect()
     })
 }

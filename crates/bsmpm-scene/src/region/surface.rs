@@ -31,8 +31,10 @@ impl Surface {
     pub(crate) fn new(rows: impl Iterator<Item = [f64; 9]>) -> Result<Self, String> {
         // -0 and 0 are one place.
         let corner = |row: &[f64; 9], k: usize| [0, 1, 2].map(|axis| row[3 * k + axis] + 0.0);
-        let mut triangles: Vec<[[f64; 3]; 3]> =
-            rows.map(|row| [0, 1, 2].map(|k| corner(&row, k))).filter(|[a, b, c]| a != b && b != c && c != a).collect();
+        let mut triangles: Vec<[[f64; 3]; 3]> = rows
+            .map(|row| [0, 1, 2].map(|k| corner(&row, k)))
+            .filter(|[a, b, c]| a != b && b != c && c != a)
+            .collect();
         if triangles.is_empty() {
             return Err(
                 "E0034: no triangle of the surface has three different corners, so the surface has no area. Correct \
@@ -65,7 +67,12 @@ impl Surface {
             cuts.dedup();
             cuts
         });
-        let made = Self { triangles, bounds, cuts, bins: Vec::new() };
+        let made = Self {
+            triangles,
+            bounds,
+            cuts,
+            bins: Vec::new(),
+        };
         let [along, across] = made.cuts.each_ref().map(|cuts| cuts.len() + 1);
         let mut bins = vec![Vec::new(); along * across];
         for (number, triangle) in (0_u32..).zip(&made.triangles) {
@@ -145,7 +152,9 @@ impl Surface {
     /// two edges cross, which are the places that are tried, `BESIDE` from the edges that meet there; what is thinner
     /// may stay.
     fn simple(&self) -> Result<(), String> {
-        let width = (0..2).map(|axis| self.bounds[1][axis] - self.bounds[0][axis]).fold(0.0, f64::max);
+        let width = (0..2)
+            .map(|axis| self.bounds[1][axis] - self.bounds[0][axis])
+            .fold(0.0, f64::max);
         for triangle in self.triangles.iter().filter(|triangle| !is_wall(triangle)) {
             let [a, b, c] = triangle.map(|[x, y, _]| [x, y]);
             for [at, one, other] in [[a, b, c], [b, c, a], [c, a, b]] {
@@ -156,7 +165,9 @@ impl Surface {
         for bin in &self.bins {
             let edges = bin.iter().flat_map(|&k| edges(&self.triangles[k as usize])).collect();
             for (one, other) in near(edges) {
-                let Some((at, [u, v])) = crossing(one, other) else { continue };
+                let Some((at, [u, v])) = crossing(one, other) else {
+                    continue;
+                };
                 for ways in [[u[0], v[0]], [u[0], v[1]], [u[1], v[0]], [u[1], v[1]]] {
                     between(at, ways, BESIDE * width).map_or(Ok(()), |at| self.is_simple(at))?;
                 }
@@ -187,7 +198,8 @@ impl Surface {
 fn edges(triangle: &[[f64; 3]; 3]) -> impl Iterator<Item = [[f64; 2]; 2]> {
     let ends = (0..3).map(|k| [triangle[k], triangle[(k + 1) % 3]]);
     let once = ends.filter(|[from, to]| from < to);
-    once.map(|ends| ends.map(|[x, y, _]| [x, y])).filter(|[from, to]| from != to)
+    once.map(|ends| ends.map(|[x, y, _]| [x, y]))
+        .filter(|[from, to]| from != to)
 }
 
 /// Pairs of edges whose rectangles meet, swept along the axis along which they lie farther apart.
@@ -205,8 +217,13 @@ fn near(mut edges: Vec<[[f64; 2]; 2]>) -> impl Iterator<Item = ([[f64; 2]; 2], [
     };
     (0..edges.len()).flat_map(move |k| {
         let one = edges[k];
-        let after = edges[k + 1..].iter().take_while(|other| from(other, axis) <= to(&one, axis));
-        after.filter(|other| meet(&one, other)).map(|other| (one, *other)).collect::<Vec<_>>()
+        let after = edges[k + 1..]
+            .iter()
+            .take_while(|other| from(other, axis) <= to(&one, axis));
+        after
+            .filter(|other| meet(&one, other))
+            .map(|other| (one, *other))
+            .collect::<Vec<_>>()
     })
 }
 
@@ -271,7 +288,11 @@ pub(crate) fn edges_of(triangles: &[[[f64; 3]; 3]]) -> BTreeMap<[usize; 2], Vec<
             let ends = [corners[k], corners[(k + 1) % 3]];
             let [from, to] = ends.map(&mut number);
             let sides = edges.entry([from.min(to), from.max(to)]).or_default();
-            sides.push(EdgeSide { triangle, upwards: from < to, ends });
+            sides.push(EdgeSide {
+                triangle,
+                upwards: from < to,
+                ends,
+            });
         }
     }
     edges
@@ -303,7 +324,11 @@ fn around(triangle: &[[f64; 3]; 3], [x, y]: [f64; 2]) -> i32 {
         }
         let meets = low[0] + (y - low[1]) / (high[1] - low[1]) * (high[0] - low[0]);
         // Within the edge, so that no place is found whose bin the triangle does not reach.
-        if x < meets.clamp(from[0].min(to[0]), from[0].max(to[0])) { sign } else { 0 }
+        if x < meets.clamp(from[0].min(to[0]), from[0].max(to[0])) {
+            sign
+        } else {
+            0
+        }
     };
     (0..3).map(|k| across(triangle[k], triangle[(k + 1) % 3])).sum()
 }
@@ -311,7 +336,11 @@ fn around(triangle: &[[f64; 3]; 3], [x, y]: [f64; 2]) -> i32 {
 /// Whether a triangle stands upright but for rounding: where a line cuts it is arbitrary.
 fn is_wall([a, b, c]: &[[f64; 3]; 3]) -> bool {
     let [u, v] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
-    let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    let normal = [
+        u[1] * v[2] - u[2] * v[1],
+        u[2] * v[0] - u[0] * v[2],
+        u[0] * v[1] - u[1] * v[0],
+    ];
     normal[2].abs() <= ROUNDING * normal.iter().map(|part| part.abs()).sum::<f64>()
 }
 
@@ -320,11 +349,18 @@ fn height([a, b, c]: &[[f64; 3]; 3], at: [f64; 2]) -> f64 {
     let [u, v] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
     let way = [at[0] - a[0], at[1] - a[1]];
     let twice = u[0] * v[1] - u[1] * v[0];
-    let (s, t) = ((way[0] * v[1] - way[1] * v[0]) / twice, (u[0] * way[1] - u[1] * way[0]) / twice);
+    let (s, t) = (
+        (way[0] * v[1] - way[1] * v[0]) / twice,
+        (u[0] * way[1] - u[1] * way[0]) / twice,
+    );
     let z = a[2] + s * u[2] + t * v[2];
     // Of a wall, whose plane has no height, the clamp is all.
     let ends = [a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2])];
-    if z.is_finite() { z.clamp(ends[0], ends[1]) } else { 0.5 * (ends[0] + ends[1]) }
+    if z.is_finite() {
+        z.clamp(ends[0], ends[1])
+    } else {
+        0.5 * (ends[0] + ends[1])
+    }
 }
 
 #[cfg(test)]
@@ -334,13 +370,24 @@ mod tests {
     /// A cuboid's twelve triangles, outwards.
     fn cuboid(lower: [f64; 3], upper: [f64; 3]) -> Vec<[f64; 9]> {
         let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { lower[axis] } else { upper[axis] });
-        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let faces = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
         let halves = faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
-        halves.map(|half| half.map(corner).concat().try_into().unwrap()).collect()
+        halves
+            .map(|half| half.map(corner).concat().try_into().unwrap())
+            .collect()
     }
 
     fn turned(rows: Vec<[f64; 9]>) -> Vec<[f64; 9]> {
-        rows.into_iter().map(|[a, b, c, d, e, f, g, h, i]| [a, b, c, g, h, i, d, e, f]).collect()
+        rows.into_iter()
+            .map(|[a, b, c, d, e, f, g, h, i]| [a, b, c, g, h, i, d, e, f])
+            .collect()
     }
 
     fn surface(rows: Vec<[f64; 9]>) -> Result<Surface, String> {
@@ -351,7 +398,10 @@ mod tests {
     fn what_a_cuboid_with_a_cavity_encloses_is_exact() {
         let shell = cuboid([1.0, 2.0, 3.0], [4.0, 4.0, 7.0]);
         let cavity = turned(cuboid([2.0, 2.5, 4.0], [3.0, 3.5, 5.0]));
-        for rows in [[shell.clone(), cavity.clone()].concat(), turned([shell, cavity].concat())] {
+        for rows in [
+            [shell.clone(), cavity.clone()].concat(),
+            turned([shell, cavity].concat()),
+        ] {
             let found = surface(rows).unwrap();
             assert!((found.volume() - 23.0).abs() < 1e-12);
             assert_eq!(found.bounds(), [[1.0, 2.0, 3.0], [4.0, 4.0, 7.0]]);
@@ -374,13 +424,19 @@ mod tests {
                 std::f64::consts::TAU * (i % around_it) as f64 / around_it as f64,
                 std::f64::consts::PI * j as f64 / up as f64,
             );
-            let r = if j.is_multiple_of(up) { 1.3 } else { 1.0 + 0.3 * (3.0 * phi).sin() * theta.sin().powi(2) };
+            let r = if j.is_multiple_of(up) {
+                1.3
+            } else {
+                1.0 + 0.3 * (3.0 * phi).sin() * theta.sin().powi(2)
+            };
             let flat = if j.is_multiple_of(up) { 0.0 } else { r * theta.sin() };
             [flat * phi.cos(), flat * phi.sin(), r * theta.cos()]
         };
         let quads = (0..around_it).flat_map(|i| (0..up).map(move |j| [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)]));
         let halves = quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
-        let rows = halves.map(|half| half.map(|(i, j)| at(i, j)).concat().try_into().unwrap()).collect();
+        let rows = halves
+            .map(|half| half.map(|(i, j)| at(i, j)).concat().try_into().unwrap())
+            .collect();
         let found = surface(rows).unwrap();
         let corners: Vec<[f64; 3]> = found.triangles.iter().flatten().copied().collect();
         let middles = found.triangles.iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
@@ -420,7 +476,9 @@ mod tests {
         for number in 0..216 {
             let other = [number % 6, number / 6 % 6, number / 36].map(|k| spans[k]);
             let overlap = (0..3).all(|axis| one[axis][0] < other[axis][1] && other[axis][0] < one[axis][1]);
-            let rows = [one, other].map(|spans| cuboid(spans.map(|ends| ends[0]), spans.map(|ends| ends[1]))).concat();
+            let rows = [one, other]
+                .map(|spans| cuboid(spans.map(|ends| ends[0]), spans.map(|ends| ends[1])))
+                .concat();
             assert_eq!(surface(rows).is_err(), overlap, "{other:?}");
         }
     }
@@ -438,16 +496,34 @@ mod tests {
         one_turned[..1].clone_from_slice(&turned(block[..1].to_vec()));
         says(one_turned, "not closed at 3 edges");
         says([block.clone(), turned(block.clone())].concat(), "encloses no volume");
-        says([block.clone(), cuboid([0.5; 3], [1.5; 3])].concat(), "intersects itself");
-        says([block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(), "normals that point inwards");
+        says(
+            [block.clone(), cuboid([0.5; 3], [1.5; 3])].concat(),
+            "intersects itself",
+        );
+        says(
+            [block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(),
+            "normals that point inwards",
+        );
         // Blocks with sides in common that overlap by little, and bars across each other, with sides in common and not.
-        says([block.clone(), cuboid([0.99, 0.0, 0.0], [1.99, 1.0, 1.0])].concat(), "intersects itself");
-        says([block.clone(), cuboid([0.3, 0.2, 0.99], [0.4, 0.5, 2.0])].concat(), "intersects itself");
+        says(
+            [block.clone(), cuboid([0.99, 0.0, 0.0], [1.99, 1.0, 1.0])].concat(),
+            "intersects itself",
+        );
+        says(
+            [block.clone(), cuboid([0.3, 0.2, 0.99], [0.4, 0.5, 2.0])].concat(),
+            "intersects itself",
+        );
         let bar = cuboid([0.0, 1.45, 0.0], [30.0, 1.5, 1.0]);
         for top in [1.0, 2.0] {
-            says([bar.clone(), cuboid([14.9, 0.0, 0.0], [15.1, 3.0, top])].concat(), "intersects itself");
+            says(
+                [bar.clone(), cuboid([14.9, 0.0, 0.0], [15.1, 3.0, top])].concat(),
+                "intersects itself",
+            );
         }
-        says([bar, cuboid([14.9, 0.0, 0.4], [15.1, 3.0, 0.6])].concat(), "intersects itself");
+        says(
+            [bar, cuboid([14.9, 0.0, 0.4], [15.1, 3.0, 0.6])].concat(),
+            "intersects itself",
+        );
         // Blocks that only touch are fine.
         let both = surface([block, cuboid([0.0, 0.0, 1.0], [1.0, 1.0, 2.0])].concat()).unwrap();
         assert!((both.volume() - 2.0).abs() < 1e-12);

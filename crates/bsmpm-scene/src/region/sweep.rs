@@ -39,14 +39,19 @@ impl Slice {
         let about_left = width * width * (heights[0] + 2.0 * heights[1]) / 6.0;
         let squares = |[p, q]: [f64; 2]| p * p + p * q + q * q;
         let area = 0.5 * (heights[0] + heights[1]) * width;
-        let chords = [self.x[0] * area + about_left, width * (squares(self.top) - squares(self.bottom)) / 6.0];
+        let chords = [
+            self.x[0] * area + about_left,
+            width * (squares(self.top) - squares(self.bottom)) / 6.0,
+        ];
         [chords[0] + self.bulge.moment[0], chords[1] + self.bulge.moment[1]]
     }
 }
 
 /// Whether a place is filled: inside shape 0, and inside none of the others.
 pub(crate) fn solid(inside: &[bool]) -> bool {
-    inside.split_first().is_some_and(|(filled, cut)| *filled && !cut.contains(&true))
+    inside
+        .split_first()
+        .is_some_and(|(filled, cut)| *filled && !cut.contains(&true))
 }
 
 /// What shape 0 less the others covers of the vertical line at `x`, upwards.
@@ -94,7 +99,10 @@ pub(crate) fn sweep(
         let (x, middle) = ([pair[0], pair[1]], 0.5 * (pair[0] + pair[1]));
         let here = |edge: &&&Edge| edge.a[0] <= middle && middle < edge.b[0];
         inside.fill(false);
-        below.iter().filter(here).for_each(|edge| inside[edge.shape] = !inside[edge.shape]);
+        below
+            .iter()
+            .filter(here)
+            .for_each(|edge| inside[edge.shape] = !inside[edge.shape]);
         crossed.clear();
         for edge in within.iter().filter(here) {
             match edge.y(middle) {
@@ -113,7 +121,13 @@ pub(crate) fn sweep(
         for (top, shape) in curves.chain(std::iter::once((line(window.y[1]), None))) {
             if filled(&inside) {
                 let middle = [middle, 0.5 * (bottom.1 + top.1)];
-                visit(Slice { x, bottom: bottom.0, top: top.0, bulge: top.2 - bottom.2, middle });
+                visit(Slice {
+                    x,
+                    bottom: bottom.0,
+                    top: top.0,
+                    bulge: top.2 - bottom.2,
+                    middle,
+                });
             }
             if let Some(shape) = shape {
                 inside[shape] = !inside[shape];
@@ -133,9 +147,17 @@ fn events(edges: &[&Edge], window: &Window) -> Vec<f64> {
     };
     for (number, edge) in edges.iter().enumerate() {
         [edge.a[0], edge.b[0]].into_iter().for_each(&mut add);
-        window.y.into_iter().flat_map(|y| edge.levels(y)).flatten().for_each(&mut add);
+        window
+            .y
+            .into_iter()
+            .flat_map(|y| edge.levels(y))
+            .flatten()
+            .for_each(&mut add);
         let others = edges[number + 1..].iter().filter(|other| other.shape != edge.shape);
-        others.flat_map(|other| edge.crossings(other)).flatten().for_each(&mut add);
+        others
+            .flat_map(|other| edge.crossings(other))
+            .flatten()
+            .for_each(&mut add);
     }
     events.sort_by(f64::total_cmp);
     events.dedup();

@@ -29,7 +29,12 @@ enum Filling {
     Box,
     /// The points of an outline in the plane beside an axis, a lattice in the part of every cell along it: the volumes
     /// are exact.
-    Prism { outline: Box<Outline>, plane: GridSpec, along: usize, ends: [f64; 2] },
+    Prism {
+        outline: Box<Outline>,
+        plane: GridSpec,
+        along: usize,
+        ends: [f64; 2],
+    },
     /// By vertical lines; of cells that are cut the volumes are multiplied by the factor, by which the body's is exact.
     Lattice { scale: f64 },
 }
@@ -56,7 +61,15 @@ impl Volume {
         let bounds = bounds(&whole, &cut);
         let filling = Filling::of((&whole, &cut, bounds), axes, n)?;
         let volume = whole.volume();
-        let mut made = Self { origin, whole, cut, bounds, filling, volume, tally: SlabTally::default() };
+        let mut made = Self {
+            origin,
+            whole,
+            cut,
+            bounds,
+            filling,
+            volume,
+            tally: SlabTally::default(),
+        };
         made.count(axes, n);
         let unseen = made.tally.cells == 0 && made.volume > 0.0;
         // A factor below zero: cells that seem whole hold more than the body.
@@ -73,7 +86,8 @@ impl Volume {
     /// Lower and upper corner of a cuboid around it, m, in the case's coordinates: around the whole shape but for what
     /// cuboids cut off.
     pub fn bounds(&self) -> [[f64; 3]; 2] {
-        self.bounds.map(|corner| [0, 1, 2].map(|axis| corner[axis] + self.origin[axis]))
+        self.bounds
+            .map(|corner| [0, 1, 2].map(|axis| corner[axis] + self.origin[axis]))
     }
 
     /// Its volume, m³: that of its points.
@@ -88,7 +102,11 @@ impl Volume {
 
     /// By what the volumes of points in cells that are cut were multiplied: far from 1 the lines do not see the shape.
     pub(crate) fn scale(&self) -> f64 {
-        if let Filling::Lattice { scale } = self.filling { scale } else { 1.0 }
+        if let Filling::Lattice { scale } = self.filling {
+            scale
+        } else {
+            1.0
+        }
     }
 
     pub(crate) fn tally(&self) -> &SlabTally {
@@ -98,13 +116,18 @@ impl Volume {
     /// Length of the vertical ray above `at` (m, in the case's coordinates) inside it, m.
     pub(crate) fn above(&self, at: [f64; 3]) -> f64 {
         let at = self.local(at);
-        self.vertical([at[0], at[1]]).into_iter().map(|[lower, upper]| (upper - lower.max(at[2])).max(0.0)).sum()
+        self.vertical([at[0], at[1]])
+            .into_iter()
+            .map(|[lower, upper]| (upper - lower.max(at[2])).max(0.0))
+            .sum()
     }
 
     /// Whether a place lies inside, m in the case's coordinates.
     pub(crate) fn contains(&self, at: [f64; 3]) -> bool {
         let at = self.local(at);
-        self.vertical([at[0], at[1]]).iter().any(|[lower, upper]| *lower < at[2] && at[2] < *upper)
+        self.vertical([at[0], at[1]])
+            .iter()
+            .any(|[lower, upper]| *lower < at[2] && at[2] < *upper)
     }
 
     fn local(&self, at: [f64; 3]) -> [f64; 3] {
@@ -113,21 +136,31 @@ impl Volume {
 
     /// What it covers of a vertical line, from the grid's lower corner.
     fn vertical(&self, at: [f64; 2]) -> Vec<[f64; 2]> {
-        self.cut.iter().fold(self.whole.vertical(at), |left, cut| less(left, &cut.vertical(at)))
+        self.cut
+            .iter()
+            .fold(self.whole.vertical(at), |left, cut| less(left, &cut.vertical(at)))
     }
 
     /// Points of slab `i` of the cells along axis 0.
     pub(crate) fn slab(&self, axes: &[GridAxis], n: usize, i: usize) -> Vec<CellPlace<3>> {
         match &self.filling {
             Filling::Box => self.slab_of_box(axes, n, i),
-            Filling::Prism { outline, plane, along, ends } => {
+            Filling::Prism {
+                outline,
+                plane,
+                along,
+                ends,
+            } => {
                 let extent = AxisExtent::between(&axes[*along], *ends);
                 prism_slab((outline, plane), (*along, &extent), n, i)
             }
             Filling::Lattice { scale } => {
                 let scaled = |(_, cell): (usize, lattice::LatticeCell)| {
                     let by = if cell.whole { 1.0 } else { *scale };
-                    cell.places.into_iter().map(move |at| CellPlace { area: by * at.area, ..at })
+                    cell.places.into_iter().map(move |at| CellPlace {
+                        area: by * at.area,
+                        ..at
+                    })
                 };
                 self.lattice_slab(axes, n, i).into_iter().flat_map(scaled).collect()
             }
@@ -159,9 +192,14 @@ impl Volume {
         let [lower, upper] = self.bounds;
         let sides = |axis: usize, cell: usize| [axes[axis].breakpoint(cell), axes[axis].breakpoint(cell + 1)];
         let ends = self.ends();
-        let lines = lattice::Lines { covers: &|at| self.vertical(at), ends: &ends };
+        let lines = lattice::Lines {
+            covers: &|at| self.vertical(at),
+            ends: &ends,
+        };
         let column = |j: usize| lattice::column(&lines, [sides(0, i), sides(1, j)], &axes[2], n);
-        reached(&axes[1], [lower[1], upper[1]]).flat_map(|j| column(j).into_iter().map(move |cell| (j, cell))).collect()
+        reached(&axes[1], [lower[1], upper[1]])
+            .flat_map(|j| column(j).into_iter().map(move |cell| (j, cell)))
+            .collect()
     }
 
     fn count(&mut self, axes: &[GridAxis], n: usize) {
@@ -171,10 +209,19 @@ impl Volume {
             Filling::Box => {
                 let occupied = [0, 1, 2].map(extent);
                 let in_slab = (occupied[1].len() * occupied[2].len()) as u64;
-                let before = (0..=occupied[0].len() as u64).map(|slab| slab * in_slab * n.pow(3) as u64).collect();
-                self.tally = SlabTally { before, cells: occupied[0].len() as u64 * in_slab, occupied, alone: 0.0 };
+                let before = (0..=occupied[0].len() as u64)
+                    .map(|slab| slab * in_slab * n.pow(3) as u64)
+                    .collect();
+                self.tally = SlabTally {
+                    before,
+                    cells: occupied[0].len() as u64 * in_slab,
+                    occupied,
+                    alone: 0.0,
+                };
             }
-            Filling::Prism { outline, along, ends, .. } => {
+            Filling::Prism {
+                outline, along, ends, ..
+            } => {
                 self.tally = prism_tally(outline, (*along, extent(*along), ends[1] - ends[0]), n);
                 self.volume = outline.area * (ends[1] - ends[0]);
             }
@@ -194,7 +241,9 @@ impl Volume {
             if tally.before.is_empty() {
                 tally.occupied = [i..i, cells[0].0..cells[0].0, cells[0].1.row..cells[0].1.row];
             }
-            tally.before.extend(std::iter::repeat_n(total, i + 1 - tally.occupied[0].end));
+            tally
+                .before
+                .extend(std::iter::repeat_n(total, i + 1 - tally.occupied[0].end));
             tally.occupied[0].end = i + 1;
             tally.cells += cells.len() as u64;
             for (j, cell) in &cells {
@@ -229,7 +278,9 @@ impl Volume {
     fn ends(&self) -> [Vec<f64>; 2] {
         [0, 1].map(|axis| {
             let shapes = std::iter::once(&self.whole).chain(&self.cut);
-            let mut ends: Vec<f64> = shapes.flat_map(|shape| shape.bounds().map(|corner| corner[axis])).collect();
+            let mut ends: Vec<f64> = shapes
+                .flat_map(|shape| shape.bounds().map(|corner| corner[axis]))
+                .collect();
             ends.sort_by(f64::total_cmp);
             ends.dedup();
             ends
@@ -249,13 +300,26 @@ impl Filling {
         let prism = (0..3).find_map(|along| Some((along, through(whole, cut, along)?, whole.along(along)?.0)));
         if let Some((along, (edges, _), section)) = prism {
             let [across, up] = plane(along);
-            let plane =
-                GridSpec { axes: vec![axes[across].clone(), axes[up].clone()], order: 1, lines: Default::default() };
+            let plane = GridSpec {
+                axes: vec![axes[across].clone(), axes[up].clone()],
+                order: 1,
+                lines: Default::default(),
+            };
             let lower = plane.lower();
             let ends = bounds.map(|corner| corner[along]);
             let bounds = bounds.map(|corner| [corner[across] + lower[0], corner[up] + lower[1]]);
-            let outline = Outline::new(edges, 1 + cut.len(), (bounds, section.area), (&plane, Geometry::Solid, n))?;
-            return Ok(Self::Prism { outline: Box::new(outline), plane, along, ends });
+            let outline = Outline::new(
+                edges,
+                1 + cut.len(),
+                (bounds, section.area),
+                (&plane, Geometry::Solid, n),
+            )?;
+            return Ok(Self::Prism {
+                outline: Box::new(outline),
+                plane,
+                along,
+                ends,
+            });
         }
         let [lower, upper] = bounds;
         let columns = (0..2).map(|axis| reached(&axes[axis], [lower[axis], upper[axis]]).len() as u128);
@@ -348,9 +412,10 @@ fn prism_slab(
             let thickness = (part[1] - part[0]) / n as f64;
             for k in 0..n {
                 let at = place(part, k, n);
-                places.extend(
-                    section.iter().map(|of| CellPlace { x: beside(along, at, of.x), area: thickness * of.area }),
-                );
+                places.extend(section.iter().map(|of| CellPlace {
+                    x: beside(along, at, of.x),
+                    area: thickness * of.area,
+                }));
             }
         }
     }
@@ -361,12 +426,17 @@ fn prism_slab(
 fn section(outline: &Outline, plane: &GridSpec, n: usize, column: usize) -> Vec<CellPlace> {
     let sides = |axis: usize, cell: usize| [plane.axes[axis].breakpoint(cell), plane.axes[axis].breakpoint(cell + 1)];
     let of_part = |part: RegionPart| match part {
-        RegionPart::Whole(rows) => {
-            rows.flat_map(|row| of_cell(outline.lattice(n), [sides(0, column), sides(1, row)])).collect()
-        }
+        RegionPart::Whole(rows) => rows
+            .flat_map(|row| of_cell(outline.lattice(n), [sides(0, column), sides(1, row)]))
+            .collect(),
         RegionPart::Cut(_, places) => places,
     };
-    outline.column(plane, n, column).parts.into_iter().flat_map(of_part).collect()
+    outline
+        .column(plane, n, column)
+        .parts
+        .into_iter()
+        .flat_map(of_part)
+        .collect()
 }
 
 /// A place by that along an axis and those beside it.
@@ -386,11 +456,18 @@ fn prism_tally(outline: &Outline, (along, cells, length): (usize, Range<usize>, 
     (occupied[across], occupied[up]) = (of_plane.occupied[0].clone(), of_plane.occupied[1].clone());
     occupied[along] = cells.clone();
     let before = if along == 0 {
-        (0..=cells.len() as u64).map(|slab| slab * n as u64 * in_plane).collect()
+        (0..=cells.len() as u64)
+            .map(|slab| slab * n as u64 * in_plane)
+            .collect()
     } else {
         of_plane.before.iter().map(|before| before * thick).collect()
     };
-    SlabTally { occupied, before, cells: of_plane.cells * cells.len() as u64, alone: of_plane.alone * length }
+    SlabTally {
+        occupied,
+        before,
+        cells: of_plane.cells * cells.len() as u64,
+        alone: of_plane.alone * length,
+    }
 }
 
 #[cfg(test)]

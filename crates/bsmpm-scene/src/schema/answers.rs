@@ -14,11 +14,19 @@ const MATERIAL: &str = "[material.NAME]";
 const TOP: &str = "the file";
 
 const fn symbol(names: &'static [&'static str], text: &'static str) -> Answer {
-    Answer { names, table: MATERIAL, text }
+    Answer {
+        names,
+        table: MATERIAL,
+        text,
+    }
 }
 
 const fn top(names: &'static [&'static str], text: &'static str) -> Answer {
-    Answer { names, table: TOP, text }
+    Answer {
+        names,
+        table: TOP,
+        text,
+    }
 }
 
 const fn anywhere(names: &'static [&'static str], text: &'static str) -> Answer {
@@ -30,20 +38,32 @@ const ANSWERS: &[Answer] = &[
         &["E", "Eref", "E50", "E_ref", "E_mod", "Emod", "modulus"],
         "Young's modulus is the key `young`, a constant. For E50 take its value at the stress of the problem.",
     ),
-    symbol(&["nu", "poisson_ratio", "poissons_ratio"], "Poisson's ratio is the key `poisson`."),
+    symbol(
+        &["nu", "poisson_ratio", "poissons_ratio"],
+        "Poisson's ratio is the key `poisson`.",
+    ),
     symbol(
         &["phi", "phi_prime", "phi'", "friction_angle_deg", "friction_coefficient"],
         "The friction angle is the key `friction_angle`, in degrees.",
     ),
-    symbol(&["psi", "psi'"], "The dilation angle is the key `dilation_angle`, in degrees."),
+    symbol(
+        &["psi", "psi'"],
+        "The dilation angle is the key `dilation_angle`, in degrees.",
+    ),
     symbol(&["c", "c'", "c_prime"], "The cohesion is the key `cohesion`."),
     symbol(
         &["su", "Su", "s_u", "cu", "c_u", "undrained_strength"],
         "The undrained shear strength is the key `cohesion` with model = \"tresca\".",
     ),
     symbol(&["gamma", "unit_wt"], "The unit weight is the key `unit_weight`."),
-    symbol(&["gamma_sat", "gammasat"], "The saturated unit weight is the key `saturated_unit_weight`."),
-    symbol(&["gamma_d", "gamma_dry", "gamma_unsat"], "The unit weight above the water table is the key `unit_weight`."),
+    symbol(
+        &["gamma_sat", "gammasat"],
+        "The saturated unit weight is the key `saturated_unit_weight`.",
+    ),
+    symbol(
+        &["gamma_d", "gamma_dry", "gamma_unsat"],
+        "The unit weight above the water table is the key `unit_weight`.",
+    ),
     symbol(&["rho"], "The density is the key `density`."),
     symbol(
         &["e", "e0", "e_0", "e_init"],
@@ -54,7 +74,10 @@ const ANSWERS: &[Answer] = &[
         &["k", "kx", "ky", "ksat", "k_sat"],
         "The hydraulic conductivity (m/s) is the key `permeability`: one value, or one along each axis.",
     ),
-    symbol(&["M"], "The slope of the critical state line is the key `critical_state_ratio`."),
+    symbol(
+        &["M"],
+        "The slope of the critical state line is the key `critical_state_ratio`.",
+    ),
     symbol(&["OCR"], "The overconsolidation ratio is the key `ocr`."),
     symbol(
         &["K0", "K_0", "k_0", "K0nc"],
@@ -69,7 +92,10 @@ const ANSWERS: &[Answer] = &[
         &["G", "shear_modulus", "K", "bulk_modulus"],
         "The elastic constants are the keys `young` and `poisson`: E = 2 G (1 + nu) = 3 K (1 - 2 nu).",
     ),
-    symbol(&["St", "S_t"], "The sensitivity is the key `sensitivity`, of model = \"sensitive-clay\"."),
+    symbol(
+        &["St", "S_t"],
+        "The sensitivity is the key `sensitivity`, of model = \"sensitive-clay\".",
+    ),
     symbol(
         &["tension_cutoff", "tension_cut_off", "tensile_strength"],
         "E0012: a tension cut-off is not available. Delete this line. The soil then carries a mean tension of up to c / tan(phi). \
@@ -94,16 +120,28 @@ const ANSWERS: &[Answer] = &[
     ),
     top(&["bodies"], "Bodies are tables `[[body]]`, one for each."),
     top(&["materials"], "Materials are tables `[material.NAME]`, one for each."),
-    top(&["load", "loads", "surcharge"], "Loads are tables `[[traction]]` and `[[point_load]]`."),
-    top(&["boundaries", "supports", "fixities"], "Supports of the grid's faces are the table `[boundary]`."),
-    top(&["phase", "phases", "stages"], "Construction stages are tables `[[stage]]`."),
+    top(
+        &["load", "loads", "surcharge"],
+        "Loads are tables `[[traction]]` and `[[point_load]]`.",
+    ),
+    top(
+        &["boundaries", "supports", "fixities"],
+        "Supports of the grid's faces are the table `[boundary]`.",
+    ),
+    top(
+        &["phase", "phases", "stages"],
+        "Construction stages are tables `[[stage]]`.",
+    ),
     top(&["mesh"], "The background grid is the table `[grid]`."),
     top(
         &["earthquake", "seismic"],
         "A ground motion is the table `[shaking]`; for a pseudo-static analysis add a horizontal part to \
          `gravity.acceleration`.",
     ),
-    anywhere(&["probe"], "A quantity at a place over time is a table [[history]] with `quantity` and `at`."),
+    anywhere(
+        &["probe"],
+        "A quantity at a place over time is a table [[history]] with `quantity` and `at`.",
+    ),
     anywhere(
         &["regularisation", "regularization"],
         "The width of the shear band, for which `softening_strain` was determined, is the key `band_width`.",
@@ -121,5 +159,6 @@ pub(crate) fn answer(table: &Table, key: &str) -> Option<&'static str> {
     let is_alike = |answer: &&Answer| answer.names.iter().any(|name| name.eq_ignore_ascii_case(key));
     let is_same = |answer: &&Answer| answer.names.contains(&key);
     let same = ANSWERS.iter().filter(is_meant).find(is_same);
-    same.or_else(|| ANSWERS.iter().filter(is_meant).find(is_alike)).map(|answer| answer.text)
+    same.or_else(|| ANSWERS.iter().filter(is_meant).find(is_alike))
+        .map(|answer| answer.text)
 }

@@ -9,8 +9,13 @@ pub(super) static ELEMENT: Table = Table {
     header: "[element.NAME]",
     doc: "A laboratory test of one material point. `bsmpm element` computes the test; `bsmpm-par` ignores it.",
     keys: &[
-        key("material", Name, Optional, "Name of the material. Default: the only material of the case.")
-            .example(r#""sand""#),
+        key(
+            "material",
+            Name,
+            Optional,
+            "Name of the material. Default: the only material of the case.",
+        )
+        .example(r#""sand""#),
         key(
             "height",
             Quantity(In::Length, Range::ANY),
@@ -34,7 +39,12 @@ pub(super) static ELEMENT: Table = Table {
         )
         .symbol("K0")
         .example("1.0"),
-        key("stage", Tables(&STAGE), Required, "Stages of the test, one after the other."),
+        key(
+            "stage",
+            Tables(&STAGE),
+            Required,
+            "Stages of the test, one after the other.",
+        ),
     ],
     exclusive: &[],
 };
@@ -88,21 +98,47 @@ static STAGE: Table = Table {
         )
         .symbol("γ")
         .example("0.2"),
-        key("shear_stress", STRESS, Optional, "Alternative to `shear`: shear stress.")
-            .symbol("τ")
-            .example(r#""20 kPa""#),
-        key("strain_xx", GROWTH, Optional, "Strain along x in a mixed test.").symbol("ε_xx").example("0.01"),
-        key("strain_yy", GROWTH, Optional, "Strain along y in a mixed test.").symbol("ε_yy").example("-0.02"),
-        key("strain_zz", GROWTH, Optional, "Strain along z in a mixed test.").symbol("ε_zz").example("0.0"),
-        key("stress_xx", STRESS, Optional, "Alternative to `strain_xx` in a mixed test: stress along x.")
-            .symbol("σ_xx")
-            .example(r#""-50 kPa""#),
-        key("stress_yy", STRESS, Optional, "Alternative to `strain_yy` in a mixed test: stress along y.")
-            .symbol("σ_yy")
-            .example(r#""-100 kPa""#),
-        key("stress_zz", STRESS, Optional, "Alternative to `strain_zz` in a mixed test: stress along z.")
-            .symbol("σ_zz")
-            .example(r#""-50 kPa""#),
+        key(
+            "shear_stress",
+            STRESS,
+            Optional,
+            "Alternative to `shear`: shear stress.",
+        )
+        .symbol("τ")
+        .example(r#""20 kPa""#),
+        key("strain_xx", GROWTH, Optional, "Strain along x in a mixed test.")
+            .symbol("ε_xx")
+            .example("0.01"),
+        key("strain_yy", GROWTH, Optional, "Strain along y in a mixed test.")
+            .symbol("ε_yy")
+            .example("-0.02"),
+        key("strain_zz", GROWTH, Optional, "Strain along z in a mixed test.")
+            .symbol("ε_zz")
+            .example("0.0"),
+        key(
+            "stress_xx",
+            STRESS,
+            Optional,
+            "Alternative to `strain_xx` in a mixed test: stress along x.",
+        )
+        .symbol("σ_xx")
+        .example(r#""-50 kPa""#),
+        key(
+            "stress_yy",
+            STRESS,
+            Optional,
+            "Alternative to `strain_yy` in a mixed test: stress along y.",
+        )
+        .symbol("σ_yy")
+        .example(r#""-100 kPa""#),
+        key(
+            "stress_zz",
+            STRESS,
+            Optional,
+            "Alternative to `strain_zz` in a mixed test: stress along z.",
+        )
+        .symbol("σ_zz")
+        .example(r#""-50 kPa""#),
         key(
             "duration",
             Quantity(In::Duration, Range::POSITIVE),

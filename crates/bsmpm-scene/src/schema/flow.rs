@@ -21,8 +21,13 @@ pub(super) static DRAIN: Table = Table {
              away from the face, give the surface of the body instead.",
         )
         .example(r#""bottom""#),
-        key("from", PLACE, Optional, "One end of a segment on the surface of a body, at the start.")
-            .example("[0.0, 6.0]"),
+        key(
+            "from",
+            PLACE,
+            Optional,
+            "One end of a segment on the surface of a body, at the start.",
+        )
+        .example("[0.0, 6.0]"),
         loads::TO_KEY,
         loads::CIRCLE_KEY,
         loads::RECTANGLE_KEY,
@@ -84,7 +89,13 @@ pub(super) static INFLOW: Table = Table {
     doc: "A surface through which water enters the ground at a given rate. An inflow at the surface of a body moves \
           with the material.",
     keys: &[
-        key("name", Name, Optional, "Name of the inflow in the log, results and stages.").example(r#""rain""#),
+        key(
+            "name",
+            Name,
+            Optional,
+            "Name of the inflow in the log, results and stages.",
+        )
+        .example(r#""rain""#),
         key(
             "face",
             Choice(Side::WORDS),

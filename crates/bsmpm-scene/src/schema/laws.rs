@@ -58,20 +58,47 @@ impl LawName {
         match self {
             Self::Hencky => (&[], &[]),
             Self::Tresca => (&["cohesion"], &[]),
-            Self::MohrCoulomb => (&["friction_angle", "cohesion"], &["dilation_angle", "separation", "ocr"]),
+            Self::MohrCoulomb => (
+                &["friction_angle", "cohesion"],
+                &["dilation_angle", "separation", "ocr"],
+            ),
             Self::DruckerPrager => (&["friction_angle", "cohesion"], &["dilation_angle", "fit", "ocr"]),
             Self::VonMises => (&["yield_stress"], &["hardening"]),
-            Self::SensitiveClay => {
-                (&["cohesion", "sensitivity", "softening_strain"], &["band_width", "rate_parameter", "reference_rate"])
-            }
+            Self::SensitiveClay => (
+                &["cohesion", "sensitivity", "softening_strain"],
+                &["band_width", "rate_parameter", "reference_rate"],
+            ),
             Self::CamClay => (
                 &["critical_state_ratio"],
-                &["kappa_star", "lambda_star", "kappa", "lambda", "void_ratio", "preconsolidation", "ocr"],
+                &[
+                    "kappa_star",
+                    "lambda_star",
+                    "kappa",
+                    "lambda",
+                    "void_ratio",
+                    "preconsolidation",
+                    "ocr",
+                ],
             ),
-            Self::MuI => (&["mu_s", "mu_2", "inertial_number", "grain_diameter", "grain_density"], &[]),
+            Self::MuI => (
+                &["mu_s", "mu_2", "inertial_number", "grain_diameter", "grain_density"],
+                &[],
+            ),
             Self::Softening => (
-                &["friction_angle", "cohesion", "residual_friction_angle", "residual_cohesion", "softening_strain"],
-                &["dilation_angle", "residual_dilation_angle", "softening", "band_width", "ocr"],
+                &[
+                    "friction_angle",
+                    "cohesion",
+                    "residual_friction_angle",
+                    "residual_cohesion",
+                    "softening_strain",
+                ],
+                &[
+                    "dilation_angle",
+                    "residual_dilation_angle",
+                    "softening",
+                    "band_width",
+                    "ocr",
+                ],
             ),
         }
     }

@@ -58,8 +58,13 @@ pub(super) static FOOTING: Table = Table {
         )
         .example(r#""rough""#)
         .renamed_from(&["base"]),
-        key("name", Name, Optional, "Name of the footing in stages and histories. Default: \"footing\".")
-            .example(r#""footing""#),
+        key(
+            "name",
+            Name,
+            Optional,
+            "Name of the footing in stages and histories. Default: \"footing\".",
+        )
+        .example(r#""footing""#),
     ],
     exclusive: &[
         one_of(&["from", "rectangle", "disc"], true),
@@ -72,11 +77,28 @@ pub(super) static DISC: Table = Table {
     header: "disc = { centre, radius, normal }",
     doc: "A flat disc.",
     keys: &[
-        key("centre", Vector(In::Length, Range::ANY), Required, "Centre of the disc.")
-            .example("[0.0, 0.0, 2.0]")
-            .renamed_from(&["center"]),
-        key("radius", Quantity(In::Length, Range::POSITIVE), Required, "Radius of the disc.").example(r#""1 m""#),
-        key("normal", Choice(Axis::WORDS), Default("\"z\""), "The axis normal to the disc.").example(r#""z""#),
+        key(
+            "centre",
+            Vector(In::Length, Range::ANY),
+            Required,
+            "Centre of the disc.",
+        )
+        .example("[0.0, 0.0, 2.0]")
+        .renamed_from(&["center"]),
+        key(
+            "radius",
+            Quantity(In::Length, Range::POSITIVE),
+            Required,
+            "Radius of the disc.",
+        )
+        .example(r#""1 m""#),
+        key(
+            "normal",
+            Choice(Axis::WORDS),
+            Default("\"z\""),
+            "The axis normal to the disc.",
+        )
+        .example(r#""z""#),
     ],
     exclusive: &[],
 };
@@ -85,8 +107,13 @@ pub(super) static PRESCRIBED: Table = Table {
     header: "[[prescribed]]",
     doc: "A prescribed motion of the soil at a face of the grid or at a segment, in 3-D at a plate.",
     keys: &[
-        key("face", Choice(Side::WORDS), Optional, "The face of the grid that moves. It must be free in [boundary].")
-            .example(r#""left""#),
+        key(
+            "face",
+            Choice(Side::WORDS),
+            Optional,
+            "The face of the grid that moves. It must be free in [boundary].",
+        )
+        .example(r#""left""#),
         FROM_KEY,
         TO_KEY,
         RECTANGLE_KEY,
@@ -144,8 +171,13 @@ pub(super) static TRACTION: Table = Table {
             "A sphere. Only in 3-D. Parts outside the grid are ignored.",
         )
         .example(r#"{ centre = [0.0, 0.0, 4.0], radius = "1 m" }"#),
-        key("surface", Kind::Table(&body::SURFACE), Optional, "Triangles on the surface of bodies. Only in 3-D.")
-            .example(r#"{ triangles = { file = "surface.stl" } }"#),
+        key(
+            "surface",
+            Kind::Table(&body::SURFACE),
+            Optional,
+            "Triangles on the surface of bodies. Only in 3-D.",
+        )
+        .example(r#"{ triangles = { file = "surface.stl" } }"#),
         key(
             "stress",
             PairProfile(In::Stress, Range::ANY, &STRESSES_PROFILE),
@@ -211,8 +243,13 @@ pub(super) static POINT_LOAD: Table = Table {
     header: "[[point_load]]",
     doc: "A force at a point of a body. The force moves with the point.",
     keys: &[
-        key("at", Vector(In::Length, Range::ANY), Required, "Position of the point at the start.")
-            .example("[2.0, 6.0]"),
+        key(
+            "at",
+            Vector(In::Length, Range::ANY),
+            Required,
+            "Position of the point at the start.",
+        )
+        .example("[2.0, 6.0]"),
         key(
             "force",
             Vector(In::LineForce, Range::ANY),
@@ -235,7 +272,10 @@ pub(super) static POINT_LOAD: Table = Table {
         AMPLITUDE_KEY,
         key("name", Name, Optional, "Name of the load in stages.").example(r#""crane""#),
     ],
-    exclusive: &[one_of(&["force", "force_path"], true), one_of(&["ramp", "amplitude", "force_path"], false)],
+    exclusive: &[
+        one_of(&["force", "force_path"], true),
+        one_of(&["ramp", "amplitude", "force_path"], false),
+    ],
 };
 
 pub(super) static REDUCTION: Table = Table {
@@ -243,10 +283,20 @@ pub(super) static REDUCTION: Table = Table {
     doc: "Division of the strength of all materials by a factor F. The cohesion becomes c/F, the friction angle \
           atan(tan(φ)/F), and the dilation angle is limited to this friction angle.",
     keys: &[
-        key("factor", Quantity(In::Number, FACTOR), Required, "Factor by which the strength is divided.")
-            .symbol("F")
-            .example("1.3"),
-        key("elastic", Flag, Default("false"), "With true, all materials are elastic and cannot yield."),
+        key(
+            "factor",
+            Quantity(In::Number, FACTOR),
+            Required,
+            "Factor by which the strength is divided.",
+        )
+        .symbol("F")
+        .example("1.3"),
+        key(
+            "elastic",
+            Flag,
+            Default("false"),
+            "With true, all materials are elastic and cannot yield.",
+        ),
         key(
             "stiffness",
             Quantity(In::Number, Range::POSITIVE),
@@ -328,9 +378,27 @@ pub(super) static STRESS_PROFILE: Table = Table {
     doc: "A stress that varies linearly with the height y, in 3-D z: value + per_metre (at_y - y), above and below \
           at_y. A material point keeps the value of its initial height.",
     keys: &[
-        key("value", Quantity(In::Stress, Range::ANY), Required, "Value at the height at_y.").example(r#""20 kPa""#),
-        key("at_y", Quantity(In::Length, Range::ANY), Required, "Height of `value`: y, in 3-D z.").example(r#""10 m""#),
-        key("per_metre", Gradient(In::Stress), Required, "Increase per metre of depth.").example(r#""2 kPa/m""#),
+        key(
+            "value",
+            Quantity(In::Stress, Range::ANY),
+            Required,
+            "Value at the height at_y.",
+        )
+        .example(r#""20 kPa""#),
+        key(
+            "at_y",
+            Quantity(In::Length, Range::ANY),
+            Required,
+            "Height of `value`: y, in 3-D z.",
+        )
+        .example(r#""10 m""#),
+        key(
+            "per_metre",
+            Gradient(In::Stress),
+            Required,
+            "Increase per metre of depth.",
+        )
+        .example(r#""2 kPa/m""#),
     ],
     exclusive: &[],
 };
@@ -340,11 +408,27 @@ static STRESSES_PROFILE: Table = Table {
     doc: "Stress components that vary linearly with the height y, in 3-D z: value + per_metre (at_y - y), above and \
           below at_y. The height is that at the start.",
     keys: &[
-        key("value", Vector(In::Stress, Range::ANY), Required, "Components along the axes at the height at_y.")
-            .example(r#"["10 kPa", 0.0]"#),
-        key("at_y", Quantity(In::Length, Range::ANY), Required, "Height of `value`: y, in 3-D z.").example(r#""10 m""#),
-        key("per_metre", GradientVector(In::Stress), Required, "Increase of each component per metre of depth.")
-            .example(r#"["5 kPa/m", 0.0]"#),
+        key(
+            "value",
+            Vector(In::Stress, Range::ANY),
+            Required,
+            "Components along the axes at the height at_y.",
+        )
+        .example(r#"["10 kPa", 0.0]"#),
+        key(
+            "at_y",
+            Quantity(In::Length, Range::ANY),
+            Required,
+            "Height of `value`: y, in 3-D z.",
+        )
+        .example(r#""10 m""#),
+        key(
+            "per_metre",
+            GradientVector(In::Stress),
+            Required,
+            "Increase of each component per metre of depth.",
+        )
+        .example(r#"["5 kPa/m", 0.0]"#),
     ],
     exclusive: &[],
 };
@@ -354,9 +438,27 @@ pub(super) static ANGLE_PROFILE: Table = Table {
     doc: "An angle that varies linearly with the height y, in 3-D z: value + per_metre (at_y - y), above and below \
           at_y. A material point keeps the value of its initial height.",
     keys: &[
-        key("value", Quantity(In::Angle, Range::ANY), Required, "Value at the height at_y.").example("30.0"),
-        key("at_y", Quantity(In::Length, Range::ANY), Required, "Height of `value`: y, in 3-D z.").example(r#""10 m""#),
-        key("per_metre", Gradient(In::Angle), Required, "Increase per metre of depth.").example("0.5"),
+        key(
+            "value",
+            Quantity(In::Angle, Range::ANY),
+            Required,
+            "Value at the height at_y.",
+        )
+        .example("30.0"),
+        key(
+            "at_y",
+            Quantity(In::Length, Range::ANY),
+            Required,
+            "Height of `value`: y, in 3-D z.",
+        )
+        .example(r#""10 m""#),
+        key(
+            "per_metre",
+            Gradient(In::Angle),
+            Required,
+            "Increase per metre of depth.",
+        )
+        .example("0.5"),
     ],
     exclusive: &[],
 };
@@ -378,9 +480,13 @@ pub(super) const RECTANGLE_KEY: Key = key(
     "A rectangle. Only in 3-D. Both corners have the same coordinate along one axis.",
 )
 .example("{ lower = [0.0, 0.0, 6.0], upper = [1.0, 1.0, 6.0] }");
-pub(super) const DISC_KEY: Key =
-    key("disc", Kind::Table(&DISC), Optional, "A disc. Only in 3-D. Parts outside the grid are ignored.")
-        .example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }");
+pub(super) const DISC_KEY: Key = key(
+    "disc",
+    Kind::Table(&DISC),
+    Optional,
+    "A disc. Only in 3-D. Parts outside the grid are ignored.",
+)
+.example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }");
 pub(super) const DISPLACEMENT_KEY: Key = key(
     "displacement",
     DISPLACEMENT,
@@ -408,9 +514,13 @@ pub(super) const PATH_KEY: Key = key(
 pub(super) const FROM_KEY: Key =
     key("from", PLACE, Optional, "One end of the segment at the start.").example("[0.0, 2.0]");
 pub(super) const TO_KEY: Key = key("to", PLACE, Optional, "The other end of the segment.").example("[0.0, 4.0]");
-pub(super) const CIRCLE_KEY: Key =
-    key("circle", Kind::Table(&body::CIRCLE), Optional, "A circle. Parts outside the grid are ignored.")
-        .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#);
+pub(super) const CIRCLE_KEY: Key = key(
+    "circle",
+    Kind::Table(&body::CIRCLE),
+    Optional,
+    "A circle. Parts outside the grid are ignored.",
+)
+.example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#);
 const RAMP_KEY: Key = key(
     "ramp",
     RAMP,

@@ -23,7 +23,9 @@ pub(crate) static MATERIAL: Table = Table {
         )
         .symbol("E")
         .example(r#""30 MPa""#),
-        key("poisson", Quantity(In::Number, POISSON), Required, "Poisson's ratio.").symbol("ν").example("0.3"),
+        key("poisson", Quantity(In::Number, POISSON), Required, "Poisson's ratio.")
+            .symbol("ν")
+            .example("0.3"),
         key(
             "friction_angle",
             Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
@@ -396,7 +398,11 @@ static RETENTION: Table = Table {
         .example("1.6"),
         key(
             "curve",
-            Rows(&[(In::Length, Range::NOT_NEGATIVE), (In::Number, SHARES), (In::Number, SHARES)]),
+            Rows(&[
+                (In::Length, Range::NOT_NEGATIVE),
+                (In::Number, SHARES),
+                (In::Number, SHARES),
+            ]),
             Optional,
             "Alternative to `alpha` and `n`: measured curve, in rows of suction head, saturation and relative \
              permeability. The first row is [0, 1, 1]. The curve decreases smoothly between the rows, and is constant \

@@ -31,7 +31,13 @@ pub(super) static OUTPUT: Table = Table {
             "Additional times of frames. A step ends at each of these times.",
         )
         .example("[0.25, 0.5]"),
-        key("format", Choice(Format::WORDS), Default("\"vtu\""), "Format of the frames.").example(r#""vtu""#),
+        key(
+            "format",
+            Choice(Format::WORDS),
+            Default("\"vtu\""),
+            "Format of the frames.",
+        )
+        .example(r#""vtu""#),
         key(
             "residuals",
             Flag,
@@ -44,8 +50,13 @@ pub(super) static OUTPUT: Table = Table {
             Default("false"),
             "With true, frames also contain the pressure projected onto B-splines of the next lower degree.",
         ),
-        key("fields", Choices(FrameField::WORDS), Optional, "Additional fields in the frames.")
-            .example(r#"["q", "yielding"]"#),
+        key(
+            "fields",
+            Choices(FrameField::WORDS),
+            Optional,
+            "Additional fields in the frames.",
+        )
+        .example(r#"["q", "yielding"]"#),
         key(
             "accept",
             Choices(LimitedIndicator::WORDS),
@@ -97,11 +108,27 @@ pub(super) static HISTORY: Table = Table {
     header: "[[history]]",
     doc: "A quantity that history.csv records at every step.",
     keys: &[
-        key("quantity", Choice(Measurement::WORDS), Required, "Quantity that is recorded at every step.")
-            .example(r#""max-displacement""#),
-        key("name", Name, Optional, "Name of the column. Default: the name of the quantity.").example(r#""crest""#),
-        key("scale", Quantity(In::Number, Range::ANY), Default("1.0"), "Factor that multiplies the recorded values.")
-            .example("-1.0"),
+        key(
+            "quantity",
+            Choice(Measurement::WORDS),
+            Required,
+            "Quantity that is recorded at every step.",
+        )
+        .example(r#""max-displacement""#),
+        key(
+            "name",
+            Name,
+            Optional,
+            "Name of the column. Default: the name of the quantity.",
+        )
+        .example(r#""crest""#),
+        key(
+            "scale",
+            Quantity(In::Number, Range::ANY),
+            Default("1.0"),
+            "Factor that multiplies the recorded values.",
+        )
+        .example("-1.0"),
         key(
             "percentile",
             Quantity(In::Number, PERCENT),
@@ -117,10 +144,20 @@ pub(super) static HISTORY: Table = Table {
              face that is the drain.",
         )
         .example(r#""left""#),
-        key("drain", Name, Optional, "For water-outflow: name of the drain. Default: all drains minus all inflows.")
-            .example(r#""river_bed""#),
-        key("rigid", Name, Optional, "For the quantities whose name begins with rigid: name of the rigid body.")
-            .example(r#""pipe""#),
+        key(
+            "drain",
+            Name,
+            Optional,
+            "For water-outflow: name of the drain. Default: all drains minus all inflows.",
+        )
+        .example(r#""river_bed""#),
+        key(
+            "rigid",
+            Name,
+            Optional,
+            "For the quantities whose name begins with rigid: name of the rigid body.",
+        )
+        .example(r#""pipe""#),
         key(
             "of",
             Name,
@@ -160,10 +197,20 @@ pub(super) static HISTORY: Table = Table {
             "Alternative to `material`: name of a body. Only its material points are considered.",
         )
         .example(r#""lift_1""#),
-        key("from", Pair(In::Length, Range::ANY), Optional, "For section-forces: beginning of the section line.")
-            .example("[2.0, 0.0]"),
-        key("to", Pair(In::Length, Range::ANY), Optional, "For section-forces: end of the section line.")
-            .example("[2.0, 4.0]"),
+        key(
+            "from",
+            Pair(In::Length, Range::ANY),
+            Optional,
+            "For section-forces: beginning of the section line.",
+        )
+        .example("[2.0, 0.0]"),
+        key(
+            "to",
+            Pair(In::Length, Range::ANY),
+            Optional,
+            "For section-forces: end of the section line.",
+        )
+        .example("[2.0, 4.0]"),
         key(
             "rectangle",
             loads::RECTANGLE,
@@ -171,8 +218,13 @@ pub(super) static HISTORY: Table = Table {
             "For section-forces in 3-D: a rectangular section. Both corners have the same coordinate along one axis.",
         )
         .example("{ lower = [2.0, 0.0, 0.0], upper = [2.0, 1.0, 4.0] }"),
-        key("disc", Kind::Table(&loads::DISC), Optional, "For section-forces in 3-D: a circular section.")
-            .example("{ centre = [0.0, 0.0, 2.0], radius = 1.0 }"),
+        key(
+            "disc",
+            Kind::Table(&loads::DISC),
+            Optional,
+            "For section-forces in 3-D: a circular section.",
+        )
+        .example("{ centre = [0.0, 0.0, 2.0], radius = 1.0 }"),
         key(
             "fixed",
             Flag,
@@ -213,7 +265,13 @@ pub(super) static PROFILE: Table = Table {
           position inside the material.",
     keys: &[
         key("name", Name, Required, "Name of the profile and of its file.").example(r#""centre_line""#),
-        key("from", Vector(In::Length, Range::ANY), Required, "Beginning of the line.").example("[2.0, 0.0]"),
+        key(
+            "from",
+            Vector(In::Length, Range::ANY),
+            Required,
+            "Beginning of the line.",
+        )
+        .example("[2.0, 0.0]"),
         key("to", Vector(In::Length, Range::ANY), Required, "End of the line.").example("[2.0, 6.0]"),
         key(
             "count",
@@ -222,8 +280,13 @@ pub(super) static PROFILE: Table = Table {
             "Number of equally spaced positions, including both ends. With 1 the position is the middle.",
         )
         .example("25"),
-        key("quantities", Choices(ProfileQuantity::WORDS), Required, "Quantities that are written for each position.")
-            .example(r#"["stress"]"#),
+        key(
+            "quantities",
+            Choices(ProfileQuantity::WORDS),
+            Required,
+            "Quantities that are written for each position.",
+        )
+        .example(r#"["stress"]"#),
         key(
             "times",
             List(In::Time, Range::POSITIVE),

@@ -27,9 +27,20 @@ pub(super) static RIGID: Table = Table {
           or follows from forces; otherwise the body is at rest. The body may extend beyond the grid. At a plane or \
           axis of symmetry draw the whole body or half of it.",
     keys: &[
-        key("name", Name, Required, "Name of the rigid body in stages and histories.").example(r#""pipe""#),
-        key("polygon", body::POLYGON, Optional, "Corners of a polygon at the start, clockwise or counter-clockwise.")
-            .example("[[0.0, 4.0], [1.0, 4.0], [0.5, 3.0]]"),
+        key(
+            "name",
+            Name,
+            Required,
+            "Name of the rigid body in stages and histories.",
+        )
+        .example(r#""pipe""#),
+        key(
+            "polygon",
+            body::POLYGON,
+            Optional,
+            "Corners of a polygon at the start, clockwise or counter-clockwise.",
+        )
+        .example("[[0.0, 4.0], [1.0, 4.0], [0.5, 3.0]]"),
         body::CIRCLE_KEY,
         key("box", Kind::Table(&body::BOX), Optional, "A cuboid. Only in 3-D.")
             .example("{ lower = [0.0, 0.0, 4.0], upper = [1.0, 1.0, 5.0] }"),
@@ -42,8 +53,13 @@ pub(super) static RIGID: Table = Table {
             "A polygon that is rotated about a vertical axis, for instance a cone. Only in 3-D.",
         )
         .example("{ polygon = [[0.0, 3.0], [1.0, 5.0], [0.0, 5.0]], about = [0.0, 0.0] }"),
-        key("terrain", Kind::Table(&GROUND), Optional, "Rigid ground below a terrain surface. Only in 3-D.")
-            .example(r#"{ top = { file = "terrain.asc" } }"#),
+        key(
+            "terrain",
+            Kind::Table(&GROUND),
+            Optional,
+            "Rigid ground below a terrain surface. Only in 3-D.",
+        )
+        .example(r#"{ top = { file = "terrain.asc" } }"#),
         key(
             "friction_coefficient",
             Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
@@ -91,9 +107,14 @@ pub(super) static RIGID: Table = Table {
         )
         .symbol("m")
         .example("500.0"),
-        key("density", Quantity(In::Density, Range::POSITIVE), Optional, "Alternative to `mass`: density.")
-            .symbol("ρ")
-            .example("2400.0"),
+        key(
+            "density",
+            Quantity(In::Density, Range::POSITIVE),
+            Optional,
+            "Alternative to `mass`: density.",
+        )
+        .symbol("ρ")
+        .example("2400.0"),
         key(
             "inertia",
             Quantity(In::Number, Range::POSITIVE),
@@ -112,7 +133,11 @@ pub(super) static RIGID: Table = Table {
         .example(r#"[0.0, "-10 kN/m"]"#),
         key(
             "force_path",
-            Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::LineForce, Range::ANY), (In::LineForce, Range::ANY)]),
+            Rows(&[
+                (In::Time, Range::NOT_NEGATIVE),
+                (In::LineForce, Range::ANY),
+                (In::LineForce, Range::ANY),
+            ]),
             Optional,
             "Alternative to `force`: time-dependent force, in rows [t, x, y] with increasing t. The force is linear \
              between the rows, and constant after the last row. It is zero at t = 0, unless a row gives another value.",
@@ -141,8 +166,13 @@ pub(super) static RIGID: Table = Table {
              row gives another value.",
         )
         .example("[[0.0, 0.0], [1.0, 1.0]]"),
-        key("start_velocity", Pair(In::Velocity, Range::ANY), Optional, "Velocity of the free motions at the start.")
-            .example("[0.0, -1.0]"),
+        key(
+            "start_velocity",
+            Pair(In::Velocity, Range::ANY),
+            Optional,
+            "Velocity of the free motions at the start.",
+        )
+        .example("[0.0, -1.0]"),
         key(
             "start_spin",
             Quantity(In::Number, Range::ANY),

@@ -11,7 +11,13 @@ pub(super) static STAGE: Table = Table {
           activate or deactivate loads and prescribed motions, change supports at faces of the grid, and change the \
           law or the strength of materials.",
     keys: &[
-        key("name", Text(64), Optional, "Name of the stage in the log and in results.").example(r#""excavation""#),
+        key(
+            "name",
+            Text(64),
+            Optional,
+            "Name of the stage in the log and in results.",
+        )
+        .example(r#""excavation""#),
         key(
             "at",
             Quantity(In::Time, Range::POSITIVE),
@@ -52,7 +58,12 @@ pub(super) static STAGE: Table = Table {
             Optional,
             "New supports at faces of the grid. The other faces keep their supports.",
         ),
-        key("materials", Tables(&EXCHANGE), Optional, "Changes of the laws that bodies follow."),
+        key(
+            "materials",
+            Tables(&EXCHANGE),
+            Optional,
+            "Changes of the laws that bodies follow.",
+        ),
         key(
             "strength_reduction",
             Quantity(In::Number, loads::FACTOR),
@@ -79,12 +90,34 @@ static FACES: Table = Table {
     keys: &[
         key("left", SUPPORT, Optional, "Support at the face with the lowest x.").example(r#""free""#),
         key("right", SUPPORT, Optional, "Support at the face with the highest x.").example(r#""free""#),
-        key("front", SUPPORT, Optional, "Support at the face with the lowest y. Only in 3-D.").example(r#""free""#),
-        key("back", SUPPORT, Optional, "Support at the face with the highest y. Only in 3-D.").example(r#""free""#),
-        key("bottom", SUPPORT, Optional, "Support at the face with the lowest y (in 3-D: the lowest z).")
-            .example(r#""roller""#),
-        key("top", SUPPORT, Optional, "Support at the face with the highest y (in 3-D: the highest z).")
-            .example(r#""free""#),
+        key(
+            "front",
+            SUPPORT,
+            Optional,
+            "Support at the face with the lowest y. Only in 3-D.",
+        )
+        .example(r#""free""#),
+        key(
+            "back",
+            SUPPORT,
+            Optional,
+            "Support at the face with the highest y. Only in 3-D.",
+        )
+        .example(r#""free""#),
+        key(
+            "bottom",
+            SUPPORT,
+            Optional,
+            "Support at the face with the lowest y (in 3-D: the lowest z).",
+        )
+        .example(r#""roller""#),
+        key(
+            "top",
+            SUPPORT,
+            Optional,
+            "Support at the face with the highest y (in 3-D: the highest z).",
+        )
+        .example(r#""free""#),
     ],
     exclusive: &[],
 };
@@ -94,7 +127,13 @@ static EXCHANGE: Table = Table {
     doc: "From this stage on, all bodies of one material follow the law of another material. Their stress and mass do \
           not change.",
     keys: &[
-        key("from", Name, Required, "Name of the material that the bodies have in [[body]].").example(r#""clay""#),
+        key(
+            "from",
+            Name,
+            Required,
+            "Name of the material that the bodies have in [[body]].",
+        )
+        .example(r#""clay""#),
         key(
             "to",
             Name,

@@ -24,7 +24,13 @@ pub static ROOT: Table = Table {
     keys: &[
         key("title", Text(200), Optional, "A short description of the case.")
             .example(r#""Slope with a phreatic line""#),
-        key("geometry", Choice(Geometry::WORDS), Required, "Geometry of the analysis.").example(r#""plane-strain""#),
+        key(
+            "geometry",
+            Choice(Geometry::WORDS),
+            Required,
+            "Geometry of the analysis.",
+        )
+        .example(r#""plane-strain""#),
         key(
             "accuracy",
             Choice(Accuracy::WORDS),
@@ -33,26 +39,61 @@ pub static ROOT: Table = Table {
              3-D.",
         )
         .example(r#""draft""#),
-        key("analysis", Kind::Table(&ANALYSIS), Required, "Type of the analysis and its duration."),
+        key(
+            "analysis",
+            Kind::Table(&ANALYSIS),
+            Required,
+            "Type of the analysis and its duration.",
+        ),
         key("grid", Kind::Table(&GRID), Required, "The grid of B-splines."),
-        key("material", Named(&material::MATERIAL), Required, "Materials, each with a name."),
-        key("body", Tables(&body::BODY), Required, "Bodies of soil, which are filled with material points."),
-        key("gravity", Kind::Table(&GRAVITY), Optional, "Gravity. Without this table there is no gravity."),
+        key(
+            "material",
+            Named(&material::MATERIAL),
+            Required,
+            "Materials, each with a name.",
+        ),
+        key(
+            "body",
+            Tables(&body::BODY),
+            Required,
+            "Bodies of soil, which are filled with material points.",
+        ),
+        key(
+            "gravity",
+            Kind::Table(&GRAVITY),
+            Optional,
+            "Gravity. Without this table there is no gravity.",
+        ),
         key(
             "water",
             Kind::Table(&water::WATER),
             Optional,
             "Water in the ground. Without this table there is no water.",
         ),
-        key("drain", Tables(&flow::DRAIN), Optional, "A surface through which water flows freely."),
+        key(
+            "drain",
+            Tables(&flow::DRAIN),
+            Optional,
+            "A surface through which water flows freely.",
+        ),
         key(
             "inflow",
             Tables(&flow::INFLOW),
             Optional,
             "A surface through which water enters the ground at a given rate.",
         ),
-        key("shaking", Kind::Table(&loads::SHAKING), Optional, "Acceleration of the ground in an earthquake."),
-        key("boundary", Kind::Table(&BOUNDARY), Default("{}"), "Supports at the faces of the grid."),
+        key(
+            "shaking",
+            Kind::Table(&loads::SHAKING),
+            Optional,
+            "Acceleration of the ground in an earthquake.",
+        ),
+        key(
+            "boundary",
+            Kind::Table(&BOUNDARY),
+            Default("{}"),
+            "Supports at the faces of the grid.",
+        ),
         key(
             "stabilisation",
             Kind::Table(&STABILISATION),
@@ -60,25 +101,60 @@ pub static ROOT: Table = Table {
             "Method that prevents volumetric locking and oscillating stresses. Without this table no such method is \
              used.",
         ),
-        key("solver", Kind::Table(&SOLVER), Default("{}"), "Nonlinear iteration and linear solver."),
+        key(
+            "solver",
+            Kind::Table(&SOLVER),
+            Default("{}"),
+            "Nonlinear iteration and linear solver.",
+        ),
         key(
             "output",
             Kind::Table(&output::OUTPUT),
             Optional,
             "Frames for ParaView. Without this table the run writes one frame at the start and one at the end.",
         ),
-        key("history", Tables(&output::HISTORY), Optional, "A quantity that history.csv records at every step."),
-        key("check", Tables(&output::CHECK), Optional, "Bounds of a column of history.csv."),
-        key("footing", Kind::Table(&loads::FOOTING), Optional, "A rigid footing with a prescribed motion."),
+        key(
+            "history",
+            Tables(&output::HISTORY),
+            Optional,
+            "A quantity that history.csv records at every step.",
+        ),
+        key(
+            "check",
+            Tables(&output::CHECK),
+            Optional,
+            "Bounds of a column of history.csv.",
+        ),
+        key(
+            "footing",
+            Kind::Table(&loads::FOOTING),
+            Optional,
+            "A rigid footing with a prescribed motion.",
+        ),
         key(
             "prescribed",
             Tables(&loads::PRESCRIBED),
             Optional,
             "A prescribed motion of the soil at a face of the grid or at a segment.",
         ),
-        key("rigid", Tables(&rigid::RIGID), Optional, "A rigid body in frictional contact with the soil."),
-        key("traction", Tables(&loads::TRACTION), Optional, "A load per area on the surface of a body."),
-        key("point_load", Tables(&loads::POINT_LOAD), Optional, "A force at a point of a body."),
+        key(
+            "rigid",
+            Tables(&rigid::RIGID),
+            Optional,
+            "A rigid body in frictional contact with the soil.",
+        ),
+        key(
+            "traction",
+            Tables(&loads::TRACTION),
+            Optional,
+            "A load per area on the surface of a body.",
+        ),
+        key(
+            "point_load",
+            Tables(&loads::POINT_LOAD),
+            Optional,
+            "A force at a point of a body.",
+        ),
         key(
             "strength_reduction",
             Kind::Table(&loads::REDUCTION),
@@ -103,7 +179,12 @@ pub static ROOT: Table = Table {
             Optional,
             "A change at a given time, for instance an excavation or a layer of fill.",
         ),
-        key("profile", Tables(&output::PROFILE), Optional, "Values along a line, written to a file."),
+        key(
+            "profile",
+            Tables(&output::PROFILE),
+            Optional,
+            "Values along a line, written to a file.",
+        ),
     ],
     exclusive: &[],
 };
@@ -135,7 +216,13 @@ static ANALYSIS: Table = Table {
         )
         .symbol("Δt")
         .example(r#""1 ms""#),
-        key("steps", Count(1, 1_000_000_000), Optional, "Alternative to `dt`: number of equal steps.").example("40"),
+        key(
+            "steps",
+            Count(1, 1_000_000_000),
+            Optional,
+            "Alternative to `dt`: number of equal steps.",
+        )
+        .example("40"),
         key(
             "growth",
             Quantity(In::Number, GROWTH),
@@ -197,12 +284,18 @@ static ANALYSIS: Table = Table {
         .example("0.6")
         .renamed_from(&["gamma"]),
     ],
-    exclusive: &[one_of_or_preset(&["dt", "steps"]), one_of(&["spectral_radius", "newmark_gamma"], false)],
+    exclusive: &[
+        one_of_or_preset(&["dt", "steps"]),
+        one_of(&["spectral_radius", "newmark_gamma"], false),
+    ],
 };
 
 const GROWTH: Range = Range::of(Included(1.0), Included(10.0));
-const GAMMA: Range =
-    Range { lower: Included(0.5), upper: Included(1.0), why: "below 0.5 the time integration creates energy" };
+const GAMMA: Range = Range {
+    lower: Included(0.5),
+    upper: Included(1.0),
+    why: "below 0.5 the time integration creates energy",
+};
 
 static GRID: Table = Table {
     header: "[grid]",
@@ -232,11 +325,21 @@ static GRID: Table = Table {
         )
         .symbol("h")
         .example(r#""0.5 m""#),
-        key("knots", Kind::Table(&KNOTS), Optional, "Alternative to `cell`: grid lines with any spacing."),
-        key("degree", Choice(Order::WORDS), Default("\"quadratic\""), "Degree of the B-splines.")
-            .symbol("q")
-            .example(r#""quadratic""#)
-            .renamed_from(&["order"]),
+        key(
+            "knots",
+            Kind::Table(&KNOTS),
+            Optional,
+            "Alternative to `cell`: grid lines with any spacing.",
+        ),
+        key(
+            "degree",
+            Choice(Order::WORDS),
+            Default("\"quadratic\""),
+            "Degree of the B-splines.",
+        )
+        .symbol("q")
+        .example(r#""quadratic""#)
+        .renamed_from(&["order"]),
         key(
             "c0_lines",
             Choice(C0Lines::WORDS),
@@ -256,7 +359,13 @@ static KNOTS: Table = Table {
     keys: &[
         key("x", List(In::Length, Range::ANY), Required, "Grid lines along x.").example("[0.0, 1.0, 2.0, 4.0]"),
         key("y", List(In::Length, Range::ANY), Required, "Grid lines along y.").example("[0.0, 0.5, 1.0]"),
-        key("z", List(In::Length, Range::ANY), Optional, "Grid lines along z, in 3-D.").example("[0.0, 0.5, 1.0]"),
+        key(
+            "z",
+            List(In::Length, Range::ANY),
+            Optional,
+            "Grid lines along z, in 3-D.",
+        )
+        .example("[0.0, 0.5, 1.0]"),
     ],
     exclusive: &[],
 };
@@ -291,10 +400,20 @@ static BOUNDARY: Table = Table {
     header: "[boundary]",
     doc: "Supports at the faces of the grid.",
     keys: &[
-        key("left", loads::SUPPORT, Default("\"free\""), "Support at the face with the lowest x.")
-            .example(r#""roller""#),
-        key("right", loads::SUPPORT, Default("\"free\""), "Support at the face with the highest x.")
-            .example(r#""roller""#),
+        key(
+            "left",
+            loads::SUPPORT,
+            Default("\"free\""),
+            "Support at the face with the lowest x.",
+        )
+        .example(r#""roller""#),
+        key(
+            "right",
+            loads::SUPPORT,
+            Default("\"free\""),
+            "Support at the face with the highest x.",
+        )
+        .example(r#""roller""#),
         key(
             "bottom",
             loads::SUPPORT,
@@ -353,8 +472,13 @@ static SOLVER: Table = Table {
              quasi-Newton method does not converge.",
         )
         .example(r#""newton""#),
-        key("tolerance", Quantity(In::Number, FRACTION), Default("1e-8"), "Tolerance of the relative energy residual.")
-            .example("1e-8"),
+        key(
+            "tolerance",
+            Quantity(In::Number, FRACTION),
+            Default("1e-8"),
+            "Tolerance of the relative energy residual.",
+        )
+        .example("1e-8"),
         key(
             "force_tolerance",
             Quantity(In::Number, FRACTION),
@@ -394,8 +518,18 @@ static SOLVER: Table = Table {
              permanent loads too strong.",
         )
         .example("1e-4"),
-        key("background_kind", Choice(BACKGROUND_KIND), Retired, "the background always resists strain"),
-        key("background_cells", Choice(BACKGROUND_CELLS), Retired, "all occupied cells always have the background"),
+        key(
+            "background_kind",
+            Choice(BACKGROUND_KIND),
+            Retired,
+            "the background always resists strain",
+        ),
+        key(
+            "background_cells",
+            Choice(BACKGROUND_CELLS),
+            Retired,
+            "all occupied cells always have the background",
+        ),
         key(
             "linear",
             ChoiceOr(LinearSolver::WORDS, &LINEAR),

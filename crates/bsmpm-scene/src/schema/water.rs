@@ -37,7 +37,11 @@ pub(super) static WATER: Table = Table {
         .example("[[0.0, 3.0], [20.0, 8.0]]"),
         key(
             "line_path",
-            Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Length, Range::ANY), (In::Length, Range::ANY)]),
+            Rows(&[
+                (In::Time, Range::NOT_NEGATIVE),
+                (In::Length, Range::ANY),
+                (In::Length, Range::ANY),
+            ]),
             Optional,
             "Alternative to `level`: time-dependent phreatic line, in rows [t, x, y]. All times have the same x. The \
              line is linear between the times, and constant before and after them.",

@@ -22,8 +22,15 @@ struct FileReference<'a> {
 /// Those of reading; [`ErrorKind::InvalidData`] where a file does not hold rows of numbers.
 pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
     let (table, _) = DeTable::parse_recoverable(text);
-    let geometry = table.get_ref().get("geometry").and_then(|value| value.get_ref().as_str());
-    let axes = if geometry == Some(Geometry::Solid.word()) { ["x", "y", "z"].as_slice() } else { &["x", "y"] };
+    let geometry = table
+        .get_ref()
+        .get("geometry")
+        .and_then(|value| value.get_ref().as_str());
+    let axes = if geometry == Some(Geometry::Solid.word()) {
+        ["x", "y", "z"].as_slice()
+    } else {
+        &["x", "y"]
+    };
     let mut references = Vec::new();
     for value in table.get_ref().values() {
         collect(value, text, &mut references);
@@ -61,10 +68,23 @@ fn rows_of(file: &str, bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<Strin
 
 /// Rows of whatever text holds them.
 fn text_rows(bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
-    let text = String::from_utf8(bytes)
-        .map_err(|_| Error::new(ErrorKind::InvalidData, "E0002: the file is not UTF-8 text. Save it as UTF-8."))?;
-    let begins = |word: &str| text.trim_start().get(..word.len()).is_some_and(|of| of.eq_ignore_ascii_case(word));
-    if begins("PEER") || text.lines().take(4).any(|line| line.trim_start().to_ascii_uppercase().starts_with("NPTS")) {
+    let text = String::from_utf8(bytes).map_err(|_| {
+        Error::new(
+            ErrorKind::InvalidData,
+            "E0002: the file is not UTF-8 text. Save it as UTF-8.",
+        )
+    })?;
+    let begins = |word: &str| {
+        text.trim_start()
+            .get(..word.len())
+            .is_some_and(|of| of.eq_ignore_ascii_case(word))
+    };
+    if begins("PEER")
+        || text
+            .lines()
+            .take(4)
+            .any(|line| line.trim_start().to_ascii_uppercase().starts_with("NPTS"))
+    {
         return Err(Error::new(ErrorKind::InvalidData, PEER));
     }
     match (begins("ncols"), begins("solid")) {
@@ -98,7 +118,11 @@ fn collect<'a>(value: &'a toml::Spanned<DeValue<'_>>, text: &str, references: &m
             let is_known = table.keys().all(|key| ["file", "along"].contains(&&**key.get_ref()));
             match word("file") {
                 Some(file) if is_known && text[value.span()].starts_with('{') => {
-                    references.push(FileReference { span: value.span(), file, along: word("along") });
+                    references.push(FileReference {
+                        span: value.span(),
+                        file,
+                        along: word("along"),
+                    });
                 }
                 _ => table.values().for_each(|value| collect(value, text, references)),
             }
@@ -113,7 +137,9 @@ fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
     let bad = |message: String| Error::new(ErrorKind::InvalidData, message);
     if let Some(other) = along.filter(|along| !axes.contains(along)) {
         let axes = axes.join("\", \"");
-        return Err(bad(format!("E0028: along = \"{other}\" is not an axis of this case. Use one of \"{axes}\".")));
+        return Err(bad(format!(
+            "E0028: along = \"{other}\" is not an axis of this case. Use one of \"{axes}\"."
+        )));
     }
     if let Some(heading) = hidden(text) {
         return Err(bad(format!(
@@ -147,7 +173,9 @@ fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
         for (column, cell) in cells.iter().enumerate() {
             let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
             let value = value.ok_or_else(|| {
-                bad(format!("E0028: `{cell}` in line {number} of the data file is not a number. Correct the line."))
+                bad(format!(
+                    "E0028: `{cell}` in line {number} of the data file is not a number. Correct the line."
+                ))
             })?;
             row.push(match units.get(column) {
                 Some(Some(unit)) => format!("\"{value:?} {unit}\""),
@@ -156,12 +184,20 @@ fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
         }
         if let (Some(along), Some(number)) = (along, row.get(1).cloned()) {
             row.truncate(1);
-            row.extend(axes.iter().map(|axis| if *axis == along { number.clone() } else { "0.0".to_owned() }));
+            row.extend(axes.iter().map(|axis| {
+                if *axis == along {
+                    number.clone()
+                } else {
+                    "0.0".to_owned()
+                }
+            }));
         }
         whole.push_str(&format!("[{}],", row.join(",")));
     }
     if width.is_none() {
-        return Err(bad("E0028: the data file has no row of numbers. Check the name of the file.".to_owned()));
+        return Err(bad(
+            "E0028: the data file has no row of numbers. Check the name of the file.".to_owned(),
+        ));
     }
     whole.push(']');
     Ok(whole)
@@ -174,18 +210,25 @@ fn grid(text: &str) -> io::Result<String> {
     let mut words = text.split_whitespace().peekable();
     let mut header = std::collections::BTreeMap::new();
     while let Some(key) = words.next_if(|word| word.parse::<f64>().is_err()) {
-        let value = words.next().and_then(|word| word.parse::<f64>().ok()).filter(|value| value.is_finite());
+        let value = words
+            .next()
+            .and_then(|word| word.parse::<f64>().ok())
+            .filter(|value| value.is_finite());
         header.insert(
             key.to_ascii_lowercase(),
             value.ok_or_else(|| {
-                bad(format!("E0030: `{key}` in the header of the ASCII grid has no number. Correct the header."))
+                bad(format!(
+                    "E0030: `{key}` in the header of the ASCII grid has no number. Correct the header."
+                ))
             })?,
         );
     }
     let given = |key: &str| header.get(key).copied();
     let needed = |key: &str| {
         given(key).ok_or_else(|| {
-            bad(format!("E0030: the header of the ASCII grid has no `{key}`. Add a line with `{key}` and its value."))
+            bad(format!(
+                "E0030: the header of the ASCII grid has no `{key}`. Add a line with `{key}` and its value."
+            ))
         })
     };
     let (columns, lines, cell) = (needed("ncols")?, needed("nrows")?, needed("cellsize")?);
@@ -213,7 +256,9 @@ fn grid(text: &str) -> io::Result<String> {
         let value = height.parse::<f64>().ok().filter(|value| value.is_finite());
         let place = format!("row {}, column {}", row + 1, column + 1);
         let value = value.ok_or_else(|| {
-            bad(format!("E0030: `{height}` in {place} of the ASCII grid is not a number. Correct the height."))
+            bad(format!(
+                "E0030: `{height}` in {place} of the ASCII grid is not a number. Correct the height."
+            ))
         })?;
         if given("nodata_value") == Some(value) {
             return Err(bad(format!(
@@ -230,7 +275,11 @@ fn grid(text: &str) -> io::Result<String> {
 
 /// A comment before the first row that has a unit, where no plain heading has any: its units would be lost.
 fn hidden(text: &str) -> Option<&str> {
-    let mut lines = text.trim_start_matches('\u{feff}').lines().map(str::trim).filter(|line| !line.is_empty());
+    let mut lines = text
+        .trim_start_matches('\u{feff}')
+        .lines()
+        .map(str::trim)
+        .filter(|line| !line.is_empty());
     let before = lines.by_ref().take_while(|line| line.starts_with('#'));
     let comment =
         before.filter(|line| cells(line).len() > 1 && cells(line).into_iter().all(|cell| unit(cell).is_some()));
@@ -240,14 +289,19 @@ fn hidden(text: &str) -> Option<&str> {
 fn cells(line: &str) -> Vec<&str> {
     let separator = [';', ',', '\t'].into_iter().find(|separator| line.contains(*separator));
     match separator {
-        Some(separator) => line.split(separator).map(|cell| cell.trim().trim_matches('"')).collect(),
+        Some(separator) => line
+            .split(separator)
+            .map(|cell| cell.trim().trim_matches('"'))
+            .collect(),
         None => line.split_whitespace().collect(),
     }
 }
 
 /// The unit in a heading such as `ax [m/s2]`, `t (s)`, or `t / s` of ISO 80000.
 fn unit(heading: &str) -> Option<&str> {
-    let bracketed = heading.strip_suffix([']', ')']).and_then(|heading| heading.rsplit_once(['[', '(']));
+    let bracketed = heading
+        .strip_suffix([']', ')'])
+        .and_then(|heading| heading.rsplit_once(['[', '(']));
     let (_, unit) = bracketed.or_else(|| heading.rsplit_once(" / "))?;
     Some(unit.trim()).filter(|unit| !["", "-", "1"].contains(unit) && !unit.contains('"'))
 }
@@ -290,21 +344,34 @@ mod tests {
     #[test]
     fn units_comments_and_separators_are_read() {
         let plain = "[[0.0,1.5],[0.1,-2.0],]";
-        for text in ["0 1.5\n0.1 -2\n", "# a record\n0,1.5\n\n.1, -2.0 # end\n", "\u{feff}0;1.5\r\n1e-1;-2\r\n"] {
+        for text in [
+            "0 1.5\n0.1 -2\n",
+            "# a record\n0,1.5\n\n.1, -2.0 # end\n",
+            "\u{feff}0;1.5\r\n1e-1;-2\r\n",
+        ] {
             assert_eq!(rows(text, (None, PLANE)).unwrap(), plain);
         }
         let parsed = rows("t [s], a (cm/s2)\n0.02, 3\n", (Some("x"), PLANE)).unwrap();
         assert_eq!(parsed, "[[\"0.02 s\",\"3.0 cm/s2\",0.0],]");
-        assert_eq!(rows("t / s, a / g\n0.02, 3\n", (Some("x"), PLANE)).unwrap(), "[[\"0.02 s\",\"3.0 g\",0.0],]");
+        assert_eq!(
+            rows("t / s, a / g\n0.02, 3\n", (Some("x"), PLANE)).unwrap(),
+            "[[\"0.02 s\",\"3.0 g\",0.0],]"
+        );
         assert_eq!(rows("t a\n1 2", (Some("y"), PLANE)).unwrap(), "[[1.0,0.0,2.0],]");
-        assert_eq!(rows("1 2", (Some("y"), &["x", "y", "z"])).unwrap(), "[[1.0,0.0,2.0,0.0],]");
+        assert_eq!(
+            rows("1 2", (Some("y"), &["x", "y", "z"])).unwrap(),
+            "[[1.0,0.0,2.0,0.0],]"
+        );
     }
 
     #[test]
     fn a_peer_record_is_refused_with_what_to_do() {
         let record = b"PEER\nKOBE\nACCELERATION\nNPTS= 2, DT= .01 SEC\n 1.0E-3 2.0E-3\n".to_vec();
         let message = rows_of("kobe.AT2", record, (None, PLANE)).unwrap_err().to_string();
-        assert!(message.starts_with("E0049: ") && message.contains("t [s], a [g]"), "{message}");
+        assert!(
+            message.starts_with("E0049: ") && message.contains("t [s], a [g]"),
+            "{message}"
+        );
     }
 
     #[test]
@@ -319,7 +386,10 @@ mod tests {
             "E0028: the number of columns in line 2 is 1, but in the first line it is 2. Give all lines the same \
              number of columns."
         );
-        assert_eq!(message("t, ax\n", None), "E0028: the data file has no row of numbers. Check the name of the file.");
+        assert_eq!(
+            message("t, ax\n", None),
+            "E0028: the data file has no row of numbers. Check the name of the file."
+        );
         assert_eq!(
             message("0,nan", None),
             "E0028: `nan` in line 1 of the data file is not a number. Correct the line."

@@ -15,7 +15,10 @@ pub(super) fn is_binary(bytes: &[u8]) -> bool {
 
 /// Triangles that the heading of binary STL announces.
 fn announced(bytes: &[u8]) -> Option<u32> {
-    bytes.get(STL_HEADING - 4..STL_HEADING).and_then(|four| four.try_into().ok()).map(u32::from_le_bytes)
+    bytes
+        .get(STL_HEADING - 4..STL_HEADING)
+        .and_then(|four| four.try_into().ok())
+        .map(u32::from_le_bytes)
 }
 
 /// Bytes of binary STL of so many triangles.
@@ -45,9 +48,13 @@ pub(super) fn broken(bytes: &[u8]) -> Error {
 pub(super) fn triangles(bytes: &[u8]) -> io::Result<String> {
     let mut whole = String::from("[");
     for (number, triangle) in bytes[STL_HEADING..].chunks_exact(STL_TRIANGLE).enumerate() {
-        let singles =
-            triangle[12..48].chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]));
-        let corners: Vec<String> = singles.filter(|at| at.is_finite()).map(|at| format!("{at:?}")).collect();
+        let singles = triangle[12..48]
+            .chunks_exact(4)
+            .map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]));
+        let corners: Vec<String> = singles
+            .filter(|at| at.is_finite())
+            .map(|at| format!("{at:?}"))
+            .collect();
         if corners.len() != 9 {
             let message = format!(
                 "E0031: a corner of triangle {} of the STL file has a coordinate that is not a finite number. Export \
@@ -71,8 +78,10 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
         let mut words = line.split_whitespace();
         match words.next().map(str::to_ascii_lowercase).as_deref() {
             Some("vertex") => {
-                let numbers: Vec<f64> =
-                    words.filter_map(|word| word.parse().ok()).filter(|at: &f64| at.is_finite()).collect();
+                let numbers: Vec<f64> = words
+                    .filter_map(|word| word.parse().ok())
+                    .filter(|at: &f64| at.is_finite())
+                    .collect();
                 if numbers.len() != 3 {
                     return Err(bad(format!(
                         "E0031: the vertex in line {} of the STL file does not have three numbers. Export the file \
@@ -124,9 +133,22 @@ mod tests {
         assert!(is_binary(&bytes) && !is_binary(&bytes[..133]) && !is_binary(text.as_bytes()));
         assert_eq!(triangles(&bytes).unwrap(), row);
         bytes[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
-        assert!(triangles(&bytes).unwrap_err().to_string().contains("a corner of triangle 1 "));
-        assert!(broken(&bytes[..133]).to_string().contains("has 133 bytes, but its 1 triangles need 134"));
-        assert!(broken(&bytes[..80]).to_string().contains("has 80 bytes, but its header needs 84"));
+        assert!(
+            triangles(&bytes)
+                .unwrap_err()
+                .to_string()
+                .contains("a corner of triangle 1 ")
+        );
+        assert!(
+            broken(&bytes[..133])
+                .to_string()
+                .contains("has 133 bytes, but its 1 triangles need 134")
+        );
+        assert!(
+            broken(&bytes[..80])
+                .to_string()
+                .contains("has 80 bytes, but its header needs 84")
+        );
         let refuses = |text: &str, says: &str| {
             let message = facets(text).unwrap_err().to_string();
             assert!(message.starts_with("E0031: ") && message.contains(says), "{message}");

@@ -39,7 +39,9 @@ pub fn strips<K: Kinematics<D>, const D: usize>(
             points,
             normal: (base == Base::Smooth && contact.is_none()).then_some(normal),
             contact,
-            path: Path { rows: path.rows.iter().map(|(time, moved)| (*time, vector(*moved))).collect() },
+            path: Path {
+                rows: path.rows.iter().map(|(time, moved)| (*time, vector(*moved))).collect(),
+            },
             transitions: std::collections::BTreeMap::new(),
             penalty: if contact.is_some() { RUBBING * penalty } else { penalty },
         }
@@ -48,15 +50,26 @@ pub fn strips<K: Kinematics<D>, const D: usize>(
     let with_divided_friction = |contact: Option<StripContact<3>>| {
         contact.map(|StripContact { mut law, inward }| {
             law.friction /= divided;
-            StripContact { law, inward: vector::<D, 3>(inward.into()) }
+            StripContact {
+                law,
+                inward: vector::<D, 3>(inward.into()),
+            }
         })
     };
     let footing = case.footing.iter();
     let footing = footing.map(|of| strip(&of.site, &of.path, (of.base, with_divided_friction(of.contact))));
-    let prescribed =
-        case.prescribed.iter().map(|of| strip(&of.site, &of.path, (of.base, with_divided_friction(of.contact))));
+    let prescribed = case
+        .prescribed
+        .iter()
+        .map(|of| strip(&of.site, &of.path, (of.base, with_divided_friction(of.contact))));
     let acts = |number: usize| case.acts_since(Acting::Strip(number), t).is_some();
-    let held = |(number, strip): (usize, Strip<D>)| if acts(number) { strip } else { Strip { penalty: 0.0, ..strip } };
+    let held = |(number, strip): (usize, Strip<D>)| {
+        if acts(number) {
+            strip
+        } else {
+            Strip { penalty: 0.0, ..strip }
+        }
+    };
     let mut strips: Vec<Strip<D>> = footing.chain(prescribed).enumerate().map(held).collect();
     transition::connect(&mut strips, &neighbours(case, t), grid);
     strips

@@ -25,9 +25,13 @@ pub(crate) struct Neighbour<const D: usize> {
 
 /// Lets the points of strips that meet and move differently follow the motions of both.
 pub(super) fn connect<const D: usize>(strips: &mut [Strip<D>], neighbours: &[Neighbour<D>], grid: &Grid<D>) {
-    let transitions: Vec<BTreeMap<usize, Vec<MotionShare<D>>>> =
-        (0..strips.len()).map(|number| transitions(number, strips, neighbours, grid)).collect();
-    strips.iter_mut().zip(transitions).for_each(|(strip, transitions)| strip.transitions = transitions);
+    let transitions: Vec<BTreeMap<usize, Vec<MotionShare<D>>>> = (0..strips.len())
+        .map(|number| transitions(number, strips, neighbours, grid))
+        .collect();
+    strips
+        .iter_mut()
+        .zip(transitions)
+        .for_each(|(strip, transitions)| strip.transitions = transitions);
 }
 
 /// Points of strip `number` near others that it meets and that move differently, with the parts of these.
@@ -46,7 +50,10 @@ fn transitions<const D: usize>(
     let mut transitions = BTreeMap::new();
     let reach = grid.order() as f64 + 1.0;
     for (point, SurfacePoint { x, .. }) in strip.points.iter().enumerate() {
-        if others.iter().all(|other| distance_in_cells(x, &strips[*other], grid) >= reach) {
+        if others
+            .iter()
+            .all(|other| distance_in_cells(x, &strips[*other], grid) >= reach)
+        {
             continue;
         }
         let mut shares = shares_at(x, number, &others, strips, grid);
@@ -108,7 +115,11 @@ pub(crate) fn meet<const D: usize>(
     let all = holds_all(strip) && holds_all(other);
     let apart = |t: f64| {
         let difference = strip.path.at(t) - other.path.at(t);
-        if all { difference.norm() } else { difference.dot(&normal).abs() }
+        if all {
+            difference.norm()
+        } else {
+            difference.dot(&normal).abs()
+        }
     };
     let mut times = strip.path.rows.iter().chain(&other.path.rows).map(|(t, _)| *t);
     is_one_plane
@@ -126,7 +137,9 @@ fn shares_at<const D: usize>(
     grid: &Grid<D>,
 ) -> Vec<MotionShare<D>> {
     let offsets = grid.offsets();
-    let Some(attachment) = Attachment::at(grid, &offsets, |_| true, x) else { return Vec::new() };
+    let Some(attachment) = Attachment::at(grid, &offsets, |_| true, x) else {
+        return Vec::new();
+    };
     let mut sums = vec![0.0; others.len()];
     for (value, offset) in attachment.N().iter().zip(&offsets) {
         let node = node_place(grid, attachment.first_node() + offset);
@@ -136,11 +149,21 @@ fn shares_at<const D: usize>(
         let is_nearest = |distance: f64| distance - nearest <= EQUAL * (distance + nearest);
         let count = usize::from(is_nearest(own)) + distances.iter().filter(|distance| is_nearest(**distance)).count();
         for (sum, distance) in sums.iter_mut().zip(distances) {
-            *sum += if is_nearest(distance) { value / count as f64 } else { 0.0 };
+            *sum += if is_nearest(distance) {
+                value / count as f64
+            } else {
+                0.0
+            };
         }
     }
     let shares = others.iter().zip(sums).filter(|(_, share)| *share > 0.0);
-    shares.map(|(strip, share)| MotionShare { strip: *strip, share, normal: None }).collect()
+    shares
+        .map(|(strip, share)| MotionShare {
+            strip: *strip,
+            share,
+            normal: None,
+        })
+        .collect()
 }
 
 /// m  where a node's function has its Greville point
@@ -151,13 +174,19 @@ fn node_place<const D: usize>(grid: &Grid<D>, node: usize) -> Vector<D> {
 
 /// m  distance of a place from a strip
 fn distance<const D: usize>(x: &Vector<D>, strip: &Strip<D>) -> f64 {
-    corners(strip).map(|corner| (corner - x).norm()).fold(f64::INFINITY, f64::min)
+    corners(strip)
+        .map(|corner| (corner - x).norm())
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// Distance of a place from a strip along the axis where it is largest, in edges of the place's cell.
 fn distance_in_cells<const D: usize>(x: &Vector<D>, strip: &Strip<D>, grid: &Grid<D>) -> f64 {
-    let edges = grid.locate(x).map_or_else(|| Vector::repeat(grid.smallest_edge()), |cell| grid.cell_box(&cell).1);
-    corners(strip).map(|corner| (corner - x).component_div(&edges).amax()).fold(f64::INFINITY, f64::min)
+    let edges = grid
+        .locate(x)
+        .map_or_else(|| Vector::repeat(grid.smallest_edge()), |cell| grid.cell_box(&cell).1);
+    corners(strip)
+        .map(|corner| (corner - x).component_div(&edges).amax())
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// Corners of the pieces that a strip's points stand for.

@@ -25,11 +25,17 @@ pub(super) fn check(case: &Case, report: &mut Report<'_>) {
     if case.analysis.regime != Regime::Dynamic {
         return;
     }
-    let pieces: Vec<Piece> = case.pieces().into_iter().map(|bodies| Piece::of(case, bodies)).collect();
+    let pieces: Vec<Piece> = case
+        .pieces()
+        .into_iter()
+        .map(|bodies| Piece::of(case, bodies))
+        .collect();
     let cell = case.grid.shortest();
     for (number, other) in pieces.iter().enumerate() {
         for one in &pieces[..number] {
-            let Some(time) = meeting(one, other, cell, case) else { continue };
+            let Some(time) = meeting(one, other, cell, case) else {
+                continue;
+            };
             let reach = case.grid.order as f64;
             report.warn(format!(
                 "W0229: body.{} and body.{} come closer than a cell at t = {time:.3} s. From {:.1} cells ({} m) on \
@@ -54,7 +60,12 @@ impl Piece {
         let falls = !is_supported(case, &bounds);
         let gravity = case.gravity.as_ref().filter(|_| falls);
         let acceleration = gravity.map_or([0.0; 3], |gravity| gravity.acceleration);
-        Self { bodies, bounds, velocity, acceleration }
+        Self {
+            bodies,
+            bounds,
+            velocity,
+            acceleration,
+        }
     }
 
     /// m  displacement of the piece at a time if nothing stops it

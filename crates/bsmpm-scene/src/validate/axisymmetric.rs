@@ -44,13 +44,19 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
              lower end of the grid along x to 0. The body may begin at x > 0.";
         grid.error(key, message, report);
     }
-    let tables = std::iter::once(record).chain(record.records("stage")).filter_map(|table| table.record("boundary"));
+    let tables = std::iter::once(record)
+        .chain(record.records("stage"))
+        .filter_map(|table| table.record("boundary"));
     for boundary in tables {
         for side in Side::ALL.into_iter().flatten() {
             let (found, word) = (super::support(boundary, side), side.word());
             if Face::of(side, Geometry::Axisymmetric) == Some(AXIS) {
                 if found.is_some_and(|found| found != Support::Roller) {
-                    boundary.error(word, "E0239: this face is the axis of symmetry. Set it to \"roller\".", report);
+                    boundary.error(
+                        word,
+                        "E0239: this face is the axis of symmetry. Set it to \"roller\".",
+                        report,
+                    );
                 }
             } else if found == Some(Support::FreeField) {
                 let message = "E0240: a free field follows horizontal shaking in one direction, which is not \
@@ -59,7 +65,11 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
             }
         }
     }
-    let drains = case.flow.iter().flat_map(|flow| &flow.drains).zip(record.records("drain"));
+    let drains = case
+        .flow
+        .iter()
+        .flat_map(|flow| &flow.drains)
+        .zip(record.records("drain"));
     for (drain, record) in drains {
         match &drain.site {
             DrainSite::Face(AXIS) => {
@@ -75,16 +85,27 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
             _ => {}
         }
     }
-    let inflows = case.flow.iter().flat_map(|flow| &flow.inflows).zip(record.records("inflow"));
+    let inflows = case
+        .flow
+        .iter()
+        .flat_map(|flow| &flow.inflows)
+        .zip(record.records("inflow"));
     for (inflow, record) in inflows {
-        inflow.site.ends().into_iter().for_each(|ends| on_axis(ends, record, report));
+        inflow
+            .site
+            .ends()
+            .into_iter()
+            .for_each(|ends| on_axis(ends, record, report));
     }
 }
 
 /// Vectors that are the same all around the axis have nothing along x.
 fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
     if let Some(gravity) = record.record("gravity")
-        && case.gravity.as_ref().is_some_and(|gravity| gravity.acceleration[0] != 0.0)
+        && case
+            .gravity
+            .as_ref()
+            .is_some_and(|gravity| gravity.acceleration[0] != 0.0)
     {
         gravity.error("acceleration", SIDEWAYS, report);
     }
@@ -103,11 +124,17 @@ fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
         && footing.path.rows.iter().any(|(_, moved)| moved[0] != 0.0)
         && let Some(record) = record.record("footing")
     {
-        let moves = ["displacement", "velocity", "path"].into_iter().find(|key| record.gives(key));
+        let moves = ["displacement", "velocity", "path"]
+            .into_iter()
+            .find(|key| record.gives(key));
         record.error(moves.unwrap_or("path"), SIDEWAYS, report);
     }
     for (prescribed, record) in case.prescribed.iter().zip(record.records("prescribed")) {
-        prescribed.site.ends().into_iter().for_each(|ends| on_axis(ends, record, report));
+        prescribed
+            .site
+            .ends()
+            .into_iter()
+            .for_each(|ends| on_axis(ends, record, report));
     }
     for (traction, record) in case.tractions.iter().zip(record.records("traction")) {
         if let LoadedLine::Segment { from, to } = traction.line {
@@ -116,7 +143,11 @@ fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
     }
     for (load, record) in case.point_loads.iter().zip(record.records("point_load")) {
         if load.at[0] == 0.0 && load.force[0] != 0.0 {
-            let key = if record.gives("force_path") { "force_path" } else { "force" };
+            let key = if record.gives("force_path") {
+                "force_path"
+            } else {
+                "force"
+            };
             record.error(
                 key,
                 "E0242: a force on the axis of symmetry cannot have a radial component. Set the x component of the \
@@ -131,7 +162,9 @@ fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
 fn rigid(case: &Case, record: &Record, report: &mut Report<'_>) {
     for (rigid, record) in case.rigid.iter().zip(record.records("rigid")) {
         if rigid.path.rows.iter().any(|(_, moved)| moved[0] != 0.0) {
-            let moves = ["displacement", "velocity", "path"].into_iter().find(|key| record.gives(key));
+            let moves = ["displacement", "velocity", "path"]
+                .into_iter()
+                .find(|key| record.gives(key));
             record.error(moves.unwrap_or("path"), SIDEWAYS, report);
         }
         if !rigid.rotation.is_empty() {
@@ -163,7 +196,9 @@ fn quantities(case: &Case, record: &Record, report: &mut Report<'_>) {
             );
         }
         if let Quantity::SectionForces { lines, .. } = &history.quantity {
-            lines.iter().for_each(|[from, to]| on_axis([[from[0], from[1]], [to[0], to[1]]], record, report));
+            lines
+                .iter()
+                .for_each(|[from, to]| on_axis([[from[0], from[1]], [to[0], to[1]]], record, report));
         }
     }
 }

@@ -38,11 +38,17 @@ pub(super) fn read_all(
         );
     }
     if records.len() > MOST {
-        let message = format!("E0214: the case has {} bodies (at most {MOST}). Merge some of them.", records.len());
+        let message = format!(
+            "E0214: the case has {} bodies (at most {MOST}). Merge some of them.",
+            records.len()
+        );
         root.error("body", message, report);
         return None;
     }
-    let read: Vec<_> = records.iter().map(|record| read(record, root, grid, regime, report)).collect();
+    let read: Vec<_> = records
+        .iter()
+        .map(|record| read(record, root, grid, regime, report))
+        .collect();
     let bodies: Vec<Body> = read.into_iter().collect::<Option<_>>()?;
     let points: u128 = grid.map_or(0, |grid| bodies.iter().map(|body| body.points(grid)).sum());
     if points > MOST_POINTS {
@@ -62,7 +68,11 @@ pub(super) fn read_all(
 /// rad/s along the axis, and the place about which, m.
 fn turning(spin: &Record, geometry: Geometry, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
     let (rate, about) = (spin.number("rate")?, spin.vector("about")?);
-    let axis = if spin.gives("axis") { spin.vector("axis")? } else { [0.0, 0.0, 1.0] };
+    let axis = if spin.gives("axis") {
+        spin.vector("axis")?
+    } else {
+        [0.0, 0.0, 1.0]
+    };
     let length = axis.iter().map(|along| along * along).sum::<f64>().sqrt();
     if spin.gives("axis") && (geometry != Geometry::Solid || length == 0.0) {
         let message = match geometry {
@@ -103,14 +113,26 @@ fn read(
         ));
     }
     let boundary = super::boundary(root);
-    let region = shape::region((record, root.word("geometry")?), (grid, points_per_cell), boundary, report);
+    let region = shape::region(
+        (record, root.word("geometry")?),
+        (grid, points_per_cell),
+        boundary,
+        report,
+    );
     let velocity = record.vector("velocity");
     let spin = match record.record("spin") {
         Some(spin) => Some(turning(spin, root.word("geometry")?, report)?),
         None => None,
     };
     let name = record.text("name").map(str::to_owned);
-    let body = Body { name, material: material?, region: region?, points_per_cell: points_per_cell?, velocity, spin };
+    let body = Body {
+        name,
+        material: material?,
+        region: region?,
+        points_per_cell: points_per_cell?,
+        velocity,
+        spin,
+    };
     if grid.is_some_and(|grid| body.points(grid) == 0) {
         let message = "E0219: the body is thinner than 1e-9 of a cell, so it has no material points. Make the body \
                        thicker, or use smaller cells.";
@@ -184,7 +206,10 @@ fn thinnest(body: &Body, grid: &GridSpec) -> Option<(usize, f64)> {
     let part = |axis: usize| {
         let along = &grid.axes[axis];
         let cell = along.first_cell(|cell| along.lower() + along.breakpoint(cell + 1) > lower[axis]);
-        (axis, (upper[axis] - lower[axis]) / along.cell(cell.min(along.cells() - 1)))
+        (
+            axis,
+            (upper[axis] - lower[axis]) / along.cell(cell.min(along.cells() - 1)),
+        )
     };
     let least = (0..grid.dims()).map(part).min_by(|a, b| a.1.total_cmp(&b.1))?;
     (least.1 < (1.0 - ROUNDING) / body.points_per_cell as f64).then_some(least)
@@ -257,7 +282,9 @@ fn overlap(a: &Body, b: &Body, grid: &GridSpec, work: &mut usize) -> bool {
     let [x, y] = [0, 1].map(|axis| common[axis].map(|end| end - origin[axis]));
     let both = |inside: &[bool]| region::solid(&inside[..of_a]) && region::solid(&inside[of_a..]);
     let mut area = 0.0;
-    region::sweep(&edges, of_a + of_b, &Window { x, y }, &both, &mut |slice| area += slice.area());
+    region::sweep(&edges, of_a + of_b, &Window { x, y }, &both, &mut |slice| {
+        area += slice.area()
+    });
     area > 1e-9 * a.area().min(b.area())
 }
 
@@ -279,6 +306,12 @@ fn overlap_in_space(a: &Volume, b: &Volume) -> bool {
         let [lower, upper] = common[axis];
         lower + (upper - lower) * (k as f64 + 0.5) / SAMPLES as f64
     };
-    let at = |k: usize| [place(0, k / (SAMPLES * SAMPLES)), place(1, k / SAMPLES % SAMPLES), place(2, k % SAMPLES)];
+    let at = |k: usize| {
+        [
+            place(0, k / (SAMPLES * SAMPLES)),
+            place(1, k / SAMPLES % SAMPLES),
+            place(2, k % SAMPLES),
+        ]
+    };
     (0..SAMPLES.pow(3)).map(at).any(|at| a.contains(at) && b.contains(at))
 }

@@ -22,7 +22,11 @@ const DRIVES: [&str; 10] = [
     "stress_zz",
 ];
 /// Those of a mixed stage, by components.
-const MIXED: [[&str; 2]; 3] = [["strain_xx", "stress_xx"], ["strain_yy", "stress_yy"], ["strain_zz", "stress_zz"]];
+const MIXED: [[&str; 2]; 3] = [
+    ["strain_xx", "stress_xx"],
+    ["strain_yy", "stress_yy"],
+    ["strain_zz", "stress_zz"],
+];
 
 /// All tests in the order of the file, without those that have an error.
 pub(super) fn read_all(
@@ -31,7 +35,9 @@ pub(super) fn read_all(
     report: &mut Report<'_>,
 ) -> Vec<ElementTest> {
     let named = root.named("element").iter();
-    named.filter_map(|(name, record)| read(name, record, (materials?, grid?), report)).collect()
+    named
+        .filter_map(|(name, record)| read(name, record, (materials?, grid?), report))
+        .collect()
 }
 
 fn read(
@@ -77,10 +83,21 @@ fn read(
         );
         record.error("height", message, report);
     }
-    let height = if graded { Some(record.number("height")? - grid.lower()[grid.dims() - 1]) } else { None };
+    let height = if graded {
+        Some(record.number("height")? - grid.lower()[grid.dims() - 1])
+    } else {
+        None
+    };
     let (pressure, k0) = (record.number("pressure")?, record.number("k0")?);
     let stages: Option<Vec<_>> = read.into_iter().collect();
-    Some(ElementTest { name: name.to_owned(), material, height, pressure, k0, stages: stages? })
+    Some(ElementTest {
+        name: name.to_owned(),
+        material,
+        height,
+        pressure,
+        k0,
+        stages: stages?,
+    })
 }
 
 /// The number of its material.
@@ -169,8 +186,17 @@ fn stage(record: &Record, report: &mut Report<'_>) -> Option<ElementStage> {
         record.error("undrained", message, report);
         return None;
     }
-    let duration = if record.gives("duration") { record.number("duration")? } else { f64::INFINITY };
-    Some(ElementStage { targets, undrained, steps: record.count("steps")?, duration })
+    let duration = if record.gives("duration") {
+        record.number("duration")?
+    } else {
+        f64::INFINITY
+    };
+    Some(ElementStage {
+        targets,
+        undrained,
+        steps: record.count("steps")?,
+        duration,
+    })
 }
 
 /// What a key drives its component to, positive in tension.

@@ -37,7 +37,9 @@ const WITHOUT_FLOW: &str = "E0501: no material has pore-water flow, so this entr
 /// Drainage that the case gives a material.
 fn drainage(root: &Record, material: &Record) -> Option<Drainage> {
     let says = |record: &&Record| record.gives("drainage");
-    let record = Some(material).filter(says).or_else(|| root.record("water").filter(says));
+    let record = Some(material)
+        .filter(says)
+        .or_else(|| root.record("water").filter(says));
     record.map_or(Some(Drainage::Given), |record| record.word("drainage"))
 }
 
@@ -48,8 +50,11 @@ pub(super) fn read(
     (around, stages): (AroundStrip<'_>, Option<&[Stage]>),
     report: &mut Report<'_>,
 ) -> Option<Option<Flow>> {
-    let soils: Vec<Option<Option<Soil<3>>>> =
-        root.named("material").iter().map(|(_, record)| soil(root, record, report)).collect();
+    let soils: Vec<Option<Option<Soil<3>>>> = root
+        .named("material")
+        .iter()
+        .map(|(_, record)| soil(root, record, report))
+        .collect();
     let flows = soils.iter().any(|soil| !matches!(soil, Some(None)));
     for key in ["drain", "inflow"] {
         if let Some(record) = root.records(key).first().filter(|_| !flows) {
@@ -63,13 +68,26 @@ pub(super) fn read(
         return Some(None);
     }
     let soils: Vec<Option<Soil<3>>> = soils.into_iter().collect::<Option<_>>()?;
-    let (materials, bodies, stages) = (materials?, around.bodies.unwrap_or_default(), stages.unwrap_or_default());
+    let (materials, bodies, stages) = (
+        materials?,
+        around.bodies.unwrap_or_default(),
+        stages.unwrap_or_default(),
+    );
     let there = |what: Acting| there(what, stages, bodies);
     let drains = root.records("drain").iter().enumerate();
     let read: Vec<Option<Drain>> = drains
         .map(|(number, record)| {
             let there = &there(Acting::Drain(number));
-            drain(record, Ground { soils: &soils, materials, around, there }, report)
+            drain(
+                record,
+                Ground {
+                    soils: &soils,
+                    materials,
+                    around,
+                    there,
+                },
+                report,
+            )
         })
         .collect();
     named(root, report);
@@ -77,13 +95,29 @@ pub(super) fn read(
     let put: Vec<Option<Inflow>> = inflows
         .map(|(number, record)| {
             let there = &there(Acting::Inflow(number));
-            inflow(record, Ground { soils: &soils, materials, around, there }, report)
+            inflow(
+                record,
+                Ground {
+                    soils: &soils,
+                    materials,
+                    around,
+                    there,
+                },
+                report,
+            )
         })
         .collect();
-    let (drains, inflows) = (read.into_iter().collect::<Option<_>>()?, put.into_iter().collect::<Option<_>>()?);
+    let (drains, inflows) = (
+        read.into_iter().collect::<Option<_>>()?,
+        put.into_iter().collect::<Option<_>>()?,
+    );
     let bulk = root.record("water").filter(|water| water.gives("bulk"));
     let bulk = bulk.map_or(Some(f64::INFINITY), |water| water.number("bulk"))?;
-    let suction = suction(root, soils.iter().flatten().any(|soil| soil.retention.is_some()), report)?;
+    let suction = suction(
+        root,
+        soils.iter().flatten().any(|soil| soil.retention.is_some()),
+        report,
+    )?;
     Some(Some(Flow {
         unit_weight: unit_weight(root)?,
         bulk,
@@ -99,13 +133,18 @@ pub(super) fn read(
 /// Pa  the largest suction at the start.
 fn suction(root: &Record, retains: bool, report: &mut Report<'_>) -> Option<f64> {
     const KEY: &str = "suction";
-    let Some(water) = root.record("water").filter(|water| water.gives(KEY)) else { return Some(f64::INFINITY) };
+    let Some(water) = root.record("water").filter(|water| water.gives(KEY)) else {
+        return Some(f64::INFINITY);
+    };
     if !retains {
         let message = "E0503: no material has a `retention` curve, so `suction` has no effect. Give the soil above \
                        the water table a `retention` curve, or remove `suction`.";
         water.consequence(KEY, message, &["material"], report);
     }
-    if ["level", "level_path", "line", "line_path"].iter().all(|key| !water.gives(key)) {
+    if ["level", "level_path", "line", "line_path"]
+        .iter()
+        .all(|key| !water.gives(key))
+    {
         let message = "E0504: `suction` applies above the water table, but the case has no water table. Give \
                        `water.level`, `level_path`, `line` or `line_path`, or remove `suction`.";
         water.error(KEY, message, report);
@@ -115,12 +154,20 @@ fn suction(root: &Record, retains: bool, report: &mut Report<'_>) -> Option<f64>
 
 /// N/m3  of water under the case's gravity; under the standard one without any.
 fn unit_weight(root: &Record) -> Option<f64> {
-    let given = root.record("water").map_or(Some(WATER), |water| water.number("unit_weight"))?;
-    let Some(gravity) = root.record("gravity") else { return Some(given) };
+    let given = root
+        .record("water")
+        .map_or(Some(WATER), |water| water.number("unit_weight"))?;
+    let Some(gravity) = root.record("gravity") else {
+        return Some(given);
+    };
     let [x, y, z] = gravity.vector("acceleration")?;
     let is_static = root.record("analysis")?.word("type").map(AnalysisType::regime) == Some(Regime::QuasiStatic);
     let up = root.word::<Geometry>("geometry")?.dims() - 1;
-    let pull = if is_static { [x, y, z][up].abs() } else { x.hypot(y).hypot(z) };
+    let pull = if is_static {
+        [x, y, z][up].abs()
+    } else {
+        x.hypot(y).hypot(z)
+    };
     Some(given / STANDARD_GRAVITY * pull)
 }
 
@@ -133,7 +180,11 @@ fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Optio
         Drainage::Undrained => &FLOWING[..1],
         Drainage::Coupled => &FLOWING[..2],
     };
-    let known = if drainage == Drainage::Coupled { FLOWING.len() } else { needs.len() };
+    let known = if drainage == Drainage::Coupled {
+        FLOWING.len()
+    } else {
+        needs.len()
+    };
     let mut failed = false;
     for key in needs.iter().filter(|key| !record.gives(key)) {
         let message = format!(
@@ -166,7 +217,11 @@ fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Optio
         Drainage::Coupled => Some(permeability(record, report)?),
         Drainage::Given | Drainage::Undrained => None,
     };
-    Some(Some(Soil { porosity, permeability, retention }))
+    Some(Some(Soil {
+        porosity,
+        permeability,
+        retention,
+    }))
 }
 
 /// How much water a soil keeps under suction.
@@ -193,7 +248,9 @@ fn retention(of: &Record, report: &mut Report<'_>) -> Option<Retention> {
 /// Rows of a measured curve: suction head, effective saturation, relative permeability.
 fn measured(of: &Record, residual: f64, report: &mut Report<'_>) -> Option<Vec<[f64; 3]>> {
     const KEY: &str = "curve";
-    let rows: Vec<[f64; 3]> = increasing(of, KEY, report)?.map(|row| [row[0], row[1], row[2]]).collect();
+    let rows: Vec<[f64; 3]> = increasing(of, KEY, report)?
+        .map(|row| [row[0], row[1], row[2]])
+        .collect();
     let rises = |pair: &[[f64; 3]]| pair[1][1] > pair[0][1] || pair[1][2] > pair[0][2];
     let last = rows[rows.len() - 1];
     let wrong = if rows[0] != [0.0, 1.0, 1.0] {
@@ -225,7 +282,11 @@ fn measured(of: &Record, residual: f64, report: &mut Report<'_>) -> Option<Vec<[
         of.error(KEY, message, report);
         return None;
     }
-    Some(rows.into_iter().map(|[s, kept, k]| [s, (kept - residual) / (1.0 - residual), k]).collect())
+    Some(
+        rows.into_iter()
+            .map(|[s, kept, k]| [s, (kept - residual) / (1.0 - residual), k])
+            .collect(),
+    )
 }
 
 /// The bodies that are there when something begins to act: at the start, or once a stage has applied it.
@@ -237,7 +298,10 @@ fn there(what: Acting, stages: &[Stage], bodies: &[Body]) -> Vec<Body> {
         let comes = |stages: &[Stage]| stages.iter().any(|stage| stage.add.contains(number));
         (comes(begun) || !comes(stages)) && !begun.iter().any(|stage| stage.remove.contains(number))
     };
-    (0..bodies.len()).filter(is_there).map(|number| bodies[number].clone()).collect()
+    (0..bodies.len())
+        .filter(is_there)
+        .map(|number| bodies[number].clone())
+        .collect()
 }
 
 /// What a drain or an inflow lies at.
@@ -251,12 +315,18 @@ struct Ground<'a> {
 
 impl Ground<'_> {
     fn lets_through(&self, body: &Body) -> bool {
-        self.soils[body.material].as_ref().is_some_and(|soil| soil.permeability.is_some())
+        self.soils[body.material]
+            .as_ref()
+            .is_some_and(|soil| soil.permeability.is_some())
     }
 
     /// Bodies of soil that lets water through.
     fn permeable(&self) -> Vec<Body> {
-        self.there.iter().filter(|body| self.lets_through(body)).cloned().collect()
+        self.there
+            .iter()
+            .filter(|body| self.lets_through(body))
+            .cloned()
+            .collect()
     }
 
     /// A segment, or of a solid a plate, of the surface of bodies that let water through.
@@ -283,7 +353,10 @@ impl Ground<'_> {
     ) -> Option<()> {
         let (grid, permeable) = (self.around.grid?, self.permeable());
         if let Some(at) = places.find(|at| !place::is_at(&permeable, grid, *at)) {
-            let under = self.there.iter().find(|body| place::is_at(std::slice::from_ref(*body), grid, at));
+            let under = self
+                .there
+                .iter()
+                .find(|body| place::is_at(std::slice::from_ref(*body), grid, at));
             let comes = place::is_at(self.around.bodies.unwrap_or_default(), grid, at);
             let at = &at[..grid.dims()];
             let message = match under {
@@ -348,7 +421,11 @@ fn drain(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option
             Site::Face(_) => return None,
         }
     };
-    Some(Drain { name: record.text("name").map(str::to_owned), site, given: given? })
+    Some(Drain {
+        name: record.text("name").map(str::to_owned),
+        site,
+        given: given?,
+    })
 }
 
 /// The pressure at a drain.
@@ -384,7 +461,9 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Given> {
 
 /// Rows of a number that follows time.
 fn course(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Course> {
-    Some(Course(increasing(record, key, report)?.map(|row| (row[0], row[1])).collect()))
+    Some(Course(
+        increasing(record, key, report)?.map(|row| (row[0], row[1])).collect(),
+    ))
 }
 
 /// A face of the grid at which a body of permeable soil lies.
@@ -392,8 +471,15 @@ fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<
     let grid = ground.around.grid?;
     let face = place::face(record, grid, report)?;
     let slack = AT * grid.axes[face.axis].shortest();
-    let (at, side) = ([grid.lower(), grid.upper()][usize::from(face.upper)][face.axis], usize::from(face.upper));
-    if !ground.permeable().iter().any(|body| (body.region.corners()[side][face.axis] - at).abs() <= slack) {
+    let (at, side) = (
+        [grid.lower(), grid.upper()][usize::from(face.upper)][face.axis],
+        usize::from(face.upper),
+    );
+    if !ground
+        .permeable()
+        .iter()
+        .any(|body| (body.region.corners()[side][face.axis] - at).abs() <= slack)
+    {
         let message = format!(
             "E0516: no body with pore-water flow touches this face of the grid ({} = {at} m). Choose another face, \
              or give the surface of the soil by `from` and `to` (3-D: `rectangle`).",
@@ -411,13 +497,18 @@ fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Opti
     let all: Vec<&Region> = bodies.iter().map(|body| &body.region).collect();
     let (lower, length) = (grid.lower(), [0, 1].map(|axis| grid.axes[axis].length()));
     let is_held = |piece: &[[f64; 2]; 2]| {
-        [(0, false), (0, true), (1, false), (1, true)].into_iter().any(|(axis, upper)| {
-            let (at, slack) = (if upper { length[axis] } else { 0.0 }, AT * grid.axes[axis].shortest());
-            let lies = piece.iter().all(|end| (end[axis] - at).abs() <= slack);
-            lies && boundary[axis][usize::from(upper)] != Support::Free
-        })
+        [(0, false), (0, true), (1, false), (1, true)]
+            .into_iter()
+            .any(|(axis, upper)| {
+                let (at, slack) = (if upper { length[axis] } else { 0.0 }, AT * grid.axes[axis].shortest());
+                let lies = piece.iter().all(|end| (end[axis] - at).abs() <= slack);
+                lies && boundary[axis][usize::from(upper)] != Support::Free
+            })
     };
-    let pieces = bodies.iter().filter(|body| ground.lets_through(body)).flat_map(|body| skin(&body.region, &all, grid));
+    let pieces = bodies
+        .iter()
+        .filter(|body| ground.lets_through(body))
+        .flat_map(|body| skin(&body.region, &all, grid));
     let pieces: Vec<[[f64; 2]; 2]> = pieces.filter(|piece| !is_held(piece)).collect();
     let shift = |at: [f64; 2]| [0, 1].map(|axis| lower[axis] + at[axis]);
     let pieces: Vec<[[f64; 2]; 2]> = pieces.into_iter().map(|piece| piece.map(shift)).collect();
@@ -429,7 +520,11 @@ fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Opti
     }
     let long: f64 = pieces.iter().map(|[p, q]| (q[0] - p[0]).hypot(q[1] - p[1])).sum();
     let reason = "free surface of permeable soil when the drain begins to act; surface that forms later is not drained";
-    report.note(record.path_of("surface"), format!("{long:.6} m in {} pieces", pieces.len()), reason);
+    report.note(
+        record.path_of("surface"),
+        format!("{long:.6} m in {} pieces", pieces.len()),
+        reason,
+    );
     Some(pieces)
 }
 
@@ -439,8 +534,16 @@ fn inflow(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Optio
         false => record.number("rate").map(|rate| Course(vec![(0.0, rate)])),
     };
     let runs_off = record.flag("runoff")?;
-    let site = if record.gives("face") { along_face(record, ground, report)? } else { ground.site(record, report)? };
-    Some(Inflow { site, rate: rate?, runs_off })
+    let site = if record.gives("face") {
+        along_face(record, ground, report)?
+    } else {
+        ground.site(record, report)?
+    };
+    Some(Inflow {
+        site,
+        rate: rate?,
+        runs_off,
+    })
 }
 
 /// What of a face of the grid lies between the ends of the permeable bodies there.
@@ -451,19 +554,31 @@ fn along_face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> O
     let there = ground.permeable().into_iter().map(|body| body.region.corners());
     let there = there.filter(|corners| (corners[usize::from(face.upper)][face.axis] - at).abs() <= slack);
     let ends = there.reduce(|[lower, upper], [a, b]| {
-        [[0, 1, 2].map(|axis| lower[axis].min(a[axis])), [0, 1, 2].map(|axis| upper[axis].max(b[axis]))]
+        [
+            [0, 1, 2].map(|axis| lower[axis].min(a[axis])),
+            [0, 1, 2].map(|axis| upper[axis].max(b[axis])),
+        ]
     });
     let [mut lower, mut upper] = ends?;
     (lower[face.axis], upper[face.axis]) = (at, at);
     Some(match grid.dims() {
-        2 => Site::Segment { from: [lower[0], lower[1]], to: [upper[0], upper[1]] },
-        _ => Site::Plate(Plate { lower, upper, round: false }),
+        2 => Site::Segment {
+            from: [lower[0], lower[1]],
+            to: [upper[0], upper[1]],
+        },
+        _ => Site::Plate(Plate {
+            lower,
+            upper,
+            round: false,
+        }),
     })
 }
 
 /// Whether water flows, or is kept from flowing, in any material.
 pub(super) fn flows(root: &Record) -> bool {
-    root.named("material").iter().any(|(_, record)| drainage(root, record) != Some(Drainage::Given))
+    root.named("material")
+        .iter()
+        .any(|(_, record)| drainage(root, record) != Some(Drainage::Given))
 }
 
 /// The number of the drain that a history names, in the order of the file, by its name or its face; the outer option is
@@ -472,10 +587,18 @@ pub(super) fn drain_of(record: &Record, root: &Record, report: &mut Report<'_>) 
     let drains = root.records("drain");
     let (key, found) = if record.gives("drain") {
         let name = record.text("drain")?;
-        ("drain", drains.iter().position(|drain| drain.text("name") == Some(name)))
+        (
+            "drain",
+            drains.iter().position(|drain| drain.text("name") == Some(name)),
+        )
     } else if record.gives("face") {
         let side: Side = record.word("face")?;
-        ("face", drains.iter().position(|drain| drain.gives("face") && drain.word("face") == Some(side)))
+        (
+            "face",
+            drains
+                .iter()
+                .position(|drain| drain.gives("face") && drain.word("face") == Some(side)),
+        )
     } else {
         return Some(None);
     };

@@ -9,7 +9,9 @@ use crate::words::{Side, Word};
 
 /// The free field is columns of what lies at them, on the base, which nothing else holds or loads.
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
-    let Some(boundary) = record.record("boundary") else { return };
+    let Some(boundary) = record.record("boundary") else {
+        return;
+    };
     for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
         // An axisymmetric case has none: `axisymmetric.rs` says so.
         if case.boundary[axis][upper] != Support::FreeField || case.geometry == Geometry::Axisymmetric {
@@ -78,12 +80,17 @@ fn comes_between(rigid: &Rigid, (lower, higher): (f64, f64)) -> bool {
         RigidShape::Circle { center, radius } => [center[0] - radius, center[0] + radius],
         RigidShape::Polygon(corners) => {
             let ends = corners.iter().map(|corner| corner[0]);
-            [ends.clone().fold(f64::INFINITY, f64::min), ends.fold(f64::NEG_INFINITY, f64::max)]
+            [
+                ends.clone().fold(f64::INFINITY, f64::min),
+                ends.fold(f64::NEG_INFINITY, f64::max),
+            ]
         }
     };
     let way = || std::iter::once(0.0).chain(rigid.path.rows.iter().map(|(_, moved)| moved[0]));
     let pieces = way().zip(way().skip(1).chain(way().last()));
-    pieces.into_iter().any(|(from, to)| left + from.min(to) < higher && right + from.max(to) > lower)
+    pieces
+        .into_iter()
+        .any(|(from, to)| left + from.min(to) < higher && right + from.max(to) > lower)
 }
 
 /// What holds or loads material between two places along x.
@@ -93,9 +100,9 @@ fn acts_between(case: &Case, (lower, higher): (f64, f64)) -> Option<&'static str
         LoadedLine::Segment { from, to } => within(from[0], to[0]),
         LoadedLine::Circle { center, radius } => within(center[0] - radius, center[0] + radius),
         LoadedLine::Plate(plate) => within(plate.lower[0], plate.upper[0]),
-        LoadedLine::Triangles(all) => {
-            all.iter().any(|[a, b, c]| within(a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0])))
-        }
+        LoadedLine::Triangles(all) => all
+            .iter()
+            .any(|[a, b, c]| within(a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]))),
     };
     let site = |site: &Site| match site {
         Site::Face(face) => face.axis == 1,
@@ -105,12 +112,24 @@ fn acts_between(case: &Case, (lower, higher): (f64, f64)) -> Option<&'static str
     let acting = [
         (
             "the footing",
-            case.footing.iter().filter_map(|footing| footing.site.ends()).any(|[from, to]| within(from[0], to[0])),
+            case.footing
+                .iter()
+                .filter_map(|footing| footing.site.ends())
+                .any(|[from, to]| within(from[0], to[0])),
         ),
-        ("a prescribed motion", case.prescribed.iter().any(|motion| site(&motion.site))),
+        (
+            "a prescribed motion",
+            case.prescribed.iter().any(|motion| site(&motion.site)),
+        ),
         ("a traction", case.tractions.iter().any(|traction| line(&traction.line))),
-        ("a rigid body", case.rigid.iter().any(|rigid| comes_between(rigid, (lower, higher)))),
-        ("a point load", case.point_loads.iter().any(|load| within(load.at[0], load.at[0]))),
+        (
+            "a rigid body",
+            case.rigid.iter().any(|rigid| comes_between(rigid, (lower, higher))),
+        ),
+        (
+            "a point load",
+            case.point_loads.iter().any(|load| within(load.at[0], load.at[0])),
+        ),
     ];
     acting.into_iter().find(|(_, acts)| *acts).map(|(what, _)| what)
 }

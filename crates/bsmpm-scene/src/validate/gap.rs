@@ -38,9 +38,19 @@ pub(super) fn check(case: &Case, report: &mut Report<'_>) {
     }
     let are_separate =
         |gap: &&Gap| piece_of[gap.bodies[0]] != piece_of[gap.bodies[1]] && are_together(case, gap.bodies);
-    let narrow: Vec<&Gap> = apart.iter().filter(|gap| gap.distance < gap.cell).filter(are_separate).collect();
-    let Some(gap) = narrow.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else { return };
-    let more = if narrow.len() > 1 { format!(" (and {} more pairs)", narrow.len() - 1) } else { String::new() };
+    let narrow: Vec<&Gap> = apart
+        .iter()
+        .filter(|gap| gap.distance < gap.cell)
+        .filter(are_separate)
+        .collect();
+    let Some(gap) = narrow.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
+        return;
+    };
+    let more = if narrow.len() > 1 {
+        format!(" (and {} more pairs)", narrow.len() - 1)
+    } else {
+        String::new()
+    };
     let [one, other] = gap.bodies;
     report.warn(format!(
         "W0228: body.{} and body.{}{more} are {} m apart ({:.2} cells), so the bodies push on each other before they \
@@ -82,19 +92,38 @@ fn gap(case: &Case, bodies: [usize; 2], work: &mut usize) -> Option<Gap> {
     }
     let from = |ones: &[Edge], others: &[Edge]| {
         let places = ones.iter().flat_map(places);
-        let nearest =
-            places.map(|at| (others.iter().map(|other| other.distance(at)).fold(f64::INFINITY, f64::min), at));
+        let nearest = places.map(|at| {
+            (
+                others
+                    .iter()
+                    .map(|other| other.distance(at))
+                    .fold(f64::INFINITY, f64::min),
+                at,
+            )
+        });
         nearest.min_by(|a, b| a.0.total_cmp(&b.0))
     };
     let nearest = [from(&a_edges, &b_edges)?, from(&b_edges, &a_edges)?];
-    let (distance, at) = if nearest[0].0 <= nearest[1].0 { nearest[0] } else { nearest[1] };
+    let (distance, at) = if nearest[0].0 <= nearest[1].0 {
+        nearest[0]
+    } else {
+        nearest[1]
+    };
     // A place of one inside of the other: they overlap, of which there is another warning.
     let is_inside = |edges: &[Edge], of: &Body| {
-        edges.iter().any(|edge| of.region.contains([edge.a[0] + lower[0], edge.a[1] + lower[1]]))
+        edges
+            .iter()
+            .any(|edge| of.region.contains([edge.a[0] + lower[0], edge.a[1] + lower[1]]))
     };
     let overlaps = is_inside(&a_edges, b) || is_inside(&b_edges, a);
-    let cell = (0..2).map(|axis| cell_at(&case.grid, axis, at[axis])).fold(f64::INFINITY, f64::min);
-    Some(Gap { bodies, distance: if overlaps { 0.0 } else { distance }, cell })
+    let cell = (0..2)
+        .map(|axis| cell_at(&case.grid, axis, at[axis]))
+        .fold(f64::INFINITY, f64::min);
+    Some(Gap {
+        bodies,
+        distance: if overlaps { 0.0 } else { distance },
+        cell,
+    })
 }
 
 /// Bounds of a body that is a box.
@@ -117,7 +146,11 @@ fn of_boxes(grid: &GridSpec, bodies: [usize; 2], a: &[[f64; 3]; 2], b: &[[f64; 3
     });
     let widest = along.max_by(|one, other| (one.0 / one.1).total_cmp(&(other.0 / other.1)));
     let (distance, cell) = widest.unwrap_or((0.0, 1.0));
-    Gap { bodies, distance: distance.max(0.0), cell }
+    Gap {
+        bodies,
+        distance: distance.max(0.0),
+        cell,
+    }
 }
 
 /// Places along an edge from which the distance to another shape is measured: its ends, of an arc more.
@@ -133,5 +166,9 @@ fn places(edge: &Edge) -> Vec<[f64; 2]> {
 /// Edge, m, of the cell at a place from the grid's lower corner along an axis.
 fn cell_at(grid: &GridSpec, axis: usize, at: f64) -> f64 {
     let along = &grid.axes[axis];
-    along.cell(along.first_cell(|cell| along.breakpoint(cell + 1) > at).min(along.cells() - 1))
+    along.cell(
+        along
+            .first_cell(|cell| along.breakpoint(cell + 1) > at)
+            .min(along.cells() - 1),
+    )
 }

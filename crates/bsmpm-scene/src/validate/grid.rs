@@ -41,8 +41,13 @@ pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 3]>, report: &
 
 /// An error for corners in the wrong order, whatever the cells are.
 fn corners(grid: &Record, dims: usize, report: &mut Report<'_>) -> Option<()> {
-    let (Some(lower), Some(upper)) = (grid.vector("lower"), grid.vector("upper")) else { return Some(()) };
-    let wrong: Vec<&str> = (0..dims).filter(|&axis| upper[axis] <= lower[axis]).map(|axis| NAMES[axis]).collect();
+    let (Some(lower), Some(upper)) = (grid.vector("lower"), grid.vector("upper")) else {
+        return Some(());
+    };
+    let wrong: Vec<&str> = (0..dims)
+        .filter(|&axis| upper[axis] <= lower[axis])
+        .map(|axis| NAMES[axis])
+        .collect();
     if wrong.is_empty() {
         return Some(());
     }
@@ -100,7 +105,9 @@ fn graded(
             knots.error(name, message, report);
             return None;
         }
-        let (last, most) = (copies.len() - 1, |i: usize| if i == 0 || i == copies.len() - 1 { 1 } else { order });
+        let (last, most) = (copies.len() - 1, |i: usize| {
+            if i == 0 || i == copies.len() - 1 { 1 } else { order }
+        });
         if let Some(torn) = (0..=last).find(|&i| copies[i].len() > most(i)) {
             let message = format!(
                 "E0209: the cell end {} is given {} times in [grid.knots], but is allowed at most {} times. Delete \
@@ -113,7 +120,12 @@ fn graded(
             return None;
         }
         let repeated = copies.iter().enumerate().filter(|(_, copies)| copies.len() > 1);
-        let lines = repeated.map(|(breakpoint, copies)| Line { breakpoint, multiplicity: copies.len() }).collect();
+        let lines = repeated
+            .map(|(breakpoint, copies)| Line {
+                breakpoint,
+                multiplicity: copies.len(),
+            })
+            .collect();
         for (key, end) in [("lower", breakpoints[0]), ("upper", breakpoints[breakpoints.len() - 1])] {
             if let Some(corner) = grid.vector(key).filter(|corner| corner[number] != end) {
                 let message = format!(
@@ -150,7 +162,12 @@ fn uniform(grid: &Record, boundary: [[Support; 2]; 3], dims: usize, report: &mut
         _ => return None,
     };
     let mut axis = |number: usize| {
-        Faces { grid, number, supports: boundary[number] }.cells(lower[number], upper[number], cell[number], report)
+        Faces {
+            grid,
+            number,
+            supports: boundary[number],
+        }
+        .cells(lower[number], upper[number], cell[number], report)
     };
     let read: Vec<Option<GridAxis>> = (0..dims).map(&mut axis).collect();
     read.into_iter().collect()
@@ -176,7 +193,11 @@ impl Faces<'_> {
         }
         let rounding = 4.0 * f64::EPSILON * lower.abs().max(upper.abs()) / cell;
         if exact >= 0.5 && (exact - exact.round()).abs() <= (WHOLE + rounding).min(0.01) {
-            return Some(GridAxis::Uniform { lower, cell, cells: exact.round() as usize });
+            return Some(GridAxis::Uniform {
+                lower,
+                cell,
+                cells: exact.round() as usize,
+            });
         }
         let cells = exact.ceil();
         let length = cells * cell;
@@ -189,12 +210,24 @@ impl Faces<'_> {
                     format!("{}", lower + length),
                     reason,
                 );
-                Some(GridAxis::Uniform { lower, cell, cells: cells as usize })
+                Some(GridAxis::Uniform {
+                    lower,
+                    cell,
+                    cells: cells as usize,
+                })
             }
             [Support::Free, _] => {
                 let lower = upper - length;
-                report.note(self.grid.path_of(&format!("lower.{}", self.number)), format!("{lower}"), reason);
-                Some(GridAxis::Uniform { lower, cell, cells: cells as usize })
+                report.note(
+                    self.grid.path_of(&format!("lower.{}", self.number)),
+                    format!("{lower}"),
+                    reason,
+                );
+                Some(GridAxis::Uniform {
+                    lower,
+                    cell,
+                    cells: cells as usize,
+                })
             }
             _ => {
                 let message = format!(

@@ -39,8 +39,14 @@ pub(super) fn read_all(
     let mut taken = HashSet::from(["step".to_owned(), "time".to_owned()]);
     let mut histories = Vec::new();
     for record in records {
-        let Some(history) = read((root, record), (regime, grid, made), report) else { continue };
-        if let Some(column) = history.columns().into_iter().find(|column| !taken.insert(column.name.clone())) {
+        let Some(history) = read((root, record), (regime, grid, made), report) else {
+            continue;
+        };
+        if let Some(column) = history
+            .columns()
+            .into_iter()
+            .find(|column| !taken.insert(column.name.clone()))
+        {
             let message = format!(
                 "E0610: another history already writes the column `{}` of history.csv. Give this history a \
                     different `name`.",
@@ -104,7 +110,9 @@ fn read(
         );
         record.error("face", message, report);
     }
-    if let Some(side) = record.word::<Side>("face").filter(|_| measured == Measurement::Reaction)
+    if let Some(side) = record
+        .word::<Side>("face")
+        .filter(|_| measured == Measurement::Reaction)
         && is_never_held(root, side)
     {
         let message = format!(
@@ -120,21 +128,38 @@ fn read(
         record.error("quantity", message, report);
     }
     let quantity = match of_strip {
-        true => Quantity::Strip { number: strip((root, record), measured, report)?, measured },
+        true => Quantity::Strip {
+            number: strip((root, record), measured, report)?,
+            measured,
+        },
         false => quantity(measured, record, (root, grid, made), report)?,
     };
-    let name = if record.gives("name") { record.text("name")? } else { measured.word() };
+    let name = if record.gives("name") {
+        record.text("name")?
+    } else {
+        measured.word()
+    };
     let (scale, geometry) = (record.number("scale")?, root.word("geometry")?);
-    Some(History { quantity, name: name.to_owned(), scale, geometry, lasts: false })
+    Some(History {
+        quantity,
+        name: name.to_owned(),
+        scale,
+        geometry,
+        lasts: false,
+    })
 }
 
 /// Number of the strip that a history is of, if the history has a meaning for it; `None` after an error.
 fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut Report<'_>) -> Option<usize> {
     let wanted = record.text("of")?;
-    let footing =
-        root.records("footing").iter().map(|strip| (strip, strip.text("name").unwrap_or(NAMELESS), "interface"));
-    let motions =
-        root.records("prescribed").iter().map(|strip| (strip, strip.text("name").unwrap_or(""), "components"));
+    let footing = root
+        .records("footing")
+        .iter()
+        .map(|strip| (strip, strip.text("name").unwrap_or(NAMELESS), "interface"));
+    let motions = root
+        .records("prescribed")
+        .iter()
+        .map(|strip| (strip, strip.text("name").unwrap_or(""), "components"));
     let strips: Vec<_> = footing.chain(motions).collect();
     let Some(number) = strips.iter().position(|(_, name, _)| *name == wanted) else {
         let names = strips.iter().map(|(_, name, _)| *name);
@@ -157,8 +182,15 @@ fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut
 
 /// What a face is at the start, and what stages make of it.
 fn supports(root: &Record, side: Side) -> Vec<Support> {
-    let later = root.records("stage").iter().filter_map(|stage| stage.record("boundary"));
-    root.record("boundary").into_iter().chain(later).filter_map(|boundary| super::support(boundary, side)).collect()
+    let later = root
+        .records("stage")
+        .iter()
+        .filter_map(|stage| stage.record("boundary"));
+    root.record("boundary")
+        .into_iter()
+        .chain(later)
+        .filter_map(|boundary| super::support(boundary, side))
+        .collect()
 }
 
 /// Whether nothing ever holds material at a face.
@@ -198,7 +230,10 @@ pub(super) fn needs_flow(quantity: &str) -> String {
 /// Whether it is nothing where nothing has a velocity.
 fn is_of_motion(measured: Measurement) -> bool {
     use Measurement::*;
-    matches!(measured, Velocity | MeanVelocity | Momentum | AngularMomentum | KineticEnergy | RigidVelocity)
+    matches!(
+        measured,
+        Velocity | MeanVelocity | Momentum | AngularMomentum | KineticEnergy | RigidVelocity
+    )
 }
 
 /// Keys that belong to some quantities.
@@ -248,19 +283,31 @@ fn quantity(
     report: &mut Report<'_>,
 ) -> Option<Quantity> {
     // Once, so that an error in what counts is reported once.
-    let counts = if measured.is_of_part() { counted(record, (grid, made), report)? } else { Counted::default() };
+    let counts = if measured.is_of_part() {
+        counted(record, (grid, made), report)?
+    } else {
+        Counted::default()
+    };
     Some(match measured {
         Measurement::Runout => {
             let given = record.gives("percentile");
-            Quantity::Runout { percentile: if given { record.number("percentile")? } else { 100.0 }, of: counts }
+            Quantity::Runout {
+                percentile: if given { record.number("percentile")? } else { 100.0 },
+                of: counts,
+            }
         }
         Measurement::Front => Quantity::Front,
-        Measurement::Height => Quantity::Height { at_x: at_x(record, grid, report)?, of: counts },
+        Measurement::Height => Quantity::Height {
+            at_x: at_x(record, grid, report)?,
+            of: counts,
+        },
         Measurement::MaxDisplacement => Quantity::MaxDisplacement { of: counts },
         Measurement::Mass => Quantity::Mass { of: counts },
         Measurement::Outflow => Quantity::Outflow,
         Measurement::Momentum => Quantity::Momentum { of: counts },
-        Measurement::CentreOfMass => Quantity::CentreOfMass { of: weighing(counts, record, made, report)? },
+        Measurement::CentreOfMass => Quantity::CentreOfMass {
+            of: weighing(counts, record, made, report)?,
+        },
         Measurement::AngularMomentum => Quantity::AngularMomentum { of: counts },
         Measurement::KineticEnergy => Quantity::KineticEnergy { of: counts },
         Measurement::MeanStress => Quantity::MeanStress { of: counts },
@@ -269,21 +316,40 @@ fn quantity(
         Measurement::PlasticStrain => Quantity::PlasticStrain { of: counts },
         Measurement::SectionForces => {
             let (lines, round) = section((root, record), grid, report)?;
-            Quantity::SectionForces { lines, round, fixed: record.gives("fixed") && record.flag("fixed")? }
+            Quantity::SectionForces {
+                lines,
+                round,
+                fixed: record.gives("fixed") && record.flag("fixed")?,
+            }
         }
         Measurement::Moment | Measurement::Work => return None,
-        Measurement::Reaction => Quantity::Reaction { face: face(record, root, report)? },
-        Measurement::Displacement => Quantity::Displacement { at: at(record, grid, report)? },
-        Measurement::Velocity => Quantity::Velocity { at: at(record, grid, report)?, surface: at_surface(record)? },
-        Measurement::Stress => Quantity::Stress { at: at(record, grid, report)?, surface: at_surface(record)? },
-        Measurement::PorePressure => {
-            Quantity::PorePressure { at: at(record, grid, report)?, surface: at_surface(record)? }
-        }
+        Measurement::Reaction => Quantity::Reaction {
+            face: face(record, root, report)?,
+        },
+        Measurement::Displacement => Quantity::Displacement {
+            at: at(record, grid, report)?,
+        },
+        Measurement::Velocity => Quantity::Velocity {
+            at: at(record, grid, report)?,
+            surface: at_surface(record)?,
+        },
+        Measurement::Stress => Quantity::Stress {
+            at: at(record, grid, report)?,
+            surface: at_surface(record)?,
+        },
+        Measurement::PorePressure => Quantity::PorePressure {
+            at: at(record, grid, report)?,
+            surface: at_surface(record)?,
+        },
         Measurement::PorePressures => Quantity::PorePressures { of: counts },
-        Measurement::ExcessPressure | Measurement::Porosity | Measurement::Flux => {
-            Quantity::Pore { what: measured, at: at(record, grid, report)?, surface: at_surface(record)? }
-        }
-        Measurement::WaterOutflow => Quantity::WaterOutflow { drain: flow::drain_of(record, root, report)? },
+        Measurement::ExcessPressure | Measurement::Porosity | Measurement::Flux => Quantity::Pore {
+            what: measured,
+            at: at(record, grid, report)?,
+            surface: at_surface(record)?,
+        },
+        Measurement::WaterOutflow => Quantity::WaterOutflow {
+            drain: flow::drain_of(record, root, report)?,
+        },
         Measurement::WaterBalance => Quantity::WaterBalance,
         Measurement::StressNoise => Quantity::StressNoise,
         Measurement::PressureNoise => Quantity::PressureNoise { of: counts },
@@ -292,10 +358,18 @@ fn quantity(
         Measurement::FootingForce => Quantity::FootingForce,
         Measurement::Penetration => Quantity::Penetration,
         Measurement::Slip => Quantity::Slip,
-        Measurement::Contact => Quantity::Contact { face: face(record, root, report)? },
-        Measurement::Gap => Quantity::Gap { face: face(record, root, report)? },
-        Measurement::SlipRate => Quantity::SlipRate { face: face(record, root, report)? },
-        Measurement::FrictionPower => Quantity::FrictionPower { face: face(record, root, report)? },
+        Measurement::Contact => Quantity::Contact {
+            face: face(record, root, report)?,
+        },
+        Measurement::Gap => Quantity::Gap {
+            face: face(record, root, report)?,
+        },
+        Measurement::SlipRate => Quantity::SlipRate {
+            face: face(record, root, report)?,
+        },
+        Measurement::FrictionPower => Quantity::FrictionPower {
+            face: face(record, root, report)?,
+        },
         Measurement::Energy => Quantity::Energy,
         Measurement::RigidForce
         | Measurement::RigidMoment
@@ -304,7 +378,10 @@ fn quantity(
         | Measurement::RigidVelocity
         | Measurement::RigidSlip
         | Measurement::RigidGap
-        | Measurement::RigidWork => Quantity::Rigid { what: measured, body: rigid(record, root, report)? },
+        | Measurement::RigidWork => Quantity::Rigid {
+            what: measured,
+            body: rigid(record, root, report)?,
+        },
     })
 }
 
@@ -325,7 +402,11 @@ fn counted(
     (grid, made): (Option<&GridSpec>, CaseBodies<'_>),
     report: &mut Report<'_>,
 ) -> Option<Counted> {
-    let within = if record.gives("box") { Some(within(record.record("box")?, grid, report)?) } else { None };
+    let within = if record.gives("box") {
+        Some(within(record.record("box")?, grid, report)?)
+    } else {
+        None
+    };
     let made = match (record.gives("material"), record.gives("body")) {
         (true, _) => Made::Material(material(record, made, report)?),
         (_, true) => Made::Body(body(record, made?.1, report)?),
@@ -384,13 +465,19 @@ fn weighing(of: Counted, record: &Record, made: CaseBodies<'_>, report: &mut Rep
 
 /// All checks in the order of the file, without those that have an error.
 pub(super) fn checks(root: &Record, histories: &[History], end: Option<f64>, report: &mut Report<'_>) -> Vec<Check> {
-    root.records("check").iter().filter_map(|record| check(record, histories, end, report)).collect()
+    root.records("check")
+        .iter()
+        .filter_map(|record| check(record, histories, end, report))
+        .collect()
 }
 
 fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut Report<'_>) -> Option<Check> {
     let quantity = record.text("quantity")?;
-    let columns =
-        || histories.iter().flat_map(|history| history.columns().into_iter().map(move |column| (history, column)));
+    let columns = || {
+        histories
+            .iter()
+            .flat_map(|history| history.columns().into_iter().map(move |column| (history, column)))
+    };
     let Some((_, column)) = columns().find(|(_, column)| column.name == quantity) else {
         let names: Vec<String> = columns().map(|(_, column)| column.name).collect();
         let known = match nearest(quantity, names.iter().map(String::as_str)) {
@@ -409,7 +496,10 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
     if end.is_some_and(|end| at > end) {
         record.error("at", after_the_end(at), report);
     }
-    let (min, max) = (bound("min", record, &column, report)?, bound("max", record, &column, report)?);
+    let (min, max) = (
+        bound("min", record, &column, report)?,
+        bound("max", record, &column, report)?,
+    );
     match (min, max) {
         (None, None) => {
             let message = "E0661: the check has no limit, so it can never fail. Add `min`, `max` or both.";
@@ -424,7 +514,12 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
         }
         _ => {}
     }
-    Some(Check { quantity: quantity.to_owned(), at, min, max })
+    Some(Check {
+        quantity: quantity.to_owned(),
+        at,
+        min,
+        max,
+    })
 }
 
 /// A bound in the column's unit; the outer option is `None` after an error.
@@ -433,7 +528,9 @@ fn bound(key: &str, record: &Record, column: &Column, report: &mut Report<'_>) -
         return Some(None);
     }
     let (value, dimension) = record.measure(key)?;
-    let Some(dimension) = dimension else { return Some(Some(value)) };
+    let Some(dimension) = dimension else {
+        return Some(Some(value));
+    };
     let expected = Dimension::of_unit(&column.unit);
     if expected == Some(dimension) {
         return Some(Some(value));

@@ -37,7 +37,12 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
 /// Tractions and point loads that last along an axis.
 fn loads(case: &Case, axis: usize) -> impl Iterator<Item = String> {
     let tractions = case.tractions.iter().enumerate().map(move |(k, of)| {
-        (format!("traction.{k}"), of.ramp, &of.amplitude, net(case, of, axis).abs() > ALONG * of.largest())
+        (
+            format!("traction.{k}"),
+            of.ramp,
+            &of.amplitude,
+            net(case, of, axis).abs() > ALONG * of.largest(),
+        )
     });
     let forces = case.point_loads.iter().enumerate();
     let forces = forces.map(move |(k, of)| (format!("point_load.{k}"), of.ramp, &of.amplitude, of.force[axis] != 0.0));
@@ -66,7 +71,9 @@ fn lasts(case: &Case, (ramp, amplitude): (f64, &Shares), axis: usize, acts_at_st
 /// Whether what moves along a path ends elsewhere along an axis.
 fn stays_away(path: &MotionPath, axis: usize) -> bool {
     let largest = path.rows.iter().map(|(_, moved)| moved[axis].abs()).fold(0.0, f64::max);
-    path.rows.last().is_some_and(|(_, moved)| moved[axis].abs() > NOTHING * largest)
+    path.rows
+        .last()
+        .is_some_and(|(_, moved)| moved[axis].abs() > NOTHING * largest)
 }
 
 /// Pa  what a traction pushes with along an axis, in the mean over its places.
@@ -76,7 +83,10 @@ fn net(case: &Case, traction: &Traction, axis: usize) -> f64 {
         LoadedLine::Segment { from, to } => along([from, to]).map(|at| (at, normal(from, to))).collect(),
         LoadedLine::Circle { center, radius } => {
             let inside = |at: &[f64; 2]| (0..2).all(|k| lower[k] <= at[k] && at[k] <= upper[k]);
-            ring(center, radius).filter(inside).map(|at| (at, [0, 1].map(|k| (center[k] - at[k]) / radius))).collect()
+            ring(center, radius)
+                .filter(inside)
+                .map(|at| (at, [0, 1].map(|k| (center[k] - at[k]) / radius)))
+                .collect()
         }
         LoadedLine::Plate(_) | LoadedLine::Triangles(_) => Vec::new(), // of a solid, of which no face absorbs
     };
@@ -97,14 +107,22 @@ fn rigid(case: &Case, root: &Record, axis: usize) -> impl Iterator<Item = String
         pushes && !holds_at_rest(case, axis, Some(acting))
     };
     // With gravity all of them are warned of.
-    let all = case.rigid.iter().enumerate().zip(root.records("rigid")).filter(|_| case.gravity.is_none());
-    all.filter(move |(rigid, _)| pushes(*rigid)).map(|(_, record)| record.path.clone())
+    let all = case
+        .rigid
+        .iter()
+        .enumerate()
+        .zip(root.records("rigid"))
+        .filter(|_| case.gravity.is_none());
+    all.filter(move |(rigid, _)| pushes(*rigid))
+        .map(|(_, record)| record.path.clone())
 }
 
 /// The footing and prescribed motions whose last place along an axis is not the first, and beside which nothing holds.
 fn strips(case: &Case, axis: usize) -> impl Iterator<Item = String> {
     let footing = case.footing.iter().map(|of| (of.site, &of.path));
-    let all = footing.chain(case.prescribed.iter().map(|of| (of.site, &of.path))).enumerate();
+    let all = footing
+        .chain(case.prescribed.iter().map(|of| (of.site, &of.path)))
+        .enumerate();
     let lasting = move |(number, (site, path)): &(usize, (Site, &MotionPath))| {
         // What is stuck to a face goes along with it, and what lies before it is pushed.
         let pushes = !matches!(site, Site::Face(_)) || normal_of(*site)[axis] != 0.0;

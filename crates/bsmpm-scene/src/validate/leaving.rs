@@ -77,7 +77,10 @@ impl<'a> FreeMotion<'a> {
             Region::Solid(_) => bounds.to_vec(),
             region => {
                 let (edges, _) = region.edges(&case.grid);
-                let ends = edges.iter().filter(|edge| edge.shape == 0).flat_map(|edge| [edge.a, edge.b]);
+                let ends = edges
+                    .iter()
+                    .filter(|edge| edge.shape == 0)
+                    .flat_map(|edge| [edge.a, edge.b]);
                 ends.map(|[x, y]| [x + lower[0], y + lower[1], 0.0]).collect()
             }
         };
@@ -88,7 +91,11 @@ impl<'a> FreeMotion<'a> {
                 at[axis] - (at[axis] - middle).clamp(-inset, inset)
             })
         };
-        Self { body, acceleration, points: corners.into_iter().map(inside).collect() }
+        Self {
+            body,
+            acceleration,
+            points: corners.into_iter().map(inside).collect(),
+        }
     }
 
     /// Distance, m, by which the body is beyond a face at the start; negative inside.
@@ -107,11 +114,18 @@ impl<'a> FreeMotion<'a> {
             Some([rate, about]) => {
                 let arm = [at[0] - about[0], at[1] - about[1]];
                 let (sin, cos) = (rate[2] * t).sin_cos();
-                [about[0] + cos * arm[0] - sin * arm[1], about[1] + sin * arm[0] + cos * arm[1], at[2]]
+                [
+                    about[0] + cos * arm[0] - sin * arm[1],
+                    about[1] + sin * arm[0] + cos * arm[1],
+                    at[2],
+                ]
             }
             None => *at,
         };
-        let reach = self.points.iter().map(|at| outward(case, face, turned(at)[axis] + path));
+        let reach = self
+            .points
+            .iter()
+            .map(|at| outward(case, face, turned(at)[axis] + path));
         reach.fold(f64::NEG_INFINITY, f64::max)
     }
 
@@ -120,11 +134,18 @@ impl<'a> FreeMotion<'a> {
         let time = |k: usize| case.analysis.end * k as f64 / SAMPLES as f64;
         let beyond: Vec<f64> = (1..=SAMPLES).map(|k| self.beyond(case, face, time(k))).collect();
         let first = beyond.iter().position(|beyond| *beyond > 0.0)?;
-        Some(Exit { time: time(first + 1), overshoot: beyond.into_iter().fold(0.0, f64::max) })
+        Some(Exit {
+            time: time(first + 1),
+            overshoot: beyond.into_iter().fold(0.0, f64::max),
+        })
     }
 }
 
 /// Distance, m, by which a place along the normal of a face is beyond it.
 fn outward(case: &Case, face: Face, at: f64) -> f64 {
-    if face.upper { at - case.grid.upper()[face.axis] } else { case.grid.lower()[face.axis] - at }
+    if face.upper {
+        at - case.grid.upper()[face.axis]
+    } else {
+        case.grid.lower()[face.axis] - at
+    }
 }

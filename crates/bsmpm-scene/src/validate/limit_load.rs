@@ -44,7 +44,9 @@ impl MovedBodies<'_> {
     fn paths(&mut self) -> impl Iterator<Item = &mut MotionPath> {
         let footing = self.footing.iter_mut().map(|footing| &mut footing.path);
         let prescribed = self.prescribed.iter_mut().map(|prescribed| &mut prescribed.path);
-        footing.chain(prescribed).chain(self.rigid.iter_mut().map(|rigid| &mut rigid.path))
+        footing
+            .chain(prescribed)
+            .chain(self.rigid.iter_mut().map(|rigid| &mut rigid.path))
     }
 }
 
@@ -62,7 +64,9 @@ pub(super) fn shrink(
     report: &mut Report<'_>,
 ) -> f64 {
     // What could not be read does not move.
-    let Some(analysis) = root.record("analysis").filter(|_| is_sought(root) && !report.failed()) else { return 1.0 };
+    let Some(analysis) = root.record("analysis").filter(|_| is_sought(root) && !report.failed()) else {
+        return 1.0;
+    };
     let farthest = moved.paths().map(|path| path.farthest()).fold(0.0, f64::max);
     if farthest == 0.0 {
         let message = "E0442: a limit load needs a prescribed displacement, and the case has none. Give [footing], \
@@ -96,7 +100,9 @@ pub(super) struct Preparation {
 /// what makes it wrong.
 pub(super) fn complete(case: &mut Case, root: &Record, prepared: Preparation, report: &mut Report<'_>) {
     warn_of_averages(case, report);
-    let Some(analysis) = root.record("analysis").filter(|_| is_sought(root)) else { return };
+    let Some(analysis) = root.record("analysis").filter(|_| is_sought(root)) else {
+        return;
+    };
     refuse(case, analysis, report);
     refuse_motions(case, analysis, &prepared.inside_cells, report);
     if case.solver.force_tolerance > FORCE_TOLERANCE {
@@ -104,14 +110,21 @@ pub(super) fn complete(case: &mut Case, root: &Record, prepared: Preparation, re
             "E0451: `force_tolerance` is above {FORCE_TOLERANCE:e}, so limit loads would be several per cent too \
              high. Delete `force_tolerance`."
         );
-        root.record("solver").into_iter().for_each(|solver| solver.error("force_tolerance", &message, report));
+        root.record("solver")
+            .into_iter()
+            .for_each(|solver| solver.error("force_tolerance", &message, report));
     }
     warn_of_settings(case, report);
     let loads = sought(case);
     let small_cohesions = small_cohesions(case, &loads, report);
     let averages = case.stabilisation.averages();
     let stiffness = prepared.stiffness;
-    case.limit_load = Some(LimitLoad { stiffness, loads, small_cohesions, averages });
+    case.limit_load = Some(LimitLoad {
+        stiffness,
+        loads,
+        small_cohesions,
+        averages,
+    });
 }
 
 /// Refuses ground whose load depends on how far it is strained, and motions without a direction.
@@ -148,7 +161,11 @@ fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
 
 /// Refuses motions along which no limit load is found.
 fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], report: &mut Report<'_>) {
-    if let Some(rigid) = case.rigid.iter().find(|rigid| !rigid.rotation.is_empty() || rigid.free.contains(&true)) {
+    if let Some(rigid) = case
+        .rigid
+        .iter()
+        .find(|rigid| !rigid.rotation.is_empty() || rigid.free.contains(&true))
+    {
         let message = format!(
             "E0447: rigid body `{}` rotates or moves freely, but a limit load needs a prescribed translation. Delete \
              `rotation` and `free` of this rigid body.",
@@ -172,7 +189,10 @@ fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], repor
                        one that grows from time 0 to analysis.end. Correct its path.";
         analysis.error(KEY, message, report);
     }
-    if let Some(side) = strips.filter(|(_, path)| path.moves()).find_map(|(site, path)| opposed(case, site, path)) {
+    if let Some(side) = strips
+        .filter(|(_, path)| path.moves())
+        .find_map(|(site, path)| opposed(case, site, path))
+    {
         let message = format!(
             "E0450: boundary `{side}` restrains the soil where a displacement is prescribed. The boundary would carry \
              the whole load, and the recorded load would be zero. Use boundary.{side} = \"free\"."
@@ -209,7 +229,12 @@ fn opposed(case: &Case, site: Site, path: &MotionPath) -> Option<&'static str> {
 /// Warns of points, and of flow rules, with which limit loads were shown to be off.
 fn warn_of_settings(case: &Case, report: &mut Report<'_>) {
     let dilates = case.materials.iter().any(|named| named.material.dilation() > 0.0);
-    let most = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(POINTS);
+    let most = case
+        .bodies
+        .iter()
+        .map(|body| body.points_per_cell)
+        .max()
+        .unwrap_or(POINTS);
     if dilates && most > POINTS {
         report.warn(format!(
             "W0423: body.points_per_cell: with {most} points along each axis of a cell, volumetric locking makes \
@@ -238,7 +263,10 @@ fn warn_of_settings(case: &Case, report: &mut Report<'_>) {
 /// rad  friction angle, if the law has one
 fn friction(material: &Material) -> f64 {
     let names = material.parameter_names().iter().map(|parameter| parameter.name);
-    names.zip(material.parameters()).find(|(name, _)| *name == "friction_angle").map_or(0.0, |(_, angle)| angle)
+    names
+        .zip(material.parameters())
+        .find(|(name, _)| *name == "friction_angle")
+        .map_or(0.0, |(_, angle)| angle)
 }
 
 /// Warns of averaged volumetric strains in soil that dilates and has next to no cohesion under what is moved.
@@ -247,7 +275,10 @@ fn warn_of_averages(case: &Case, report: &mut Report<'_>) {
     if !is_pushed || case.stabilisation != Stabilisation::ConsistentFBar {
         return;
     }
-    let gravity = case.gravity.as_ref().map_or(0.0, |gravity| gravity.acceleration[case.grid.dims() - 1].abs());
+    let gravity = case
+        .gravity
+        .as_ref()
+        .map_or(0.0, |gravity| gravity.acceleration[case.grid.dims() - 1].abs());
     let cell = case.grid.shortest();
     let is_loose = |named: &&NamedMaterial| {
         let weight = named.density.unwrap_or(0.0) * gravity * cell;
@@ -265,14 +296,23 @@ fn warn_of_averages(case: &Case, report: &mut Report<'_>) {
 /// Pa  cohesion, if the law has one
 fn cohesion(material: &Material) -> Option<f64> {
     let names = material.parameter_names().iter().map(|parameter| parameter.name);
-    names.zip(material.parameters()).find(|(name, _)| *name == "cohesion").map(|(_, cohesion)| cohesion)
+    names
+        .zip(material.parameters())
+        .find(|(name, _)| *name == "cohesion")
+        .map(|(_, cohesion)| cohesion)
 }
 
 /// Names the materials whose cohesion is small against the weight of as much soil as the narrowest strip is wide, and
 /// warns of them.
 fn small_cohesions(case: &Case, loads: &[SoughtLoad], report: &mut Report<'_>) -> Vec<String> {
-    let width = loads.iter().filter_map(|load| load.width).map(|width| width.length).reduce(f64::min);
-    let (Some(gravity), Some(width)) = (&case.gravity, width) else { return Vec::new() };
+    let width = loads
+        .iter()
+        .filter_map(|load| load.width)
+        .map(|width| width.length)
+        .reduce(f64::min);
+    let (Some(gravity), Some(width)) = (&case.gravity, width) else {
+        return Vec::new();
+    };
     let g = gravity.acceleration[case.grid.dims() - 1].abs();
     let share = |named: &NamedMaterial| Some(cohesion(&named.material)? / (named.density? * g * width));
     let mut small = Vec::new();
@@ -298,12 +338,19 @@ fn sought(case: &mut Case) -> Vec<SoughtLoad> {
     let mut loads = Vec::new();
     for (number, (site, path)) in strips {
         let name = name_of_strip(case, number);
-        let moved = Moved { name, path, width: width_of_strip(case, site) };
+        let moved = Moved {
+            name,
+            path,
+            width: width_of_strip(case, site),
+        };
         if case.footing.is_some() && number == 0 {
             loads.push(of_footing(case, moved));
             continue;
         }
-        let quantity = Quantity::Strip { number, measured: Measurement::Reaction };
+        let quantity = Quantity::Strip {
+            number,
+            measured: Measurement::Reaction,
+        };
         loads.push(recorded(case, quantity, along(&moved.path, 1.0), moved));
     }
     for body in 0..case.rigid.len() {
@@ -313,9 +360,16 @@ fn sought(case: &mut Case) -> Vec<SoughtLoad> {
         }
         let name = rigid.name.clone();
         let path = rigid.path.clone();
-        let moved = Moved { name, path, width: width_of(case, rigid) };
+        let moved = Moved {
+            name,
+            path,
+            width: width_of(case, rigid),
+        };
         // The soil pushes it against its motion.
-        let quantity = Quantity::Rigid { what: Measurement::RigidForce, body };
+        let quantity = Quantity::Rigid {
+            what: Measurement::RigidForce,
+            body,
+        };
         loads.push(recorded(case, quantity, along(&moved.path, -1.0), moved));
     }
     loads
@@ -331,11 +385,17 @@ struct Moved {
 /// The footing's load: the case's own column of its pressure or force, or one more of the pressure; of a footing that
 /// does not move along its normal the force along its motion.
 fn of_footing(case: &mut Case, moved: Moved) -> SoughtLoad {
-    let normal = case.footing.as_ref().map_or([0.0; 3], |footing| site::normal_of(footing.site));
+    let normal = case
+        .footing
+        .as_ref()
+        .map_or([0.0; 3], |footing| site::normal_of(footing.site));
     let direction = along(&moved.path, 1.0);
     let part: f64 = direction.iter().zip(normal).map(|(along, normal)| along * normal).sum();
     if part.abs() < ALONG_NORMAL {
-        let quantity = Quantity::Strip { number: 0, measured: Measurement::Reaction };
+        let quantity = Quantity::Strip {
+            number: 0,
+            measured: Measurement::Reaction,
+        };
         return recorded(case, quantity, direction, moved);
     }
     let is_own = |history: &&History| matches!(history.quantity, Quantity::FootingPressure | Quantity::FootingForce);
@@ -347,18 +407,30 @@ fn of_footing(case: &mut Case, moved: Moved) -> SoughtLoad {
 
 /// Records a force, one component of it times each of the weights.
 fn recorded(case: &mut Case, quantity: Quantity, weights: Vec<f64>, moved: Moved) -> SoughtLoad {
-    if let Some(own) = case.histories.iter().find(|history| history.quantity == quantity && history.scale == 1.0) {
+    if let Some(own) = case
+        .histories
+        .iter()
+        .find(|history| history.quantity == quantity && history.scale == 1.0)
+    {
         return of_history(&own.clone(), &weights, moved);
     }
     let columns = |name: &str| -> bool {
         let beginning = format!("{name}-");
-        case.histories.iter().any(|history| history.name == *name || history.name.starts_with(&beginning))
+        case.histories
+            .iter()
+            .any(|history| history.name == *name || history.name.starts_with(&beginning))
     };
     let mut name = format!("{}-load", moved.name);
     while columns(&name) {
         name.push_str("-of-all");
     }
-    let history = History { quantity, name, scale: 1.0, geometry: case.geometry, lasts: false };
+    let history = History {
+        quantity,
+        name,
+        scale: 1.0,
+        geometry: case.geometry,
+        lasts: false,
+    };
     let load = of_history(&history, &weights, moved);
     case.histories.push(history);
     load
@@ -367,17 +439,31 @@ fn recorded(case: &mut Case, quantity: Quantity, weights: Vec<f64>, moved: Moved
 fn of_history(history: &History, weights: &[f64], moved: Moved) -> SoughtLoad {
     let columns = history.columns();
     let unit = columns[0].unit.clone();
-    let columns = columns.into_iter().map(|column| column.name).zip(weights.iter().copied());
+    let columns = columns
+        .into_iter()
+        .map(|column| column.name)
+        .zip(weights.iter().copied());
     let columns = columns.filter(|(_, weight)| *weight != 0.0).collect();
-    SoughtLoad { name: moved.name, columns, unit, path: moved.path, width: moved.width }
+    SoughtLoad {
+        name: moved.name,
+        columns,
+        unit,
+        path: moved.path,
+        width: moved.width,
+    }
 }
 
 /// Unit vector from the start to the farthest place of a path, times a sign.
 fn along(path: &MotionPath, sign: f64) -> Vec<f64> {
     let size = |along: &[f64; 3]| along[0].hypot(along[1]).hypot(along[2]);
     let places = path.rows.iter().map(|(_, moved)| *moved);
-    let farthest = places.reduce(|a, b| if size(&b) > size(&a) { b } else { a }).unwrap_or_default();
-    farthest.iter().map(|component| sign * component / size(&farthest)).collect()
+    let farthest = places
+        .reduce(|a, b| if size(&b) > size(&a) { b } else { a })
+        .unwrap_or_default();
+    farthest
+        .iter()
+        .map(|component| sign * component / size(&farthest))
+        .collect()
 }
 
 /// Width of a strip; of a plate that of its shorter side.
@@ -409,7 +495,9 @@ fn narrowest(sides: impl Iterator<Item = LoadWidth>) -> Option<LoadWidth> {
     let sides: Vec<LoadWidth> = sides.collect();
     let modelled = sides.iter().map(|side| side.modelled).product();
     let shortest = sides.into_iter().min_by(|a, b| a.length.total_cmp(&b.length));
-    shortest.filter(|side| side.length.is_finite()).map(|side| LoadWidth { modelled, ..side })
+    shortest
+        .filter(|side| side.length.is_finite())
+        .map(|side| LoadWidth { modelled, ..side })
 }
 
 /// A side along an axis, given by its ends (m). Where one of them lies on a roller or beyond it, that is a plane of
@@ -430,5 +518,9 @@ fn side(case: &Case, axis: usize, lower: f64, upper: f64) -> LoadWidth {
     };
     let count: f64 = (0..cells.cells()).map(inside).sum();
     let whole = if cut[0] != cut[1] { 2.0 } else { 1.0 };
-    LoadWidth { length: whole * (last - first), cells: whole * count, modelled: 1.0 / whole }
+    LoadWidth {
+        length: whole * (last - first),
+        cells: whole * count,
+        modelled: 1.0 / whole,
+    }
 }

@@ -50,7 +50,10 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
         of.into_iter().for_each(|record| record.error(key, &message, report));
     }
     let lines = std::mem::take(&mut found.lines);
-    let chosen = record.record("grid").and_then(|grid| grid.word("c0_lines")).unwrap_or(C0Lines::Automatic);
+    let chosen = record
+        .record("grid")
+        .and_then(|grid| grid.word("c0_lines"))
+        .unwrap_or(C0Lines::Automatic);
     // Where water flows, ground loses volume as it moves through them: they are at the ends of strips only.
     let is_placed = |place: &(usize, usize)| {
         chosen == C0Lines::Automatic && (case.flow.is_none() || found.held.contains_key(place))
@@ -79,7 +82,11 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
         ));
     }
     for ((axis, line), reason) in placed {
-        if found.held.get(&(axis, line)).is_some_and(|far| *far > CROSSED * case.grid.axes[axis].shortest()) {
+        if found
+            .held
+            .get(&(axis, line))
+            .is_some_and(|far| *far > CROSSED * case.grid.axes[axis].shortest())
+        {
             crossed = crossed.or(Some((axis, line)));
         }
         insert(case, axis, line);
@@ -111,7 +118,9 @@ fn undrained_with_friction<'a>(case: &Case, record: &'a Record) -> Option<&'a st
 /// The first line of the grid's own knots across which strains may jump.
 fn own(case: &Case) -> Option<(usize, usize)> {
     let along = |axis: usize| case.grid.lines[axis].iter().map(move |line| (axis, line));
-    let found = (0..case.grid.dims()).flat_map(along).find(|(_, line)| line.multiplicity >= case.grid.order)?;
+    let found = (0..case.grid.dims())
+        .flat_map(along)
+        .find(|(_, line)| line.multiplicity >= case.grid.order)?;
     Some((found.0, found.1.breakpoint))
 }
 
@@ -140,7 +149,10 @@ impl FoundLine {
 /// Whether strains may jump on a grid line on which unlike materials meet: a C0 line, as of linear splines all are.
 pub(super) fn has_interface(case: &Case) -> bool {
     let is_c0 = |axis: usize, line: usize| case.grid.order == 1 || has(case, axis, line);
-    FoundLine::at_interfaces(case).lines.keys().any(|(axis, line)| is_c0(*axis, *line))
+    FoundLine::at_interfaces(case)
+        .lines
+        .keys()
+        .any(|(axis, line)| is_c0(*axis, *line))
 }
 
 /// Where the grid line of an axis with a number is, in words.
@@ -150,14 +162,22 @@ fn place_of(case: &Case, axis: usize, line: usize) -> String {
 }
 
 fn has(case: &Case, axis: usize, line: usize) -> bool {
-    case.grid.lines[axis].iter().any(|own| own.breakpoint == line && own.multiplicity == case.grid.order)
+    case.grid.lines[axis]
+        .iter()
+        .any(|own| own.breakpoint == line && own.multiplicity == case.grid.order)
 }
 
 fn insert(case: &mut Case, axis: usize, breakpoint: usize) {
     let (lines, multiplicity) = (&mut case.grid.lines[axis], case.grid.order);
     match lines.binary_search_by_key(&breakpoint, |line| line.breakpoint) {
         Ok(at) => lines[at].multiplicity = multiplicity,
-        Err(at) => lines.insert(at, Line { breakpoint, multiplicity }),
+        Err(at) => lines.insert(
+            at,
+            Line {
+                breakpoint,
+                multiplicity,
+            },
+        ),
     }
 }
 
@@ -178,7 +198,10 @@ fn grid_line(case: &Case, axis: usize, x: f64) -> Option<usize> {
 /// Where bodies of unlike stiffness or density meet.
 fn interfaces(case: &Case, found: &mut FoundLine) {
     let used: Vec<usize> = case.bodies.iter().map(|body| body.material).collect();
-    if used.iter().all(|material| differ(case, (used[0], *material), None).is_none()) {
+    if used
+        .iter()
+        .all(|material| differ(case, (used[0], *material), None).is_none())
+    {
         return;
     }
     for body in &case.bodies {
@@ -187,7 +210,9 @@ fn interfaces(case: &Case, found: &mut FoundLine) {
             if line.is_some_and(|(axis, line)| line == 0 || line == case.grid.axes[axis].cells()) {
                 continue;
             }
-            let Some((at, pair, ratios)) = unlike(case, &edge) else { continue };
+            let Some((at, pair, ratios)) = unlike(case, &edge) else {
+                continue;
+            };
             let [a, b] = [pair.0, pair.1].map(|material| &case.materials[material]);
             if let Some(line) = line {
                 found.lines.entry(line).or_insert_with(|| interface_of(a, b));
@@ -269,12 +294,19 @@ pub(super) fn beside(case: &Case, edge: &Edge) -> impl Iterator<Item = ([f64; 2]
     (0..SAMPLES).filter_map(move |k| {
         let part = (k as f64 + 0.5) / SAMPLES as f64;
         let x = edge.a[0] + part * (edge.b[0] - edge.a[0]);
-        let y = if normal == 0 { edge.a[1] + part * (edge.b[1] - edge.a[1]) } else { edge.y(x) };
+        let y = if normal == 0 {
+            edge.a[1] + part * (edge.b[1] - edge.a[1])
+        } else {
+            edge.y(x)
+        };
         let at = [lower[0] + x, lower[1] + y];
         let beside = |shift: f64| {
             let mut place = at;
             place[normal] += shift;
-            case.bodies.iter().find(|body| body.region.contains(place)).map(|body| body.material)
+            case.bodies
+                .iter()
+                .find(|body| body.region.contains(place))
+                .map(|body| body.material)
         };
         Some((at, (beside(-aside)?, beside(aside)?)))
     })

@@ -21,7 +21,12 @@ pub(super) fn tractions(root: &Record, around: AroundStrip<'_>, report: &mut Rep
         let line = line(record, around, report);
         let push = push(record, around, report);
         let (line, (push, (ramp, amplitude))) = (line?, push?);
-        let traction = Traction { line, push, ramp, amplitude };
+        let traction = Traction {
+            line,
+            push,
+            ramp,
+            amplitude,
+        };
         let keys = ["pressure", "stress_path", "pressure_path"];
         let key = keys.into_iter().find(|key| record.gives(key)).unwrap_or("stress");
         warn_of_nothing(record, key, [traction.largest(); 3], report);
@@ -80,8 +85,16 @@ fn stresses(record: &Record) -> Option<[Profile; 3]> {
     let Some(table) = record.record("stress") else {
         return record.vector("stress").map(|of| of.map(Profile::constant));
     };
-    let (value, at, growth) = (table.vector("value")?, table.number("at_y")?, table.vector("per_metre")?);
-    Some([0, 1, 2].map(|axis| Profile { value: value[axis], at, per_metre: growth[axis] }))
+    let (value, at, growth) = (
+        table.vector("value")?,
+        table.number("at_y")?,
+        table.vector("per_metre")?,
+    );
+    Some([0, 1, 2].map(|axis| Profile {
+        value: value[axis],
+        at,
+        per_metre: growth[axis],
+    }))
 }
 
 /// What a traction is; on which side of a pressure bodies lie follows from the whole case only ([`super::side`]).
@@ -114,9 +127,18 @@ pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut R
             record.consequence("at", no_body(&at[..grid.dims()]), &["body"], report);
         }
         let (force, (ramp, amplitude)) = force?;
-        let key = if record.gives("force_path") { "force_path" } else { "force" };
+        let key = if record.gives("force_path") {
+            "force_path"
+        } else {
+            "force"
+        };
         warn_of_nothing(record, key, force, report);
-        Some(PointLoad { at, force, ramp, amplitude })
+        Some(PointLoad {
+            at,
+            force,
+            ramp,
+            amplitude,
+        })
     };
     root.records("point_load").iter().filter_map(&mut read).collect()
 }
@@ -132,7 +154,11 @@ pub(super) fn force(
         return Some((largest, (0.0, shares)));
     }
     let course = course(record, around, report);
-    let force = if record.gives("force") { record.vector("force")? } else { [0.0; 3] };
+    let force = if record.gives("force") {
+        record.vector("force")?
+    } else {
+        [0.0; 3]
+    };
     Some((force, course?))
 }
 
@@ -161,7 +187,9 @@ fn acts_on_body(
     around: AroundStrip<'_>,
     report: &mut Report<'_>,
 ) {
-    let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
+    let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else {
+        return;
+    };
     if let Some(at) = places.find(|at| !at_body(bodies, grid, *at)) {
         record.consequence(key, no_body(&at), &["body"], report);
     }
@@ -181,7 +209,12 @@ fn course(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> 
         return Some((ramp, Vec::new()));
     }
     let rows = in_time(record, "amplitude", around, report)?;
-    Some((0.0, rows.into_iter().map(|row| (row[0], Vector::from_element(row[1]))).collect()))
+    Some((
+        0.0,
+        rows.into_iter()
+            .map(|row| (row[0], Vector::from_element(row[1])))
+            .collect(),
+    ))
 }
 
 /// Rows of what acts in time; warned of what of them the steps do not meet.
@@ -206,8 +239,19 @@ fn path(record: &Record, key: &str, around: AroundStrip<'_>, report: &mut Report
     let largest = [0, 1, 2].map(|axis| rows.iter().map(|row| along(row, axis)).fold(0.0, larger));
     let acting = [0, 1, 2].into_iter().find(|axis| largest[*axis] != 0.0).unwrap_or(0);
     let of = [0, 1, 2].map(|axis| if largest[axis] == 0.0 { acting } else { axis });
-    let share = |row: &[f64], axis: usize| if largest[axis] == 0.0 { 0.0 } else { along(row, axis) / largest[axis] };
-    Some((largest, rows.iter().map(|row| (row[0], Vector::from_fn(|axis, _| share(row, of[axis])))).collect()))
+    let share = |row: &[f64], axis: usize| {
+        if largest[axis] == 0.0 {
+            0.0
+        } else {
+            along(row, axis) / largest[axis]
+        }
+    };
+    Some((
+        largest,
+        rows.iter()
+            .map(|row| (row[0], Vector::from_fn(|axis, _| share(row, of[axis]))))
+            .collect(),
+    ))
 }
 
 /// Warns of the first time of rows that is after the end of the analysis.
@@ -264,7 +308,11 @@ pub(super) fn increasing<'a>(
             _ => "t",
         };
         let [value, before] = [late, late - 1].map(|row| rows[row].numbers[0]);
-        report.error(rows[late].origin, &record.path_of(key), not_increasing(name, value, before));
+        report.error(
+            rows[late].origin,
+            &record.path_of(key),
+            not_increasing(name, value, before),
+        );
         return None;
     }
     Some(rows.iter().map(|row| &row.numbers[..]))
@@ -282,7 +330,10 @@ pub(super) fn initial(
     let elastic = record.is_some_and(|record| record.gives("gravity"));
     if record.is_none() || elastic {
         let (what, instead) = match elastic {
-            true => ("initial.gravity = \"elastic\" replaces initial stresses from k0", "delete initial.gravity"),
+            true => (
+                "initial.gravity = \"elastic\" replaces initial stresses from k0",
+                "delete initial.gravity",
+            ),
             false => ("the case has no [initial]", "add a table [initial]"),
         };
         for (_, material) in root.named("material") {
@@ -319,20 +370,32 @@ pub(super) fn shaking(
     report: &mut Report<'_>,
 ) -> Vec<(f64, [f64; 3])> {
     const KEY: &str = "acceleration";
-    let Some(record) = root.record("shaking") else { return Vec::new() };
+    let Some(record) = root.record("shaking") else {
+        return Vec::new();
+    };
     if regime == Some(Regime::QuasiStatic) {
         let message = "E0414: a quasi-static analysis has no inertia, so [shaking] has no effect. Use analysis.type \
                        = \"dynamic\", or give gravity.acceleration a horizontal component (pseudo-static).";
         report.error(record.origin, &record.path, message);
     }
-    let Some(rows) = increasing(record, KEY, report) else { return Vec::new() };
+    let Some(rows) = increasing(record, KEY, report) else {
+        return Vec::new();
+    };
     let along = |row: &[f64], axis: usize| row.get(1 + axis).copied().unwrap_or(0.0);
-    let rows: Vec<(f64, [f64; 3])> = rows.map(|row| (row[0], [0, 1, 2].map(|axis| along(row, axis)))).collect();
+    let rows: Vec<(f64, [f64; 3])> = rows
+        .map(|row| (row[0], [0, 1, 2].map(|axis| along(row, axis))))
+        .collect();
     if rows.iter().all(|(_, ground)| *ground == [0.0; 3]) {
-        record.error(KEY, "E0415: all accelerations are zero, so the ground does not shake. Delete [shaking].", report);
+        record.error(
+            KEY,
+            "E0415: all accelerations are zero, so the ground does not shake. Delete [shaking].",
+            report,
+        );
         return Vec::new();
     }
-    let (Some((end, dt)), path) = (times, record.path_of(KEY)) else { return rows };
+    let (Some((end, dt)), path) = (times, record.path_of(KEY)) else {
+        return rows;
+    };
     warn_of_late(&path, rows.iter().map(|row| row.0), Some(end), report);
     coarse(&path, rows.iter().map(|row| row.0), Some(dt), report);
     rows
@@ -340,7 +403,9 @@ pub(super) fn shaking(
 
 /// Whether the case starts without stress, whatever its [initial] says.
 pub(super) fn is_unloaded(root: &Record) -> bool {
-    root.record("strength_reduction").and_then(|reduction| reduction.flag("unloaded")).unwrap_or(false)
+    root.record("strength_reduction")
+        .and_then(|reduction| reduction.flag("unloaded"))
+        .unwrap_or(false)
 }
 
 /// Lets every load that acts at once grow until `end`.
@@ -351,9 +416,15 @@ pub(super) fn grow(
 ) {
     let gravity = gravity.map(|gravity| ("gravity.ramp".to_owned(), &mut gravity.ramp));
     let named = |name, number| format!("{name}.{number}.ramp");
-    let tractions = tractions.iter_mut().enumerate().filter(|(_, load)| load.amplitude.is_empty());
+    let tractions = tractions
+        .iter_mut()
+        .enumerate()
+        .filter(|(_, load)| load.amplitude.is_empty());
     let tractions = tractions.map(|(k, load)| (named("traction", k), &mut load.ramp));
-    let loads = loads.iter_mut().enumerate().filter(|(_, load)| load.amplitude.is_empty());
+    let loads = loads
+        .iter_mut()
+        .enumerate()
+        .filter(|(_, load)| load.amplitude.is_empty());
     let loads = loads.map(|(k, load)| (named("point_load", k), &mut load.ramp));
     let pushed = |of: &Rigid| of.force != [0.0; 3] && of.amplitude.is_empty();
     let rigid = rigid.iter_mut().enumerate().filter(|(_, of)| pushed(of));
@@ -417,7 +488,9 @@ fn loaded(
 
 /// Whether the stress at the start is led to equilibrium.
 pub(super) fn settles(root: &Record) -> bool {
-    root.record("initial").and_then(|initial| initial.word::<Settled>("equilibrium")) == Some(Settled::Plastic)
+    root.record("initial")
+        .and_then(|initial| initial.word::<Settled>("equilibrium"))
+        == Some(Settled::Plastic)
 }
 
 /// Whether a material's ocr stands for its k0: not that of Cam-clay, which is of its yield surface.

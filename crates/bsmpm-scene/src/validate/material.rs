@@ -49,7 +49,12 @@ impl Reduction {
         let elastic = table.and_then(|table| table.flag("elastic")).unwrap_or(false);
         let factor = number(reduction::at_start(root), "factor");
         let is_for_limit_load = limit_load::is_sought(root);
-        Self { factor, elastic, stiffness: stiffness * number(table, "stiffness"), is_for_limit_load }
+        Self {
+            factor,
+            elastic,
+            stiffness: stiffness * number(table, "stiffness"),
+            is_for_limit_load,
+        }
     }
 }
 
@@ -69,11 +74,17 @@ pub(super) fn read_all(root: &Record, around: CaseFacts<'_>, report: &mut Report
         root.error("material", message, report);
         return None;
     }
-    let read = named.iter().enumerate().map(|(number, named)| read(number, named, around, report));
+    let read = named
+        .iter()
+        .enumerate()
+        .map(|(number, named)| read(number, named, around, report));
     let read: Vec<_> = read.collect();
     let materials = read.into_iter().collect::<Option<Vec<_>>>()?;
     let is_limited = |named: &NamedMaterial| named.material.yields();
-    let is_frictional = |side: &Side| root.record("boundary").is_some_and(|faces| faces.record(side.word()).is_some());
+    let is_frictional = |side: &Side| {
+        root.record("boundary")
+            .is_some_and(|faces| faces.record(side.word()).is_some())
+    };
     let has_friction = Side::ALL.as_flattened().iter().any(is_frictional)
         || root
             .records("rigid")
@@ -93,8 +104,16 @@ pub(super) fn read_all(root: &Record, around: CaseFacts<'_>, report: &mut Report
 
 /// Whether a rigid body or strip has friction, by what is written of it.
 fn is_frictional_record(record: &Record) -> bool {
-    let given = |record: &Record| record.number("friction_coefficient").is_some_and(|friction| friction > 0.0);
-    given(record) || record.record("components").or(record.record("interface")).is_some_and(given)
+    let given = |record: &Record| {
+        record
+            .number("friction_coefficient")
+            .is_some_and(|friction| friction > 0.0)
+    };
+    given(record)
+        || record
+            .record("components")
+            .or(record.record("interface"))
+            .is_some_and(given)
 }
 
 fn read(
@@ -105,7 +124,11 @@ fn read(
 ) -> Option<NamedMaterial> {
     let density = density(record, around.regime, report);
     let saturated = density.and_then(|density| saturated(record, density, report));
-    let ratio = if record.gives("ru") { record.number("ru") } else { Some(0.0) };
+    let ratio = if record.gives("ru") {
+        record.number("ru")
+    } else {
+        Some(0.0)
+    };
     let layer = Layer::of(number, around);
     let law = law(record, (layer.as_ref(), around.grid, around.geometry), report);
     let retardation = retardation(record, around.regime, report);
@@ -114,7 +137,12 @@ fn read(
         layer.check(record, ("young", &Range::POSITIVE), young, report);
     }
     warn_of_stiffness(record, young.map(|young| young.value), poisson, report);
-    let Reduction { factor, elastic, stiffness, is_for_limit_load } = around.reduction;
+    let Reduction {
+        factor,
+        elastic,
+        stiffness,
+        is_for_limit_load,
+    } = around.reduction;
     let of_yield = record.gives("ocr") && record.word("model") == Some(LawName::CamClay);
     if factor != 1.0 && !elastic && of_yield {
         let message = "E0312: `ocr` sets the yield surface relative to the initial stress, so a lower strength \
@@ -123,10 +151,18 @@ fn read(
     }
     let (young, poisson, law) = (young?, poisson?, law?);
     let law = if elastic { Parameters::elastic() } else { law };
-    let young = Profile { value: stiffness * young.value, per_metre: stiffness * young.per_metre, ..young };
+    let young = Profile {
+        value: stiffness * young.value,
+        per_metre: stiffness * young.per_metre,
+        ..young
+    };
     if elastic || stiffness != 1.0 {
         let value = format!("young x {stiffness}{}", if elastic { ", elastic" } else { "" });
-        let reason = if is_for_limit_load { "analysis.purpose" } else { "strength_reduction.elastic and .stiffness" };
+        let reason = if is_for_limit_load {
+            "analysis.purpose"
+        } else {
+            "strength_reduction.elastic and .stiffness"
+        };
         report.note(&record.path, value, reason);
     }
     let material = law.material(record, (young, poisson), (layer.as_ref(), factor))?;
@@ -134,7 +170,14 @@ fn read(
         note_reduction(record, &material, &layer, factor, report);
     }
     let (density, saturated, retardation) = (density?, saturated?, retardation?);
-    Some(NamedMaterial { name: name.clone(), material, density, saturated, ratio: ratio?, retardation })
+    Some(NamedMaterial {
+        name: name.clone(),
+        material,
+        density,
+        saturated,
+        ratio: ratio?,
+        retardation,
+    })
 }
 
 /// Heights (m, in the case's coordinates) between which bodies of a material lie; the grid's if there are none.
@@ -146,14 +189,26 @@ struct Layer {
 impl Layer {
     fn of(number: usize, around: CaseFacts<'_>) -> Option<Self> {
         let (grid, bodies) = (around.grid?, around.bodies?);
-        let exchanges = || around.stages.unwrap_or_default().iter().flat_map(|stage| &stage.materials);
+        let exchanges = || {
+            around
+                .stages
+                .unwrap_or_default()
+                .iter()
+                .flat_map(|stage| &stage.materials)
+        };
         let follows = |own: usize| own == number || exchanges().any(|exchange| *exchange == (own, number));
         let up = grid.dims() - 1;
-        let made = bodies.iter().filter(|body| follows(body.material)).map(|body| body.region.corners());
+        let made = bodies
+            .iter()
+            .filter(|body| follows(body.material))
+            .map(|body| body.region.corners());
         let made = made.map(|corners| corners.map(|corner| corner[up]));
         let found = made.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
         let [lower, upper] = found.unwrap_or([grid.lower(), grid.upper()].map(|corner| corner[up]));
-        Some(Self { heights: lower..upper, base: grid.lower()[up] })
+        Some(Self {
+            heights: lower..upper,
+            base: grid.lower()[up],
+        })
     }
 
     /// Reports a parameter that varies with height and leaves its range; a constant has been compared with it before.
@@ -178,19 +233,32 @@ impl Layer {
 
 /// The parameter in its own unit (degrees for angles) by the height in the case's coordinates.
 pub(super) fn profile(record: &Record, key: &str) -> Option<Profile> {
-    let Some(table) = record.record(key) else { return record.number(key).map(Profile::constant) };
-    Some(Profile { value: table.number("value")?, at: table.number("at_y")?, per_metre: table.number("per_metre")? })
+    let Some(table) = record.record(key) else {
+        return record.number(key).map(Profile::constant);
+    };
+    Some(Profile {
+        value: table.number("value")?,
+        at: table.number("at_y")?,
+        per_metre: table.number("per_metre")?,
+    })
 }
 
 /// Notes the reduced strength, at the lowest and the highest place if it differs there.
 fn note_reduction(record: &Record, material: &Material, layer: &Layer, factor: f64, report: &mut Report<'_>) {
     let at = |y: f64| {
         let law = material.at(y - layer.base);
-        let written = law.parameter_names().iter().zip(law.parameters()).map(|(parameter, value)| {
-            let (value, unit) =
-                if parameter.unit == "rad" { (value.to_degrees(), "deg") } else { (value, parameter.unit) };
-            format!("{} = {value:.6} {unit}", parameter.name)
-        });
+        let written = law
+            .parameter_names()
+            .iter()
+            .zip(law.parameters())
+            .map(|(parameter, value)| {
+                let (value, unit) = if parameter.unit == "rad" {
+                    (value.to_degrees(), "deg")
+                } else {
+                    (value, parameter.unit)
+                };
+                format!("{} = {value:.6} {unit}", parameter.name)
+            });
         written.collect::<Vec<_>>().join(", ")
     };
     let (low, high) = (at(layer.heights.start), at(layer.heights.end));
@@ -200,7 +268,10 @@ fn note_reduction(record: &Record, material: &Material, layer: &Layer, factor: f
     let value = if low == high {
         low
     } else {
-        format!("{low} at y = {}; {high} at y = {}", layer.heights.start, layer.heights.end)
+        format!(
+            "{low} at y = {}; {high} at y = {}",
+            layer.heights.start, layer.heights.end
+        )
     };
     report.note(&record.path, value, format!("strength_reduction.factor = {factor}"));
 }
@@ -210,7 +281,11 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
     let density = match (record.gives("unit_weight"), record.gives("density")) {
         (true, _) => {
             let density = record.number("unit_weight")? / STANDARD_GRAVITY;
-            report.note(record.path_of("density"), format!("{density}"), "unit_weight / 9.81 m/s2");
+            report.note(
+                record.path_of("density"),
+                format!("{density}"),
+                "unit_weight / 9.81 m/s2",
+            );
             density
         }
         (_, true) => record.number("density")?,
@@ -256,13 +331,19 @@ fn saturated(record: &Record, density: Option<f64>, report: &mut Report<'_>) -> 
         }
         Some(_) => {}
     }
-    report.note(record.path_of("saturated density"), format!("{saturated}"), "saturated_unit_weight / 9.81 m/s2");
+    report.note(
+        record.path_of("saturated density"),
+        format!("{saturated}"),
+        "saturated_unit_weight / 9.81 m/s2",
+    );
     Some(Some(saturated))
 }
 
 /// s  of its damping, 0 without; `None` after an error.
 fn retardation(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<f64> {
-    let Some(damping) = record.record("damping") else { return Some(0.0) };
+    let Some(damping) = record.record("damping") else {
+        return Some(0.0);
+    };
     if regime == Some(Regime::QuasiStatic) {
         let message = "E0311: a quasi-static analysis has no velocities, so damping cannot act. Remove `damping`, or \
                        use analysis.type = \"dynamic\".";
@@ -270,7 +351,11 @@ fn retardation(record: &Record, regime: Option<Regime>, report: &mut Report<'_>)
     }
     let (ratio, frequency) = (damping.number("ratio")?, damping.number("frequency")?);
     let time = ratio / (std::f64::consts::PI * frequency);
-    report.note(&damping.path, format!("retardation time {time:.6} s"), "ratio/(pi frequency)");
+    report.note(
+        &damping.path,
+        format!("retardation time {time:.6} s"),
+        "ratio/(pi frequency)",
+    );
     Some(time)
 }
 
@@ -290,9 +375,13 @@ fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, 
             young * 1e-3
         ));
     }
-    let Some(model) = record.word::<LawName>("model") else { return };
+    let Some(model) = record.word::<LawName>("model") else {
+        return;
+    };
     let is_nearly = |poisson: &f64| *poisson > STIFF || model != LawName::Hencky && *poisson >= STIFF_TO_FLOW;
-    let Some(poisson) = poisson.filter(is_nearly) else { return };
+    let Some(poisson) = poisson.filter(is_nearly) else {
+        return;
+    };
     let by_itself =
         [LawName::SensitiveClay, LawName::MuI, LawName::CamClay].contains(&model) || record.gives("drainage");
     let instead = young.filter(|_| !by_itself).map(|young| as_undrained(young, poisson));

@@ -102,7 +102,9 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
             );
             record.error("from", message, report);
         }
-        Other::Strip { act_together: false, .. } => {
+        Other::Strip {
+            act_together: false, ..
+        } => {
             let message = format!(
                 "E0251: `{other}` and `{name}` are adjacent, move differently and begin to act in different stages. \
                  The soil cannot follow both. Apply both in the same stage, or leave a cell between the two."
@@ -143,7 +145,9 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
 
 /// What meets once the stages until the time `t` have begun.
 fn meetings<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Vec<Meeting> {
-    let Ok(grid) = crate::model::grid::<D>(case) else { return Vec::new() };
+    let Ok(grid) = crate::model::grid::<D>(case) else {
+        return Vec::new();
+    };
     let strips = surfaces::strips::<K, D>(case, &grid, (1.0, t));
     let neighbours = surfaces::neighbours::<D>(case, t);
     let bodies = surfaces::rigid::<D>(case, t);
@@ -155,7 +159,10 @@ fn meetings<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Vec<Meetin
         for &number in acting.iter().filter(|&&number| number > strip) {
             let both = [&neighbours[strip], &neighbours[number]];
             if let Some(apart) = apart_at_corner(of, &strips[number], both, &grid) {
-                found.push(Meeting { strip, other: Other::Corner { number, apart } });
+                found.push(Meeting {
+                    strip,
+                    other: Other::Corner { number, apart },
+                });
             }
             if !meet(of, &strips[number], both, &grid) {
                 continue;
@@ -170,14 +177,26 @@ fn meetings<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Vec<Meetin
             };
             let act_together = both[0].since == both[1].since;
             let (along, edge) = (along[0].max(along[1]), edge(&of.points[0].x, &grid));
-            let other = Other::Strip { number, act_together, apart, along, sliding, edge };
+            let other = Other::Strip {
+                number,
+                act_together,
+                apart,
+                along,
+                sliding,
+                edge,
+            };
             found.push(Meeting { strip, other });
         }
         for (number, body) in bodies.iter().enumerate() {
             let acts = case.acts_since(Acting::Rigid(number), t).is_some();
-            let Some(inward) = inward::<D>(case, of, &neighbours[strip].normal, &grid) else { continue };
+            let Some(inward) = inward::<D>(case, of, &neighbours[strip].normal, &grid) else {
+                continue;
+            };
             if acts && !body.is_free() && continues(of, &inward, body, &grid) {
-                found.push(Meeting { strip, other: Other::Rigid(number) });
+                found.push(Meeting {
+                    strip,
+                    other: Other::Rigid(number),
+                });
             }
         }
     }
@@ -207,13 +226,19 @@ fn largest<const D: usize>(strips: &[&Strip<D>], displacement: impl Fn(f64) -> V
 
 /// m  the shortest edge of the cell at a place
 fn edge<const D: usize>(x: &Vector<D>, grid: &Grid<D>) -> f64 {
-    grid.locate(x).map_or(grid.smallest_edge(), |cell| grid.cell_box(&cell).1.min())
+    grid.locate(x)
+        .map_or(grid.smallest_edge(), |cell| grid.cell_box(&cell).1.min())
 }
 
 /// Whether the surface of a rigid body that moves differently along the strip's normal goes on where the strip ends:
 /// beyond an end, the body lies behind the strip's plane and not in front of it, where the soil is.
 fn continues<const D: usize>(strip: &Strip<D>, normal: &Vector<D>, body: &RigidBody<D>, grid: &Grid<D>) -> bool {
-    let times = strip.path.rows.iter().map(|(t, _)| *t).chain(body.path.iter().map(|(t, _)| *t));
+    let times = strip
+        .path
+        .rows
+        .iter()
+        .map(|(t, _)| *t)
+        .chain(body.path.iter().map(|(t, _)| *t));
     let difference = |t: f64| strip.path.at(t) - Vector::from_fn(|axis, _| body.on_path(t)[axis]);
     if times.map(|t| difference(t).dot(normal).abs()).fold(0.0, f64::max) == 0.0 {
         return false;
@@ -221,11 +246,17 @@ fn continues<const D: usize>(strip: &Strip<D>, normal: &Vector<D>, body: &RigidB
     let pose = body.pose(&Vector::zeros());
     let distance = |x: &Vector<D>| body.outline.nearest(&pose.seen(x)).distance;
     let is_beyond = |x: &Vector<D>, edge: f64| {
-        strip.points.iter().flat_map(|point| point.corners).all(|corner| (corner - x).norm() > 0.25 * edge)
+        strip
+            .points
+            .iter()
+            .flat_map(|point| point.corners)
+            .all(|corner| (corner - x).norm() > 0.25 * edge)
     };
     for corner in strip.points.iter().flat_map(|point| point.corners) {
         let (edge, middle) = (edge(&corner, grid), strip.points[strip.points.len() / 2].x);
-        let Some(outward) = (corner - middle).try_normalize(0.0) else { continue };
+        let Some(outward) = (corner - middle).try_normalize(0.0) else {
+            continue;
+        };
         let x = corner + (outward - normal * normal.dot(&outward)) * (0.5 * edge);
         let [behind, ahead] = [-BESIDE, BESIDE].map(|off| distance(&(x + normal * (off * edge))));
         if is_beyond(&x, edge) && behind < 0.0 && ahead > 0.0 && ahead - behind <= 2.2 * BESIDE * edge {

@@ -12,7 +12,11 @@ const WITHIN: f64 = 1e-3;
 /// Finds the opening of the bodies that has the fewest cells across, and warns of every one that has too few.
 pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let corners = [case.grid.lower(), case.grid.upper()];
-    let faces = GridFaces { corners, supports: case.boundary, dims: case.grid.dims() };
+    let faces = GridFaces {
+        corners,
+        supports: case.boundary,
+        dims: case.grid.dims(),
+    };
     let all = match case.geometry {
         Geometry::Solid => openings::in_space(case, root, &faces),
         Geometry::PlaneStrain | Geometry::Axisymmetric => openings::in_plane(root, &faces),
@@ -35,7 +39,10 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
                 found.least
             ));
         }
-        if narrowest.as_ref().is_none_or(|known| found.cells / found.least < known.cells / known.least) {
+        if narrowest
+            .as_ref()
+            .is_none_or(|known| found.cells / found.least < known.cells / known.least)
+        {
             narrowest = Some(found);
         }
     }
@@ -58,7 +65,11 @@ fn cells(case: &Case, faces: &GridFaces, opening: &BodyOpening) -> f64 {
     let across = |wall: &openings::OpeningWall| {
         let at = openings::folded(&planes, (wall.at - wall.normal * within).into());
         let along = |axis: usize| wall.normal[axis] / edge(case, axis, at[axis]);
-        let slope = (0..case.grid.dims()).map(along).map(|part| part * part).sum::<f64>().sqrt();
+        let slope = (0..case.grid.dims())
+            .map(along)
+            .map(|part| part * part)
+            .sum::<f64>()
+            .sqrt();
         wall.width * slope
     };
     opening.opening.walls.iter().map(across).fold(f64::INFINITY, f64::min)

@@ -31,23 +31,38 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
             output.error("every", message, report);
         }
     }
-    let mut times = if output.gives("times") { output.numbers("times")?.to_vec() } else { Vec::new() };
+    let mut times = if output.gives("times") {
+        output.numbers("times")?.to_vec()
+    } else {
+        Vec::new()
+    };
     if let Some(late) = times.iter().find(|time| end.is_some_and(|end| **time > end)) {
         output.error("times", super::history::after_the_end(*late), report);
         return None;
     }
     times.sort_by(f64::total_cmp);
     times.dedup();
-    let checkpoint =
-        if output.gives("checkpoint") { checkpoint(output.record("checkpoint")?)? } else { Checkpoint::default() };
+    let checkpoint = if output.gives("checkpoint") {
+        checkpoint(output.record("checkpoint")?)?
+    } else {
+        Checkpoint::default()
+    };
     Some(Output {
         every,
         times,
         format: output.word("format")?,
         residuals: output.flag("residuals")?,
         projected_pressure: output.flag("projected_pressure")?,
-        fields: if output.gives("fields") { output.choices("fields")? } else { Vec::new() },
-        accept: if output.gives("accept") { output.choices("accept")? } else { Vec::new() },
+        fields: if output.gives("fields") {
+            output.choices("fields")?
+        } else {
+            Vec::new()
+        },
+        accept: if output.gives("accept") {
+            output.choices("accept")?
+        } else {
+            Vec::new()
+        },
         checkpoint,
     })
 }
@@ -66,6 +81,15 @@ fn nothing() -> Output {
 }
 
 fn checkpoint(table: &Record) -> Option<Checkpoint> {
-    let every_steps = if table.gives("every_steps") { Some(table.count("every_steps")?) } else { None };
-    Some(Checkpoint { wall: table.number("wall")?, every_steps, keep: table.count("keep")?, at_end: true })
+    let every_steps = if table.gives("every_steps") {
+        Some(table.count("every_steps")?)
+    } else {
+        None
+    };
+    Some(Checkpoint {
+        wall: table.number("wall")?,
+        every_steps,
+        keep: table.count("keep")?,
+        at_end: true,
+    })
 }

@@ -112,7 +112,10 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
             let key = if is_of_clay { "rate_parameter" } else { "model" };
             written.error(key, message, report);
         }
-        let slowest = written.number("reference_rate").filter(|_| is_of_clay).map(|rate| rate * case.analysis.dt);
+        let slowest = written
+            .number("reference_rate")
+            .filter(|_| is_of_clay)
+            .map(|rate| rate * case.analysis.dt);
         if let Some(strain) = slowest.filter(|strain| *strain < DIGITS) {
             report.warn(format!(
                 "W0312: {}: the strain of one step at this rate is {strain:.1e} (at least {DIGITS:e}), so the \
@@ -125,8 +128,10 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
 
 /// A quasi-static body that nothing holds against a translation has no equilibrium: the stiffness is singular.
 fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
-    let free: Vec<&str> =
-        (0..case.grid.dims()).filter(|&axis| !holds(case, axis)).map(|axis| ["x", "y", "z"][axis]).collect();
+    let free: Vec<&str> = (0..case.grid.dims())
+        .filter(|&axis| !holds(case, axis))
+        .map(|axis| ["x", "y", "z"][axis])
+        .collect();
     if free.is_empty() {
         return;
     }
@@ -137,7 +142,10 @@ fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
         .collect();
     let remedy = match reached.iter().find(|name| *name == "bottom").or(reached.first()) {
         Some(name) => {
-            format!("In [boundary], set {name} = \"fixed\" (the bodies reach: {}).", reached.join(", "))
+            format!(
+                "In [boundary], set {name} = \"fixed\" (the bodies reach: {}).",
+                reached.join(", ")
+            )
         }
         None => "Extend a body to a boundary of the grid, and set that boundary to \"fixed\".".to_owned(),
     };
@@ -150,7 +158,9 @@ fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
 
 /// Faces that absorb hold nothing but what `[initial]` has found there; beside ground that shakes they would hold back.
 fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
-    let Some(boundary) = record.record("boundary") else { return };
+    let Some(boundary) = record.record("boundary") else {
+        return;
+    };
     for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
         if !matches!(case.boundary[axis][upper], Support::Absorbing | Support::FreeField) {
             continue;
@@ -209,7 +219,9 @@ fn thrown_back(case: &Case, report: &mut Report<'_>) {
     let crossing = |body: &Body| {
         let named = &case.materials[body.material];
         let ([lower, upper], dims) = (body.region.corners(), case.grid.dims());
-        let thickness = (0..dims).map(|axis| upper[axis] - lower[axis]).fold(f64::INFINITY, f64::min);
+        let thickness = (0..dims)
+            .map(|axis| upper[axis] - lower[axis])
+            .fold(f64::INFINITY, f64::min);
         let vertical = dims - 1;
         let heights =
             [lower, upper].map(|corner| named.material.young_at(corner[vertical] - case.grid.lower()[vertical]));
@@ -217,7 +229,11 @@ fn thrown_back(case: &Case, report: &mut Report<'_>) {
         let stiffness = heights[0].max(heights[1]) * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
         Some((thickness * (named.density? / stiffness).sqrt(), named.name.clone()))
     };
-    let shortest = case.bodies.iter().filter_map(crossing).min_by(|a, b| a.0.total_cmp(&b.0));
+    let shortest = case
+        .bodies
+        .iter()
+        .filter_map(crossing)
+        .min_by(|a, b| a.0.total_cmp(&b.0));
     let Some((time, name)) = shortest.filter(|(time, _)| meets && dynamic && MOST_CROSSINGS * *time < case.analysis.dt)
     else {
         return;
@@ -245,7 +261,9 @@ fn holds(case: &Case, component: usize) -> bool {
 /// Finds what lies on the ground at the start: the footing, and what material comes off, have no part in an equilibrium
 /// without motion, in which the ground would hang from them. What else is prescribed may be what a body hangs from.
 pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
-    let Some(down) = case.gravity.as_ref().map(|gravity| Vector::from(gravity.acceleration)) else { return };
+    let Some(down) = case.gravity.as_ref().map(|gravity| Vector::from(gravity.acceleration)) else {
+        return;
+    };
     let bodies: Vec<&Body> = case.bodies_at_start().collect();
     let lies = |site: Site| {
         let along = Vector::<3>::from(normal_of(site)).dot(&down) / down.norm();
@@ -266,7 +284,8 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         );
     }
     let since_start = |case: &Case, number: usize| {
-        case.acts_since(Acting::Strip(number + usize::from(case.footing.is_some())), 0.0).is_some()
+        case.acts_since(Acting::Strip(number + usize::from(case.footing.is_some())), 0.0)
+            .is_some()
     };
     for (number, (record, lies)) in root.records("prescribed").iter().zip(prescribed).enumerate() {
         let lifts = case.prescribed[number].contact.is_some_and(|contact| contact.law.lifts);
@@ -314,8 +333,13 @@ fn held_by_strip(case: &Case, component: usize, except: Option<Acting>) -> bool 
             }
     };
     let footing = case.footing.iter().map(|footing| (footing.base, footing.site));
-    let all = footing.chain(case.prescribed.iter().map(|prescribed| (prescribed.base, prescribed.site)));
-    all.enumerate().any(|(number, strip)| Some(Acting::Strip(number)) != except && by_strip(strip))
+    let all = footing.chain(
+        case.prescribed
+            .iter()
+            .map(|prescribed| (prescribed.base, prescribed.site)),
+    );
+    all.enumerate()
+        .any(|(number, strip)| Some(Acting::Strip(number)) != except && by_strip(strip))
 }
 
 /// Chooses the velocities near fixed faces of material that flows, where they are not given, and recommends a measure
@@ -334,7 +358,9 @@ pub(super) fn walls(case: &mut Case, record: &Record, report: &mut Report<'_>) {
                       percentile = 99 is more accurate";
         report.note("history", Measurement::Front.word(), reason);
     }
-    let given = record.record("analysis").is_some_and(|analysis| analysis.gives("wall_velocity"));
+    let given = record
+        .record("analysis")
+        .is_some_and(|analysis| analysis.gives("wall_velocity"));
     if given || case.analysis.mass != MassMatrix::Lumped {
         return;
     }
@@ -347,19 +373,31 @@ pub(super) fn walls(case: &mut Case, record: &Record, report: &mut Report<'_>) {
 pub(super) fn reached(case: &Case, axis: usize, upper: bool) -> bool {
     case.bodies.iter().any(|body| {
         let cells = &body.occupied(&case.grid)[axis];
-        if upper { cells.end == case.grid.axes[axis].cells() } else { cells.start == 0 }
+        if upper {
+            cells.end == case.grid.axes[axis].cells()
+        } else {
+            cells.start == 0
+        }
     })
 }
 
 fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
-    for (_, material) in case.materials.iter().enumerate().filter(|(number, _)| !case.is_followed(*number)) {
+    for (_, material) in case
+        .materials
+        .iter()
+        .enumerate()
+        .filter(|(number, _)| !case.is_followed(*number))
+    {
         report.warn(format!(
             "W0313: material.{}: no body consists of this material. Assign the material to a body, or remove the \
              material.",
             material.name
         ));
     }
-    let weighs = case.bodies.iter().any(|body| case.materials[body.material].density.is_some());
+    let weighs = case
+        .bodies
+        .iter()
+        .any(|body| case.materials[body.material].density.is_some());
     if case.gravity.is_some() && !weighs && case.rigid.iter().all(|rigid| rigid.mass == [0.0; 2]) {
         report.warn(
             "W0314: gravity: no body has mass, so gravity has no effect. Add `unit_weight` to the materials, or \
@@ -386,12 +424,18 @@ fn loaded(case: &Case) -> bool {
     let presses = |drain: &Drain| !matches!(drain.given, Given::StillWater | Given::Seepage);
     case.gravity.is_some()
         || !case.shaking.is_empty()
-        || case.rigid.iter().any(|rigid| !rigid.path.rows.is_empty() || rigid.free.contains(&true))
+        || case
+            .rigid
+            .iter()
+            .any(|rigid| !rigid.path.rows.is_empty() || rigid.free.contains(&true))
         || case.footing.iter().any(|footing| moves(&footing.path))
         || case.prescribed.iter().any(|prescribed| moves(&prescribed.path))
         || case.tractions.iter().any(|traction| traction.largest() > 0.0)
         || case.point_loads.iter().any(|load| pulls(load.force))
-        || case.flow.iter().any(|flow| !flow.inflows.is_empty() || flow.drains.iter().any(presses))
+        || case
+            .flow
+            .iter()
+            .any(|flow| !flow.inflows.is_empty() || flow.drains.iter().any(presses))
 }
 
 fn warn_of_locking(case: &Case, report: &mut Report<'_>) {

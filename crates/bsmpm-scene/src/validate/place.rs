@@ -30,9 +30,17 @@ pub(super) struct Outside {
 
 impl fmt::Display for Outside {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { axis, at, bound, is_past } = self;
+        let Self {
+            axis,
+            at,
+            bound,
+            is_past,
+        } = self;
         let verb = if *is_past { "ends" } else { "starts" };
-        write!(f, "{axis} = {at} m is outside the grid, which {verb} at {axis} = {bound} m")
+        write!(
+            f,
+            "{axis} = {at} m is outside the grid, which {verb} at {axis} = {bound} m"
+        )
     }
 }
 
@@ -50,14 +58,23 @@ pub(super) fn beyond<const D: usize>(grid: &GridSpec, at: [f64; D]) -> Option<Ou
         let slack = ROUNDING * grid.axes[axis].shortest() + 4.0 * spacing;
         let is_past = at[axis] > upper[axis] + slack;
         let bound = if is_past { upper[axis] } else { lower[axis] };
-        let outside = Outside { axis: ["x", "y", "z"][axis], at: at[axis], bound, is_past };
+        let outside = Outside {
+            axis: ["x", "y", "z"][axis],
+            at: at[axis],
+            bound,
+            is_past,
+        };
         (is_past || at[axis] < lower[axis] - slack).then_some(outside)
     })
 }
 
 /// As [`beyond`], of a place that in a plane has nothing along its normal.
 pub(super) fn is_beyond(grid: &GridSpec, at: [f64; 3]) -> Option<Outside> {
-    if grid.dims() == 2 { beyond(grid, [at[0], at[1]]) } else { beyond(grid, at) }
+    if grid.dims() == 2 {
+        beyond(grid, [at[0], at[1]])
+    } else {
+        beyond(grid, at)
+    }
 }
 
 /// Places in the middles of equal pieces of a line.
@@ -88,7 +105,9 @@ pub(super) fn at_body(bodies: &[Body], grid: &GridSpec, at: [f64; 2]) -> bool {
         };
         let [lower, upper] = body.bounds();
         let near = (0..2).all(|axis| at[axis] >= lower[axis] - half && at[axis] <= upper[axis] + half);
-        near && DISTANCES.iter().any(|part| (0..DIRECTIONS).any(|k| body.region.contains(around(k, *part))))
+        near && DISTANCES
+            .iter()
+            .any(|part| (0..DIRECTIONS).any(|k| body.region.contains(around(k, *part))))
     })
 }
 
@@ -115,7 +134,9 @@ pub(super) fn at_volume(bodies: &[Body], grid: &GridSpec, at: [f64; 3]) -> bool 
         };
         let [lower, upper] = body.region.corners();
         let near = (0..3).all(|axis| at[axis] >= lower[axis] - half && at[axis] <= upper[axis] + half);
-        near && DISTANCES.iter().any(|part| (0..27).any(|n| body.region.contains_in_space(place(*part, n))))
+        near && DISTANCES
+            .iter()
+            .any(|part| (0..27).any(|n| body.region.contains_in_space(place(*part, n))))
     })
 }
 
@@ -139,18 +160,33 @@ pub(super) fn side_of_bodies(grid: &GridSpec, count: impl Fn(f64) -> usize) -> O
 
 /// Whether some body is within half the spacing of its points of a place.
 pub(super) fn is_at(bodies: &[Body], grid: &GridSpec, at: [f64; 3]) -> bool {
-    if grid.dims() == 2 { at_body(bodies, grid, [at[0], at[1]]) } else { at_volume(bodies, grid, at) }
+    if grid.dims() == 2 {
+        at_body(bodies, grid, [at[0], at[1]])
+    } else {
+        at_volume(bodies, grid, at)
+    }
 }
 
 /// Whether a body is at a place.
 pub(super) fn is_in(body: &Body, grid: &GridSpec, at: [f64; 3]) -> bool {
-    if grid.dims() == 2 { body.region.contains([at[0], at[1]]) } else { body.region.contains_in_space(at) }
+    if grid.dims() == 2 {
+        body.region.contains([at[0], at[1]])
+    } else {
+        body.region.contains_in_space(at)
+    }
 }
 
 /// The face of the grid that a record names.
 pub(super) fn face(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -> Option<Face> {
     let side: Side = record.word("face")?;
-    let face = Face::of(side, if grid.dims() == 3 { Geometry::Solid } else { Geometry::PlaneStrain });
+    let face = Face::of(
+        side,
+        if grid.dims() == 3 {
+            Geometry::Solid
+        } else {
+            Geometry::PlaneStrain
+        },
+    );
     if face.is_none() {
         let message =
             format!("E0207: a 2-D grid has no face \"{side}\". Use left, right, bottom or top, or geometry = \"3d\".");

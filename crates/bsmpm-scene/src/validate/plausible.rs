@@ -41,16 +41,31 @@ impl Scale {
         let lowest = corners().map(|[lower, _]| lower[up]).fold(f64::INFINITY, f64::min);
         let highest = corners().map(|[_, upper]| upper[up]).fold(f64::NEG_INFINITY, f64::max);
         let height = highest - lowest;
-        let size = case.gravity.as_ref().map_or(0.0, |gravity| length(gravity.acceleration));
-        let density = case.bodies.iter().filter_map(|body| case.materials[body.material].density).fold(0.0, f64::max);
-        let load = case.tractions.iter().map(|traction| traction.largest()).fold(0.0, f64::max);
+        let size = case
+            .gravity
+            .as_ref()
+            .map_or(0.0, |gravity| length(gravity.acceleration));
+        let density = case
+            .bodies
+            .iter()
+            .filter_map(|body| case.materials[body.material].density)
+            .fold(0.0, f64::max);
+        let load = case
+            .tractions
+            .iter()
+            .map(|traction| traction.largest())
+            .fold(0.0, f64::max);
         let stress = (density * size * height).max(load);
-        Self { height, stress: (stress > 0.0).then_some(stress) }
+        Self {
+            height,
+            stress: (stress > 0.0).then_some(stress),
+        }
     }
 
     /// The stress in words, if it is known.
     fn shown(&self) -> String {
-        self.stress.map_or(String::new(), |stress| format!(" ({} kPa)", brief(1e-3 * stress)))
+        self.stress
+            .map_or(String::new(), |stress| format!(" ({} kPa)", brief(1e-3 * stress)))
     }
 }
 

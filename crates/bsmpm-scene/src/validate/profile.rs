@@ -24,9 +24,14 @@ pub(super) fn read_all(
     }
     let mut profiles: Vec<Profile> = Vec::new();
     for record in records {
-        let Some(profile) = read((root, record), (regime, grid, end), report) else { continue };
+        let Some(profile) = read((root, record), (regime, grid, end), report) else {
+            continue;
+        };
         // Some file systems do not distinguish upper and lower case.
-        if profiles.iter().any(|other| other.name.eq_ignore_ascii_case(&profile.name)) {
+        if profiles
+            .iter()
+            .any(|other| other.name.eq_ignore_ascii_case(&profile.name))
+        {
             let message = format!(
                 "E0610: another profile has the name `{}` (upper and lower case count as equal). Rename one of the \
                  two profiles.",
@@ -47,7 +52,11 @@ fn read(
     let ends = history::ends(record, grid, report);
     let quantities: Vec<ProfileQuantity> = record.choices("quantities")?;
     if quantities.is_empty() {
-        record.error("quantities", "E0652: the list is empty, so the profile has no values. Name a quantity.", report);
+        record.error(
+            "quantities",
+            "E0652: the list is empty, so the profile has no values. Name a quantity.",
+            report,
+        );
     }
     if regime == Some(Regime::QuasiStatic) && quantities.contains(&ProfileQuantity::Velocity) {
         record.error("quantities", history::needs_dynamics("velocity"), report);
@@ -55,7 +64,11 @@ fn read(
     if quantities.contains(&ProfileQuantity::ExcessPressure) && !super::flow::flows(root) {
         record.error("quantities", history::needs_flow("excess-pressure"), report);
     }
-    let mut times = if record.gives("times") { record.numbers("times")?.to_vec() } else { Vec::new() };
+    let mut times = if record.gives("times") {
+        record.numbers("times")?.to_vec()
+    } else {
+        Vec::new()
+    };
     if record.gives("times") && times.is_empty() {
         let message = "E0652: the list is empty, so the profile is never written. Give a time, or remove `times` to \
                        write the profile with every frame.";

@@ -11,7 +11,12 @@ const KEY: &str = "ru";
 pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     let wet = |number: usize| case.materials[number].ratio > 0.0;
     let bodies = || case.bodies.iter().map(|body| body.material);
-    let Some((_, material)) = root.named("material").iter().enumerate().find(|(number, _)| wet(*number)) else {
+    let Some((_, material)) = root
+        .named("material")
+        .iter()
+        .enumerate()
+        .find(|(number, _)| wet(*number))
+    else {
         return;
     };
     let material = &material.1;
@@ -61,7 +66,11 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
                        pressure. Remove `ru` or [shaking].";
         material.error(KEY, message, report);
     }
-    for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
+    for (side, support) in Side::of(case.geometry)
+        .iter()
+        .flatten()
+        .zip(case.boundary.into_iter().flatten())
+    {
         if matches!(support, Support::Absorbing | Support::FreeField) {
             let side = side.word();
             let message = format!(
@@ -72,7 +81,11 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         }
     }
     if bodies().any(|number| !wet(number)) {
-        report.note(material.path_of(KEY), "this material only", "the other materials have no pore pressure");
+        report.note(
+            material.path_of(KEY),
+            "this material only",
+            "the other materials have no pore pressure",
+        );
     }
     warn_of_thin_bodies(case, report);
     warn_of_cubic_splines(case, report);

@@ -20,7 +20,11 @@ pub(super) fn at_start(root: &Record) -> Option<&Record> {
 
 /// What is there at one of the `times` has strength that can be divided under the stress that it has.
 pub(super) fn divisible(case: &Case, times: &[f64], record: &Record, report: &mut Report<'_>) {
-    let key = if record.gives("strength_reduction") { "strength_reduction" } else { "stage" };
+    let key = if record.gives("strength_reduction") {
+        "strength_reduction"
+    } else {
+        "stage"
+    };
     let followed = || times.iter().flat_map(|t| case.followed_at(*t));
     if let Some(named) = followed().find(|named| !named.material.is_linear()) {
         let message = format!(
@@ -45,7 +49,9 @@ pub(super) fn without_strength(path: &str) -> String {
 
 /// Ends the case with the reduction at the end of the stage that `[strength_reduction]` names, if it does.
 pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) {
-    let Some(table) = root.record("strength_reduction") else { return };
+    let Some(table) = root.record("strength_reduction") else {
+        return;
+    };
     if !table.gives("stage") {
         let of_stage = ["steps", "drainage"].into_iter().filter(|key| table.gives(key));
         let message = "E0631: this key applies to a strength reduction at the end of a stage, but `stage` is not \
@@ -53,8 +59,12 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
         of_stage.for_each(|key| table.error(key, message, report));
         return;
     }
-    let (Some(name), Some(factor)) = (table.text("stage"), table.number("factor")) else { return };
-    let (Some(steps), Some(unloaded)) = (table.count("steps"), table.flag("unloaded")) else { return };
+    let (Some(name), Some(factor)) = (table.text("stage"), table.number("factor")) else {
+        return;
+    };
+    let (Some(steps), Some(unloaded)) = (table.count("steps"), table.flag("unloaded")) else {
+        return;
+    };
     if case.analysis.regime == Regime::Dynamic {
         let message = "E0632: [strength_reduction] with `stage` needs a quasi-static analysis, but this analysis is \
                        dynamic. Set `strength_reduction` in a [[stage]] instead.";
@@ -79,7 +89,11 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
     divisible(case, &[case.just_before(until)], table, report);
     rest(case, (table, unloaded), report);
     if !case.checks.is_empty() {
-        report.note("check", "none", "strength_reduction.stage: checks apply to the unreduced strength");
+        report.note(
+            "check",
+            "none",
+            "strength_reduction.stage: checks apply to the unreduced strength",
+        );
         case.checks.clear();
     }
     if unloaded {
@@ -103,7 +117,9 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
 
 /// What water that flows until then does; and what only ground in which none flows can have.
 fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report<'_>) {
-    let made: Vec<bool> = (0..case.materials.len()).map(|number| case.is_followed(number)).collect();
+    let made: Vec<bool> = (0..case.materials.len())
+        .map(|number| case.is_followed(number))
+        .collect();
     let Some(flow) = &mut case.flow else {
         if table.word("drainage") == Some(Failure::Undrained) {
             let message = "E0637: drainage = \"undrained\" acts on pore water during failure, but no material has \
@@ -113,14 +129,23 @@ fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report
         }
         return;
     };
-    let mut soils = flow.soils.iter().zip(made).filter(|(_, made)| *made).filter_map(|(soil, _)| soil.as_ref());
+    let mut soils = flow
+        .soils
+        .iter()
+        .zip(made)
+        .filter(|(_, made)| *made)
+        .filter_map(|(soil, _)| soil.as_ref());
     let stays = soils.all(|soil| soil.permeability.is_none());
-    let failure = table.word("drainage").unwrap_or(if stays { Failure::Undrained } else { Failure::Drained });
+    let failure = table
+        .word("drainage")
+        .unwrap_or(if stays { Failure::Undrained } else { Failure::Drained });
     if failure == Failure::Undrained {
         flow.at_rest = Motion::Undrained;
     }
-    let changed =
-        [("elastic", table.flag("elastic") == Some(true)), ("stiffness", table.number("stiffness") != Some(1.0))];
+    let changed = [
+        ("elastic", table.flag("elastic") == Some(true)),
+        ("stiffness", table.number("stiffness") != Some(1.0)),
+    ];
     for (key, _) in changed.into_iter().filter(|(_, changed)| *changed && !unloaded) {
         let message = "E0638: this key changes the stiffness in all steps, also in the consolidation before the \
              strength reduction, which would be wrong. Remove it, or set unloaded = true (start without stress).";
@@ -131,7 +156,11 @@ fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report
 /// Goes on from `until` with one step more of whole strength, and then with so many of less and less.
 fn reduce(case: &mut Case, (until, steps): (f64, u64), factor: f64) {
     let dt = case.analysis.dt;
-    let ahead = case.stages.iter().position(|stage| stage.at > until - APART * dt).unwrap_or(case.stages.len());
+    let ahead = case
+        .stages
+        .iter()
+        .position(|stage| stage.at > until - APART * dt)
+        .unwrap_or(case.stages.len());
     // What they would place and apply stays away.
     let mut never = case.stages.split_off(ahead);
     never.iter_mut().for_each(|stage| stage.at = f64::INFINITY);
@@ -154,7 +183,10 @@ fn reduce(case: &mut Case, (until, steps): (f64, u64), factor: f64) {
         case.rigid.iter_mut().for_each(|rigid| rigid.stay(until));
     }
     if case.flow.is_some() && steps > 0 {
-        case.stages.push(Stage { rests: true, ..nothing.clone() });
+        case.stages.push(Stage {
+            rests: true,
+            ..nothing.clone()
+        });
     }
     case.stages.extend((1..=steps).map(|step| Stage {
         at: until + step as f64 * dt,
@@ -163,7 +195,11 @@ fn reduce(case: &mut Case, (until, steps): (f64, u64), factor: f64) {
         ..nothing.clone()
     }));
     case.stages.append(&mut never);
-    case.analysis.end = if steps == 0 { until } else { until + (steps + 1) as f64 * dt };
+    case.analysis.end = if steps == 0 {
+        until
+    } else {
+        until + (steps + 1) as f64 * dt
+    };
 }
 
 /// What is there and acts at the time `until`, there from the start on, with its loads growing over the run.
@@ -192,12 +228,15 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     // The ground is as it is drawn, and so are they.
     case.rigid.iter_mut().for_each(|rigid| rigid.stay(0.0));
     case.footing.iter_mut().for_each(|footing| footing.path.stay(0.0));
-    case.prescribed.iter_mut().for_each(|prescribed| prescribed.path.stay(0.0));
+    case.prescribed
+        .iter_mut()
+        .for_each(|prescribed| prescribed.path.stay(0.0));
     retain(&mut case.bodies, &bodies);
     case.stages.clear();
     case.flow.iter_mut().for_each(|flow| flow.motion = Motion::Held);
     // Others may be of what is not there.
-    case.histories.retain(|history| history.quantity == Quantity::MaxDisplacement { of: Counted::default() });
+    case.histories
+        .retain(|history| history.quantity == Quantity::MaxDisplacement { of: Counted::default() });
     case.analysis.end = end;
     let ramps = (case.gravity.iter_mut().map(|Gravity { ramp, .. }| ramp))
         .chain(case.tractions.iter_mut().map(|Traction { ramp, .. }| ramp))
@@ -209,7 +248,9 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
 /// Lets the water's level stay where it is at the time `until`.
 fn stay(case: &mut Case, until: f64) {
     for rows in case.water.iter_mut().flat_map(|water| water.table.levels_mut()) {
-        let Some(level) = between(rows, rows[0].1, until).or(rows.last().map(|row| row.1)) else { continue };
+        let Some(level) = between(rows, rows[0].1, until).or(rows.last().map(|row| row.1)) else {
+            continue;
+        };
         rows.retain(|row| row.0 < until);
         rows.push((until, level));
     }
@@ -224,10 +265,14 @@ fn settle(case: &mut Case, until: f64, end: f64) {
     }
     let loads = (0..case.tractions.len() + case.point_loads.len()).map(Acting::Load);
     let loads = loads.chain((0..case.rigid.len()).map(Acting::Rigid));
-    let ages: Vec<f64> = loads.map(|load| until - case.acts_since(load, until).unwrap_or(until)).collect();
+    let ages: Vec<f64> = loads
+        .map(|load| until - case.acts_since(load, until).unwrap_or(until))
+        .collect();
     let tractions = case.tractions.iter_mut().map(|load| &mut load.amplitude);
     let points = case.point_loads.iter_mut().map(|load| &mut load.amplitude);
-    let amplitudes = tractions.chain(points).chain(case.rigid.iter_mut().map(|rigid| &mut rigid.amplitude));
+    let amplitudes = tractions
+        .chain(points)
+        .chain(case.rigid.iter_mut().map(|rigid| &mut rigid.amplitude));
     for (rows, age) in amplitudes.zip(ages).filter(|(rows, _)| !rows.is_empty()) {
         let share = between(rows, Vector::zeros(), age).or(rows.last().map(|row| row.1));
         *rows = vec![(end, share.unwrap_or(Vector::from_element(1.0)))];
@@ -312,13 +357,24 @@ mod tests {
     #[test]
     fn the_case_ends_with_the_reduction_and_what_comes_later_stays_away() {
         let case = case(&[]);
-        assert_eq!(case.analysis.end, 3.5, "the stage ends at 2, then a step of the whole strength and two of less");
+        assert_eq!(
+            case.analysis.end, 3.5,
+            "the stage ends at 2, then a step of the whole strength and two of less"
+        );
         let cohesion = |t: f64| case.materials_at(t)[0].material.parameters()[2];
-        assert_eq!([0.0, 2.0, 2.5, 3.0, 3.5].map(cohesion), [5e3, 5e3, 5e3 / 1.25, 5e3 / 1.5, 5e3 / 1.5]);
+        assert_eq!(
+            [0.0, 2.0, 2.5, 3.0, 3.5].map(cohesion),
+            [5e3, 5e3, 5e3 / 1.25, 5e3 / 1.5, 5e3 / 1.5]
+        );
         assert_eq!(there(&case, 0.0), [true, false, false]);
         assert_eq!(there(&case, 3.5), [true, true, false]);
         assert_eq!(case.acts_since(Acting::Load(0), 3.5), None);
-        let resets: Vec<f64> = case.stages.iter().filter(|stage| stage.resets_displacements).map(|it| it.at).collect();
+        let resets: Vec<f64> = case
+            .stages
+            .iter()
+            .filter(|stage| stage.resets_displacements)
+            .map(|it| it.at)
+            .collect();
         assert_eq!(resets, [2.5]);
     }
 
@@ -326,15 +382,32 @@ mod tests {
     fn without_steps_it_ends_with_the_stage_and_unloaded_it_is_what_is_there_then() {
         assert_eq!(case(&["strength_reduction.steps=0"]).analysis.end, 2.0);
         let first = case(&["strength_reduction.unloaded=true"]);
-        assert_eq!((first.bodies.len(), first.stages.len(), first.point_loads.len()), (2, 0, 0));
+        assert_eq!(
+            (first.bodies.len(), first.stages.len(), first.point_loads.len()),
+            (2, 0, 0)
+        );
         assert_eq!(first.gravity.map(|gravity| gravity.ramp), Some(first.analysis.end));
         let last = case(&["strength_reduction.unloaded=true", "strength_reduction.stage=end"]);
         assert_eq!((last.bodies.len(), last.point_loads.len()), (3, 1));
         // What follows time has the value of the end.
-        let timed = ["point_load.0.amplitude=[[4.0, 0.8]]", "water={ level_path = [[0.0, 1.0], [4.0, 2.0]] }"];
-        let timed = case(&[&["strength_reduction.unloaded=true", "strength_reduction.stage=end"][..], &timed].concat());
-        let [(time, share)] = timed.point_loads[0].amplitude[..] else { panic!("{:?}", timed.point_loads) };
-        assert!(time == timed.analysis.end && (share[0] - 0.2).abs() < 1e-6, "it acts for one second: {share}");
+        let timed = [
+            "point_load.0.amplitude=[[4.0, 0.8]]",
+            "water={ level_path = [[0.0, 1.0], [4.0, 2.0]] }",
+        ];
+        let timed = case(
+            &[
+                &["strength_reduction.unloaded=true", "strength_reduction.stage=end"][..],
+                &timed,
+            ]
+            .concat(),
+        );
+        let [(time, share)] = timed.point_loads[0].amplitude[..] else {
+            panic!("{:?}", timed.point_loads)
+        };
+        assert!(
+            time == timed.analysis.end && (share[0] - 0.2).abs() < 1e-6,
+            "it acts for one second: {share}"
+        );
         let level = timed.water.unwrap().table.table(0.0, 0.1).unwrap().0;
         assert!((level - 1.75).abs() < 1e-6, "{level}");
         // A prescribed motion stays where it is then; next to ground as it is drawn, at its first place.
@@ -342,12 +415,22 @@ mod tests {
                    rotation = [[4.0, 8.0]] }]";
         let wall = |set: &[&str]| case(&[&[way][..], set].concat()).rigid[0].clone();
         let held = wall(&[]);
-        assert_eq!(held.path.rows.last().map(|row| (row.0, (row.1[0] * 1e9).round())), Some((2.0, 0.3e9)));
+        assert_eq!(
+            held.path.rows.last().map(|row| (row.0, (row.1[0] * 1e9).round())),
+            Some((2.0, 0.3e9))
+        );
         assert!(matches!(held.rotation[..], [(t, angle)] if t == 2.0 && (angle - 4_f64.to_radians()).abs() < 1e-12));
         assert!(!wall(&["strength_reduction.unloaded=true"]).is_moved());
-        let rises = ["strength_reduction.stage=end", "water={ level_path = [[0.0, 1.0], [4.0, 2.0]] }"];
+        let rises = [
+            "strength_reduction.stage=end",
+            "water={ level_path = [[0.0, 1.0], [4.0, 2.0]] }",
+        ];
         let level = |t: f64| case(&rises).water.unwrap().table.table(0.0, t).unwrap().0;
-        assert_eq!([2.0, 3.0, 4.0].map(level), [1.5, 1.75, 1.75], "it stays while the strength falls");
+        assert_eq!(
+            [2.0, 3.0, 4.0].map(level),
+            [1.5, 1.75, 1.75],
+            "it stays while the strength falls"
+        );
         let before = case(&["strength_reduction.unloaded=true", "strength_reduction.stage=start"]);
         assert_eq!((before.bodies.len(), before.point_loads.len()), (1, 0));
     }

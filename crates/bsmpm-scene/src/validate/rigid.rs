@@ -35,7 +35,9 @@ pub(super) fn read_all(
     let mut found: Vec<Rigid> = Vec::new();
     let geometry = root.word::<Geometry>("geometry").unwrap_or(Geometry::PlaneStrain);
     for record in root.records("rigid") {
-        let Some(rigid) = read((record, geometry), around, factor, report) else { continue };
+        let Some(rigid) = read((record, geometry), around, factor, report) else {
+            continue;
+        };
         if found.iter().any(|other| other.name == rigid.name) {
             let message = format!(
                 "E0421: another rigid body is also called `{}`, so histories cannot tell which one is meant. \
@@ -73,18 +75,47 @@ fn read(
         RigidShape::Circle { center, .. } => *center,
         RigidShape::InSpace(_) => return None,
     };
-    let about = if record.gives("about") { record.pair("about")? } else { centroid };
+    let about = if record.gives("about") {
+        record.pair("about")?
+    } else {
+        centroid
+    };
     let volume = match geometry {
         Geometry::Axisymmetric => geometry.whole() * surfaces::outline(&shape, centroid).swept(-centroid[0]),
         Geometry::PlaneStrain | Geometry::Solid => sizes.area,
     };
     let mass = mass(record, volume, &sizes)?;
-    let moment = if record.gives("moment") { record.number("moment")? } else { 0.0 };
-    let [vx, vy] = if record.gives("start_velocity") { record.pair("start_velocity")? } else { [0.0; 2] };
-    let spin = if record.gives("start_spin") { record.number("start_spin")? } else { 0.0 };
+    let moment = if record.gives("moment") {
+        record.number("moment")?
+    } else {
+        0.0
+    };
+    let [vx, vy] = if record.gives("start_velocity") {
+        record.pair("start_velocity")?
+    } else {
+        [0.0; 2]
+    };
+    let spin = if record.gives("start_spin") {
+        record.number("start_spin")?
+    } else {
+        0.0
+    };
     let friction = friction(record, factor, report)?;
     let (force, velocity) = ([fx, fy, moment], [vx, vy, spin]);
-    let rigid = Rigid { name, shape, about, friction, path, rotation, free, mass, force, ramp, amplitude, velocity };
+    let rigid = Rigid {
+        name,
+        shape,
+        about,
+        friction,
+        path,
+        rotation,
+        free,
+        mass,
+        force,
+        ramp,
+        amplitude,
+        velocity,
+    };
     moves_as_given(record, &rigid, report);
     of_free_motions(record, &rigid, regime, report);
     fine_enough(record, (&rigid, geometry), around, report);
@@ -100,8 +131,10 @@ fn free(record: &Record, report: &mut Report<'_>) -> Option<[bool; 3]> {
     for name in record.names("free")? {
         let Some(motion) = RigidMotion::of(name) else {
             let allowed: Vec<String> = RigidMotion::WORDS.words().map(|word| format!("\"{word}\"")).collect();
-            let message =
-                format!("E0422: `{name}` is not a motion of a rigid body. Use one or more of: {}.", allowed.join(", "));
+            let message = format!(
+                "E0422: `{name}` is not a motion of a rigid body. Use one or more of: {}.",
+                allowed.join(", ")
+            );
             record.error("free", message, report);
             return None;
         };
@@ -112,8 +145,14 @@ fn free(record: &Record, report: &mut Report<'_>) -> Option<[bool; 3]> {
 
 /// The way of its reference point; of a body that has none an empty one.
 fn way(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<MotionPath> {
-    let moves = ["displacement", "velocity", "path"].into_iter().any(|key| record.gives(key));
-    if moves { strip::path(record, end, report) } else { Some(MotionPath { rows: Vec::new() }) }
+    let moves = ["displacement", "velocity", "path"]
+        .into_iter()
+        .any(|key| record.gives(key));
+    if moves {
+        strip::path(record, end, report)
+    } else {
+        Some(MotionPath { rows: Vec::new() })
+    }
 }
 
 /// Its rotation, rad.
@@ -121,8 +160,9 @@ fn rotation(record: &Record, report: &mut Report<'_>) -> Option<Vec<(f64, f64)>>
     if !record.gives("rotation") {
         return Some(Vec::new());
     }
-    let rows: Vec<(f64, f64)> =
-        load::increasing(record, "rotation", report)?.map(|row| (row[0], row[1].to_radians())).collect();
+    let rows: Vec<(f64, f64)> = load::increasing(record, "rotation", report)?
+        .map(|row| (row[0], row[1].to_radians()))
+        .collect();
     if rows[0].0 == 0.0 && rows[0].1 != 0.0 {
         let message = format!(
             "E0403: the rotation at t = 0 is {} degrees, but a path must begin with zero. Set this rotation to zero, \
@@ -142,7 +182,11 @@ fn mass(record: &Record, volume: f64, sizes: &Sizes) -> Option<[f64; 2]> {
         (_, true) => record.number("density")? * volume,
         _ => 0.0,
     };
-    let inertia = if record.gives("inertia") { record.number("inertia")? } else { mass * sizes.polar / sizes.area };
+    let inertia = if record.gives("inertia") {
+        record.number("inertia")?
+    } else {
+        mass * sizes.polar / sizes.area
+    };
     Some([mass, inertia])
 }
 
@@ -165,17 +209,28 @@ fn friction(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Op
 
 /// A motion is on a way or follows from forces.
 fn moves_as_given(record: &Record, rigid: &Rigid, report: &mut Report<'_>) {
-    let way = ["displacement", "velocity", "path"].into_iter().find(|key| record.gives(key)).unwrap_or("path");
+    let way = ["displacement", "velocity", "path"]
+        .into_iter()
+        .find(|key| record.gives(key))
+        .unwrap_or("path");
     for (axis, name) in ["x", "y"].into_iter().enumerate() {
         if rigid.free[axis] && rigid.path.rows.iter().any(|(_, moved)| moved[axis] != 0.0) {
             record.error(way, prescribed_and_free(&format!("motion along {name}")), report);
         }
         if !rigid.free[axis] && rigid.force[axis] != 0.0 {
-            let key = if record.gives("force_path") { "force_path" } else { "force" };
+            let key = if record.gives("force_path") {
+                "force_path"
+            } else {
+                "force"
+            };
             record.error(key, without_effect(&format!("motion along {name}"), name), report);
         }
         if !rigid.free[axis] && rigid.velocity[axis] != 0.0 {
-            record.error("start_velocity", without_effect(&format!("motion along {name}"), name), report);
+            record.error(
+                "start_velocity",
+                without_effect(&format!("motion along {name}"), name),
+                report,
+            );
         }
     }
     if rigid.free[2] && !rigid.rotation.is_empty() {
@@ -213,7 +268,10 @@ fn without_effect(motion: &str, name: &str) -> String {
 fn of_free_motions(record: &Record, rigid: &Rigid, regime: Option<Regime>, report: &mut Report<'_>) {
     let is_free = rigid.free.contains(&true);
     if !is_free {
-        for key in ["mass", "density", "inertia"].into_iter().filter(|key| record.gives(key)) {
+        for key in ["mass", "density", "inertia"]
+            .into_iter()
+            .filter(|key| record.gives(key))
+        {
             let message = format!(
                 "E0426: `{key}` has no effect, because all motions of this rigid body are prescribed. Delete `{key}`, or list \
                  the free motions in `free`."
@@ -232,7 +290,10 @@ fn of_free_motions(record: &Record, rigid: &Rigid, regime: Option<Regime>, repor
                        `density`, `force` or `moment`.";
         record.error("free", message, report);
     }
-    for key in ["ramp", "amplitude"].into_iter().filter(|key| record.gives(key) && rigid.force == [0.0; 3]) {
+    for key in ["ramp", "amplitude"]
+        .into_iter()
+        .filter(|key| record.gives(key) && rigid.force == [0.0; 3])
+    {
         let path = record.path_of(key);
         report.warn(format!(
             "W0410: {path}: the rigid body has no `force` or `moment` that this key could scale, so the key has no \
@@ -253,9 +314,15 @@ fn fine_enough(
     around: AroundStrip<'_>,
     report: &mut Report<'_>,
 ) {
-    let (Some(grid), Some(dt)) = (around.grid, around.dt) else { return };
+    let (Some(grid), Some(dt)) = (around.grid, around.dt) else {
+        return;
+    };
     let cell = grid.shortest();
-    let Solidity { outline, thickness, corner: about } = Solidity::of(rigid);
+    let Solidity {
+        outline,
+        thickness,
+        corner: about,
+    } = Solidity::of(rigid);
     let radius = outline.radius();
     let turns = geometry != Geometry::Solid;
     let path = match turns {
@@ -266,7 +333,11 @@ fn fine_enough(
     let steps = before.zip(&path).filter(|(from, row)| row.0 > from.0);
     let fastest = steps.map(|(from, row)| {
         let moved = (row.1 - from.1) * ((dt / (row.0 - from.0)).min(1.0));
-        if turns { moved[0].hypot(moved[1]) + moved[2].abs() * radius } else { moved.norm() }
+        if turns {
+            moved[0].hypot(moved[1]) + moved[2].abs() * radius
+        } else {
+            moved.norm()
+        }
     });
     let most = fastest.fold(0.0, f64::max);
     if most > ADVANCE * cell {
@@ -314,7 +385,11 @@ impl Solidity {
             RigidShape::Polygon(corners) => thickness(corners),
             RigidShape::InSpace(solid) => return solid::solidity(solid),
         };
-        Self { outline: surfaces::outline(&rigid.shape, rigid.about), thickness, corner: rigid.about }
+        Self {
+            outline: surfaces::outline(&rigid.shape, rigid.about),
+            thickness,
+            corner: rigid.about,
+        }
     }
 }
 
@@ -327,7 +402,11 @@ pub(super) fn has_moved(rigid: &Rigid, t: f64) -> bool {
 pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (number, (rigid, record)) in case.rigid.iter().zip(root.records("rigid")).enumerate() {
         if rigid.velocity != [0.0; 3] && case.acts_since(Acting::Rigid(number), 0.0).is_none() {
-            let key = if record.gives("start_velocity") { "start_velocity" } else { "start_spin" };
+            let key = if record.gives("start_velocity") {
+                "start_velocity"
+            } else {
+                "start_spin"
+            };
             let message = "E0430: an initial velocity applies at t = 0, but a stage adds this rigid body later. \
                  Delete this key, and let `force` or gravity move the body.";
             record.error(key, message, report);
@@ -372,9 +451,10 @@ fn inside(case: &Case, (rigid, body): (usize, usize), at: &str) -> String {
     let stage = together(case, rigid, body).flatten();
     let (when, or) = match stage {
         None => ("at the start".to_owned(), String::new()),
-        Some(stage) if stage.add.contains(&body) => {
-            (format!("when a stage adds body.{body} at t = {}", stage.at), String::new())
-        }
+        Some(stage) if stage.add.contains(&body) => (
+            format!("when a stage adds body.{body} at t = {}", stage.at),
+            String::new(),
+        ),
         Some(stage) => (
             format!("when a stage adds the rigid body at t = {}", stage.at),
             format!(", or remove body.{body} in this stage"),
@@ -415,7 +495,9 @@ fn joined(case: &Case, (number, rigid): (usize, &Rigid), record: &Record, report
 fn longest(case: &Case) -> f64 {
     let edges = |axis: usize| {
         let knots = &case.grid.axes[axis];
-        (0..knots.cells()).map(|cell| knots.breakpoint(cell + 1) - knots.breakpoint(cell)).fold(0.0, f64::max)
+        (0..knots.cells())
+            .map(|cell| knots.breakpoint(cell + 1) - knots.breakpoint(cell))
+            .fold(0.0, f64::max)
     };
     edges(0).max(edges(1))
 }
@@ -468,7 +550,11 @@ fn overlap(case: &Case, rigid: &Rigid, there: impl Fn(usize) -> bool) -> Option<
         outline.nearest(&seen).distance < -0.5 * inset
     };
     let bodies = || case.bodies.iter().enumerate().filter(|(number, _)| there(*number));
-    let holds = |at: &[f64; 2]| bodies().find(|(_, body)| body.region.contains(*at)).map(|(number, _)| (*at, number));
+    let holds = |at: &[f64; 2]| {
+        bodies()
+            .find(|(_, body)| body.region.contains(*at))
+            .map(|(number, _)| (*at, number))
+    };
     let found = places.iter().filter(|at| is_in(at)).find_map(holds);
     // A small body may lie in it whole.
     let whole = || {

@@ -34,20 +34,33 @@ impl Cut {
         let cell = axes.map(|(axis, of)| across[axis].abs() * of.longest()).sum();
         // A function that is not zero at a place has its node within half of its support, and the cut is a cell wide.
         let reach = (0.5 * case.grid.order as f64 + 1.0) * cell;
-        Some(Self { middle, along, across, cell, reach })
+        Some(Self {
+            middle,
+            along,
+            across,
+            cell,
+            reach,
+        })
     }
 
     /// Whether a place is within its ends and a cell beyond, and not far from it.
     fn is_near(&self, at: [f64; 3]) -> bool {
         let apart = Vector::from(at) - self.middle;
         apart.dot(&self.across).abs() < self.reach + self.cell
-            && self.along.iter().all(|(along, half)| apart.dot(along).abs() <= half + self.cell)
+            && self
+                .along
+                .iter()
+                .all(|(along, half)| apart.dot(along).abs() <= half + self.cell)
     }
 
     /// m  from the section along its normal to the least and the most of these places
     fn span(&self, places: &[[f64; 3]]) -> Option<[f64; 2]> {
-        let across = places.iter().map(|at| (Vector::from(*at) - self.middle).dot(&self.across));
-        across.fold(None, |span, at| span.map_or(Some([at; 2]), |[a, b]: [f64; 2]| Some([a.min(at), b.max(at)])))
+        let across = places
+            .iter()
+            .map(|at| (Vector::from(*at) - self.middle).dot(&self.across));
+        across.fold(None, |span, at| {
+            span.map_or(Some([at; 2]), |[a, b]: [f64; 2]| Some([a.min(at), b.max(at)]))
+        })
     }
 
     /// m  from the section along (1) or against (-1) its normal to the end of the material between its ends
@@ -99,9 +112,13 @@ struct Beside {
 /// Warns of section forces that have a part of the force of a strip, a rigid body or a load.
 pub(super) fn warn_of_neighbours(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (history, record) in case.histories.iter().zip(root.records("history")) {
-        let Quantity::SectionForces { lines, .. } = &history.quantity else { continue };
+        let Quantity::SectionForces { lines, .. } = &history.quantity else {
+            continue;
+        };
         let Some(cut) = Cut::of(case, lines) else { continue };
-        let acting = stage::surfaces(case, root).into_iter().map(|(_, of, _, places)| (of.path.clone(), places));
+        let acting = stage::surfaces(case, root)
+            .into_iter()
+            .map(|(_, of, _, places)| (of.path.clone(), places));
         let acting = acting.chain((0..case.rigid.len()).map(|k| (format!("rigid.{k}"), outline(case, k))));
         for (name, mut places) in acting {
             places.retain(|at| cut.is_near(*at) && place::is_at(&case.bodies, &case.grid, *at));

@@ -61,14 +61,21 @@ struct BeyondSymmetry<const D: usize> {
 impl<const D: usize> BeyondSymmetry<D> {
     /// Of a shape with these bounds, and the bounds of what is left of it where the case itself cuts something off, m.
     fn of([lower, upper]: [[f64; D]; 2], left: [[f64; D]; 2], boundary: [[Support; 2]; 3], grid: &GridSpec) -> Self {
-        let mut beyond = Self { boxes: Vec::new(), faces: Vec::new() };
+        let mut beyond = Self {
+            boxes: Vec::new(),
+            faces: Vec::new(),
+        };
         let [grid_lower, grid_upper] = [grid.lower(), grid.upper()];
         for axis in 0..D {
             let slack = place::ROUNDING * grid.axes[axis].shortest();
             for (is_upper, limit) in [(false, grid_lower[axis]), (true, grid_upper[axis])] {
                 let is_roller = boundary[axis][usize::from(is_upper)] == Support::Roller;
                 let is_middle = (0.5 * (lower[axis] + upper[axis]) - limit).abs() <= slack;
-                let reaches = if is_upper { left[1][axis] > limit + slack } else { left[0][axis] < limit - slack };
+                let reaches = if is_upper {
+                    left[1][axis] > limit + slack
+                } else {
+                    left[0][axis] < limit - slack
+                };
                 if !(is_roller && is_middle && reaches) {
                     continue;
                 }
@@ -109,7 +116,11 @@ pub(super) fn region(
         return solid::region(body, (grid, points_per_cell), boundary, report);
     }
     let whole = read(body, report);
-    let cut: Option<Vec<BodyShape>> = body.records("subtract").iter().map(|record| read(record, report)).collect();
+    let cut: Option<Vec<BodyShape>> = body
+        .records("subtract")
+        .iter()
+        .map(|record| read(record, report))
+        .collect();
     let (mut whole, mut cut) = (whole?, cut?);
     if body.gives("subtract") && cut.len() != body.records("subtract").len() {
         return None;
@@ -120,18 +131,33 @@ pub(super) fn region(
     if !beyond.boxes.is_empty() {
         match &mut whole {
             BodyShape::Box { lower, upper } => [*lower, *upper] = region::left_of_box([*lower, *upper], &beyond.boxes),
-            _ => cut.extend(beyond.boxes.iter().map(|&[lower, upper]| BodyShape::Box { lower, upper })),
+            _ => cut.extend(
+                beyond
+                    .boxes
+                    .iter()
+                    .map(|&[lower, upper]| BodyShape::Box { lower, upper }),
+            ),
         }
         beyond.note(body, geometry, report);
     }
     let bounds = region::left_of_box(whole.bounds(), &boxes_of(&cut));
     inside((&whole, bounds), body, grid, report)?;
     if let (BodyShape::Box { lower, upper }, true) = (&whole, cut.is_empty()) {
-        return Some(Region::Box { lower: *lower, upper: *upper });
+        return Some(Region::Box {
+            lower: *lower,
+            upper: *upper,
+        });
     }
     let shapes = std::iter::once(&whole).chain(&cut).enumerate();
-    let edges = shapes.flat_map(|(number, shape)| shape.edges(grid.corner(), number)).collect();
-    match Outline::new(edges, 1 + cut.len(), (bounds, whole.area()), (grid, geometry, points_per_cell?)) {
+    let edges = shapes
+        .flat_map(|(number, shape)| shape.edges(grid.corner(), number))
+        .collect();
+    match Outline::new(
+        edges,
+        1 + cut.len(),
+        (bounds, whole.area()),
+        (grid, geometry, points_per_cell?),
+    ) {
         Ok(outline) => Some(Region::Outline(outline)),
         Err(message) => {
             body.error(key(body), message, report);
@@ -177,7 +203,10 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
     }
     if record.gives("circle") {
         let circle = record.record("circle")?;
-        return Some(BodyShape::Circle { center: circle.pair("centre")?, radius: circle.number("radius")? });
+        return Some(BodyShape::Circle {
+            center: circle.pair("centre")?,
+            radius: circle.number("radius")?,
+        });
     }
     let shape = record.record("box")?;
     let [lower, upper] = [shape.vector("lower")?, shape.vector("upper")?].map(|[x, y, _]| [x, y]);
@@ -212,17 +241,23 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
         record.error("polygon", message, report);
         return None;
     }
-    let Some(fault) = region::fault(&corners) else { return Some(BodyShape::Polygon(corners)) };
+    let Some(fault) = region::fault(&corners) else {
+        return Some(BodyShape::Polygon(corners));
+    };
     let row = |k: usize| rows[k].origin;
     let (origin, message): (Origin, String) = match fault {
         PolygonFault::TooFew => {
-            let message =
-                format!("E0222: the polygon has {} corners, but needs at least 3. Add corners.", corners.len());
+            let message = format!(
+                "E0222: the polygon has {} corners, but needs at least 3. Add corners.",
+                corners.len()
+            );
             (record.place("polygon"), message)
         }
         PolygonFault::Repeated(one, other) => {
-            let message =
-                format!("E0223: the polygon has the corner {:?} twice in a row. Delete one of them.", corners[one]);
+            let message = format!(
+                "E0223: the polygon has the corner {:?} twice in a row. Delete one of them.",
+                corners[one]
+            );
             (row(one.max(other)), message)
         }
         PolygonFault::Flat => {
@@ -269,13 +304,17 @@ fn inside(
         BodyShape::Polygon(corners) => {
             let outside = |(k, corner): (usize, &[f64; 2])| Some((k, place::beyond(grid, *corner)?));
             if let Some((k, message)) = corners.iter().enumerate().find_map(outside) {
-                let origin = body.rows("polygon").map_or(body.place("polygon"), |rows| rows[k].origin);
+                let origin = body
+                    .rows("polygon")
+                    .map_or(body.place("polygon"), |rows| rows[k].origin);
                 report.error(origin, &body.path_of("polygon"), message);
             }
         }
         BodyShape::Circle { .. } => {
             let message = place::beyond(grid, lower).or(place::beyond(grid, upper));
-            message.into_iter().for_each(|message| body.error("circle", message, report));
+            message
+                .into_iter()
+                .for_each(|message| body.error("circle", message, report));
         }
     }
     None

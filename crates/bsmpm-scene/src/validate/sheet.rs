@@ -28,7 +28,12 @@ pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Repo
     let (key, found) = if record.gives("sphere") {
         let sphere = record.record("sphere")?;
         let (center, radius) = (sphere.vector("centre")?, sphere.number("radius")?);
-        let part = |_| sphere_of(center, radius, spacing).into_iter().flat_map(|of| inside(grid, of)).collect();
+        let part = |_| {
+            sphere_of(center, radius, spacing)
+                .into_iter()
+                .flat_map(|of| inside(grid, of))
+                .collect()
+        };
         ("sphere", countable(2.0 * TAU * radius * radius, spacing).map(part))
     } else {
         let all = given(record, report)?;
@@ -36,20 +41,27 @@ pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Repo
         let wrong = wrong.map_or(Ok(()), |outside| Err(outside.into()));
         let sound = wrong.and_then(|()| in_one_piece(&all));
         let sound = sound.and_then(|()| countable(all.iter().map(area).sum(), spacing));
-        ("surface", sound.map(|()| all.iter().flat_map(|of| split(*of, spacing)).collect::<Vec<_>>()))
+        (
+            "surface",
+            sound.map(|()| all.iter().flat_map(|of| split(*of, spacing)).collect::<Vec<_>>()),
+        )
     };
     let at_bodies = |all: Vec<Triangle>| match all.iter().map(middle).find(|at| !at_volume(bodies, grid, *at)) {
         Some(at) => Err(format!(
             "E0401: at the start of the analysis no body exists at the point {at:.3?} m of the loaded surface. Move \
              the loaded surface to the surface of a body."
         )),
-        None if all.is_empty() => {
-            Err("E0201: no part of the sphere is inside the grid. Move the sphere into the grid, or enlarge the grid."
-                .into())
-        }
+        None if all.is_empty() => Err(
+            "E0201: no part of the sphere is inside the grid. Move the sphere into the grid, or enlarge the grid."
+                .into(),
+        ),
         None => Ok(all),
     };
-    found.and_then(at_bodies).map_err(|message| record.consequence(key, message, &["body"], report)).ok().map(Arc::from)
+    found
+        .and_then(at_bodies)
+        .map_err(|message| record.consequence(key, message, &["body"], report))
+        .ok()
+        .map(Arc::from)
 }
 
 /// Whether an area, m², is not too large for the spacing of points, m.
@@ -69,10 +81,17 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Vec<Triangle>> {
     let table = record.record("surface")?;
     let scale = table.number("scale")?;
     let corner = |row: &[f64], k: usize| [0, 1, 2].map(|axis| scale * row[3 * k + axis] + 0.0);
-    let rows = table.rows("triangles")?.iter().map(|row| [0, 1, 2].map(|k| corner(&row.numbers, k)));
+    let rows = table
+        .rows("triangles")?
+        .iter()
+        .map(|row| [0, 1, 2].map(|k| corner(&row.numbers, k)));
     let all: Vec<Triangle> = rows.filter(|triangle| normal_of(triangle) != [0.0; 3]).collect();
     if all.is_empty() {
-        table.error("triangles", "E0227: all triangles have zero area. Check the file and `scale`.", report);
+        table.error(
+            "triangles",
+            "E0227: all triangles have zero area. Check the file and `scale`.",
+            report,
+        );
         return None;
     }
     Some(all)
@@ -95,7 +114,10 @@ fn split(triangle: Triangle, longest: f64) -> Vec<Triangle> {
     while let Some([a, b, c]) = whole.pop() {
         let length = |edge: &Triangle| (Vector::<3>::from(edge[1]) - Vector::from(edge[0])).norm();
         let turned = [[b, c, a], [c, a, b]].into_iter();
-        let [a, b, c] = turned.fold([a, b, c], |most, edge| if length(&edge) > length(&most) { edge } else { most });
+        let [a, b, c] = turned.fold(
+            [a, b, c],
+            |most, edge| if length(&edge) > length(&most) { edge } else { most },
+        );
         if length(&[a, b, c]) > longest {
             let middle = [0, 1, 2].map(|axis| 0.5 * (a[axis] + b[axis]));
             whole.extend([[a, middle, c], [middle, b, c]]);
@@ -123,7 +145,10 @@ fn inside(grid: &GridSpec, triangle: Triangle) -> Vec<Triangle> {
         };
         corners = (0..corners.len()).map(next).flat_map(kept).collect();
     }
-    (2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]]).filter(|of| area(of) > 0.0).collect()
+    (2..corners.len())
+        .map(|k| [corners[0], corners[k - 1], corners[k]])
+        .filter(|of| area(of) > 0.0)
+        .collect()
 }
 
 /// Whether triangles hang together by their edges and turn alike.
@@ -192,7 +217,9 @@ fn sphere_of(center: [f64; 3], radius: f64, longest: f64) -> Vec<Triangle> {
         }
     }
     let scale = radius * (2.0 * TAU / unit.iter().map(area).sum::<f64>()).sqrt();
-    unit.iter().map(|triangle| triangle.map(|at| [0, 1, 2].map(|axis| center[axis] + scale * at[axis]))).collect()
+    unit.iter()
+        .map(|triangle| triangle.map(|at| [0, 1, 2].map(|axis| center[axis] + scale * at[axis])))
+        .collect()
 }
 
 #[cfg(test)]
@@ -209,18 +236,29 @@ mod tests {
         });
         assert!(normals.into_iter().all(|outwards| (outwards - 0.5).abs() < 5e-3));
         let longest = all.iter().flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)]);
-        let longest =
-            longest.map(|(a, b)| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()).fold(0.0, f64::max);
+        let longest = longest
+            .map(|(a, b)| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt())
+            .fold(0.0, f64::max);
         assert!(longest < 0.1, "{longest}");
     }
 
     /// In a quarter of the room, which cuts it beside its middle: what it presses with is the area of its rim.
     #[test]
     fn a_sphere_that_the_grid_cuts_has_the_area_of_its_rim() {
-        let axes = [0; 3].map(|_| crate::grid::GridAxis::Uniform { lower: 0.0, cell: 0.1, cells: 20 });
-        let grid = GridSpec { axes: axes.to_vec(), order: 2, lines: Default::default() };
+        let axes = [0; 3].map(|_| crate::grid::GridAxis::Uniform {
+            lower: 0.0,
+            cell: 0.1,
+            cells: 20,
+        });
+        let grid = GridSpec {
+            axes: axes.to_vec(),
+            order: 2,
+            lines: Default::default(),
+        };
         let (center, radius) = ([0.03, -0.02, 1.0], 0.5_f64);
-        let all = sphere_of(center, radius, 0.05).into_iter().flat_map(|of| inside(&grid, of));
+        let all = sphere_of(center, radius, 0.05)
+            .into_iter()
+            .flat_map(|of| inside(&grid, of));
         let all: Vec<Triangle> = all.collect();
         assert!(all.iter().flatten().all(|at| at[0] >= 0.0 && at[1] >= 0.0));
         let along = |axis: usize| -> f64 { all.iter().map(|of| area(of) * normal_of(of)[axis]).sum() };
@@ -230,7 +268,11 @@ mod tests {
             square * (d / square.sqrt()).acos() - d * (square - d * d).sqrt()
         };
         for (axis, exact) in [rim(0.03, 0.02), rim(0.02, -0.03), 0.0].into_iter().enumerate() {
-            assert!((along(axis) - exact).abs() < 2e-4, "{axis}: {} for {exact}", along(axis));
+            assert!(
+                (along(axis) - exact).abs() < 2e-4,
+                "{axis}: {} for {exact}",
+                along(axis)
+            );
         }
     }
 

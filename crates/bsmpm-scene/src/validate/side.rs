@@ -29,7 +29,10 @@ pub(super) fn side<'a>(line: &LoadedLine, grid: &GridSpec, bodies: impl Iterator
                 at[plate.normal()] += off;
                 bodies.iter().any(|body| body.region.contains_in_space(at))
             };
-            places(Site::Plate(*plate), grid).into_iter().filter(|at| inside(*at)).count()
+            places(Site::Plate(*plate), grid)
+                .into_iter()
+                .filter(|at| inside(*at))
+                .count()
         }
         LoadedLine::Triangles(all) => {
             let inside = |triangle: &&Triangle| {
@@ -40,7 +43,9 @@ pub(super) fn side<'a>(line: &LoadedLine, grid: &GridSpec, bodies: impl Iterator
             all.iter().filter(inside).count()
         }
     };
-    let LoadedLine::Triangles(all) = line else { return side_of_bodies(grid, count) };
+    let LoadedLine::Triangles(all) = line else {
+        return side_of_bodies(grid, count);
+    };
     let [along, against] = beside(grid, count)?;
     let is_one = ASTRAY * along.min(against) <= all.len();
     is_one.then_some(if along > against { 1.0 } else { -1.0 })
@@ -50,23 +55,36 @@ pub(super) fn side<'a>(line: &LoadedLine, grid: &GridSpec, bodies: impl Iterator
 pub(super) fn of_pressures(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     for (number, record) in root.records("traction").iter().enumerate() {
         let traction = &case.tractions[number];
-        let Push::Pressure { profile, .. } = traction.push else { continue };
+        let Push::Pressure { profile, .. } = traction.push else {
+            continue;
+        };
         let times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
         let acting = times.filter(|t| case.acts_since(Acting::Load(number), *t).is_some());
         let at = |t: f64| {
-            let there = case.bodies.iter().enumerate().filter(|(body, _)| case.is_there(*body, t));
+            let there = case
+                .bodies
+                .iter()
+                .enumerate()
+                .filter(|(body, _)| case.is_there(*body, t));
             side(&traction.line, &case.grid, there.map(|(_, body)| body))
         };
         let sides: Vec<(f64, Option<f64>)> = acting.map(|t| (t, at(t))).collect();
         let first = sides.first().and_then(|(_, side)| *side);
         if let Some((t, _)) = sides.iter().find(|(_, side)| side.is_none() || *side != first) {
-            let key = if record.gives("pressure_path") { "pressure_path" } else { "pressure" };
+            let key = if record.gives("pressure_path") {
+                "pressure_path"
+            } else {
+                "pressure"
+            };
             let message = format!(
                 "E0252: at t = {t} soil lies on both sides of the loaded surface, or on neither side. A pressure acts \
                  towards the soil, so its direction is not defined. Move the load to a free surface."
             );
             record.error(key, message, report);
         }
-        case.tractions[number].push = Push::Pressure { profile, side: first.unwrap_or_default() };
+        case.tractions[number].push = Push::Pressure {
+            profile,
+            side: first.unwrap_or_default(),
+        };
     }
 }

@@ -44,7 +44,9 @@ pub(super) fn segment(record: &Record, around: AroundStrip<'_>, report: &mut Rep
 
 /// A strip starts at a body, if only with a part of it.
 fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_>, report: &mut Report<'_>) {
-    let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return };
+    let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else {
+        return;
+    };
     if !places(site, grid).into_iter().any(|at| is_at(bodies, grid, at)) {
         let [from, to] = corners(site, grid).map(|at| at[..grid.dims()].to_vec());
         let message = format!(
@@ -75,7 +77,9 @@ pub(super) fn places(site: Site, grid: &GridSpec) -> Vec<[f64; 3]> {
     if grid.dims() == 2 {
         return along(ends.map(|[x, y, _]| [x, y])).map(|[x, y]| [x, y, 0.0]).collect();
     }
-    over(ends).filter(|at| !matches!(site, Site::Plate(plate) if !plate.covers(*at))).collect()
+    over(ends)
+        .filter(|at| !matches!(site, Site::Plate(plate) if !plate.covers(*at)))
+        .collect()
 }
 
 /// Unit normal of what is held.
@@ -97,7 +101,11 @@ pub(super) fn plate(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -
         let (center, radius) = (disc.vector("centre")?, disc.number("radius")?);
         let normal = disc.word::<Axis>("normal")? as usize;
         let corner = |side: f64| std::array::from_fn(|k| center[k] + if k == normal { 0.0 } else { side * radius });
-        let plate = Plate { lower: corner(-1.0), upper: corner(1.0), round: true };
+        let plate = Plate {
+            lower: corner(-1.0),
+            upper: corner(1.0),
+            round: true,
+        };
         let (lower, upper) = (grid.lower(), grid.upper());
         let inside = |axis: usize| lower[axis] <= plate.upper[axis] && plate.lower[axis] <= upper[axis];
         if !(0..3).all(inside) || plate.area([lower, upper]) == 0.0 {
@@ -125,7 +133,11 @@ pub(super) fn plate(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -
         record.error("rectangle", message, report);
         return None;
     }
-    Some(Plate { lower, upper, round: false })
+    Some(Plate {
+        lower,
+        upper,
+        round: false,
+    })
 }
 
 /// Where a footing or a prescribed motion holds.

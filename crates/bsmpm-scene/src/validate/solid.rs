@@ -21,12 +21,17 @@ const MANY: u64 = 30_000;
 
 /// Errors about keys that the case's geometry has not.
 pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
-    let Some(geometry) = root.word::<Geometry>("geometry") else { return };
+    let Some(geometry) = root.word::<Geometry>("geometry") else {
+        return;
+    };
     if geometry != Geometry::Solid {
         return in_space(root, report);
     }
     for drain in root.records("drain").iter().chain(root.records("inflow")) {
-        for key in ["from", "to", "circle", "surface"].into_iter().filter(|key| drain.gives(key)) {
+        for key in ["from", "to", "circle", "surface"]
+            .into_iter()
+            .filter(|key| drain.gives(key))
+        {
             let message = "E0225: this key is available in 2-D only, and the case is 3-D. Use `face`, rectangle = { \
                            lower, upper } or `disc`.";
             drain.error(key, message, report);
@@ -47,7 +52,10 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
         }
     }
     for history in root.records("history") {
-        if let Some(quantity) = history.word::<Measurement>("quantity").filter(|of| QUANTITIES.contains(of)) {
+        if let Some(quantity) = history
+            .word::<Measurement>("quantity")
+            .filter(|of| QUANTITIES.contains(of))
+        {
             let message = format!(
                 "E0226: the quantity \"{quantity}\" is not available in 3-D. Delete this history, and evaluate \
                      the quantity from the output frames."
@@ -82,16 +90,28 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
             );
         }
     }
-    let stages = root.records("stage").iter().filter_map(|stage| stage.record("boundary"));
+    let stages = root
+        .records("stage")
+        .iter()
+        .filter_map(|stage| stage.record("boundary"));
     for boundary in root.record("boundary").into_iter().chain(stages) {
-        for side in [Side::Front, Side::Back].into_iter().filter(|side| boundary.gives(side.word())) {
+        for side in [Side::Front, Side::Back]
+            .into_iter()
+            .filter(|side| boundary.gives(side.word()))
+        {
             let message = "E0207: a 2-D grid has no front and no back face. Delete this key, or use geometry = \"3d\".";
             boundary.error(side.word(), message, report);
         }
     }
-    let shapes = root.records("body").iter().flat_map(|body| std::iter::once(body).chain(body.records("subtract")));
+    let shapes = root
+        .records("body")
+        .iter()
+        .flat_map(|body| std::iter::once(body).chain(body.records("subtract")));
     for shape in shapes.chain(root.records("rigid")) {
-        for key in ["extrude", "sphere", "revolve", "terrain", "surface"].into_iter().filter(|key| shape.gives(key)) {
+        for key in ["extrude", "sphere", "revolve", "terrain", "surface"]
+            .into_iter()
+            .filter(|key| shape.gives(key))
+        {
             let message = "E0207: this shape is available in 3-D only. Use `box`, `polygon` or `circle`, or set \
                            geometry = \"3d\".";
             shape.error(key, message, report);
@@ -103,16 +123,24 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
 fn faces(all: &[FaceSupport], boundary: &Record, report: &mut Report<'_>) {
     let side = |of: &FaceSupport| of.face.side(Geometry::Solid);
     for of in all.iter().filter(|of| boundary.gives(side(of).word())) {
-        if !matches!(of.support, Support::Fixed | Support::Roller | Support::Free | Support::Contact | Support::Outflow)
-        {
+        if !matches!(
+            of.support,
+            Support::Fixed | Support::Roller | Support::Free | Support::Contact | Support::Outflow
+        ) {
             let message = "E0226: this support is not available in 3-D. Use one of: \"fixed\", \"roller\", \"free\", \
                  \"outflow\", \"contact\", { friction_coefficient = ... }.";
             boundary.error(side(of).word(), message, report);
         }
     }
-    let with_friction = || all.iter().filter(|of| of.contact.is_some_and(|contact| contact.friction > 0.0));
+    let with_friction = || {
+        all.iter()
+            .filter(|of| of.contact.is_some_and(|contact| contact.friction > 0.0))
+    };
     let meets = |of: &&FaceSupport| with_friction().any(|other| other.face.axis != of.face.axis);
-    if let Some(of) = with_friction().filter(|of| boundary.gives(side(of).word())).rfind(meets) {
+    if let Some(of) = with_friction()
+        .filter(|of| boundary.gives(side(of).word()))
+        .rfind(meets)
+    {
         let message = "E0226: friction on two faces that share an edge is not available in 3-D. Set one of the two \
                        faces to \"contact\" or \"roller\".";
         boundary.error(side(of).word(), message, report);
@@ -130,7 +158,10 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (t, boundary) in times.zip(tables).filter_map(|(t, table)| Some((t, table?))) {
         faces(&case.faces_at(t), boundary, report);
     }
-    if matches!(case.stabilisation, Stabilisation::SubgridFBar | Stabilisation::ModifiedFBar) {
+    if matches!(
+        case.stabilisation,
+        Stabilisation::SubgridFBar | Stabilisation::ModifiedFBar
+    ) {
         let key = root.record("stabilisation");
         key.into_iter().for_each(|of| {
             let message = "E0226: this method is not available in 3-D. Use \"consistent-f-bar\" or \"f-bar\".";

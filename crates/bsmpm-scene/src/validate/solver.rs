@@ -22,9 +22,16 @@ pub(super) fn read(
     let quadrature = weights(solver, regime, grid.map(|grid| grid.order), report);
     let extended_splines = extended_splines(solver, regime, grid.map(|grid| grid.order), report);
     let background = background(solver, regime, report);
-    let poisson = materials.unwrap_or_default().iter().map(|material| material.material.elastic().poisson);
+    let poisson = materials
+        .unwrap_or_default()
+        .iter()
+        .map(|material| material.material.elastic().poisson);
     let unknowns = grid.map_or(0, |grid| grid.dims() as u128 * estimate::nodes(grid));
-    let size = Size { unknowns, poisson: poisson.fold(0.0, f64::max), reproducible: solver.flag("reproducible")? };
+    let size = Size {
+        unknowns,
+        poisson: poisson.fold(0.0, f64::max),
+        reproducible: solver.flag("reproducible")?,
+    };
     let linear = match solver.record("linear") {
         Some(linear) => read_linear(linear, size, report),
         None => solver.word("linear").map(in_a_word),
@@ -125,9 +132,10 @@ fn background(solver: &Record, regime: Option<Regime>, report: &mut Report<'_>) 
     }
     let (background, reason) = match regime? {
         Regime::Dynamic => (0.0, "nearly empty cells have inertia in a dynamic analysis"),
-        Regime::QuasiStatic => {
-            (1e-4, "nearly empty cells that extended splines do not constrain need a small stiffness")
-        }
+        Regime::QuasiStatic => (
+            1e-4,
+            "nearly empty cells that extended splines do not constrain need a small stiffness",
+        ),
     };
     report.note("solver.background", format!("{background:?}"), reason);
     Some(background)
@@ -170,17 +178,29 @@ impl Size {
             return Some(format!("{up_to}: below {MANY} a direct solver is fastest"));
         }
         if self.poisson > COMPRESSIBLE {
-            return Some(format!("{up_to}, but multigrid converges slowly above a Poisson's ratio of {COMPRESSIBLE}"));
+            return Some(format!(
+                "{up_to}, but multigrid converges slowly above a Poisson's ratio of {COMPRESSIBLE}"
+            ));
         }
-        self.reproducible.then(|| format!("{up_to}, but multigrid is not bitwise reproducible (solver.reproducible)"))
+        self.reproducible
+            .then(|| format!("{up_to}, but multigrid is not bitwise reproducible (solver.reproducible)"))
     }
 }
 
 /// What a word for the linear solver stands for.
 fn in_a_word(solver: LinearSolver) -> Linear {
-    let iterative = |ksp, pc, applications| Linear { ksp, pc, factor: None, applications, by_size: false };
+    let iterative = |ksp, pc, applications| Linear {
+        ksp,
+        pc,
+        factor: None,
+        applications,
+        by_size: false,
+    };
     match solver {
-        LinearSolver::Direct => Linear { factor: Some(Factor::Dissection), ..iterative(Ksp::Preonly, Pc::Cholesky, 0) },
+        LinearSolver::Direct => Linear {
+            factor: Some(Factor::Dissection),
+            ..iterative(Ksp::Preonly, Pc::Cholesky, 0)
+        },
         LinearSolver::Multigrid => iterative(Ksp::Cg, Pc::Gamg, 0),
         LinearSolver::IncompleteCholesky => iterative(Ksp::Preonly, Pc::Bjacobi, 1),
         LinearSolver::MultigridCycles => iterative(Ksp::Preonly, Pc::Gamg, 2),
@@ -204,7 +224,11 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let condenses = case.rigid.iter().any(|rigid| rigid.free.contains(&true));
     let is_own = case.solver.linear.pc == Pc::SplineMultigrid;
     if (is_own || case.solver.linear.applications > 0) && (case.flow.is_some() || condenses) {
-        let what = if condenses { "freely moving rigid bodies" } else { "flow of water" };
+        let what = if condenses {
+            "freely moving rigid bodies"
+        } else {
+            "flow of water"
+        };
         let message = format!(
             "E0604: the chosen linear solver is iterative and is not verified for a case with {what}. Use linear = \
              \"direct\"."
@@ -240,9 +264,16 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     if case.is_nearly_incompressible() {
         let what = "with nearly incompressible material";
         if case.solver.linear.factor.is_some() && active <= FEW_INCOMPRESSIBLE {
-            chosen(LinearSolver::Direct, format!("{so_many} {what}: a direct solver is faster than multigrid"), report);
+            chosen(
+                LinearSolver::Direct,
+                format!("{so_many} {what}: a direct solver is faster than multigrid"),
+                report,
+            );
         } else if case.solver.linear.factor.is_some() {
-            case.solver.linear = Linear { by_size: true, ..in_a_word(LinearSolver::SplineMultigrid) };
+            case.solver.linear = Linear {
+                by_size: true,
+                ..in_a_word(LinearSolver::SplineMultigrid)
+            };
             let reason = format!(
                 "{so_many} {what}: above {FEW_INCOMPRESSIBLE} faster than a direct solver; several ranks use the direct \
                  one"
@@ -252,8 +283,15 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         return;
     }
     let many = active > MANY_IN_SPACE;
-    let word = if many { LinearSolver::MultigridCycles } else { LinearSolver::IncompleteCholesky };
-    case.solver.linear = Linear { by_size: true, ..in_a_word(word) };
+    let word = if many {
+        LinearSolver::MultigridCycles
+    } else {
+        LinearSolver::IncompleteCholesky
+    };
+    case.solver.linear = Linear {
+        by_size: true,
+        ..in_a_word(word)
+    };
     let reason = match many {
         true => format!(
             "{so_many}: above {MANY_IN_SPACE} faster than other solvers; on several ranks only with \
@@ -317,7 +355,13 @@ fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<L
         }
         (false, None) => None,
     };
-    let found = Linear { ksp, pc, factor, applications: 0, by_size: false };
+    let found = Linear {
+        ksp,
+        pc,
+        factor,
+        applications: 0,
+        by_size: false,
+    };
     explain(linear, (&asked, &found), size, report);
     Some(found)
 }
@@ -325,8 +369,12 @@ fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<L
 /// Notes what the case has left open, and why it is what it is.
 fn explain(linear: &Record, (asked, found): (&PetscNames, &Linear), size: Size, report: &mut Report<'_>) {
     if asked.pc.is_none() {
-        let many =
-            || format!("up to {} unknowns: above {MANY} multigrid is faster than a direct solver", size.unknowns);
+        let many = || {
+            format!(
+                "up to {} unknowns: above {MANY} multigrid is faster than a direct solver",
+                size.unknowns
+            )
+        };
         let wanted = || "`ksp` or `factor` asks for a direct solver".to_owned();
         let reason = match (found.pc, size.against_multigrid()) {
             (Pc::Gamg, _) => many(),

@@ -13,7 +13,15 @@ use crate::words::{Geometry, Side, Word};
 /// Parts of a step by which stages must lie apart: a step ends at each.
 const APART: f64 = 1e-6;
 /// Keys of what a stage may apply or release.
-const MAY_ACT: &[&str] = &["drain", "footing", "inflow", "point_load", "prescribed", "rigid", "traction"];
+const MAY_ACT: &[&str] = &[
+    "drain",
+    "footing",
+    "inflow",
+    "point_load",
+    "prescribed",
+    "rigid",
+    "traction",
+];
 
 /// All stages in the order of the file, which must be that of time; `time` is the end of the run and the nominal step.
 pub(super) fn read_all(
@@ -26,7 +34,10 @@ pub(super) fn read_all(
     let acting = acting(root, report);
     for (number, record) in root.records("body").iter().enumerate() {
         let name = &bodies[number].name;
-        if let Some(first) = bodies[..number].iter().position(|body| name.is_some() && body.name == *name) {
+        if let Some(first) = bodies[..number]
+            .iter()
+            .position(|body| name.is_some() && body.name == *name)
+        {
             let message = format!("E0610: body.{first} has the same name as this body. Rename one of the two bodies.");
             record.error("name", message, report);
         }
@@ -52,8 +63,16 @@ type Named<'a> = (&'a str, Acting);
 
 /// Strips and loads with names, which are unique, rigid bodies, and what water crosses.
 fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
-    let strips = root.records("footing").iter().chain(root.records("prescribed")).enumerate();
-    let loads = root.records("traction").iter().chain(root.records("point_load")).enumerate();
+    let strips = root
+        .records("footing")
+        .iter()
+        .chain(root.records("prescribed"))
+        .enumerate();
+    let loads = root
+        .records("traction")
+        .iter()
+        .chain(root.records("point_load"))
+        .enumerate();
     let strips = strips.map(|(number, record)| (record, Acting::Strip(number)));
     let all = strips.chain(loads.map(|(number, record)| (record, Acting::Load(number))));
     let mut found: Vec<(&str, Acting, &Record)> = Vec::new();
@@ -74,13 +93,29 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
     }
     let rigid = root.records("rigid").iter().enumerate();
     let rigid = rigid.filter_map(|(number, record)| Some((record.text("name")?, Acting::Rigid(number))));
-    let drains = root.records("drain").iter().zip(0..).map(|(record, number)| (record, Acting::Drain(number)));
-    let inflows = root.records("inflow").iter().zip(0..).map(|(record, number)| (record, Acting::Inflow(number)));
-    let water = drains.chain(inflows).filter_map(|(record, acting)| Some((record.text("name")?, acting)));
-    let named = found.into_iter().map(|(name, acting, _)| (name, acting)).chain(rigid).chain(water);
+    let drains = root
+        .records("drain")
+        .iter()
+        .zip(0..)
+        .map(|(record, number)| (record, Acting::Drain(number)));
+    let inflows = root
+        .records("inflow")
+        .iter()
+        .zip(0..)
+        .map(|(record, number)| (record, Acting::Inflow(number)));
+    let water = drains
+        .chain(inflows)
+        .filter_map(|(record, acting)| Some((record.text("name")?, acting)));
+    let named = found
+        .into_iter()
+        .map(|(name, acting, _)| (name, acting))
+        .chain(rigid)
+        .chain(water);
     let mut all: Vec<Named<'_>> = named.collect();
     // As histories call one without a name.
-    let is_nameless = root.record("footing").is_some_and(|footing| footing.text("name").is_none());
+    let is_nameless = root
+        .record("footing")
+        .is_some_and(|footing| footing.text("name").is_none());
     if is_nameless && all.iter().all(|(name, _)| *name != NAMELESS) {
         all.push((NAMELESS, Acting::Strip(0)));
     }
@@ -92,9 +127,19 @@ fn stage(
     (root, bodies, acting): (&Record, &[Body], &[Named<'_>]),
     report: &mut Report<'_>,
 ) -> Option<Stage> {
-    let bodies: Vec<_> = bodies.iter().zip(0..).filter_map(|(body, k)| Some((body.name.as_deref()?, k))).collect();
-    let (remove, add) = (named("remove", record, &bodies, report), named("add", record, &bodies, report));
-    let (apply, release) = (named("activate", record, acting, report), named("deactivate", record, acting, report));
+    let bodies: Vec<_> = bodies
+        .iter()
+        .zip(0..)
+        .filter_map(|(body, k)| Some((body.name.as_deref()?, k)))
+        .collect();
+    let (remove, add) = (
+        named("remove", record, &bodies, report),
+        named("add", record, &bodies, report),
+    );
+    let (apply, release) = (
+        named("activate", record, acting, report),
+        named("deactivate", record, acting, report),
+    );
     let (materials, faces) = (exchanges(record, root, report), faces((record, factor), root, report));
     let (at, resets_displacements) = (record.number("at")?, record.flag("reset_displacements")?);
     let of_bodies = |named: Vec<(String, usize)>| named.into_iter().map(|(_, body)| body).collect::<Vec<_>>();
@@ -136,7 +181,11 @@ fn named<T: Copy>(
         return Some(Vec::new());
     }
     let bodies = ["remove", "add"].contains(&key);
-    let kind = if bodies { "[[body]]" } else { "load, motion, footing, rigid body, drain or inflow" };
+    let kind = if bodies {
+        "[[body]]"
+    } else {
+        "load, motion, footing, rigid body, drain or inflow"
+    };
     let mut find = |name: &String| {
         let mut all = known.iter().filter(|(other, _)| other == name);
         let found = all.next().map(|(_, what)| (name.clone(), *what));
@@ -160,12 +209,17 @@ fn named<T: Copy>(
 
 /// The faces of the grid that a stage changes.
 fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut Report<'_>) -> Option<Vec<FaceSupport>> {
-    let Some(boundary) = record.record("boundary") else { return Some(Vec::new()) };
+    let Some(boundary) = record.record("boundary") else {
+        return Some(Vec::new());
+    };
     let mut found = Vec::new();
     let axes = Side::of(root.word("geometry")?).iter().enumerate();
     let sides = axes.flat_map(|(axis, sides)| [(sides[0], axis, false), (sides[1], axis, true)]);
     for (side, axis, upper) in sides.filter(|(side, ..)| boundary.gives(side.word())) {
-        let (support, contact) = (super::support(boundary, side)?, super::contact(boundary, side, factor, report)?);
+        let (support, contact) = (
+            super::support(boundary, side)?,
+            super::contact(boundary, side, factor, report)?,
+        );
         if support == Support::FreeField {
             let message = "E0614: a stage cannot create a free-field boundary, which must exist from the start. Move \
                            this side from the stage to [boundary].";
@@ -179,7 +233,10 @@ fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut R
             boundary.error(side.word(), message, report);
         }
         let moves = |motion: &Record| motion.word::<Side>("face") == Some(side);
-        if let Some(motion) = root.records("prescribed").iter().find(|motion| support != Support::Free && moves(motion))
+        if let Some(motion) = root
+            .records("prescribed")
+            .iter()
+            .find(|motion| support != Support::Free && moves(motion))
         {
             let message = format!(
                 "E0615: {} already prescribes the motion of this boundary, so the stage cannot restrain the same \
@@ -188,7 +245,11 @@ fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut R
             );
             boundary.error(side.word(), message, report);
         }
-        found.push(FaceSupport { face: Face { axis, upper }, support, contact });
+        found.push(FaceSupport {
+            face: Face { axis, upper },
+            support,
+            contact,
+        });
     }
     Some(found)
 }
@@ -231,7 +292,11 @@ fn in_turn((name, what): &Named<'_>, stages: &[Stage], root: &Record, report: &m
             );
             record.error("activate", message, report);
         } else if (releases && acts == Some(false)) || (applies && acts == Some(true)) {
-            let (key, state) = if releases { ("deactivate", "inactive") } else { ("activate", "active") };
+            let (key, state) = if releases {
+                ("deactivate", "inactive")
+            } else {
+                ("activate", "active")
+            };
             let message = format!(
                 "E0619: `{name}` is already {state} when this stage begins. Remove `{name}` from `{key}` of \
                     this stage."
@@ -441,7 +506,12 @@ pub(super) fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(Acting, &'a Re
     let strips = root.records("footing").iter().chain(root.records("prescribed"));
     for (number, (site, record)) in held.zip(strips).enumerate() {
         if !matches!(site, Site::Face(_)) {
-            found.push((Acting::Strip(number), record, key(record), site::places(site, &case.grid)));
+            found.push((
+                Acting::Strip(number),
+                record,
+                key(record),
+                site::places(site, &case.grid),
+            ));
         }
     }
     for (number, (traction, record)) in case.tractions.iter().zip(root.records("traction")).enumerate() {
@@ -461,5 +531,8 @@ pub(super) fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(Acting, &'a Re
 
 /// The key that gives a strip's or a load's place.
 fn key(record: &Record) -> &'static str {
-    ["rectangle", "disc", "circle", "surface", "sphere"].into_iter().find(|key| record.gives(key)).unwrap_or("from")
+    ["rectangle", "disc", "circle", "surface", "sphere"]
+        .into_iter()
+        .find(|key| record.gives(key))
+        .unwrap_or("from")
 }

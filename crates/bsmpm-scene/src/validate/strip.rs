@@ -32,7 +32,13 @@ pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Repor
                        the base and would not load the soil. Use interface = \"rough\", or change the motion.";
         record.error(motion(record), message, report);
     }
-    Some(Footing { site, path, base, contact, rests: false })
+    Some(Footing {
+        site,
+        path,
+        base,
+        contact,
+        rests: false,
+    })
 }
 
 /// All prescribed motions in the order of the file, without those that have an error.
@@ -41,7 +47,9 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
     for record in root.records("prescribed") {
         let path = path(record, around.end, report);
         let site = site(record, around, report);
-        let (Some(path), Some(site)) = (path, site) else { continue };
+        let (Some(path), Some(site)) = (path, site) else {
+            continue;
+        };
         match site {
             Site::Face(face) => {
                 inward(record, face, &path, report);
@@ -69,7 +77,13 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
             Some(None) => continue,
             None => (record.word("components").unwrap_or(Components::All).base(), None),
         };
-        found.push(Prescribed { site, path, base, contact, rests: false });
+        found.push(Prescribed {
+            site,
+            path,
+            base,
+            contact,
+            rests: false,
+        });
     }
     found
 }
@@ -84,8 +98,12 @@ fn contact_of(
     report: &mut Report<'_>,
 ) -> Option<Option<(Base, Option<StripContact<3>>)>> {
     let table = record.record(key)?;
-    let Some(law) = super::law(table, around.factor, report) else { return Some(None) };
-    let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else { return Some(None) };
+    let Some(law) = super::law(table, around.factor, report) else {
+        return Some(None);
+    };
+    let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else {
+        return Some(None);
+    };
     let bodies: Vec<&Body> = bodies.iter().collect();
     let Some(side) = side_of_bodies(grid, |off| with_body(site, off, (grid, &bodies))) else {
         let message = "E0404: contact needs soil on exactly one side of this surface, but bodies lie on both sides \
@@ -102,19 +120,31 @@ fn contact_of(
         ));
     }
     let base = if law.friction > 0.0 { Base::Rough } else { Base::Smooth };
-    Some(Some((base, Some(StripContact { law, inward: normal_of(site).map(|n| side * n).into() }))))
+    Some(Some((
+        base,
+        Some(StripContact {
+            law,
+            inward: normal_of(site).map(|n| side * n).into(),
+        }),
+    )))
 }
 
 /// Places of a strip at which one of the bodies is so many metres along its normal.
 pub(super) fn with_body(site: Site, off: f64, (grid, bodies): (&GridSpec, &[&Body])) -> usize {
     let normal = normal_of(site);
     let beside = |at: [f64; 3]| std::array::from_fn(|axis| at[axis] + off * normal[axis]);
-    places(site, grid).into_iter().filter(|at| bodies.iter().any(|body| is_in(body, grid, beside(*at)))).count()
+    places(site, grid)
+        .into_iter()
+        .filter(|at| bodies.iter().any(|body| is_in(body, grid, beside(*at))))
+        .count()
 }
 
 /// The key that gives a motion.
 fn motion(record: &Record) -> &'static str {
-    ["displacement", "velocity"].into_iter().find(|key| record.gives(key)).unwrap_or("path")
+    ["displacement", "velocity"]
+        .into_iter()
+        .find(|key| record.gives(key))
+        .unwrap_or("path")
 }
 
 pub(super) fn path(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<MotionPath> {
@@ -157,7 +187,11 @@ fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Ve
         }
     }
     if rows.is_empty() {
-        record.error("path", "E0435: the path has no row after t = 0. Give at least one row [t, ux, uy].", report);
+        record.error(
+            "path",
+            "E0435: the path has no row after t = 0. Give at least one row [t, ux, uy].",
+            report,
+        );
         return None;
     }
     warn_of_late(&record.path_of("path"), rows.iter().map(|row| row.0), end, report);
@@ -205,11 +239,19 @@ fn normal_part(path: &MotionPath, site: Site) -> f64 {
 /// Warns of forces of strips that meet a face which holds, at the edge, a part of them: a fixed one, or a roller that
 /// an inclined one presses on.
 pub(super) fn beside_fixed(case: &Case, report: &mut Report<'_>) {
-    let sites: Vec<Site> =
-        case.footing.iter().map(|of| of.site).chain(case.prescribed.iter().map(|of| of.site)).collect();
+    let sites: Vec<Site> = case
+        .footing
+        .iter()
+        .map(|of| of.site)
+        .chain(case.prescribed.iter().map(|of| of.site))
+        .collect();
     for (number, site) in sites.into_iter().enumerate() {
-        let Some(history) = case.histories.iter().find(|history| is_of_force(history, number, case)) else { continue };
-        let Some((side, support)) = met(case, site) else { continue };
+        let Some(history) = case.histories.iter().find(|history| is_of_force(history, number, case)) else {
+            continue;
+        };
+        let Some((side, support)) = met(case, site) else {
+            continue;
+        };
         let (name, history) = (name_of_strip(case, number), &history.name);
         report.warn(match support {
             Support::Roller => format!(
@@ -258,7 +300,9 @@ fn met(case: &Case, site: Site) -> Option<(&'static str, Support)> {
 pub(super) fn has_moved(case: &Case, number: usize, t: f64) -> bool {
     let footing = case.footing.iter().map(|footing| &footing.path);
     let mut paths = footing.chain(case.prescribed.iter().map(|prescribed| &prescribed.path));
-    paths.nth(number).is_some_and(|path| begins_before(&path.rows, [0.0; 3], t))
+    paths
+        .nth(number)
+        .is_some_and(|path| begins_before(&path.rows, [0.0; 3], t))
 }
 
 /// Whether something that rests at the value `rest` goes away from it before a time.

@@ -50,7 +50,9 @@ struct Overlap {
 /// Pairs of bodies without free motions that overlap at some time after they have moved against each other.
 fn overlaps<const D: usize>(case: &Case) -> Vec<Overlap> {
     let mut found: Vec<Overlap> = Vec::new();
-    let begins: Vec<f64> = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at)).collect();
+    let begins: Vec<f64> = std::iter::once(0.0)
+        .chain(case.stages.iter().map(|stage| stage.at))
+        .collect();
     for (number, &begin) in begins.iter().enumerate() {
         let end = begins.get(number + 1).copied().unwrap_or(case.analysis.end);
         let bodies = surfaces::rigid::<D>(case, begin);
@@ -76,7 +78,9 @@ fn first_overlap<const D: usize>(pair: [&RigidBody<D>; 2], begin: f64, end: f64)
     times.sort_by(f64::total_cmp);
     let between = |ends: &[f64]| {
         let (from, length) = (ends[0], ends[1] - ends[0]);
-        (1..=PLACES).map(move |k| from + length * k as f64 / PLACES as f64).collect::<Vec<f64>>()
+        (1..=PLACES)
+            .map(move |k| from + length * k as f64 / PLACES as f64)
+            .collect::<Vec<f64>>()
     };
     times.windows(2).flat_map(between).find(|&t| {
         let [one, other] = pair.map(|body| (body, body.on_path(t)));
@@ -120,7 +124,9 @@ fn check_meetings(case: &Case, root: &Record, report: &mut Report<'_>) {
 /// m  width of a face of a body that another one continues with soil before both, if they move differently along its
 /// normal.
 fn meeting(case: &Case, body: &RigidBody<2>, other: &RigidBody<2>) -> Option<f64> {
-    let Outline::Polygon(corners) = &body.outline else { return None };
+    let Outline::Polygon(corners) = &body.outline else {
+        return None;
+    };
     let still = Vector::zeros();
     let (pose, edge) = (body.pose(&still), case.grid.shortest());
     let distance = |of: &RigidBody<2>, x: &Vector<2>| of.outline.nearest(&of.pose(&still).seen(x)).distance;
@@ -135,8 +141,9 @@ fn meeting(case: &Case, body: &RigidBody<2>, other: &RigidBody<2>) -> Option<f64
             let [behind, before] = [-BESIDE, BESIDE].map(|off| end + along * (0.5 * edge) + normal * (off * edge));
             let continues = distance(other, &behind) < 0.0 && distance(other, &before) > 0.0;
             let is_flush = distance(other, &before) - distance(other, &behind) <= 2.2 * BESIDE * edge;
-            let has_soil =
-                [before, end - along * (0.5 * edge) + normal * (BESIDE * edge)].iter().all(|x| is_soil(case, x));
+            let has_soil = [before, end - along * (0.5 * edge) + normal * (BESIDE * edge)]
+                .iter()
+                .all(|x| is_soil(case, x));
             if continues && is_flush && has_soil && distance(body, &behind) > 0.0 && parts(body, other, &normal) {
                 return Some(width(case, &end, &far));
             }

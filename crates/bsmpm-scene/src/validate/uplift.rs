@@ -18,7 +18,11 @@ pub(super) fn warn(case: &Case, water: &Water, report: &mut Report<'_>) {
     let heights = water.table.levels().into_iter().flatten().map(|row| row.1);
     let level = heights.fold(f64::NEG_INFINITY, f64::max);
     let lacking = |rigid: &Rigid| {
-        let area = if case.geometry == Geometry::PlaneStrain { wet_area(&rigid.shape, level) } else { 0.0 };
+        let area = if case.geometry == Geometry::PlaneStrain {
+            wet_area(&rigid.shape, level)
+        } else {
+            0.0
+        };
         (area > 0.0).then(|| format!("`{}` {:.4} kN/m", rigid.name, water.unit_weight * area * 1e-3))
     };
     let lacking: Vec<String> = case.rigid.iter().filter_map(lacking).collect();
@@ -74,7 +78,13 @@ mod tests {
         for (level, area) in [(-1.0, 0.0), (0.5, 1.0), (5.0, 4.0)] {
             assert!((wet_area(&block, level) - area).abs() < 1e-12, "{level}");
         }
-        let half = wet_area(&RigidShape::Circle { center: [0.0, 1.0], radius: 2.0 }, 1.0);
+        let half = wet_area(
+            &RigidShape::Circle {
+                center: [0.0, 1.0],
+                radius: 2.0,
+            },
+            1.0,
+        );
         assert!((half / TAU - 1.0).abs() < 3e-3, "{half}");
     }
 }

@@ -33,7 +33,10 @@ pub(super) fn read(
         }
         return None;
     };
-    if ["level", "level_path", "line", "line_path"].iter().all(|key| !record.gives(key)) {
+    if ["level", "level_path", "line", "line_path"]
+        .iter()
+        .all(|key| !record.gives(key))
+    {
         if !super::flow::flows(root) {
             let message = "E0521: [water] gives no water table, and no material has pore-water flow, so [water] has \
                            no effect. Give one of `level`, `level_path`, `line` and `line_path`, or remove [water].";
@@ -75,12 +78,21 @@ pub(super) fn read(
 
 /// The water table, somewhere above the grid's base.
 fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Report<'_>) -> Option<Ambient> {
-    let key = ["level", "level_path", "line", "line_path"].into_iter().find(|key| record.gives(key))?;
+    let key = ["level", "level_path", "line", "line_path"]
+        .into_iter()
+        .find(|key| record.gives(key))?;
     let rows = |report: &mut Report<'_>| Some(increasing(record, key, report)?.map(|row| (row[0], row[1])));
     let table = match key {
         "level" => Ambient::Level(vec![(0.0, record.number("level")?)]),
         "level_path" => Ambient::Level(rows(report)?.collect()),
-        "line" => Ambient::Line(rows(report)?.map(|(x, y)| LevelAt { x, rows: vec![(0.0, y)] }).collect()),
+        "line" => Ambient::Line(
+            rows(report)?
+                .map(|(x, y)| LevelAt {
+                    x,
+                    rows: vec![(0.0, y)],
+                })
+                .collect(),
+        ),
         _ => Ambient::Line(lines(record, key, report)?),
     };
     // Ground may have suction above a table that is below it.
@@ -109,7 +121,10 @@ fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Re
 fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<LevelAt>> {
     let rows = record.rows(key)?;
     let mut places: Vec<LevelAt> = Vec::new();
-    let count = rows.iter().take_while(|row| row.numbers[0] == rows[0].numbers[0]).count();
+    let count = rows
+        .iter()
+        .take_while(|row| row.numbers[0] == rows[0].numbers[0])
+        .count();
     for (number, row) in rows.iter().enumerate() {
         let [t, x, y] = [0, 1, 2].map(|k| row.numbers[k]);
         let at = number % count;
@@ -170,7 +185,11 @@ fn steep((table, grid): (&Ambient, &GridSpec), (record, key): (&Record, &str), r
              the water thrust is too small. Extend the drop over at least one cell."
         ));
     }
-    let steepest = places.windows(2).filter(|pair| !is_step(pair)).map(slope).fold(0.0, f64::max);
+    let steepest = places
+        .windows(2)
+        .filter(|pair| !is_step(pair))
+        .map(slope)
+        .fold(0.0, f64::max);
     if steepest > GENTLE {
         report.warn(format!(
             "W0523: {key}: the line has a slope of {steepest:.3} (limit {GENTLE}). If water flows along it, pore \
@@ -182,13 +201,19 @@ fn steep((table, grid): (&Ambient, &GridSpec), (record, key): (&Record, &str), r
 
 /// What only the whole case shows.
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
-    let (Some(water), Some(written)) = (&case.water, record.record("water")) else { return };
+    let (Some(water), Some(written)) = (&case.water, record.record("water")) else {
+        return;
+    };
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
         let message = "E0526: [water] and [shaking] cannot be combined, because the pore pressures of [water] stay \
              hydrostatic during an earthquake. Remove [water], and use undrained strengths.";
         report.error(written.origin, &written.path, message);
     }
-    for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
+    for (side, support) in Side::of(case.geometry)
+        .iter()
+        .flatten()
+        .zip(case.boundary.into_iter().flatten())
+    {
         if matches!(support, Support::Absorbing | Support::FreeField) {
             let message = format!(
                 "E0527: the boundary condition \"{support}\" is not available together with [water], because its \
@@ -201,9 +226,17 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     floating(case, water, record, report);
     uplift::warn(case, water, report);
     let levels = water.table.levels();
-    let highest = levels.into_iter().flatten().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
+    let highest = levels
+        .into_iter()
+        .flatten()
+        .map(|row| row.1)
+        .fold(f64::NEG_INFINITY, f64::max);
     let up = case.grid.dims() - 1;
-    let low = case.bodies.iter().map(|body| body.region.corners()[0][up]).fold(f64::INFINITY, f64::min);
+    let low = case
+        .bodies
+        .iter()
+        .map(|body| body.region.corners()[0][up])
+        .fold(f64::INFINITY, f64::min);
     if highest <= low && !written.gives("suction") {
         report.warn(format!(
             "W0524: water: the water table (at most at {highest} m) is below all bodies (lowest point at {low} m), \
@@ -231,7 +264,13 @@ fn floating(case: &Case, water: &Water, record: &Record, report: &mut Report<'_>
         named.saturated.or(named.density).unwrap_or(0.0) * gravity.acceleration[case.grid.dims() - 1].abs()
     };
     let up = case.grid.dims() - 1;
-    let highest = water.table.levels().into_iter().flatten().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
+    let highest = water
+        .table
+        .levels()
+        .into_iter()
+        .flatten()
+        .map(|row| row.1)
+        .fold(f64::NEG_INFINITY, f64::max);
     let is_wet = |body: &Body| body.region.corners()[0][up] < highest;
     for (number, (_, written)) in record.named("material").iter().enumerate() {
         if weight(number) < water.unit_weight && case.bodies.iter().any(|body| body.material == number && is_wet(body))
@@ -241,7 +280,9 @@ fn floating(case: &Case, water: &Water, record: &Record, report: &mut Report<'_>
                  kN/m3), so the soil would float. Set `saturated_unit_weight`, for example to \"20 kN/m3\".",
                 water.unit_weight * 1e-3
             );
-            let key = ["saturated_unit_weight", "unit_weight", "density"].into_iter().find(|key| written.gives(key));
+            let key = ["saturated_unit_weight", "unit_weight", "density"]
+                .into_iter()
+                .find(|key| written.gives(key));
             match key {
                 Some(key) => written.error(key, message, report),
                 None => report.error(written.origin, &written.path, message),

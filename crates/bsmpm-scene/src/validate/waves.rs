@@ -19,7 +19,9 @@ pub(super) fn choose_mass(case: &mut Case, record: &Record, report: &mut Report<
         return;
     }
     let followed = (0..case.materials.len()).filter(|&number| case.is_followed(number));
-    let is_elastic = followed.map(|number| &case.materials[number]).all(|named| !named.material.yields());
+    let is_elastic = followed
+        .map(|number| &case.materials[number])
+        .all(|named| !named.material.yields());
     let reason = match (case.shaking.is_empty(), is_elastic) {
         (false, _) => "waves of [shaking] have the correct speed with it",
         (true, true) => "elastic waves have the correct speed with it",
@@ -44,7 +46,9 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
     let fewest = fewest_cells(case.analysis.mass, case.grid.order);
     let inputs = inputs(record);
     let cells = inputs.iter().filter_map(|input| Some((input, cells(case, input)?)));
-    let Some((input, cells)) = cells.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, cells)| *cells < WHOLE * fewest)
+    let Some((input, cells)) = cells
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .filter(|(_, cells)| *cells < WHOLE * fewest)
     else {
         return;
     };
@@ -68,7 +72,9 @@ fn cells(case: &Case, input: &WaveInput) -> Option<f64> {
         let occupied = body.occupied(&case.grid);
         let axes = (0..case.grid.dims()).filter(|axis| input.axis.is_none_or(|along| along == *axis));
         let edges = axes.flat_map(|axis| occupied[axis].clone().map(move |cell| (axis, cell)));
-        let longest = edges.map(|(axis, cell)| case.grid.axes[axis].cell(cell)).fold(0.0, f64::max);
+        let longest = edges
+            .map(|(axis, cell)| case.grid.axes[axis].cell(cell))
+            .fold(0.0, f64::max);
         Some(speed(case, body, input.axis.is_some())? / (input.frequency * longest))
     };
     case.bodies.iter().filter_map(of_body).reduce(f64::min)
@@ -80,10 +86,19 @@ fn speed(case: &Case, body: &Body, compresses: bool) -> Option<f64> {
     let named = &case.materials[body.material];
     let vertical = case.grid.dims() - 1;
     let [lower, upper] = body.region.corners().map(|corner| corner[vertical]);
-    let stiffness = named.material.relative_stiffness(0.5 * (lower + upper) - case.grid.lower()[vertical]);
+    let stiffness = named
+        .material
+        .relative_stiffness(0.5 * (lower + upper) - case.grid.lower()[vertical]);
     let (lambda, mu) = named.material.elastic().lame();
-    let soil = case.flow.as_ref().and_then(|flow| Some((flow.bulk, flow.soils[body.material].as_ref()?)));
+    let soil = case
+        .flow
+        .as_ref()
+        .and_then(|flow| Some((flow.bulk, flow.soils[body.material].as_ref()?)));
     let water = soil.map_or(0.0, |(bulk, soil)| bulk / soil.porosity);
-    let modulus = if compresses { stiffness * (lambda + 2.0 * mu) + water } else { stiffness * mu };
+    let modulus = if compresses {
+        stiffness * (lambda + 2.0 * mu) + water
+    } else {
+        stiffness * mu
+    };
     Some((modulus / named.density.filter(|density| *density > 0.0)?).sqrt()).filter(|speed| speed.is_finite())
 }

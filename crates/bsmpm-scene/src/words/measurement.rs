@@ -130,55 +130,115 @@ choice! {
 
 /// Components of a vector.
 const VECTOR: &[(&str, &str)] = &[("-x", "along x"), ("-y", "along y")];
-const STRESS: &[(&str, &str)] =
-    &[("-xx", "normal to x"), ("-yy", "normal to y"), ("-zz", "out of the plane"), ("-xy", "shear")];
+const STRESS: &[(&str, &str)] = &[
+    ("-xx", "normal to x"),
+    ("-yy", "normal to y"),
+    ("-zz", "out of the plane"),
+    ("-xy", "shear"),
+];
 const VECTOR_IN_SPACE: &[(&str, &str)] = &[VECTOR[0], VECTOR[1], ("-z", "along z")];
-const STRESS_IN_SPACE: &[(&str, &str)] =
-    &[STRESS[0], STRESS[1], ("-zz", "normal to z"), ("-xy", "shear"), ("-yz", "shear"), ("-xz", "shear")];
+const STRESS_IN_SPACE: &[(&str, &str)] = &[
+    STRESS[0],
+    STRESS[1],
+    ("-zz", "normal to z"),
+    ("-xy", "shear"),
+    ("-yz", "shear"),
+    ("-xz", "shear"),
+];
 const SECTION: &[(&str, &str)] = &[
     ("-n", "normal force, positive in tension"),
-    ("-q", "shear force along the line, on the material to the left of the line"),
-    ("-m", "bending moment about the centre of the line (N m/m), positive if the side of `to` is in tension"),
+    (
+        "-q",
+        "shear force along the line, on the material to the left of the line",
+    ),
+    (
+        "-m",
+        "bending moment about the centre of the line (N m/m), positive if the side of `to` is in tension",
+    ),
 ];
 const SECTION_IN_SPACE: &[(&str, &str)] = &[
     SECTION[0],
     ("-q1", "shear force along t1, on the material before the section"),
     ("-q2", "shear force along t2, on the material before the section"),
-    ("-t", "torsional moment (N m) about the normal through the centre, on the material before the section"),
-    ("-m1", "bending moment about the centre (N m), positive if the side of positive t1 is in tension"),
-    ("-m2", "bending moment about the centre (N m), positive if the side of positive t2 is in tension"),
+    (
+        "-t",
+        "torsional moment (N m) about the normal through the centre, on the material before the section",
+    ),
+    (
+        "-m1",
+        "bending moment about the centre (N m), positive if the side of positive t1 is in tension",
+    ),
+    (
+        "-m2",
+        "bending moment about the centre (N m), positive if the side of positive t2 is in tension",
+    ),
 ];
-const RANGE: &[(&str, &str)] =
-    &[("-mean", "mean, weighted with the present volumes"), ("-least", "least value"), ("-largest", "largest value")];
-const STRAIN: &[(&str, &str)] = &[("-mean", "mean, weighted with the present volumes"), ("-largest", "largest value")];
+const RANGE: &[(&str, &str)] = &[
+    ("-mean", "mean, weighted with the present volumes"),
+    ("-least", "least value"),
+    ("-largest", "largest value"),
+];
+const STRAIN: &[(&str, &str)] = &[
+    ("-mean", "mean, weighted with the present volumes"),
+    ("-largest", "largest value"),
+];
 const NOISE: &[(&str, &str)] = &[
     ("-average", "deviation from a local average over the grid"),
-    ("-plane", "deviation from a plane through the neighbouring material points"),
+    (
+        "-plane",
+        "deviation from a plane through the neighbouring material points",
+    ),
 ];
-const CONTACT: &[(&str, &str)] =
-    &[("-closed", "fraction of the nodes that are closed"), ("-sliding", "fraction of the normal force that slides")];
+const CONTACT: &[(&str, &str)] = &[
+    ("-closed", "fraction of the nodes that are closed"),
+    ("-sliding", "fraction of the normal force that slides"),
+];
 const GAP: &[(&str, &str)] = &[("-least", "least value"), ("-largest", "largest value")];
 const ENERGY: &[(&str, &str)] = &[
     ("-kinetic", "kinetic energy of the material points"),
-    ("-elastic", "elastic energy of the material points, of compressed water and of suction"),
+    (
+        "-elastic",
+        "elastic energy of the material points, of compressed water and of suction",
+    ),
     ("-plastic", "dissipation by plastic flow, damping and seepage"),
     (
         "-external",
         "work of gravity, loads and prescribed displacements, minus dissipation by friction at faces and by absorbing boundaries",
     ),
-    ("-numerical", "numerical dissipation, the sum of transfer, integration, smoothing, background and penalty"),
-    ("-transfer", "dissipation by the transfer between material points and nodes"),
-    ("-integration", "dissipation by the integration in time and along the strain path"),
+    (
+        "-numerical",
+        "numerical dissipation, the sum of transfer, integration, smoothing, background and penalty",
+    ),
+    (
+        "-transfer",
+        "dissipation by the transfer between material points and nodes",
+    ),
+    (
+        "-integration",
+        "dissipation by the integration in time and along the strain path",
+    ),
     ("-smoothing", "dissipation by the averaging of elastic strains"),
-    ("-background", "dissipation by the fictitious stiffness `solver.background`"),
-    ("-penalty", "dissipation by the penalty method at footings and prescribed displacements"),
-    ("-closure", "residual of the balance: work of the out-of-balance forces, and round-off"),
+    (
+        "-background",
+        "dissipation by the fictitious stiffness `solver.background`",
+    ),
+    (
+        "-penalty",
+        "dissipation by the penalty method at footings and prescribed displacements",
+    ),
+    (
+        "-closure",
+        "residual of the balance: work of the out-of-balance forces, and round-off",
+    ),
 ];
 
 impl Measurement {
     /// Whether there must be a footing.
     pub fn is_of_footing(self) -> bool {
-        matches!(self, Self::FootingPressure | Self::FootingForce | Self::Penetration | Self::Slip)
+        matches!(
+            self,
+            Self::FootingPressure | Self::FootingForce | Self::Penetration | Self::Slip
+        )
     }
 
     /// Whether it is of water that flows.
@@ -190,8 +250,10 @@ impl Measurement {
     /// Whether it is of a rigid body.
     pub fn is_of_rigid_body(self) -> bool {
         use Measurement::*;
-        matches!(self, RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity)
-            || matches!(self, RigidSlip | RigidGap | RigidWork)
+        matches!(
+            self,
+            RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity
+        ) || matches!(self, RigidSlip | RigidGap | RigidWork)
     }
 
     /// Whether it can be of a strip.
@@ -274,13 +336,20 @@ impl Measurement {
     /// Unit of the numbers of a column, of those along so many axes.
     pub fn unit_of(self, column: usize, dims: usize) -> &'static str {
         // Forces along the axes are first, then the moments.
-        if self == Self::SectionForces && column >= dims { "N m/m" } else { self.unit() }
+        if self == Self::SectionForces && column >= dims {
+            "N m/m"
+        } else {
+            self.unit()
+        }
     }
 
     /// Whether it is of the points of a material, a body or a box, if one is given.
     pub fn is_of_part(self) -> bool {
         use Measurement::*;
-        let of_mass = matches!(self, Mass | Momentum | CentreOfMass | AngularMomentum | KineticEnergy | MeanStress);
+        let of_mass = matches!(
+            self,
+            Mass | Momentum | CentreOfMass | AngularMomentum | KineticEnergy | MeanStress
+        );
         let of_motion = matches!(self, MeanDisplacement | MeanVelocity | MaxDisplacement | Heave);
         of_mass || of_motion || matches!(self, PlasticStrain | PorePressures | PressureNoise | Runout | Height)
     }

@@ -61,7 +61,10 @@ choice! {
 impl FrameField {
     /// Whether it is of water that flows.
     pub fn is_of_flow(self) -> bool {
-        matches!(self, Self::ExcessPressure | Self::Flux | Self::Porosity | Self::Saturation)
+        matches!(
+            self,
+            Self::ExcessPressure | Self::Flux | Self::Porosity | Self::Saturation
+        )
     }
 
     /// Its name in frames.
@@ -124,9 +127,17 @@ impl ProfileQuantity {
         match self {
             Self::Displacement => (&["displacement-x", "displacement-y", "displacement-z"][..dims], "m"),
             Self::Velocity => (&["velocity-x", "velocity-y", "velocity-z"][..dims], "m/s"),
-            Self::Stress if dims == 3 => {
-                (&["stress-xx", "stress-yy", "stress-zz", "stress-xy", "stress-yz", "stress-xz"], "Pa")
-            }
+            Self::Stress if dims == 3 => (
+                &[
+                    "stress-xx",
+                    "stress-yy",
+                    "stress-zz",
+                    "stress-xy",
+                    "stress-yz",
+                    "stress-xz",
+                ],
+                "Pa",
+            ),
             Self::Stress => (&["stress-xx", "stress-yy", "stress-zz", "stress-xy"], "Pa"),
             Self::P => (&["p"], "Pa"),
             Self::Q => (&["q"], "Pa"),

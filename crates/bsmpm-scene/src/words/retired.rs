@@ -9,7 +9,10 @@ pub(crate) const BACKGROUND_KIND: Words = Words {
     later: &[],
     misnomers: &[],
     earlier: &[],
-    removed: &[replaced_by_extension("ghost-penalty"), replaced_by_extension("curvature")],
+    removed: &[
+        replaced_by_extension("ghost-penalty"),
+        replaced_by_extension("curvature"),
+    ],
 };
 
 /// Words of `[solver] background_cells`: all occupied cells have the background.

@@ -224,7 +224,11 @@ impl Side {
 
     /// Per axis of a geometry the lower and the upper one.
     pub fn of(geometry: Geometry) -> &'static [[Self; 2]] {
-        if geometry == Geometry::Solid { &Self::OF_SOLID } else { &Self::ALL }
+        if geometry == Geometry::Solid {
+            &Self::OF_SOLID
+        } else {
+            &Self::ALL
+        }
     }
 }
 

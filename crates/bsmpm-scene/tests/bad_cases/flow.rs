@@ -10,27 +10,90 @@ const CURVE: &str = "curve = [[0, 1, 1], [1, 0.5, 0.1], [2, 0.4, 0.2]]";
 /// Time, splines, soils, drains and inflows, and what is not shown to be right with them.
 pub const FLOW: &[Row] = &[
     // Time.
-    row(TYPE, "type = \"consolidate\"", "analysis.type", "did you mean `consolidation`?"),
+    row(
+        TYPE,
+        "type = \"consolidate\"",
+        "analysis.type",
+        "did you mean `consolidation`?",
+    ),
     row(TYPE, "type = \"dynamic\"", "analysis.growth", "E0258").down(3),
     row("end    = \"20 year\"\n", "", "analysis.end", "E0255").up(2),
     row("dt     = \"1 h\"", "steps = 100", "analysis.growth", "E0259").down(1),
     row("growth = 1.2", "growth = 0.9", "analysis.growth", "1 <= growth <= 10"),
-    row("dt_max = \"60 d\"", "dt_max = \"1 min\"", "analysis.dt_max", "dt_max = 60 is less than dt = 3600"),
-    row("dt_max = \"60 d\"", "dt_max = \"60 daz\"", "analysis.dt_max", "did you mean `day`?"),
+    row(
+        "dt_max = \"60 d\"",
+        "dt_max = \"1 min\"",
+        "analysis.dt_max",
+        "dt_max = 60 is less than dt = 3600",
+    ),
+    row(
+        "dt_max = \"60 d\"",
+        "dt_max = \"60 daz\"",
+        "analysis.dt_max",
+        "did you mean `day`?",
+    ),
     // Splines, points, averages, iterations.
     row("degree = \"quadratic\"", "degree = \"linear\"", "grid.degree", "E0541"),
-    row("degree = \"quadratic\"", "degree = \"cubic\"", "body.0.points_per_cell", "E0542: .. 3 material points")
-        .down(29),
-    row("\"consistent-f-bar\"", "\"subgrid-f-bar\"", "stabilisation.method", "E0540 .. \"consistent-f-bar\""),
+    row(
+        "degree = \"quadratic\"",
+        "degree = \"cubic\"",
+        "body.0.points_per_cell",
+        "E0542: .. 3 material points",
+    )
+    .down(29),
+    row(
+        "\"consistent-f-bar\"",
+        "\"subgrid-f-bar\"",
+        "stabilisation.method",
+        "E0540 .. \"consistent-f-bar\"",
+    ),
     row("\"auto\"", "\"broyden\"", "solver.nonlinear", "E0540 .. \"auto\""),
-    row("nonlinear = \"auto\"", "quadrature = \"fitted\"", "solver.quadrature", "E0540 .. \"points\""),
+    row(
+        "nonlinear = \"auto\"",
+        "quadrature = \"fitted\"",
+        "solver.quadrature",
+        "E0540 .. \"points\"",
+    ),
     // Soils.
-    row("porosity         = 0.6\n", "", "material.clay.porosity", "E0505 .. drainage = \"coupled\"").up(5),
-    row("permeability     = \"1e-9 m/s\"\n", "", "material.clay.permeability", "E0505").up(6),
-    row("permeability     = \"1e-9 m/s\"", "permeability = \"1e-9 m\"", "material.clay.permeability", "a velocity"),
-    row("permeability     = \"1e-9 m/s\"", "permeability = [1e-9, -1e-9]", "material.clay.permeability", "> 0"),
-    row("porosity         = 0.6", "porosity = 60", "material.clay.porosity", "0 < porosity < 1"),
-    row("porosity = 0.5", "porosity = 0.5\npermeability = 1e-9", "material.tight.permeability", "E0506").down(1),
+    row(
+        "porosity         = 0.6\n",
+        "",
+        "material.clay.porosity",
+        "E0505 .. drainage = \"coupled\"",
+    )
+    .up(5),
+    row(
+        "permeability     = \"1e-9 m/s\"\n",
+        "",
+        "material.clay.permeability",
+        "E0505",
+    )
+    .up(6),
+    row(
+        "permeability     = \"1e-9 m/s\"",
+        "permeability = \"1e-9 m\"",
+        "material.clay.permeability",
+        "a velocity",
+    ),
+    row(
+        "permeability     = \"1e-9 m/s\"",
+        "permeability = [1e-9, -1e-9]",
+        "material.clay.permeability",
+        "> 0",
+    ),
+    row(
+        "porosity         = 0.6",
+        "porosity = 60",
+        "material.clay.porosity",
+        "0 < porosity < 1",
+    ),
+    row(
+        "porosity = 0.5",
+        "porosity = 0.5\npermeability = 1e-9",
+        "material.tight.permeability",
+        "E0506",
+    )
+    .down(1),
     row(
         "drainage = \"undrained\"",
         "drainage = \"drained\"",
@@ -46,14 +109,49 @@ pub const FLOW: &[Row] = &[
     ),
     row("alpha = 2.0", "alpha = 0", "material.clay.retention.alpha", "alpha > 0"),
     row("n = 1.5", "n = 1", "material.clay.retention.n", "1.05 <= n <= 20"),
-    row("residual = 0.1", "residual = 1", "material.clay.retention.residual", "0 <= residual < 1"),
-    row("porosity = 0.5", "porosity = 0.5\nretention = { alpha = 1, n = 2 }", "material.tight.retention", "E0506")
-        .down(1),
-    row("alpha = 2.0, n = 1.5", "alpha = 2.0", "material.clay.retention.alpha", "E0507"),
-    row("alpha = 2.0", "curve = [[0, 1, 1], [1, 0.5, 0.1]]", "material.clay.retention.n", "E0508"),
-    row("alpha = 2.0, n = 1.5", CURVE, "material.clay.retention.curve", "E0509 .. from a suction head of 1 m to 2 m"),
-    row("alpha = 2.0, n = 1.5", "curve = [[0, 1, 1]]", "material.clay.retention.curve", "E0509 .. at least two"),
-    row("alpha = 2.0, n = 1.5", "curve = [[1, 1, 1], [2, 0.5, 0.1]]", "material.clay.retention.curve", "E0509"),
+    row(
+        "residual = 0.1",
+        "residual = 1",
+        "material.clay.retention.residual",
+        "0 <= residual < 1",
+    ),
+    row(
+        "porosity = 0.5",
+        "porosity = 0.5\nretention = { alpha = 1, n = 2 }",
+        "material.tight.retention",
+        "E0506",
+    )
+    .down(1),
+    row(
+        "alpha = 2.0, n = 1.5",
+        "alpha = 2.0",
+        "material.clay.retention.alpha",
+        "E0507",
+    ),
+    row(
+        "alpha = 2.0",
+        "curve = [[0, 1, 1], [1, 0.5, 0.1]]",
+        "material.clay.retention.n",
+        "E0508",
+    ),
+    row(
+        "alpha = 2.0, n = 1.5",
+        CURVE,
+        "material.clay.retention.curve",
+        "E0509 .. from a suction head of 1 m to 2 m",
+    ),
+    row(
+        "alpha = 2.0, n = 1.5",
+        "curve = [[0, 1, 1]]",
+        "material.clay.retention.curve",
+        "E0509 .. at least two",
+    ),
+    row(
+        "alpha = 2.0, n = 1.5",
+        "curve = [[1, 1, 1], [2, 0.5, 0.1]]",
+        "material.clay.retention.curve",
+        "E0509",
+    ),
     row(
         "alpha = 2.0, n = 1.5",
         "curve = [[0, 1, 1], [0, 0.5, 0.1]]",
@@ -66,39 +164,137 @@ pub const FLOW: &[Row] = &[
         "material.clay.retention.curve",
         "E0509 .. 0.05",
     ),
-    row("bulk     = \"2.2 GPa\"", "suction = \"20 kPa\"", "water.suction", "E0504"),
+    row(
+        "bulk     = \"2.2 GPa\"",
+        "suction = \"20 kPa\"",
+        "water.suction",
+        "E0504",
+    ),
     row("bulk     = \"2.2 GPa\"", "bulk = 0", "water.bulk", "bulk > 0"),
-    row("bulk     = \"2.2 GPa\"", "bulk = \"2.2 m\"", "water.bulk", "expected a stress"),
+    row(
+        "bulk     = \"2.2 GPa\"",
+        "bulk = \"2.2 m\"",
+        "water.bulk",
+        "expected a stress",
+    ),
     // Drains and inflows.
     row("face    = \"bottom\"", "face    = \"top\"", "drain.0.face", "E0516"),
     row("face    = \"bottom\"", "surface = false", "drain.0.surface", "E0514"),
-    row("face    = \"bottom\"\n", "", "drain.0", "the keys face, from, circle, surface").up(2),
-    row("face    = \"bottom\"", "circle  = { centre = [2.0, 2.0], radius = 9.0 }", "drain.0.circle", "E0201"),
-    row("face    = \"bottom\"", "circle  = { centre = [2.0, 2.0], radius = 1.5 }", "drain.0.circle", "E0401"),
+    row(
+        "face    = \"bottom\"\n",
+        "",
+        "drain.0",
+        "the keys face, from, circle, surface",
+    )
+    .up(2),
+    row(
+        "face    = \"bottom\"",
+        "circle  = { centre = [2.0, 2.0], radius = 9.0 }",
+        "drain.0.circle",
+        "E0201",
+    ),
+    row(
+        "face    = \"bottom\"",
+        "circle  = { centre = [2.0, 2.0], radius = 1.5 }",
+        "drain.0.circle",
+        "E0401",
+    ),
     row("head    = \"3 m\"", "head = 3\npressure = 0", "drain.0.pressure", "").down(1),
-    row("head    = \"3 m\"", "head = \"3 kPa\"", "drain.0.head", "expected a length"),
-    row("from      = [2.0, 1.0]", "from = [0.5, 3.0]", "drain.1.from", "E0510 .. `tight`"),
+    row(
+        "head    = \"3 m\"",
+        "head = \"3 kPa\"",
+        "drain.0.head",
+        "expected a length",
+    ),
+    row(
+        "from      = [2.0, 1.0]",
+        "from = [0.5, 3.0]",
+        "drain.1.from",
+        "E0510 .. `tight`",
+    ),
     row("from      = [2.0, 1.0]", "from = [2.0, 3.5]", "drain.1.from", "E0401"),
-    row("[\"30 d\", 3.0]", "[\"0 d\", 3.0]", "drain.1.head_path", "E0402 .. t = 0"),
-    row("surface  = true", "name = \"base\"\nsurface = true", "drain.2.name", "E0421 .. `base`"),
+    row(
+        "[\"30 d\", 3.0]",
+        "[\"0 d\", 3.0]",
+        "drain.1.head_path",
+        "E0402 .. t = 0",
+    ),
+    row(
+        "surface  = true",
+        "name = \"base\"\nsurface = true",
+        "drain.2.name",
+        "E0421 .. `base`",
+    ),
     row("seepage = true", "seepage = false", "drain.2.seepage", "E0514"),
     row("head    = \"3 m\"", "seepage = true", "drain.0.seepage", "E0515"),
     row("seepage = true", "seepage = true\nhead = 2", "drain.2.seepage", "E0016"),
     row("seepage = true", "head = 2", "inflow.0", "E0531").down(15),
-    row("circle = { centre = [4.0, 0.0], radius = 1.0 }", "face = \"bottom\"", "drain.4", "E0530").up(1),
+    row(
+        "circle = { centre = [4.0, 0.0], radius = 1.0 }",
+        "face = \"bottom\"",
+        "drain.4",
+        "E0530",
+    )
+    .up(1),
     row("face = \"right\"", "face = \"top\"", "inflow.2.face", "E0516"),
-    row("[\"30 d\", \"5 kPa\"]", "[\"30 d\", \"5 m\"]", "drain.5.pressure_path", "expected a stress"),
-    row("rate = \"10 mm/h\"", "rate = \"10 mm\"", "inflow.0.rate", "expected a velocity"),
+    row(
+        "[\"30 d\", \"5 kPa\"]",
+        "[\"30 d\", \"5 m\"]",
+        "drain.5.pressure_path",
+        "expected a stress",
+    ),
+    row(
+        "rate = \"10 mm/h\"",
+        "rate = \"10 mm\"",
+        "inflow.0.rate",
+        "expected a velocity",
+    ),
     row("rate = \"10 mm/h\"\n", "", "inflow.0", "the keys rate, rate_path").up(4),
-    row("to   = [4.0, 2.0]\nrate = ", "to = [4.0, 9.0]\nrate = ", "inflow.0.to", "outside the grid"),
+    row(
+        "to   = [4.0, 2.0]\nrate = ",
+        "to = [4.0, 9.0]\nrate = ",
+        "inflow.0.to",
+        "outside the grid",
+    ),
     // Histories.
-    row("drain    = \"base\"", "drain = \"bas\"", "history.1.drain", "E0518 .. did you mean `base`?"),
-    row("face     = \"bottom\"\nname", "face = \"top\"\nname", "history.2.face", "E0518"),
-    row("quantity = \"water-balance\"", "quantity = \"flux\"", "history.3.at", "E0644").up(1),
+    row(
+        "drain    = \"base\"",
+        "drain = \"bas\"",
+        "history.1.drain",
+        "E0518 .. did you mean `base`?",
+    ),
+    row(
+        "face     = \"bottom\"\nname",
+        "face = \"top\"\nname",
+        "history.2.face",
+        "E0518",
+    ),
+    row(
+        "quantity = \"water-balance\"",
+        "quantity = \"flux\"",
+        "history.3.at",
+        "E0644",
+    )
+    .up(1),
     // What acts.
-    row("right  = \"roller\"", "right = \"contact\"", "boundary.right", "E0540 .. \"contact\""),
-    row("right  = \"roller\"", "right = \"outflow\"", "boundary.right", "E0540 .. \"outflow\""),
-    row("[solver]", "[strength_reduction]\nfactor = 1.2\n[solver]", "strength_reduction", "E0543"),
+    row(
+        "right  = \"roller\"",
+        "right = \"contact\"",
+        "boundary.right",
+        "E0540 .. \"contact\"",
+    ),
+    row(
+        "right  = \"roller\"",
+        "right = \"outflow\"",
+        "boundary.right",
+        "E0540 .. \"outflow\"",
+    ),
+    row(
+        "[solver]",
+        "[strength_reduction]\nfactor = 1.2\n[solver]",
+        "strength_reduction",
+        "E0543",
+    ),
     row(
         "[solver]",
         "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\ndrainage = \"coupled\"\n[solver]",
@@ -113,7 +309,12 @@ pub const FLOW: &[Row] = &[
         "E0638",
     )
     .down(3),
-    row("dt     = \"1 h\"", "dt     = 0.1", "analysis.dt", "6.312e9 steps until the end of the analysis (at most 1e9)"),
+    row(
+        "dt     = \"1 h\"",
+        "dt     = 0.1",
+        "analysis.dt",
+        "6.312e9 steps until the end of the analysis (at most 1e9)",
+    ),
     row(
         "[solver]",
         "[[stage]]\nat = \"1 day\"\nboundary = { left = \"fixed\" }\n[solver]",
@@ -137,7 +338,13 @@ pub const FLOW: &[Row] = &[
         "E0511",
     )
     .down(6),
-    row("[solver]", "[[stage]]\nat = \"1 day\"\nactivate = [\"rai\"]\n[solver]", "stage.0.activate", "E0612").down(2),
+    row(
+        "[solver]",
+        "[[stage]]\nat = \"1 day\"\nactivate = [\"rai\"]\n[solver]",
+        "stage.0.activate",
+        "E0612",
+    )
+    .down(2),
     row(
         "[solver]",
         "[[stage]]\nat = \"1 day\"\ndeactivate = [\"base\"]\n[[stage]]\nat = \"2 day\"\ndeactivate = \
@@ -164,10 +371,27 @@ pub const FLOW: &[Row] = &[
 
 /// Words of water that flows in a case without any.
 pub const WITHOUT_FLOW: &[Row] = &[
-    row("type  = \"quasi-static\"\nend   = 1.0", "type = \"consolidation\"\nend = 1.0", "analysis.type", "E0501"),
+    row(
+        "type  = \"quasi-static\"\nend   = 1.0",
+        "type = \"consolidation\"\nend = 1.0",
+        "analysis.type",
+        "E0501",
+    ),
     row("[output]", "[[drain]]\nsurface = true\n[output]", "drain.0", "E0501"),
-    row("[output]", "[water]\nbulk = 2e9\nlevel = 1\n[output]", "water.bulk", "E0501").down(1),
-    row("poisson = 0.3", "poisson = 0.3\nporosity = 0.4", "material.soil.porosity", "E0506").down(1),
+    row(
+        "[output]",
+        "[water]\nbulk = 2e9\nlevel = 1\n[output]",
+        "water.bulk",
+        "E0501",
+    )
+    .down(1),
+    row(
+        "poisson = 0.3",
+        "poisson = 0.3\nporosity = 0.4",
+        "material.soil.porosity",
+        "E0506",
+    )
+    .down(1),
     row(
         "poisson = 0.3",
         "poisson = 0.3\ndrainage = \"coupled\"\nporosity = 0.4\npermeability = 1e-9",
@@ -175,17 +399,34 @@ pub const WITHOUT_FLOW: &[Row] = &[
         "E0502 .. \"quasi-static\"",
     )
     .up(13),
-    row("[output]", "[[history]]\nquantity = \"water-balance\"\n[output]", "history.0.quantity", "E0646").down(1),
-    row("every = 0.5", "every = 0.5\nfields = [\"flux\"]", "output.fields", "E0501 .. \"flux\"").down(1),
+    row(
+        "[output]",
+        "[[history]]\nquantity = \"water-balance\"\n[output]",
+        "history.0.quantity",
+        "E0646",
+    )
+    .down(1),
+    row(
+        "every = 0.5",
+        "every = 0.5\nfields = [\"flux\"]",
+        "output.fields",
+        "E0501 .. \"flux\"",
+    )
+    .down(1),
 ];
 
 /// More rain than the ground takes, and walls and gaps that are thinner than the pressure's functions.
 #[test]
 fn rain_that_lifts_and_walls_that_leak_are_warned_of() {
     let case = |changes: &[(&str, &str)]| {
-        let text =
-            changes.iter().fold(include_str!("seeping.toml").to_owned(), |text, (was, is)| text.replace(was, is));
-        bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
+        let text = changes
+            .iter()
+            .fold(include_str!("seeping.toml").to_owned(), |text, (was, is)| {
+                text.replace(was, is)
+            });
+        bsmpm_scene::Case::from_text("case.toml", &text, &[])
+            .expect("a valid case")
+            .warnings
     };
     let has = |warnings: &[String], words: &str| warnings.iter().any(|warning| warning.contains(words));
     let (lifts, gap, wall) = ("W0531: inflow.0: 2.7", "W0535: the gap", "W0535: the wall of `tight`");
@@ -215,8 +456,13 @@ fn water_that_hangs_and_steps_that_are_narrow_are_warned_of() {
     let case = |water: &str, more: &str| {
         let text = include_str!("../../../../cases/rapid_drawdown.toml")
             .replace("level_path = [[\"0 d\", 15.0], [\"10 d\", 5.0]]", water)
-            .replace("permeability   = \"1e-9 m/s\"", &format!("permeability = \"1e-9 m/s\"\n{more}"));
-        bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
+            .replace(
+                "permeability   = \"1e-9 m/s\"",
+                &format!("permeability = \"1e-9 m/s\"\n{more}"),
+            );
+        bsmpm_scene::Case::from_text("case.toml", &text, &[])
+            .expect("a valid case")
+            .warnings
     };
     let has = |warnings: &[String], words: &str| warnings.iter().any(|warning| warning.contains(words));
     let hangs = "the soil stays saturated to 5.00 m above the water table";
@@ -235,11 +481,16 @@ fn a_flux_next_to_a_surface_is_warned_of() {
     let case = |at: &str| {
         let text = include_str!("../../../../cases/rapid_drawdown.toml").to_owned();
         let text = text + &format!("\n[[history]]\nquantity = \"flux\"\nat = {at}\n");
-        bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
+        bsmpm_scene::Case::from_text("case.toml", &text, &[])
+            .expect("a valid case")
+            .warnings
     };
     let has = |warnings: &[String]| warnings.iter().any(|warning| warning.contains("W0532"));
     assert!(has(&case("[10.0, 14.2]")) && has(&case("[29.8, 9.6]")));
-    assert!(!has(&case("[10.0, 13.5]")) && !has(&case("[0.1, 0.1]")), "a face of the grid is no surface");
+    assert!(
+        !has(&case("[10.0, 13.5]")) && !has(&case("[0.1, 0.1]")),
+        "a face of the grid is no surface"
+    );
 }
 
 /// Ground one cell across under a load of half its stiffness, of which averages leave a way to go sideways.
@@ -248,10 +499,15 @@ fn ground_one_cell_across_under_a_large_load_is_warned_of() {
     let case = |more: &[(&str, &str)]| {
         let text = include_str!("../../../../cases/validation/large_consolidation.toml").to_owned();
         let text = more.iter().fold(text, |text, (from, to)| text.replace(from, to));
-        bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings
+        bsmpm_scene::Case::from_text("case.toml", &text, &[])
+            .expect("a valid case")
+            .warnings
     };
     let has = |warnings: &[String]| warnings.iter().any(|warning| warning.contains("W0542"));
-    let narrow = [("[0.1, 1.0]", "[0.05, 1.0]"), ("at       = [0.05, 1.0]", "at       = [0.025, 1.0]")];
+    let narrow = [
+        ("[0.1, 1.0]", "[0.05, 1.0]"),
+        ("at       = [0.05, 1.0]", "at       = [0.025, 1.0]"),
+    ];
     assert!(has(&case(&narrow)) && !has(&case(&[])));
     assert!(!has(&case(&[&narrow[..], &[("consistent-f-bar", "none")]].concat())));
     assert!(!has(&case(&[&narrow[..], &[("-500 kPa", "-200 kPa")]].concat())));

@@ -34,7 +34,13 @@ pub struct Row {
 }
 
 const fn row(find: &'static str, put: &'static str, key: &'static str, says: &'static str) -> Row {
-    Row { find, put, moved: 0, key, says }
+    Row {
+        find,
+        put,
+        moved: 0,
+        key,
+        says,
+    }
 }
 
 impl Row {
@@ -48,7 +54,9 @@ impl Row {
 }
 
 fn verify(base: &str, row: &Row) -> Result<(), String> {
-    let at = base.find(row.find).ok_or(format!("`{}` is not in the base", row.find))?;
+    let at = base
+        .find(row.find)
+        .ok_or(format!("`{}` is not in the base", row.find))?;
     let line = (1 + base[..at].matches('\n').count()).saturating_add_signed(row.moved);
     let text = base.replacen(row.find, row.put, 1);
     let errors = match Case::from_text("case.toml", &text, &[]) {
@@ -64,12 +72,21 @@ fn verify(base: &str, row: &Row) -> Result<(), String> {
         return Ok(());
     }
     let found: String = errors.iter().map(|error| format!("\n   {error}")).collect();
-    Err(format!("`{}`: expected line {line}: {}: ..{}.., found{found}", row.put, row.key, row.says))
+    Err(format!(
+        "`{}`: expected line {line}: {}: ..{}.., found{found}",
+        row.put, row.key, row.says
+    ))
 }
 
 fn verify_all(base: &str, rows: &[Row]) {
     let failed: Vec<String> = rows.iter().filter_map(|row| verify(base, row).err()).collect();
-    assert!(failed.is_empty(), "{} of {} rows:\n{}", failed.len(), rows.len(), failed.join("\n"));
+    assert!(
+        failed.is_empty(),
+        "{} of {} rows:\n{}",
+        failed.len(),
+        rows.len(),
+        failed.join("\n")
+    );
 }
 
 #[test]
@@ -97,9 +114,16 @@ fn rules_between_keys() {
 #[test]
 fn what_two_groups_of_keys_forbid_is_reported_once() {
     let sphere = "sphere = { centre = [3, 1.5, 2.0]";
-    let text = SOLID.replacen(sphere, &format!("disc = {{ centre = [0.4, 1.5, 1.0], radius = 0.3 }}\n{sphere}"), 1);
+    let text = SOLID.replacen(
+        sphere,
+        &format!("disc = {{ centre = [0.4, 1.5, 1.0], radius = 0.3 }}\n{sphere}"),
+        1,
+    );
     let errors = Case::from_text("case.toml", &text, &[]).expect_err("a disc and a sphere");
-    let reported = errors.iter().filter(|error| error.code.as_deref() == Some("E0016")).count();
+    let reported = errors
+        .iter()
+        .filter(|error| error.code.as_deref() == Some("E0016"))
+        .count();
     assert_eq!(reported, 1, "{errors:?}");
 }
 
@@ -160,11 +184,20 @@ fn still_water() {
 fn gravity_is_inclined_in_quasi_static_analyses_alone() {
     let inclined = WET.replace("[0.0, -9.81]", "[1.0, -9.81]");
     let case = Case::from_text("case.toml", &inclined, &[]).unwrap();
-    assert!(case.notes.iter().any(|note| note.key == "gravity.acceleration"), "{:?}", case.notes);
-    let dynamic =
-        WET.replace("type  = \"quasi-static\"\nend   = 1.0\nsteps = 4", "type  = \"dynamic\"\nend   = 1.0\ndt = 0.25");
+    assert!(
+        case.notes.iter().any(|note| note.key == "gravity.acceleration"),
+        "{:?}",
+        case.notes
+    );
+    let dynamic = WET.replace(
+        "type  = \"quasi-static\"\nend   = 1.0\nsteps = 4",
+        "type  = \"dynamic\"\nend   = 1.0\ndt = 0.25",
+    );
     let says = "E0523";
-    verify_all(&dynamic, &[row("[0.0, -9.81]", "[1.0, -9.81]", "gravity.acceleration", says)]);
+    verify_all(
+        &dynamic,
+        &[row("[0.0, -9.81]", "[1.0, -9.81]", "gravity.acceleration", says)],
+    );
 }
 
 #[test]

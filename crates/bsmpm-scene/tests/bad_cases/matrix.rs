@@ -13,14 +13,23 @@ struct Input {
     taken: &'static [(&'static str, &'static str, &'static str)],
 }
 
-const NONE: Input = Input { id: "", refused: &[], refused_static: &[], taken: &[] };
+const NONE: Input = Input {
+    id: "",
+    refused: &[],
+    refused_static: &[],
+    taken: &[],
+};
 
 const YOUNG: &str = "\"20 MPa\"";
 const POISSON: &str = "poisson  = 0.3";
 const YOUNG_KEY: &str = "material.sand.young";
 
 const MATRIX: &[Input] = &[
-    Input { id: "I01", refused: &[row(POISSON, "poison = 0.3", "material.sand.poison", "E0011")], ..NONE },
+    Input {
+        id: "I01",
+        refused: &[row(POISSON, "poison = 0.3", "material.sand.poison", "E0011")],
+        ..NONE
+    },
     Input {
         id: "I03",
         refused: &[row(
@@ -34,9 +43,13 @@ const MATRIX: &[Input] = &[
     },
     Input {
         id: "I04",
-        refused: &[
-            row(POISSON, "poisson = 0.3\npoisson = 0.3", "", "`poisson` is given twice, here and in line 19").down(1)
-        ],
+        refused: &[row(
+            POISSON,
+            "poisson = 0.3\npoisson = 0.3",
+            "",
+            "`poisson` is given twice, here and in line 19",
+        )
+        .down(1)],
         ..NONE
     },
     Input {
@@ -58,8 +71,18 @@ const MATRIX: &[Input] = &[
         id: "I09",
         refused: &[
             row(POISSON, "poisson = 0.5", "material.sand.poisson", "E0010"),
-            row(POISSON, "poisson = 0.5000001", "material.sand.poisson", "(-1 < poisson < 0.5"),
-            row(POISSON, "poisson = -1", "material.sand.poisson", "-1 is outside the allowed range"),
+            row(
+                POISSON,
+                "poisson = 0.5000001",
+                "material.sand.poisson",
+                "(-1 < poisson < 0.5",
+            ),
+            row(
+                POISSON,
+                "poisson = -1",
+                "material.sand.poisson",
+                "-1 is outside the allowed range",
+            ),
             row(POISSON, "poisson = -1.5", "material.sand.poisson", "E0010"),
         ],
         taken: &[
@@ -75,7 +98,12 @@ const MATRIX: &[Input] = &[
         refused: &[
             row("\"30 deg\"", "-1", "material.sand.friction_angle", "E0010"),
             row("\"30 deg\"", "90", "material.sand.friction_angle", "E0010"),
-            row("dilation_angle = 5", "dilation_angle = 30.1", "material.sand.dilation_angle", "E0308"),
+            row(
+                "dilation_angle = 5",
+                "dilation_angle = 30.1",
+                "material.sand.dilation_angle",
+                "E0308",
+            ),
             row(
                 "dilation_angle = 5",
                 "dilation_angle = -1",
@@ -99,7 +127,12 @@ const MATRIX: &[Input] = &[
                 "body.0.box.upper",
                 "is not above the lower corner [0.0, 0.0] m along each axis",
             ),
-            row("upper = [4.0, 1.0] }", "upper = [4.0, 1e-12] }", "body.0.box.upper", "E0219"),
+            row(
+                "upper = [4.0, 1.0] }",
+                "upper = [4.0, 1e-12] }",
+                "body.0.box.upper",
+                "E0219",
+            ),
             row("radius = 0.4", "radius = -0.4", "body.4.circle.radius", "(radius > 0"),
         ],
         refused_static: &[row("[[body]]\nmaterial", "[[bodies]]\nmaterial", "bodies", "E0011")],
@@ -142,16 +175,40 @@ const MATRIX: &[Input] = &[
     },
     Input {
         id: "I14",
-        taken: &[("lower = [0.0, 1.0], upper", "lower = [0.0, 0.9], upper", "body.0 and body.1 overlap")],
+        taken: &[(
+            "lower = [0.0, 1.0], upper",
+            "lower = [0.0, 0.9], upper",
+            "body.0 and body.1 overlap",
+        )],
         ..NONE
     },
     Input {
         id: "I15",
         refused: &[
-            row("points_per_cell = 3", "points_per_cell = 0", "body.0.points_per_cell", "E0010"),
-            row("points_per_cell = 3", "points_per_cell = 101", "body.0.points_per_cell", "E0010"),
-            row("points_per_cell = 3", "points_per_cell = [2, 3]", "body.0.points_per_cell", "found a list of 2"),
-            row("points_per_cell = 3", "points_per_cell = 2.5", "body.0.points_per_cell", "found 2.5"),
+            row(
+                "points_per_cell = 3",
+                "points_per_cell = 0",
+                "body.0.points_per_cell",
+                "E0010",
+            ),
+            row(
+                "points_per_cell = 3",
+                "points_per_cell = 101",
+                "body.0.points_per_cell",
+                "E0010",
+            ),
+            row(
+                "points_per_cell = 3",
+                "points_per_cell = [2, 3]",
+                "body.0.points_per_cell",
+                "found a list of 2",
+            ),
+            row(
+                "points_per_cell = 3",
+                "points_per_cell = 2.5",
+                "body.0.points_per_cell",
+                "found 2.5",
+            ),
         ],
         taken: &[
             ("points_per_cell = 3", "points_per_cell = 1", "W0210"),
@@ -163,13 +220,29 @@ const MATRIX: &[Input] = &[
         id: "I16",
         refused: &[
             row("top    = \"fixed\"", "up = \"fixed\"", "boundary.up", "E0011"),
-            row("face = \"right\"", "face = \"rigth\"", "prescribed.0.face", "did you mean `right`?"),
+            row(
+                "face = \"right\"",
+                "face = \"rigth\"",
+                "prescribed.0.face",
+                "did you mean `right`?",
+            ),
             row("face = \"right\"", "face = \"top\"", "prescribed.0.face", "E0236"),
         ],
         refused_static: &[
-            row("bottom = \"fixed\"", "", "boundary", "no support restrains the bodies along x").up(1),
-            row("bottom = \"fixed\"", "bottom = \"roller\"", "boundary", "a quasi-static analysis has no solution")
-                .up(1),
+            row(
+                "bottom = \"fixed\"",
+                "",
+                "boundary",
+                "no support restrains the bodies along x",
+            )
+            .up(1),
+            row(
+                "bottom = \"fixed\"",
+                "bottom = \"roller\"",
+                "boundary",
+                "a quasi-static analysis has no solution",
+            )
+            .up(1),
         ],
         ..NONE
     },
@@ -182,10 +255,30 @@ const MATRIX: &[Input] = &[
                 "prescribed.1.path",
                 "E0402 .. t = 0.5 .. 1 in the row before",
             ),
-            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[]", "prescribed.1.path", "E0435"),
-            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[0, 0, 0]]", "prescribed.1.path", "at least one row"),
-            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[1.0, 0, nan]]", "prescribed.1.path", "E0010"),
-            row("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[1e-300, 0, 0]]", "prescribed.1.path", "E0010"),
+            row(
+                "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
+                "[]",
+                "prescribed.1.path",
+                "E0435",
+            ),
+            row(
+                "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
+                "[[0, 0, 0]]",
+                "prescribed.1.path",
+                "at least one row",
+            ),
+            row(
+                "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
+                "[[1.0, 0, nan]]",
+                "prescribed.1.path",
+                "E0010",
+            ),
+            row(
+                "[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]",
+                "[[1e-300, 0, 0]]",
+                "prescribed.1.path",
+                "E0010",
+            ),
         ],
         taken: &[("[[\"0.5 s\", 0.0, -0.1], [1.0, 0.0, 0.0]]", "[[1.0, 0.0, -0.1]]", "")],
         ..NONE
@@ -196,8 +289,18 @@ const MATRIX: &[Input] = &[
             row("end  = \"1 s\"", "end = \"-1 s\"", "analysis.end", "E0010"),
             row("\"10 ms\"", "1.5", "analysis.dt", "E0256"),
             row("dt   = \"10 ms\"", "steps = 0", "analysis.steps", "E0010"),
-            row("dt   = \"10 ms\"", "steps = 1_000_000_000_000", "analysis.steps", "E0010"),
-            row("\"10 ms\"", "1e-12", "analysis.dt", "1.000e12 steps until the end of the analysis (at most 1e9)"),
+            row(
+                "dt   = \"10 ms\"",
+                "steps = 1_000_000_000_000",
+                "analysis.steps",
+                "E0010",
+            ),
+            row(
+                "\"10 ms\"",
+                "1e-12",
+                "analysis.dt",
+                "1.000e12 steps until the end of the analysis (at most 1e9)",
+            ),
             row("every  = \"0.1 s\"", "every = 0", "output.every", "E0010"),
             row("times  = [\"0.25 s\", 0.75]", "times = [1e-9]", "output.times", "E0664"),
             row("at       = \"0.5 s\"", "at = 1e-9", "check.0.at", "E0664"),
@@ -210,14 +313,22 @@ const MATRIX: &[Input] = &[
                 "[\"2 ms\", \"-0.1 g\"",
                 "W0404: shaking.acceleration: rows are 0.002 apart in time, but a step is 0.01",
             ),
-            ("[\"1 s\", \"-0.1 g\"", "[\"2 ms\", \"-0.1 g\"", "W0404: shaking.acceleration: "),
+            (
+                "[\"1 s\", \"-0.1 g\"",
+                "[\"2 ms\", \"-0.1 g\"",
+                "W0404: shaking.acceleration: ",
+            ),
             (
                 "bottom = \"fixed\"",
                 "bottom = { friction_coefficient = 1.5 }",
                 "W0204: boundary.bottom.friction_coefficient: ",
             ),
             ("bottom = \"fixed\"", "bottom = \"contact\"", "W0671: analysis.dt: "),
-            ("ramp = \"0.5 s\"", "amplitude = [[2, 1]]", "W0403: traction.0.amplitude: "),
+            (
+                "ramp = \"0.5 s\"",
+                "amplitude = [[2, 1]]",
+                "W0403: traction.0.amplitude: ",
+            ),
             ("ramp = \"0.5 s\"", "amplitude = [[0, 1]]", "W0405: traction.0: "),
         ],
         ..NONE
@@ -231,9 +342,24 @@ const MATRIX: &[Input] = &[
                 "grid.cell",
                 "1000000000000 cells and 2000008000008 unknowns (at most 2147483647",
             ),
-            row("[0.5, \"50 cm\"]", "[1e-9, 1e-9]", "grid.cell", "cells along x (at most 2147483647)"),
-            row("upper = [4.0, 3.0]", "upper = [9223372036854775807, 3.0]", "grid.upper", "E0010"),
-            row("[0.5, \"50 cm\"]", "[1e-4, 1e-4]", "grid.cell", "1200000000 cells and 2400280008 unknowns"),
+            row(
+                "[0.5, \"50 cm\"]",
+                "[1e-9, 1e-9]",
+                "grid.cell",
+                "cells along x (at most 2147483647)",
+            ),
+            row(
+                "upper = [4.0, 3.0]",
+                "upper = [9223372036854775807, 3.0]",
+                "grid.upper",
+                "E0010",
+            ),
+            row(
+                "[0.5, \"50 cm\"]",
+                "[1e-4, 1e-4]",
+                "grid.cell",
+                "1200000000 cells and 2400280008 unknowns",
+            ),
         ],
         ..NONE
     },
@@ -253,7 +379,11 @@ const MATRIX: &[Input] = &[
         ],
         taken: &[
             ("-9.81]", "-1e12]", ""),
-            ("density  = \"2 t/m3\"", "density = 1e9", "W0108: material.sand: a density of 1000000000.000 kg/m3"),
+            (
+                "density  = \"2 t/m3\"",
+                "density = 1e9",
+                "W0108: material.sand: a density of 1000000000.000 kg/m3",
+            ),
         ],
         ..NONE
     },
@@ -269,7 +399,11 @@ const MATRIX: &[Input] = &[
         taken: &[
             (YOUNG, "20", "W0101: material.sand.young: a modulus of 20 Pa (0.02 kPa)"),
             (YOUNG, "\"20000 GPa\"", "W0302: material.sand: "),
-            ("\"18 kN/m3\"", "18", "W0108: material.clay: a density of 1.835 kg/m3 (unit weight 0.018 kN/m3)"),
+            (
+                "\"18 kN/m3\"",
+                "18",
+                "W0108: material.clay: a density of 1.835 kg/m3 (unit weight 0.018 kN/m3)",
+            ),
         ],
         ..NONE
     },
@@ -282,7 +416,13 @@ const MATRIX: &[Input] = &[
                 "element.consolidated.material",
                 "E0612",
             ),
-            row("material = \"sand\"\npressure", "pressure", "element.consolidated.material", "E0693").up(1),
+            row(
+                "material = \"sand\"\npressure",
+                "pressure",
+                "element.consolidated.material",
+                "E0693",
+            )
+            .up(1),
             row("height = \"2 m\"\n", "", "element.mixed.height", "E0692").up(2),
             row(
                 "{ test = \"isotropic\", pressure = \"100 kPa\", steps = 10 }",
@@ -329,7 +469,12 @@ fn i01_to_i26_every_row_of_the_matrix() {
         let refused = input.refused.iter().map(|row| verify(DYNAMIC, row));
         let refused = refused.chain(input.refused_static.iter().map(|row| verify(STATIC, row)));
         let taken = input.taken.iter().map(|taken| take(*taken));
-        failed.extend(refused.chain(taken).filter_map(Result::err).map(|error| format!("{}: {error}", input.id)));
+        failed.extend(
+            refused
+                .chain(taken)
+                .filter_map(Result::err)
+                .map(|error| format!("{}: {error}", input.id)),
+        );
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
@@ -340,9 +485,18 @@ fn take((part, by, says): (&str, &str, &str)) -> Result<(), String> {
     }
     let case = Case::from_text("case.toml", &DYNAMIC.replacen(part, by, 1), &[]);
     let mut warnings = case.map_err(|errors| format!("`{by}`: {errors:#?}"))?.warnings;
-    let base = Case::from_text("case.toml", DYNAMIC, &[]).expect("a valid case").warnings;
+    let base = Case::from_text("case.toml", DYNAMIC, &[])
+        .expect("a valid case")
+        .warnings;
     warnings.retain(|warning| !base.contains(warning));
-    let fits =
-        if says.is_empty() { warnings.is_empty() } else { warnings.iter().any(|warning| warning.contains(says)) };
-    if fits { Ok(()) } else { Err(format!("`{by}`: `{says}` is not what is warned of: {warnings:?}")) }
+    let fits = if says.is_empty() {
+        warnings.is_empty()
+    } else {
+        warnings.iter().any(|warning| warning.contains(says))
+    };
+    if fits {
+        Ok(())
+    } else {
+        Err(format!("`{by}`: `{says}` is not what is warned of: {warnings:?}"))
+    }
 }

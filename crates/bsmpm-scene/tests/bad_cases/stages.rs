@@ -4,30 +4,82 @@ use super::{Row, row};
 
 /// Stages: bodies that come and go.
 pub const STAGES: &[Row] = &[
-    row("add  = [\"fill\"]", "add = [\"fil\"]", "stage.0.add", "did you mean `fill`?"),
-    row("add  = [\"fill\"]", "add = \"fill\"", "stage.0.add", "expected a list of names"),
+    row(
+        "add  = [\"fill\"]",
+        "add = [\"fil\"]",
+        "stage.0.add",
+        "did you mean `fill`?",
+    ),
+    row(
+        "add  = [\"fill\"]",
+        "add = \"fill\"",
+        "stage.0.add",
+        "expected a list of names",
+    ),
     row("add  = [\"fill\"]", "add = []", "stage.0", "E0611").up(3),
-    row("add  = [\"fill\"]", "add = [\"fill\", \"fill\"]", "stage.0.add", "E0622"),
-    row("remove = [\"fill\"]", "remove = [\"fill\", \"fill\"]", "stage.1.remove", "E0622"),
-    row("add  = [\"fill\"]", "add = [\"fill\"]\nremove = [\"fill\"]", "stage.0.remove", "E0622").down(1),
-    row("add  = [\"fill\"]", "activate = [\"fill\"]", "stage.0.activate", "E0612"),
-    row("add  = [\"fill\"]", "activate = [\"plough\"]", "stage.0.activate", "E0624"),
-    row("add  = [\"fill\"]", "activate = [\"pipe\"]", "rigid.1.start_velocity", "E0430").down(47),
+    row(
+        "add  = [\"fill\"]",
+        "add = [\"fill\", \"fill\"]",
+        "stage.0.add",
+        "E0622",
+    ),
+    row(
+        "remove = [\"fill\"]",
+        "remove = [\"fill\", \"fill\"]",
+        "stage.1.remove",
+        "E0622",
+    ),
+    row(
+        "add  = [\"fill\"]",
+        "add = [\"fill\"]\nremove = [\"fill\"]",
+        "stage.0.remove",
+        "E0622",
+    )
+    .down(1),
+    row(
+        "add  = [\"fill\"]",
+        "activate = [\"fill\"]",
+        "stage.0.activate",
+        "E0612",
+    ),
+    row(
+        "add  = [\"fill\"]",
+        "activate = [\"plough\"]",
+        "stage.0.activate",
+        "E0624",
+    ),
+    row(
+        "add  = [\"fill\"]",
+        "activate = [\"pipe\"]",
+        "rigid.1.start_velocity",
+        "E0430",
+    )
+    .down(47),
     row(
         "add  = [\"fill\"]",
         "materials = [{ from = \"sand\", to = \"clai\" }]",
         "stage.0.materials.0.to",
         "did you mean `clay`?",
     ),
-    row("add  = [\"fill\"]", "materials = [{ from = \"sand\" }]", "stage.0.materials.0.to", "missing"),
+    row(
+        "add  = [\"fill\"]",
+        "materials = [{ from = \"sand\" }]",
+        "stage.0.materials.0.to",
+        "missing",
+    ),
     row(
         "add  = [\"fill\"]",
         "strength_reduction = 0.05",
         "stage.0.strength_reduction",
         "0.1 <= strength_reduction <= 100",
     ),
-    row("factor = 1.25", "factor = 1.25\nstage = \"filled\"", "strength_reduction.stage", "needs a quasi-static")
-        .down(1),
+    row(
+        "factor = 1.25",
+        "factor = 1.25\nstage = \"filled\"",
+        "strength_reduction.stage",
+        "needs a quasi-static",
+    )
+    .down(1),
     row(
         "factor = 1.25",
         "factor = 1.25\nstage = \"end\"\ndrainage = \"undrained\"",
@@ -35,13 +87,36 @@ pub const STAGES: &[Row] = &[
         "E0637",
     )
     .down(2),
-    row("factor = 1.25", "factor = 1.25\nsteps = 5", "strength_reduction.steps", "E0631").down(1),
-    row("factor = 1.25", "factor = 1.25\ndrainage = \"undrained\"", "strength_reduction.drainage", "E0631").down(1),
-    row("factor = 1.25", "factor = 1.25\nsteps = 1001", "strength_reduction.steps", "0 <= steps <= 1000").down(1),
+    row(
+        "factor = 1.25",
+        "factor = 1.25\nsteps = 5",
+        "strength_reduction.steps",
+        "E0631",
+    )
+    .down(1),
+    row(
+        "factor = 1.25",
+        "factor = 1.25\ndrainage = \"undrained\"",
+        "strength_reduction.drainage",
+        "E0631",
+    )
+    .down(1),
+    row(
+        "factor = 1.25",
+        "factor = 1.25\nsteps = 1001",
+        "strength_reduction.steps",
+        "0 <= steps <= 1000",
+    )
+    .down(1),
     row("at     = \"500 ms\"", "at = 0.25", "stage.1.at", "E0621"),
     row("at     = \"500 ms\"", "at = \"1 s\"", "stage.1.at", "E0620"),
     row("at   = \"0.25 s\"", "at = 0", "stage.0.at", "E0010"),
-    row("name     = \"fill\"", "name = \"a b\"", "body.5.name", "expected a name"),
+    row(
+        "name     = \"fill\"",
+        "name = \"a b\"",
+        "body.5.name",
+        "expected a name",
+    ),
     row(
         "[[stage]]\nname",
         "[[body]]\nname = \"fill\"\nmaterial = \"clay\"\npoints_per_cell = 2\nbox = { lower = \

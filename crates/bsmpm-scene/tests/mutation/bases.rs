@@ -34,9 +34,15 @@ points_per_cell = 3
 /// Changes of [`FULL`] to what excludes what is there.
 const OTHERWISE: [&[(&str, &str)]; 7] = [
     &[
-        ("geometry = \"plane-strain\"", "geometry = \"plane-strain\"\naccuracy = \"draft\""),
+        (
+            "geometry = \"plane-strain\"",
+            "geometry = \"plane-strain\"\naccuracy = \"draft\"",
+        ),
         ("\nk0 = 0.5", "\nk0 = 0.5\nequilibrium = \"plastic\""),
-        ("reset_displacements = true", "reset_displacements = true\nstrength_reduction = 1.2"),
+        (
+            "reset_displacements = true",
+            "reset_displacements = true\nstrength_reduction = 1.2",
+        ),
         ("interface = \"smooth\"", "interface = \"smooth\"\nname = \"strip\""),
         ("components = \"all\"", "components = \"all\"\nname = \"plate\""),
         ("\nramp = \"0.5 s\"", "\nramp = \"0.5 s\"\nname = \"surcharge\""),
@@ -49,20 +55,32 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ),
     ],
     &[
-        ("dt   = \"10 ms\"", "steps = 100\nspectral_radius = 0.8\nmass = \"consistent\"\nwall_velocity = \"relaxed\""),
+        (
+            "dt   = \"10 ms\"",
+            "steps = 100\nspectral_radius = 0.8\nmass = \"consistent\"\nwall_velocity = \"relaxed\"",
+        ),
         ("\"tresca\"", "\"von-mises\""),
         (
             "stress = [0.0, \"-20 kPa\"]\nramp = \"0.5 s\"",
             "stress_path = [[\"0.2 s\", 1.0, \"-1 kPa\"], [1.0, 0.0, 2.0]]",
         ),
         ("cohesion    = 2e4", "yield_stress = 2e4\nhardening = 1e3"),
-        ("every  = \"0.1 s\"", "every_steps = 20\ncheckpoint = { wall = \"10 min\", every_steps = 50, keep = 3 }"),
+        (
+            "every  = \"0.1 s\"",
+            "every_steps = 20\ncheckpoint = { wall = \"10 min\", every_steps = 50, keep = 3 }",
+        ),
         ("quantity = \"heave\"", "quantity = \"height\"\nat_x = 1.0"),
-        ("bottom = \"fixed\"", "bottom = { friction_coefficient = 0.3, separates = true }"),
+        (
+            "bottom = \"fixed\"",
+            "bottom = { friction_coefficient = 0.3, separates = true }",
+        ),
     ],
     &[
         ("dt   = \"10 ms\"", "dt = 0.01\nnewmark_gamma = 0.6"),
-        ("stress = [0.0, \"-20 kPa\"]\nramp = \"0.5 s\"", "pressure_path = [[\"0.2 s\", \"1 kPa\"], [1.0, 0.0]]"),
+        (
+            "stress = [0.0, \"-20 kPa\"]\nramp = \"0.5 s\"",
+            "pressure_path = [[\"0.2 s\", \"1 kPa\"], [1.0, 0.0]]",
+        ),
         ("\"tresca\"", "\"modified-cam-clay\""),
         (
             "cohesion    = 2e4",
@@ -70,7 +88,10 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ),
         ("model    = \"mohr-coulomb\"", "model = \"drucker-prager\""),
         ("separation = \"plastic\"", "fit = \"inner\""),
-        ("cell  = [0.5, \"50 cm\"]", "knots = { x = [0, 0.5, 1.5, \"4 m\"], y = [0, 1, 2, 3] }"),
+        (
+            "cell  = [0.5, \"50 cm\"]",
+            "knots = { x = [0, 0.5, 1.5, \"4 m\"], y = [0, 1, 2, 3] }",
+        ),
     ],
     &[
         ("\nk0 = 0.5", "\ngravity = \"elastic\""),
@@ -81,14 +102,23 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
             "residual_friction_angle = 20\nresidual_dilation_angle = 5\nresidual_cohesion = 10\nsoftening_strain = 0.2\n\
              softening = \"exponential\"\nband_width = 0.1",
         ),
-        ("factor = 1.25", "factor = 1.25\nelastic = false\nstiffness = 1.5\nunloaded = false"),
+        (
+            "factor = 1.25",
+            "factor = 1.25\nelastic = false\nstiffness = 1.5\nunloaded = false",
+        ),
     ],
     &[
         ("displacement = [0.0, \"-10 cm\"]", "velocity = [0.0, -0.1]"),
-        ("path     = [[\"0.5 s\", -0.1, 0.0], [1.0, 0.0, \"5 cm\"]]", "velocity = [-0.1, 0.0]"),
+        (
+            "path     = [[\"0.5 s\", -0.1, 0.0], [1.0, 0.0, \"5 cm\"]]",
+            "velocity = [-0.1, 0.0]",
+        ),
         ("density = \"0.5 t/m3\"", "mass = 50"),
         ("\"tresca\"", "\"modified-cam-clay\""),
-        ("cohesion    = 2e4", "kappa = 0.04\nlambda = 0.2\nvoid_ratio = 1.0\ncritical_state_ratio = 1.2\nocr = 1.5"),
+        (
+            "cohesion    = 2e4",
+            "kappa = 0.04\nlambda = 0.2\nvoid_ratio = 1.0\ncritical_state_ratio = 1.2\nocr = 1.5",
+        ),
         ("factor = 1.25", "factor = 1.0"),
         ("velocity = [0.0, \"-10 mm/s\"]", "displacement = [-0.1, 0.0]"),
         (
@@ -97,7 +127,10 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ),
     ],
     &[
-        ("path     = [[\"0.5 s\", -0.1, 0.0], [1.0, 0.0, \"5 cm\"]]", "displacement = [-0.1, \"1 cm\"]"),
+        (
+            "path     = [[\"0.5 s\", -0.1, 0.0], [1.0, 0.0, \"5 cm\"]]",
+            "displacement = [-0.1, \"1 cm\"]",
+        ),
         ("ramp    = \"0.25 s\"", "amplitude = [[\"0.2 s\", 1.0], [1.0, 0.0]]"),
         ("ramp = \"0.5 s\"", "amplitude = [[\"0.2 s\", 1.5], [0.5, 0.0]]"),
         (
@@ -105,7 +138,10 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
             "stress = { value = [0.0, \"-20 kPa\"], at_y = 1.25, per_metre = [\"1 kPa/m\", -500] }",
         ),
         ("ramp = 0.5\n", "amplitude = [[0.0, 1.0]]\n"),
-        ("displacement = [0.0, \"-10 cm\"]", "path = [[0.5, 0.0, -0.1], [\"1 s\", 0.0, \"-20 cm\"]]"),
+        (
+            "displacement = [0.0, \"-10 cm\"]",
+            "path = [[0.5, 0.0, -0.1], [\"1 s\", 0.0, \"-20 cm\"]]",
+        ),
         ("\"tresca\"", "\"sensitive-clay\""),
         (
             "cohesion    = 2e4",
@@ -113,16 +149,28 @@ const OTHERWISE: [&[(&str, &str)]; 7] = [
         ),
     ],
     &[
-        ("from = [0.0, 1.25]\nto   = [1.0, 1.25]", "circle = { centre = [2.75, 2.0], radius = \"10 cm\" }"),
-        ("stress = [0.0, \"-20 kPa\"]", "pressure = { value = 1e3, at_y = 3.0, per_metre = \"10 kPa/m\" }"),
-        ("velocity = [0.0, \"-1 m/s\"]", "spin = { rate = 2.0, about = [1.5, \"2 m\"] }"),
+        (
+            "from = [0.0, 1.25]\nto   = [1.0, 1.25]",
+            "circle = { centre = [2.75, 2.0], radius = \"10 cm\" }",
+        ),
+        (
+            "stress = [0.0, \"-20 kPa\"]",
+            "pressure = { value = 1e3, at_y = 3.0, per_metre = \"10 kPa/m\" }",
+        ),
+        (
+            "velocity = [0.0, \"-1 m/s\"]",
+            "spin = { rate = 2.0, about = [1.5, \"2 m\"] }",
+        ),
         ("\"tresca\"", "\"mu-i\""),
         (
             "cohesion    = 2e4",
             "damping = { ratio = 0.05, frequency = 2.0 }\nmu_s = 0.38\nmu_2 = 0.64\n\
              inertial_number = 0.28\ngrain_diameter = \"1 mm\"\ngrain_density = 2500",
         ),
-        ("force = [0.0, \"-1 kN/m\"]\nramp = 0.5", "force_path = [[\"0.2 s\", 1.0, \"-1 kN/m\"], [1.0, 0.0, 2.0]]"),
+        (
+            "force = [0.0, \"-1 kN/m\"]\nramp = 0.5",
+            "force_path = [[\"0.2 s\", 1.0, \"-1 kN/m\"], [1.0, 0.0, 2.0]]",
+        ),
         (
             "force   = [0.0, \"-1 kN/m\"]\nmoment  = 100.0\nramp    = \"0.25 s\"",
             "force_path = [[\"0.2 s\", 1.0, \"-1 kN/m\"], [1.0, 0.0, 2.0]]",
@@ -150,7 +198,9 @@ pub fn all() -> Vec<String> {
         let fields = "every = 0.5\nfields = [\"pore-pressure\"]";
         let rest =
             "[gravity]\nacceleration = [0.0, -9.81]\n\n[[history]]\nquantity = \"pore-pressure\"\nat = [1.0, 0.5]";
-        let dry = STATIC.replacen("poisson = 0.3", soil, 1).replacen("every = 0.5", fields, 1);
+        let dry = STATIC
+            .replacen("poisson = 0.3", soil, 1)
+            .replacen("every = 0.5", fields, 1);
         format!("{dry}\n[water]\n{table}\nunit_weight = \"10 kN/m3\"\n\n{rest}\n")
     };
     let still = [
@@ -171,7 +221,11 @@ pub fn all() -> Vec<String> {
         SEEPING.to_owned(),
     ];
     bases.extend(still.map(wet));
-    let ratio = STATIC.replacen("poisson = 0.3", "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nru = 0.3", 1);
+    let ratio = STATIC.replacen(
+        "poisson = 0.3",
+        "poisson = 0.3\nunit_weight = \"19 kN/m3\"\nru = 0.3",
+        1,
+    );
     bases.push(format!("{ratio}\n[gravity]\nacceleration = [0.0, -9.81]\n"));
     bases.push(SUCTION.to_owned());
     bases.push(SOLID.to_owned());
@@ -186,7 +240,11 @@ pub fn all() -> Vec<String> {
     let ball = "sphere = { centre = [3.5, 0.5, 2.0], radius = 0.25 }";
     let ground = "terrain = { top = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0], [4.0, 3.0, 0.0]] }";
     let otherwise = otherwise.replacen(ball, ground, 1);
-    bases.push(otherwise.replacen(disc, "rectangle = { lower = [0.5, 0.0, 1.0], upper = [1.5, 1.0, 1.0] }", 1));
+    bases.push(otherwise.replacen(
+        disc,
+        "rectangle = { lower = [0.5, 0.0, 1.0], upper = [1.5, 1.0, 1.0] }",
+        1,
+    ));
     for changes in OTHERWISE {
         let mut text = FULL.to_owned();
         for (part, by) in changes {

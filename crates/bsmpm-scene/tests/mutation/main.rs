@@ -78,7 +78,10 @@ fn refuses(text: &str, path: &str, says: &str, line: Option<usize>) {
         placed && about && error.message.contains(says)
     };
     let reported: Vec<String> = errors.iter().map(ToString::to_string).collect();
-    assert!(errors.iter().any(fits), "{path}, line {line:?}: ..{says}.. is not among {reported:#?}");
+    assert!(
+        errors.iter().any(fits),
+        "{path}, line {line:?}: ..{says}.. is not among {reported:#?}"
+    );
 }
 
 /// The text without an entry, and without the comma that it leaves in an inline table.
@@ -101,7 +104,12 @@ fn the_bases_hold_every_key_of_the_schema() {
     }
     for table in ROOT.all() {
         for key in table.keys.iter().filter(|key| key.presence != Presence::Later) {
-            assert!(held.contains(&(table.header, key.name)), "no base has {} of {}", key.name, table.header);
+            assert!(
+                held.contains(&(table.header, key.name)),
+                "no base has {} of {}",
+                key.name,
+                table.header
+            );
         }
     }
 }
@@ -112,7 +120,12 @@ fn every_key_renamed_is_unknown_and_every_key_removed_is_missed_if_it_must_be_th
         for written in written::all(&base) {
             let Some(name) = &written.name else { continue };
             let renamed = format!("{}qqq{}", &base[..name.end], &base[name.end..]);
-            refuses(&renamed, &format!("{}qqq", written.path), "is not a known key of", Some(line(&base, name.start)));
+            refuses(
+                &renamed,
+                &format!("{}qqq", written.path),
+                "is not a known key of",
+                Some(line(&base, name.start)),
+            );
             if !written.is_entry {
                 continue;
             }
@@ -149,7 +162,9 @@ fn i02_i07_every_value_that_the_schema_refuses_is_refused_at_its_place() {
         while let Some((base, written)) = entries.get(next.fetch_add(1, Relaxed)) {
             let span = &written.value;
             let own = &base[span.clone()];
-            let negated = own.strip_prefix('"').map_or(format!("-{own}"), |quoted| format!("\"-{quoted}"));
+            let negated = own
+                .strip_prefix('"')
+                .map_or(format!("-{own}"), |quoted| format!("\"-{quoted}"));
             for put in VALUES.iter().copied().chain([negated.as_str()]) {
                 let text = format!("{}{put}{}", &base[..span.start], &base[span.end..]);
                 if VALUES.contains(&put) && written.fits.refuses(put) {
@@ -164,7 +179,10 @@ fn i02_i07_every_value_that_the_schema_refuses_is_refused_at_its_place() {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(change))));
     let [accepted, refused] = [accepted, refused].map(AtomicUsize::into_inner);
-    assert!(refused > 20_000 && accepted > 300, "{accepted} accepted, {refused} refused");
+    assert!(
+        refused > 20_000 && accepted > 300,
+        "{accepted} accepted, {refused} refused"
+    );
 }
 
 #[test]
@@ -212,10 +230,19 @@ fn the_schema_is_sound() {
     for table in ROOT.all() {
         for key in table.keys {
             assert!(!key.doc.is_empty() && table.key(key.name).is_some_and(|first| std::ptr::eq(first, key)));
-            assert_eq!(key.presence == Presence::Later, matches!(key.kind, Kind::Open), "{}", key.name);
+            assert_eq!(
+                key.presence == Presence::Later,
+                matches!(key.kind, Kind::Open),
+                "{}",
+                key.name
+            );
         }
         for group in table.exclusive {
-            assert!(group.keys.iter().all(|key| table.key(key).is_some()), "{:?}", group.keys);
+            assert!(
+                group.keys.iter().all(|key| table.key(key).is_some()),
+                "{:?}",
+                group.keys
+            );
         }
     }
 }

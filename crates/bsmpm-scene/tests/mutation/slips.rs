@@ -35,19 +35,41 @@ fn slips(base: &str) -> Vec<Slip> {
     for written in written::all(base) {
         let Some(name) = &written.name else { continue };
         let (path, value) = (&written.path, &written.value);
-        let mut slip = |kind, text: String| slips.push(Slip { kind, text, path: path.clone() });
-        slip("key misspelt", format!("{}{}{}", &base[..name.start], misspelt(&base[name.clone()]), &base[name.end..]));
+        let mut slip = |kind, text: String| {
+            slips.push(Slip {
+                kind,
+                text,
+                path: path.clone(),
+            })
+        };
+        slip(
+            "key misspelt",
+            format!(
+                "{}{}{}",
+                &base[..name.start],
+                misspelt(&base[name.clone()]),
+                &base[name.end..]
+            ),
+        );
         if !written.is_entry {
             continue;
         }
         slip("key removed", without(base, &written));
-        slip("value of another type", format!("{}1979-05-27{}", &base[..value.start], &base[value.end..]));
+        slip(
+            "value of another type",
+            format!("{}1979-05-27{}", &base[..value.start], &base[value.end..]),
+        );
         let is_word = matches!(written.fits, Fits::Kind(Kind::Choice(_) | Kind::ChoiceOr(..)));
-        if let Some(word) = base[value.clone()].strip_prefix('"').and_then(|word| word.strip_suffix('"'))
+        if let Some(word) = base[value.clone()]
+            .strip_prefix('"')
+            .and_then(|word| word.strip_suffix('"'))
             && is_word
         {
             let word = misspelt(word);
-            slip("word misspelt", format!("{}\"{word}\"{}", &base[..value.start], &base[value.end..]));
+            slip(
+                "word misspelt",
+                format!("{}\"{word}\"{}", &base[..value.start], &base[value.end..]),
+            );
         }
     }
     slips
@@ -58,23 +80,43 @@ fn brackets(base: &str) -> Vec<Slip> {
     let change = |(number, line): (usize, &str)| {
         let (kind, header) = match line.strip_prefix("[[").and_then(|line| line.strip_suffix("]]")) {
             Some(name) => ("[x] for [[x]]", format!("[{name}]")),
-            None => ("[[x]] for [x]", format!("[{}]", line.strip_prefix('[').filter(|_| line.ends_with(']'))?.trim())),
+            None => (
+                "[[x]] for [x]",
+                format!("[{}]", line.strip_prefix('[').filter(|_| line.ends_with(']'))?.trim()),
+            ),
         };
         let mut lines: Vec<&str> = base.lines().collect();
         lines[number] = &header;
-        Some(Slip { kind, text: lines.join("\n"), path: line.to_owned() })
+        Some(Slip {
+            kind,
+            text: lines.join("\n"),
+            path: line.to_owned(),
+        })
     };
     base.lines().enumerate().filter_map(change).collect()
 }
 
 /// Kinds of slips whose error names them. What a removed key leaves without effect is named instead of it, and TOML
 /// itself fails at what follows two pairs of brackets.
-const NAMED: [&str; 4] = ["[x] for [[x]]", "key misspelt", "value of another type", "word misspelt"];
+const NAMED: [&str; 4] = [
+    "[x] for [[x]]",
+    "key misspelt",
+    "value of another type",
+    "word misspelt",
+];
 
 /// Whether an error names the key, table or value of a slip, or stands in its table.
 fn names(error: &Error, slip: &Slip) -> bool {
-    let name = slip.path.rsplit('.').next().unwrap_or(&slip.path).trim_matches(['[', ']']);
-    let table_of = |path: &str| path.rsplit_once('.').map_or(String::new(), |(table, _)| table.to_owned());
+    let name = slip
+        .path
+        .rsplit('.')
+        .next()
+        .unwrap_or(&slip.path)
+        .trim_matches(['[', ']']);
+    let table_of = |path: &str| {
+        path.rsplit_once('.')
+            .map_or(String::new(), |(table, _)| table.to_owned())
+    };
     let table = table_of(&slip.path);
     error.key == table || table_of(&error.key) == table || error.to_string().contains(name)
 }
@@ -118,9 +160,17 @@ fn one_slip_gives_one_error() {
     println!("{}", several.join("\n"));
     elsewhere.sort();
     elsewhere.dedup();
-    assert!(elsewhere.is_empty(), "errors that do not name the slip:\n{}", elsewhere.join("\n"));
+    assert!(
+        elsewhere.is_empty(),
+        "errors that do not name the slip:\n{}",
+        elsewhere.join("\n")
+    );
     for (kind, most) in MOST_WITH_SEVERAL {
         let [none, one, more] = counts[kind];
-        assert!(one > 100 && more <= most, "{kind}: {more} of {} give more than one error", none + one + more);
+        assert!(
+            one > 100 && more <= most,
+            "{kind}: {more} of {} give more than one error",
+            none + one + more
+        );
     }
 }

@@ -42,7 +42,9 @@ pub fn all(text: &str) -> Vec<Written> {
 fn table(schema: &'static Table, written: &DeTable<'_>, path: &str, text: &str, found: &mut Vec<Written>) {
     for (name, value) in written {
         let path = format!("{path}{}", name.get_ref());
-        let key = schema.key(name.get_ref()).unwrap_or_else(|| panic!("{path} is not in the schema"));
+        let key = schema
+            .key(name.get_ref())
+            .unwrap_or_else(|| panic!("{path} is not in the schema"));
         let (name, span) = (name.span(), value.span());
         let is_entry = span.start > name.end && text[name.end..span.start].trim() == "=";
         found.push(Written {
@@ -60,8 +62,15 @@ fn table(schema: &'static Table, written: &DeTable<'_>, path: &str, text: &str, 
 
 fn below(kind: &'static Kind, value: &DeValue<'_>, path: &str, text: &str, found: &mut Vec<Written>) {
     let whole = found.last().unwrap().clone();
-    let mut item =
-        |fits, value| found.push(Written { fits, value, name: None, presence: Presence::Optional, ..whole.clone() });
+    let mut item = |fits, value| {
+        found.push(Written {
+            fits,
+            value,
+            name: None,
+            presence: Presence::Optional,
+            ..whole.clone()
+        })
+    };
     match (kind, value) {
         (
             Kind::Table(schema) | Kind::Profile(.., schema) | Kind::PairProfile(.., schema) | Kind::ChoiceOr(_, schema),
@@ -71,13 +80,17 @@ fn below(kind: &'static Kind, value: &DeValue<'_>, path: &str, text: &str, found
         }
         (Kind::Named(schema), DeValue::Table(named)) => {
             for (name, value) in named {
-                let DeValue::Table(written) = value.get_ref() else { panic!("{path}") };
+                let DeValue::Table(written) = value.get_ref() else {
+                    panic!("{path}")
+                };
                 table(schema, written, &format!("{path}.{}.", name.get_ref()), text, found);
             }
         }
         (Kind::Tables(schema), DeValue::Array(items)) => {
             for (number, value) in items.iter().enumerate() {
-                let DeValue::Table(written) = value.get_ref() else { panic!("{path}") };
+                let DeValue::Table(written) = value.get_ref() else {
+                    panic!("{path}")
+                };
                 table(schema, written, &format!("{path}.{number}."), text, found);
             }
         }
@@ -88,11 +101,15 @@ fn below(kind: &'static Kind, value: &DeValue<'_>, path: &str, text: &str, found
             | Kind::Either(dimension, range)
             | Kind::List(dimension, range),
             DeValue::Array(items),
-        ) => items.iter().for_each(|value| item(Fits::Number(*dimension, *range), value.span())),
+        ) => items
+            .iter()
+            .for_each(|value| item(Fits::Number(*dimension, *range), value.span())),
         (Kind::Rows(_) | Kind::Course(_), DeValue::Array(rows)) => {
             for row in rows.iter() {
                 item(Fits::Row, row.span());
-                let DeValue::Array(items) = row.get_ref() else { panic!("{path}") };
+                let DeValue::Array(items) = row.get_ref() else {
+                    panic!("{path}")
+                };
                 let columns: Vec<(Dimension, Range)> = match kind {
                     Kind::Rows(columns) => columns.to_vec(),
                     Kind::Course(dimension) => {

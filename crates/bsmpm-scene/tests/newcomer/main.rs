@@ -46,22 +46,35 @@ struct Messages {
 
 fn messages(text: &str) -> Messages {
     match Case::from_text("case.toml", text, &[]) {
-        Ok(case) => Messages { errors: Vec::new(), warnings: case.warnings },
-        Err(errors) => Messages { errors: errors.iter().map(ToString::to_string).collect(), warnings: Vec::new() },
+        Ok(case) => Messages {
+            errors: Vec::new(),
+            warnings: case.warnings,
+        },
+        Err(errors) => Messages {
+            errors: errors.iter().map(ToString::to_string).collect(),
+            warnings: Vec::new(),
+        },
     }
 }
 
 /// What is not as the row has it.
 fn fault(row: &Row) -> Option<String> {
     let Messages { errors, warnings } = messages(&row.text());
-    let found =
-        format!("row {} ({}):\n   {}", row.number, row.what, [&errors[..], &warnings[..]].concat().join("\n   "));
+    let found = format!(
+        "row {} ({}):\n   {}",
+        row.number,
+        row.what,
+        [&errors[..], &warnings[..]].concat().join("\n   ")
+    );
     let is_right = match row.says {
         Says::Errors(number, texts) => {
             errors.len() == number && texts.iter().all(|text| errors.iter().any(|error| error.contains(text)))
         }
         Says::Warning(texts) => {
-            errors.is_empty() && warnings.iter().any(|warning| texts.iter().all(|text| warning.contains(text)))
+            errors.is_empty()
+                && warnings
+                    .iter()
+                    .any(|warning| texts.iter().all(|text| warning.contains(text)))
         }
         Says::Nothing => errors.is_empty() && warnings.is_empty(),
     };
@@ -86,9 +99,15 @@ fn the_texts_are_those_of_the_page() {
     let mut page = String::from("Wrong inputs of a newcomer, and what the program says.\n");
     for row in ROWS {
         let Messages { errors, warnings } = messages(&row.text());
-        let warnings = warnings.iter().map(|warning| bsmpm_messages::headed(warning, "warning"));
+        let warnings = warnings
+            .iter()
+            .map(|warning| bsmpm_messages::headed(warning, "warning"));
         let all: Vec<String> = errors.into_iter().chain(warnings).collect();
-        let all = if all.is_empty() { "nothing".to_owned() } else { all.join("\n") };
+        let all = if all.is_empty() {
+            "nothing".to_owned()
+        } else {
+            all.join("\n")
+        };
         _ = write!(page, "\n{} {}\n{all}\n", row.number, row.what);
     }
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/newcomer/texts.txt");
@@ -115,5 +134,8 @@ fn a_record_of_peer_is_refused_with_the_way_to_convert_it() {
     std::fs::write(folder.join("case.toml"), case).expect("a case");
     let error = load(&folder.join("case.toml")).expect_err("accepted").to_string();
     std::fs::remove_dir_all(&folder).expect("removed");
-    assert!(error.starts_with("E0049: rec.at2: ") && error.contains("t [s], a [g]"), "{error}");
+    assert!(
+        error.starts_with("E0049: rec.at2: ") && error.contains("t [s], a [g]"),
+        "{error}"
+    );
 }

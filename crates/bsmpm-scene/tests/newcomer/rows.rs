@@ -94,7 +94,10 @@ pub const ROWS: &[Row] = &[
     Row {
         number: "14",
         what: "units of time as people write them",
-        edits: &[("analysis = { type = \"quasi-static\" }", "analysis = { type = \"dynamic\", end = \"30 sec\" }")],
+        edits: &[(
+            "analysis = { type = \"quasi-static\" }",
+            "analysis = { type = \"dynamic\", end = \"30 sec\" }",
+        )],
         says: Says::Nothing,
     },
     Row {
@@ -103,30 +106,51 @@ pub const ROWS: &[Row] = &[
         edits: &[("\"10 kPa\"", "\"10 t/m2\"")],
         says: Says::Errors(1, &["tf/m2"]),
     },
-    Row { number: "15b", what: "a stress in psf", edits: &[("\"10 kPa\"", "\"200 psf\"")], says: Says::Nothing },
+    Row {
+        number: "15b",
+        what: "a stress in psf",
+        edits: &[("\"10 kPa\"", "\"200 psf\"")],
+        says: Says::Nothing,
+    },
     Row {
         number: "15c",
         what: "kg/m2 for a stress",
         edits: &[("\"10 kPa\"", "\"1000 kg/m2\"")],
         says: Says::Errors(1, &["kgf/m2"]),
     },
-    Row { number: "16", what: "misspelt key", edits: &[("poisson", "poison")], says: Says::Errors(1, &["`poisson`"]) },
+    Row {
+        number: "16",
+        what: "misspelt key",
+        edits: &[("poisson", "poison")],
+        says: Says::Errors(1, &["`poisson`"]),
+    },
     Row {
         number: "17",
         what: "symbols nu and su",
-        edits: &[("poisson        = 0.3", "nu = 0.3"), ("cohesion       = \"10 kPa\"", "su = \"10 kPa\"")],
+        edits: &[
+            ("poisson        = 0.3", "nu = 0.3"),
+            ("cohesion       = \"10 kPa\"", "su = \"10 kPa\""),
+        ],
         says: Says::Errors(2, &["`poisson`", "`cohesion`"]),
     },
     Row {
         number: "17b",
         what: "symbols in capitals",
-        edits: &[("poisson        = 0.3", "NU = 0.3"), ("friction_angle = 20.0", "PHI = 20.0")],
+        edits: &[
+            ("poisson        = 0.3", "NU = 0.3"),
+            ("friction_angle = 20.0", "PHI = 20.0"),
+        ],
         says: Says::Errors(2, &["is the key `poisson`", "is the key `friction_angle`"]),
     },
     Row {
         number: "18",
         what: "symbols E, phi, psi and c",
-        edits: &[("young  ", "E"), ("friction_angle", "phi"), ("dilation_angle", "psi"), ("cohesion", "c")],
+        edits: &[
+            ("young  ", "E"),
+            ("friction_angle", "phi"),
+            ("dilation_angle", "psi"),
+            ("cohesion", "c"),
+        ],
         says: Says::Errors(4, &["`young`", "`friction_angle`", "`dilation_angle`", "`cohesion`"]),
     },
     Row {
@@ -159,7 +183,10 @@ pub const ROWS: &[Row] = &[
     Row {
         number: "23",
         what: "tension cut-off",
-        edits: &[("cohesion       = \"10 kPa\"", "cohesion       = \"10 kPa\"\ntension_cutoff = 0")],
+        edits: &[(
+            "cohesion       = \"10 kPa\"",
+            "cohesion       = \"10 kPa\"\ntension_cutoff = 0",
+        )],
         says: Says::Errors(1, &["not available"]),
     },
     Row {
@@ -198,7 +225,10 @@ pub const ROWS: &[Row] = &[
     Row {
         number: "27",
         what: "corners of the grid exchanged",
-        edits: &[("lower = [0.0, 0.0]\nupper = [40.0, 12.0]", "lower = [40.0, 12.0]\nupper = [0.0, 0.0]")],
+        edits: &[(
+            "lower = [0.0, 0.0]\nupper = [40.0, 12.0]",
+            "lower = [40.0, 12.0]\nupper = [0.0, 0.0]",
+        )],
         says: Says::Errors(1, &["E0203", "Exchange or correct"]),
     },
     Row {
@@ -318,7 +348,10 @@ pub const ROWS: &[Row] = &[
     Row {
         number: "42",
         what: "no supports",
-        edits: &[("boundary = { bottom = \"fixed\", left = \"roller\", right = \"roller\" }", "boundary = { }")],
+        edits: &[(
+            "boundary = { bottom = \"fixed\", left = \"roller\", right = \"roller\" }",
+            "boundary = { }",
+        )],
         says: Says::Errors(1, &["E0270", "x and y", "bottom = \"fixed\"", "left, bottom"]),
     },
     Row {

@@ -10,7 +10,10 @@ use bsmpm_scene::{Acting, Base, Face, Initial, LoadedLine, Push, Site};
 fn strips_loads_and_initial_stress_arrive() {
     let case = valid(FULL, &["footing.interface=\"rough\""]);
     let footing = case.footing.unwrap();
-    assert_eq!((footing.site.ends(), footing.base), (Some([[1.0, 2.5], [2.0, 2.5]]), Base::Rough));
+    assert_eq!(
+        (footing.site.ends(), footing.base),
+        (Some([[1.0, 2.5], [2.0, 2.5]]), Base::Rough)
+    );
     assert_eq!(footing.path.rows, [(1.0, [0.0, -0.1, 0.0])]);
     assert_eq!(valid(FULL, &[]).footing.unwrap().base, Base::Smooth);
     let bases: Vec<Base> = case.prescribed.iter().map(|prescribed| prescribed.base).collect();
@@ -22,48 +25,88 @@ fn strips_loads_and_initial_stress_arrive() {
         (case.tractions[0].push, case.tractions[0].ramp),
         (Push::Stress([0.0, -2e4, 0.0].map(Profile::constant)), 0.5)
     );
-    assert_eq!((case.point_loads[0].at, case.point_loads[0].force), ([3.5, 1.25, 0.0], [0.0, -1e3, 0.0]));
+    assert_eq!(
+        (case.point_loads[0].at, case.point_loads[0].force),
+        ([3.5, 1.25, 0.0], [0.0, -1e3, 0.0])
+    );
     assert_eq!(case.initial, Some(Initial::AtRest(vec![0.5, 0.5, 0.5, 0.6])));
-    let elastic = FULL.replace("k0          = 0.6\n", "").replace("k0 = 0.5\n", "gravity = \"elastic\"\n");
+    let elastic = FULL
+        .replace("k0          = 0.6\n", "")
+        .replace("k0 = 0.5\n", "gravity = \"elastic\"\n");
     assert_eq!(valid(&elastic, &[]).initial, Some(Initial::Elastic));
     let own = FULL.replace("k0 = 0.5\n", "");
     assert!(set(&own, &[]).is_err(), "not all materials have their own");
     let k0 = ["material.sand.k0=0.4", "material.clay.k0=0.7", "material.block.k0=0"];
-    assert_eq!(valid(&own, &k0).initial, Some(Initial::AtRest(vec![0.4, 0.7, 0.0, 0.6])));
+    assert_eq!(
+        valid(&own, &k0).initial,
+        Some(Initial::AtRest(vec![0.4, 0.7, 0.0, 0.6]))
+    );
 }
 
 /// On the top of a block, beside it, and beneath what lies over it.
 #[test]
 fn what_lies_on_the_ground_has_no_part_in_the_stress_at_the_start() {
-    let case = valid(FULL, &["prescribed.1.components={ friction_coefficient = 0.3, separates = true }"]);
+    let case = valid(
+        FULL,
+        &["prescribed.1.components={ friction_coefficient = 0.3, separates = true }"],
+    );
     let rest: Vec<bool> = case.prescribed.iter().map(|of| of.rests).collect();
-    assert!(case.footing.is_some_and(|footing| footing.rests) && rest == [false, true], "{rest:?}");
-    let beside = ["footing.from=[2, 2]", "footing.to=[2, 2.5]", "footing.displacement=[-0.1, 0]"];
+    assert!(
+        case.footing.is_some_and(|footing| footing.rests) && rest == [false, true],
+        "{rest:?}"
+    );
+    let beside = [
+        "footing.from=[2, 2]",
+        "footing.to=[2, 2.5]",
+        "footing.displacement=[-0.1, 0]",
+    ];
     assert!(!valid(FULL, &beside).footing.unwrap().rests);
     let above = ["footing.from=[1, 2]", "footing.to=[2, 2]"];
     assert!(!valid(FULL, &above).footing.unwrap().rests);
     let hangs = doubts(FULL, &["initial.equilibrium=plastic"]);
-    assert!(hangs.iter().any(|warning| warning.starts_with("W0672: prescribed.1: ")), "{hangs:?}");
+    assert!(
+        hangs.iter().any(|warning| warning.starts_with("W0672: prescribed.1: ")),
+        "{hangs:?}"
+    );
 }
 
 #[test]
 fn strips_hold_and_load_a_quasi_static_body() {
     let free = STATIC.replace("bottom = \"fixed\"\n", "");
     let errors = set(&free, &["traction.0={from=[0, 1], to=[2, 1], stress=[0, -1]}"]).unwrap_err();
-    assert!(errors.len() == 1 && errors[0].message.contains("along x and y"), "{errors:?}");
+    assert!(
+        errors.len() == 1 && errors[0].message.contains("along x and y"),
+        "{errors:?}"
+    );
     let strip = |more: &str| format!("prescribed.0={{from=[0, 1], to=[2, 1], displacement=[0, -0.1]{more}}}");
     assert!(valid(&free, &[&strip("")]).warnings.is_empty());
     let errors = set(&free, &[&strip(", components=\"normal\"")]).unwrap_err();
     assert!(errors.len() == 1 && errors[0].message.contains("along x"), "{errors:?}");
     let face = "prescribed.0={face=\"bottom\", displacement=[0.1, 0]}";
     assert!(valid(&free, &[face]).warnings.is_empty());
-    assert!(set(&free, &["prescribed.0={face=\"top\", displacement=[0, -0.1]}"]).is_err(), "no body reaches it");
-    let held = valid(&free, &["footing={from=[0, 1], to=[2, 1], displacement=[0, -0.1]}", "boundary.left=roller"]);
+    assert!(
+        set(&free, &["prescribed.0={face=\"top\", displacement=[0, -0.1]}"]).is_err(),
+        "no body reaches it"
+    );
+    let held = valid(
+        &free,
+        &[
+            "footing={from=[0, 1], to=[2, 1], displacement=[0, -0.1]}",
+            "boundary.left=roller",
+        ],
+    );
     assert!(held.warnings.is_empty(), "{:?}", held.warnings);
-    for load in ["traction.0={from=[0, 1], to=[2, 1], stress=[0, -1]}", "point_load.0={at=[1, 1], force=[0, -1]}"] {
+    for load in [
+        "traction.0={from=[0, 1], to=[2, 1], stress=[0, -1]}",
+        "point_load.0={at=[1, 1], force=[0, -1]}",
+    ] {
         assert!(valid(STATIC, &[load]).warnings.is_empty(), "{load}");
     }
-    assert!(!valid(STATIC, &["traction.0={from=[0, 1], to=[2, 1], stress=[0, 0]}"]).warnings.is_empty());
+    assert!(
+        !valid(STATIC, &["traction.0={from=[0, 1], to=[2, 1], stress=[0, 0]}"])
+            .warnings
+            .is_empty()
+    );
 }
 
 #[test]
@@ -72,8 +115,17 @@ fn strips_and_loads_start_within_half_a_spacing_of_points() {
     let near = ["footing.from=[1.25, 2.62]", "footing.to=[1.75, 2.62]"];
     assert!(doubts(FULL, &near).is_empty());
     assert!(doubts(FULL, &["footing.from=[0.9, 2.5]", "footing.to=[2.3, 2.5]"]).is_empty());
-    for corner in ["[0.95, 2.55]", "[1.0, 2.5]", "[2.0, 2.5]", "[2.05, 2.45]", "[1.5, 2.25]"] {
-        assert!(doubts(FULL, &[&format!("point_load.0.at={corner}")]).is_empty(), "{corner}");
+    for corner in [
+        "[0.95, 2.55]",
+        "[1.0, 2.5]",
+        "[2.0, 2.5]",
+        "[2.05, 2.45]",
+        "[1.5, 2.25]",
+    ] {
+        assert!(
+            doubts(FULL, &[&format!("point_load.0.at={corner}")]).is_empty(),
+            "{corner}"
+        );
     }
     for far in ["[0.85, 2.5]", "[1.0, 2.63]", "[2.1, 2.6]"] {
         assert!(set(FULL, &[&format!("point_load.0.at={far}")]).is_err(), "{far}");
@@ -86,7 +138,11 @@ fn large_loads_on_little_background_are_warned_of() {
     let case = include_str!("../../../../cases/validation/large_consolidation.toml");
     let warned = |set: &[&str]| {
         let warnings = valid(case, set).warnings;
-        warnings.iter().filter(|warning| warning.contains(": solver.background: ")).cloned().collect::<Vec<_>>()
+        warnings
+            .iter()
+            .filter(|warning| warning.contains(": solver.background: "))
+            .cloned()
+            .collect::<Vec<_>>()
     };
     let off = "solver.extension=off";
     let found = warned(&["solver.background=1e-4", off]);
@@ -108,22 +164,51 @@ fn a_pressure_finds_the_body_that_it_presses_on() {
         Push::Pressure { side, .. } => side,
         Push::Stress(_) => panic!(),
     };
-    assert_eq!(side("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3"), -1.0, "below, on the right of its way");
+    assert_eq!(
+        side("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3"),
+        -1.0,
+        "below, on the right of its way"
+    );
     assert_eq!(side("from = [1.0, 1.25], to = [0.0, 1.25], pressure = 1e3"), 1.0);
-    assert_eq!(side("circle = { centre = [0.5, 2.0], radius = 0.4 }, pressure = 1e3"), 1.0, "a disc");
+    assert_eq!(
+        side("circle = { centre = [0.5, 2.0], radius = 0.4 }, pressure = 1e3"),
+        1.0,
+        "a disc"
+    );
     let hole = "circle = { centre = [2.75, 2.0], radius = 0.1 }, pressure = { value = 0.0, at_y = \"3 m\", per_metre \
     = \"10 kPa/m\" }";
     assert_eq!(side(hole), -1.0, "what surrounds it");
     let (line, _, largest) = push(hole);
-    assert_eq!(line, LoadedLine::Circle { center: [2.75, 2.0], radius: 0.1 });
+    assert_eq!(
+        line,
+        LoadedLine::Circle {
+            center: [2.75, 2.0],
+            radius: 0.1
+        }
+    );
     assert!((largest - 11e3).abs() < 1e-9, "at its lowest place: {largest}");
     for (traction, reported) in [
         ("from = [0.0, 0.5], to = [1.0, 0.5], pressure = 1e3", "E0252"),
-        ("circle = { centre = [9.0, 2.0], radius = 0.4 }, pressure = 1e3", "E0201"),
-        ("circle = { centre = [0.5, 2.0], radius = 0.9 }, pressure = 1e3", "E0401"),
-        ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3, stress = [0, 1]", "E0016"),
-        ("from = [0.0, 1.25], circle = { centre = [0.5, 2.0], radius = 0.4 }, pressure = 1e3", "E0016"),
-        ("from = [0.0, 1.25], to = [1.0, 1.25]", "none of the keys stress, pressure"),
+        (
+            "circle = { centre = [9.0, 2.0], radius = 0.4 }, pressure = 1e3",
+            "E0201",
+        ),
+        (
+            "circle = { centre = [0.5, 2.0], radius = 0.9 }, pressure = 1e3",
+            "E0401",
+        ),
+        (
+            "from = [0.0, 1.25], to = [1.0, 1.25], pressure = 1e3, stress = [0, 1]",
+            "E0016",
+        ),
+        (
+            "from = [0.0, 1.25], circle = { centre = [0.5, 2.0], radius = 0.4 }, pressure = 1e3",
+            "E0016",
+        ),
+        (
+            "from = [0.0, 1.25], to = [1.0, 1.25]",
+            "none of the keys stress, pressure",
+        ),
         ("from = [0.0, 1.25], to = [1.0, 1.25], pressure = [0, 1]", "expected"),
     ] {
         let message = format!("{:?}", with(traction).expect_err("refused"));
@@ -149,10 +234,15 @@ fn a_pressure_acts_on_what_stages_leave_free() {
         let case = bsmpm_scene::Case::from_text("case.toml", &format!("{ground}{stage}\n"), &[]);
         match case {
             Ok(case) => {
-                let Push::Pressure { side, .. } = case.tractions[0].push else { panic!() };
+                let Push::Pressure { side, .. } = case.tractions[0].push else {
+                    panic!()
+                };
                 assert!(acts && side == -1.0, "below it: {stage}");
             }
-            Err(errors) => assert!(!acts && format!("{errors:?}").contains("a free surface"), "{stage}: {errors:?}"),
+            Err(errors) => assert!(
+                !acts && format!("{errors:?}").contains("a free surface"),
+                "{stage}: {errors:?}"
+            ),
         }
     }
 }
@@ -169,7 +259,10 @@ fn rigid_bodies_that_faces_cut_and_that_stay_outside_are_reported() {
              [[body]]\nmaterial = 'soil'\nbox = {{ lower = [0, 0], upper = [4, 2] }}\npoints_per_cell = 2\n\
              [[rigid]]\nname = 'it'\n{rigid}\n"
         );
-        bsmpm_scene::Case::from_text("case.toml", &text, &[]).expect("a valid case").warnings.join("\n")
+        bsmpm_scene::Case::from_text("case.toml", &text, &[])
+            .expect("a valid case")
+            .warnings
+            .join("\n")
     };
     let push = "free = ['y']\nforce = [0, -1.0]";
     let cut = "W0419";
@@ -203,7 +296,9 @@ fn a_pressure_finds_a_body_that_is_thinner_than_cells_are_long() {
                  [[body]]\nmaterial = 'rubber'\nbox = { lower = [0, 0, 0.5], upper = [4, 2, 0.7] }\npoints_per_cell = 2\n\
                  [[traction]]\nrectangle = { lower = [0, 0, 0.5], upper = [4, 2, 0.5] }\npressure = 10.0\n";
     for set in [&[] as &[&str], &["grid.cell=1.0"]] {
-        let Push::Pressure { side, .. } = valid(plate, set).tractions[0].push else { panic!() };
+        let Push::Pressure { side, .. } = valid(plate, set).tractions[0].push else {
+            panic!()
+        };
         assert_eq!(side, 1.0, "above it, {set:?}");
     }
 }
@@ -214,7 +309,10 @@ fn loads_by_rows_of_forces_are_these_forces() {
     let built = |sets: &[&str]| {
         let case = set(FULL, sets).expect("a valid case");
         let idle = case.idle_before(0.0).loads.len();
-        let loads = bsmpm_scene::model::model::<PlaneStrain, 2>(&case).expect("a model").boundary.loads;
+        let loads = bsmpm_scene::model::model::<PlaneStrain, 2>(&case)
+            .expect("a model")
+            .boundary
+            .loads;
         assert_eq!(loads.len(), idle);
         loads
     };
@@ -243,15 +341,29 @@ fn stress_that_grows_with_depth_has_the_resultant_of_a_trapezium() {
     let traction = "traction.0={ from = [1.0, 0.25], to = [1.0, 1.25], ramp = 0.5, \
                     stress = { value = [-2e3, \"1 kPa\"], at_y = 1.25, per_metre = [\"-8 kPa/m\", 500] } }";
     let case = set(FULL, &[traction]).expect("a valid case");
-    let load = bsmpm_scene::model::model::<PlaneStrain, 2>(&case).expect("a model").boundary.loads.remove(0);
+    let load = bsmpm_scene::model::model::<PlaneStrain, 2>(&case)
+        .expect("a model")
+        .boundary
+        .loads
+        .remove(0);
     assert!(!load.follows && load.points.len() > 1, "{}", load.points.len());
     let pieces = || load.points.iter().zip(&load.traction);
     for axis in 0..2 {
         let force: f64 = pieces().map(|(point, stress)| point.area * stress[axis]).sum();
-        assert!((force / (value[axis] + growth[axis] / 2.0) - 1.0).abs() < 1e-12, "{force}");
-        let moment: f64 = pieces().map(|(point, stress)| point.area * stress[axis] * (point.x[1] - 0.25)).sum();
-        let within: f64 = pieces().map(|(point, _)| growth[axis] * point.area.powi(3) / 12.0).sum();
-        assert!((moment - within - value[axis] / 2.0 - growth[axis] / 6.0).abs() < 1e-9, "{moment} {within}");
+        assert!(
+            (force / (value[axis] + growth[axis] / 2.0) - 1.0).abs() < 1e-12,
+            "{force}"
+        );
+        let moment: f64 = pieces()
+            .map(|(point, stress)| point.area * stress[axis] * (point.x[1] - 0.25))
+            .sum();
+        let within: f64 = pieces()
+            .map(|(point, _)| growth[axis] * point.area.powi(3) / 12.0)
+            .sum();
+        assert!(
+            (moment - within - value[axis] / 2.0 - growth[axis] / 6.0).abs() < 1e-9,
+            "{moment} {within}"
+        );
     }
     let foot = [value[0] + growth[0], value[1] + growth[1]];
     assert!((case.tractions[0].largest() - foot[0].hypot(foot[1])).abs() < 1e-9);
@@ -278,20 +390,29 @@ fn loads_by_depth_in_a_solid_have_the_resultants_of_a_trapezium() {
     "#;
     let load = |push: &str| {
         let case = valid(&format!("{cube}\n{push}"), &[]);
-        bsmpm_scene::model::model::<Solid, 3>(&case).expect("a model").boundary.loads.remove(0)
+        bsmpm_scene::model::model::<Solid, 3>(&case)
+            .expect("a model")
+            .boundary
+            .loads
+            .remove(0)
     };
     let sums = |load: &Load<3>, axis: usize| {
         let pieces = || load.points.iter().zip(&load.traction);
         let force: f64 = pieces().map(|(point, stress)| point.area * stress[axis]).sum();
-        let moment: f64 = pieces().map(|(point, stress)| point.area * stress[axis] * point.x[2]).sum();
+        let moment: f64 = pieces()
+            .map(|(point, stress)| point.area * stress[axis] * point.x[2])
+            .sum();
         let edge = load.points[0].area.sqrt();
         (force, moment, edge * edge / 12.0)
     };
     let water = load("pressure = { value = 0.0, at_y = 2.0, per_metre = \"10 kPa/m\" }");
     let shear = load("stress = { value = [0.0, -2e3, 0.0], at_y = 2.0, per_metre = [0.0, \"-1 kPa/m\", \"3 kPa/m\"] }");
-    for (load, axis, value, growth) in
-        [(&water, 0, 0.0, -1e4), (&shear, 0, 0.0, 0.0), (&shear, 1, -2e3, -1e3), (&shear, 2, 0.0, 3e3)]
-    {
+    for (load, axis, value, growth) in [
+        (&water, 0, 0.0, -1e4),
+        (&shear, 0, 0.0, 0.0),
+        (&shear, 1, -2e3, -1e3),
+        (&shear, 2, 0.0, 3e3),
+    ] {
         let (force, moment, of_piece) = sums(load, axis);
         assert!((force - value - growth / 2.0).abs() < 1e-9, "{axis}: {force}");
         // Of the midpoint rule growth times piece^2/12 is missing.
@@ -321,16 +442,28 @@ fn what_lasts_where_only_absorbing_faces_hold_is_warned_of() {
     "#;
     let reports = |set: &[&str], of: &str| {
         let warnings = valid(base, set).warnings;
-        let found: Vec<_> = warnings.iter().filter_map(|warning| warning.strip_prefix("W0231: ")).collect();
-        assert!(found.len() <= 1 && found.iter().all(|warning| warning.starts_with(of)), "{found:?}");
+        let found: Vec<_> = warnings
+            .iter()
+            .filter_map(|warning| warning.strip_prefix("W0231: "))
+            .collect();
+        assert!(
+            found.len() <= 1 && found.iter().all(|warning| warning.starts_with(of)),
+            "{found:?}"
+        );
         !found.is_empty()
     };
     let strip = |push: &str| format!("traction.0={{ from = [0, 3], to = [2, 3], {push} }}");
-    let (lasting, shear) = (strip("stress = [0, \"-20 kPa\"]"), strip("stress = [1e3, 0], ramp = 0.1"));
+    let (lasting, shear) = (
+        strip("stress = [0, \"-20 kPa\"]"),
+        strip("stress = [1e3, 0], ramp = 0.1"),
+    );
     let back = strip("stress = [0, -1e3], amplitude = [[0.1, 1], [0.2, 0]]");
     assert!(reports(&[&lasting], "traction.0") && !reports(&[&shear], "") && !reports(&[&back], ""));
     assert!(reports(&[&strip("pressure = 1e3")], "traction.0") && !reports(&[&lasting, "boundary.bottom=fixed"], ""));
-    assert!(reports(&[&shear, "boundary.left=absorbing", "boundary.right=absorbing"], "traction.0"));
+    assert!(reports(
+        &[&shear, "boundary.left=absorbing", "boundary.right=absorbing"],
+        "traction.0"
+    ));
     let (whole, half) = ("centre = [2, 2], radius = 0.5", "centre = [2, 3], radius = 0.5");
     let hole = "body.0.subtract=[{ circle = { centre = [2, 2], radius = 0.5 } }, { circle = { centre = [2, 3], radius \
     = 0.5 } }]";
@@ -338,16 +471,30 @@ fn what_lasts_where_only_absorbing_faces_hold_is_warned_of() {
     assert!(!reports(&[hole, &round(whole), "body.0.box.upper=[4, 4]"], ""));
     assert!(reports(&[hole, &round(half), "grid.upper=[4, 3]"], "traction.0"));
     let weight = ["gravity.acceleration=[0, -9.81]", "initial.gravity=\"elastic\""];
-    assert!(!reports(&[&[&*lasting], &weight[..]].concat(), ""), "in the equilibrium of the start");
+    assert!(
+        !reports(&[&[&*lasting], &weight[..]].concat(), ""),
+        "in the equilibrium of the start"
+    );
     let grows = strip("stress = [0, -1e3], ramp = 0.1");
     assert!(reports(&[&[&*grows], &weight[..]].concat(), "traction.0"));
-    assert!(reports(&["point_load.0={ at = [1, 3], force_path = [[0.1, 0, 5], [0.2, 0, 3]] }"], "point_load.0"));
+    assert!(reports(
+        &["point_load.0={ at = [1, 3], force_path = [[0.1, 0, 5], [0.2, 0, 3]] }"],
+        "point_load.0"
+    ));
     let foot = |path: &str| format!("footing={{ from = [1, 3], to = [2, 3], path = {path} }}");
     assert!(reports(&[&foot("[[0.1, 0, -0.01]]")], "footing"));
     assert!(!reports(&[&foot("[[0.1, 0, -0.01], [0.2, 0, 0]]")], ""));
     let block = "name = \"block\", polygon = [[1, 3], [2, 3], [2, 4], [1, 4]]";
-    assert!(reports(&[&format!("rigid.0={{ {block}, displacement = [0, -0.1] }}")], "rigid.0"));
-    assert!(reports(&[&format!("rigid.0={{ {block}, mass = 10, free = [\"y\"], force = [0, -5] }}")], "rigid.0"));
+    assert!(reports(
+        &[&format!("rigid.0={{ {block}, displacement = [0, -0.1] }}")],
+        "rigid.0"
+    ));
+    assert!(reports(
+        &[&format!(
+            "rigid.0={{ {block}, mass = 10, free = [\"y\"], force = [0, -5] }}"
+        )],
+        "rigid.0"
+    ));
 }
 
 /// A footing without a name is `footing` to stages as to histories; a ramp of no force is warned of.
@@ -358,7 +505,11 @@ fn names_and_ramps_of_what_has_none() {
     let release = "stage=[{ at = 0.5, deactivate = [\"footing\"] }]";
     let released = |set: &[&str]| valid(STATIC, &[set, &[release]].concat()).stages[0].release.clone();
     assert_eq!(released(&[footing]), [("footing".to_owned(), Acting::Strip(0))]);
-    assert_eq!(released(&[footing, named]), [("footing".to_owned(), Acting::Load(0))], "what was given the name");
+    assert_eq!(
+        released(&[footing, named]),
+        [("footing".to_owned(), Acting::Load(0))],
+        "what was given the name"
+    );
     let block = |more: &str| {
         let block = format!("rigid.0={{ name = \"block\", polygon = [[0, 1], [1, 1], [1, 3], [0, 3]], {more} }}");
         valid(STATIC, &[&block]).warnings.join(" ").contains("W0410")
@@ -388,7 +539,10 @@ fn rigid_bodies_stay_out_of_the_free_field_on_their_way() {
     "#;
     let refused = |more: &str| {
         let block = format!("rigid.0={{ name = \"block\", polygon = [[1, 3], [2, 3], [2, 4], [1, 4]], {more} }}");
-        let reported = set(base, &[&block]).err().map(|errors| format!("{errors:?}")).unwrap_or_default();
+        let reported = set(base, &[&block])
+            .err()
+            .map(|errors| format!("{errors:?}"))
+            .unwrap_or_default();
         let of = |side: &str| reported.contains(&format!("boundary.{side}")) && reported.contains("a rigid body acts");
         ["left", "right"].map(of)
     };
@@ -405,7 +559,10 @@ fn forces_of_strips_that_share_an_edge_with_what_holds_are_warned_of() {
         let strip = format!("prescribed.0={{name=\"wall\", {strip}, displacement=[0.01, 0]}}");
         let force = "history.0={quantity=\"reaction\", of=\"wall\", name=\"wall\"}";
         let warnings = valid(STATIC, &[&[strip.as_str(), force], more].concat()).warnings;
-        warnings.into_iter().filter(|warning| warning.contains("missing in history")).collect::<Vec<_>>()
+        warnings
+            .into_iter()
+            .filter(|warning| warning.contains("missing in history"))
+            .collect::<Vec<_>>()
     };
     let wall = "from=[0, 0], to=[0, 1]";
     let fixed = warned(wall, &[]);
@@ -447,9 +604,17 @@ fn sections_beside_what_acts_are_warned_of() {
         [0, 1, 1, 1, 0],
         "level, beside a strip"
     );
-    assert_eq!([1.0, 2.5, 4.0, 5.5, 7.0].map(|x| reports(&upright(x), strip)), [0, 1, 0, 1, 0], "upright, at its ends");
+    assert_eq!(
+        [1.0, 2.5, 4.0, 5.5, 7.0].map(|x| reports(&upright(x), strip)),
+        [0, 1, 0, 1, 0],
+        "upright, at its ends"
+    );
     let footing = "[footing]\nfrom = [2, 4]\nto = [6, 4]\ndisplacement = [0, -0.1]";
-    assert_eq!([3.25, 3.75, 4.0].map(|y| reports(&level(y), footing)), [0, 0, 0], "where the material ends");
+    assert_eq!(
+        [3.25, 3.75, 4.0].map(|y| reports(&level(y), footing)),
+        [0, 0, 0],
+        "where the material ends"
+    );
     assert_eq!([2.5, 4.0].map(|x| reports(&upright(x), footing)), [1, 0], "upright");
     assert_eq!(reports("from = [2.5, 0]\nto = [2.5, 2]", footing), 0, "ends far below");
     let pipe = "[[rigid]]\nname = 'pipe'\ncircle = { centre = [4, 4.5], radius = 0.5 }\ndisplacement = [0, -0.1]";

@@ -17,7 +17,10 @@ fn a_free_body_at_the_edge_of_the_grid_is_warned_of() {
             x + 1.0
         );
         let warnings = valid(&body, set).warnings;
-        warnings.into_iter().filter(|warning| warning.starts_with("W0230")).collect()
+        warnings
+            .into_iter()
+            .filter(|warning| warning.starts_with("W0230"))
+            .collect()
     };
     let found = warned(0.0, "velocity = [-1.0, 0.0]", &[]);
     assert!(
@@ -49,7 +52,10 @@ fn a_free_body_at_the_edge_of_the_grid_is_warned_of() {
              free = [\"x\", \"y\", \"rotation\"]\nstart_velocity = [{velocity}, 0.0]\n"
         );
         let warnings = valid(&disc, &["boundary.bottom=fixed"]).warnings;
-        warnings.iter().filter(|warning| warning.contains("0.000 m from boundary `left`")).count()
+        warnings
+            .iter()
+            .filter(|warning| warning.contains("0.000 m from boundary `left`"))
+            .count()
     };
     assert_eq!([rigid("-1.0"), rigid("1.0"), rigid("0.0")], [1, 0, 0]);
 }
@@ -89,18 +95,30 @@ fn a_rotation_by_velocities_is_warned_of_like_a_spin() {
 #[test]
 fn a_body_spins_about_its_place() {
     let case = set(FULL, &["body.2.spin={ rate = 2.0, about = [\"1 m\", 2.0] }"]).expect("a valid case");
-    assert!(case.warnings.iter().any(|warning| warning.starts_with("W0673")), "{:?}", case.warnings);
+    assert!(
+        case.warnings.iter().any(|warning| warning.starts_with("W0673")),
+        "{:?}",
+        case.warnings
+    );
     let mut seen = 0;
     for point in seed::<PlaneStrain, 2>(&case, 0..case.grid.axes[0].cells())
         .filter(|point| point.material == 2 && point.x[0] >= 1.0)
     {
         // The block's own velocity besides; the grid begins at the origin.
         let expected = [-2.0 * (point.x[1] - 2.0), -1.0 + 2.0 * (point.x[0] - 1.0)];
-        assert!((point.v - Vector::from(expected)).norm() < 1e-14, "{:?} at {:?}", point.v, point.x);
+        assert!(
+            (point.v - Vector::from(expected)).norm() < 1e-14,
+            "{:?} at {:?}",
+            point.v,
+            point.x
+        );
         seen += 1;
     }
     assert_eq!(seen, 8, "two cells of four points");
-    let message = format!("{:?}", set(STATIC, &["body.0.spin={ rate = 2.0, about = [0, 0] }"]).expect_err("at rest"));
+    let message = format!(
+        "{:?}",
+        set(STATIC, &["body.0.spin={ rate = 2.0, about = [0, 0] }"]).expect_err("at rest")
+    );
     assert!(message.contains("E0218"), "{message}");
 }
 
@@ -114,7 +132,12 @@ fn a_body_above_rigid_terrain_does_not_leave_through_the_bottom() {
                 [[body]]\nmaterial = \"m\"\npoints_per_cell = 2\nbox = { lower = [1, 1, 0.4], upper = [2, 2, 1.4] }\n";
     let terrain = "[[rigid]]\nname = \"ground\"\n\
                    terrain = { top = [[0, 0, 0.4], [4, 0, 0.4], [0, 4, 0.4], [4, 4, 0.4]] }\n";
-    let leaves = |case: &str| valid(case, &[]).warnings.iter().any(|warning| warning.starts_with("W0230"));
+    let leaves = |case: &str| {
+        valid(case, &[])
+            .warnings
+            .iter()
+            .any(|warning| warning.starts_with("W0230"))
+    };
     assert!(leaves(body));
     assert!(!leaves(&format!("{body}{terrain}")));
 }

@@ -61,11 +61,24 @@ impl Options {
         path: &'a Path,
         output: &'a Path,
     ) -> Result<Batch<'a>, Error> {
-        let limits = Limits { jobs: command::jobs(self.jobs, command)?, memory: memory(self.max_memory) };
-        let solver = SolverProgram { command, side_by_side: true };
+        let limits = Limits {
+            jobs: command::jobs(self.jobs, command)?,
+            memory: memory(self.max_memory),
+        };
+        let solver = SolverProgram {
+            command,
+            side_by_side: true,
+        };
         solver.check()?;
         launch::make(output)?;
-        Ok(Batch { solver, path, output, limits, max_wall: self.max_wall, force: self.force })
+        Ok(Batch {
+            solver,
+            path,
+            output,
+            limits,
+            max_wall: self.max_wall,
+            force: self.force,
+        })
     }
 }
 
@@ -78,8 +91,10 @@ fn ranks(text: &str) -> Result<usize, String> {
 
 /// HH:MM:SS
 fn wall(text: &str) -> Result<Duration, String> {
-    let parts: Option<Vec<u64>> =
-        text.split(':').map(|part| part.parse().ok().filter(|part| *part < 100_000)).collect();
+    let parts: Option<Vec<u64>> = text
+        .split(':')
+        .map(|part| part.parse().ok().filter(|part| *part < 100_000))
+        .collect();
     match parts.as_deref() {
         Some(&[hours, minutes, seconds]) if minutes < 60 && seconds < 60 && hours + minutes + seconds > 0 => {
             Ok(Duration::from_secs(3600 * hours + 60 * minutes + seconds))
@@ -94,8 +109,15 @@ mod tests {
 
     #[test]
     fn ranks_and_times_are_read() {
-        assert_eq!((wall("01:02:03"), wall("0:0:5")), (Ok(Duration::from_secs(3723)), Ok(Duration::from_secs(5))));
-        assert!(["", "5", "0:0:0", "0:60:0", "a:b:c", "1:2:3:4"].iter().all(|text| wall(text).is_err()));
+        assert_eq!(
+            (wall("01:02:03"), wall("0:0:5")),
+            (Ok(Duration::from_secs(3723)), Ok(Duration::from_secs(5)))
+        );
+        assert!(
+            ["", "5", "0:0:0", "0:60:0", "a:b:c", "1:2:3:4"]
+                .iter()
+                .all(|text| wall(text).is_err())
+        );
         assert!(ranks("0").is_err() && ranks("4") == Ok(4));
     }
 }

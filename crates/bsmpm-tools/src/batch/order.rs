@@ -40,7 +40,10 @@ impl RunOrder {
     /// What it takes of the machine.
     pub fn load(&self, ranks: usize) -> PoolLoad {
         let steps = self.case.analysis.end / self.case.analysis.dt;
-        PoolLoad { memory: self.case.estimate(ranks).bytes_with_newton, work: self.case.points() as f64 * steps }
+        PoolLoad {
+            memory: self.case.estimate(ranks).bytes_with_newton,
+            work: self.case.points() as f64 * steps,
+        }
     }
 
     /// m  the size of its cells: the edge of a square, of a solid a cube, as large as the largest.
@@ -51,7 +54,11 @@ impl RunOrder {
     /// The same of any case.
     pub fn cell_of(case: &Case) -> f64 {
         let size = case.grid.axes.iter().map(GridAxis::longest).product::<f64>();
-        if case.grid.axes.len() == 3 { size.cbrt() } else { size.sqrt() }
+        if case.grid.axes.len() == 3 {
+            size.cbrt()
+        } else {
+            size.sqrt()
+        }
     }
 }
 
@@ -62,7 +69,13 @@ fn slug(settings: &[String]) -> String {
     for (key, value) in settings.iter().filter_map(|set| set.split_once('=')) {
         let part = format!("{}-{}_", key.rsplit('.').next().unwrap_or(key), value);
         let kept = part.chars().filter(|c| !c.is_whitespace() && *c != '"');
-        made.extend(kept.map(|c| if c.is_ascii_alphanumeric() || "._-".contains(c) { c } else { '-' }));
+        made.extend(kept.map(|c| {
+            if c.is_ascii_alphanumeric() || "._-".contains(c) {
+                c
+            } else {
+                '-'
+            }
+        }));
     }
     if made.len() > LONGEST { String::new() } else { made }
 }
@@ -74,7 +87,10 @@ mod tests {
 
     #[test]
     fn names_are_plain() {
-        let settings = ["grid.cell=\"10 mm\"".to_owned(), "body.*.points_per_cell = 3".to_owned()];
+        let settings = [
+            "grid.cell=\"10 mm\"".to_owned(),
+            "body.*.points_per_cell = 3".to_owned(),
+        ];
         assert_eq!(slug(&settings), "cell-10mm_points_per_cell-3_");
         assert_eq!(slug(&[]), "");
     }

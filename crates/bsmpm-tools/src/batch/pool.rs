@@ -64,9 +64,15 @@ fn next(waiting: &[usize], running: &[usize], loads: &[PoolLoad], limits: Limits
     if running.is_empty() {
         return (!waiting.is_empty()).then_some(0);
     }
-    let used = running.iter().fold(0_u64, |sum, &index| sum.saturating_add(loads[index].memory));
+    let used = running
+        .iter()
+        .fold(0_u64, |sum, &index| sum.saturating_add(loads[index].memory));
     let fits = |index: &usize| used.saturating_add(loads[*index].memory) <= limits.memory;
-    if running.len() < limits.jobs { waiting.iter().position(fits) } else { None }
+    if running.len() < limits.jobs {
+        waiting.iter().position(fits)
+    } else {
+        None
+    }
 }
 
 #[cfg(test)]
@@ -101,20 +107,35 @@ mod tests {
 
     #[test]
     fn neither_jobs_nor_memory_are_exceeded_and_the_longest_begin() {
-        let loads: Vec<PoolLoad> =
-            (0..12).map(|index| PoolLoad { memory: 10 + index % 5, work: (index * 7 % 12) as f64 }).collect();
+        let loads: Vec<PoolLoad> = (0..12)
+            .map(|index| PoolLoad {
+                memory: 10 + index % 5,
+                work: (index * 7 % 12) as f64,
+            })
+            .collect();
         let (results, _, jobs, memory) = run(&loads, Limits { jobs: 3, memory: 25 });
         assert_eq!(results, (0..12).map(|index| 10 * index).collect::<Vec<_>>());
         assert!(jobs == 2 && memory <= 25, "{jobs} {memory}");
-        let (_, began, jobs, _) = run(&loads, Limits { jobs: 1, memory: u64::MAX });
-        let sorted: Vec<usize> =
-            (0..12).rev().map(|work| (0..12).find(|index| index * 7 % 12 == work).unwrap()).collect();
+        let (_, began, jobs, _) = run(
+            &loads,
+            Limits {
+                jobs: 1,
+                memory: u64::MAX,
+            },
+        );
+        let sorted: Vec<usize> = (0..12)
+            .rev()
+            .map(|work| (0..12).find(|index| index * 7 % 12 == work).unwrap())
+            .collect();
         assert_eq!((began, jobs), (sorted, 1));
     }
 
     #[test]
     fn what_is_too_large_for_any_neighbour_runs_alone() {
-        let loads = [1, 100, 1].map(|memory| PoolLoad { memory, work: memory as f64 });
+        let loads = [1, 100, 1].map(|memory| PoolLoad {
+            memory,
+            work: memory as f64,
+        });
         let (results, _, _, memory) = run(&loads, Limits { jobs: 4, memory: 50 });
         assert_eq!((results.len(), memory), (3, 100));
         assert!(run(&[], Limits { jobs: 4, memory: 50 }).0.is_empty());

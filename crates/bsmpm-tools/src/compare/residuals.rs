@@ -35,8 +35,14 @@ struct Measure {
 }
 
 const MEASURES: [Measure; 2] = [
-    Measure { name: "Energy measure", of: |iterate| iterate.energy },
-    Measure { name: "Force measure", of: |iterate| iterate.force },
+    Measure {
+        name: "Energy measure",
+        of: |iterate| iterate.energy,
+    },
+    Measure {
+        name: "Force measure",
+        of: |iterate| iterate.force,
+    },
 ];
 
 /// The step of one run.
@@ -52,15 +58,27 @@ pub(super) fn run(arguments: &CompareArguments, step: u64) -> Result<ComparedFil
     let records = runs::records(arguments)?;
     let labels = runs::labels(arguments, &records);
     let course = |(label, record): (String, &RunRecord)| ResidualCourse::read(label, record, step);
-    let courses = labels.into_iter().zip(&records).map(course).collect::<Result<Vec<_>, _>>()?;
+    let courses = labels
+        .into_iter()
+        .zip(&records)
+        .map(course)
+        .collect::<Result<Vec<_>, _>>()?;
     let moment = |index: usize| records[index].moment(courses[index].iterates[0].time);
     let shared = (1..records.len()).all(|index| moment(index) == moment(0));
-    let below = if shared { format!("Step {step}, {}", moment(0)) } else { format!("Step {step}") };
+    let below = if shared {
+        format!("Step {step}, {}", moment(0))
+    } else {
+        format!("Step {step}")
+    };
     let picture = arguments.picture();
     if let Some(path) = &picture {
         draw(&courses, (&runs::title(arguments, &records), &below), path)?;
     }
-    Ok(ComparedFiles { picture, table: arguments.table.then(|| text(&courses, &below)), notes: Vec::new() })
+    Ok(ComparedFiles {
+        picture,
+        table: arguments.table.then(|| text(&courses, &below)),
+        notes: Vec::new(),
+    })
 }
 
 impl ResidualCourse {
@@ -82,19 +100,33 @@ impl ResidualCourse {
         }
         let case = bsmpm_scene::Case::from_text("case", &record.manifest.case.text, &[]).ok();
         let tolerances = case.map(|case| [case.solver.tolerance, case.solver.force_tolerance]);
-        Ok(Self { label, iterates, tolerances })
+        Ok(Self {
+            label,
+            iterates,
+            tolerances,
+        })
     }
 
     /// Places on a logarithmic axis, where what is not positive breaks the line.
     fn places(&self, measure: &Measure) -> Vec<(f64, f64)> {
-        let up = |iterate: &Iterate| Some((measure.of)(iterate)).filter(|value| *value > 0.0).unwrap_or(f64::NAN);
-        self.iterates.iter().map(|iterate| (iterate.iteration as f64, up(iterate))).collect()
+        let up = |iterate: &Iterate| {
+            Some((measure.of)(iterate))
+                .filter(|value| *value > 0.0)
+                .unwrap_or(f64::NAN)
+        };
+        self.iterates
+            .iter()
+            .map(|iterate| (iterate.iteration as f64, up(iterate)))
+            .collect()
     }
 }
 
 /// Different tolerances of a measure, which all runs share as a rule.
 fn tolerances(courses: &[ResidualCourse], measure: usize) -> Vec<f64> {
-    let mut all: Vec<f64> = courses.iter().filter_map(|course| Some(course.tolerances?[measure])).collect();
+    let mut all: Vec<f64> = courses
+        .iter()
+        .filter_map(|course| Some(course.tolerances?[measure]))
+        .collect();
     all.sort_by(f64::total_cmp);
     all.dedup();
     all
@@ -135,7 +167,13 @@ fn draw_measure(
         right: SHEET.0 - width(TOLERANCE, NUMBER) - 40.0,
         bottom: upright.1,
         x: (1.0 - BESIDE * most, most + BESIDE * most),
-        y: decades(places.iter().flatten().map(|place| place.1).chain(levels.iter().copied())),
+        y: decades(
+            places
+                .iter()
+                .flatten()
+                .map(|place| place.1)
+                .chain(levels.iter().copied()),
+        ),
         scales: [Scale::Whole, Scale::Logarithmic],
     };
     axes.rules(canvas);
@@ -167,11 +205,23 @@ fn text(courses: &[ResidualCourse], below: &str) -> String {
     for ResidualCourse { label, iterates, .. } in courses {
         let _ = writeln!(text, "{label}\niteration       method     energy      force  order");
         for (index, iterate) in iterates.iter().enumerate() {
-            let Iterate { iteration, energy, force, .. } = iterate;
+            let Iterate {
+                iteration,
+                energy,
+                force,
+                ..
+            } = iterate;
             let order = order(&iterates[..=index]).map_or_else(|| "-".to_owned(), |order| format!("{order:.2}"));
             let method = iterate.method.map_or("-", ResidualMethod::word);
-            let energy = if energy.is_nan() { "-".to_owned() } else { format!("{energy:.2e}") };
-            let _ = writeln!(text, "{iteration:>9}  {method:>11}  {energy:>9}  {force:>9.2e}  {order:>5}");
+            let energy = if energy.is_nan() {
+                "-".to_owned()
+            } else {
+                format!("{energy:.2e}")
+            };
+            let _ = writeln!(
+                text,
+                "{iteration:>9}  {method:>11}  {energy:>9}  {force:>9.2e}  {order:>5}"
+            );
         }
     }
     text
@@ -207,9 +257,13 @@ mod tests {
         let order = |forces: &[f64]| order(&falling(forces));
         assert!((order(&[1e-1, 1e-2, 1e-4]).unwrap() - 2.0).abs() < 1e-12);
         assert!((order(&[7.0, 1e-1, 1e-2, 1e-3]).unwrap() - 1.0).abs() < 1e-12);
-        for none in
-            [&[1e-1, 1e-2][..], &[1e-2, 1e-1, 1e-3], &[1e-1, 1e-2, 1e-1], &[1e-1, 0.099, 1e-3], &[1e-1, 1e-2, 0.0]]
-        {
+        for none in [
+            &[1e-1, 1e-2][..],
+            &[1e-2, 1e-1, 1e-3],
+            &[1e-1, 1e-2, 1e-1],
+            &[1e-1, 0.099, 1e-3],
+            &[1e-1, 1e-2, 0.0],
+        ] {
             assert_eq!(order(none), None, "{none:?}");
         }
     }
@@ -217,7 +271,10 @@ mod tests {
     #[test]
     fn axes_hold_whole_decades_and_a_little_more() {
         let (low, high) = decades([3e-7, 0.4, f64::NAN]);
-        assert!((3e-8..1e-7).contains(&low) && (1.0..3.0).contains(&high), "{low} {high}");
+        assert!(
+            (3e-8..1e-7).contains(&low) && (1.0..3.0).contains(&high),
+            "{low} {high}"
+        );
         assert!(decades([]).0 < decades([]).1);
         assert!(decades([1.0]).0 < 1.0);
     }

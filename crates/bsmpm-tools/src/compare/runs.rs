@@ -27,13 +27,21 @@ impl Runs {
     pub fn read(arguments: &CompareArguments) -> Result<Self, Error> {
         fits("--x-value", arguments.x_values.len(), arguments.directories.len())?;
         let records = records(arguments)?;
-        let columns = |name: &str| records.iter().map(|record| column(record, name)).collect::<Result<Vec<_>, _>>();
+        let columns = |name: &str| {
+            records
+                .iter()
+                .map(|record| column(record, name))
+                .collect::<Result<Vec<_>, _>>()
+        };
         let up = columns(arguments.y.as_deref().unwrap_or_default())?;
         let y = axis(&records, &up, arguments.y_label.as_deref(), arguments.y_scale)?;
         let labels = labels(arguments, &records);
         let (x, across) = if arguments.x_values.is_empty() {
             let across = columns(&arguments.x)?;
-            (axis(&records, &across, arguments.x_label.as_deref(), arguments.x_scale)?, Some(across))
+            (
+                axis(&records, &across, arguments.x_label.as_deref(), arguments.x_scale)?,
+                Some(across),
+            )
         } else {
             ((arguments.x_label.clone().unwrap_or_default(), String::new()), None)
         };
@@ -56,10 +64,19 @@ impl Runs {
             }
         }
         if arguments.last {
-            curves.iter_mut().for_each(|curve| curve.1.sort_by(|a, b| a.0.total_cmp(&b.0)));
+            curves
+                .iter_mut()
+                .for_each(|curve| curve.1.sort_by(|a, b| a.0.total_cmp(&b.0)));
         }
         let notes = records.iter().filter_map(note).collect();
-        Ok(Self { title: title(arguments, &records), x, y, curves, last: arguments.last, notes })
+        Ok(Self {
+            title: title(arguments, &records),
+            x,
+            y,
+            curves,
+            last: arguments.last,
+            notes,
+        })
     }
 
     /// The labels without repetition.
@@ -77,7 +94,11 @@ impl Runs {
 /// The runs, for each of which there is a name or for none.
 pub(super) fn records(arguments: &CompareArguments) -> Result<Vec<RunRecord>, Error> {
     fits("--label", arguments.labels.len(), arguments.directories.len())?;
-    arguments.directories.iter().map(|directory| RunRecord::read(directory)).collect()
+    arguments
+        .directories
+        .iter()
+        .map(|directory| RunRecord::read(directory))
+        .collect()
 }
 
 /// An option that is given for all runs or not at all.
@@ -96,9 +117,14 @@ fn fits(option: &str, given: usize, runs: usize) -> Result<(), Error> {
 fn column<'a>(record: &'a RunRecord, name: &str) -> Result<Recorded<'a>, Error> {
     let directory = record.directory.display();
     let missing = |reason| Error::Missing { reason };
-    let history = record.history.as_ref().filter(|history| history.values.iter().any(|values| !values.is_empty()));
+    let history = record
+        .history
+        .as_ref()
+        .filter(|history| history.values.iter().any(|values| !values.is_empty()));
     let history = history.ok_or_else(|| {
-        missing(format!("E0803: history.csv of {directory} has no rows yet. Wait for the run's first output."))
+        missing(format!(
+            "E0803: history.csv of {directory} has no rows yet. Wait for the run's first output."
+        ))
     })?;
     if let Some(column) = record.column(name) {
         return Ok(column);
@@ -126,7 +152,11 @@ fn axis(
         return Ok((label.to_owned(), String::new()));
     }
     let first = columns[0];
-    if let Some((record, other)) = records.iter().zip(columns).find(|(_, column)| column.unit != first.unit) {
+    if let Some((record, other)) = records
+        .iter()
+        .zip(columns)
+        .find(|(_, column)| column.unit != first.unit)
+    {
         let (name, unit) = (first.name, first.unit);
         let (here, there) = (records[0].directory.display(), record.directory.display());
         let reason = format!(
@@ -140,7 +170,11 @@ fn axis(
         "time" => records[0].time_label(),
         _ => (&*first.label(), first.shown_unit()),
     };
-    let label = if factor == 1.0 { label.to_owned() } else { format!("{label} × {factor}").replace("× -", "× −") };
+    let label = if factor == 1.0 {
+        label.to_owned()
+    } else {
+        format!("{label} × {factor}").replace("× -", "× −")
+    };
     Ok((label, unit.to_owned()))
 }
 
@@ -150,8 +184,10 @@ pub(super) fn labels(arguments: &CompareArguments, records: &[RunRecord]) -> Vec
     if !arguments.labels.is_empty() {
         return arguments.labels.clone();
     }
-    let methods: Option<Vec<String>> =
-        records.iter().map(|record| Some(record.case.stabilisation?.word().to_owned())).collect();
+    let methods: Option<Vec<String>> = records
+        .iter()
+        .map(|record| Some(record.case.stabilisation?.word().to_owned()))
+        .collect();
     if let Some(methods) = methods.filter(|methods| arguments.last || (methods.len() > 1 && are_distinct(methods))) {
         return methods;
     }
@@ -159,18 +195,28 @@ pub(super) fn labels(arguments: &CompareArguments, records: &[RunRecord]) -> Vec
     if are_distinct(&stems) {
         return stems;
     }
-    arguments.directories.iter().map(|directory| directory.display().to_string()).collect()
+    arguments
+        .directories
+        .iter()
+        .map(|directory| directory.display().to_string())
+        .collect()
 }
 
 fn are_distinct(names: &[String]) -> bool {
-    names.iter().enumerate().all(|(index, name)| !names[..index].contains(name))
+    names
+        .iter()
+        .enumerate()
+        .all(|(index, name)| !names[..index].contains(name))
 }
 
 /// The last part of a directory's path without the ending that runs have; other dots may be those of numbers.
 fn stem(directory: &Path) -> String {
     let name = directory.file_name().map(|name| name.to_string_lossy().into_owned());
     let name = name.unwrap_or_else(|| directory.display().to_string());
-    name.strip_suffix(".out").filter(|stem| !stem.is_empty()).unwrap_or(&name).to_owned()
+    name.strip_suffix(".out")
+        .filter(|stem| !stem.is_empty())
+        .unwrap_or(&name)
+        .to_owned()
 }
 
 /// How a run that has not come to its end stands.
@@ -182,7 +228,11 @@ fn note(record: &RunRecord) -> Option<String> {
         Status::Failed => "failed",
     };
     let last = record.column("time").and_then(|column| column.values.last().copied())?;
-    Some(format!("note: {} {stands}; its last row is at {}", record.directory.display(), record.moment(last)))
+    Some(format!(
+        "note: {} {stands}; its last row is at {}",
+        record.directory.display(),
+        record.moment(last)
+    ))
 }
 
 /// The title of the picture: as given, else that of the cases if they share one.

@@ -36,7 +36,11 @@ pub(super) fn text(runs: &Runs, at: &[f64]) -> String {
 /// As many rows as the curve with the most values at `x` has; of curves along which there are rows of a run, one.
 fn rows(runs: &Runs, x: f64) -> impl Iterator<Item = TableRow> {
     let count = |places: &Vec<(f64, f64)>| places.iter().filter(|place| is_at(places, place.0, x)).count();
-    let most = if runs.last { runs.curves.iter().map(|curve| count(&curve.1)).max().unwrap_or(0) } else { 1 };
+    let most = if runs.last {
+        runs.curves.iter().map(|curve| count(&curve.1)).max().unwrap_or(0)
+    } else {
+        1
+    };
     (0..most.max(1)).map(move |number| TableRow { x, number })
 }
 
@@ -45,7 +49,11 @@ fn value(places: &[(f64, f64)], row: TableRow) -> Option<f64> {
     if row.number == 0 {
         return interpolated(places, row.x);
     }
-    places.iter().filter(|place| is_at(places, place.0, row.x)).nth(row.number).map(|place| place.1)
+    places
+        .iter()
+        .filter(|place| is_at(places, place.0, row.x))
+        .nth(row.number)
+        .map(|place| place.1)
 }
 
 /// Whether the x of a place of a curve is `x`, but for rounding.
@@ -56,7 +64,12 @@ fn is_at(places: &[(f64, f64)], of_place: f64, x: f64) -> bool {
 
 /// Round numbers along the curves; of runs that are single places, where these are.
 fn places(runs: &Runs) -> Vec<f64> {
-    let mut all: Vec<f64> = runs.curves.iter().flat_map(|curve| &curve.1).map(|place| place.0).collect();
+    let mut all: Vec<f64> = runs
+        .curves
+        .iter()
+        .flat_map(|curve| &curve.1)
+        .map(|place| place.0)
+        .collect();
     if runs.last {
         all.sort_by(f64::total_cmp);
         let length = all.last().zip(all.first()).map_or(0.0, |(high, low)| high - low);
@@ -75,14 +88,20 @@ fn interpolated(places: &[(f64, f64)], x: f64) -> Option<f64> {
         return Some(place.1);
     }
     let pairs = places.windows(2).map(|pair| (pair[0], pair[1]));
-    let (from, to) = pairs.into_iter().find(|(from, to)| from.0.min(to.0) <= x && x <= from.0.max(to.0))?;
+    let (from, to) = pairs
+        .into_iter()
+        .find(|(from, to)| from.0.min(to.0) <= x && x <= from.0.max(to.0))?;
     Some(from.1 + (to.1 - from.1) * (x - from.0) / (to.0 - from.0))
 }
 
 /// A number to six digits.
 fn written(value: f64) -> String {
     let rounded = short(value);
-    if rounded != 0.0 && !(1e-4..1e7).contains(&rounded.abs()) { format!("{rounded:e}") } else { rounded.to_string() }
+    if rounded != 0.0 && !(1e-4..1e7).contains(&rounded.abs()) {
+        format!("{rounded:e}")
+    } else {
+        rounded.to_string()
+    }
 }
 
 #[cfg(test)]
@@ -90,14 +109,30 @@ mod tests {
     use super::*;
 
     fn runs(curves: &[(&str, &[(f64, f64)])], last: bool) -> Runs {
-        let curves = curves.iter().map(|(name, places)| ((*name).to_owned(), places.to_vec())).collect();
+        let curves = curves
+            .iter()
+            .map(|(name, places)| ((*name).to_owned(), places.to_vec()))
+            .collect();
         let axis = |label: &str, unit: &str| (label.to_owned(), unit.to_owned());
-        Runs { title: String::new(), x: axis("Time", "s"), y: axis("Runout", "m"), curves, last, notes: Vec::new() }
+        Runs {
+            title: String::new(),
+            x: axis("Time", "s"),
+            y: axis("Runout", "m"),
+            curves,
+            last,
+            notes: Vec::new(),
+        }
     }
 
     #[test]
     fn curves_are_interpolated_as_far_as_they_reach() {
-        let curves = runs(&[("long", &[(0.0, 1.0), (1.0, 3.0)]), ("short", &[(0.0, 0.0), (0.3, 1e-6)])], false);
+        let curves = runs(
+            &[
+                ("long", &[(0.0, 1.0), (1.0, 3.0)]),
+                ("short", &[(0.0, 0.0), (0.3, 1e-6)]),
+            ],
+            false,
+        );
         let expected =
             "Runout (m)\nTime (s)  long  short\n       0     1      0\n     0.3   1.6   1e-6\n       1     3      -\n";
         assert_eq!(text(&curves, &[0.0, 0.1 + 0.2, 1.0]), expected);
@@ -116,10 +151,19 @@ mod tests {
     /// Three runs of one label end at the same time; a fourth one of another does, too.
     #[test]
     fn runs_that_end_at_the_same_x_have_a_row_each() {
-        let curves = runs(&[("a", &[(1.0, 2.0), (1.0, 3.0), (1.0, 5.0), (2.0, 7.0)]), ("b", &[(1.0, 4.0)])], true);
+        let curves = runs(
+            &[
+                ("a", &[(1.0, 2.0), (1.0, 3.0), (1.0, 5.0), (2.0, 7.0)]),
+                ("b", &[(1.0, 4.0)]),
+            ],
+            true,
+        );
         for at in [&[][..], &[1.0, 2.0]] {
             let rows: Vec<String> = text(&curves, at).lines().skip(2).map(str::to_owned).collect();
-            assert_eq!(rows, ["       1  2  4", "       1  3  -", "       1  5  -", "       2  7  -"]);
+            assert_eq!(
+                rows,
+                ["       1  2  4", "       1  3  -", "       1  5  -", "       2  7  -"]
+            );
         }
     }
 }

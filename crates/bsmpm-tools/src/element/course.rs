@@ -76,8 +76,14 @@ impl StressPath {
         let law = named.material.at(test.height.unwrap_or(0.0)).into_owned();
         let (vertical, lateral) = (-test.pressure, -test.k0 * test.pressure);
         let sigma = Symmetric([lateral, vertical, lateral, 0.0, 0.0, 0.0]);
-        let state = law.state().iter().map(|variable| (variable.name, variable.unit)).collect();
-        let start = |error: ElementError| Error::Element { failed: vec![format!("{}: {error}", test.name)] };
+        let state = law
+            .state()
+            .iter()
+            .map(|variable| (variable.name, variable.unit))
+            .collect();
+        let start = |error: ElementError| Error::Element {
+            failed: vec![format!("{}: {error}", test.name)],
+        };
         let mut point = Element::new(law, sigma).map_err(start)?;
         let mut course = Self {
             name: test.name.clone(),
@@ -91,7 +97,12 @@ impl StressPath {
         for (number, stage) in test.stages.iter().enumerate() {
             let targets = std::array::from_fn(|k| stage.targets[k].unwrap_or_else(|| Target::Stress(point.total(k))));
             course.is_sheared |= targets[3] != Target::Strain(0.0);
-            let control = Control { targets, undrained: stage.undrained, steps: stage.steps, duration: stage.duration };
+            let control = Control {
+                targets,
+                undrained: stage.undrained,
+                steps: stage.steps,
+                duration: stage.duration,
+            };
             let followed = point.follow(&control, |point| course.rows.push(PathRow::of(number + 1, point)));
             if let Err(error) = followed {
                 course.failure = Some(format!("stage {}: {error}", number + 1));
@@ -118,7 +129,10 @@ impl StressPath {
                      pressure,deviator,pore-pressure,plastic-strain";
         let units = "-,-,-,-,-,-,-,Pa,Pa,Pa,Pa,Pa,Pa,Pa,-";
         let named = |name: fn(&(&'static str, &'static str)) -> &'static str| {
-            self.state.iter().map(|variable| format!(",{}", name(variable))).collect::<String>()
+            self.state
+                .iter()
+                .map(|variable| format!(",{}", name(variable)))
+                .collect::<String>()
         };
         let mut text = format!("{fixed}{}\n# {units}{}\n", named(|v| v.0), named(|v| v.1));
         for (step, row) in self.rows.iter().enumerate() {

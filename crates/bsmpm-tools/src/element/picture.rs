@@ -32,7 +32,10 @@ const PORE: AxisQuantity = ("Pore pressure", "Pa", |row| row.pore_pressure);
 pub(super) fn draw(case: &str, courses: &[StressPath], output: &Path) -> Result<Vec<PathBuf>, Error> {
     let mut files = Vec::new();
     for (name, is_sheared, along) in [("compression.png", false, COMPRESSION), ("shear.png", true, SHEAR)] {
-        let drawn: Vec<&StressPath> = courses.iter().filter(|course| course.is_sheared == is_sheared).collect();
+        let drawn: Vec<&StressPath> = courses
+            .iter()
+            .filter(|course| course.is_sheared == is_sheared)
+            .collect();
         if !drawn.is_empty() {
             let file = output.join(name);
             sheet(case, &drawn, along).save(&file)?;
@@ -64,7 +67,9 @@ fn sheet(case: &str, courses: &[&StressPath], along: AxisQuantity) -> Canvas {
         let logarithmic = number == 3 && !undrained && decade(courses);
         let places = |course: &StressPath| -> Vec<(f64, f64)> {
             let places = course.rows.iter().map(|row| ((x.2)(row), (y.2)(row)));
-            places.map(|(x, y)| if logarithmic && x <= 0.0 { (f64::NAN, y) } else { (x, y) }).collect()
+            places
+                .map(|(x, y)| if logarithmic && x <= 0.0 { (f64::NAN, y) } else { (x, y) })
+                .collect()
         };
         let all: Vec<(f64, f64)> = courses.iter().flat_map(|course| places(course)).collect();
         let of = |numbers: &mut dyn Iterator<Item = f64>| range(numbers).unwrap_or((0.0, 1.0));
@@ -74,9 +79,16 @@ fn sheet(case: &str, courses: &[&StressPath], along: AxisQuantity) -> Canvas {
             top: top + high * row as f64 + 10.0,
             right: half * (column as f64 + 1.0) - RIGHT,
             bottom: top + high * (row as f64 + 1.0) - BELOW,
-            x: if logarithmic { (from / 1.2, to * 1.2) } else { padded(from, to, 0.03) },
+            x: if logarithmic {
+                (from / 1.2, to * 1.2)
+            } else {
+                padded(from, to, 0.03)
+            },
             y: spread(of(&mut all.iter().map(|place| place.1))),
-            scales: [if logarithmic { Scale::Logarithmic } else { Scale::Linear }, Scale::Linear],
+            scales: [
+                if logarithmic { Scale::Logarithmic } else { Scale::Linear },
+                Scale::Linear,
+            ],
         };
         axes.rules(&mut canvas);
         for (course, entry) in courses.iter().zip(&entries) {
@@ -89,11 +101,17 @@ fn sheet(case: &str, courses: &[&StressPath], along: AxisQuantity) -> Canvas {
 
 /// A range with room; numbers that are zero but for rounding have no scale of their own.
 fn spread((low, high): (f64, f64)) -> (f64, f64) {
-    if high.abs().max(low.abs()) < 1e-12 { (-1e-3, 1e-3) } else { padded(low, high, 0.06) }
+    if high.abs().max(low.abs()) < 1e-12 {
+        (-1e-3, 1e-3)
+    } else {
+        padded(low, high, 0.06)
+    }
 }
 
 /// Whether pressures are positive and span so much that their logarithm is the better scale.
 fn decade(courses: &[&StressPath]) -> bool {
-    let pressures = courses.iter().flat_map(|course| course.rows.iter().map(|row| row.pressure));
+    let pressures = courses
+        .iter()
+        .flat_map(|course| course.rows.iter().map(|row| row.pressure));
     range(pressures).is_some_and(|(low, high)| low > 0.0 && high > 10.0 * low)
 }

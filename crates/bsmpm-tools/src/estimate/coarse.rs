@@ -33,7 +33,10 @@ pub(super) fn text(case: &Case, factor: usize) -> Option<String> {
         knots(&case.grid.axes[axis], &lines, factor)
     };
     let axes = (0..case.grid.dims()).map(of);
-    let knots = ["x", "y", "z"].into_iter().zip(axes).map(|(name, knots)| (name.to_owned(), knots));
+    let knots = ["x", "y", "z"]
+        .into_iter()
+        .zip(axes)
+        .map(|(name, knots)| (name.to_owned(), knots));
     grid.insert("knots".to_owned(), Value::Table(knots.collect()));
     for body in table.get_mut("body")?.as_array_mut()? {
         let points = body.get_mut("points_per_cell")?;
@@ -60,7 +63,11 @@ fn knots(axis: &GridAxis, lines: &[usize], factor: usize) -> Value {
     kept.extend(lines);
     kept.sort_unstable();
     kept.dedup();
-    Value::Array(kept.into_iter().map(|i| Value::Float(axis.lower() + axis.breakpoint(i))).collect())
+    Value::Array(
+        kept.into_iter()
+            .map(|i| Value::Float(axis.lower() + axis.breakpoint(i)))
+            .collect(),
+    )
 }
 
 #[cfg(test)]
@@ -88,8 +95,21 @@ mod tests {
     #[test]
     fn a_rest_of_cells_makes_one_more_or_a_longer_one() {
         let lengths = |cells: usize, lines: &[usize], factor: usize| {
-            let value = knots(&GridAxis::Uniform { lower: 1.0, cell: 1.0, cells }, lines, factor);
-            let at: Vec<f64> = value.as_array().unwrap().iter().map(|x| x.as_float().unwrap()).collect();
+            let value = knots(
+                &GridAxis::Uniform {
+                    lower: 1.0,
+                    cell: 1.0,
+                    cells,
+                },
+                lines,
+                factor,
+            );
+            let at: Vec<f64> = value
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(|x| x.as_float().unwrap())
+                .collect();
             at.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<_>>()
         };
         assert_eq!(lengths(8, &[], 4), [4.0, 4.0]);

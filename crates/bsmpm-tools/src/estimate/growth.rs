@@ -27,8 +27,16 @@ pub(super) fn extrapolate(levels: &[GrowthLevel], regime: Regime, early: f64) ->
     let finest = levels.last()?;
     let factor = finest.factor as f64;
     let bounded = |growth: f64, most: f64| growth.clamp(1.0, most.powf(factor.log2()));
-    let seen = if finest.early > 0.0 { bounded(early / finest.early, MOST[1]) } else { 1.0 };
-    let coarser = levels.len().checked_sub(2).map(|before| &levels[before]).filter(|_| regime == Regime::Dynamic);
+    let seen = if finest.early > 0.0 {
+        bounded(early / finest.early, MOST[1])
+    } else {
+        1.0
+    };
+    let coarser = levels
+        .len()
+        .checked_sub(2)
+        .map(|before| &levels[before])
+        .filter(|_| regime == Regime::Dynamic);
     let trend = coarser.map_or(1.0, |coarser| {
         let (fine, coarse) = (finest.work.iterations(), coarser.work.iterations());
         // The line through both in 1/factor, at 1.
@@ -43,7 +51,16 @@ mod tests {
     use super::*;
 
     fn level(factor: usize, evaluations: f64, early: f64) -> GrowthLevel {
-        GrowthLevel { factor, work: Effort { steps: 100.0, evaluations, ..Effort::default() }, early, spread: 1.0 }
+        GrowthLevel {
+            factor,
+            work: Effort {
+                steps: 100.0,
+                evaluations,
+                ..Effort::default()
+            },
+            early,
+            spread: 1.0,
+        }
     }
 
     #[test]
@@ -67,7 +84,10 @@ mod tests {
         for regime in [Regime::Dynamic, Regime::QuasiStatic] {
             assert_eq!(extrapolate(&[], regime, 1.0), None);
             assert_eq!(of(&[level(2, 1000.0, 40.0)], regime, 50.0), 1250.0);
-            assert_eq!(of(&[level(4, 2000.0, 40.0), level(2, 1000.0, 40.0)], regime, 40.0), 1000.0);
+            assert_eq!(
+                of(&[level(4, 2000.0, 40.0), level(2, 1000.0, 40.0)], regime, 40.0),
+                1000.0
+            );
         }
         let rising = [level(4, 10.0, 40.0), level(2, 1000.0, 40.0)];
         assert_eq!(of(&rising, Regime::Dynamic, 40.0), 2000.0);

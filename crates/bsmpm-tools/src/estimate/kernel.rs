@@ -27,7 +27,10 @@ fn nanoseconds() -> f64 {
     let (law, states): (&Material, Vec<Symmetric>) = (&case.materials[0].material, (0..RETURNS).map(state).collect());
     let round = |_| {
         let start = Instant::now();
-        let sum: f64 = states.iter().filter_map(|b| Some(law.respond(black_box(b), &[]).ok()?.tau().0[0])).sum();
+        let sum: f64 = states
+            .iter()
+            .filter_map(|b| Some(law.respond(black_box(b), &[]).ok()?.tau().0[0]))
+            .sum();
         black_box(sum);
         start.elapsed().as_secs_f64()
     };

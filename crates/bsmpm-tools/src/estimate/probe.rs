@@ -76,11 +76,17 @@ impl ProbeRun {
     /// s  by the clock of phases that have timers
     fn clock(&self, phases: &[&str]) -> f64 {
         let timers = self.outcome.manifest.iter().flat_map(|manifest| &manifest.timers);
-        timers.filter(|(phase, _)| phases.contains(&phase.as_str())).map(|(_, seconds)| seconds).sum()
+        timers
+            .filter(|(phase, _)| phases.contains(&phase.as_str()))
+            .map(|(_, seconds)| seconds)
+            .sum()
     }
 
     fn work(&self) -> Effort {
-        self.rows.iter().map(|row| row.work).fold(Effort::default(), |sum, work| sum.with(&work))
+        self.rows
+            .iter()
+            .map(|row| row.work)
+            .fold(Effort::default(), |sum, work| sum.with(&work))
     }
 
     /// Bytes of the largest file in one of its folders.
@@ -120,19 +126,42 @@ pub(super) fn estimate(
     let until = first.rows.last().map_or(0.0, |row| row.time);
     let levels = probes.levels(guess, until, report)?;
     let (work, basis) = match growth::extrapolate(&levels, plan.case.analysis.regime, made.iterations()) {
-        Some(work) => (work, format!("first steps of the case, and {} coarse form(s) over all its time", levels.len())),
+        Some(work) => (
+            work,
+            format!(
+                "first steps of the case, and {} coarse form(s) over all its time",
+                levels.len()
+            ),
+        ),
         None if made.steps > 0.0 => (
             made.times(guess.work.steps / made.steps),
             "first steps of the case alone: later ones may take more".to_owned(),
         ),
-        None => (guess.work, "the start of the case alone: no step ended in time".to_owned()),
+        None => (
+            guess.work,
+            "the start of the case alone: no step ended in time".to_owned(),
+        ),
     };
-    let spread =
-        levels.last().map_or(1.0, |level| stored::spread(plan.case, plan.ranks, measured.unknowns, level.spread));
+    let spread = levels.last().map_or(1.0, |level| {
+        stored::spread(plan.case, plan.ranks, measured.unknowns, level.spread)
+    });
     let unit = measured.unit * spread;
-    let newton = levels.iter().map(|level| level.work.newton_part()).fold(made.newton_part(), f64::max);
-    let band = if newton > NEWTON[0] { NEWTON[1] } else { BANDS[levels.len().min(BANDS.len() - 1)] };
-    let found = StoredEstimate { work, unit, basis, band, ..measured };
+    let newton = levels
+        .iter()
+        .map(|level| level.work.newton_part())
+        .fold(made.newton_part(), f64::max);
+    let band = if newton > NEWTON[0] {
+        NEWTON[1]
+    } else {
+        BANDS[levels.len().min(BANDS.len() - 1)]
+    };
+    let found = StoredEstimate {
+        work,
+        unit,
+        basis,
+        band,
+        ..measured
+    };
     let whole = probes.whole(&found, report)?;
     Ok(whole.unwrap_or(found))
 }
@@ -153,8 +182,19 @@ fn measured(guess: &StoredEstimate, (start, first): (&ProbeRun, &ProbeRun)) -> S
         checkpoint: start.bytes(FOLDER).unwrap_or(guess.bytes.checkpoint),
         ..guess.bytes
     };
-    let unknowns = first.outcome.manifest.as_ref().and_then(|manifest| manifest.sizes.get("unknowns").copied());
-    StoredEstimate { unit, start: start.cpu(), frame, bytes, unknowns, ..guess.clone() }
+    let unknowns = first
+        .outcome
+        .manifest
+        .as_ref()
+        .and_then(|manifest| manifest.sizes.get("unknowns").copied());
+    StoredEstimate {
+        unit,
+        start: start.cpu(),
+        frame,
+        bytes,
+        unknowns,
+        ..guess.clone()
+    }
 }
 
 struct Probes<'a> {
@@ -189,11 +229,15 @@ impl Probes<'_> {
         let mut levels = Vec::new();
         let mut taken = None;
         for factor in FACTORS {
-            let expected = taken.map_or(guess.unit * guess.work.units() / (factor * factor) as f64, |s: f64| FINER * s);
+            let expected = taken.map_or(guess.unit * guess.work.units() / (factor * factor) as f64, |s: f64| {
+                FINER * s
+            });
             if expected > self.left() {
                 break;
             }
-            let Some(text) = coarse::text(self.plan.case, factor) else { continue };
+            let Some(text) = coarse::text(self.plan.case, factor) else {
+                continue;
+            };
             let begin = Instant::now();
             let run = self.run(&format!("cells{factor}"), &text, &[], 1)?;
             taken = Some(begin.elapsed().as_secs_f64());
@@ -227,9 +271,15 @@ impl Probes<'_> {
             return Ok(None);
         }
         let run = self.run("whole", &case.text, &[], self.plan.ranks)?;
-        let (work, taken) = (run.work(), run.cpu() - expected.start - expected.frame * frames.saturating_sub(1) as f64);
+        let (work, taken) = (
+            run.work(),
+            run.cpu() - expected.start - expected.frame * frames.saturating_sub(1) as f64,
+        );
         if run.outcome.state != RunState::Done || work.units() <= 0.0 {
-            report(&format!("the whole case: not used, because this run ended early ({})", run.outcome.reason));
+            report(&format!(
+                "the whole case: not used, because this run ended early ({})",
+                run.outcome.reason
+            ));
             return Ok(None);
         }
         report(&format!(
@@ -239,7 +289,13 @@ impl Probes<'_> {
             run.cpu()
         ));
         let basis = "the whole case, which takes no longer than probes may".to_owned();
-        Ok(Some(StoredEstimate { work, unit: taken.max(0.0) / work.units(), band: SURE, basis, ..expected.clone() }))
+        Ok(Some(StoredEstimate {
+            work,
+            unit: taken.max(0.0) / work.units(),
+            band: SURE,
+            basis,
+            ..expected.clone()
+        }))
     }
 
     /// A run on so many ranks, to the deadline at most.
@@ -249,9 +305,21 @@ impl Probes<'_> {
         fs::write(&case, text).map_err(bsmpm_io::Error::file("write", &case))?;
         // A start takes a second or two of what may be the whole time.
         let wall = clock(self.left().ceil().max(2.0) as u64);
-        let further = further.iter().copied().chain(["--max-wall", &wall]).map(str::to_owned).collect();
-        let command = if ranks == 1 { self.plan.command.to_vec() } else { on_ranks(ranks, self.plan.command) };
-        let solver = SolverProgram { command: &command, side_by_side: true };
+        let further = further
+            .iter()
+            .copied()
+            .chain(["--max-wall", &wall])
+            .map(str::to_owned)
+            .collect();
+        let command = if ranks == 1 {
+            self.plan.command.to_vec()
+        } else {
+            on_ranks(ranks, self.plan.command)
+        };
+        let solver = SolverProgram {
+            command: &command,
+            side_by_side: true,
+        };
         solver.check()?;
         let (origin, force, resume) = (None, true, false);
         let task = LaunchTask {
@@ -265,7 +333,11 @@ impl Probes<'_> {
             resume,
         };
         let outcome = solver.outcome(&task, |_| false)?;
-        Ok(ProbeRun { outcome, rows: rows(&directory), directory })
+        Ok(ProbeRun {
+            outcome,
+            rows: rows(&directory),
+            directory,
+        })
     }
 }
 
@@ -276,15 +348,33 @@ fn on_ranks(ranks: usize, command: &[String]) -> Vec<String> {
 
 /// The steps of a run; none where it left no table.
 fn rows(directory: &Path) -> Vec<ProbeRow> {
-    let Ok(columns) = table::read(&directory.join(STEPS)) else { return Vec::new() };
+    let Ok(columns) = table::read(&directory.join(STEPS)) else {
+        return Vec::new();
+    };
     let column = |name: &str| columns.get(name).unwrap_or_default();
-    let names = ["time", "active_nodes", "evaluations", "products", "factorisations", "cutbacks"];
+    let names = [
+        "time",
+        "active_nodes",
+        "evaluations",
+        "products",
+        "factorisations",
+        "cutbacks",
+    ];
     let columns = names.map(column);
     let length = columns.iter().map(|column| column.len()).min().unwrap_or(0);
     let row = |k: usize| {
         let [time, active_nodes, evaluations, products, factorisations, cutbacks] = columns.map(|column| column[k]);
         let newton = (factorisations - 1.0 - cutbacks).max(0.0);
-        ProbeRow { time, active_nodes, work: Effort { steps: 1.0, evaluations, products, newton } }
+        ProbeRow {
+            time,
+            active_nodes,
+            work: Effort {
+                steps: 1.0,
+                evaluations,
+                products,
+                newton,
+            },
+        }
     };
     (0..length).map(row).collect()
 }
@@ -297,5 +387,10 @@ fn level(factor: usize, run: &ProbeRun, (until, end): (f64, f64)) -> Option<Grow
     let mean = |rows: &[ProbeRow]| rows.iter().map(|row| row.active_nodes).sum::<f64>() / rows.len() as f64;
     let (all, before) = (mean(&run.rows), mean(&run.rows[..first.max(1)]));
     let spread = if before > 0.0 { all / before } else { 1.0 };
-    (reached >= REACHED).then(|| GrowthLevel { factor, work: run.work().times(1.0 / reached), early, spread })
+    (reached >= REACHED).then(|| GrowthLevel {
+        factor,
+        work: run.work().times(1.0 / reached),
+        early,
+        spread,
+    })
 }

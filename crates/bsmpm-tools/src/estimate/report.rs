@@ -59,7 +59,11 @@ struct EstimateBand {
 
 impl EstimateBand {
     fn of(value: f64, factor: f64) -> Self {
-        Self { value, low: value / factor, high: value * factor }
+        Self {
+            value,
+            low: value / factor,
+            high: value * factor,
+        }
     }
 }
 
@@ -123,7 +127,11 @@ impl EstimateReport {
         let beside = |number: fn(&Actual) -> String| self.actual.as_ref().map_or_else(String::new, number);
         let [memory, newton] = self.memory_per_rank;
         let memory = match newton > memory {
-            true => format!("{}, with Newton's method {}", in_mebibytes(memory), in_mebibytes(newton)),
+            true => format!(
+                "{}, with Newton's method {}",
+                in_mebibytes(memory),
+                in_mebibytes(newton)
+            ),
             false => in_mebibytes(memory),
         };
         let disk = format!(
@@ -134,18 +142,38 @@ impl EstimateReport {
         );
         let mut rows = vec![
             row("", "estimate", self.title()),
-            row("points", &self.points.to_string(), beside(|actual| actual.points.to_string())),
-            row("unknowns", &self.unknowns.to_string(), beside(|actual| actual.unknowns.to_string())),
+            row(
+                "points",
+                &self.points.to_string(),
+                beside(|actual| actual.points.to_string()),
+            ),
+            row(
+                "unknowns",
+                &self.unknowns.to_string(),
+                beside(|actual| actual.unknowns.to_string()),
+            ),
             row("non-zeros of the stiffness", &self.non_zeros.to_string(), String::new()),
-            row("memory of each rank", &memory, beside(|actual| in_mebibytes(actual.memory))),
+            row(
+                "memory of each rank",
+                &memory,
+                beside(|actual| in_mebibytes(actual.memory)),
+            ),
             row("disk", &disk, beside(|actual| in_mebibytes(actual.disk))),
-            row("steps", &format!("{:.0}", self.work.steps), beside(|actual| actual.steps.to_string())),
+            row(
+                "steps",
+                &format!("{:.0}", self.work.steps),
+                beside(|actual| actual.steps.to_string()),
+            ),
             row(
                 "evaluations",
                 &format!("{:.0}", self.work.evaluations),
                 beside(|actual| actual.evaluations.to_string()),
             ),
-            row("processor time", &reports(self.cpu_seconds), beside(|actual| seconds(actual.cpu_seconds))),
+            row(
+                "processor time",
+                &reports(self.cpu_seconds),
+                beside(|actual| seconds(actual.cpu_seconds)),
+            ),
             row(
                 &format!("time on {} rank(s)", self.ranks),
                 &reports(self.seconds),
@@ -156,9 +184,13 @@ impl EstimateReport {
         if let Some(pressures) = self.pressures {
             rows.insert(3, row("pore pressures besides", &pressures.to_string(), String::new()));
         }
-        rows.extend(
-            self.ratio.map(|ratio| row("estimated / actual", &format!("{ratio:.2} (processor time)"), String::new())),
-        );
+        rows.extend(self.ratio.map(|ratio| {
+            row(
+                "estimated / actual",
+                &format!("{ratio:.2} (processor time)"),
+                String::new(),
+            )
+        }));
         rows
     }
 
@@ -181,7 +213,12 @@ fn row(what: &str, estimate: &str, actual: String) -> [String; 3] {
 }
 
 fn reports(band: EstimateBand) -> String {
-    format!("{} ({} to {})", seconds(band.value), seconds(band.low), seconds(band.high))
+    format!(
+        "{} ({} to {})",
+        seconds(band.value),
+        seconds(band.low),
+        seconds(band.high)
+    )
 }
 
 /// A time as people say it.
@@ -216,7 +253,11 @@ mod tests {
         assert_eq!((report.points, report.frames, report.checkpoints), (800, 35, 0));
         assert_eq!(report.disk, 35 * report.sizes.frame + report.sizes.step * 1214);
         // What it took: 16,566 evaluations, 5 s.
-        assert!(report.cpu_seconds.low < 5.0 && report.cpu_seconds.high > 5.0, "{:?}", report.cpu_seconds);
+        assert!(
+            report.cpu_seconds.low < 5.0 && report.cpu_seconds.high > 5.0,
+            "{:?}",
+            report.cpu_seconds
+        );
     }
 
     #[test]
@@ -239,9 +280,15 @@ mod tests {
         report.compare(&actual);
         assert_eq!(report.ratio, Some(0.5));
         let text = report.text();
-        assert!(text.contains("actual, 2 rank(s)\n") && text.contains("60.0 MiB") && text.contains("0.50"), "{text}");
+        assert!(
+            text.contains("actual, 2 rank(s)\n") && text.contains("60.0 MiB") && text.contains("0.50"),
+            "{text}"
+        );
         let json: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
-        assert_eq!((json["actual"]["evaluations"].as_u64(), json["ratio"].as_f64()), (Some(16_000), Some(0.5)));
+        assert_eq!(
+            (json["actual"]["evaluations"].as_u64(), json["ratio"].as_f64()),
+            (Some(16_000), Some(0.5))
+        );
     }
 
     #[test]

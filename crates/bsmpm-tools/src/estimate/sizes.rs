@@ -30,7 +30,11 @@ impl Bytes {
     /// As they are known before anything was written.
     pub fn of(case: &Case) -> Self {
         let (dynamic, points) = (usize::from(case.analysis.regime == Regime::Dynamic), case.points());
-        let numbers: u64 = case.histories.iter().map(|history| history.columns().len() as u64).sum();
+        let numbers: u64 = case
+            .histories
+            .iter()
+            .map(|history| history.columns().len() as u64)
+            .sum();
         Self {
             frame: points * FRAME[dynamic],
             checkpoint: points * (CHECKPOINT[dynamic] + if case.flow.is_some() { WET } else { 0 }),
@@ -52,7 +56,10 @@ pub(super) fn steps(case: &Case) -> f64 {
 /// Frames in so many steps, those of the start and of the end among them.
 pub(super) fn frames(case: &Case, steps: f64) -> u64 {
     let near = 1e-6 * case.analysis.dt;
-    let mut times: Vec<f64> = frame_times(case).into_iter().filter(|&t| t < case.analysis.end - near).collect();
+    let mut times: Vec<f64> = frame_times(case)
+        .into_iter()
+        .filter(|&t| t < case.analysis.end - near)
+        .collect();
     times.sort_by(f64::total_cmp);
     times.dedup_by(|later, earlier| *later - *earlier < near);
     let counted = match case.output.every {
@@ -68,7 +75,9 @@ pub(super) fn checkpoints(case: &Case, steps: f64, seconds: f64) -> u64 {
     let wanted = &case.output.checkpoint;
     let counted = wanted.every_steps.map_or(0.0, |every| steps / every as f64);
     let made = (seconds / wanted.wall).floor() + counted.floor();
-    (made as u64).saturating_add(u64::from(wanted.at_end)).min(wanted.keep.max(1))
+    (made as u64)
+        .saturating_add(u64::from(wanted.at_end))
+        .min(wanted.keep.max(1))
 }
 
 #[cfg(test)]
@@ -80,7 +89,14 @@ mod tests {
         let column = include_str!("../../../../cases/short/column_collapse.toml");
         let case = Case::from_text("column", column, &[]).unwrap();
         // At the start, every 20 ms, at six times of which one is such a one and one is the end.
-        assert_eq!((steps(&case), frames(&case, steps(&case)), checkpoints(&case, 1214.0, 60.0)), (1214.0, 35, 0));
+        assert_eq!(
+            (
+                steps(&case),
+                frames(&case, steps(&case)),
+                checkpoints(&case, 1214.0, 60.0)
+            ),
+            (1214.0, 35, 0)
+        );
         let set = ["output.checkpoint={ every_steps = 100, keep = 3 }".to_owned()];
         let case = Case::from_text("column", column, &set).unwrap();
         assert_eq!(checkpoints(&case, 1214.0, 60.0), 3);

@@ -96,8 +96,14 @@ fn in_space(case: &Case, ranks: usize) -> Option<usize> {
 /// s  of a unit of work with so many unknowns.
 fn unit((case, ranks): (&Case, usize), unknowns: f64) -> f64 {
     let points = case.points() as f64;
-    let Some(solver) = in_space(case, ranks) else { return POINT * points + UNKNOWN * unknowns };
-    let dearer = if solver == 0 { (unknowns / FACTORISED).max(1.0) } else { 1.0 };
+    let Some(solver) = in_space(case, ranks) else {
+        return POINT * points + UNKNOWN * unknowns;
+    };
+    let dearer = if solver == 0 {
+        (unknowns / FACTORISED).max(1.0)
+    } else {
+        1.0
+    };
     POINT_IN_SPACE * points + UNKNOWN_IN_SPACE[solver] * dearer * unknowns
 }
 
@@ -130,7 +136,10 @@ mod tests {
             let case = Case::from_text("solid", text, &set).unwrap();
             let reported = guess(&case, 1, 1.0).seconds(sizes::frames(&case, sizes::steps(&case)));
             println!("{set:?}: {reported:.1} s for {took}");
-            assert!((1.0 / BAND..BAND).contains(&(reported / took)), "{set:?}: {reported} s for {took}");
+            assert!(
+                (1.0 / BAND..BAND).contains(&(reported / took)),
+                "{set:?}: {reported} s for {took}"
+            );
         }
     }
 }

@@ -61,6 +61,9 @@ impl Effort {
 
     /// So many times everything.
     pub fn times(&self, factor: f64) -> Self {
-        Self { steps: factor * self.steps, ..self.grown(factor) }
+        Self {
+            steps: factor * self.steps,
+            ..self.grown(factor)
+        }
     }
 }

@@ -48,12 +48,19 @@ pub(super) struct Kink {
 impl FactorCurve {
     /// A curve without trials yet, of a body whose `elastic` displacement is positive.
     pub fn new(elastic: f64) -> Self {
-        Self { elastic, has_branch: true, states: Vec::new() }
+        Self {
+            elastic,
+            has_branch: true,
+            states: Vec::new(),
+        }
     }
 
     /// That of a body whose strength falls as it moves: how far it goes once it has failed is no measure of anything.
     pub fn without_branch(self) -> Self {
-        Self { has_branch: false, ..self }
+        Self {
+            has_branch: false,
+            ..self
+        }
     }
 
     pub fn add(&mut self, states: impl IntoIterator<Item = CurveState>) {
@@ -91,9 +98,20 @@ impl FactorCurve {
     }
 
     fn band(&self, failed: impl Fn(&CurveState) -> bool) -> Bracket {
-        let last_stable = self.states.iter().rev().find(|state| !failed(state)).map(|state| state.factor);
-        let mut above = self.states.iter().filter(|state| last_stable.is_none_or(|last| state.factor > last));
-        Bracket { last_stable, first_failed: above.next().map(|state| state.factor) }
+        let last_stable = self
+            .states
+            .iter()
+            .rev()
+            .find(|state| !failed(state))
+            .map(|state| state.factor);
+        let mut above = self
+            .states
+            .iter()
+            .filter(|state| last_stable.is_none_or(|last| state.factor > last));
+        Bracket {
+            last_stable,
+            first_failed: above.next().map(|state| state.factor),
+        }
     }
 
     /// The trial at a factor.
@@ -105,7 +123,10 @@ impl FactorCurve {
     /// none.
     pub fn reaches(&self, level: f64) -> Option<f64> {
         let band = self.crossing(level);
-        let (low, high) = (self.at(band.last_stable?)?, self.at(band.first_failed?).filter(|state| state.whole)?);
+        let (low, high) = (
+            self.at(band.last_stable?)?,
+            self.at(band.first_failed?).filter(|state| state.whole)?,
+        );
         let share = (level * self.elastic - low.displacement) / (high.displacement - low.displacement);
         Some(low.factor + share * (high.factor - low.factor))
     }
@@ -118,15 +139,29 @@ impl FactorCurve {
         }
         let begin = (self.reaches(BENT)?, BENT * self.elastic);
         let farthest = || {
-            let mut known = self.states.iter().filter(|state| state.whole && self.growth(state) <= FALLEN);
-            let last = known.next_back().filter(|state| self.growth(state) >= SHORTEST * BENT)?;
+            let mut known = self
+                .states
+                .iter()
+                .filter(|state| state.whole && self.growth(state) <= FALLEN);
+            let last = known
+                .next_back()
+                .filter(|state| self.growth(state) >= SHORTEST * BENT)?;
             Some((last.factor, last.displacement))
         };
-        let end = self.reaches(FALLEN).map(|factor| (factor, FALLEN * self.elastic)).or_else(farthest)?;
+        let end = self
+            .reaches(FALLEN)
+            .map(|factor| (factor, FALLEN * self.elastic))
+            .or_else(farthest)?;
         let after = FittedLine::through(begin, end);
-        let straight = self.states.iter().filter(|state| state.whole && self.growth(state) <= STRAIGHT);
+        let straight = self
+            .states
+            .iter()
+            .filter(|state| state.whole && self.growth(state) <= STRAIGHT);
         let places: Vec<(f64, f64)> = straight.map(|state| (state.factor, state.displacement)).collect();
-        let before = FittedLine::fitted(&places).unwrap_or(FittedLine { at_zero: self.elastic, slope: 0.0 });
+        let before = FittedLine::fitted(&places).unwrap_or(FittedLine {
+            at_zero: self.elastic,
+            slope: 0.0,
+        });
         let factor = (before.at_zero - after.at_zero) / (after.slope - before.slope);
         let is_one = end.0 > begin.0 && after.slope > before.slope && factor >= self.states.first()?.factor;
         is_one.then_some(Kink { factor, before, after })
@@ -150,7 +185,11 @@ impl FactorCurve {
     /// Trials that found no equilibrium although a weaker body did.
     pub fn isolated(&self) -> Vec<f64> {
         let last = self.crossing(DOUBLED).last_stable.unwrap_or(0.0);
-        self.states.iter().filter(|state| !state.whole && state.factor < last).map(|state| state.factor).collect()
+        self.states
+            .iter()
+            .filter(|state| !state.whole && state.factor < last)
+            .map(|state| state.factor)
+            .collect()
     }
 }
 
@@ -163,7 +202,11 @@ mod tests {
         let mut curve = FactorCurve::new(1.0);
         let count = ((to - from) / step).round() as usize;
         let factors = (0..=count).map(|index| from + index as f64 * step);
-        curve.add(factors.map(|factor| CurveState { factor, displacement: displacement(factor), whole: true }));
+        curve.add(factors.map(|factor| CurveState {
+            factor,
+            displacement: displacement(factor),
+            whole: true,
+        }));
         curve
     }
 
@@ -174,7 +217,9 @@ mod tests {
     #[test]
     fn a_sharp_kink_is_where_it_is() {
         // The growth before it is 10 % per unit of the factor.
-        let curve = curve(0.5, 1.7, 0.02, |factor| 0.95 + 0.1 * factor + 100.0 * (factor - 1.373).max(0.0));
+        let curve = curve(0.5, 1.7, 0.02, |factor| {
+            0.95 + 0.1 * factor + 100.0 * (factor - 1.373).max(0.0)
+        });
         assert!(near(curve.kink().map(|kink| kink.factor), 1.373), "{:?}", curve.kink());
         assert!(near(curve.kinked().last_stable, 1.36) && near(curve.kinked().first_failed, 1.38));
         let doubled = (2.0 - 0.95 + 137.3) / 100.1;
@@ -207,17 +252,39 @@ mod tests {
     fn all_stable_and_all_failed_have_one_end_only() {
         let level = curve(0.5, 1.5, 0.1, |_| 1.1);
         assert!(level.kink().is_none() && level.reaches(DOUBLED).is_none());
-        assert_eq!(level.kinked(), Bracket { last_stable: Some(1.5), first_failed: None });
+        assert_eq!(
+            level.kinked(),
+            Bracket {
+                last_stable: Some(1.5),
+                first_failed: None
+            }
+        );
         let fallen = curve(0.5, 1.5, 0.1, |_| 30.0);
         assert!(fallen.kink().is_none());
-        assert_eq!(fallen.crossing(DOUBLED), Bracket { last_stable: None, first_failed: Some(0.5) });
-        assert_eq!(fallen.kinked(), Bracket { last_stable: None, first_failed: Some(0.5) });
+        assert_eq!(
+            fallen.crossing(DOUBLED),
+            Bracket {
+                last_stable: None,
+                first_failed: Some(0.5)
+            }
+        );
+        assert_eq!(
+            fallen.kinked(),
+            Bracket {
+                last_stable: None,
+                first_failed: Some(0.5)
+            }
+        );
     }
 
     #[test]
     fn a_failure_before_a_weaker_body_that_stands_is_not_the_slope_s() {
         let mut curve = curve(0.5, 1.7, 0.02, |factor| 1.0 + 100.0 * (factor - 1.4).max(0.0));
-        curve.states[10] = CurveState { displacement: 0.9, whole: false, ..curve.states[10] };
+        curve.states[10] = CurveState {
+            displacement: 0.9,
+            whole: false,
+            ..curve.states[10]
+        };
         assert!(near(curve.kink().map(|kink| kink.factor), 1.4));
         assert!(near(curve.crossing(DOUBLED).last_stable, 1.4) && near(curve.crossing(DOUBLED).first_failed, 1.42));
         assert_eq!(curve.isolated(), [0.7]);
@@ -226,14 +293,26 @@ mod tests {
     #[test]
     fn without_equilibrium_after_failure_the_band_ends_there() {
         let mut curve = curve(0.5, 1.7, 0.1, |_| 1.1);
-        curve.states.iter_mut().filter(|state| state.factor > 1.35).for_each(|state| state.whole = false);
+        curve
+            .states
+            .iter_mut()
+            .filter(|state| state.factor > 1.35)
+            .for_each(|state| state.whole = false);
         assert!(curve.kink().is_none());
         assert!(near(curve.kinked().last_stable, 1.3) && near(curve.kinked().first_failed, 1.4));
         // A branch that breaks off is one if it is long enough.
         let mut curve = self::curve(0.5, 1.7, 0.02, |factor| 1.0 + 100.0 * (factor - 1.4).max(0.0));
-        curve.states.iter_mut().filter(|state| state.factor > 1.55).for_each(|state| state.whole = false);
+        curve
+            .states
+            .iter_mut()
+            .filter(|state| state.factor > 1.55)
+            .for_each(|state| state.whole = false);
         assert!(near(curve.kink().map(|kink| kink.factor), 1.4), "{:?}", curve.kink());
-        curve.states.iter_mut().filter(|state| state.factor > 1.45).for_each(|state| state.whole = false);
+        curve
+            .states
+            .iter_mut()
+            .filter(|state| state.factor > 1.45)
+            .for_each(|state| state.whole = false);
         assert!(curve.kink().is_none());
     }
 }

@@ -20,11 +20,18 @@ struct GuessPath {
 /// likeliest.
 pub(super) fn ahead(plan: SearchPlan, known: &dyn Fn(f64) -> Option<CurveState>, most: usize) -> Vec<f64> {
     let mut factors = Vec::new();
-    let mut paths = vec![GuessPath { weight: 1.0, guesses: Vec::new() }];
+    let mut paths = vec![GuessPath {
+        weight: 1.0,
+        guesses: Vec::new(),
+    }];
     for _ in 0..LOOKS * most {
         // Of paths that are as likely as each other the shorter one, which was added earlier.
-        let likeliest = (0..paths.len()).rev().max_by(|&a, &b| paths[a].weight.total_cmp(&paths[b].weight));
-        let Some(path) = likeliest.map(|index| paths.remove(index)) else { break };
+        let likeliest = (0..paths.len())
+            .rev()
+            .max_by(|&a, &b| paths[a].weight.total_cmp(&paths[b].weight));
+        let Some(path) = likeliest.map(|index| paths.remove(index)) else {
+            break;
+        };
         let mut states = Vec::new();
         let halt = search(plan, &mut |factor| {
             let guessed = || path.guesses.iter().find(|state| state.factor == factor).copied();
@@ -48,16 +55,33 @@ pub(super) fn ahead(plan: SearchPlan, known: &dyn Fn(f64) -> Option<CurveState>,
 /// How a trial may end, with the share of each way: as those of a stronger and of a weaker body did.
 fn outcomes(factor: f64, states: &[CurveState]) -> impl Iterator<Item = (f64, CurveState)> {
     let nearest = |a: &&CurveState, b: &&CurveState| (a.factor - factor).abs().total_cmp(&(b.factor - factor).abs());
-    let stronger = states.iter().filter(|state| state.factor < factor && state.whole).min_by(nearest);
+    let stronger = states
+        .iter()
+        .filter(|state| state.factor < factor && state.whole)
+        .min_by(nearest);
     let weaker = states.iter().filter(|state| state.factor > factor).min_by(nearest);
     let elastic = states.first().map(|state| state.displacement);
-    let stands =
-        stronger.map_or(CurveState { factor, displacement: 1.0, whole: true }, |state| CurveState { factor, ..*state });
+    let stands = stronger.map_or(
+        CurveState {
+            factor,
+            displacement: 1.0,
+            whole: true,
+        },
+        |state| CurveState { factor, ..*state },
+    );
     let falls = weaker.map(|state| CurveState { factor, ..*state });
     // Nobody fails as the elastic body, the first of all.
-    let falls = falls.or_else(|| Some(CurveState { factor, displacement: 2.0 * FALLEN * elastic?, whole: true }));
+    let falls = falls.or_else(|| {
+        Some(CurveState {
+            factor,
+            displacement: 2.0 * FALLEN * elastic?,
+            whole: true,
+        })
+    });
     let share = if weaker.is_some() { 0.5 } else { STANDS };
-    [(share, stands)].into_iter().chain(falls.map(|state| (1.0 - share, state)))
+    [(share, stands)]
+        .into_iter()
+        .chain(falls.map(|state| (1.0 - share, state)))
 }
 
 #[cfg(test)]
@@ -68,24 +92,39 @@ mod tests {
 
     fn state(kink: f64, factor: f64) -> CurveState {
         let (displacement, whole) = hockey(kink)(factor);
-        CurveState { factor, displacement, whole }
+        CurveState {
+            factor,
+            displacement,
+            whole,
+        }
     }
 
     /// What is wanted when the trials of these factors are known.
     fn wanted(made: &[f64], most: usize) -> Vec<f64> {
-        ahead(PLAN, &|factor| made.contains(&factor).then(|| state(1.373, factor)), most)
+        ahead(
+            PLAN,
+            &|factor| made.contains(&factor).then(|| state(1.373, factor)),
+            most,
+        )
     }
 
     /// Rounds of a search in each of which so many trials are made, and how many those are in all.
     fn rounds(kink: f64, most: usize) -> (usize, usize) {
         let (mut made, mut rounds): (Vec<CurveState>, usize) = (Vec::new(), 0);
         loop {
-            let wanted = ahead(PLAN, &|factor| made.iter().find(|state| state.factor == factor).copied(), most);
+            let wanted = ahead(
+                PLAN,
+                &|factor| made.iter().find(|state| state.factor == factor).copied(),
+                most,
+            );
             if wanted.is_empty() {
                 return (rounds, made.len());
             }
             assert!(
-                wanted.len() <= most && wanted.iter().all(|factor| made.iter().all(|state| state.factor != *factor))
+                wanted.len() <= most
+                    && wanted
+                        .iter()
+                        .all(|factor| made.iter().all(|state| state.factor != *factor))
             );
             made.extend(wanted.into_iter().map(|factor| state(kink, factor)));
             rounds += 1;

@@ -63,7 +63,16 @@ pub(super) fn find<S: JobSource>(
 ) -> Result<(FactorCurve, Vec<S::Trial>), Error> {
     let (sender, receiver) = mpsc::channel();
     let (running, made, asked) = (Vec::new(), Vec::new(), Vec::new());
-    let mut jobs = Jobs { plan, most, source, running, made, asked, sender, receiver };
+    let mut jobs = Jobs {
+        plan,
+        most,
+        source,
+        running,
+        made,
+        asked,
+        sender,
+        receiver,
+    };
     let curve = thread::scope(|scope| {
         let curve = jobs.curve(scope, &mut report);
         jobs.running.iter().for_each(|running| running.stop.ask());
@@ -100,7 +109,11 @@ impl<'a, S: JobSource> Jobs<'a, S> {
     /// What is known, whether the search has asked for it or not.
     fn known(&self, factor: f64) -> Option<CurveState> {
         let made = self.made.iter().filter_map(|made| made.1.as_ref().ok());
-        self.asked.iter().chain(made).map(S::state).find(|state| state.factor == factor)
+        self.asked
+            .iter()
+            .chain(made)
+            .map(S::state)
+            .find(|state| state.factor == factor)
     }
 
     /// One trial more, of those on the way to the one that the search needs.
@@ -141,16 +154,25 @@ impl<'a, S: JobSource> Jobs<'a, S> {
     /// otherwise.
     fn make_room(&self, wanted: &[f64]) {
         let rank = |running: &Running| wanted.iter().position(|&factor| factor == running.factor);
-        self.running.iter().filter(|running| rank(running).is_none()).for_each(|running| running.stop.ask());
+        self.running
+            .iter()
+            .filter(|running| rank(running).is_none())
+            .for_each(|running| running.stop.ask());
         let is_full = self.running.len() >= self.most && self.running.iter().all(|running| !running.stop.is_asked());
         if is_full && !self.is_running(wanted[0]) {
-            self.running.iter().max_by_key(|running| rank(running)).inspect(|running| running.stop.ask());
+            self.running
+                .iter()
+                .max_by_key(|running| rank(running))
+                .inspect(|running| running.stop.ask());
         }
     }
 
     fn begin<'scope>(&mut self, factor: f64, scope: &'scope Scope<'scope, 'a>) {
         let stop = Arc::new(Stop::default());
-        self.running.push(Running { factor, stop: Arc::clone(&stop) });
+        self.running.push(Running {
+            factor,
+            stop: Arc::clone(&stop),
+        });
         let (source, sender) = (self.source, self.sender.clone());
         scope.spawn(move || {
             // Nobody listens once the search is over.
@@ -161,7 +183,11 @@ impl<'a, S: JobSource> Jobs<'a, S> {
     /// For the next end of a trial.
     fn wait(&mut self) {
         let made = self.receiver.recv().expect("the other end is held here");
-        let index = self.running.iter().position(|running| running.factor == made.0).expect("it was begun");
+        let index = self
+            .running
+            .iter()
+            .position(|running| running.factor == made.0)
+            .expect("it was begun");
         let Running { stop, .. } = self.running.swap_remove(index);
         // One that was stopped may have ended by itself before; if not, it is as if it had never begun.
         if made.1.is_ok() || !stop.is_asked() {
@@ -190,12 +216,22 @@ mod tests {
 
     impl<'a> Body<'a> {
         fn new(state: &'a (dyn Fn(f64) -> (f64, bool) + Sync), seed: u64) -> Self {
-            Self { state, seed, is_kept: &|_| false, breaks: &|_| false, count: Mutex::default() }
+            Self {
+                state,
+                seed,
+                is_kept: &|_| false,
+                breaks: &|_| false,
+                count: Mutex::default(),
+            }
         }
 
         fn trial(&self, factor: f64) -> CurveState {
             let (displacement, whole) = (self.state)(factor);
-            CurveState { factor, displacement, whole }
+            CurveState {
+                factor,
+                displacement,
+                whole,
+            }
         }
 
         /// Whether it ended by itself.
@@ -209,7 +245,11 @@ mod tests {
     }
 
     fn broken(factor: f64) -> Error {
-        Error::Run { what: format!("the trial {factor}"), code: 70, reason: String::new() }
+        Error::Run {
+            what: format!("the trial {factor}"),
+            code: 70,
+            reason: String::new(),
+        }
     }
 
     impl JobSource for Body<'_> {
@@ -273,7 +313,10 @@ mod tests {
         let body = hockey(1.373);
         let (_, asked) = searched(PLAN, &body);
         for most in [1, 2, 4] {
-            let source = Body { is_kept: &|factor| asked.contains(&factor), ..Body::new(&body, 0) };
+            let source = Body {
+                is_kept: &|factor| asked.contains(&factor),
+                ..Body::new(&body, 0)
+            };
             let (_, trials) = find(PLAN, most, &source, |_| ()).unwrap();
             assert!(trials.iter().map(|trial| trial.factor).eq(asked.iter().copied()));
             assert_eq!(source.count.into_inner().unwrap().1, 0);
@@ -285,10 +328,19 @@ mod tests {
         let body = hockey(1.373);
         let (curve, asked) = searched(PLAN, &body);
         for (most, seed) in [(1, 0), (2, 0), (3, 0), (4, 0), (4, 1), (4, 2)] {
-            let source = Body { breaks: &|factor| !asked.contains(&factor), ..Body::new(&body, seed) };
-            assert_eq!(find(PLAN, most, &source, |_| ()).map(|found| found.0).unwrap(), *curve.as_ref().unwrap());
+            let source = Body {
+                breaks: &|factor| !asked.contains(&factor),
+                ..Body::new(&body, seed)
+            };
+            assert_eq!(
+                find(PLAN, most, &source, |_| ()).map(|found| found.0).unwrap(),
+                *curve.as_ref().unwrap()
+            );
             for from in [asked[0], asked[4], asked[9]] {
-                let source = Body { breaks: &|factor| factor >= from, ..Body::new(&body, seed) };
+                let source = Body {
+                    breaks: &|factor| factor >= from,
+                    ..Body::new(&body, seed)
+                };
                 let first = asked.iter().position(|&factor| factor >= from).unwrap();
                 let mut report = Vec::new();
                 let error = find(PLAN, most, &source, |trial| report.push(trial.factor)).unwrap_err();

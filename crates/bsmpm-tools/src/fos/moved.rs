@@ -114,7 +114,10 @@ impl MovedGround {
     /// m  The largest displacement of any point, and where it is.
     pub fn farthest(&self) -> (f64, [f64; 3]) {
         let first = &self.points[0];
-        let farthest = self.points.iter().fold(first, |a, b| if b.size() > a.size() { b } else { a });
+        let farthest = self
+            .points
+            .iter()
+            .fold(first, |a, b| if b.size() > a.size() { b } else { a });
         (farthest.size(), farthest.place)
     }
 
@@ -125,15 +128,21 @@ impl MovedGround {
         let along = |axis: usize| moving.iter().map(move |point| point.place[axis]);
         let pulled = |side: &HoldingSide| {
             let [from, to] = side.cells;
-            let at_it = moving.iter().filter(|point| from <= point.place[side.axis] && point.place[side.axis] <= to);
+            let at_it = moving
+                .iter()
+                .filter(|point| from <= point.place[side.axis] && point.place[side.axis] <= to);
             let stresses: Vec<f64> = at_it.map(|point| point.stress[side.axis]).collect();
             let tension: f64 = stresses.iter().map(|stress| stress.max(0.0)).sum();
             let share = tension / stresses.iter().map(|stress| stress.abs()).sum::<f64>();
             (share > TENSION).then_some(PulledSide { side: side.name, share })
         };
         Mechanism {
-            lower: (0..dims).map(|axis| along(axis).fold(f64::INFINITY, f64::min)).collect(),
-            upper: (0..dims).map(|axis| along(axis).fold(f64::NEG_INFINITY, f64::max)).collect(),
+            lower: (0..dims)
+                .map(|axis| along(axis).fold(f64::INFINITY, f64::min))
+                .collect(),
+            upper: (0..dims)
+                .map(|axis| along(axis).fold(f64::NEG_INFINITY, f64::max))
+                .collect(),
             share: moving.len() as f64 / self.points.len() as f64,
             pulled: sides.iter().filter_map(pulled).collect(),
         }
@@ -144,12 +153,20 @@ impl MovedGround {
         let mut sorted: Vec<&MovedPoint> = other.points.iter().collect();
         sorted.sort_by_key(|point| point.id);
         let superposed = |point: &MovedPoint| {
-            let found = sorted.binary_search_by_key(&point.id, |other| other.id).map_or(point, |index| sorted[index]);
+            let found = sorted
+                .binary_search_by_key(&point.id, |other| other.id)
+                .map_or(point, |index| sorted[index]);
             let along =
                 |axis: usize| point.displacement[axis] + times * (found.displacement[axis] - point.displacement[axis]);
-            MovedPoint { displacement: std::array::from_fn(along), ..point.clone() }
+            MovedPoint {
+                displacement: std::array::from_fn(along),
+                ..point.clone()
+            }
         };
-        Self { points: self.points.iter().map(superposed).collect(), block: self.block }
+        Self {
+            points: self.points.iter().map(superposed).collect(),
+            block: self.block,
+        }
     }
 }
 
@@ -163,8 +180,14 @@ impl Mechanism {
     /// The box in words.
     pub fn words(&self) -> String {
         let axes = ["x", "y", "z"].iter().zip(self.lower.iter().zip(&self.upper));
-        let ranges: Vec<String> = axes.map(|(name, (low, high))| format!("{name} = {low:.1} to {high:.1} m")).collect();
-        format!("{}, {:.0} % of the material points", ranges.join(", "), 100.0 * self.share)
+        let ranges: Vec<String> = axes
+            .map(|(name, (low, high))| format!("{name} = {low:.1} to {high:.1} m"))
+            .collect();
+        format!(
+            "{}, {:.0} % of the material points",
+            ranges.join(", "),
+            100.0 * self.share
+        )
     }
 }
 
@@ -177,9 +200,17 @@ mod tests {
         let point = |index: u64| {
             let place = [(index % 10) as f64 + 0.5, (index / 10) as f64 + 0.5, 0.0];
             let displacement = [f64::from(u8::from(place[0] > 7.0)), 0.0, 0.0];
-            MovedPoint { id: index, place, displacement, stress: [5.0, -1.0, 0.0] }
+            MovedPoint {
+                id: index,
+                place,
+                displacement,
+                stress: [5.0, -1.0, 0.0],
+            }
         };
-        MovedGround { points: (0..100).map(point).collect(), block: 4 }
+        MovedGround {
+            points: (0..100).map(point).collect(),
+            block: 4,
+        }
     }
 
     #[test]
@@ -198,17 +229,32 @@ mod tests {
         let side = |name, cells| HoldingSide { name, axis: 0, cells };
         let sides = [side("left", [0.0, 1.0]), side("right", [9.0, 10.0])];
         let found = ground().mechanism(2, &sides);
-        assert_eq!((found.lower, found.upper, found.share), (vec![7.5, 0.5], vec![9.5, 9.5], 0.3));
-        assert_eq!(found.pulled, [PulledSide { side: "right", share: 1.0 }]);
+        assert_eq!(
+            (found.lower, found.upper, found.share),
+            (vec![7.5, 0.5], vec![9.5, 9.5], 0.3)
+        );
+        assert_eq!(
+            found.pulled,
+            [PulledSide {
+                side: "right",
+                share: 1.0
+            }]
+        );
         let mut pressed = ground();
-        pressed.points.iter_mut().for_each(|point| point.stress = [-5.0, -1.0, 0.0]);
+        pressed
+            .points
+            .iter_mut()
+            .for_each(|point| point.stress = [-5.0, -1.0, 0.0]);
         assert!(pressed.mechanism(2, &sides).pulled.is_empty());
     }
 
     #[test]
     fn displacements_are_superposed_point_by_point_in_whatever_order() {
         let (still, mut moved) = (ground(), ground());
-        moved.points.iter_mut().for_each(|point| point.displacement[1] = 2.0 * point.id as f64);
+        moved
+            .points
+            .iter_mut()
+            .for_each(|point| point.displacement[1] = 2.0 * point.id as f64);
         moved.points.reverse();
         let half = still.superposed(&moved, 0.5);
         assert_eq!(half.points[40].displacement, [0.0, 40.0, 0.0]);

@@ -26,13 +26,17 @@ const RELATIVE: &str = "Displacement / elastic displacement";
 const SHADE: Rgb = [253, 226, 190];
 /// All pictures: the chart, and those of the fields that show the mechanism.
 pub(super) const NAMES: [&str; 3] = ["fos.png", "fos_plastic-strain.png", "fos_displacement.png"];
-const MECHANISM: [(FieldName, &str, &str); 2] =
-    [(FieldName::PlasticStrain, "plastic-strain_", NAMES[1]), (FieldName::Displacement, "displacement_", NAMES[2])];
+const MECHANISM: [(FieldName, &str, &str); 2] = [
+    (FieldName::PlasticStrain, "plastic-strain_", NAMES[1]),
+    (FieldName::Displacement, "displacement_", NAMES[2]),
+];
 
 /// Draws `fos.png` and, where a trial has failed, the mechanism; returns their names in the output directory.
 pub(super) fn draw(report: &FosReport, subject: &Subject, output: &Path) -> Result<Vec<&'static str>, Error> {
     let mut names = vec![NAMES[0]];
-    FactorChart::of(report, label(report, subject, output)?).draw().save(&output.join(NAMES[0]))?;
+    FactorChart::of(report, label(report, subject, output)?)
+        .draw()
+        .save(&output.join(NAMES[0]))?;
     let failed = report.finding.first_failed.and_then(|factor| report.at(factor));
     if let Some(row) = failed {
         names.extend(mechanism(&output.join(&row.trial.directory), subject.end, output)?);
@@ -44,11 +48,16 @@ pub(super) fn draw(report: &FosReport, subject: &Subject, output: &Path) -> Resu
 fn mechanism(directory: &Path, end: f64, output: &Path) -> Result<Vec<&'static str>, Error> {
     let mut names = Vec::new();
     for (field, beginning, name) in MECHANISM {
-        let arguments =
-            PlotArguments { times: vec![end], field: Some(field), ..PlotArguments::of(directory.to_owned()) };
+        let arguments = PlotArguments {
+            times: vec![end],
+            field: Some(field),
+            ..PlotArguments::of(directory.to_owned())
+        };
         let drawn = plot::run(&arguments)?;
-        let is_body =
-            |path: &&PathBuf| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(beginning));
+        let is_body = |path: &&PathBuf| {
+            path.file_name()
+                .is_some_and(|name| name.to_string_lossy().starts_with(beginning))
+        };
         if let Some(from) = drawn.iter().find(is_body) {
             fs::copy(from, output.join(name)).map_err(bsmpm_io::Error::file("copy", from))?;
             names.push(name);
@@ -59,7 +68,9 @@ fn mechanism(directory: &Path, end: f64, output: &Path) -> Result<Vec<&'static s
 
 /// What the vertical axis shows: the case's own quantity if it has a scale, else parts of the elastic displacement.
 fn label(report: &FosReport, subject: &Subject, output: &Path) -> Result<Option<String>, Error> {
-    let Some(row) = report.trials.first().filter(|_| subject.scale != 1.0) else { return Ok(None) };
+    let Some(row) = report.trials.first().filter(|_| subject.scale != 1.0) else {
+        return Ok(None);
+    };
     let record = RunRecord::read(&output.join(&row.trial.directory))?;
     Ok(record.column(&subject.column).map(|column| column.label()))
 }
@@ -79,8 +90,15 @@ struct FactorChart<'a> {
 
 impl<'a> FactorChart<'a> {
     fn of(report: &'a FosReport, label: Option<String>) -> Self {
-        let scale = if label.is_some() { 1.0 } else { 1.0 / report.elastic_displacement };
-        let ends = [report.finding.first_failed, report.kink.map(|kink| kink.after.reaches(fallen(report)))];
+        let scale = if label.is_some() {
+            1.0
+        } else {
+            1.0 / report.elastic_displacement
+        };
+        let ends = [
+            report.finding.first_failed,
+            report.kink.map(|kink| kink.after.reaches(fallen(report))),
+        ];
         let farthest = ends.into_iter().flatten().fold(0.0, f64::max);
         // Far beyond failure the displacements would leave no room for those before it.
         let is_seen = |row: &&FosRow| {
@@ -88,45 +106,101 @@ impl<'a> FactorChart<'a> {
                 || (row.growth <= 1.05 * FALLEN && (row.verdict == Verdict::Stable || row.trial.factor <= farthest))
         };
         let places = |verdict: Verdict| {
-            let rows = report.trials.iter().filter(|row| row.verdict == verdict).filter(is_seen);
-            rows.map(|row| (row.trial.factor, scale * row.growth * report.elastic_displacement)).collect::<Vec<_>>()
+            let rows = report
+                .trials
+                .iter()
+                .filter(|row| row.verdict == verdict)
+                .filter(is_seen);
+            rows.map(|row| (row.trial.factor, scale * row.growth * report.elastic_displacement))
+                .collect::<Vec<_>>()
         };
         let group = |name: &str, verdict: Verdict, colour: Rgb| {
-            (LegendEntry { name: name.to_owned(), colour, mark: Mark::Points }, places(verdict))
+            (
+                LegendEntry {
+                    name: name.to_owned(),
+                    colour,
+                    mark: Mark::Points,
+                },
+                places(verdict),
+            )
         };
         let mut groups = vec![
             group("stable", Verdict::Stable, colour::line(0, 3)),
             group("failed", Verdict::Failed, colour::line(1, 3)),
-            group("no equilibrium: the last one that was found", Verdict::NoEquilibrium, INK),
+            group(
+                "no equilibrium: the last one that was found",
+                Verdict::NoEquilibrium,
+                INK,
+            ),
         ];
         groups.retain(|(_, places)| !places.is_empty());
-        Self { report, scale, label: label.unwrap_or_else(|| RELATIVE.to_owned()), groups, farthest }
+        Self {
+            report,
+            scale,
+            label: label.unwrap_or_else(|| RELATIVE.to_owned()),
+            groups,
+            farthest,
+        }
     }
 
     fn draw(&self) -> Canvas {
-        let level = LegendEntry { name: "twice the elastic".to_owned(), colour: colour::line(2, 3), mark: Mark::Line };
-        let branches = LegendEntry { name: "branches".to_owned(), colour: OUTLINE, mark: Mark::Line };
+        let level = LegendEntry {
+            name: "twice the elastic".to_owned(),
+            colour: colour::line(2, 3),
+            mark: Mark::Line,
+        };
+        let branches = LegendEntry {
+            name: "branches".to_owned(),
+            colour: OUTLINE,
+            mark: Mark::Line,
+        };
         let lines = [Some(&level), self.report.kink.as_ref().map(|_| &branches)];
-        let entries: Vec<&LegendEntry> =
-            self.groups.iter().map(|(entry, _)| entry).chain(lines.into_iter().flatten()).collect();
+        let entries: Vec<&LegendEntry> = self
+            .groups
+            .iter()
+            .map(|(entry, _)| entry)
+            .chain(lines.into_iter().flatten())
+            .collect();
         let axes = self.axes(ABOVE + legend::height(&entries, SHEET.0 - 80.0) + 20.0);
         let mut canvas = Canvas::new(SHEET.0, SHEET.1);
-        let FosReport { finding: band, conditions, .. } = self.report;
-        let below = format!("{} {}; {}", self.report.plan.sought.title(), band.words(), conditions.lines()[0]);
+        let FosReport {
+            finding: band,
+            conditions,
+            ..
+        } = self.report;
+        let below = format!(
+            "{} {}; {}",
+            self.report.plan.sought.title(),
+            band.words(),
+            conditions.lines()[0]
+        );
         title(&mut canvas, SHEET.0, &self.report.title, &below);
         legend::draw(&mut canvas, &entries, 40.0, ABOVE, SHEET.0 - 80.0);
         if let (Some(low), Some(high)) = (band.last_stable, band.first_failed) {
-            canvas.fill((axes.place((low, 0.0)).0, axes.top), (axes.place((high, 0.0)).0, axes.bottom), SHADE);
+            canvas.fill(
+                (axes.place((low, 0.0)).0, axes.top),
+                (axes.place((high, 0.0)).0, axes.bottom),
+                SHADE,
+            );
         }
         axes.rules(&mut canvas);
         let doubled = DOUBLED * self.elastic();
-        axes.line(&mut canvas, &[(axes.x.0, doubled), (axes.x.1, doubled)], LINE / 2.0, level.colour);
+        axes.line(
+            &mut canvas,
+            &[(axes.x.0, doubled), (axes.x.1, doubled)],
+            LINE / 2.0,
+            level.colour,
+        );
         self.draw_branches(&mut canvas, &axes);
         for (entry, places) in &self.groups {
             let places: Vec<_> = places.iter().map(|&place| axes.place(place)).collect();
             entry.mark.draw(&mut canvas, &places, LINE, entry.colour);
         }
-        axes.draw(&mut canvas, Some((self.report.plan.sought.label(), "-")), (&self.label, "-"));
+        axes.draw(
+            &mut canvas,
+            Some((self.report.plan.sought.label(), "-")),
+            (&self.label, "-"),
+        );
         canvas
     }
 
@@ -141,7 +215,15 @@ impl<'a> FactorChart<'a> {
         let x = range(places().map(|place| place.0).chain(farthest)).unwrap_or((0.0, 1.0));
         let high = places().map(|place| place.1).fold(DOUBLED * self.elastic(), f64::max);
         let (x, y) = (padded(x.0, x.1, 0.03), (0.0, 1.06 * high));
-        ChartAxes { left: LEFT, top, right: SHEET.0 - RIGHT, bottom: SHEET.1 - BELOW, x, y, scales: LINEAR }
+        ChartAxes {
+            left: LEFT,
+            top,
+            right: SHEET.0 - RIGHT,
+            bottom: SHEET.1 - BELOW,
+            x,
+            y,
+            scales: LINEAR,
+        }
     }
 
     /// Both branches, from the left to where they meet, and up to the end of what is seen.

@@ -83,7 +83,10 @@ pub fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
              load instead, or use `--stage NAME`, which stops the motion at the end of that stage.",
         ),
     ];
-    let found = reasons.into_iter().filter(|(holds, _)| *holds).map(|(_, reason)| reason.to_owned());
+    let found = reasons
+        .into_iter()
+        .filter(|(holds, _)| *holds)
+        .map(|(_, reason)| reason.to_owned());
     loose_tolerances(case).chain(found).collect()
 }
 
@@ -101,37 +104,61 @@ pub(super) fn followed(case: &Case, until: Option<f64>) -> Vec<NamedMaterial> {
 fn amplitudes(case: &Case) -> impl Iterator<Item = &Shares> {
     let tractions = case.tractions.iter().map(|load| &load.amplitude);
     let points = case.point_loads.iter().map(|load| &load.amplitude);
-    tractions.chain(points).chain(case.rigid.iter().map(|rigid| &rigid.amplitude))
+    tractions
+        .chain(points)
+        .chain(case.rigid.iter().map(|rigid| &rigid.amplitude))
 }
 
 fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {
-    let all = [("tolerance", case.solver.tolerance), ("force_tolerance", case.solver.force_tolerance)];
-    all.into_iter().filter(|(_, value)| *value > LOOSEST).map(|(key, value)| {
-        format!(
-            "E0823: solver.{key} = {value:e} is too large (limit: {LOOSEST:e}), so the factor of safety may be too \
+    let all = [
+        ("tolerance", case.solver.tolerance),
+        ("force_tolerance", case.solver.force_tolerance),
+    ];
+    all.into_iter()
+        .filter(|(_, value)| *value > LOOSEST)
+        .map(|(key, value)| {
+            format!(
+                "E0823: solver.{key} = {value:e} is too large (limit: {LOOSEST:e}), so the factor of safety may be too \
              high. Set solver.{key} = {LOOSEST:e} or less."
-        )
-    })
+            )
+        })
 }
 
 pub(super) fn is_moved(case: &Case) -> bool {
     let moves = |path: &MotionPath| path.rows.iter().any(|(_, by)| *by != [0.0; 3]);
     let footing = case.footing.iter().map(|footing| &footing.path);
-    footing.chain(case.prescribed.iter().map(|prescribed| &prescribed.path)).any(moves)
+    footing
+        .chain(case.prescribed.iter().map(|prescribed| &prescribed.path))
+        .any(moves)
 }
 
 fn is_loaded(case: &Case) -> bool {
-    let falls = case.gravity.as_ref().is_some_and(|gravity| gravity.acceleration != [0.0; 3]);
-    let weighs = case.bodies.iter().any(|body| case.materials[body.material].density.is_some());
+    let falls = case
+        .gravity
+        .as_ref()
+        .is_some_and(|gravity| gravity.acceleration != [0.0; 3]);
+    let weighs = case
+        .bodies
+        .iter()
+        .any(|body| case.materials[body.material].density.is_some());
     let is_pushed = case.tractions.iter().any(|traction| traction.largest() > 0.0)
         || case.point_loads.iter().any(|load| load.force != [0.0; 3]);
-    let is_driven = case.rigid.iter().any(|rigid| rigid.force != [0.0; 3] || falls && rigid.mass[0] > 0.0);
+    let is_driven = case
+        .rigid
+        .iter()
+        .any(|rigid| rigid.force != [0.0; 3] || falls && rigid.mass[0] > 0.0);
     (falls && weighs) || is_pushed || is_driven
 }
 
 pub(super) fn ramps(case: &Case) -> impl Iterator<Item = f64> {
     let gravity = case.gravity.iter().map(|gravity| gravity.ramp);
     let tractions = case.tractions.iter().map(|traction| traction.ramp);
-    let driven = case.rigid.iter().filter(|rigid| rigid.force != [0.0; 3] && rigid.amplitude.is_empty());
-    gravity.chain(tractions).chain(case.point_loads.iter().map(|load| load.ramp)).chain(driven.map(|rigid| rigid.ramp))
+    let driven = case
+        .rigid
+        .iter()
+        .filter(|rigid| rigid.force != [0.0; 3] && rigid.amplitude.is_empty());
+    gravity
+        .chain(tractions)
+        .chain(case.point_loads.iter().map(|load| load.ramp))
+        .chain(driven.map(|rigid| rigid.ramp))
 }

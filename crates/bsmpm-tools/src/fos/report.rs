@@ -90,13 +90,23 @@ pub(super) struct FosReport {
 
 impl Finding {
     fn of(criterion: &'static str, band: Bracket, estimate: Option<f64>) -> Self {
-        let Bracket { last_stable, first_failed } = band;
-        Self { criterion, last_stable, first_failed, estimate: estimate.map(short) }
+        let Bracket {
+            last_stable,
+            first_failed,
+        } = band;
+        Self {
+            criterion,
+            last_stable,
+            first_failed,
+            estimate: estimate.map(short),
+        }
     }
 
     /// The band and the estimate.
     pub fn words(&self) -> String {
-        let estimate = self.estimate.map_or_else(String::new, |estimate| format!(", estimate {estimate:.3}"));
+        let estimate = self
+            .estimate
+            .map_or_else(String::new, |estimate| format!(", estimate {estimate:.3}"));
         match (self.last_stable, self.first_failed) {
             (Some(low), Some(high)) => format!("{low} (stable) to {high} (failed){estimate}"),
             (Some(low), None) => format!("above {low}: no failure up to there"),
@@ -108,10 +118,15 @@ impl Finding {
 impl Found {
     fn of(finding: Finding, sought: Sought) -> Self {
         match sought {
-            Sought::FactorOfSafety => Self { factor_of_safety: Some(finding), ..Self::default() },
-            Sought::SeismicCoefficient(pushed) => {
-                Self { critical_seismic_coefficient: Some(finding), pushed_to: Some(pushed), ..Self::default() }
-            }
+            Sought::FactorOfSafety => Self {
+                factor_of_safety: Some(finding),
+                ..Self::default()
+            },
+            Sought::SeismicCoefficient(pushed) => Self {
+                critical_seismic_coefficient: Some(finding),
+                pushed_to: Some(pushed),
+                ..Self::default()
+            },
         }
     }
 }
@@ -134,15 +149,25 @@ impl FosReport {
             state if curve.is_failed(kink.as_ref(), &state) => Verdict::Failed,
             _ => Verdict::Stable,
         };
-        let row = |trial: FosTrial| FosRow { verdict: verdict(&trial), growth: curve.growth(&trial.state()), trial };
+        let row = |trial: FosTrial| FosRow {
+            verdict: verdict(&trial),
+            growth: curve.growth(&trial.state()),
+            trial,
+        };
         let mut rows: Vec<FosRow> = trials.into_iter().map(row).collect();
         rows.sort_by(|a, b| a.trial.factor.total_cmp(&b.trial.factor));
-        let at = |value: Option<f64>| rows.iter().find(|row| Some(row.trial.factor) == value).map(|row| &row.trial);
+        let at = |value: Option<f64>| {
+            rows.iter()
+                .find(|row| Some(row.trial.factor) == value)
+                .map(|row| &row.trial)
+        };
         let mechanism = at(by_kink.first_failed).map(|trial| trial.mechanism.clone());
         let of_ground = [
             at(by_kink.last_stable).and_then(loose_points),
             at(by_kink.last_stable).and_then(untrusted),
-            mechanism.as_ref().and_then(|mechanism| pulled_sides(mechanism, plan.sought)),
+            mechanism
+                .as_ref()
+                .and_then(|mechanism| pulled_sides(mechanism, plan.sought)),
         ];
         let of_search = notes(curve, kink.as_ref(), &rows, subject);
         let notes = [subject.notes(), of_search, of_ground.into_iter().flatten().collect()].concat();
@@ -177,17 +202,27 @@ impl FosReport {
         let [first, second] = self.conditions.lines();
         let mut text = format!("{}\n{first}\n{second}\n\n{}", self.title, self.table());
         let [kink, doubled] = &self.criteria;
-        let by = if self.plan.softens { "by the first failure:" } else { "by the kink:" };
+        let by = if self.plan.softens {
+            "by the first failure:"
+        } else {
+            "by the kink:"
+        };
         text += &format!("\n{}, {by:<16} {}\n", self.plan.sought.name(), kink.words());
         text += &format!("by twice the elastic displacement: {}\n", doubled.words());
         text += self.which();
         if let Some(mechanism) = &self.mechanism {
             text += &format!("mechanism of the first failed trial: {}\n", mechanism.words());
         }
-        self.notes.iter().for_each(|note| text += &format!("{}\n", headed(note, "note")));
+        self.notes
+            .iter()
+            .for_each(|note| text += &format!("{}\n", headed(note, "note")));
         let cpu: f64 = self.trials.iter().map(|row| row.trial.cpu_seconds).sum();
         let kept = self.trials.iter().filter(|row| row.trial.kept).count();
-        let kept = if kept > 0 { format!(", {kept} of them reused") } else { String::new() };
+        let kept = if kept > 0 {
+            format!(", {kept} of them reused")
+        } else {
+            String::new()
+        };
         text + &format!(
             "{} trials{kept}, {cpu:.1} CPU s, {:.1} s of wall time with {} at the same time\n",
             self.trials.len(),
@@ -220,7 +255,9 @@ impl FosReport {
             .right("verdict", |row| word(row.verdict))
             .right("displacement", |row| format!("{:.4e}", row.trial.displacement))
             .right("/ elastic", |row| format!("{:.3}", row.growth))
-            .right("plastic strain", |row| some(row.trial.plastic_strain.map(|strain| format!("{strain:.2e}"))))
+            .right("plastic strain", |row| {
+                some(row.trial.plastic_strain.map(|strain| format!("{strain:.2e}")))
+            })
             .right("iterations", |row| row.trial.iterations)
             .right("cuts", |row| row.trial.cuts)
             .right("CPU s", |row| format!("{:.2}", row.trial.cpu_seconds))
@@ -252,7 +289,11 @@ impl FosReport {
 impl FosRow {
     /// What ended a trial early, at a share of its load.
     fn early(&self, (load, reason): (f64, &str)) -> String {
-        let what = if matches!(self.trial.end, End::Left { .. }) { "left" } else { "stopped" };
+        let what = if matches!(self.trial.end, End::Left { .. }) {
+            "left"
+        } else {
+            "stopped"
+        };
         format!("{what} at {load:.3} of the load: {reason}")
     }
 }
@@ -322,7 +363,9 @@ fn notes(curve: &FactorCurve, kink: Option<&Kink>, rows: &[FosRow], subject: &Su
             factors.join(", ")
         ));
     }
-    let first = coarse.first_failed.and_then(|factor| rows.iter().find(|row| row.trial.factor == factor));
+    let first = coarse
+        .first_failed
+        .and_then(|factor| rows.iter().find(|row| row.trial.factor == factor));
     if let Some(row) = first.filter(|row| row.verdict == Verdict::NoEquilibrium && row.growth <= DOUBLED) {
         notes.push(format!(
             "W0807: the first failed trial ({}) stopped at {:.2} times the elastic displacement. Soil that fails \

@@ -145,8 +145,14 @@ impl Search<'_, '_> {
 
     /// Trials until the place where the displacement grows beyond a level is known to a width.
     fn close_in(&mut self, level: f64, width: f64) -> Result<(), Halt> {
-        while let Bracket { last_stable: Some(low), first_failed: Some(high) } = self.curve.crossing(level) {
-            let Some(factor) = self.plan.between(low, high, width).or_else(|| self.doubted(high)) else { break };
+        while let Bracket {
+            last_stable: Some(low),
+            first_failed: Some(high),
+        } = self.curve.crossing(level)
+        {
+            let Some(factor) = self.plan.between(low, high, width).or_else(|| self.doubted(high)) else {
+                break;
+            };
             self.ask(factor)?;
         }
         Ok(())
@@ -155,16 +161,27 @@ impl Search<'_, '_> {
     /// A trial that found no equilibrium before it moved much may be the solver's failure: the next factor decides,
     /// unless it is known to fail as well.
     fn doubted(&self, factor: f64) -> Option<f64> {
-        let state = self.curve.at(factor).filter(|state| !state.whole && self.curve.growth(state) <= DOUBLED)?;
+        let state = self
+            .curve
+            .at(factor)
+            .filter(|state| !state.whole && self.curve.growth(state) <= DOUBLED)?;
         let next = self.plan.rounded(state.factor + self.plan.width);
-        let known = self.curve.states().iter().any(|other| state.factor < other.factor && other.factor <= next);
+        let known = self
+            .curve
+            .states()
+            .iter()
+            .any(|other| state.factor < other.factor && other.factor <= next);
         (!known && next > state.factor).then_some(next)
     }
 
     /// Trials of growing factors until one is beyond a level.
     fn go_beyond(&mut self, level: f64) -> Result<(), Halt> {
         let mut stride = COARSER * self.plan.width;
-        while let Bracket { last_stable: Some(top), first_failed: None } = self.curve.crossing(level) {
+        while let Bracket {
+            last_stable: Some(top),
+            first_failed: None,
+        } = self.curve.crossing(level)
+        {
             let factor = self.plan.rounded(top + stride);
             if factor <= top || self.curve.crossing(DOUBLED).first_failed.is_none() {
                 break;
@@ -178,8 +195,16 @@ impl Search<'_, '_> {
     /// Trials until the kink lies in a band that is narrow enough.
     fn refine(&mut self) -> Result<(), Halt> {
         for _ in 0..ROUNDS {
-            let Bracket { last_stable: Some(low), first_failed: Some(high) } = self.curve.kinked() else { break };
-            let Some(factor) = self.plan.between(low, high, self.plan.width) else { break };
+            let Bracket {
+                last_stable: Some(low),
+                first_failed: Some(high),
+            } = self.curve.kinked()
+            else {
+                break;
+            };
+            let Some(factor) = self.plan.between(low, high, self.plan.width) else {
+                break;
+            };
             self.ask(factor)?;
         }
         Ok(())
@@ -196,7 +221,11 @@ pub(super) mod tests {
         let curve = search(plan, &mut |factor| {
             asked.push(factor);
             let (displacement, whole) = state(factor);
-            Some(CurveState { factor, displacement, whole })
+            Some(CurveState {
+                factor,
+                displacement,
+                whole,
+            })
         });
         let curve = curve.map_err(|halt| match halt {
             Halt::Needs(factor) => panic!("{factor} is known"),
@@ -205,8 +234,13 @@ pub(super) mod tests {
         (curve, asked)
     }
 
-    pub const PLAN: SearchPlan =
-        SearchPlan { from: 0.5, to: 3.0, width: 0.02, softens: false, sought: Sought::FactorOfSafety };
+    pub const PLAN: SearchPlan = SearchPlan {
+        from: 0.5,
+        to: 3.0,
+        width: 0.02,
+        softens: false,
+        sought: Sought::FactorOfSafety,
+    };
 
     /// The displacement of a body that bends at a factor, always in equilibrium.
     pub fn hockey(kink: f64) -> impl Fn(f64) -> (f64, bool) {
@@ -230,7 +264,11 @@ pub(super) mod tests {
             distinct.sort_by(f64::total_cmp);
             distinct.dedup();
             assert_eq!(distinct.len(), asked.len(), "{asked:?}");
-            assert!(asked.iter().all(|&factor| factor == ELASTIC || (0.5..=3.0).contains(&factor)));
+            assert!(
+                asked
+                    .iter()
+                    .all(|&factor| factor == ELASTIC || (0.5..=3.0).contains(&factor))
+            );
             assert!(asked.len() <= 24, "{asked:?}");
         }
     }
@@ -241,9 +279,16 @@ pub(super) mod tests {
         for (count, &next) in asked.iter().enumerate() {
             let known = |factor| asked[..count].contains(&factor).then(|| hockey(1.373)(factor));
             let halt = search(PLAN, &mut |factor| {
-                known(factor).map(|(displacement, whole)| CurveState { factor, displacement, whole })
+                known(factor).map(|(displacement, whole)| CurveState {
+                    factor,
+                    displacement,
+                    whole,
+                })
             });
-            assert!(matches!(halt, Err(Halt::Needs(factor)) if factor == next), "{next} {halt:?}");
+            assert!(
+                matches!(halt, Err(Halt::Needs(factor)) if factor == next),
+                "{next} {halt:?}"
+            );
         }
         assert_eq!(searched(PLAN, hockey(1.373)).0.unwrap(), whole.unwrap());
     }
@@ -251,15 +296,27 @@ pub(super) mod tests {
     #[test]
     fn a_body_that_stands_to_the_end_is_not_tried_further() {
         let (curve, tried) = searched(PLAN, hockey(5.0));
-        assert_eq!(curve.unwrap().crossing(DOUBLED), Bracket { last_stable: Some(3.0), first_failed: None });
-        assert_eq!(tried, [ELASTIC, 0.5, 0.625, 0.781, 0.977, 1.221, 1.526, 1.907, 2.384, 2.98, 3.0]);
+        assert_eq!(
+            curve.unwrap().crossing(DOUBLED),
+            Bracket {
+                last_stable: Some(3.0),
+                first_failed: None
+            }
+        );
+        assert_eq!(
+            tried,
+            [ELASTIC, 0.5, 0.625, 0.781, 0.977, 1.221, 1.526, 1.907, 2.384, 2.98, 3.0]
+        );
     }
 
     #[test]
     fn without_any_stable_state_the_search_says_what_to_try() {
         let (none, tried) = searched(PLAN, hockey(0.3));
         let error = none.unwrap_err();
-        assert!(error.exit_code() == 80 && error.to_string().contains("--from"), "{error}");
+        assert!(
+            error.exit_code() == 80 && error.to_string().contains("--from"),
+            "{error}"
+        );
         assert_eq!(tried, [ELASTIC, 0.5]);
         let (none, ..) = searched(PLAN, |_| (1.0, false));
         assert!(none.unwrap_err().to_string().contains("no equilibrium"));
@@ -273,7 +330,10 @@ pub(super) mod tests {
         let (curve, _) = searched(PLAN, |factor| (1.0, factor < 1.373));
         let band = curve.unwrap().kinked();
         let (low, high) = (band.last_stable.unwrap(), band.first_failed.unwrap());
-        assert!(low < 1.373 && 1.373 <= high && high - low <= PLAN.width + 1e-9, "{band:?}");
+        assert!(
+            low < 1.373 && 1.373 <= high && high - low <= PLAN.width + 1e-9,
+            "{band:?}"
+        );
     }
 
     #[test]

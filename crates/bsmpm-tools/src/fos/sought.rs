@@ -101,7 +101,9 @@ impl Sought {
 
     /// Why a case has none, beyond the reasons that hold for both.
     pub fn refusal(self, case: &Case) -> Option<String> {
-        let Self::SeismicCoefficient(pushed) = self else { return None };
+        let Self::SeismicCoefficient(pushed) = self else {
+            return None;
+        };
         let Some(gravity) = &case.gravity else {
             let reason =
                 "E0824: the seismic coefficient is a fraction of gravity, and the case has no gravity. Add [gravity].";
@@ -137,7 +139,10 @@ impl Sought {
 
     /// Those of the elastic body under the inertia of a coefficient.
     pub fn pushed_elastic(self, case: &Case, coefficient: f64, stiffness: f64) -> Vec<String> {
-        reduction(1.0, true, stiffness).into_iter().chain([self.inclination(case, coefficient)]).collect()
+        reduction(1.0, true, stiffness)
+            .into_iter()
+            .chain([self.inclination(case, coefficient)])
+            .collect()
     }
 
     /// Gravity with a horizontal part of `coefficient` times the vertical one.
@@ -156,5 +161,9 @@ impl Sought {
 fn reduction(factor: f64, is_elastic: bool, stiffness: f64) -> Vec<String> {
     let elastic = is_elastic.then(|| "strength_reduction.elastic=true".to_owned());
     let stiffened = (stiffness != 1.0).then(|| format!("strength_reduction.stiffness={stiffness:?}"));
-    [format!("strength_reduction.factor={factor:?}")].into_iter().chain(elastic).chain(stiffened).collect()
+    [format!("strength_reduction.factor={factor:?}")]
+        .into_iter()
+        .chain(elastic)
+        .chain(stiffened)
+        .collect()
 }

@@ -122,8 +122,18 @@ impl Subject {
     /// [`Error::NoFactor`] with all reasons why it has no factor of safety, [`Error::Usage`] for overrides of the
     /// factor.
     pub fn read(path: &Path, set: &[String], question: &FosQuestion<'_>) -> Result<Self, Error> {
-        let FosQuestion { sought, from, stage, undrained, .. } = *question;
-        if let Some(set) = set.iter().map(|set| set.trim_start()).find(|set| set.starts_with("strength_reduction")) {
+        let FosQuestion {
+            sought,
+            from,
+            stage,
+            undrained,
+            ..
+        } = *question;
+        if let Some(set) = set
+            .iter()
+            .map(|set| set.trim_start())
+            .find(|set| set.starts_with("strength_reduction"))
+        {
             let key = set.split('=').next().unwrap_or(set).trim_end();
             let reason = format!(
                 "E0830: --set {key} changes the strength reduction, which `bsmpm fos` sets itself. Remove this --set. \
@@ -135,10 +145,17 @@ impl Subject {
         let mut set = set.to_vec();
         // As it is, which says what the trials set; then with the strength that the search begins with.
         let as_it_is = parsed(path, &bytes, &set)?;
-        let from_the_start = if stage.is_none() { sought.overrides(&as_it_is, from, 1.0) } else { Vec::new() };
+        let from_the_start = if stage.is_none() {
+            sought.overrides(&as_it_is, from, 1.0)
+        } else {
+            Vec::new()
+        };
         let refused = sought.refusal(&as_it_is).map(|reason| vec![reason]);
         if let Some(reasons) = refused {
-            return Err(Error::NoFactor { path: path.to_owned(), reasons });
+            return Err(Error::NoFactor {
+                path: path.to_owned(),
+                reasons,
+            });
         }
         let case = parsed(path, &bytes, &[&set[..], &from_the_start].concat())?;
         let until = |name: &str| until(&case, name).map(|until| (name.to_owned(), until));
@@ -146,17 +163,28 @@ impl Subject {
         let until = stage.as_ref().map(|(_, until)| *until);
         let reasons = refusals(&case, until);
         if !reasons.is_empty() {
-            return Err(Error::NoFactor { path: path.to_owned(), reasons });
+            return Err(Error::NoFactor {
+                path: path.to_owned(),
+                reasons,
+            });
         }
         let whole = Quantity::MaxDisplacement { of: Counted::default() };
-        let mut recorded: Vec<_> = case.histories.iter().filter(|history| history.quantity == whole).collect();
+        let mut recorded: Vec<_> = case
+            .histories
+            .iter()
+            .filter(|history| history.quantity == whole)
+            .collect();
         recorded.sort_by_key(|history| history.scale == 1.0);
         let column = recorded.first().map_or(QUANTITY, |history| &history.name).to_owned();
         let scale = recorded.first().map_or(1.0, |history| history.scale);
         let counted = counted(&case, question.region)?;
         let sides = holding_sides(&case, until);
-        let free_bodies =
-            case.rigid.iter().filter(|rigid| rigid.free.contains(&true)).map(|rigid| rigid.name.clone()).collect();
+        let free_bodies = case
+            .rigid
+            .iter()
+            .filter(|rigid| rigid.free.contains(&true))
+            .map(|rigid| rigid.name.clone())
+            .collect();
         let (title, mut conditions) = (case.title.clone(), Conditions::of(&case, until));
         let is_whole = stage.is_none();
         let is_grown = is_whole && ramps(&case).any(|ramp| ramp == 0.0);
@@ -171,7 +199,11 @@ impl Subject {
         }
         let trial = |value: f64| [&set[..], &sought.overrides(&as_it_is, value, conditions.stiffness)].concat();
         let parsed = |factor: f64, further: &[String]| parsed(path, &bytes, &[&trial(factor)[..], further].concat());
-        let unloaded = if is_whole { Vec::new() } else { vec![format!("{UNLOADED}=true")] };
+        let unloaded = if is_whole {
+            Vec::new()
+        } else {
+            vec![format!("{UNLOADED}=true")]
+        };
         let (first, elastic_end) = (parsed(from, &[])?, parsed(ELASTIC, &unloaded)?.analysis.end);
         let end = first.analysis.end;
         if let Some((_, until)) = &stage {
@@ -180,7 +212,10 @@ impl Subject {
         }
         let (path, is_stressed) = (path.to_owned(), is_whole && case.initial.is_some());
         let has_friction = case.has_interface_friction();
-        let has_rigid = [!case.rigid.is_empty(), case.rigid.iter().any(Rigid::is_moved) || is_moved(&case)];
+        let has_rigid = [
+            !case.rigid.is_empty(),
+            case.rigid.iter().any(Rigid::is_moved) || is_moved(&case),
+        ];
         let softens = followed(&case, until).iter().any(|named| named.material.softens());
         let holds_water = first.flow.is_some_and(|flow| flow.at_rest == Motion::Held);
         Ok(Self {
@@ -231,8 +266,17 @@ impl Subject {
     /// The overrides of a trial.
     pub fn overrides(&self, factor: f64) -> Vec<String> {
         let unloaded = self.stage.is_some() && factor == ELASTIC;
-        let unloaded = if unloaded { vec![format!("{UNLOADED}=true")] } else { Vec::new() };
-        [&self.set[..], &self.sought.overrides(&self.case, factor, self.conditions.stiffness), &unloaded].concat()
+        let unloaded = if unloaded {
+            vec![format!("{UNLOADED}=true")]
+        } else {
+            Vec::new()
+        };
+        [
+            &self.set[..],
+            &self.sought.overrides(&self.case, factor, self.conditions.stiffness),
+            &unloaded,
+        ]
+        .concat()
     }
 
     /// The overrides, and the case's text, of the elastic body under the inertia that the search begins with; none
@@ -241,8 +285,13 @@ impl Subject {
         if !self.sought.is_seismic() {
             return Ok(None);
         }
-        let set =
-            [&self.set[..], &self.sought.pushed_elastic(&self.case, self.from, self.conditions.stiffness)].concat();
+        let set = [
+            &self.set[..],
+            &self
+                .sought
+                .pushed_elastic(&self.case, self.from, self.conditions.stiffness),
+        ]
+        .concat();
         let text = parsed(&self.path, &self.bytes, &set)?.text;
         Ok(Some((set, text)))
     }
@@ -311,7 +360,11 @@ impl Subject {
 fn counted(case: &Case, region: &[f64]) -> Result<CountedPoints, Error> {
     let dims = case.grid.dims();
     let points_per_cell = case.bodies.iter().map(|body| body.points_per_cell).max().unwrap_or(1);
-    let whole = CountedPoints { dims, points_per_cell, region: None };
+    let whole = CountedPoints {
+        dims,
+        points_per_cell,
+        region: None,
+    };
     if region.is_empty() {
         return Ok(whole);
     }
@@ -324,7 +377,10 @@ fn counted(case: &Case, region: &[f64]) -> Result<CountedPoints, Error> {
         return Err(Error::Usage { reason });
     }
     let corner = |numbers: &[f64]| std::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(0.0));
-    Ok(CountedPoints { region: Some([corner(lower), corner(upper)]), ..whole })
+    Ok(CountedPoints {
+        region: Some([corner(lower), corner(upper)]),
+        ..whole
+    })
 }
 
 /// The sides of the grid that hold the ground in both directions once the stages until the time `until` have begun.
@@ -339,7 +395,11 @@ fn holding_sides(case: &Case, until: Option<f64>) -> Vec<HoldingSide> {
         let cells = line.cells();
         let [from, to] = if upper { [cells - 1, cells] } else { [0, 1] };
         let cells = [line.breakpoint(from), line.breakpoint(to)];
-        HoldingSide { name: names[axis][usize::from(upper)].word(), axis, cells }
+        HoldingSide {
+            name: names[axis][usize::from(upper)].word(),
+            axis,
+            cells,
+        }
     };
     holding.map(|of| side(of.face.axis, of.face.upper)).collect()
 }
@@ -353,8 +413,13 @@ fn stiffness(case: &Case, materials: &[NamedMaterial]) -> f64 {
         return 1.0;
     }
     let up = case.grid.dims() - 1;
-    let heights = case.bodies.iter().map(|body| body.region.corners().map(|corner| corner[up]));
-    let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [c, d]| [a.min(c), b.max(d)]);
+    let heights = case
+        .bodies
+        .iter()
+        .map(|body| body.region.corners().map(|corner| corner[up]));
+    let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [c, d]| {
+        [a.min(c), b.max(d)]
+    });
     let base = case.grid.lower()[up];
     let of_body = |body: &bsmpm_scene::Body| {
         let material = &materials[body.material].material;
@@ -366,15 +431,18 @@ fn stiffness(case: &Case, materials: &[NamedMaterial]) -> f64 {
         let named = &case.materials[body.material];
         named.saturated.or(named.density)
     });
-    let gravity = case
-        .gravity
-        .as_ref()
-        .map_or(0.0, |gravity| gravity.acceleration.iter().fold(0.0, |length: f64, g| length.hypot(*g)));
+    let gravity = case.gravity.as_ref().map_or(0.0, |gravity| {
+        gravity.acceleration.iter().fold(0.0, |length: f64, g| length.hypot(*g))
+    });
     let weight = densities.fold(0.0, f64::max) * gravity * (high - low);
     let tractions = case.tractions.iter().map(Traction::largest);
     let driven = case.rigid.iter().map(|rigid| pressure(rigid, case.geometry, gravity));
     let needed = (weight + tractions.chain(driven).fold(0.0, f64::max)) / softest / SMALL;
-    if needed < UNCHANGED { 1.0 } else { format!("{needed:.2e}").parse().unwrap_or(needed) }
+    if needed < UNCHANGED {
+        1.0
+    } else {
+        format!("{needed:.2e}").parse().unwrap_or(needed)
+    }
 }
 
 /// Pa  what drives a rigid body, over its width.
@@ -383,22 +451,44 @@ fn pressure(rigid: &Rigid, geometry: Geometry, gravity: f64) -> f64 {
     let half = match &rigid.shape {
         RigidShape::Circle { radius, .. } => *radius,
         RigidShape::Polygon(corners) => {
-            let most = |side: f64| corners.iter().map(|corner| side * corner[0]).fold(f64::NEG_INFINITY, f64::max);
-            if is_round { most(1.0) } else { 0.5 * (most(1.0) + most(-1.0)) }
+            let most = |side: f64| {
+                corners
+                    .iter()
+                    .map(|corner| side * corner[0])
+                    .fold(f64::NEG_INFINITY, f64::max)
+            };
+            if is_round {
+                most(1.0)
+            } else {
+                0.5 * (most(1.0) + most(-1.0))
+            }
         }
         // Nothing moves freely in space.
         RigidShape::InSpace(_) => return 0.0,
     };
-    let area = if is_round { std::f64::consts::PI * half * half } else { 2.0 * half };
+    let area = if is_round {
+        std::f64::consts::PI * half * half
+    } else {
+        2.0 * half
+    };
     (rigid.force[0].hypot(rigid.force[1]) + rigid.mass[0] * gravity) / area
 }
 
 /// When the stage of a name ends.
 fn until(case: &Case, name: &str) -> Result<f64, Error> {
     case.end_of_stage(name).ok_or_else(|| {
-        let names = case.stages.iter().filter_map(|stage| stage.name.as_ref()).map(|name| format!("{name:?}"));
+        let names = case
+            .stages
+            .iter()
+            .filter_map(|stage| stage.name.as_ref())
+            .map(|name| format!("{name:?}"));
         let names: Vec<String> = names.chain(["start", "end"].map(|name| format!("{name:?}"))).collect();
-        Error::Usage { reason: format!("E0833: the case has no stage {name:?}. Choose one of: {}.", names.join(", ")) }
+        Error::Usage {
+            reason: format!(
+                "E0833: the case has no stage {name:?}. Choose one of: {}.",
+                names.join(", ")
+            ),
+        }
     })
 }
 
@@ -416,7 +506,10 @@ impl Conditions {
             tolerance: case.solver.tolerance,
             force_tolerance: case.solver.force_tolerance,
             steps: (case.analysis.end / case.analysis.dt).round() as u64,
-            young: followed(case, until).iter().map(|named| named.material.elastic().young).collect(),
+            young: followed(case, until)
+                .iter()
+                .map(|named| named.material.elastic().young)
+                .collect(),
             stiffness: stiffness(case, &materials),
         }
     }
@@ -435,14 +528,23 @@ impl Conditions {
     pub fn lines(&self) -> [String; 2] {
         let young: Vec<String> = self.young.iter().map(|young| shown(young * 1e-6)).collect();
         [
-            format!("{}; {}; background {:e} E", self.mesh(), self.stabilisation, self.background),
+            format!(
+                "{}; {}; background {:e} E",
+                self.mesh(),
+                self.stabilisation,
+                self.background
+            ),
             format!(
                 "{} load steps; tolerances {:e} (energy), {:e} (forces); E = {} MPa{}",
                 self.steps,
                 self.tolerance,
                 self.force_tolerance,
                 young.join(", "),
-                if self.stiffness == 1.0 { String::new() } else { format!(", times {}", self.stiffness) }
+                if self.stiffness == 1.0 {
+                    String::new()
+                } else {
+                    format!(", times {}", self.stiffness)
+                }
             ),
         ]
     }

@@ -95,12 +95,30 @@ pub(super) struct PushedBody {
 impl FosTrial {
     /// What the judge sees of it.
     pub fn state(&self) -> CurveState {
-        CurveState { factor: self.factor, displacement: self.comparable, whole: self.end == End::Equilibrium }
+        CurveState {
+            factor: self.factor,
+            displacement: self.comparable,
+            whole: self.end == End::Equilibrium,
+        }
     }
 
     pub fn cost(&self) -> RunCost {
-        let Self { cpu_seconds, seconds, steps, iterations, cuts, .. } = *self;
-        RunCost { cpu_seconds, wall_seconds: seconds, peak_memory: 0, steps, iterations, cuts }
+        let Self {
+            cpu_seconds,
+            seconds,
+            steps,
+            iterations,
+            cuts,
+            ..
+        } = *self;
+        RunCost {
+            cpu_seconds,
+            wall_seconds: seconds,
+            peak_memory: 0,
+            steps,
+            iterations,
+            cuts,
+        }
     }
 }
 
@@ -146,18 +164,28 @@ impl Trials<'_> {
     /// # Errors
     /// [`Error::NoStableState`] if the case does not stand until then.
     pub fn stage(&self, report: &mut dyn FnMut(&str)) -> Result<Option<StageState>, Error> {
-        let Some((name, until)) = self.subject.stage() else { return Ok(None) };
+        let Some((name, until)) = self.subject.stage() else {
+            return Ok(None);
+        };
         let (set, text) = self.subject.until_the_stage()?;
         let origin = self.solver.stamp().map(|stamp| format!("{stamp}\n\n{text}"));
         let directory = self.output.join("trials").join("stage.out");
-        let task = LaunchTask { directory: directory.clone(), origin, ..self.task(1.0, &set, &text) };
+        let task = LaunchTask {
+            directory: directory.clone(),
+            origin,
+            ..self.task(1.0, &set, &text)
+        };
         let checkpoint = |manifest: &Manifest| Some(directory.join(manifest.checkpoint.as_ref()?));
         let outcome = self.solver.outcome(&task, |manifest| {
             manifest.case.text == text && checkpoint(manifest).is_some_and(|path| path.exists())
         })?;
         let what = format!("the run to the end of the stage \"{name}\"");
         if [RunState::NoConvergence, RunState::Left].contains(&outcome.state) {
-            let at = outcome.manifest.as_ref().and_then(|manifest| manifest.failure.as_ref()).map_or(0.0, |it| it.time);
+            let at = outcome
+                .manifest
+                .as_ref()
+                .and_then(|manifest| manifest.failure.as_ref())
+                .map_or(0.0, |it| it.time);
             let reason = format!(
                 "E0829: with its full strength the soil fails at t = {at}, before the end of stage \"{name}\" (t = \
                  {until}). Choose an earlier stage, or correct the case. See {}: {}",
@@ -166,12 +194,25 @@ impl Trials<'_> {
             );
             return Err(Error::NoStableState { reason });
         }
-        let from = outcome.manifest.as_ref().and_then(checkpoint).filter(|_| outcome.state == RunState::Done);
-        let Some(checkpoint) = from else { return Err(outcome.error(what)) };
+        let from = outcome
+            .manifest
+            .as_ref()
+            .and_then(checkpoint)
+            .filter(|_| outcome.state == RunState::Done);
+        let Some(checkpoint) = from else {
+            return Err(outcome.error(what));
+        };
         let kept = if outcome.kept { ", kept" } else { "" };
-        report(&format!("{what}: {} iterations, {:.1} s{kept}", outcome.cost.iterations, outcome.cost.wall_seconds));
+        report(&format!(
+            "{what}: {} iterations, {:.1} s{kept}",
+            outcome.cost.iterations, outcome.cost.wall_seconds
+        ));
         let elastic = self.elastic_trial()?;
-        Ok(Some(StageState { checkpoint, cost: outcome.cost, elastic: elastic.displacement }))
+        Ok(Some(StageState {
+            checkpoint,
+            cost: outcome.cost,
+            elastic: elastic.displacement,
+        }))
     }
 
     fn elastic_trial(&self) -> Result<FosTrial, Error> {
@@ -186,17 +227,27 @@ impl Trials<'_> {
     /// # Errors
     /// [`Error::Run`] if it has no equilibrium under the least inertia that is tried.
     pub fn pushed(&self) -> Result<Option<PushedBody>, Error> {
-        let Some((set, text)) = self.subject.pushed_elastic()? else { return Ok(None) };
+        let Some((set, text)) = self.subject.pushed_elastic()? else {
+            return Ok(None);
+        };
         let still = self.output.join(self.elastic_trial()?.directory);
         let directory = self.output.join("trials").join("pushed.out");
         let origin = self.solver.stamp().map(|stamp| format!("{stamp}\n\n{text}"));
-        let task = LaunchTask { directory: directory.clone(), origin, ..self.task(ELASTIC, &set, &text) };
+        let task = LaunchTask {
+            directory: directory.clone(),
+            origin,
+            ..self.task(ELASTIC, &set, &text)
+        };
         let outcome = self.solver.outcome(&task, |manifest| manifest.case.text == text)?;
         if outcome.state != RunState::Done {
             return Err(outcome.error("the elastic body under the least inertia".to_owned()));
         }
         let [still, pushed] = [self.ground_of_elastic(&still)?, self.ground_of_elastic(&directory)?];
-        Ok(Some(PushedBody { still, pushed, coefficient: self.subject.from }))
+        Ok(Some(PushedBody {
+            still,
+            pushed,
+            coefficient: self.subject.from,
+        }))
     }
 
     fn ground_of_elastic(&self, directory: &Path) -> Result<MovedGround, Error> {
@@ -251,7 +302,10 @@ impl Trials<'_> {
         };
         let [begin, whole] = self.subject.times(factor);
         let carried = |manifest: &Manifest| {
-            manifest.failure.as_ref().map_or(0.0, |it| (it.time - begin).max(0.0) / (whole - begin))
+            manifest
+                .failure
+                .as_ref()
+                .map_or(0.0, |it| (it.time - begin).max(0.0) / (whole - begin))
         };
         let (reason, load) = (outcome.reason.clone(), outcome.manifest.as_ref().map(carried));
         let end = match (outcome.state, load) {
@@ -260,9 +314,16 @@ impl Trials<'_> {
             (RunState::Left, Some(load)) => End::Left { load, reason },
             _ => return Err(broken(reason)),
         };
-        let loose = outcome.manifest.as_ref().and_then(|manifest| manifest.failure.as_ref()?.loose.clone());
+        let loose = outcome
+            .manifest
+            .as_ref()
+            .and_then(|manifest| manifest.failure.as_ref()?.loose.clone());
         if let Some(name) = loose {
-            return Err(Error::LooseBody { value: self.subject.sought.value(), trial: factor, name });
+            return Err(Error::LooseBody {
+                value: self.subject.sought.value(),
+                trial: factor,
+                name,
+            });
         }
         let indicators = outcome.manifest.iter().flat_map(|manifest| &manifest.indicators);
         let failed = indicators.filter(|(_, indicator)| indicator.ends_run());
@@ -270,7 +331,14 @@ impl Trials<'_> {
         let frame = self.last_frame(directory, factor)?;
         let ground = self.ground(frame.as_ref(), directory)?;
         let strains = frame.as_ref().and_then(|frame| FieldName::PlasticStrain.values(frame));
-        let RunCost { cpu_seconds, wall_seconds, steps, iterations, cuts, .. } = outcome.cost;
+        let RunCost {
+            cpu_seconds,
+            wall_seconds,
+            steps,
+            iterations,
+            cuts,
+            ..
+        } = outcome.cost;
         let before = self.beginning(factor).map_or(RunCost::default(), |state| state.cost);
         let elastic = self.beginning(factor).map_or(0.0, |state| state.elastic);
         let unit = self.subject.scale * self.subject.conditions.stiffness;

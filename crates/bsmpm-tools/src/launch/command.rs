@@ -17,17 +17,32 @@ pub(crate) fn words(given: &[String], ranks: usize) -> Vec<String> {
 /// The solver beside this program; where there is none, that of PATH.
 pub(crate) fn own_solver() -> String {
     let name = "bsmpm-par";
-    let beside = env::current_exe().ok().and_then(|program| Some(program.parent()?.join(name)));
-    beside.filter(|solver| solver.is_file()).map_or_else(|| name.to_owned(), |solver| solver.display().to_string())
+    let beside = env::current_exe()
+        .ok()
+        .and_then(|program| Some(program.parent()?.join(name)));
+    beside
+        .filter(|solver| solver.is_file())
+        .map_or_else(|| name.to_owned(), |solver| solver.display().to_string())
 }
 
 /// The ranks that a launcher is asked for: the number after -n, -np, -c or --ntasks; one where it does not say.
 pub(crate) fn ranks(command: &[String]) -> usize {
     let launcher = &command[..command.len().saturating_sub(1)];
     let options = ["-n", "-np", "-c", "--np", "--ntasks"];
-    let after = launcher.windows(2).find(|pair| options.contains(&&*pair[0])).map(|pair| &*pair[1]);
-    let joined = || launcher.iter().find_map(|word| word.strip_prefix("--ntasks=").or(word.strip_prefix("-n")));
-    after.or_else(joined).and_then(|number| number.parse().ok()).filter(|&ranks| ranks > 0).unwrap_or(1)
+    let after = launcher
+        .windows(2)
+        .find(|pair| options.contains(&&*pair[0]))
+        .map(|pair| &*pair[1]);
+    let joined = || {
+        launcher
+            .iter()
+            .find_map(|word| word.strip_prefix("--ntasks=").or(word.strip_prefix("-n")))
+    };
+    after
+        .or_else(joined)
+        .and_then(|number| number.parse().ok())
+        .filter(|&ranks| ranks > 0)
+        .unwrap_or(1)
 }
 
 /// How many commands run at a time: what is asked for, or as many as their ranks leave cores for.
@@ -55,8 +70,22 @@ mod tests {
     #[test]
     fn the_launcher_s_ranks_are_read() {
         let of = |command: &str| ranks(&split(command));
-        assert_eq!((of("bsmpm-par"), of("mpirun -n 2 bsmpm-par"), of("mpirun -np 4 ./bsmpm-par")), (1, 2, 4));
-        assert_eq!((of("srun --ntasks=8 bsmpm-par"), of("srun -n3 bsmpm-par"), of("srun bsmpm-par")), (8, 3, 1));
+        assert_eq!(
+            (
+                of("bsmpm-par"),
+                of("mpirun -n 2 bsmpm-par"),
+                of("mpirun -np 4 ./bsmpm-par")
+            ),
+            (1, 2, 4)
+        );
+        assert_eq!(
+            (
+                of("srun --ntasks=8 bsmpm-par"),
+                of("srun -n3 bsmpm-par"),
+                of("srun bsmpm-par")
+            ),
+            (8, 3, 1)
+        );
         assert_eq!((of("mpirun -n 0 bsmpm-par"), of("mpirun -n x bsmpm-par")), (1, 1));
     }
 

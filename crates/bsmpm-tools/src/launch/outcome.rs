@@ -117,13 +117,31 @@ impl Outcome {
         let history = table::read(&directory.join(HISTORY)).ok();
         let cost = manifest.as_ref().map_or_else(RunCost::default, RunCost::of);
         let (code, directory) = (Some(code), Some(directory.to_owned()));
-        Self { state, code, reason, manifest, history, cost, kept, directory }
+        Self {
+            state,
+            code,
+            reason,
+            manifest,
+            history,
+            cost,
+            kept,
+            directory,
+        }
     }
 
     /// That of a run that never began.
     pub fn never(state: RunState, reason: String) -> Self {
         let cost = RunCost::default();
-        Self { state, code: None, reason, manifest: None, history: None, cost, kept: false, directory: None }
+        Self {
+            state,
+            code: None,
+            reason,
+            manifest: None,
+            history: None,
+            cost,
+            kept: false,
+            directory: None,
+        }
     }
 
     /// That of a run that could not be started.
@@ -133,28 +151,43 @@ impl Outcome {
 
     /// The error that it is where it is needed; `what` names it.
     pub fn error(&self, what: String) -> Error {
-        Error::Run { what, code: self.code.unwrap_or(exit::BUG), reason: self.reason.clone() }
+        Error::Run {
+            what,
+            code: self.code.unwrap_or(exit::BUG),
+            reason: self.reason.clone(),
+        }
     }
 
     /// The time, s or pseudo-time, that its history has come to.
     pub fn time(&self) -> f64 {
-        self.history.as_ref().and_then(|history| history.get("time")?.last().copied()).unwrap_or(0.0)
+        self.history
+            .as_ref()
+            .and_then(|history| history.get("time")?.last().copied())
+            .unwrap_or(0.0)
     }
 
     /// Whether its history holds anything.
     pub fn has_rows(&self) -> bool {
-        self.history.as_ref().is_some_and(|history| history.values.iter().any(|values| !values.is_empty()))
+        self.history
+            .as_ref()
+            .is_some_and(|history| history.values.iter().any(|values| !values.is_empty()))
     }
 
     /// How it stands, in a few words for a table.
     pub fn words(&self) -> String {
-        let code =
-            self.code.filter(|_| self.state != RunState::Done).map_or_else(String::new, |code| format!(" ({code})"));
+        let code = self
+            .code
+            .filter(|_| self.state != RunState::Done)
+            .map_or_else(String::new, |code| format!(" ({code})"));
         format!("{}{code}", word(self.state))
     }
 }
 
 fn last_line(directory: &Path) -> String {
     let text = fs::read_to_string(beside(directory, "log")).unwrap_or_default();
-    text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("its log is empty").to_owned()
+    text.lines()
+        .rev()
+        .find(|line| !line.trim().is_empty())
+        .unwrap_or("its log is empty")
+        .to_owned()
 }

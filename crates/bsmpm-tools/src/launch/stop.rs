@@ -25,7 +25,11 @@ struct StopState {
 
 /// The processes of this program, of whichever thread.
 static UNDER_WAY: UnderWay = UnderWay {
-    state: Mutex::new(UnderWayState { watches: false, ends: false, processes: Vec::new() }),
+    state: Mutex::new(UnderWayState {
+        watches: false,
+        ends: false,
+        processes: Vec::new(),
+    }),
     ended: Condvar::new(),
 };
 
@@ -98,7 +102,10 @@ impl UnderWay {
         state.ends = true;
         // Not TERM: who signals the whole group has sent that already, and a second one would cost a run its
         // checkpoint.
-        state.processes.iter().for_each(|process| _ = kill_process(*process, Signal::USR1));
+        state
+            .processes
+            .iter()
+            .for_each(|process| _ = kill_process(*process, Signal::USR1));
         while !state.processes.is_empty() {
             state = self.ended.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
@@ -169,13 +176,19 @@ mod tests {
             assert_eq!(run.join().unwrap().unwrap().signal(), Some(Signal::TERM.as_raw()));
         });
         assert!(stop.is_asked());
-        assert_eq!(stop.status(&mut Command::new("true")).unwrap_err().kind(), ErrorKind::Interrupted);
+        assert_eq!(
+            stop.status(&mut Command::new("true")).unwrap_err().kind(),
+            ErrorKind::Interrupted
+        );
     }
 
     #[test]
     fn a_process_that_ends_by_itself_has_its_own_code() {
         let stop = Stop::default();
-        assert_eq!(stop.status(Command::new("sh").args(["-c", "exit 80"])).unwrap().code(), Some(80));
+        assert_eq!(
+            stop.status(Command::new("sh").args(["-c", "exit 80"])).unwrap().code(),
+            Some(80)
+        );
         stop.ask();
         assert!(stop.status(&mut Command::new("./nowhere")).is_err());
     }

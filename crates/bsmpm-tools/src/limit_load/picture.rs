@@ -24,7 +24,11 @@ pub(super) fn draw(
     units.dedup();
     let mut files = Vec::new();
     for (number, unit) in units.into_iter().enumerate() {
-        let name = if number == 0 { "limit-load.png".to_owned() } else { format!("limit-load_{number}.png") };
+        let name = if number == 0 {
+            "limit-load.png".to_owned()
+        } else {
+            format!("limit-load_{number}.png")
+        };
         let file = output.join(name);
         draw_unit(report, unit, &curves(unit, orders, outcomes)).save(&file)?;
         files.push(file);
@@ -34,7 +38,10 @@ pub(super) fn draw(
 
 fn draw_unit(report: &LimitLoadReport, unit: &str, curves: &[ChartCurve]) -> crate::picture::canvas::Canvas {
     let loads = report.loads.iter().filter(|load| load.unit == *unit);
-    let levels = loads.map(|load| ChartLevel { value: load.load, text: format!("{}, extrapolated", load.name) });
+    let levels = loads.map(|load| ChartLevel {
+        value: load.load,
+        text: format!("{}, extrapolated", load.name),
+    });
     let below = format!(
         "stabilisation {}, {} points along each axis of a cell, {} steps; displacements multiplied by the stiffness factor",
         report.stabilisation, report.points_per_cell[0], report.steps
@@ -60,8 +67,15 @@ fn curves(unit: &str, orders: &[RunOrder], outcomes: &[Outcome]) -> Vec<ChartCur
         let loads = order.case.limit_load.iter().flat_map(|sought| &sought.loads);
         for load in loads.filter(|load| load.unit == *unit) {
             let name = format!("{}, cells of {} m", load.name, number(order.case.grid.shortest()));
-            let entry = LegendEntry { name, colour: colour::line(grid, count), mark: Mark::Line };
-            curves.push(ChartCurve { entry, places: places(load, order, outcome) });
+            let entry = LegendEntry {
+                name,
+                colour: colour::line(grid, count),
+                mark: Mark::Line,
+            };
+            curves.push(ChartCurve {
+                entry,
+                places: places(load, order, outcome),
+            });
         }
     }
     curves
@@ -69,12 +83,17 @@ fn curves(unit: &str, orders: &[RunOrder], outcomes: &[Outcome]) -> Vec<ChartCur
 
 /// m and the load's unit: displacement, multiplied by the stiffness factor, and load of every step.
 fn places(load: &SoughtLoad, order: &RunOrder, outcome: &Outcome) -> Vec<(f64, f64)> {
-    let Some(history) = &outcome.history else { return Vec::new() };
+    let Some(history) = &outcome.history else {
+        return Vec::new();
+    };
     let stiffness = order.case.limit_load.as_ref().map_or(1.0, |sought| sought.stiffness);
     let times = history.get("time").unwrap_or_default();
     let place = |(row, time): (usize, &f64)| {
         let [x, y, z] = load.path.at(*time);
-        let parts = load.columns.iter().map(|(column, weight)| Some(weight * history.get(column)?.get(row)?));
+        let parts = load
+            .columns
+            .iter()
+            .map(|(column, weight)| Some(weight * history.get(column)?.get(row)?));
         Some((stiffness * x.hypot(y).hypot(z), parts.sum::<Option<f64>>()?))
     };
     times.iter().enumerate().filter_map(place).collect()

@@ -96,7 +96,9 @@ impl LimitLoadReport {
         let without = |name: &str| without_cohesion.and_then(|outcome| value(outcome, name));
         let is_reached = |name: &&String| grids.iter().all(|grid| grid.name != **name || grid.is_reached);
         let names: Vec<&String> = names.filter(is_reached).collect();
-        let extrapolated = names.into_iter().map(|name| ExtrapolatedLoad::of(name, &grids, without(name)));
+        let extrapolated = names
+            .into_iter()
+            .map(|name| ExtrapolatedLoad::of(name, &grids, without(name)));
         let mut warnings: Vec<String> = Vec::new();
         for warning in orders.iter().flat_map(|order| &order.case.warnings) {
             if !warnings.contains(warning) {
@@ -104,7 +106,11 @@ impl LimitLoadReport {
             }
         }
         Ok(Self {
-            title: if own.title.is_empty() { "Limit load".to_owned() } else { own.title.clone() },
+            title: if own.title.is_empty() {
+                "Limit load".to_owned()
+            } else {
+                own.title.clone()
+            },
             stiffness: own.limit_load.as_ref().map_or(1.0, |sought| sought.stiffness),
             stabilisation: bsmpm_scene::words::Word::word(own.stabilisation).to_owned(),
             points_per_cell: own.bodies.iter().map(|body| body.points_per_cell).collect(),
@@ -136,8 +142,17 @@ impl LimitLoadReport {
             .right("cuts", |row| row.cost.cuts)
             .right("CPU s", |row| format!("{:.1}", row.cost.cpu_seconds));
         let found: String = self.loads.iter().map(ExtrapolatedLoad::text).collect();
-        let unfinished: String = self.grids.iter().filter(|grid| !grid.is_reached).map(GridLoad::doubt).collect();
-        let warnings: String = self.warnings.iter().map(|warning| headed(warning, "warning") + "\n").collect();
+        let unfinished: String = self
+            .grids
+            .iter()
+            .filter(|grid| !grid.is_reached)
+            .map(GridLoad::doubt)
+            .collect();
+        let warnings: String = self
+            .warnings
+            .iter()
+            .map(|warning| headed(warning, "warning") + "\n")
+            .collect();
         format!(
             "{warnings}{}\n{} points along each axis of a cell; stabilisation {}; {} steps; Young's moduli x {} on the first grid\n\n\
              {}\n{found}{unfinished}",
@@ -175,7 +190,10 @@ fn loads(outcome: &Outcome) -> &[ManifestLimitLoad] {
 
 /// The load of a name.
 fn value(outcome: &Outcome, name: &str) -> Option<f64> {
-    loads(outcome).iter().find(|load| load.name == *name).map(|load| load.value)
+    loads(outcome)
+        .iter()
+        .find(|load| load.name == *name)
+        .map(|load| load.value)
 }
 
 impl GridLoad {
@@ -186,7 +204,11 @@ impl GridLoad {
             cells: load.cells,
             load: load.value,
             unit: load.unit.clone(),
-            column: load.columns.first().filter(|_| load.columns.len() == 1).map(|(name, _)| name.clone()),
+            column: load
+                .columns
+                .first()
+                .filter(|_| load.columns.len() == 1)
+                .map(|(name, _)| name.clone()),
             change: load.change,
             is_reached: load.is_reached,
             part: load.part(),
@@ -239,11 +261,27 @@ impl ExtrapolatedLoad {
     }
 
     fn text(&self) -> String {
-        let Self { name, load, unit, band, part, .. } = self;
-        let column = self.column.as_ref().map_or_else(String::new, |column| format!(", {column}"));
-        let side = if self.finest > 0.0 { "too high (the unsafe side)" } else { "too low" };
+        let Self {
+            name,
+            load,
+            unit,
+            band,
+            part,
+            ..
+        } = self;
+        let column = self
+            .column
+            .as_ref()
+            .map_or_else(String::new, |column| format!(", {column}"));
+        let side = if self.finest > 0.0 {
+            "too high (the unsafe side)"
+        } else {
+            "too low"
+        };
         let off = 100.0 * self.finest.abs();
-        let order = self.order.map_or_else(String::new, |order| format!("; observed order {order:.2}"));
+        let order = self
+            .order
+            .map_or_else(String::new, |order| format!("; observed order {order:.2}"));
         let of_cohesion = self.of_cohesion.map_or_else(String::new, |part| {
             format!(
                 "The small cohesion carries at least {:.1} % of the load (measured on the coarsest grid). Use cohesion = 0 if it was \
@@ -282,12 +320,18 @@ impl Extrapolation {
         let load = richardson[last];
         let share = if loads[last + 1] < load { BAND_FROM_BELOW } else { BAND };
         let off = share * (loads[last + 1] - load).abs();
-        let moved = last.checked_sub(1).map_or(0.0, |before| (load - richardson[before]).abs());
+        let moved = last
+            .checked_sub(1)
+            .map_or(0.0, |before| (load - richardson[before]).abs());
         let order = loads.len().checked_sub(3).map(|first| {
             let [coarse, middle, fine] = [loads[first], loads[first + 1], loads[first + 2]];
             ((coarse - middle) / (middle - fine)).log2()
         });
-        Self { load, band: off.max(moved), order: order.filter(|order| order.is_finite()) }
+        Self {
+            load,
+            band: off.max(moved),
+            order: order.filter(|order| order.is_finite()),
+        }
     }
 }
 
@@ -299,8 +343,14 @@ mod tests {
     fn errors_in_proportion_to_the_cells_are_taken_off() {
         let of = |h: f64| 10.0 + 3.0 * h;
         let found = Extrapolation::of(&[of(1.0), of(0.5), of(0.25)]);
-        assert!((found.load - 10.0).abs() < 1e-12 && (found.order.unwrap() - 1.0).abs() < 1e-12, "{found:?}");
-        assert!((found.band - 0.5 * 0.75).abs() < 1e-12, "half of what the finest grid is off: {found:?}");
+        assert!(
+            (found.load - 10.0).abs() < 1e-12 && (found.order.unwrap() - 1.0).abs() < 1e-12,
+            "{found:?}"
+        );
+        assert!(
+            (found.band - 0.5 * 0.75).abs() < 1e-12,
+            "half of what the finest grid is off: {found:?}"
+        );
     }
 
     /// N_gamma of a rough strip, friction angle 30 degrees: 14.754 (Martin, 2005), with 8, 16 and 32 cells.
@@ -308,7 +358,13 @@ mod tests {
     fn the_band_contains_the_exact_bearing_capacity() {
         let two = Extrapolation::of(&[19.609, 17.050]);
         let three = Extrapolation::of(&[19.609, 17.050, 15.926]);
-        assert!((two.load - 14.754).abs() < two.band && (three.load - 14.754).abs() < three.band, "{two:?} {three:?}");
-        assert!(two.order.is_none() && (three.order.unwrap() - 1.19).abs() < 0.01, "{three:?}");
+        assert!(
+            (two.load - 14.754).abs() < two.band && (three.load - 14.754).abs() < three.band,
+            "{two:?} {three:?}"
+        );
+        assert!(
+            two.order.is_none() && (three.order.unwrap() - 1.19).abs() < 0.01,
+            "{three:?}"
+        );
     }
 }

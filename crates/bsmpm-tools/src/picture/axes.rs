@@ -43,7 +43,10 @@ impl ChartAxes {
     /// Where a place of the region lies on the sheet.
     pub fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let (across, up) = (self.scales[0].share(x, self.x), self.scales[1].share(y, self.y));
-        (self.left + across * (self.right - self.left), self.bottom - up * (self.bottom - self.top))
+        (
+            self.left + across * (self.right - self.left),
+            self.bottom - up * (self.bottom - self.top),
+        )
     }
 
     fn x_ticks(&self) -> Ticks {
@@ -83,7 +86,10 @@ impl ChartAxes {
         }
         let label = ticks.label(y.0, y.1);
         let size = fitting(&label, LABEL, self.bottom - self.top + 90.0);
-        let at = (self.left - TICK - 8.0 - widest - 36.0, f64::midpoint(self.top, self.bottom));
+        let at = (
+            self.left - TICK - 8.0 - widest - 36.0,
+            f64::midpoint(self.top, self.bottom),
+        );
         canvas.upward(&label, at, size, INK);
     }
 
@@ -92,14 +98,30 @@ impl ChartAxes {
         let ticks = self.x_ticks();
         for &value in &ticks.values {
             let at = self.place((value, self.y.0)).0;
-            canvas.fill((at - THIN / 2.0, self.bottom), (at + THIN / 2.0, self.bottom + TICK), INK);
+            canvas.fill(
+                (at - THIN / 2.0, self.bottom),
+                (at + THIN / 2.0, self.bottom + TICK),
+                INK,
+            );
             if label.is_some() {
-                canvas.text(&ticks.text(value), (at, self.bottom + TICK + 22.0), NUMBER, TextAlign::Centre, INK);
+                canvas.text(
+                    &ticks.text(value),
+                    (at, self.bottom + TICK + 22.0),
+                    NUMBER,
+                    TextAlign::Centre,
+                    INK,
+                );
             }
         }
         if let Some((quantity, unit)) = label {
             let centre = f64::midpoint(self.left, self.right);
-            canvas.text(&ticks.label(quantity, unit), (centre, self.bottom + 72.0), LABEL, TextAlign::Centre, INK);
+            canvas.text(
+                &ticks.label(quantity, unit),
+                (centre, self.bottom + 72.0),
+                LABEL,
+                TextAlign::Centre,
+                INK,
+            );
         }
     }
 
@@ -127,7 +149,11 @@ impl ChartAxes {
 
 /// A label in one piece: the quantity, and its unit if it has one.
 pub(crate) fn label(quantity: &str, unit: &str) -> String {
-    if unit.is_empty() || unit == "-" { quantity.to_owned() } else { format!("{quantity} ({unit})") }
+    if unit.is_empty() || unit == "-" {
+        quantity.to_owned()
+    } else {
+        format!("{quantity} ({unit})")
+    }
 }
 
 /// The title of a picture: what was solved and, smaller, what is seen.

@@ -27,7 +27,10 @@ impl Bar<'_> {
         let label = ticks.label(self.label.0, self.label.1);
         let size = fitting(&label, LABEL, 0.5 * (axes.right - axes.left));
         let (left, right) = (axes.left + width(&label, size) + 28.0, axes.right);
-        let (top, bottom) = (axes.bottom + axes::BELOW + 20.0, axes.bottom + axes::BELOW + 20.0 + THICK);
+        let (top, bottom) = (
+            axes.bottom + axes::BELOW + 20.0,
+            axes.bottom + axes::BELOW + 20.0 + THICK,
+        );
         for (from, to, shade) in shades(left, right) {
             canvas.fill((from, top), (to, bottom), shade);
         }
@@ -35,9 +38,21 @@ impl Bar<'_> {
         for &value in &ticks.values {
             let at = left + (right - left) * self.share(value);
             canvas.fill((at - THIN / 2.0, bottom), (at + THIN / 2.0, bottom + TICK), INK);
-            canvas.text(&ticks.text(value), (at, bottom + TICK + 22.0), NUMBER, TextAlign::Centre, INK);
+            canvas.text(
+                &ticks.text(value),
+                (at, bottom + TICK + 22.0),
+                NUMBER,
+                TextAlign::Centre,
+                INK,
+            );
         }
-        canvas.text(&label, (axes.left, f64::midpoint(top, bottom)), size, TextAlign::Left, INK);
+        canvas.text(
+            &label,
+            (axes.left, f64::midpoint(top, bottom)),
+            size,
+            TextAlign::Left,
+            INK,
+        );
     }
 
     /// Draws the bar standing right of the axes, its label reading upward.
@@ -58,7 +73,12 @@ impl Bar<'_> {
         }
         let label = ticks.label(self.label.0, self.label.1);
         let size = fitting(&label, LABEL, bottom - top + 80.0);
-        canvas.upward(&label, (right + TICK + 8.0 + widest + 36.0, f64::midpoint(top, bottom)), size, INK);
+        canvas.upward(
+            &label,
+            (right + TICK + 8.0 + widest + 36.0, f64::midpoint(top, bottom)),
+            size,
+            INK,
+        );
     }
 
     /// Where a number lies in the range: 0 at its lower, 1 at its upper end.

@@ -40,7 +40,12 @@ impl Canvas {
     pub fn new(width: f64, height: f64) -> Self {
         let (width, height) = (width.round() as usize, height.round() as usize);
         let pixels = vec![WHITE[0]; 3 * FINE * FINE * width * height];
-        Self { width, height, pixels, failure: None }
+        Self {
+            width,
+            height,
+            pixels,
+            failure: None,
+        }
     }
 
     fn draw(&mut self, with: impl FnOnce(&mut BitMapBackend) -> Result<(), String>) {
@@ -74,10 +79,14 @@ impl Canvas {
                     if (to.0 - last.0).hypot(to.1 - last.1) < 0.5 {
                         continue;
                     }
-                    sheet.draw_line(fine(last), fine(to), &style).map_err(|error| error.to_string())?;
+                    sheet
+                        .draw_line(fine(last), fine(to), &style)
+                        .map_err(|error| error.to_string())?;
                 }
                 if radius > 2 {
-                    sheet.draw_circle(fine(to), radius, &style, true).map_err(|error| error.to_string())?;
+                    sheet
+                        .draw_circle(fine(to), radius, &style, true)
+                        .map_err(|error| error.to_string())?;
                 }
                 from = Some(to);
             }
@@ -90,7 +99,9 @@ impl Canvas {
         let radius = (radius * FINE as f64).round() as u32;
         self.draw(|sheet| {
             let style = filled(colour, 1.0);
-            sheet.draw_circle(fine(centre), radius, &style, true).map_err(|error| error.to_string())
+            sheet
+                .draw_circle(fine(centre), radius, &style, true)
+                .map_err(|error| error.to_string())
         });
     }
 
@@ -117,7 +128,9 @@ impl Canvas {
 
     /// Colours one dot of the fine drawing; those outside the sheet are left out.
     pub fn dot(&mut self, (x, y): (i32, i32), colour: Rgb) {
-        let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else { return };
+        let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else {
+            return;
+        };
         if x < FINE * self.width && y < FINE * self.height {
             let at = 3 * (y * FINE * self.width + x);
             self.pixels[at..at + 3].copy_from_slice(&colour);
@@ -130,13 +143,19 @@ impl Canvas {
     /// [`Error::Drawing`] with the first thing that could not be drawn, [`Error::File`] when the system refuses.
     pub fn save(self, path: &Path) -> Result<(), Error> {
         if let Some(reason) = self.failure {
-            return Err(Error::Drawing { path: path.to_owned(), reason });
+            return Err(Error::Drawing {
+                path: path.to_owned(),
+                reason,
+            });
         }
         let averaged = self.averaged();
         atomic::replace(path, |file| {
             let mut encoder = png::Encoder::new(file, self.width as u32, self.height as u32);
             encoder.set_color(png::ColorType::Rgb);
-            encoder.write_header().and_then(|mut picture| picture.write_image_data(&averaged)).map_err(io::Error::other)
+            encoder
+                .write_header()
+                .and_then(|mut picture| picture.write_image_data(&averaged))
+                .map_err(io::Error::other)
         })?;
         Ok(())
     }
@@ -158,7 +177,9 @@ impl Canvas {
 
 /// The width of a text in pixels; 0 for one that cannot be drawn, which its drawing reports.
 pub(crate) fn width(text: &str, size: f64) -> f64 {
-    font(size).box_size(text).map_or(0.0, |(width, _)| f64::from(width) / FINE as f64)
+    font(size)
+        .box_size(text)
+        .map_or(0.0, |(width, _)| f64::from(width) / FINE as f64)
 }
 
 /// The size, at most `size`, at which a text is no wider than `room`.
@@ -188,7 +209,11 @@ fn style(size: f64, align: TextAlign, colour: Rgb, turn: FontTransform) -> TextS
 
 fn filled(colour: Rgb, width: f64) -> ShapeStyle {
     let stroke_width = (width * FINE as f64).round().max(1.0) as u32;
-    ShapeStyle { color: rgb(colour).into(), filled: true, stroke_width }
+    ShapeStyle {
+        color: rgb(colour).into(),
+        filled: true,
+        stroke_width,
+    }
 }
 
 fn rgb([red, green, blue]: Rgb) -> RGBColor {

@@ -44,14 +44,31 @@ pub(crate) struct Chart<'a> {
 impl Chart<'_> {
     /// The drawn picture.
     pub fn draw(&self) -> Canvas {
-        let lines = if self.below.is_empty() { usize::from(!self.title.is_empty()) } else { 2 };
+        let lines = if self.below.is_empty() {
+            usize::from(!self.title.is_empty())
+        } else {
+            2
+        };
         let above = ABOVE[lines];
         let room = SHEET.0 - 80.0;
-        let texts = self.levels.iter().map(|level| width(&level.text, NUMBER)).fold(0.0, f64::max).min(WIDEST);
+        let texts = self
+            .levels
+            .iter()
+            .map(|level| width(&level.text, NUMBER))
+            .fold(0.0, f64::max)
+            .min(WIDEST);
         let right = if texts > 0.0 { texts + 40.0 } else { RIGHT };
         let (x, y) = self.ranges();
         let top = above + legend::height(&self.legend, room) + 20.0;
-        let axes = ChartAxes { left: LEFT, top, right: SHEET.0 - right, bottom: SHEET.1 - BELOW, x, y, scales: LINEAR };
+        let axes = ChartAxes {
+            left: LEFT,
+            top,
+            right: SHEET.0 - right,
+            bottom: SHEET.1 - BELOW,
+            x,
+            y,
+            scales: LINEAR,
+        };
         let mut canvas = Canvas::new(SHEET.0, SHEET.1);
         title(&mut canvas, SHEET.0, self.title, self.below);
         legend::draw(&mut canvas, &self.legend, 40.0, above, room);
@@ -70,12 +87,20 @@ impl Chart<'_> {
     /// What the axes show: all places and levels, and zero upward, from which lengths and pressures are read.
     fn ranges(&self) -> ((f64, f64), (f64, f64)) {
         let places = || self.curves.iter().flat_map(|curve| &curve.places);
-        let upward = || places().map(|place| place.1).chain(self.levels.iter().map(|level| level.value));
+        let upward = || {
+            places()
+                .map(|place| place.1)
+                .chain(self.levels.iter().map(|level| level.value))
+        };
         let x = range(places().map(|place| place.0)).unwrap_or((0.0, 1.0));
         // What is zero all the time is none of a billionth's parts.
         let y = range(upward().chain([0.0])).filter(|y| y.1 > y.0).unwrap_or((0.0, 1.0));
         let y = padded(y.0, y.1, 0.06);
-        let y = if y.1 > 0.0 && upward().all(|value| value >= 0.0) { (0.0, y.1) } else { y };
+        let y = if y.1 > 0.0 && upward().all(|value| value >= 0.0) {
+            (0.0, y.1)
+        } else {
+            y
+        };
         // Discs at the ends are whole.
         let discs = self.curves.iter().any(|curve| curve.entry.mark != legend::Mark::Line);
         let x = if x.1 > x.0 && !discs { x } else { padded(x.0, x.1, 0.03) };
@@ -92,7 +117,13 @@ impl Chart<'_> {
         texts.sort_by(|a, b| a.0.total_cmp(&b.0));
         let places: Vec<f64> = texts.iter().map(|text| text.0).collect();
         for (at, (_, text)) in apart(&places, 1.3 * NUMBER).into_iter().zip(texts) {
-            canvas.text(text, (axes.right + 14.0, at), fitting(text, NUMBER, WIDEST), TextAlign::Left, INK);
+            canvas.text(
+                text,
+                (axes.right + 14.0, at),
+                fitting(text, NUMBER, WIDEST),
+                TextAlign::Left,
+                INK,
+            );
         }
     }
 }
@@ -110,7 +141,10 @@ fn apart(places: &[f64], gap: f64) -> Vec<f64> {
         }
         groups.push(group);
     }
-    groups.iter().flat_map(|group| (0..group.1).map(move |index| first(group) + gap * index as f64)).collect()
+    groups
+        .iter()
+        .flat_map(|group| (0..group.1).map(move |index| first(group) + gap * index as f64))
+        .collect()
 }
 
 #[cfg(test)]

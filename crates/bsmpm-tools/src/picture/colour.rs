@@ -12,8 +12,15 @@ pub(crate) const OUTLINE: Rgb = [140, 140, 140];
 pub(crate) const RULE: Rgb = [226, 226, 226];
 
 /// Seven colours that also the colour-blind tell apart (Okabe and Ito, 2008), without yellow, which is lost on white.
-const LINES: [Rgb; 7] =
-    [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233], [60, 60, 60]];
+const LINES: [Rgb; 7] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [204, 121, 167],
+    [230, 159, 0],
+    [86, 180, 233],
+    [60, 60, 60],
+];
 
 /// Viridis (van der Walt and Smith, 2015; CC0): equal steps of the number are equal steps to the eye, in grey too.
 const VIRIDIS: [Rgb; 33] = [
@@ -54,7 +61,11 @@ const VIRIDIS: [Rgb; 33] = [
 
 /// The colour of the line `index` out of `count`: distinct ones, or shades from first to last if they are too many.
 pub(crate) fn line(index: usize, count: usize) -> Rgb {
-    if count <= LINES.len() { LINES[index % LINES.len()] } else { map(0.9 * index as f64 / (count - 1) as f64) }
+    if count <= LINES.len() {
+        LINES[index % LINES.len()]
+    } else {
+        map(0.9 * index as f64 / (count - 1) as f64)
+    }
 }
 
 /// The colour of a share between 0 and 1 of the range; what lies outside takes the colour of the end.
@@ -63,7 +74,10 @@ pub(crate) fn map(share: f64) -> Rgb {
     let below = (place as usize).min(VIRIDIS.len() - 2);
     let rest = place - below as f64;
     let blend = |channel: usize| {
-        let (low, high) = (f64::from(VIRIDIS[below][channel]), f64::from(VIRIDIS[below + 1][channel]));
+        let (low, high) = (
+            f64::from(VIRIDIS[below][channel]),
+            f64::from(VIRIDIS[below + 1][channel]),
+        );
         (low + rest * (high - low)).round() as u8
     };
     [blend(0), blend(1), blend(2)]

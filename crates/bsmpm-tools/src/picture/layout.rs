@@ -28,13 +28,28 @@ impl Layout {
         let wide = (WIDEST - LEFT - beside).min(HIGHEST / aspect);
         let content = LEFT + wide + beside;
         let width = content.max(NARROWEST);
-        Self { width, left: LEFT + (width - content) / 2.0, wide, high: wide * aspect * stretch, stretch, region }
+        Self {
+            width,
+            left: LEFT + (width - content) / 2.0,
+            wide,
+            high: wide * aspect * stretch,
+            stretch,
+            region,
+        }
     }
 
     /// The axes, their box beginning `top` pixels below the sheet's upper edge.
     pub fn axes(&self, top: f64) -> ChartAxes {
         let [x, y] = self.region;
-        ChartAxes { left: self.left, top, right: self.left + self.wide, bottom: top + self.high, x, y, scales: LINEAR }
+        ChartAxes {
+            left: self.left,
+            top,
+            right: self.left + self.wide,
+            bottom: top + self.high,
+            x,
+            y,
+            scales: LINEAR,
+        }
     }
 }
 

@@ -87,7 +87,13 @@ pub(crate) fn draw(canvas: &mut Canvas, entries: &[&LegendEntry], left: f64, top
                     mark.draw(canvas, &middle, 0.0, entry.colour);
                 }
             }
-            canvas.text(&entry.name, (x + SAMPLE + SPACE, y), sizes(entry, room).0, TextAlign::Left, INK);
+            canvas.text(
+                &entry.name,
+                (x + SAMPLE + SPACE, y),
+                sizes(entry, room).0,
+                TextAlign::Left,
+                INK,
+            );
             x += size + GAP;
         }
     }

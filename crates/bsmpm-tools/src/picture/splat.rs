@@ -110,9 +110,14 @@ fn covered(axes: &ChartAxes, window: &SplatWindow, (points, sizes): (&[[f64; 3]]
     let outside = nearest.distance_to_nobody();
     let mut found = Vec::new();
     for (at, (&(_, point), outside)) in nearest.dots.iter().zip(outside).enumerate() {
-        let Some(size) = sizes.get(point as usize) else { continue };
+        let Some(size) = sizes.get(point as usize) else {
+            continue;
+        };
         if f64::from(outside) > reach(size) - SKIN * dots(size) {
-            let place = (nearest.left + (at % nearest.width) as i32, nearest.top + (at / nearest.width) as i32);
+            let place = (
+                nearest.left + (at % nearest.width) as i32,
+                nearest.top + (at / nearest.width) as i32,
+            );
             if (lower.0..upper.0).contains(&place.0) && (lower.1..upper.1).contains(&place.1) {
                 found.push((place, point as usize));
             }
@@ -150,7 +155,12 @@ impl NearestPoints {
         let span = |from: i32, to: i32| (to - from + 2 * margin).max(1) as usize;
         let (width, height) = (span(lower.0, upper.0), span(lower.1, upper.1));
         let dots = vec![(f32::INFINITY, NOBODY); width * height];
-        Self { left: lower.0 - margin, top: lower.1 - margin, width, dots }
+        Self {
+            left: lower.0 - margin,
+            top: lower.1 - margin,
+            width,
+            dots,
+        }
     }
 
     /// A point at `(x, y)` whose colour reaches `reach`, all in dots of the sheet.
@@ -175,8 +185,11 @@ impl NearestPoints {
     /// How far each dot is from the next one that no point reaches, in dots (up to 8 % too long): the way over
     /// neighbours, found in one sweep down and one up.
     fn distance_to_nobody(&self) -> Vec<f32> {
-        let mut way: Vec<f32> =
-            self.dots.iter().map(|&(_, point)| if point == NOBODY { 0.0 } else { f32::INFINITY }).collect();
+        let mut way: Vec<f32> = self
+            .dots
+            .iter()
+            .map(|&(_, point)| if point == NOBODY { 0.0 } else { f32::INFINITY })
+            .collect();
         let (width, count) = (self.width, way.len());
         let diagonal = std::f32::consts::SQRT_2;
         for at in 0..count {
@@ -184,16 +197,26 @@ impl NearestPoints {
             let left = (column > 0).then(|| way[at - 1] + 1.0);
             let up = above.map(|above| way[above] + 1.0);
             let up_left = above.filter(|_| column > 0).map(|above| way[above - 1] + diagonal);
-            let up_right = above.filter(|_| column + 1 < width).map(|above| way[above + 1] + diagonal);
-            way[at] = [left, up, up_left, up_right].into_iter().flatten().fold(way[at], f32::min);
+            let up_right = above
+                .filter(|_| column + 1 < width)
+                .map(|above| way[above + 1] + diagonal);
+            way[at] = [left, up, up_left, up_right]
+                .into_iter()
+                .flatten()
+                .fold(way[at], f32::min);
         }
         for at in (0..count).rev() {
             let (column, below) = (at % width, Some(at + width).filter(|&below| below < count));
             let right = (column + 1 < width).then(|| way[at + 1] + 1.0);
             let down = below.map(|below| way[below] + 1.0);
             let down_left = below.filter(|_| column > 0).map(|below| way[below - 1] + diagonal);
-            let down_right = below.filter(|_| column + 1 < width).map(|below| way[below + 1] + diagonal);
-            way[at] = [right, down, down_left, down_right].into_iter().flatten().fold(way[at], f32::min);
+            let down_right = below
+                .filter(|_| column + 1 < width)
+                .map(|below| way[below + 1] + diagonal);
+            way[at] = [right, down, down_left, down_right]
+                .into_iter()
+                .flatten()
+                .fold(way[at], f32::min);
         }
         way
     }
@@ -206,14 +229,29 @@ mod tests {
 
     #[test]
     fn a_shorter_reach_leaves_gaps_open_and_fills_a_lattice() {
-        let points: Vec<[f64; 3]> =
-            [0.5, 1.5, 4.5, 5.5].into_iter().flat_map(|x| (0..6).map(move |y| [x, f64::from(y) + 0.5, 0.0])).collect();
-        let axes =
-            ChartAxes { left: 0.0, top: 0.0, right: 60.0, bottom: 60.0, x: (0.0, 6.0), y: (0.0, 6.0), scales: LINEAR };
+        let points: Vec<[f64; 3]> = [0.5, 1.5, 4.5, 5.5]
+            .into_iter()
+            .flat_map(|x| (0..6).map(move |y| [x, f64::from(y) + 0.5, 0.0]))
+            .collect();
+        let axes = ChartAxes {
+            left: 0.0,
+            top: 0.0,
+            right: 60.0,
+            bottom: 60.0,
+            x: (0.0, 6.0),
+            y: (0.0, 6.0),
+            scales: LINEAR,
+        };
         let at = |reach: f64, x: f64| {
-            let window = SplatWindow { ranges: [(0.0, 6.0); 2], walls: Default::default(), reach };
+            let window = SplatWindow {
+                ranges: [(0.0, 6.0); 2],
+                walls: Default::default(),
+                reach,
+            };
             let wanted = fine(axes.place((x, 3.0)));
-            covered(&axes, &window, (&points, &vec![1.0; points.len()])).iter().any(|(place, _)| *place == wanted)
+            covered(&axes, &window, (&points, &vec![1.0; points.len()]))
+                .iter()
+                .any(|(place, _)| *place == wanted)
         };
         assert!(at(REACH, 1.0) && at(REACH, 3.0) && at(1.4, 1.0) && !at(1.4, 3.0));
         assert!(at(1.4, 1.9) && !at(1.4, 2.2));

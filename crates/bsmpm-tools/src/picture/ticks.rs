@@ -64,7 +64,10 @@ impl Ticks {
     pub fn between(low: f64, high: f64, count: f64) -> Self {
         let rough = (high - low) / count.max(2.0);
         let power = 10_f64.powf(rough.log10().floor());
-        let step = [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power).into_iter().find(|step| *step >= rough * 0.999);
+        let step = [1.0, 2.0, 5.0, 10.0]
+            .map(|digit| digit * power)
+            .into_iter()
+            .find(|step| *step >= rough * 0.999);
         let step = step.unwrap_or(10.0 * power);
         let first = (low / step - 1e-6).ceil();
         let steps = ((high / step + 1e-6).floor() - first).clamp(0.0, 100.0) as usize;
@@ -72,7 +75,10 @@ impl Ticks {
         let values = (0..=steps).map(|i| (first + i as f64) * step + 0.0).collect();
         let scale = 10_f64.powi(power_of(low.abs().max(high.abs())));
         let decimals = (-(step / scale * 1.001).log10().floor()).clamp(0.0, 12.0) as usize;
-        Self { values, form: TickForm::Decimal { scale, decimals } }
+        Self {
+            values,
+            form: TickForm::Decimal { scale, decimals },
+        }
     }
 
     /// At most `count` powers of ten between two positive numbers, whose exponents are multiples of 1, 2, 3, ..
@@ -80,23 +86,42 @@ impl Ticks {
         let (first, last) = ((low.log10() - 1e-6).ceil() as i32, (high.log10() + 1e-6).floor() as i32);
         let stride = (f64::from(last - first) / count.max(1.0)).ceil().max(1.0) as i32;
         let exponents = (first..=last).filter(|exponent| exponent % stride == 0);
-        Self { values: exponents.map(|exponent| 10_f64.powi(exponent)).collect(), form: TickForm::Power }
+        Self {
+            values: exponents.map(|exponent| 10_f64.powi(exponent)).collect(),
+            form: TickForm::Power,
+        }
     }
 
     /// How a number of this axis is written.
     pub fn text(&self, value: f64) -> String {
-        let TickForm::Decimal { scale, decimals } = self.form else { return power_text(value) };
+        let TickForm::Decimal { scale, decimals } = self.form else {
+            return power_text(value);
+        };
         let text = format!("{:.*}", decimals, value / scale);
         let is_zero = text.trim_start_matches(['-', '0', '.']).is_empty();
-        if is_zero { "0".to_owned() } else { text.replace('-', "−") }
+        if is_zero {
+            "0".to_owned()
+        } else {
+            text.replace('-', "−")
+        }
     }
 
     /// The axis' label: the quantity with its unit, and the power of ten by which the numbers were divided.
     pub fn label(&self, quantity: &str, unit: &str) -> String {
-        let scale = if let TickForm::Decimal { scale, .. } = self.form { scale } else { 1.0 };
-        let power = POWERS.iter().find(|(power, _)| 10_f64.powi(*power) == scale).map_or("", |(_, text)| text);
+        let scale = if let TickForm::Decimal { scale, .. } = self.form {
+            scale
+        } else {
+            1.0
+        };
+        let power = POWERS
+            .iter()
+            .find(|(power, _)| 10_f64.powi(*power) == scale)
+            .map_or("", |(_, text)| text);
         let unit = if unit == "-" { "" } else { unit };
-        let prefix = ["", "k", "M", "G"].into_iter().zip(["", "10³", "10⁶", "10⁹"]).find(|(_, text)| *text == power);
+        let prefix = ["", "k", "M", "G"]
+            .into_iter()
+            .zip(["", "10³", "10⁶", "10⁹"])
+            .find(|(_, text)| *text == power);
         if let (Some((prefix, _)), true) = (prefix, unit.starts_with(['P', 'N'])) {
             return format!("{quantity} ({prefix}{unit})");
         }
@@ -116,10 +141,17 @@ fn power_text(value: f64) -> String {
         '1' => '¹',
         '2' => '²',
         '3' => '³',
-        other => other.to_digit(10).and_then(|digit| char::from_u32('⁰' as u32 + digit)).unwrap_or(other),
+        other => other
+            .to_digit(10)
+            .and_then(|digit| char::from_u32('⁰' as u32 + digit))
+            .unwrap_or(other),
     };
     let exponent = format!("{:.0}", value.log10());
-    if exponent == "0" { "1".to_owned() } else { "10".chars().chain(exponent.chars().map(raised)).collect() }
+    if exponent == "0" {
+        "1".to_owned()
+    } else {
+        "10".chars().chain(exponent.chars().map(raised)).collect()
+    }
 }
 
 /// The power of 1000, as one of ten, that brings numbers up to `largest` to a form without rows of zeros.
@@ -136,16 +168,23 @@ fn power_of(largest: f64) -> i32 {
 /// A range with `share` of its length added at both ends; one of no length gets some.
 pub(crate) fn padded(low: f64, high: f64, share: f64) -> (f64, f64) {
     let length = high - low;
-    let room = if length > 1e-12 * high.abs().max(low.abs()) { share * length } else { high.abs().max(1e-9) / 2.0 };
+    let room = if length > 1e-12 * high.abs().max(low.abs()) {
+        share * length
+    } else {
+        high.abs().max(1e-9) / 2.0
+    };
     (low - room, high + room)
 }
 
 /// The smallest and largest of finite numbers, if there are any.
 pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
-    values.into_iter().filter(|value| value.is_finite()).fold(None, |range, value| match range {
-        None => Some((value, value)),
-        Some((low, high)) => Some((value.min(low), value.max(high))),
-    })
+    values
+        .into_iter()
+        .filter(|value| value.is_finite())
+        .fold(None, |range, value| match range {
+            None => Some((value, value)),
+            Some((low, high)) => Some((value.min(low), value.max(high))),
+        })
 }
 
 #[cfg(test)]
@@ -174,8 +213,14 @@ mod tests {
             let ticks = scale.ticks(range, count);
             ticks.values.iter().map(|&value| ticks.text(value)).collect::<Vec<_>>()
         };
-        assert_eq!(texts(Scale::Logarithmic, (3e-4, 20.0), 9.0), ["10⁻³", "10⁻²", "10⁻¹", "1", "10¹"]);
-        assert_eq!(texts(Scale::Logarithmic, (1e-17, 3.0), 6.0), ["10⁻¹⁵", "10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "1"]);
+        assert_eq!(
+            texts(Scale::Logarithmic, (3e-4, 20.0), 9.0),
+            ["10⁻³", "10⁻²", "10⁻¹", "1", "10¹"]
+        );
+        assert_eq!(
+            texts(Scale::Logarithmic, (1e-17, 3.0), 6.0),
+            ["10⁻¹⁵", "10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "1"]
+        );
         assert_eq!(texts(Scale::Whole, (0.8, 4.2), 9.0), ["1", "2", "3", "4"]);
         assert_eq!(texts(Scale::Linear, (0.8, 2.2), 9.0)[0], "0.8");
         let share = Scale::Logarithmic.share(1e-4, (1e-8, 1.0));

@@ -58,7 +58,11 @@ impl Heights {
             let raised = ACROSS.iter().filter_map(|by| joined(*at, by)).fold(*top, f64::max);
             (*at, if raised - top <= deepest { raised } else { *top })
         };
-        Self { part, lower, top: highest.iter().map(closed).collect() }
+        Self {
+            part,
+            lower,
+            top: highest.iter().map(closed).collect(),
+        }
     }
 
     /// m  the middle of a part
@@ -109,7 +113,10 @@ pub(super) fn draw(record: &RunRecord, frames: &[Frame]) -> Result<Vec<String>, 
     let mut names = Vec::new();
     for (frame, heights) in frames.iter().zip(&heights) {
         let name = format!("height_{}.png", short(frame.time));
-        let bar = Bar { range: ends, label: ("Height of the surface", "m") };
+        let bar = Bar {
+            range: ends,
+            label: ("Height of the surface", "m"),
+        };
         picture(record, frame, heights, bar).save(&record.directory.join(&name))?;
         names.push(name);
     }
@@ -121,7 +128,10 @@ fn picture(record: &RunRecord, frame: &Frame, heights: &Heights, bar: Bar) -> Ca
     let lying = aspect(region) < bar::LYING;
     let layout = Layout::of(region, if lying { RIGHT } else { bar::BESIDE }, 0.0);
     let axes = layout.axes(ABOVE);
-    let mut canvas = Canvas::new(layout.width, axes.bottom + axes::BELOW + if lying { bar::BELOW } else { 0.0 });
+    let mut canvas = Canvas::new(
+        layout.width,
+        axes.bottom + axes::BELOW + if lying { bar::BELOW } else { 0.0 },
+    );
     let below = record.moment(frame.time) + ", from above";
     title(&mut canvas, layout.width, &record.manifest.case.title, &below);
     let mut parts: Vec<[i64; 2]> = heights.top.keys().copied().collect();
@@ -133,7 +143,11 @@ fn picture(record: &RunRecord, frame: &Frame, heights: &Heights, bar: Bar) -> Ca
     let shades: Vec<Rgb> = parts.iter().map(shade).collect();
     let places: Vec<[f64; 3]> = parts.iter().map(|at| heights.middle(*at)).collect();
     let sizes = vec![heights.part[0].max(heights.part[1]); places.len()];
-    let inside = splat::SplatWindow { ranges: window, walls: Default::default(), reach: REACH };
+    let inside = splat::SplatWindow {
+        ranges: window,
+        walls: Default::default(),
+        reach: REACH,
+    };
     splat::draw(&mut canvas, &axes, &inside, (&places, &sizes), &shades);
     axes.draw(&mut canvas, Some(("x", "m")), ("y", "m"));
     if lying {
@@ -152,11 +166,23 @@ mod tests {
     fn the_highest_points_count_and_slopes_away_from_the_light_are_darker() {
         let row = |x: f64, z: f64| [[x, 0.5, z], [x, 0.5, z - 1.0]];
         let position = [row(0.5, 1.0), row(1.5, 3.0), row(2.5, 1.0)].concat();
-        let frame = Frame { step: 0, time: 0.0, position, fields: Vec::new() };
+        let frame = Frame {
+            step: 0,
+            time: 0.0,
+            position,
+            fields: Vec::new(),
+        };
         let heights = Heights::of(&frame, ([0.0, 0.0], [1.0, 1.0]), 0.25);
         assert_eq!(heights.top.len(), 3);
         assert_eq!(heights.middle([1, 0]), [1.5, 0.5, 3.25]);
-        assert_eq!((heights.slope([0, 0], 0), heights.slope([1, 0], 0), heights.slope([1, 0], 1)), (2.0, 0.0, 0.0));
+        assert_eq!(
+            (
+                heights.slope([0, 0], 0),
+                heights.slope([1, 0], 0),
+                heights.slope([1, 0], 1)
+            ),
+            (2.0, 0.0, 0.0)
+        );
         assert!(heights.lit([0, 0]) > heights.lit([2, 0]));
         assert_eq!(heights.lit([1, 0]), 1.0);
     }
@@ -165,8 +191,16 @@ mod tests {
     fn a_lower_point_between_others_is_no_pit_but_a_trench_stays_and_one_beside_them_is_lower() {
         let position = [2.0, 1.0, 3.0, 1.0, 3.0, 1.0].into_iter().enumerate();
         let position = position.map(|(k, z)| [k as f64 - 2.5, 0.5, z]).collect();
-        let frame = Frame { step: 0, time: 0.0, position, fields: Vec::new() };
+        let frame = Frame {
+            step: 0,
+            time: 0.0,
+            position,
+            fields: Vec::new(),
+        };
         let heights = Heights::of(&frame, ([-3.0, 0.0], [1.0, 1.0]), 0.0);
-        assert_eq!([0, 1, 2, 3, 4, 5].map(|x| heights.top[&[x, 0]]), [2.0, 2.0, 3.0, 1.0, 3.0, 1.0]);
+        assert_eq!(
+            [0, 1, 2, 3, 4, 5].map(|x| heights.top[&[x, 0]]),
+            [2.0, 2.0, 3.0, 1.0, 3.0, 1.0]
+        );
     }
 }

@@ -44,7 +44,10 @@ pub(super) fn draw(
     let mut names = Vec::new();
     for (frame, values) in frames.iter().zip(&values) {
         let name = format!("{}_{}.png", field.name(), short(frame.time));
-        let bar = Bar { range: colours, label: field.label(section.map(|section| section.axis)) };
+        let bar = Bar {
+            range: colours,
+            label: field.label(section.map(|section| section.axis)),
+        };
         let beyond = field.beyond(values, colours);
         picture((record, case.as_ref(), section), frame, (values, &beyond), region, bar)
             .save(&record.directory.join(&name))?;
@@ -64,20 +67,31 @@ fn picture(
     let lying = aspect(region) < bar::LYING;
     let layout = Layout::of(region, if lying { RIGHT } else { bar::BESIDE }, 0.0);
     let axes = layout.axes(ABOVE);
-    let mut canvas = Canvas::new(layout.width, axes.bottom + axes::BELOW + if lying { bar::BELOW } else { 0.0 });
+    let mut canvas = Canvas::new(
+        layout.width,
+        axes.bottom + axes::BELOW + if lying { bar::BELOW } else { 0.0 },
+    );
     let divided = record.case.strength_reduction.filter(|factor| *factor != 1.0);
     let reduction = divided.map(|factor| format!(", strength divided by {factor}"));
     let below = record.moment(frame.time) + &reduction.unwrap_or_default() + &section::named(section) + beyond;
     title(&mut canvas, layout.width, &record.manifest.case.title, &below);
     let shades: Vec<_> = values.iter().map(|&value| colour::map(bar.share(value))).collect();
     let sizes = splat::sizes(frame, &record.manifest.case.geometry);
-    let ranges = if record.manifest.grid.is_some() { window(record, &[]) } else { region };
+    let ranges = if record.manifest.grid.is_some() {
+        window(record, &[])
+    } else {
+        region
+    };
     // What is thrown may leave the walls; what is pushed does not.
     let walls = match record.regime() {
         Regime::QuasiStatic if record.manifest.grid.is_some() => record.walls(),
         _ => Default::default(),
     };
-    let inside = splat::SplatWindow { ranges, walls, reach: splat::REACH };
+    let inside = splat::SplatWindow {
+        ranges,
+        walls,
+        reach: splat::REACH,
+    };
     splat::draw(&mut canvas, &axes, &inside, (&frame.position, &sizes), &shades);
     if let Some(case) = case {
         rigid::draw(&mut canvas, (&axes, region), (record, case), frame);
@@ -108,7 +122,14 @@ fn window_of(record: &RunRecord, frames: &[Frame], plane: [usize; 2]) -> [(f64, 
     let extent = record.manifest.grid.as_ref();
     [0, 1].map(|shown| {
         let grid = extent.and_then(|grid| Some((*grid.lower.get(plane[shown])?, *grid.upper.get(plane[shown])?)));
-        let points = || range(frames.iter().flat_map(|frame| &frame.position).map(|point| point[shown]));
+        let points = || {
+            range(
+                frames
+                    .iter()
+                    .flat_map(|frame| &frame.position)
+                    .map(|point| point[shown]),
+            )
+        };
         grid.or_else(points).unwrap_or((0.0, 1.0))
     })
 }

@@ -20,35 +20,74 @@ const NAME: &str = "convergence.png";
 pub(super) fn draw(record: &RunRecord) -> Result<Option<String>, Error> {
     let column = |name| record.steps.as_ref().and_then(|steps: &Columns| steps.get(name));
     let columns = (column("time"), column("iterations"), column("dt"));
-    let (Some(time), Some(iterations), Some(dt)) = columns else { return Ok(None) };
-    let Some(x) = range(time.iter().copied()) else { return Ok(None) };
+    let (Some(time), Some(iterations), Some(dt)) = columns else {
+        return Ok(None);
+    };
+    let Some(x) = range(time.iter().copied()) else {
+        return Ok(None);
+    };
     // The first row is the end of a step, whose start is where the picture begins.
     let x = (x.0 - dt.first().copied().unwrap_or(0.0), x.1);
     let x = if x.1 > x.0 { x } else { padded(x.0, x.1, 0.0) };
     let cut: Vec<(f64, f64)> = column("cutbacks").map_or_else(Vec::new, |cutbacks| {
-        time.iter().zip(dt).zip(cutbacks).filter(|(_, cuts)| **cuts > 0.0).map(|((&time, &dt), _)| (time, dt)).collect()
+        time.iter()
+            .zip(dt)
+            .zip(cutbacks)
+            .filter(|(_, cuts)| **cuts > 0.0)
+            .map(|((&time, &dt), _)| (time, dt))
+            .collect()
     });
 
-    let legend =
-        LegendEntry { name: "step that was cut back".to_owned(), colour: colour::line(1, 2), mark: Mark::Points };
+    let legend = LegendEntry {
+        name: "step that was cut back".to_owned(),
+        colour: colour::line(1, 2),
+        mark: Mark::Points,
+    };
     let legend: &[&LegendEntry] = if cut.is_empty() { &[] } else { &[&legend] };
     let top = ABOVE + legend::height(legend, SHEET.0 - 80.0) + 20.0;
     let bottom = SHEET.1 - BELOW;
     let middle = f64::midpoint(top, bottom);
-    let above = |values: &[f64]| (0.0, 1.08 * range(values.iter().copied()).map_or(1.0, |(_, high)| high.max(1e-300)));
+    let above = |values: &[f64]| {
+        (
+            0.0,
+            1.08 * range(values.iter().copied()).map_or(1.0, |(_, high)| high.max(1e-300)),
+        )
+    };
     let (left, right) = (LEFT, SHEET.0 - RIGHT);
-    let upper = ChartAxes { left, top, right, bottom: middle - BETWEEN / 2.0, x, y: above(iterations), scales: LINEAR };
-    let lower = ChartAxes { left, top: middle + BETWEEN / 2.0, right, bottom, x, y: above(dt), scales: LINEAR };
+    let upper = ChartAxes {
+        left,
+        top,
+        right,
+        bottom: middle - BETWEEN / 2.0,
+        x,
+        y: above(iterations),
+        scales: LINEAR,
+    };
+    let lower = ChartAxes {
+        left,
+        top: middle + BETWEEN / 2.0,
+        right,
+        bottom,
+        x,
+        y: above(dt),
+        scales: LINEAR,
+    };
 
     let mut canvas = Canvas::new(SHEET.0, SHEET.1);
-    title(&mut canvas, SHEET.0, &record.manifest.case.title, "Convergence of the steps");
+    title(
+        &mut canvas,
+        SHEET.0,
+        &record.manifest.case.title,
+        "Convergence of the steps",
+    );
     legend::draw(&mut canvas, legend, 40.0, ABOVE, SHEET.0 - 80.0);
     for (axes, values) in [(&upper, iterations), (&lower, dt)] {
         axes.rules(&mut canvas);
         let places: Vec<_> = time.iter().copied().zip(values.iter().copied()).collect();
         axes.line(&mut canvas, &places, 2.5, colour::line(0, 2));
     }
-    cut.iter().for_each(|&place| canvas.disc(lower.place(place), 6.0, colour::line(1, 2)));
+    cut.iter()
+        .for_each(|&place| canvas.disc(lower.place(place), 6.0, colour::line(1, 2)));
     upper.draw(&mut canvas, None, ("Iterations per step", "-"));
     let (time_name, time_unit) = record.time_label();
     lower.draw(&mut canvas, Some((time_name, time_unit)), ("Length of step", time_unit));

@@ -34,7 +34,11 @@ enum Across {
 use Across::{Penetration, Time};
 
 const PICTURES: [Picture; 11] = [
-    Picture { beside: &["height"], together: "Length", ..Picture::of("runout", "Run-out", Time, &["runout", "front"]) },
+    Picture {
+        beside: &["height"],
+        together: "Length",
+        ..Picture::of("runout", "Run-out", Time, &["runout", "front"])
+    },
     Picture::of("height", "Height", Time, &["height"]),
     Picture {
         together: "Displacement",
@@ -47,8 +51,18 @@ const PICTURES: [Picture; 11] = [
     },
     Picture::of("stress-noise", "Noise of the stress", Time, &["stress-noise"]),
     Picture::of("pressure-noise", "Noise of the pressure", Time, &["pressure-noise"]),
-    Picture::of("footing-pressure", "Pressure on the footing", Penetration, &["footing-pressure"]),
-    Picture::of("footing-pressure-time", "Pressure on the footing", Time, &["footing-pressure"]),
+    Picture::of(
+        "footing-pressure",
+        "Pressure on the footing",
+        Penetration,
+        &["footing-pressure"],
+    ),
+    Picture::of(
+        "footing-pressure-time",
+        "Pressure on the footing",
+        Time,
+        &["footing-pressure"],
+    ),
     Picture::of("footing-force", "Force on the footing", Time, &["footing-force"]),
     Picture::of("slip", "Slip at the footing", Time, &["slip"]),
     Picture {
@@ -56,7 +70,15 @@ const PICTURES: [Picture; 11] = [
         ..Picture::of("energy", "Energy", Time, &["energy"])
     },
     Picture {
-        parts: &["-numerical", "-transfer", "-integration", "-smoothing", "-background", "-penalty", "-closure"],
+        parts: &[
+            "-numerical",
+            "-transfer",
+            "-integration",
+            "-smoothing",
+            "-background",
+            "-penalty",
+            "-closure",
+        ],
         together: "Energy",
         ..Picture::of("energy-numerical", "Loss of the algorithm", Time, &["energy"])
     },
@@ -80,13 +102,18 @@ pub(super) fn draw(record: &RunRecord, reference: Option<&Columns>) -> Result<Ve
     let mut names = Vec::new();
     let mut drawn: Vec<(&str, &str)> = Vec::new();
     for picture in &PICTURES {
-        let Some(axis) = picture.across.axis(record) else { continue };
+        let Some(axis) = picture.across.axis(record) else {
+            continue;
+        };
         for (index, columns) in picture.groups(record).iter().enumerate() {
             let name = match index {
                 0 => format!("{}.png", picture.file),
                 _ => format!("{}-{}.png", picture.file, columns[0].name),
             };
-            if columns.iter().any(|column| !drawn.contains(&(axis.column, column.name))) {
+            if columns
+                .iter()
+                .any(|column| !drawn.contains(&(axis.column, column.name)))
+            {
                 picture.draw(record, &axis, columns, reference, &name)?;
                 drawn.extend(columns.iter().map(|column| (axis.column, column.name)));
                 names.push(name);
@@ -120,20 +147,37 @@ impl Across {
         };
         let note = width.map_or_else(String::new, |width| format!(", B = {width} m"));
         let factor = width.map_or(1.0, |width| 1.0 / width);
-        Some(Axis { column: column.name, values: column.values, factor, label, unit, note })
+        Some(Axis {
+            column: column.name,
+            values: column.values,
+            factor,
+            label,
+            unit,
+            note,
+        })
     }
 }
 
 impl Picture {
     const fn of(file: &'static str, title: &'static str, across: Across, up: &'static [&'static str]) -> Self {
-        Self { file, title, across, up, beside: &[], parts: &[], together: title }
+        Self {
+            file,
+            title,
+            across,
+            up,
+            beside: &[],
+            parts: &[],
+            together: title,
+        }
     }
 
     /// The columns that there are, those of one unit and scale together.
     fn groups<'a>(&self, record: &'a RunRecord) -> Vec<Vec<Recorded<'a>>> {
         let recorded = |quantities: &[&str]| -> Vec<Recorded<'a>> {
             let columns = quantities.iter().flat_map(|quantity| record.columns(quantity));
-            columns.filter(|column| !column.values.is_empty() && self.is_about(column)).collect()
+            columns
+                .filter(|column| !column.values.is_empty() && self.is_about(column))
+                .collect()
         };
         let mut columns = recorded(self.up);
         if !columns.is_empty() {
@@ -171,20 +215,38 @@ impl Picture {
                 colour: colour::line(index, columns.len()),
                 mark: Mark::Line,
             };
-            curves.push(ChartCurve { entry, places: axis.places(axis.values, column.values) });
+            curves.push(ChartCurve {
+                entry,
+                places: axis.places(axis.values, column.values),
+            });
         }
         // The points of a reference whose columns bear the names of ours.
         let referred = |name: &str| Some((reference?.get(axis.column)?, reference?.get(name)?));
         for column in columns {
             if let Some((across, values)) = referred(column.name) {
                 let name = format!("reference, {}", column.name);
-                let entry = LegendEntry { name, colour: INK, mark: Mark::Points };
-                curves.push(ChartCurve { entry, places: axis.places(across, values) });
+                let entry = LegendEntry {
+                    name,
+                    colour: INK,
+                    mark: Mark::Points,
+                };
+                curves.push(ChartCurve {
+                    entry,
+                    places: axis.places(across, values),
+                });
             }
         }
-        let label = if let [only] = columns { only.label() } else { self.together.to_owned() };
+        let label = if let [only] = columns {
+            only.label()
+        } else {
+            self.together.to_owned()
+        };
         // The axis says what a lonely line is.
-        let legend = if curves.len() == 1 { Vec::new() } else { curves.iter().map(|curve| &curve.entry).collect() };
+        let legend = if curves.len() == 1 {
+            Vec::new()
+        } else {
+            curves.iter().map(|curve| &curve.entry).collect()
+        };
         let below = format!("{}{}", self.title, axis.note);
         let title = &record.manifest.case.title;
         let chart = Chart {

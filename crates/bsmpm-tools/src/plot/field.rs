@@ -84,8 +84,14 @@ impl FieldName {
             quantity,
             unit: "kPa",
         };
-        let vector =
-            |field, quantity, unit| PlotSource { field, components: 3, component: None, scale: 1.0, quantity, unit };
+        let vector = |field, quantity, unit| PlotSource {
+            field,
+            components: 3,
+            component: None,
+            scale: 1.0,
+            quantity,
+            unit,
+        };
         let scalar = |field, scale, quantity, unit| PlotSource {
             field,
             components: 1,
@@ -121,7 +127,8 @@ impl FieldName {
 
     /// The name on the command line and of the pictures: `stress-yy`.
     pub(super) fn name(self) -> String {
-        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+        self.to_possible_value()
+            .map_or_else(String::new, |value| value.get_name().to_owned())
     }
 
     /// The name of the frames' field.
@@ -144,25 +151,43 @@ impl FieldName {
 
     /// The quantity at every point of a frame, in the unit of [`FieldName::label`].
     pub(crate) fn values(self, frame: &Frame) -> Option<Vec<f64>> {
-        let PlotSource { field, components, component, scale, .. } = self.source();
+        let PlotSource {
+            field,
+            components,
+            component,
+            scale,
+            ..
+        } = self.source();
         if self == Self::Body {
             let body = frame.fields.iter().find(|of| of.name == field)?;
-            let FieldValues::U64(numbers) = &body.values else { return None };
+            let FieldValues::U64(numbers) = &body.values else {
+                return None;
+            };
             return Some(numbers.iter().map(|&number| number as f64).collect());
         }
         let values = frame.real(field, components)?.chunks_exact(components);
         Some(match component {
             Some(component) => values.map(|point| scale * point[component]).collect(),
-            None => values.map(|point| scale * point.iter().map(|value| value * value).sum::<f64>().sqrt()).collect(),
+            None => values
+                .map(|point| scale * point.iter().map(|value| value * value).sum::<f64>().sqrt())
+                .collect(),
         })
     }
 
     /// The range of colours: all values but the most extreme; lengths and strains begin at zero.
     pub(super) fn range(self, values: &[Vec<f64>]) -> (f64, f64) {
-        let mut all: Vec<f64> = values.iter().flatten().copied().filter(|value| value.is_finite()).collect();
+        let mut all: Vec<f64> = values
+            .iter()
+            .flatten()
+            .copied()
+            .filter(|value| value.is_finite())
+            .collect();
         all.sort_unstable_by(f64::total_cmp);
-        let at =
-            |share: f64| all.get((share * all.len().saturating_sub(1) as f64).round() as usize).copied().unwrap_or(0.0);
+        let at = |share: f64| {
+            all.get((share * all.len().saturating_sub(1) as f64).round() as usize)
+                .copied()
+                .unwrap_or(0.0)
+        };
         let (low, high) = (at(BEYOND), at(1.0 - BEYOND));
         match self {
             _ if self.begins_at_zero() && high > 0.0 => (0.0, high),
@@ -174,20 +199,37 @@ impl FieldName {
 
     /// What lies beyond the range of colours by more than a twentieth of it, to be said below a title.
     pub(super) fn beyond(self, values: &[f64], (low, high): (f64, f64)) -> String {
-        let (least, largest) = values.iter().fold((high, low), |(least, most), &x| (x.min(least), x.max(most)));
+        let (least, largest) = values
+            .iter()
+            .fold((high, low), |(least, most), &x| (x.min(least), x.max(most)));
         let room = 0.05 * (high - low);
         let end = |word: &str, value: f64| {
             let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-            let unit = if self.source().unit == "-" { "" } else { self.source().unit };
+            let unit = if self.source().unit == "-" {
+                ""
+            } else {
+                self.source().unit
+            };
             format!(", {word} {rounded} {unit}").trim_end().to_owned()
         };
-        let below = if least < low - room { end("least", least) } else { String::new() };
-        below + &if largest > high + room { end("largest", largest) } else { String::new() }
+        let below = if least < low - room {
+            end("least", least)
+        } else {
+            String::new()
+        };
+        below
+            + &if largest > high + room {
+                end("largest", largest)
+            } else {
+                String::new()
+            }
     }
 
     /// Whether it is never negative, and 0 is where nothing is.
     fn begins_at_zero(self) -> bool {
-        matches!(self, Self::PlasticStrain | Self::Displacement | Self::Velocity | Self::Q | Self::Flux)
-            || matches!(self, Self::MobilisedStrength | Self::DeviatoricStrain | Self::Yielding)
+        matches!(
+            self,
+            Self::PlasticStrain | Self::Displacement | Self::Velocity | Self::Q | Self::Flux
+        ) || matches!(self, Self::MobilisedStrength | Self::DeviatoricStrain | Self::Yielding)
     }
 }

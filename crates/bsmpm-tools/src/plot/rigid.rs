@@ -28,13 +28,22 @@ pub(super) fn draw(
         return;
     }
     let there = |(_, body): &(usize, &RigidBody)| body.acts;
-    for (number, body) in surfaces::rigid::<2>(case, case.just_before(frame.time)).iter().enumerate().filter(there) {
-        let Some(moved) = moved((record, case), (number, body), frame) else { continue };
+    for (number, body) in surfaces::rigid::<2>(case, case.just_before(frame.time))
+        .iter()
+        .enumerate()
+        .filter(there)
+    {
+        let Some(moved) = moved((record, case), (number, body), frame) else {
+            continue;
+        };
         let lower = case.grid.lower();
         let place = |x: &Vector<2>| {
             let (sin, cos) = moved[2].sin_cos();
             let turned = [cos * x[0] - sin * x[1], sin * x[0] + cos * x[1]];
-            (lower[0] + body.center[0] + moved[0] + turned[0], lower[1] + body.center[1] + moved[1] + turned[1])
+            (
+                lower[0] + body.center[0] + moved[0] + turned[0],
+                lower[1] + body.center[1] + moved[1] + turned[1],
+            )
         };
         let seen =
             |&(x, y): &(f64, f64)| (region[0].0..=region[0].1).contains(&x) && (region[1].0..=region[1].1).contains(&y);
@@ -58,7 +67,13 @@ fn moved((record, case): (&RunRecord, &Case), (number, body): (usize, &RigidBody
         let history = case.histories.iter().find(|history| history.quantity == wanted)?;
         Some(record.column(&format!("{}{end}", history.name))?.values.get(row)? / history.scale)
     };
-    let either = |k: usize, what, end| if body.free[k] { recorded(what, end) } else { Some(on_path[k]) };
+    let either = |k: usize, what, end| {
+        if body.free[k] {
+            recorded(what, end)
+        } else {
+            Some(on_path[k])
+        }
+    };
     let rotation = match body.free[2] {
         true => recorded(Measurement::RigidRotation, "")?.to_radians(),
         false => on_path[2],

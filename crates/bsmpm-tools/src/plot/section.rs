@@ -23,7 +23,10 @@ impl Section {
     pub(super) fn read(text: &str) -> Result<Self, String> {
         let read = text.split_once('=').and_then(|(axis, at)| {
             let axis = AXES.iter().position(|name| *name == axis.trim())?;
-            Some(Self { axis, at: at.trim().parse().ok().filter(|at: &f64| at.is_finite())? })
+            Some(Self {
+                axis,
+                at: at.trim().parse().ok().filter(|at: &f64| at.is_finite())?,
+            })
         });
         read.ok_or_else(|| "an axis and a place along it in m, e.g. y=0.5".to_owned())
     }
@@ -41,11 +44,19 @@ pub(super) fn of(
     if !record.is_solid() {
         let reason =
             "E0848: the run is two-dimensional, and --section applies to 3-D only. Remove --section.".to_owned();
-        return if wanted.is_some() { Err(Error::Missing { reason }) } else { Ok((frames, None)) };
+        return if wanted.is_some() {
+            Err(Error::Missing { reason })
+        } else {
+            Ok((frames, None))
+        };
     }
     let across = record.across;
-    let ends = frames.first().and_then(|frame| range(frame.position.iter().map(|point| point[across])));
-    let Some((low, high)) = ends else { return Ok((frames, None)) };
+    let ends = frames
+        .first()
+        .and_then(|frame| range(frame.position.iter().map(|point| point[across])));
+    let Some((low, high)) = ends else {
+        return Ok((frames, None));
+    };
     let of_grid = record.manifest.grid.as_ref().and_then(|grid| {
         let ends = [&grid.lower, &grid.upper, &grid.cell].map(|of| of.get(across).copied());
         Some((0.5 * (ends[0]? + ends[1]?), 0.5 * ends[2]?))
@@ -67,7 +78,13 @@ pub(super) fn of(
         false => 0.5 * (low + high),
     };
     let found = Section { axis: across, at };
-    Ok((frames.iter().map(|frame| section(frame, (found, record.plane()), reach)).collect(), Some(found)))
+    Ok((
+        frames
+            .iter()
+            .map(|frame| section(frame, (found, record.plane()), reach))
+            .collect(),
+        Some(found),
+    ))
 }
 
 /// m  how far the material of a solid goes on above its highest points: half of the usual share of one of the vertical,
@@ -86,15 +103,22 @@ pub(super) fn above(record: &RunRecord, frame: &Frame) -> f64 {
 
 /// What a title says of a section.
 pub(super) fn named(section: Option<Section>) -> String {
-    section.map_or_else(String::new, |of| format!(", section at {} = {} m", AXES[of.axis], short(of.at)))
+    section.map_or_else(String::new, |of| {
+        format!(", section at {} = {} m", AXES[of.axis], short(of.at))
+    })
 }
 
 fn section(frame: &Frame, (of, plane): (Section, [usize; 2]), reach: f64) -> Frame {
     let near = |point: &[f64; 3]| (point[of.axis] - of.at).abs() <= reach;
-    let kept: Vec<usize> = (0..frame.position.len()).filter(|&p| near(&frame.position[p])).collect();
+    let kept: Vec<usize> = (0..frame.position.len())
+        .filter(|&p| near(&frame.position[p]))
+        .collect();
     let mut section = frame.without_points();
-    section.position =
-        kept.iter().map(|&p| frame.position[p]).map(|x| [x[plane[0]], x[plane[1]], x[of.axis]]).collect();
+    section.position = kept
+        .iter()
+        .map(|&p| frame.position[p])
+        .map(|x| [x[plane[0]], x[plane[1]], x[of.axis]])
+        .collect();
     for (field, whole) in section.fields.iter_mut().zip(&frame.fields) {
         field.values = match &whole.values {
             FieldValues::F64(values) => FieldValues::F64(taken(values, &kept, whole.components)),
@@ -106,7 +130,10 @@ fn section(frame: &Frame, (of, plane): (Section, [usize; 2]), reach: f64) -> Fra
 }
 
 fn taken<T: Copy>(values: &[T], kept: &[usize], components: usize) -> Vec<T> {
-    kept.iter().flat_map(|&p| &values[p * components..(p + 1) * components]).copied().collect()
+    kept.iter()
+        .flat_map(|&p| &values[p * components..(p + 1) * components])
+        .copied()
+        .collect()
 }
 
 #[cfg(test)]
@@ -117,17 +144,33 @@ mod tests {
     #[test]
     fn a_section_is_named_by_its_place() {
         let read = Section::read("x = -2").unwrap();
-        assert_eq!((named(Some(read)).as_str(), named(None).as_str()), (", section at x = -2 m", ""));
-        assert!(["w=1", "x", "x=", "x=inf"].iter().all(|text| Section::read(text).is_err()));
+        assert_eq!(
+            (named(Some(read)).as_str(), named(None).as_str()),
+            (", section at x = -2 m", "")
+        );
+        assert!(
+            ["w=1", "x", "x=", "x=inf"]
+                .iter()
+                .all(|text| Section::read(text).is_err())
+        );
     }
 
     #[test]
     fn a_section_has_the_points_near_it_with_all_that_is_theirs() {
         let position = vec![[1.0, 0.1, 5.0], [2.0, 0.6, 6.0], [3.0, 1.4, 7.0]];
-        let ids = Field { name: "id".into(), components: 1, values: FieldValues::U64(vec![4, 5, 6]) };
+        let ids = Field {
+            name: "id".into(),
+            components: 1,
+            values: FieldValues::U64(vec![4, 5, 6]),
+        };
         let fields = vec![ids, Field::real("v", 3, (0..9).map(f64::from).collect())];
         let across_y = (Section { axis: 1, at: 0.75 }, [0, 2]);
-        let whole = Frame { step: 1, time: 2.0, position, fields };
+        let whole = Frame {
+            step: 1,
+            time: 2.0,
+            position,
+            fields,
+        };
         let level = section(&whole, (Section { axis: 2, at: 6.6 }, [0, 1]), 0.5);
         assert_eq!(level.position, vec![[3.0, 1.4, 7.0]]);
         let found = section(&whole, across_y, 0.25);

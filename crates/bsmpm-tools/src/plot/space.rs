@@ -46,7 +46,11 @@ impl View {
             let raised = raised.to_radians();
             [raised.sin(), raised.cos()]
         });
-        Self { right: [cos, sin, 0.0], up: [-sin * low, cos * low, high], eye: [sin * high, -cos * high, low] }
+        Self {
+            right: [cos, sin, 0.0],
+            up: [-sin * low, cos * low, high],
+            eye: [sin * high, -cos * high, low],
+        }
     }
 
     fn place(&self, at: &[f64; 3]) -> [f64; 3] {
@@ -66,7 +70,10 @@ const NOBODY: (f32, u32) = (f32::NEG_INFINITY, u32::MAX);
 
 impl NearestBalls {
     fn new([width, height]: [usize; 2]) -> Self {
-        Self { width, dots: vec![NOBODY; width * height] }
+        Self {
+            width,
+            dots: vec![NOBODY; width * height],
+        }
     }
 
     /// A ball about `(x, y)`, dots, and `depth`, m, with so many dots a metre.
@@ -94,7 +101,10 @@ impl NearestBalls {
         let (row, column, height) = (at / self.width, at % self.width, self.dots.len() / self.width);
         let here = self.dots[at].0;
         let depth = |row: Option<usize>, column: Option<usize>| {
-            let (row, column) = (row.filter(|row| *row < height)?, column.filter(|column| *column < self.width)?);
+            let (row, column) = (
+                row.filter(|row| *row < height)?,
+                column.filter(|column| *column < self.width)?,
+            );
             let depth = self.dots[row * self.width + column].0;
             (f64::from((depth - here).abs()) * scale <= 3.0 * step as f64).then_some(f64::from(depth))
         };
@@ -108,9 +118,15 @@ impl NearestBalls {
                 (None, None) => 0.0,
             }
         };
-        let across = slope(depth(Some(row), column.checked_sub(step)), depth(Some(row), Some(column + step)));
+        let across = slope(
+            depth(Some(row), column.checked_sub(step)),
+            depth(Some(row), Some(column + step)),
+        );
         // Rows count downward.
-        let up = slope(depth(Some(row + step), Some(column)), depth(row.checked_sub(step), Some(column)));
+        let up = slope(
+            depth(Some(row + step), Some(column)),
+            depth(row.checked_sub(step), Some(column)),
+        );
         let normal = [-across, -up, 1.0];
         let product = |a: [f64; 3], b: [f64; 3]| (0..3).map(|axis| a[axis] * b[axis]).sum::<f64>();
         let falls = product(normal, LIGHT) / (product(normal, normal) * product(LIGHT, LIGHT)).sqrt();
@@ -125,16 +141,27 @@ pub(super) fn draw(
     field: FieldName,
     ends: Option<(f64, f64)>,
 ) -> Result<Vec<String>, Error> {
-    let Some(grid) = record.manifest.grid.as_ref().filter(|_| record.is_solid()) else { return Ok(Vec::new()) };
-    let (Ok(lower), Ok(upper)) = (grid.lower[..].try_into(), grid.upper[..].try_into()) else { return Ok(Vec::new()) };
-    let Some(values) = frames.iter().map(|frame| field.values(frame)).collect::<Option<Vec<_>>>() else {
+    let Some(grid) = record.manifest.grid.as_ref().filter(|_| record.is_solid()) else {
+        return Ok(Vec::new());
+    };
+    let (Ok(lower), Ok(upper)) = (grid.lower[..].try_into(), grid.upper[..].try_into()) else {
+        return Ok(Vec::new());
+    };
+    let Some(values) = frames
+        .iter()
+        .map(|frame| field.values(frame))
+        .collect::<Option<Vec<_>>>()
+    else {
         return Ok(Vec::new());
     };
     let range = ends.unwrap_or_else(|| field.range(&values));
     let mut names = Vec::new();
     for (frame, values) in frames.iter().zip(&values) {
         let name = format!("{}_space_{}.png", field.name(), short(frame.time));
-        let bar = Bar { range, label: field.label(Some(2)) };
+        let bar = Bar {
+            range,
+            label: field.label(Some(2)),
+        };
         let beyond = field.beyond(values, range);
         picture((record, [lower, upper]), frame, (values, &beyond), bar).save(&record.directory.join(&name))?;
         names.push(name);
@@ -152,7 +179,10 @@ fn picture(
     let corners = std::array::from_fn::<_, 8, _>(|k| view.place(&corner(grid, k)));
     let ends = |axis: usize| {
         let along = corners.iter().map(|corner| corner[axis]);
-        let [low, high] = [along.clone().fold(f64::INFINITY, f64::min), along.fold(f64::NEG_INFINITY, f64::max)];
+        let [low, high] = [
+            along.clone().fold(f64::INFINITY, f64::min),
+            along.fold(f64::NEG_INFINITY, f64::max),
+        ];
         let room = 0.06 * (high - low);
         (low - room, high + room)
     };
@@ -162,7 +192,12 @@ fn picture(
     let axes = layout.axes(ABOVE);
     let below = if lying { axes::BELOW + bar::BELOW } else { 20.0 };
     let mut canvas = Canvas::new(layout.width, axes.bottom + below);
-    title(&mut canvas, layout.width, &record.manifest.case.title, &(record.moment(frame.time) + beyond));
+    title(
+        &mut canvas,
+        layout.width,
+        &record.manifest.case.title,
+        &(record.moment(frame.time) + beyond),
+    );
     let place = |k: usize| axes.place((corners[k][0], corners[k][1]));
     // The edges at the nearest corner would hide what is inside.
     for (from, to) in edges().filter(|(from, to)| *from != NEAREST && *to != NEAREST) {
@@ -184,9 +219,14 @@ fn picture(
     let step = (0.7 * usual * scale).round().max(1.0) as usize;
     for (at, &(_, point)) in nearest.dots.iter().enumerate().filter(|(_, dot)| dot.1 != NOBODY.1) {
         let lit = nearest.lit(at, step, scale);
-        let colour = values.get(point as usize).map_or(STONE, |value| colour::map(bar.share(*value)));
+        let colour = values
+            .get(point as usize)
+            .map_or(STONE, |value| colour::map(bar.share(*value)));
         let shade = colour.map(|part| (f64::from(part) * lit).round() as u8);
-        canvas.dot((left + (at % nearest.width) as i32, top + (at / nearest.width) as i32), shade);
+        canvas.dot(
+            (left + (at % nearest.width) as i32, top + (at / nearest.width) as i32),
+            shade,
+        );
     }
     let label = |name: &str, axis: usize| format!("{name} = {} to {} m", short(grid[0][axis]), short(grid[1][axis]));
     let middle = |from: usize, to: usize| {
@@ -194,7 +234,13 @@ fn picture(
         (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1))
     };
     let ((x, below_x), (y, below_y), (left, z)) = (middle(0, 1), middle(1, 3), middle(0, 4));
-    canvas.text(&label("x", 0), (x - 14.0, below_x + BESIDE), LABEL, TextAlign::Right, INK);
+    canvas.text(
+        &label("x", 0),
+        (x - 14.0, below_x + BESIDE),
+        LABEL,
+        TextAlign::Right,
+        INK,
+    );
     // Not into the bar beside the axes.
     let text = label("y", 1);
     let y = (y + 14.0).min(axes.right + 40.0 - width(&text, LABEL));
@@ -210,11 +256,22 @@ fn picture(
 
 /// Places of rigid terrain inside the grid at a time, half of `apart` (m) from each other.
 fn terrain(record: &RunRecord, [lower, upper]: [[f64; 3]; 2], (apart, time): (f64, f64)) -> Vec<[f64; 3]> {
-    let Ok(case) = Case::from_text("case", &record.manifest.case.text, &[]) else { return Vec::new() };
+    let Ok(case) = Case::from_text("case", &record.manifest.case.text, &[]) else {
+        return Vec::new();
+    };
     let mut places = Vec::new();
-    let count = |axis: usize| ((upper[axis] - lower[axis]) / (0.5 * apart)).ceil().clamp(1.0, MOST_PLACES) as usize;
-    for body in surfaces::rigid::<3>(&case, case.just_before(time)).iter().filter(|body| body.acts) {
-        let Outline::Terrain(terrain) = &body.outline else { continue };
+    let count = |axis: usize| {
+        ((upper[axis] - lower[axis]) / (0.5 * apart))
+            .ceil()
+            .clamp(1.0, MOST_PLACES) as usize
+    };
+    for body in surfaces::rigid::<3>(&case, case.just_before(time))
+        .iter()
+        .filter(|body| body.acts)
+    {
+        let Outline::Terrain(terrain) = &body.outline else {
+            continue;
+        };
         let moved = body.on_path(time);
         for (i, j) in (0..=count(0)).flat_map(|i| (0..=count(1)).map(move |j| (i, j))) {
             let at = [(0, i), (1, j)].map(|(axis, k)| k as f64 / count(axis) as f64 * (upper[axis] - lower[axis]));
@@ -234,7 +291,11 @@ fn corner([lower, upper]: [[f64; 3]; 2], k: usize) -> [f64; 3] {
 
 /// Pairs of corners.
 fn edges() -> impl Iterator<Item = (usize, usize)> {
-    (0..8).flat_map(|k| (0..3).filter(move |axis| k >> axis & 1 == 0).map(move |axis| (k, k | 1 << axis)))
+    (0..8).flat_map(|k| {
+        (0..3)
+            .filter(move |axis| k >> axis & 1 == 0)
+            .map(move |axis| (k, k | 1 << axis))
+    })
 }
 
 #[cfg(test)]
@@ -245,8 +306,13 @@ mod tests {
     fn the_view_is_orthonormal_and_looks_from_the_front_the_right_and_above() {
         let View { right, up, eye } = View::new(VIEW);
         let product = |a: [f64; 3], b: [f64; 3]| (0..3).map(|axis| a[axis] * b[axis]).sum::<f64>();
-        for (a, b, expected) in [(right, right, 1.0), (up, up, 1.0), (eye, eye, 1.0), (right, up, 0.0), (up, eye, 0.0)]
-        {
+        for (a, b, expected) in [
+            (right, right, 1.0),
+            (up, up, 1.0),
+            (eye, eye, 1.0),
+            (right, up, 0.0),
+            (up, eye, 0.0),
+        ] {
             assert!((product(a, b) - expected).abs() < 1e-15);
         }
         assert!(eye[0] > 0.0 && eye[1] < 0.0 && eye[2] > 0.0 && up[2] > 0.0);
@@ -261,7 +327,14 @@ mod tests {
         nearest.add(0, ([20.0, 20.0], 0.0), 10.0, 1.0);
         nearest.add(1, ([20.0, 20.0], -5.0), 12.0, 1.0);
         let at = |column: usize, row: usize| row * 40 + column;
-        assert_eq!((nearest.dots[at(20, 20)].1, nearest.dots[at(20, 9)].1, nearest.dots[at(1, 1)].1), (0, 1, NOBODY.1));
+        assert_eq!(
+            (
+                nearest.dots[at(20, 20)].1,
+                nearest.dots[at(20, 9)].1,
+                nearest.dots[at(1, 1)].1
+            ),
+            (0, 1, NOBODY.1)
+        );
         let [upper_left, middle, lower_right] =
             [(15, 15), (20, 20), (25, 25)].map(|(column, row)| nearest.lit(at(column, row), 2, 1.0));
         assert!(upper_left > middle && middle > lower_right && lower_right >= AMBIENT);

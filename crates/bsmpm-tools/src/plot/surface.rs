@@ -44,9 +44,17 @@ pub(super) fn draw(
     axes.rules(&mut canvas);
     outline(&mut canvas, &axes, record);
     for (index, frame) in frames.iter().enumerate() {
-        axes.line(&mut canvas, &surface(record, frame), 3.5, colour::line(index, frames.len()));
+        axes.line(
+            &mut canvas,
+            &surface(record, frame),
+            3.5,
+            colour::line(index, frames.len()),
+        );
     }
-    for (place, colour) in reference.iter().flat_map(|group| group.places.iter().map(|place| (place, group.colour))) {
+    for (place, colour) in reference
+        .iter()
+        .flat_map(|group| group.places.iter().map(|place| (place, group.colour)))
+    {
         canvas.disc(axes.place(*place), 8.0, WHITE);
         canvas.disc(axes.place(*place), 6.0, colour);
     }
@@ -59,14 +67,22 @@ pub(super) fn draw(
 /// The highest point, of a solid the top of its material, of every column of cells from left to right; an empty column
 /// breaks the line.
 fn surface(record: &RunRecord, frame: &Frame) -> Vec<(f64, f64)> {
-    let Some((low, high)) = range(frame.position.iter().map(|point| point[0])) else { return Vec::new() };
+    let Some((low, high)) = range(frame.position.iter().map(|point| point[0])) else {
+        return Vec::new();
+    };
     let grid = record.manifest.grid.as_ref();
     let cell = grid.and_then(|grid| Some((*grid.lower.first()?, *grid.cell.first()?)));
     let sizes = || splat::sizes(frame, &record.manifest.case.geometry);
     let (origin, width) = cell.unwrap_or_else(|| (low, 2.0 * range(sizes()).map_or(1.0, |(_, largest)| largest)));
     // A hundred thousand columns are more than a picture can show, and bound the memory whatever the numbers are.
     let width = if width > 0.0 { width } else { high - low }.max((high - low) / 1e5);
-    let column = |x: f64| if width > 0.0 { ((x - origin) / width).floor() } else { 0.0 };
+    let column = |x: f64| {
+        if width > 0.0 {
+            ((x - origin) / width).floor()
+        } else {
+            0.0
+        }
+    };
     let first = column(low);
     let mut highest = vec![(f64::NAN, f64::NAN); (column(high) - first) as usize + 1];
     for &[x, y, _] in &frame.position {
@@ -90,15 +106,24 @@ struct SurfaceGroup {
 /// The reference's points by time, in the colour of the frame of the same time, if there is one.
 fn places(record: &RunRecord, frames: &[Frame], table: &Columns) -> Vec<SurfaceGroup> {
     let columns = (table.get("time"), table.get("x"), table.get("y"));
-    let (Some(times), Some(x), Some(y)) = columns else { return Vec::new() };
+    let (Some(times), Some(x), Some(y)) = columns else {
+        return Vec::new();
+    };
     let mut groups: Vec<SurfaceGroup> = Vec::new();
     for ((&time, &x), &y) in times.iter().zip(x).zip(y) {
         if let Some(group) = groups.iter_mut().find(|group| group.time == time) {
             group.places.push((x, y));
         } else {
             let same = |frame: &Frame| record.moment(frame.time) == record.moment(time);
-            let colour = frames.iter().position(same).map_or(INK, |index| colour::line(index, frames.len()));
-            groups.push(SurfaceGroup { time, places: vec![(x, y)], colour });
+            let colour = frames
+                .iter()
+                .position(same)
+                .map_or(INK, |index| colour::line(index, frames.len()));
+            groups.push(SurfaceGroup {
+                time,
+                places: vec![(x, y)],
+                colour,
+            });
         }
     }
     groups
@@ -115,5 +140,10 @@ fn entries(record: &RunRecord, frames: &[Frame], reference: &[SurfaceGroup]) -> 
         colour: group.colour,
         mark: Mark::Points,
     };
-    frames.iter().enumerate().map(line).chain(reference.iter().map(group)).collect()
+    frames
+        .iter()
+        .enumerate()
+        .map(line)
+        .chain(reference.iter().map(group))
+        .collect()
 }

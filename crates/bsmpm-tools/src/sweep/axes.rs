@@ -22,7 +22,9 @@ impl SweepAxis {
                 value once."
             ))
         };
-        let Some((key, values)) = text.split_once('=') else { return wrong("`=` is missing") };
+        let Some((key, values)) = text.split_once('=') else {
+            return wrong("`=` is missing");
+        };
         let (key, values) = (key.trim().to_owned(), split(values));
         if key.is_empty() || values.iter().any(String::is_empty) {
             return wrong("the key or a value is empty");
@@ -65,7 +67,9 @@ pub(super) fn settings(axes: &[SweepAxis], one_at_a_time: bool) -> Result<Vec<Sw
             axes[twice].key
         ));
     }
-    let count = axes.iter().fold(1_usize, |count, axis| count.saturating_mul(axis.values.len()));
+    let count = axes
+        .iter()
+        .fold(1_usize, |count, axis| count.saturating_mul(axis.values.len()));
     if count > MOST && !one_at_a_time {
         return Err(format!(
             "E0839: the sweep has {count} combinations of values (limit: {MOST}). Give fewer values, or use \
@@ -83,7 +87,10 @@ pub(super) fn settings(axes: &[SweepAxis], one_at_a_time: bool) -> Result<Vec<Sw
         if one_at_a_time {
             settings.extend(axis.values.iter().map(|value| with(&own, value)));
         } else {
-            settings = settings.iter().flat_map(|setting| axis.values.iter().map(|v| with(setting, v))).collect();
+            settings = settings
+                .iter()
+                .flat_map(|setting| axis.values.iter().map(|v| with(setting, v)))
+                .collect();
         }
     }
     Ok(settings)
@@ -100,7 +107,10 @@ mod tests {
     #[test]
     fn values_keep_their_syntax() {
         assert_eq!(axis("grid.cell=10 mm, 5mm").values, ["10 mm", "5mm"]);
-        assert_eq!(axis("grid.cell=[1, 2],[\"1 m\", 0.5]").values, ["[1, 2]", "[\"1 m\", 0.5]"]);
+        assert_eq!(
+            axis("grid.cell=[1, 2],[\"1 m\", 0.5]").values,
+            ["[1, 2]", "[\"1 m\", 0.5]"]
+        );
         assert_eq!(axis("title=\"a, b\"").values, ["\"a, b\""]);
         assert_eq!(axis("a.b={c = 1, d = [2, 3]},{c = 2}").values.len(), 2);
         for text in ["grid.cell", "=1", "a=", "a=1,,2", "a=1,1"] {
@@ -114,12 +124,30 @@ mod tests {
         let shown = |one| {
             let settings = settings(&axes, one).unwrap();
             let word = |value: &Option<String>| value.clone().unwrap_or_else(|| "-".into());
-            settings.iter().map(|setting| setting.iter().map(word).collect::<String>()).collect::<Vec<_>>()
+            settings
+                .iter()
+                .map(|setting| setting.iter().map(word).collect::<String>())
+                .collect::<Vec<_>>()
         };
         assert_eq!(shown(false), ["1x", "1y", "1z", "2x", "2y", "2z"]);
         assert_eq!(shown(true), ["--", "1-", "2-", "-x", "-y", "-z"]);
         assert!(settings(&[axis("a=1"), axis("a=2")], false).is_err());
-        let long = SweepAxis { key: "a".into(), values: (0..200).map(|value| value.to_string()).collect() };
-        assert!(settings(&[long.clone(), SweepAxis { key: "b".into(), ..long }], false).is_err());
+        let long = SweepAxis {
+            key: "a".into(),
+            values: (0..200).map(|value| value.to_string()).collect(),
+        };
+        assert!(
+            settings(
+                &[
+                    long.clone(),
+                    SweepAxis {
+                        key: "b".into(),
+                        ..long
+                    }
+                ],
+                false
+            )
+            .is_err()
+        );
     }
 }

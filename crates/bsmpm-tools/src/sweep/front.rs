@@ -7,7 +7,12 @@ pub(super) fn front(places: &[Option<(f64, f64)>]) -> Vec<bool> {
         let no_worse = one.0 <= other.0 && one.1 <= other.1;
         no_worse && (one != other || index < other_index)
     };
-    let there = || places.iter().enumerate().filter_map(|(index, place)| Some((index, counted(*place)?)));
+    let there = || {
+        places
+            .iter()
+            .enumerate()
+            .filter_map(|(index, place)| Some((index, counted(*place)?)))
+    };
     let is_best = |(index, place): (usize, &Option<(f64, f64)>)| {
         counted(*place).is_some_and(|place| !there().any(|other| beats(other, (index, place))))
     };
@@ -16,9 +21,13 @@ pub(super) fn front(places: &[Option<(f64, f64)>]) -> Vec<bool> {
 
 /// The cheapest of those whose error is at most `within`.
 pub(super) fn cheapest(places: &[Option<(f64, f64)>], within: f64) -> Option<usize> {
-    let there = places.iter().enumerate().filter_map(|(index, place)| Some((index, counted(*place)?)));
+    let there = places
+        .iter()
+        .enumerate()
+        .filter_map(|(index, place)| Some((index, counted(*place)?)));
     let good = there.filter(|(_, place)| place.1 <= within);
-    good.min_by(|(_, a), (_, b)| a.0.total_cmp(&b.0)).map(|(index, _)| index)
+    good.min_by(|(_, a), (_, b)| a.0.total_cmp(&b.0))
+        .map(|(index, _)| index)
 }
 
 fn counted(place: Option<(f64, f64)>) -> Option<(f64, f64)> {

@@ -22,12 +22,19 @@ const SMALLEST: f64 = 1e-12;
 
 /// Draws the errors of one quantity; nothing where no run has one.
 pub(super) fn draw(report: &SweepReport, quantity: usize, path: &Path) -> Result<bool, Error> {
-    let place = |row: &SweepRow| row.place(&[quantity]).filter(|(cost, error)| *cost > 0.0 && *error > SMALLEST);
+    let place = |row: &SweepRow| {
+        row.place(&[quantity])
+            .filter(|(cost, error)| *cost > 0.0 && *error > SMALLEST)
+    };
     let front: Vec<(&SweepRow, (f64, f64))> = sorted(report, |row| place(row).filter(|_| row.on_front[quantity]));
-    let others: Vec<(&SweepRow, (f64, f64))> =
-        sorted(report, |row| place(row).filter(|_| !row.on_front[quantity] && !row.is_reference));
+    let others: Vec<(&SweepRow, (f64, f64))> = sorted(report, |row| {
+        place(row).filter(|_| !row.on_front[quantity] && !row.is_reference)
+    });
     let all = || front.iter().chain(&others).map(|(_, place)| *place);
-    let (Some(x), Some(y)) = (range(all().map(|place| place.0)), range(all().map(|place| 100.0 * place.1))) else {
+    let (Some(x), Some(y)) = (
+        range(all().map(|place| place.0)),
+        range(all().map(|place| 100.0 * place.1)),
+    ) else {
         return Ok(false);
     };
     let [on_front, elsewhere, baseline] = [
@@ -35,11 +42,17 @@ pub(super) fn draw(report: &SweepReport, quantity: usize, path: &Path) -> Result
         ("other settings", OUTLINE, Mark::Points),
         ("baseline", colour::line(1, 3), Mark::Points),
     ]
-    .map(|(name, colour, mark)| LegendEntry { name: name.to_owned(), colour, mark });
-    let own: Vec<(f64, f64)> = sorted(report, |row| place(row).filter(|_| row.is_baseline && !row.is_reference))
-        .into_iter()
-        .map(|(_, place)| place)
-        .collect();
+    .map(|(name, colour, mark)| LegendEntry {
+        name: name.to_owned(),
+        colour,
+        mark,
+    });
+    let own: Vec<(f64, f64)> = sorted(report, |row| {
+        place(row).filter(|_| row.is_baseline && !row.is_reference)
+    })
+    .into_iter()
+    .map(|(_, place)| place)
+    .collect();
     let mut entries = vec![&on_front];
     entries.extend((!others.is_empty()).then_some(&elsewhere));
     entries.extend((!own.is_empty()).then_some(&baseline));
@@ -60,13 +73,23 @@ pub(super) fn draw(report: &SweepReport, quantity: usize, path: &Path) -> Result
     axes.rules(&mut canvas);
     let level = axes.level(&mut canvas, 100.0 * report.within);
     let good = format!("{} %", 100.0 * report.within);
-    canvas.text(&good, (axes.left + 12.0, level - 20.0), NUMBER, TextAlign::Left, OUTLINE);
+    canvas.text(
+        &good,
+        (axes.left + 12.0, level - 20.0),
+        NUMBER,
+        TextAlign::Left,
+        OUTLINE,
+    );
     let on_sheet = |(cost, error): (f64, f64)| axes.place((cost, 100.0 * error));
     let marked = |canvas: &mut Canvas, entry: &LegendEntry, places: Vec<(f64, f64)>| {
         let places: Vec<_> = places.into_iter().map(on_sheet).collect();
         entry.mark.draw(canvas, &places, LINE, entry.colour);
     };
-    marked(&mut canvas, &elsewhere, others.iter().map(|(_, place)| *place).collect());
+    marked(
+        &mut canvas,
+        &elsewhere,
+        others.iter().map(|(_, place)| *place).collect(),
+    );
     marked(&mut canvas, &on_front, front.iter().map(|(_, place)| *place).collect());
     marked(&mut canvas, &baseline, own);
     names(&mut canvas, &axes, &front, &on_sheet);
@@ -104,7 +127,13 @@ fn names(
         let top = axes.top + gap * (index as f64 + 0.3);
         let size = (0.42 * gap).min(NUMBER * 0.85);
         canvas.text(&text, (left, top), fitting(&text, size, wide), TextAlign::Left, INK);
-        canvas.text(&cost, (left, top + 0.42 * gap), fitting(&cost, size, wide), TextAlign::Left, OUTLINE);
+        canvas.text(
+            &cost,
+            (left, top + 0.42 * gap),
+            fitting(&cost, size, wide),
+            TextAlign::Left,
+            OUTLINE,
+        );
     }
 }
 
@@ -130,10 +159,19 @@ mod tests {
 
     #[test]
     fn an_axis_shows_two_powers_of_ten() {
-        for (low, high) in [(1.0, 1.0), (2.0, 3.0), (0.02, 40.0), (7.0, 12.0), (1e-6, 1e-6), (95.0, 99.0)] {
+        for (low, high) in [
+            (1.0, 1.0),
+            (2.0, 3.0),
+            (0.02, 40.0),
+            (7.0, 12.0),
+            (1e-6, 1e-6),
+            (95.0, 99.0),
+        ] {
             let (from, to) = decades((low, high));
             assert!(from < low && high < to, "{low} {high}: {from} {to}");
-            let powers = (-9..9).filter(|power| (from..=to).contains(&10_f64.powi(*power))).count();
+            let powers = (-9..9)
+                .filter(|power| (from..=to).contains(&10_f64.powi(*power)))
+                .count();
             assert!(powers >= 2, "{low} {high}: {from} {to}");
         }
         assert!((decades((0.02, 40.0)).1 - 64.0).abs() < 1e-9);

@@ -22,19 +22,39 @@ pub(super) struct SweepPlan {
 impl SweepArguments {
     pub(super) fn plan(&self) -> Result<SweepPlan, Error> {
         let usage = |reason: String| Error::Usage { reason };
-        let axes: Vec<SweepAxis> =
-            self.vary.iter().map(|text| SweepAxis::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
-        let quantities: Vec<SweepQuantity> =
-            self.quantity.iter().map(|text| SweepQuantity::parse(text)).collect::<Result<_, _>>().map_err(usage)?;
+        let axes: Vec<SweepAxis> = self
+            .vary
+            .iter()
+            .map(|text| SweepAxis::parse(text))
+            .collect::<Result<_, _>>()
+            .map_err(usage)?;
+        let quantities: Vec<SweepQuantity> = self
+            .quantity
+            .iter()
+            .map(|text| SweepQuantity::parse(text))
+            .collect::<Result<_, _>>()
+            .map_err(usage)?;
         let settings = axes::settings(&axes, self.one_at_a_time).map_err(usage)?;
         let bytes = case::load(&self.case)?;
         let own = case::parsed(&self.case, &bytes, &self.options.set)?;
         self.look_through(&quantities, &own)?;
         let reference = Reference::parse(&self.reference);
         reference.check(&quantities)?;
-        let study = Study { path: &self.case, bytes: &bytes, set: &self.options.set, axes: &axes };
+        let study = Study {
+            path: &self.case,
+            bytes: &bytes,
+            set: &self.options.set,
+            axes: &axes,
+        };
         let points = study.points(&settings, &self.baseline.as_deref().map_or_else(Vec::new, axes::split))?;
-        Ok(SweepPlan { bytes, own, axes, quantities, reference, points })
+        Ok(SweepPlan {
+            bytes,
+            own,
+            axes,
+            quantities,
+            reference,
+            points,
+        })
     }
 
     /// Whether the case records what is wanted.
@@ -53,8 +73,12 @@ impl SweepArguments {
                 )),
             };
         }
-        let columns: Vec<String> =
-            case.histories.iter().flat_map(bsmpm_scene::History::columns).map(|column| column.name).collect();
+        let columns: Vec<String> = case
+            .histories
+            .iter()
+            .flat_map(bsmpm_scene::History::columns)
+            .map(|column| column.name)
+            .collect();
         let parts = quantities.iter().flat_map(|quantity| &quantity.parts);
         match parts.into_iter().find(|part| !columns.contains(&part.column)) {
             Some(part) => usage(format!(

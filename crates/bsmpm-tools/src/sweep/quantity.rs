@@ -42,7 +42,10 @@ impl SweepQuantity {
             if column.is_empty() {
                 return Err(wrong("a name is empty"));
             }
-            parts.push(QuantityPart { column: column.to_owned(), at });
+            parts.push(QuantityPart {
+                column: column.to_owned(),
+                at,
+            });
         }
         parts.reverse();
         let name = text.chars().filter(|c| !c.is_whitespace()).collect();
@@ -61,7 +64,10 @@ impl SweepQuantity {
 
     /// How far numbers are from a reference: sqrt(mean(((v - r)/r)²)); none where a reference is zero.
     pub fn error(&self, values: &[f64], reference: &[f64]) -> Option<f64> {
-        let squares = values.iter().zip(reference).map(|(value, reference)| ((value - reference) / reference).powi(2));
+        let squares = values
+            .iter()
+            .zip(reference)
+            .map(|(value, reference)| ((value - reference) / reference).powi(2));
         let mean = squares.sum::<f64>() / self.parts.len() as f64;
         Some(mean.sqrt()).filter(|error| error.is_finite())
     }
@@ -70,7 +76,11 @@ impl SweepQuantity {
 impl QuantityPart {
     /// Its number in a history: linear between rows.
     pub fn value(&self, history: &Columns) -> Result<f64, String> {
-        let column = |name: &str| history.get(name).ok_or_else(|| format!("its history has no column {name}"));
+        let column = |name: &str| {
+            history
+                .get(name)
+                .ok_or_else(|| format!("its history has no column {name}"))
+        };
         let (times, values) = (column("time")?, column(&self.column)?);
         let (Some(&end), Some(&last)) = (times.last(), values.last()) else {
             return Err("its history has no row".to_owned());
@@ -93,7 +103,8 @@ impl QuantityPart {
 
     /// The column and the time.
     pub fn words(&self) -> String {
-        self.at.map_or_else(|| self.column.clone(), |at| format!("{}@{at}", self.column))
+        self.at
+            .map_or_else(|| self.column.clone(), |at| format!("{}@{at}", self.column))
     }
 }
 
@@ -115,7 +126,10 @@ mod tests {
         };
         assert_eq!(places("runout"), "runout");
         assert_eq!(places("runout @ 0.607 s"), "runout@0.607");
-        assert_eq!(places("surface-200, surface-302@0.607"), "surface-200@0.607 surface-302@0.607");
+        assert_eq!(
+            places("surface-200, surface-302@0.607"),
+            "surface-200@0.607 surface-302@0.607"
+        );
         assert_eq!(places("p@.25,p@1,q"), "p@0.25 p@1 q");
         for text in ["", "a,", "a@soon", "@1", "a@inf"] {
             assert!(SweepQuantity::parse(text).is_err(), "{text}");

@@ -99,7 +99,12 @@ impl Reference {
                 let mut numbers = numbers.iter().copied();
                 let of = |quantity: &SweepQuantity| Some(numbers.by_ref().take(quantity.parts.len()).collect());
                 let values = quantities.iter().map(of).collect();
-                Ok(FoundReference { what: "the numbers given".to_owned(), values, run: None, notes: Vec::new() })
+                Ok(FoundReference {
+                    what: "the numbers given".to_owned(),
+                    values,
+                    run: None,
+                    notes: Vec::new(),
+                })
             }
         }
     }
@@ -119,13 +124,22 @@ fn elsewhere(directory: &Path, quantities: &[SweepQuantity]) -> Result<Vec<Vec<f
     }
     let history = table::read(&directory.join(HISTORY))?;
     let of = |quantity: &SweepQuantity| quantity.values(&history);
-    quantities.iter().map(of).collect::<Result<_, _>>().map_err(|reason| refused(&reason))
+    quantities
+        .iter()
+        .map(of)
+        .collect::<Result<_, _>>()
+        .map_err(|reason| refused(&reason))
 }
 
 /// The finest run that has finished.
 fn best(points: &[Point], values: &[Option<ReferenceValues>]) -> Option<usize> {
     let there = (0..points.len()).filter(|&index| values[index].is_some());
-    there.max_by(|&a, &b| points[a].fineness().partial_cmp(&points[b].fineness()).unwrap_or(std::cmp::Ordering::Equal))
+    there.max_by(|&a, &b| {
+        points[a]
+            .fineness()
+            .partial_cmp(&points[b].fineness())
+            .unwrap_or(std::cmp::Ordering::Equal)
+    })
 }
 
 fn baseline(quantities: &[SweepQuantity], points: &[Point], values: &[Option<ReferenceValues>]) -> FoundReference {
@@ -134,7 +148,13 @@ fn baseline(quantities: &[SweepQuantity], points: &[Point], values: &[Option<Ref
 }
 
 fn finest(quantities: &[SweepQuantity], points: &[Point], values: &[Option<ReferenceValues>]) -> FoundReference {
-    of_run(best(points, values), "the finest completed run", quantities, points, values)
+    of_run(
+        best(points, values),
+        "the finest completed run",
+        quantities,
+        points,
+        values,
+    )
 }
 
 /// A run of the sweep as the reference, if it has finished.
@@ -147,9 +167,19 @@ fn of_run(
 ) -> FoundReference {
     let Some((index, values)) = index.and_then(|index| Some((index, values[index].clone()?))) else {
         let what = format!("none: {what} is missing");
-        return FoundReference { what, values: vec![None; quantities.len()], run: None, notes: Vec::new() };
+        return FoundReference {
+            what,
+            values: vec![None; quantities.len()],
+            run: None,
+            notes: Vec::new(),
+        };
     };
-    FoundReference { what: format!("{what}: {}", points[index].name()), values, run: Some(index), notes: Vec::new() }
+    FoundReference {
+        what: format!("{what}: {}", points[index].name()),
+        values,
+        run: Some(index),
+        notes: Vec::new(),
+    }
 }
 
 /// From the three smallest cells of the runs that differ from the finest one in them alone.
@@ -180,7 +210,9 @@ fn extrapolated(quantities: &[SweepQuantity], points: &[Point], values: &[Option
         for part in 0..quantity.parts.len() {
             let f = [of(first.1, part), of(second.1, part), of(third.1, part)];
             let limit = limit(h, f);
-            found.notes.push(format!("{}: {}", quantity.parts[part].words(), limit.1));
+            found
+                .notes
+                .push(format!("{}: {}", quantity.parts[part].words(), limit.1));
             limits.push(limit.0);
             if limit.0 == f[0] {
                 found.run = finest; // its own value is the reference: it has no error to be judged by
@@ -203,7 +235,10 @@ fn limit(h: [f64; 3], f: [f64; 3]) -> (f64, String) {
                 ConvergenceType::OscillatoryDiverging => "oscillate and diverge",
                 _ => "do not converge",
             };
-            (f[0], format!("{}, {}, {} {word}; the reference is the finest value", f[2], f[1], f[0]))
+            (
+                f[0],
+                format!("{}, {}, {} {word}; the reference is the finest value", f[2], f[1], f[0]),
+            )
         }
     }
 }
@@ -252,16 +287,29 @@ mod tests {
         let own = points.iter().position(|point| point.is_baseline);
         assert!(own == Some(0) && found(&Reference::Baseline, &values).run == own);
         let limit = found(&Reference::Extrapolated, &values);
-        assert!((limit.values[0].as_ref().unwrap()[0] - 5.0).abs() < 1e-9 && limit.run.is_none(), "{limit:?}");
+        assert!(
+            (limit.values[0].as_ref().unwrap()[0] - 5.0).abs() < 1e-9 && limit.run.is_none(),
+            "{limit:?}"
+        );
         let mut fewer = values.clone();
         fewer[5] = None;
         let limit = found(&Reference::Extrapolated, &fewer);
-        assert_eq!((limit.run, limit.values[0].clone()), (Some(4), Some(vec![3.0])), "{limit:?}");
+        assert_eq!(
+            (limit.run, limit.values[0].clone()),
+            (Some(4), Some(vec![3.0])),
+            "{limit:?}"
+        );
         fewer[0] = None;
         let none = found(&Reference::Baseline, &fewer);
-        assert!(none.run.is_none() && none.what == "none: the baseline is missing", "{none:?}");
+        assert!(
+            none.run.is_none() && none.what == "none: the baseline is missing",
+            "{none:?}"
+        );
         let limit = found(&Reference::Extrapolated, &fewer);
-        assert!(limit.run == Some(4) && limit.notes[0].contains("three cell sizes"), "{limit:?}");
+        assert!(
+            limit.run == Some(4) && limit.notes[0].contains("three cell sizes"),
+            "{limit:?}"
+        );
         let nothing = found(&Reference::Finest, &vec![None; 6]);
         assert!(nothing.run.is_none() && nothing.values == [None]);
     }

@@ -77,8 +77,22 @@ pub(super) struct ReportParts<'a> {
 
 impl SweepReport {
     pub fn of(parts: ReportParts, values: &[Option<ReferenceValues>], reference: FoundReference) -> Self {
-        let ReportParts { quantities, points, outcomes, within, .. } = parts;
-        let row = |index: usize| row(&points[index], &outcomes[index], values[index].as_ref(), quantities, &reference);
+        let ReportParts {
+            quantities,
+            points,
+            outcomes,
+            within,
+            ..
+        } = parts;
+        let row = |index: usize| {
+            row(
+                &points[index],
+                &outcomes[index],
+                values[index].as_ref(),
+                quantities,
+                &reference,
+            )
+        };
         let mut runs: Vec<SweepRow> = (0..points.len()).map(row).collect();
         for (index, row) in runs.iter_mut().enumerate() {
             row.is_reference = reference.run == Some(index);
@@ -87,9 +101,15 @@ impl SweepReport {
         for (index, quantity) in quantities.iter().enumerate() {
             let places: Vec<_> = runs.iter().map(|row| row.place(&[index])).collect();
             // That the reference has no error says nothing of what it is worth.
-            let others: Vec<_> =
-                places.iter().zip(&runs).map(|(place, row)| place.filter(|_| !row.is_reference)).collect();
-            front(&others).into_iter().zip(&mut runs).for_each(|(is_best, row)| row.on_front.push(is_best));
+            let others: Vec<_> = places
+                .iter()
+                .zip(&runs)
+                .map(|(place, row)| place.filter(|_| !row.is_reference))
+                .collect();
+            front(&others)
+                .into_iter()
+                .zip(&mut runs)
+                .for_each(|(is_best, row)| row.on_front.push(is_best));
             best.push((Some(quantity.name.clone()), cheapest(&places, within)));
         }
         if quantities.len() > 1 {
@@ -100,12 +120,23 @@ impl SweepReport {
         let baseline = runs.iter().find(|row| row.is_baseline && row.state == RunState::Done);
         let baseline = baseline.map(|row| row.cost.cpu_seconds).filter(|cost| *cost > 0.0);
         let ratio = |run: Option<usize>| Some(runs[run?].cost.cpu_seconds / baseline?);
-        let cheapest = best.into_iter().map(|(quantity, run)| Cheapest { quantity, run, ratio: ratio(run) }).collect();
+        let cheapest = best
+            .into_iter()
+            .map(|(quantity, run)| Cheapest {
+                quantity,
+                run,
+                ratio: ratio(run),
+            })
+            .collect();
         Self {
             case: parts.case,
             title: parts.title,
             command: parts.command.to_vec(),
-            heads: parts.axes.iter().map(|key| super::study::short(key, &parts.axes).to_owned()).collect(),
+            heads: parts
+                .axes
+                .iter()
+                .map(|key| super::study::short(key, &parts.axes).to_owned())
+                .collect(),
             axes: parts.axes,
             quantities: quantities.iter().map(|quantity| quantity.name.clone()).collect(),
             reference,
@@ -117,7 +148,10 @@ impl SweepReport {
 
     /// The run that is the cheapest by all quantities.
     pub fn best(&self) -> Option<&SweepRow> {
-        self.cheapest.last().and_then(|cheapest| cheapest.run).map(|run| &self.runs[run])
+        self.cheapest
+            .last()
+            .and_then(|cheapest| cheapest.run)
+            .map(|run| &self.runs[run])
     }
 
     /// Whether any run has come to its end.
@@ -128,24 +162,39 @@ impl SweepReport {
     /// For the screen.
     pub fn text(&self) -> String {
         let mut text = format!("{}\nreference: {}\n", self.title, self.reference.what);
-        self.reference.notes.iter().for_each(|note| text += &format!("  {note}\n"));
+        self.reference
+            .notes
+            .iter()
+            .for_each(|note| text += &format!("  {note}\n"));
         text += &format!("\n{}\n", self.table());
         for Cheapest { quantity, run, ratio } in &self.cheapest {
             let percent = 100.0 * self.within;
-            let of = quantity.as_deref().map_or("all quantities".to_owned(), |name| format!("the {name}"));
+            let of = quantity
+                .as_deref()
+                .map_or("all quantities".to_owned(), |name| format!("the {name}"));
             text += &match run.map(|run| &self.runs[run]) {
                 None => format!("no setting is within {percent} % of {of}\n"),
                 Some(row) => {
                     let ratio = ratio.map_or_else(String::new, |ratio| format!(", {ratio:.3} of the baseline's"));
-                    let only = if row.is_reference { " (the reference itself)" } else { "" };
+                    let only = if row.is_reference {
+                        " (the reference itself)"
+                    } else {
+                        ""
+                    };
                     let cost = row.cost.cpu_seconds;
-                    format!("cheapest within {percent} % of {of}: {}{only}; {cost:.2} CPU s{ratio}\n", row.name)
+                    format!(
+                        "cheapest within {percent} % of {of}: {}{only}; {cost:.2} CPU s{ratio}\n",
+                        row.name
+                    )
                 }
             };
         }
         let cpu: f64 = self.runs.iter().map(|row| row.cost.cpu_seconds).sum();
         let kept = self.runs.iter().filter(|row| row.kept).count();
-        text + &format!("{} runs, {kept} of them kept from before, {cpu:.1} CPU s\n", self.runs.len())
+        text + &format!(
+            "{} runs, {kept} of them kept from before, {cpu:.1} CPU s\n",
+            self.runs.len()
+        )
     }
 
     fn table(&self) -> String {
@@ -164,8 +213,13 @@ impl SweepReport {
             table.column(head, |row| &row.settings[axis]);
         }
         for (index, name) in self.quantities.iter().enumerate() {
-            let values =
-                |row: &SweepRow| row.values[index].iter().flatten().map(|v| format!("{v:.5}")).collect::<Vec<_>>();
+            let values = |row: &SweepRow| {
+                row.values[index]
+                    .iter()
+                    .flatten()
+                    .map(|v| format!("{v:.5}"))
+                    .collect::<Vec<_>>()
+            };
             table.right(name, |row| values(row).join(" ")).right("error", |row| {
                 let mark = if row.on_front[index] { " *" } else { "" };
                 some(row.errors[index].map(|error| format!("{:.3} %{mark}", 100.0 * error)))
@@ -190,12 +244,20 @@ impl SweepReport {
         for (axis, key) in self.axes.iter().enumerate() {
             table.column(key, |row| &row.settings[axis]);
         }
-        table.column("state", |row| word(row.state)).column("code", |row| some(row.code));
+        table
+            .column("state", |row| word(row.state))
+            .column("code", |row| some(row.code));
         for (index, quantity) in self.quantities.iter().enumerate() {
             let parts = self.reference_parts(index);
             for part in 0..parts {
-                let heading = if parts > 1 { format!("{quantity} [{part}]") } else { quantity.clone() };
-                table.column(heading, |row| some(row.values[index].as_ref().and_then(|values| values.get(part))));
+                let heading = if parts > 1 {
+                    format!("{quantity} [{part}]")
+                } else {
+                    quantity.clone()
+                };
+                table.column(heading, |row| {
+                    some(row.values[index].as_ref().and_then(|values| values.get(part)))
+                });
             }
             table
                 .column(format!("error {quantity}"), |row| some(row.errors[index]))
@@ -229,11 +291,25 @@ impl SweepRow {
     }
 
     fn remark(&self) -> String {
-        let code =
-            self.code.filter(|_| self.state != RunState::Done).map_or_else(String::new, |code| format!(" ({code})"));
-        let marks = [(self.is_baseline, "baseline"), (self.is_reference, "reference"), (self.kept, "kept")];
-        let marks = marks.iter().filter(|(is, _)| *is).map(|(_, mark)| format!(", {mark}")).collect::<String>();
-        let reason = if self.reason.is_empty() { String::new() } else { format!(": {}", self.reason) };
+        let code = self
+            .code
+            .filter(|_| self.state != RunState::Done)
+            .map_or_else(String::new, |code| format!(" ({code})"));
+        let marks = [
+            (self.is_baseline, "baseline"),
+            (self.is_reference, "reference"),
+            (self.kept, "kept"),
+        ];
+        let marks = marks
+            .iter()
+            .filter(|(is, _)| *is)
+            .map(|(_, mark)| format!(", {mark}"))
+            .collect::<String>();
+        let reason = if self.reason.is_empty() {
+            String::new()
+        } else {
+            format!(": {}", self.reason)
+        };
         format!("{}{code}{marks}{reason}", word(self.state))
     }
 }
@@ -254,7 +330,10 @@ fn row(
     SweepRow {
         name: point.name(),
         settings: point.values.clone(),
-        set: point.order.as_ref().map_or_else(|_| Vec::new(), |order| order.set.clone()),
+        set: point
+            .order
+            .as_ref()
+            .map_or_else(|_| Vec::new(), |order| order.set.clone()),
         state: outcome.state,
         code: outcome.code,
         reason: outcome.reason.lines().next().unwrap_or_default().to_owned(),
@@ -265,7 +344,10 @@ fn row(
         is_reference: false,
         kept: outcome.kept,
         cost: outcome.cost,
-        directory: outcome.directory.as_ref().map(|directory| directory.display().to_string()),
+        directory: outcome
+            .directory
+            .as_ref()
+            .map(|directory| directory.display().to_string()),
     }
 }
 
@@ -282,9 +364,23 @@ mod tests {
         let value = |a: f64| Some(vec![Some(vec![a]), Some(vec![2.0 * a, 3.0])]);
         let values = [value(1.1), None, value(1.03), value(1.0)];
         let outcome = |(cpu_seconds, value): (f64, &Option<ReferenceValues>)| {
-            let state = if value.is_some() { RunState::Done } else { RunState::NoConvergence };
-            let reason = if value.is_some() { String::new() } else { "no, it said".to_owned() };
-            Outcome { cost: RunCost { cpu_seconds, ..RunCost::default() }, ..Outcome::never(state, reason) }
+            let state = if value.is_some() {
+                RunState::Done
+            } else {
+                RunState::NoConvergence
+            };
+            let reason = if value.is_some() {
+                String::new()
+            } else {
+                "no, it said".to_owned()
+            };
+            Outcome {
+                cost: RunCost {
+                    cpu_seconds,
+                    ..RunCost::default()
+                },
+                ..Outcome::never(state, reason)
+            }
         };
         let outcomes: Vec<Outcome> = [4.0, 5.0, 16.0, 32.0].into_iter().zip(&values).map(outcome).collect();
         let found = Reference::Finest.find(&quantities, &points, &values).unwrap();
@@ -307,7 +403,10 @@ mod tests {
         assert!(report.runs[3].is_reference && report.runs[0].is_baseline);
         let on_front: Vec<bool> = report.runs.iter().map(|row| row.on_front[0]).collect();
         assert_eq!(on_front, [true, false, true, false]);
-        assert_eq!(report.cheapest.iter().map(|best| best.run).collect::<Vec<_>>(), [Some(2); 3]);
+        assert_eq!(
+            report.cheapest.iter().map(|best| best.run).collect::<Vec<_>>(),
+            [Some(2); 3]
+        );
         assert_eq!(report.cheapest[2].ratio, Some(4.0));
         let text = report.text();
         assert!(
@@ -322,8 +421,14 @@ mod tests {
     fn the_table_for_a_page_marks_the_front_and_the_reference() {
         let page = report(0.05).markdown();
         let lines: Vec<&str> = page.lines().collect();
-        assert!(lines[0].starts_with("| cell | points_per_cell | a | error | b,c@0.5 | error | CPU s |"), "{page}");
-        assert!(lines[2].contains("| 10.000 % * |") && lines[5].contains("reference"), "{page}");
+        assert!(
+            lines[0].starts_with("| cell | points_per_cell | a | error | b,c@0.5 | error | CPU s |"),
+            "{page}"
+        );
+        assert!(
+            lines[2].contains("| 10.000 % * |") && lines[5].contains("reference"),
+            "{page}"
+        );
         assert_eq!(lines.len(), 6);
     }
 

@@ -39,7 +39,10 @@ pub(super) fn outcome(batch: &Batch, order: &RunOrder) -> Outcome {
                 _ => RunState::Broken,
             };
             let reason = error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ");
-            Outcome { code: Some(error.exit_code()), ..Outcome::never(state, reason) }
+            Outcome {
+                code: Some(error.exit_code()),
+                ..Outcome::never(state, reason)
+            }
         }
     }
 }
@@ -48,10 +51,24 @@ fn of(found: fos::FoundFactor, directory: PathBuf) -> Outcome {
     let cost = found.cost;
     let Some(factor) = found.factor else {
         let reason = format!("it does not fail up to the factor {}", RANGE[1]);
-        return Outcome { cost, directory: Some(directory), ..Outcome::never(RunState::Broken, reason) };
+        return Outcome {
+            cost,
+            directory: Some(directory),
+            ..Outcome::never(RunState::Broken, reason)
+        };
     };
     let headings = ["time", FACTOR].map(|name| TableColumn::new(name, "-")).to_vec();
-    let history = Some(Columns { headings, values: vec![vec![1.0], vec![factor]] });
+    let history = Some(Columns {
+        headings,
+        values: vec![vec![1.0], vec![factor]],
+    });
     let (code, kept, directory) = (Some(DONE), found.kept, Some(directory));
-    Outcome { code, history, cost, kept, directory, ..Outcome::never(RunState::Done, String::new()) }
+    Outcome {
+        code,
+        history,
+        cost,
+        kept,
+        directory,
+        ..Outcome::never(RunState::Done, String::new())
+    }
 }

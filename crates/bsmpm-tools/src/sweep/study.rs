@@ -49,10 +49,16 @@ impl Study<'_> {
             let values = self.axes.iter().zip(setting).map(value).collect();
             self.add(&mut points, self.point(values, &sets, Vec::new()));
         }
-        let (of_axis, besides): (Vec<String>, Vec<String>) =
-            baseline.iter().cloned().partition(|set| self.axes.iter().any(|axis| key(set) == axis.key));
+        let (of_axis, besides): (Vec<String>, Vec<String>) = baseline
+            .iter()
+            .cloned()
+            .partition(|set| self.axes.iter().any(|axis| key(set) == axis.key));
         let value = |axis: &SweepAxis| {
-            let given = of_axis.iter().rev().find(|set| key(set) == axis.key).and_then(|set| set.split_once('='));
+            let given = of_axis
+                .iter()
+                .rev()
+                .find(|set| key(set) == axis.key)
+                .and_then(|set| set.split_once('='));
             given.map_or_else(|| written(&document, &axis.key), |(_, value)| value.trim().to_owned())
         };
         let point = self.point(self.axes.iter().map(value).collect(), baseline, besides);
@@ -66,7 +72,13 @@ impl Study<'_> {
 
     fn point(&self, values: Vec<String>, sets: &[String], besides: Vec<String>) -> Point {
         let keys = self.axes.iter().map(|axis| axis.key.clone()).collect();
-        Point { values, besides, keys, order: self.order(sets), is_baseline: false }
+        Point {
+            values,
+            besides,
+            keys,
+            order: self.order(sets),
+            is_baseline: false,
+        }
     }
 
     /// The place of a point, which is added unless its case is there.
@@ -88,7 +100,10 @@ impl Study<'_> {
     }
 
     fn bad(&self, errors: Vec<String>) -> Error {
-        Error::BadCase { path: self.path.to_owned(), errors }
+        Error::BadCase {
+            path: self.path.to_owned(),
+            errors,
+        }
     }
 }
 
@@ -99,7 +114,10 @@ impl Point {
             let value = value.trim_matches('"');
             format!("{} {value}", short(key, &self.keys))
         });
-        of_axes.chain(self.besides.iter().cloned()).collect::<Vec<_>>().join(", ")
+        of_axes
+            .chain(self.besides.iter().cloned())
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 
     /// m  the size of its cells.
@@ -109,7 +127,9 @@ impl Point {
 
     /// By which runs are called finer: smaller cells, then a higher order, more points, more steps, tighter tolerances.
     pub fn fineness(&self) -> [f64; 6] {
-        let Ok(order) = &self.order else { return [f64::NEG_INFINITY; 6] };
+        let Ok(order) = &self.order else {
+            return [f64::NEG_INFINITY; 6];
+        };
         let case = &order.case;
         [
             -order.cell(),
@@ -123,7 +143,9 @@ impl Point {
 
     /// Whether another run differs in the size of the cells at most.
     pub fn differs_in_cells_only(&self, other: &Self) -> bool {
-        let (Ok(one), Ok(other)) = (&self.order, &other.order) else { return false };
+        let (Ok(one), Ok(other)) = (&self.order, &other.order) else {
+            return false;
+        };
         bsmpm_scene::differences(&one.case.text, &other.case.text)
             .is_ok_and(|found| found.iter().all(|difference| difference.key == "grid.cell"))
     }
@@ -137,7 +159,9 @@ fn key(set: &str) -> &str {
 /// The last part of a key that distinguishes it from the others.
 pub(super) fn short<'a>(key: &'a str, keys: &[String]) -> &'a str {
     let last = key.rsplit('.').next().unwrap_or(key);
-    let others = keys.iter().filter(|other| *other != key && other.rsplit('.').next() == Some(last));
+    let others = keys
+        .iter()
+        .filter(|other| *other != key && other.rsplit('.').next() == Some(last));
     if others.count() == 0 { last } else { key }
 }
 
@@ -155,7 +179,10 @@ fn written(document: &Table, key: &str) -> String {
         }
     };
     let value = parts.fold(first.cloned(), |value, part| inner(value.as_ref(), part.trim()));
-    value.map_or_else(|| "default".to_owned(), |value| value.to_string().trim_matches('"').to_owned())
+    value.map_or_else(
+        || "default".to_owned(),
+        |value| value.to_string().trim_matches('"').to_owned(),
+    )
 }
 
 #[cfg(test)]
@@ -169,7 +196,12 @@ pub(super) mod tests {
     pub(in super::super) fn points(vary: &[&str], one_at_a_time: bool, baseline: &[&str]) -> Result<Vec<Point>, Error> {
         let axes: Vec<SweepAxis> = vary.iter().map(|text| SweepAxis::parse(text).unwrap()).collect();
         let baseline: Vec<String> = baseline.iter().map(|&set| set.to_owned()).collect();
-        let study = Study { path: Path::new("case.toml"), bytes: COLUMN.as_bytes(), set: &[], axes: &axes };
+        let study = Study {
+            path: Path::new("case.toml"),
+            bytes: COLUMN.as_bytes(),
+            set: &[],
+            axes: &axes,
+        };
         study.points(&settings(&axes, one_at_a_time).unwrap(), &baseline)
     }
 
@@ -177,7 +209,10 @@ pub(super) mod tests {
     fn the_baseline_is_one_of_the_runs_or_one_more() {
         let names = |points: &[Point]| points.iter().map(Point::name).collect::<Vec<_>>();
         let there = points(&["grid.cell=20 mm,0.01,5 mm", "body.*.points_per_cell=2,3"], false, &[]).unwrap();
-        assert_eq!((there.len(), there.iter().position(|point| point.is_baseline)), (6, Some(2)));
+        assert_eq!(
+            (there.len(), there.iter().position(|point| point.is_baseline)),
+            (6, Some(2))
+        );
         assert_eq!(there[2].name(), "cell 0.01, points_per_cell 2");
         // 0.55 m is no whole number of cells of 20 mm before a wall.
         assert!(there[0].order.is_err() && there[2].order.is_ok());
@@ -194,14 +229,21 @@ pub(super) mod tests {
         let names: Vec<String> = points.iter().map(Point::name).collect();
         assert_eq!(
             names,
-            ["cell 10 mm, tolerance default", "cell 5 mm, tolerance default", "cell 10 mm, tolerance 1e-6"]
+            [
+                "cell 10 mm, tolerance default",
+                "cell 5 mm, tolerance default",
+                "cell 10 mm, tolerance 1e-6"
+            ]
         );
     }
 
     #[test]
     fn smaller_cells_are_finer_than_more_points() {
         let points = points(&["grid.cell=10 mm,5 mm", "body.0.points_per_cell=2,4"], false, &[]).unwrap();
-        let finest = points.iter().max_by(|a, b| a.fineness().partial_cmp(&b.fineness()).unwrap()).unwrap();
+        let finest = points
+            .iter()
+            .max_by(|a, b| a.fineness().partial_cmp(&b.fineness()).unwrap())
+            .unwrap();
         assert_eq!(finest.name(), "cell 5 mm, points_per_cell 4");
         assert!(points[0].differs_in_cells_only(&points[2]) && !points[0].differs_in_cells_only(&points[3]));
     }
@@ -210,9 +252,17 @@ pub(super) mod tests {
     fn steps_that_grow_less_are_finer() {
         let case = include_str!("../../../../cases/validation/mandel.toml");
         let axes = [SweepAxis::parse("analysis.growth=1.2,1.02,1.1").unwrap()];
-        let study = Study { path: Path::new("case.toml"), bytes: case.as_bytes(), set: &[], axes: &axes };
+        let study = Study {
+            path: Path::new("case.toml"),
+            bytes: case.as_bytes(),
+            set: &[],
+            axes: &axes,
+        };
         let points = study.points(&settings(&axes, false).unwrap(), &[]).unwrap();
-        let finest = points.iter().max_by(|a, b| a.fineness().partial_cmp(&b.fineness()).unwrap()).unwrap();
+        let finest = points
+            .iter()
+            .max_by(|a, b| a.fineness().partial_cmp(&b.fineness()).unwrap())
+            .unwrap();
         assert!(finest.name().ends_with("1.02"), "{}", finest.name());
     }
 }

@@ -11,7 +11,9 @@ const EACH: &str = "*";
 /// # Errors
 /// Says in words what could not be set, or that the text is no TOML.
 pub(super) fn text(original: &str, set: &[String]) -> Result<String, String> {
-    let mut document: DocumentMut = original.parse().map_err(|error: toml_edit::TomlError| error.to_string())?;
+    let mut document: DocumentMut = original
+        .parse()
+        .map_err(|error: toml_edit::TomlError| error.to_string())?;
     for set in set {
         let (key, value) = set.split_once('=').ok_or_else(|| format!("{set} has no `=`"))?;
         let parts: Vec<&str> = key.split('.').map(str::trim).collect();
@@ -60,7 +62,9 @@ fn in_table(
 
 /// The name that a table has of a key, which may be an earlier one; that of now if it does not have the key.
 fn name_in<'a>(table: &dyn TableLike, schema: &'static Schema, name: &'a str) -> &'a str {
-    let Some(key) = schema.key(name).or_else(|| schema.renamed(name)) else { return name };
+    let Some(key) = schema.key(name).or_else(|| schema.renamed(name)) else {
+        return name;
+    };
     let earlier = key.earlier.iter().find(|earlier| table.contains_key(earlier));
     earlier.copied().unwrap_or(key.name)
 }
@@ -69,7 +73,9 @@ fn name_in<'a>(table: &dyn TableLike, schema: &'static Schema, name: &'a str) ->
 fn in_named(named: &mut dyn TableLike, schema: &'static Schema, parts: &[&str], value: &Value) -> Result<(), String> {
     let (name, rest) = parts.split_first().ok_or("a name is missing")?;
     if *name == EACH {
-        return named.iter_mut().try_for_each(|(_, item)| in_item(item, Some(schema), rest, value));
+        return named
+            .iter_mut()
+            .try_for_each(|(_, item)| in_item(item, Some(schema), rest, value));
     }
     match named.get_mut(name) {
         Some(item) if !rest.is_empty() => in_item(item, Some(schema), rest, value),
@@ -81,7 +87,11 @@ fn in_item(item: &mut Item, schema: Option<&'static Schema>, parts: &[&str], val
     let (part, rest) = parts.split_first().ok_or("an index is missing")?;
     if let Some(tables) = item.as_array_of_tables_mut() {
         let index: Option<usize> = part.parse().ok();
-        for (_, table) in tables.iter_mut().enumerate().filter(|(place, _)| *part == EACH || index == Some(*place)) {
+        for (_, table) in tables
+            .iter_mut()
+            .enumerate()
+            .filter(|(place, _)| *part == EACH || index == Some(*place))
+        {
             in_table(table, schema, rest, value)?;
         }
         return if *part == EACH || index.is_some_and(|index| index < tables.len()) {
@@ -93,7 +103,9 @@ fn in_item(item: &mut Item, schema: Option<&'static Schema>, parts: &[&str], val
     if let Some(list) = item.as_array_mut() {
         return in_list(list, schema, parts, value);
     }
-    let table = item.as_table_like_mut().ok_or_else(|| format!("`{part}` is not in a table"))?;
+    let table = item
+        .as_table_like_mut()
+        .ok_or_else(|| format!("`{part}` is not in a table"))?;
     in_table(table, schema, parts, value)
 }
 
@@ -106,7 +118,11 @@ fn in_list(
     let (part, rest) = parts.split_first().ok_or("an index is missing")?;
     let index: Option<usize> = part.parse().ok();
     let mut found = false;
-    for (_, item) in list.iter_mut().enumerate().filter(|(place, _)| *part == EACH || index == Some(*place)) {
+    for (_, item) in list
+        .iter_mut()
+        .enumerate()
+        .filter(|(place, _)| *part == EACH || index == Some(*place))
+    {
         found = true;
         match (rest.is_empty(), item) {
             (true, item) => replace(item, value),
@@ -115,7 +131,11 @@ fn in_list(
             _ => return Err(format!("`{part}` is not a table")),
         }
     }
-    if found { Ok(()) } else { Err(format!("the list has no item `{part}`")) }
+    if found {
+        Ok(())
+    } else {
+        Err(format!("the list has no item `{part}`"))
+    }
 }
 
 /// The value in the place of another: spaces and comments about it stay.
@@ -154,7 +174,10 @@ mod tests {
         assert!(
             written.contains("# A column of aluminium rods") && written.contains("# the paper uses \"modified-f-bar\"")
         );
-        assert!(written.contains("cell   = \"5 mm\"\ndegree") && !written.contains("dt "), "{written}");
+        assert!(
+            written.contains("cell   = \"5 mm\"\ndegree") && !written.contains("dt "),
+            "{written}"
+        );
     }
 
     #[test]
@@ -165,7 +188,10 @@ mod tests {
             for set in ["material.rods.friction=25", "material.rods.friction_angle=25"] {
                 let written = text(text_of_case, &[set.to_owned()]).unwrap();
                 assert!(Case::from_text("case.toml", &written, &[]).is_ok(), "{set}: {written}");
-                assert!(written.contains("= 25") && !written.contains("21.9"), "{set}: {written}");
+                assert!(
+                    written.contains("= 25") && !written.contains("21.9"),
+                    "{set}: {written}"
+                );
             }
         }
     }

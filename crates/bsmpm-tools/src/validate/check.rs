@@ -15,11 +15,17 @@ impl ValidationMatrix {
     /// `Err` says what does not fit, and where.
     pub fn check(&self) -> Result<(), String> {
         self.study.iter().try_for_each(|study| {
-            study.check().map_err(|(part, reason)| format!("study \"{}\", {part}: {reason}", study.title))
+            study
+                .check()
+                .map_err(|(part, reason)| format!("study \"{}\", {part}: {reason}", study.title))
         })?;
         // Runs and pictures of several studies share directories.
         let titles = self.study.iter().map(|study| slug(&study.title));
-        let files = self.study.iter().flat_map(|study| &study.figure).map(|figure| figure.file.clone());
+        let files = self
+            .study
+            .iter()
+            .flat_map(|study| &study.figure)
+            .map(|figure| figure.file.clone());
         let plots = self.study.iter().flat_map(|study| &study.plot);
         let plots = plots.map(|plot| format!("{} of {}", plot.field, plot.run));
         distinct("studies' titles", titles)?;
@@ -30,7 +36,10 @@ impl ValidationMatrix {
 
 fn distinct(what: &str, names: impl Iterator<Item = String>) -> Result<(), String> {
     let names: Vec<String> = names.collect();
-    let again = names.iter().enumerate().find(|(index, name)| names[..*index].contains(name));
+    let again = names
+        .iter()
+        .enumerate()
+        .find(|(index, name)| names[..*index].contains(name));
     again.map_or(Ok(()), |(_, name)| Err(format!("two {what} are the same: {name}")))
 }
 
@@ -45,11 +54,13 @@ impl MatrixStudy {
             return Err(in_runs(format!("\"{}\" is no name of a directory", run.name)));
         }
         for row in &self.row {
-            self.check_row(row).map_err(|reason| (format!("\"{}\"", row.quantity), reason))?;
+            self.check_row(row)
+                .map_err(|reason| (format!("\"{}\"", row.quantity), reason))?;
         }
         for figure in &self.figure {
             let about = |reason| (format!("figure \"{}\"", figure.file), reason);
-            self.are_known(figure.runs.iter().chain(figure.curves.values().flatten())).map_err(about)?;
+            self.are_known(figure.runs.iter().chain(figure.curves.values().flatten()))
+                .map_err(about)?;
             figure.check().map_err(about)?;
         }
         for plot in &self.plot {
@@ -58,7 +69,10 @@ impl MatrixStudy {
             if FieldName::from_str(&plot.field, true).is_err() {
                 return Err(about(format!("there is no field \"{}\"", plot.field)));
             }
-            if plot.range.is_some_and(|(lower, upper)| lower.partial_cmp(&upper) != Some(std::cmp::Ordering::Less)) {
+            if plot
+                .range
+                .is_some_and(|(lower, upper)| lower.partial_cmp(&upper) != Some(std::cmp::Ordering::Less))
+            {
                 return Err(about("the range begins above its end".to_owned()));
             }
         }
@@ -66,18 +80,29 @@ impl MatrixStudy {
     }
 
     fn are_known<'a>(&self, names: impl IntoIterator<Item = &'a String>) -> Result<(), String> {
-        let unknown = names.into_iter().find(|name| !self.run.iter().any(|run| run.name == **name));
+        let unknown = names
+            .into_iter()
+            .find(|name| !self.run.iter().any(|run| run.name == **name));
         unknown.map_or(Ok(()), |name| Err(format!("there is no run \"{name}\"")))
     }
 
     fn check_row(&self, row: &MatrixRow) -> Result<(), String> {
         let names: Vec<String> = row.runs().into_iter().map(str::to_owned).collect();
         self.are_known(&names)?;
-        let full = |name: &&String| self.run.iter().any(|run| run.name == **name && self.depth_of(run) == Depth::Full);
+        let full = |name: &&String| {
+            self.run
+                .iter()
+                .any(|run| run.name == **name && self.depth_of(run) == Depth::Full)
+        };
         if let Some(name) = names.iter().find(full).filter(|_| row.depth == Some(Depth::Short)) {
             return Err(format!("it is short, its run \"{name}\" is full"));
         }
-        let ways = [row.column.is_some(), row.order.is_some(), row.extrapolated.is_some(), row.kink.is_some()];
+        let ways = [
+            row.column.is_some(),
+            row.order.is_some(),
+            row.extrapolated.is_some(),
+            row.kink.is_some(),
+        ];
         let is_single = row.column.is_some() || row.kink.is_some();
         if ways.iter().filter(|way| **way).count() != 1 || is_single != row.run.is_some() {
             return Err("one of run with column, run with kink, order, extrapolated is needed".into());
@@ -88,7 +113,10 @@ impl MatrixStudy {
             return Err("an order needs `exact`".into());
         }
         row.kink.iter().try_for_each(MatrixKink::check)?;
-        row.order.iter().chain(&row.extrapolated).try_for_each(MeasuredOrder::check)
+        row.order
+            .iter()
+            .chain(&row.extrapolated)
+            .try_for_each(MeasuredOrder::check)
     }
 }
 
@@ -136,12 +164,26 @@ impl MatrixRow {
             }
             (Some(_), Some(_)) => Err("at and where exclude each other".into()),
             (None, Some(_)) if !is_last => Err("at is one row: max, min and mean take a window, with where".into()),
-            (Some(MatrixPlace { value: Some(_), from: None, to: None, .. }), _) if !is_last => {
+            (
+                Some(MatrixPlace {
+                    value: Some(_),
+                    from: None,
+                    to: None,
+                    ..
+                }),
+                _,
+            ) if !is_last => {
                 Err("where has a value, which is one row: max, min and mean take a window, from and to".into())
             }
-            (Some(MatrixPlace { value: Some(_), from, to, .. }), _) if from.is_some() || to.is_some() => {
-                Err("where has a value or a window, not both".into())
-            }
+            (
+                Some(MatrixPlace {
+                    value: Some(_),
+                    from,
+                    to,
+                    ..
+                }),
+                _,
+            ) if from.is_some() || to.is_some() => Err("where has a value or a window, not both".into()),
             (Some(MatrixPlace { value: None, .. }), _) if is_last => {
                 Err("where needs a value, or a window an operation: max, min, mean".into())
             }
@@ -160,14 +202,22 @@ impl MeasuredOrder {
         }
         self.kink.iter().try_for_each(MatrixKink::check)?;
         let shrink = self.sizes.windows(2).all(|pair| pair[1] < pair[0]) && self.sizes.iter().all(|size| *size > 0.0);
-        if shrink { Ok(()) } else { Err("the sizes go from coarse to fine and are positive".into()) }
+        if shrink {
+            Ok(())
+        } else {
+            Err("the sizes go from coarse to fine and are positive".into())
+        }
     }
 }
 
 impl MatrixKink {
     fn check(&self) -> Result<(), String> {
         let is_sound = self.elastic.is_finite() && self.elastic != 0.0 && self.scale.is_finite();
-        if is_sound { Ok(()) } else { Err("a kink's `elastic` and `scale` are finite, the first one is not 0".into()) }
+        if is_sound {
+            Ok(())
+        } else {
+            Err("a kink's `elastic` and `scale` are finite, the first one is not 0".into())
+        }
     }
 }
 
@@ -180,9 +230,11 @@ impl Figure {
             return Err("one of runs, curves is needed".into());
         }
         match self.curves.iter().find(|(_, runs)| runs.len() != self.x_values.len()) {
-            Some((name, runs)) => {
-                Err(format!("\"{name}\" has {} runs, x_values has {} numbers", runs.len(), self.x_values.len()))
-            }
+            Some((name, runs)) => Err(format!(
+                "\"{name}\" has {} runs, x_values has {} numbers",
+                runs.len(),
+                self.x_values.len()
+            )),
             None if self.curves.is_empty() && !self.x_values.is_empty() => Err("x_values belongs to curves".into()),
             None => Ok(()),
         }

@@ -29,7 +29,10 @@ pub(super) fn reached(across: &[f64], value: f64) -> Option<Spot> {
         }
         if row > 0 && (x - value) * side > 0.0 {
             let before = across[row - 1];
-            return Some(Spot { row: row - 1, share: (value - before) / (x - before) });
+            return Some(Spot {
+                row: row - 1,
+                share: (value - before) / (x - before),
+            });
         }
     }
     None
@@ -40,17 +43,27 @@ pub(super) fn window(across: &[f64], up: &[f64], from: Spot, to: Spot) -> Vec<(f
     let last = if to.share == 0.0 { to.row } else { to.row + 1 };
     let rows = (from.row + 1..last).map(|row| (across[row], up[row]));
     let end = (to != from).then(|| (to.of(across), to.of(up)));
-    [(from.of(across), from.of(up))].into_iter().chain(rows).chain(end).collect()
+    [(from.of(across), from.of(up))]
+        .into_iter()
+        .chain(rows)
+        .chain(end)
+        .collect()
 }
 
 /// The integral over a window, by trapezia, divided by its length; of a window without length its value.
 pub(super) fn mean(window: &[(f64, f64)]) -> f64 {
-    let (Some(first), Some(last)) = (window.first(), window.last()) else { return f64::NAN };
+    let (Some(first), Some(last)) = (window.first(), window.last()) else {
+        return f64::NAN;
+    };
     let length = last.0 - first.0;
     if length == 0.0 {
         return first.1;
     }
-    window.windows(2).map(|pair| (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1) / 2.0).sum::<f64>() / length
+    window
+        .windows(2)
+        .map(|pair| (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1) / 2.0)
+        .sum::<f64>()
+        / length
 }
 
 #[cfg(test)]
@@ -62,7 +75,10 @@ mod tests {
         let up_and_down = [0.0, 1.0, 3.0, 1.0, 4.0];
         assert_eq!(reached(&up_and_down, 2.0), Some(Spot { row: 1, share: 0.5 }));
         assert_eq!(reached(&up_and_down, 3.0 + 1e-10), Some(Spot { row: 2, share: 0.0 }));
-        assert_eq!(reached(&up_and_down, 3.5).map(|spot| spot.of(&[0.0, 0.0, 0.0, 6.0, 12.0])), Some(11.0));
+        assert_eq!(
+            reached(&up_and_down, 3.5).map(|spot| spot.of(&[0.0, 0.0, 0.0, 6.0, 12.0])),
+            Some(11.0)
+        );
         assert_eq!(reached(&up_and_down, 5.0), None);
         assert_eq!(reached(&up_and_down, 0.0), Some(Spot { row: 0, share: 0.0 }));
         assert_eq!(reached(&[0.0, -1.0, -2.0], -1.5), Some(Spot { row: 1, share: 0.5 }));
@@ -75,7 +91,10 @@ mod tests {
         let up = [0.0, 2.0, 6.0, 8.0];
         let ends = |from, to| (reached(&across, from).unwrap(), reached(&across, to).unwrap());
         let (from, to) = ends(0.5, 3.5);
-        assert_eq!(window(&across, &up, from, to), [(0.5, 1.0), (1.0, 2.0), (3.0, 6.0), (3.5, 7.0)]);
+        assert_eq!(
+            window(&across, &up, from, to),
+            [(0.5, 1.0), (1.0, 2.0), (3.0, 6.0), (3.5, 7.0)]
+        );
         assert_eq!(mean(&window(&across, &up, from, to)), 4.0);
         let (from, to) = ends(1.0, 3.0);
         assert_eq!(window(&across, &up, from, to), [(1.0, 2.0), (3.0, 6.0)]);

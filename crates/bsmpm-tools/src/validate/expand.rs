@@ -13,7 +13,11 @@ const REPEATED: [&str; 3] = ["run", "row", "plot"];
 /// # Errors
 /// An `each` that is no table of lists, or a word of it that the entry does not contain.
 pub(super) fn expand(matrix: &mut Table) -> Result<(), String> {
-    let studies = matrix.get_mut("study").and_then(Value::as_array_mut).into_iter().flatten();
+    let studies = matrix
+        .get_mut("study")
+        .and_then(Value::as_array_mut)
+        .into_iter()
+        .flatten();
     for study in studies.filter_map(Value::as_table_mut) {
         for kind in REPEATED {
             if let Some(Value::Array(entries)) = study.get_mut(kind) {
@@ -26,11 +30,17 @@ pub(super) fn expand(matrix: &mut Table) -> Result<(), String> {
 }
 
 fn copies(mut entry: Value) -> Result<Vec<Value>, String> {
-    let Some(each) = entry.as_table_mut().and_then(|table| table.remove("each")) else { return Ok(vec![entry]) };
-    let words = each.as_table().ok_or_else(|| format!("each = {each}: not a table of lists"))?;
+    let Some(each) = entry.as_table_mut().and_then(|table| table.remove("each")) else {
+        return Ok(vec![entry]);
+    };
+    let words = each
+        .as_table()
+        .ok_or_else(|| format!("each = {each}: not a table of lists"))?;
     let mut copies = vec![entry];
     for (word, values) in words {
-        let values = values.as_array().ok_or_else(|| format!("each.{word} = {values}: not a list"))?;
+        let values = values
+            .as_array()
+            .ok_or_else(|| format!("each.{word} = {values}: not a list"))?;
         let key = format!("{{{word}}}");
         if !copies[0].to_string().contains(&key) {
             return Err(format!("each.{word}: no {key} in {}", copies[0]));
@@ -50,9 +60,12 @@ fn filled(entry: &Value, key: &str, value: &Value) -> Value {
             Value::String(text.replace(key, &word))
         }
         Value::Array(list) => Value::Array(list.iter().map(|item| filled(item, key, value)).collect()),
-        Value::Table(table) => {
-            Value::Table(table.iter().map(|(name, item)| (name.clone(), filled(item, key, value))).collect())
-        }
+        Value::Table(table) => Value::Table(
+            table
+                .iter()
+                .map(|(name, item)| (name.clone(), filled(item, key, value)))
+                .collect(),
+        ),
         other => other.clone(),
     }
 }
@@ -77,11 +90,18 @@ mod tests {
         assert_eq!(study["title"].as_str(), Some("{method}"), "only entries are filled");
         let rows = study["row"].as_array().unwrap();
         assert_eq!(rows.len(), 5);
-        let known: Vec<_> =
-            rows[..4].iter().map(|row| (row["quantity"].as_str().unwrap(), row["at"].as_float().unwrap())).collect();
+        let known: Vec<_> = rows[..4]
+            .iter()
+            .map(|row| (row["quantity"].as_str().unwrap(), row["at"].as_float().unwrap()))
+            .collect();
         assert_eq!(
             known,
-            [("z 0.1, none", 0.1), ("z 0.1, f-bar", 0.1), ("z 0.25, none", 0.25), ("z 0.25, f-bar", 0.25)]
+            [
+                ("z 0.1, none", 0.1),
+                ("z 0.1, f-bar", 0.1),
+                ("z 0.25, none", 0.25),
+                ("z 0.25, f-bar", 0.25)
+            ]
         );
         assert!(rows[0].get("each").is_none() && rows[4]["max"].as_float() == Some(2.0));
     }

@@ -37,7 +37,10 @@ pub(super) fn draw(
     if directories.is_empty() {
         return Ok(false);
     }
-    let lines = figure.lines.iter().map(|(value, text)| ChartLevel { value: *value, text: text.clone() });
+    let lines = figure.lines.iter().map(|(value, text)| ChartLevel {
+        value: *value,
+        text: text.clone(),
+    });
     compare::run(&compare::CompareArguments {
         directories,
         x: figure.x.clone(),

@@ -23,20 +23,33 @@ pub(super) fn failure(kink: &MatrixKink, curve: &[(f64, f64)]) -> Result<Measure
     let said = |x: f64| (load + x) * kink.scale;
     let doubled = beyond(2.0).map_or("never".to_owned(), |(x, _)| format!("{:.4}", said(x)));
     let doubled = format!("twice the elastic displacement: {doubled}");
-    let (from, to) =
-        beyond(BENT).zip(beyond(FALLEN).or(curve.last().copied())).filter(|(from, to)| to.0 > from.0).ok_or_else(
-            || format!("no kink before its end at {:.4}; {doubled}", curve.last().map_or(load, |x| said(x.0))),
-        )?;
+    let (from, to) = beyond(BENT)
+        .zip(beyond(FALLEN).or(curve.last().copied()))
+        .filter(|(from, to)| to.0 > from.0)
+        .ok_or_else(|| {
+            format!(
+                "no kink before its end at {:.4}; {doubled}",
+                curve.last().map_or(load, |x| said(x.0))
+            )
+        })?;
     let steep = (to.1 - from.1) / (to.0 - from.0);
     let meet = (from.1 - steep * from.0) / (elastic - steep);
-    Ok(MeasuredNumber { value: said(meet), remark: Some(doubled) })
+    Ok(MeasuredNumber {
+        value: said(meet),
+        remark: Some(doubled),
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const KINK: MatrixKink = MatrixKink { x: String::new(), y: String::new(), elastic: 0.2, scale: 2.0 };
+    const KINK: MatrixKink = MatrixKink {
+        x: String::new(),
+        y: String::new(),
+        elastic: 0.2,
+        scale: 2.0,
+    };
 
     /// Straight, and a hundred times as soft from 0.7 on.
     fn bent(loads: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
@@ -56,7 +69,11 @@ mod tests {
     #[test]
     fn the_number_of_rows_and_where_they_are_dense_do_not_count() {
         // Steps that are cut near failure, and a run that ends soon after it.
-        let cut = bent((0..=13).map(|k| f64::from(k) / 20.0).chain((1..=150).map(|k| 0.65 + f64::from(k) / 1000.0)));
+        let cut = bent(
+            (0..=13)
+                .map(|k| f64::from(k) / 20.0)
+                .chain((1..=150).map(|k| 0.65 + f64::from(k) / 1000.0)),
+        );
         assert!((failure(&KINK, &cut).unwrap().value - 1.4).abs() < 1e-9);
     }
 
@@ -64,9 +81,16 @@ mod tests {
     fn a_curve_that_ends_before_it_bends_shows_no_failure() {
         let curve = bent((0..=36).map(|k| f64::from(k) / 50.0));
         let reason = failure(&KINK, &curve).unwrap_err();
-        assert_eq!(reason, "no kink before its end at 1.4400; twice the elastic displacement: 1.4400");
+        assert_eq!(
+            reason,
+            "no kink before its end at 1.4400; twice the elastic displacement: 1.4400"
+        );
         assert!(failure(&KINK, &curve[..5]).unwrap_err().contains("elastic part"));
-        assert!(failure(&KINK, &[(0.0, 1.0), (0.5, 1.0)]).unwrap_err().contains("no elastic beginning"));
+        assert!(
+            failure(&KINK, &[(0.0, 1.0), (0.5, 1.0)])
+                .unwrap_err()
+                .contains("no elastic beginning")
+        );
         assert!(failure(&KINK, &[]).is_err());
     }
 }

@@ -238,11 +238,20 @@ fn other() -> String {
 impl ValidationMatrix {
     pub fn read(path: &Path) -> Result<Self, Error> {
         let text = fs::read_to_string(path).map_err(Error::unread("reference", path))?;
-        let bad = |reason: String| Error::BadReference { path: path.to_owned(), reason };
+        let bad = |reason: String| Error::BadReference {
+            path: path.to_owned(),
+            reason,
+        };
         let mut written: toml::Table = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
         expand(&mut written).map_err(bad)?;
-        let mut matrix: Self = written.try_into().map_err(|error: toml::de::Error| bad(error.to_string()))?;
-        matrix.study.iter_mut().flat_map(|study| &mut study.figure).for_each(Figure::name_runs);
+        let mut matrix: Self = written
+            .try_into()
+            .map_err(|error: toml::de::Error| bad(error.to_string()))?;
+        matrix
+            .study
+            .iter_mut()
+            .flat_map(|study| &mut study.figure)
+            .for_each(Figure::name_runs);
         matrix.check().map_err(bad)?;
         Ok(matrix)
     }
@@ -277,13 +286,26 @@ impl MatrixStudy {
 impl MatrixRow {
     /// The runs that it takes its number from.
     pub fn runs(&self) -> Vec<&str> {
-        let orders = self.order.iter().chain(&self.extrapolated).flat_map(|order| &order.runs);
-        self.run.iter().chain(&self.against).chain(orders).map(String::as_str).collect()
+        let orders = self
+            .order
+            .iter()
+            .chain(&self.extrapolated)
+            .flat_map(|order| &order.runs);
+        self.run
+            .iter()
+            .chain(&self.against)
+            .chain(orders)
+            .map(String::as_str)
+            .collect()
     }
 
     /// The run that its cells and seconds are of: of several grids the finest.
     pub fn last_run(&self) -> Option<&str> {
-        let of_grids = self.order.iter().chain(&self.extrapolated).flat_map(|order| &order.runs);
+        let of_grids = self
+            .order
+            .iter()
+            .chain(&self.extrapolated)
+            .flat_map(|order| &order.runs);
         of_grids.last().or(self.run.as_ref()).map(String::as_str)
     }
 
@@ -310,7 +332,10 @@ impl MatrixRow {
 
     /// Whether a number is within the bounds.
     pub fn holds(&self, ours: f64) -> bool {
-        let near = |tolerance: f64| self.reference.is_some_and(|at| (ours - at).abs() <= tolerance * at.abs());
+        let near = |tolerance: f64| {
+            self.reference
+                .is_some_and(|at| (ours - at).abs() <= tolerance * at.abs())
+        };
         ours.is_finite()
             && self.tolerance.is_none_or(near)
             && self.min.is_none_or(|min| ours >= min)
@@ -322,7 +347,9 @@ impl MatrixRow {
         if let Some(half) = self.half_width() {
             return format!("± {}", number(half));
         }
-        let tolerance = self.tolerance.map(|tolerance| format!("{} %", number(100.0 * tolerance)));
+        let tolerance = self
+            .tolerance
+            .map(|tolerance| format!("{} %", number(100.0 * tolerance)));
         let bounds = match (self.min, self.max) {
             (None, None) => None,
             (Some(min), None) => Some(format!("at least {min}")),

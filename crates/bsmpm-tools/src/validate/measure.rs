@@ -23,27 +23,46 @@ pub(super) fn value(row: &MatrixRow, outcomes: &BTreeMap<String, MatrixOutcome>)
     }
     let values = column(outcomes, run, row.column.as_deref().unwrap_or_default())?;
     let value = match (row.operation, &row.place) {
-        (Operation::Last, Some(MatrixPlace { column, value: Some(value), .. })) => {
-            spot(outcomes, run, column, *value)?.of(&values)
-        }
+        (
+            Operation::Last,
+            Some(MatrixPlace {
+                column,
+                value: Some(value),
+                ..
+            }),
+        ) => spot(outcomes, run, column, *value)?.of(&values),
         (Operation::Last, _) => at_time(outcomes, run, &values, row.at)?,
         (Operation::Reach, _) => values[values.len() - 1],
         (Operation::Deviation, place) => deviation(row, &part(outcomes, run, &values, place.as_ref())?, outcomes)?,
         (operation, place) => over(operation, &part(outcomes, run, &values, place.as_ref())?),
     };
-    Ok(MeasuredNumber { value: row.scale.unwrap_or(1.0) * value, remark: None })
+    Ok(MeasuredNumber {
+        value: row.scale.unwrap_or(1.0) * value,
+        remark: None,
+    })
 }
 
 fn column(outcomes: &BTreeMap<String, MatrixOutcome>, run: &str, name: &str) -> Result<Vec<f64>, String> {
     let outcome = outcomes.get(run).ok_or_else(|| format!("{run} was not run"))?;
-    let history = outcome.run.history.as_ref().ok_or_else(|| format!("{run} left no history"))?;
+    let history = outcome
+        .run
+        .history
+        .as_ref()
+        .ok_or_else(|| format!("{run} left no history"))?;
     let values = history.get(name).ok_or_else(|| format!("{run} has no column {name}"))?;
-    if values.is_empty() { Err(format!("{run} has no row")) } else { Ok(values.to_vec()) }
+    if values.is_empty() {
+        Err(format!("{run} has no row"))
+    } else {
+        Ok(values.to_vec())
+    }
 }
 
 /// The load-displacement curve of a run.
 fn curve(outcomes: &BTreeMap<String, MatrixOutcome>, run: &str, kink: &MatrixKink) -> Result<Vec<(f64, f64)>, String> {
-    Ok(column(outcomes, run, &kink.x)?.into_iter().zip(column(outcomes, run, &kink.y)?).collect())
+    Ok(column(outcomes, run, &kink.x)?
+        .into_iter()
+        .zip(column(outcomes, run, &kink.y)?)
+        .collect())
 }
 
 /// The last row of a run that stopped is not that of the others.
@@ -90,8 +109,14 @@ fn part(
 
 /// The largest difference of a part of a history from that of the row's other run at the same place, relative to it.
 fn deviation(row: &MatrixRow, part: &[(f64, f64)], outcomes: &BTreeMap<String, MatrixOutcome>) -> Result<f64, Lack> {
-    let (other, name) = (row.against.as_deref().unwrap_or_default(), row.column.as_deref().unwrap_or_default());
-    let (values, across) = (column(outcomes, other, name)?, row.place.as_ref().map_or("time", |place| &place.column));
+    let (other, name) = (
+        row.against.as_deref().unwrap_or_default(),
+        row.column.as_deref().unwrap_or_default(),
+    );
+    let (values, across) = (
+        column(outcomes, other, name)?,
+        row.place.as_ref().map_or("time", |place| &place.column),
+    );
     let mut largest: f64 = 0.0;
     for (at, value) in part {
         let beside = spot(outcomes, other, across, *at)?.of(&values);
@@ -154,14 +179,23 @@ fn values(order: &MeasuredOrder, outcomes: &BTreeMap<String, MatrixOutcome>) -> 
 /// that the last three show.
 fn observed_order(order: &MeasuredOrder, values: &[f64]) -> Result<MeasuredNumber, String> {
     let exact = order.exact.ok_or("an order needs `exact`")?;
-    let places: Vec<(f64, f64)> =
-        order.sizes.iter().zip(values).map(|(size, value)| (size.ln(), (value - exact).abs().ln())).collect();
+    let places: Vec<(f64, f64)> = order
+        .sizes
+        .iter()
+        .zip(values)
+        .map(|(size, value)| (size.ln(), (value - exact).abs().ln()))
+        .collect();
     let line = FittedLine::fitted(&places).ok_or("an order needs two sizes")?;
-    let [.., before, last] = &places[..] else { return Err("an order needs two sizes".into()) };
+    let [.., before, last] = &places[..] else {
+        return Err("an order needs two sizes".into());
+    };
     let pair = (before.1 - last.1) / (before.0 - last.0);
     let limit = extrapolated(order, values).map_or_else(|reason| reason, |limit| format!("{:.4}", limit.value));
     let remark = format!("last two sizes: {pair:.2}; limit of the last three: {limit}");
-    Ok(MeasuredNumber { value: line.slope, remark: Some(remark) })
+    Ok(MeasuredNumber {
+        value: line.slope,
+        remark: Some(remark),
+    })
 }
 
 /// Richardson's limit: of the last three sizes, which must shrink by one ratio, with the order that they show; of two
@@ -195,7 +229,14 @@ mod tests {
     use super::*;
 
     fn order(sizes: &[f64], exact: Option<f64>) -> MeasuredOrder {
-        MeasuredOrder { runs: Vec::new(), sizes: sizes.to_vec(), column: None, kink: None, at: None, exact }
+        MeasuredOrder {
+            runs: Vec::new(),
+            sizes: sizes.to_vec(),
+            column: None,
+            kink: None,
+            at: None,
+            exact,
+        }
     }
 
     #[test]
@@ -204,7 +245,10 @@ mod tests {
         let values: Vec<f64> = sizes.iter().map(|h: &f64| 5.0 + 3.0 * h.powf(1.5)).collect();
         let found = observed_order(&order(&sizes, Some(5.0)), &values).unwrap().value;
         assert!((found - 1.5).abs() < 1e-12);
-        let remark = observed_order(&order(&sizes, Some(5.0)), &values).unwrap().remark.unwrap();
+        let remark = observed_order(&order(&sizes, Some(5.0)), &values)
+            .unwrap()
+            .remark
+            .unwrap();
         assert_eq!(remark, "last two sizes: 1.50; limit of the last three: 5.0000");
         let limit = extrapolated(&order(&sizes, None), &values).unwrap().value;
         assert!((limit - 5.0).abs() < 1e-12);

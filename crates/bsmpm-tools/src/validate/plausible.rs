@@ -17,7 +17,10 @@ fn no_run_of_the_validation_looks_like_a_slip() {
             let name = format!("{}: {}", study.title, run.name);
             let case = Case::from_bytes(&name, &bytes, &[&study.set[..], &run.set].concat());
             let case = case.unwrap_or_else(|errors| panic!("{name}: {errors:?}"));
-            let slips = case.warnings.iter().filter(|text| code_of(text).is_some_and(|code| code.starts_with("W01")));
+            let slips = case
+                .warnings
+                .iter()
+                .filter(|text| code_of(text).is_some_and(|code| code.starts_with("W01")));
             found.extend(slips.map(|slip| format!("{name}: {slip}")));
             read += 1;
         }

@@ -34,7 +34,11 @@ impl Launcher<'_> {
             case: &case,
             set: &[&study.set[..], &run.set].concat(),
             further: Vec::new(),
-            directory: self.output.join("runs").join(slug(&study.title)).join(format!("{}.out", run.name)),
+            directory: self
+                .output
+                .join("runs")
+                .join(slug(&study.title))
+                .join(format!("{}.out", run.name)),
             origin: None,
             from: None,
             force: self.force,
@@ -42,7 +46,9 @@ impl Launcher<'_> {
         };
         let arguments = task.arguments(&["--force"]);
         task.origin = self.origin(&case, &arguments);
-        let outcome = self.solver.outcome(&task, |manifest| manifest.argv.ends_with(&arguments))?;
+        let outcome = self
+            .solver
+            .outcome(&task, |manifest| manifest.argv.ends_with(&arguments))?;
         Ok(MatrixOutcome::of(outcome, run.may_stop))
     }
 
@@ -78,8 +84,17 @@ pub(super) fn codes(outcomes: &[&MatrixOutcome]) -> String {
 
 /// A title as the name of a directory.
 pub(super) fn slug(title: &str) -> String {
-    let letters =
-        title.chars().map(|c| if c.is_ascii_alphanumeric() || c == '.' { c.to_ascii_lowercase() } else { '-' });
+    let letters = title.chars().map(|c| {
+        if c.is_ascii_alphanumeric() || c == '.' {
+            c.to_ascii_lowercase()
+        } else {
+            '-'
+        }
+    });
     let joined: String = letters.collect();
-    joined.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
+    joined
+        .split('-')
+        .filter(|part| !part.is_empty())
+        .collect::<Vec<_>>()
+        .join("-")
 }

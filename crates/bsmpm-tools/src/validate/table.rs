@@ -129,7 +129,16 @@ fn add_columns(table: &mut ReportTable<TableRow>) {
 pub(super) fn text(title: &str, rows: &[TableRow]) -> String {
     let mut table = ReportTable::of(rows);
     add_columns(&mut table);
-    table.only(&["quantity", "published", "bsmpm", "difference", "tolerance", "verdict", "seconds", "remark"]);
+    table.only(&[
+        "quantity",
+        "published",
+        "bsmpm",
+        "difference",
+        "tolerance",
+        "verdict",
+        "seconds",
+        "remark",
+    ]);
     format!("\n{title}\n{}", table.text("  ")).trim_end().to_owned()
 }
 
@@ -168,7 +177,13 @@ fn themes<'a>(rows: impl Iterator<Item = &'a TableRow>) -> Vec<&'a str> {
 /// How many rows of each theme passed, fail as known, and failed.
 fn counts(judged: &[&TableRow]) -> String {
     let names = themes(judged.iter().copied());
-    let with = |theme: &&str| judged.iter().copied().filter(|row| row.theme == *theme).collect::<Vec<_>>();
+    let with = |theme: &&str| {
+        judged
+            .iter()
+            .copied()
+            .filter(|row| row.theme == *theme)
+            .collect::<Vec<_>>()
+    };
     let mut parts: Vec<(&str, Vec<&TableRow>)> = names.iter().map(|theme| (*theme, with(theme))).collect();
     parts.push(("all", judged.to_vec()));
     let count = |rows: &[&TableRow], is: fn(RowVerdict) -> bool| rows.iter().filter(|row| is(row.verdict)).count();
@@ -177,8 +192,12 @@ fn counts(judged: &[&TableRow]) -> String {
         .column("theme", |(theme, _)| *theme)
         .column("problems", |(_, rows)| rows.chunk_by(|a, b| a.study == b.study).count())
         .column("quantities", |(_, rows)| rows.len())
-        .column("passed", |(_, rows)| count(rows, |verdict| verdict == RowVerdict::Passed))
-        .column("known failures", |(_, rows)| count(rows, |verdict| verdict == RowVerdict::Known))
+        .column("passed", |(_, rows)| {
+            count(rows, |verdict| verdict == RowVerdict::Passed)
+        })
+        .column("known failures", |(_, rows)| {
+            count(rows, |verdict| verdict == RowVerdict::Known)
+        })
         .column("failed", |(_, rows)| count(rows, RowVerdict::is_failure));
     table.markdown()
 }
@@ -194,7 +213,9 @@ fn columns<'a>(rows: &'a [&TableRow]) -> ReportTable<'a, &'a TableRow> {
         .column("published value", |row| or_dash(row.published.map(number)))
         .column("value of bsmpm", |row| or_dash(row.value.map(number)))
         .column("difference", |row| or_dash(row.difference()))
-        .column("tolerance", |row| or_dash(Some(&row.tolerance).filter(|text| !text.is_empty())))
+        .column("tolerance", |row| {
+            or_dash(Some(&row.tolerance).filter(|text| !text.is_empty()))
+        })
         .column("verdict", |row| row.judgement())
         .column("cells", |row| or_dash(row.cells))
         .column("seconds", |row| format!("{:.1}", row.cost.wall_seconds));
@@ -205,7 +226,10 @@ fn columns<'a>(rows: &'a [&TableRow]) -> ReportTable<'a, &'a TableRow> {
 pub(super) fn csv(rows: &[TableRow]) -> String {
     let mut table = ReportTable::of(rows);
     add_columns(
-        table.column("theme", |row| &row.theme).column("problem", |row| &row.study).column("case", |row| &row.case),
+        table
+            .column("theme", |row| &row.theme)
+            .column("problem", |row| &row.study)
+            .column("case", |row| &row.case),
     );
     table.csv(Quoted::All)
 }
@@ -230,24 +254,42 @@ mod tests {
             remark: "coarse".into(),
             codes: "0".into(),
             cells: Some(64),
-            cost: RunCost { steps: 20, ..RunCost::default() },
+            cost: RunCost {
+                steps: 20,
+                ..RunCost::default()
+            },
         }
     }
 
     #[test]
     fn rows_stand_in_columns_with_their_verdict() {
-        let rows = [row("p/c", Some(5.2), RowVerdict::Passed), row("longer", None, RowVerdict::Failed)];
+        let rows = [
+            row("p/c", Some(5.2), RowVerdict::Passed),
+            row("longer", None, RowVerdict::Failed),
+        ];
         let text = text("A study", &rows);
         let words: Vec<&str> = text.lines().nth(3).unwrap().split_whitespace().collect();
-        assert_eq!(words, ["p/c", "5.1416", "5.2", "+1.14", "%", "5", "%", "passed", "0.0", "coarse"], "{text}");
+        assert_eq!(
+            words,
+            [
+                "p/c", "5.1416", "5.2", "+1.14", "%", "5", "%", "passed", "0.0", "coarse"
+            ],
+            "{text}"
+        );
         assert!(text.contains("none") && text.contains("FAILED"));
         assert_eq!(csv(&rows).lines().count(), 3);
     }
 
     #[test]
     fn a_document_has_counts_a_table_for_each_theme_and_what_is_not_judged() {
-        let settlement = TableRow { theme: "Water".into(), ..row("u", Some(5.0), RowVerdict::Known) };
-        let unknown = TableRow { published: None, ..row("for the reader", Some(1.0), RowVerdict::Warned) };
+        let settlement = TableRow {
+            theme: "Water".into(),
+            ..row("u", Some(5.0), RowVerdict::Known)
+        };
+        let unknown = TableRow {
+            published: None,
+            ..row("for the reader", Some(1.0), RowVerdict::Warned)
+        };
         let rows = [
             row("p/c", Some(5.2), RowVerdict::Passed),
             settlement,
@@ -255,26 +297,57 @@ mod tests {
             row("coarser", Some(9.0), RowVerdict::Warned),
             unknown,
         ];
-        let figure = TableFigure { theme: "Water".into(), caption: "u".into(), file: "u.png".into() };
+        let figure = TableFigure {
+            theme: "Water".into(),
+            caption: "u".into(),
+            file: "u.png".into(),
+        };
         let text = markdown(&rows, &[figure]);
         let passed = "| A study: p/c | [`footing.toml`](../cases/footing.toml) | Prandtl | 5.1416 | 5.2 | +1.14 % | 5 % \
                       | passed | 64 | 0.0 |";
-        assert!(text.contains("| all | 1 | 3 | 2 | 1 | 0 |") && text.contains(passed), "{text}");
-        assert!(text.contains("| known failure: the grid is coarse |") && text.contains("\n![u](u.png)\n"), "{text}");
+        assert!(
+            text.contains("| all | 1 | 3 | 2 | 1 | 0 |") && text.contains(passed),
+            "{text}"
+        );
+        assert!(
+            text.contains("| known failure: the grid is coarse |") && text.contains("\n![u](u.png)\n"),
+            "{text}"
+        );
         let place = |part: &str| text.find(part).unwrap_or_else(|| panic!("no {part} in {text}"));
-        assert!(place("## Limit loads") < place("finer") && place("finer") < place("## Water"), "{text}");
-        let failed = TableRow { remark: "exit code 80".into(), ..row("p/c", None, RowVerdict::Failed) };
+        assert!(
+            place("## Limit loads") < place("finer") && place("finer") < place("## Water"),
+            "{text}"
+        );
+        let failed = TableRow {
+            remark: "exit code 80".into(),
+            ..row("p/c", None, RowVerdict::Failed)
+        };
         assert!(markdown(&[failed], &[]).contains("| **FAILED**: exit code 80 |"));
-        assert!(place("## Water") < place("## Compared, not judged") && !text.contains("for the reader"), "{text}");
+        assert!(
+            place("## Water") < place("## Compared, not judged") && !text.contains("for the reader"),
+            "{text}"
+        );
     }
 
     #[test]
     fn a_difference_is_relative_to_the_published_value_unless_the_tolerance_has_a_unit() {
         let row = row("p", Some(5.2), RowVerdict::Passed);
         assert_eq!(row.difference().as_deref(), Some("+1.14 %"));
-        let absolute = TableRow { published: Some(5.0), scale: DifferenceScale::None, ..row.clone() };
+        let absolute = TableRow {
+            published: Some(5.0),
+            scale: DifferenceScale::None,
+            ..row.clone()
+        };
         assert_eq!(absolute.difference().as_deref(), Some("0.2"));
-        assert_eq!(TableRow { published: Some(0.0), ..row.clone() }.difference().as_deref(), Some("5.2"));
+        assert_eq!(
+            TableRow {
+                published: Some(0.0),
+                ..row.clone()
+            }
+            .difference()
+            .as_deref(),
+            Some("5.2")
+        );
         assert_eq!(TableRow { published: None, ..row }.difference(), None);
     }
 }

@@ -42,7 +42,10 @@ impl Grids {
                 "note: cells of each of the three sizes must fill the grid. Choose others with --refine-only, --ratio or --cells."
                     .into(),
             );
-            return Err(Error::BadCase { path: path.clone(), errors });
+            return Err(Error::BadCase {
+                path: path.clone(),
+                errors,
+            });
         }
         orders.sort_by(|a, b| a.cell().total_cmp(&b.cell()));
         let sizes = [orders[0].cell(), orders[1].cell(), orders[2].cell()];
@@ -101,7 +104,13 @@ impl VerifyArguments {
         }
         let coarsest = if self.refine_only { 1.0 } else { self.ratio };
         let factors = [coarsest, coarsest / self.ratio, coarsest / self.ratio / self.ratio];
-        let of = |factor: f64| vec![format!("grid.cell=[{:?}, {:?}]", factor * x.cell(0), factor * y.cell(0))];
+        let of = |factor: f64| {
+            vec![format!(
+                "grid.cell=[{:?}, {:?}]",
+                factor * x.cell(0),
+                factor * y.cell(0)
+            )]
+        };
         Ok(factors.map(of).to_vec())
     }
 
@@ -121,7 +130,10 @@ impl VerifyArguments {
                 set.push(format!("analysis.dt_max={:?}", finer * longest));
             }
         }
-        RunOrder::read(&self.case, bytes, set, 2).map_err(|errors| Error::BadCase { path: self.case.clone(), errors })
+        RunOrder::read(&self.case, bytes, set, 2).map_err(|errors| Error::BadCase {
+            path: self.case.clone(),
+            errors,
+        })
     }
 }
 
@@ -155,16 +167,22 @@ fn divided_knots(own: &Case, axis: usize, parts: usize) -> Vec<f64> {
         }
     };
     let copies = |number: usize| {
-        let line = own.grid.lines[axis].iter().find(|line| line.breakpoint * parts == number);
+        let line = own.grid.lines[axis]
+            .iter()
+            .find(|line| line.breakpoint * parts == number);
         line.map_or(1, |line| line.multiplicity)
     };
-    (0..=cells.cells() * parts).flat_map(|number| std::iter::repeat_n(at(number), copies(number))).collect()
+    (0..=cells.cells() * parts)
+        .flat_map(|number| std::iter::repeat_n(at(number), copies(number)))
+        .collect()
 }
 
 /// The settings of cells of one size, divided into so many parts along each axis.
 pub(crate) fn divided_equally(own: &Case, parts: usize) -> Vec<String> {
     let edges: Vec<f64> = own.grid.axes.iter().map(|axis| axis.cell(0) / parts as f64).collect();
-    std::iter::once(format!("grid.cell={edges:?}")).chain(points(own)).collect()
+    std::iter::once(format!("grid.cell={edges:?}"))
+        .chain(points(own))
+        .collect()
 }
 
 /// Whether the cells are of several sizes along an axis.
@@ -186,7 +204,10 @@ mod tests {
         let line = Line::parse_from(["verify-case", "case.toml"]);
         let grids = Grids::of(&line.arguments, PRESET.as_bytes()).unwrap();
         let steps: Vec<f64> = grids.orders.iter().map(|order| order.case.analysis.dt).collect();
-        assert!(steps.iter().all(|dt| *dt == steps[0]) && grids.sizes[0] != grids.sizes[1], "{steps:?}");
+        assert!(
+            steps.iter().all(|dt| *dt == steps[0]) && grids.sizes[0] != grids.sizes[1],
+            "{steps:?}"
+        );
     }
 
     #[derive(Parser)]
@@ -201,15 +222,28 @@ mod tests {
     }
 
     fn near(found: [f64; 3], expected: [f64; 3]) -> bool {
-        found.iter().zip(expected).all(|(found, expected)| (found / expected - 1.0).abs() < 1e-12)
+        found
+            .iter()
+            .zip(expected)
+            .all(|(found, expected)| (found / expected - 1.0).abs() < 1e-12)
     }
 
     #[test]
     fn grids_are_nested_and_the_step_is_as_asked() {
         let found = grids(&["--refine-only"]).unwrap();
         assert!(near(found.sizes, [2.5e-3, 5e-3, 1e-2]));
-        assert!(found.orders.iter().all(|order| order.case.analysis.dt == found.own.analysis.dt));
-        assert!(found.orders.iter().all(|order| order.case.bodies[0].points_per_cell == 2));
+        assert!(
+            found
+                .orders
+                .iter()
+                .all(|order| order.case.analysis.dt == found.own.analysis.dt)
+        );
+        assert!(
+            found
+                .orders
+                .iter()
+                .all(|order| order.case.bodies[0].points_per_cell == 2)
+        );
         let found = grids(&["--refine-only", "--time-step", "refined"]).unwrap();
         let steps = [0, 1, 2].map(|index| found.orders[index].case.analysis.dt);
         assert!(near(steps, [1.25e-4, 2.5e-4, 5e-4]), "{steps:?}");
@@ -222,9 +256,12 @@ mod tests {
         // 0.55 m is no whole number of cells of 20 mm.
         let error = grids(&[]).err().unwrap().to_string();
         assert!(error.contains("--refine-only"), "{error}");
-        for options in
-            [&["--ratio", "1"][..], &["--ratio", "11"], &["--cells", "5mm,10mm"], &["--cells", "5mm,5mm,10mm"]]
-        {
+        for options in [
+            &["--ratio", "1"][..],
+            &["--ratio", "11"],
+            &["--cells", "5mm,10mm"],
+            &["--cells", "5mm,5mm,10mm"],
+        ] {
             assert_eq!(grids(options).err().unwrap().exit_code(), 2, "{options:?}");
         }
     }
@@ -232,23 +269,67 @@ mod tests {
     /// Cells of several sizes, by hand or by a preset, keep their proportions, repeated breakpoints and points.
     #[test]
     fn graded_cells_are_divided() {
-        let knots = ["--set", "grid.knots.x=[0.0, 0.3, 0.3, 0.55]", "--set", "grid.knots.y=[0.0, 0.05, 0.1025]"];
+        let knots = [
+            "--set",
+            "grid.knots.x=[0.0, 0.3, 0.3, 0.55]",
+            "--set",
+            "grid.knots.y=[0.0, 0.05, 0.1025]",
+        ];
         let found = grids(&knots).unwrap();
-        assert!(near(found.sizes, [0.25, 0.5, 1.0].map(|part| part * (0.3_f64 * 0.0525).sqrt())), "{:?}", found.sizes);
-        let cells: Vec<usize> = found.orders.iter().map(|order| order.case.grid.axes[0].cells()).collect();
+        assert!(
+            near(
+                found.sizes,
+                [0.25, 0.5, 1.0].map(|part| part * (0.3_f64 * 0.0525).sqrt())
+            ),
+            "{:?}",
+            found.sizes
+        );
+        let cells: Vec<usize> = found
+            .orders
+            .iter()
+            .map(|order| order.case.grid.axes[0].cells())
+            .collect();
         assert_eq!(cells, [8, 4, 2]);
         assert!(found.orders.iter().all(|order| order.case.grid.lines[0].len() == 1));
-        assert!(found.orders.iter().all(|order| order.case.bodies[0].points_per_cell == 2));
-        let knots_moved = ["--set", "grid.knots.x=[-0.1, 0.3, 0.55]", "--set", "grid.knots.y=[-0.2, 0.05, 0.1025]"];
+        assert!(
+            found
+                .orders
+                .iter()
+                .all(|order| order.case.bodies[0].points_per_cell == 2)
+        );
+        let knots_moved = [
+            "--set",
+            "grid.knots.x=[-0.1, 0.3, 0.55]",
+            "--set",
+            "grid.knots.y=[-0.2, 0.05, 0.1025]",
+        ];
         let found = grids(&[&["--set", "grid.lower=[-0.1, -0.2]"][..], &knots_moved].concat()).unwrap();
-        assert!(found.orders.iter().all(|order| order.case.grid.lower() == [-0.1, -0.2, 0.0]));
+        assert!(
+            found
+                .orders
+                .iter()
+                .all(|order| order.case.grid.lower() == [-0.1, -0.2, 0.0])
+        );
         assert_eq!(found.orders[2].case.grid, found.own.grid);
-        assert_eq!(grids(&[&knots[..], &["--ratio", "1.5"]].concat()).err().unwrap().exit_code(), 2);
+        assert_eq!(
+            grids(&[&knots[..], &["--ratio", "1.5"]].concat())
+                .err()
+                .unwrap()
+                .exit_code(),
+            2
+        );
         let line = Line::parse_from(["verify-case", "case.toml"]);
         let footing = include_str!("../../../../cases/presets/strip_footing.toml");
         let found = Grids::of(&line.arguments, footing.as_bytes()).unwrap();
-        let points: Vec<usize> = found.orders.iter().map(|order| order.case.bodies[0].points_per_cell).collect();
+        let points: Vec<usize> = found
+            .orders
+            .iter()
+            .map(|order| order.case.bodies[0].points_per_cell)
+            .collect();
         assert_eq!(points, [found.own.bodies[0].points_per_cell; 3]);
-        assert!(found.orders[2].case.points() == found.own.points(), "the coarsest is the case's own");
+        assert!(
+            found.orders[2].case.points() == found.own.points(),
+            "the coarsest is the case's own"
+        );
     }
 }

@@ -60,8 +60,15 @@ impl VerifyReport {
         };
         let mut rows = Vec::new();
         for time in arguments.at.iter().copied().map(Some).chain([None]) {
-            for heading in fine.headings.iter().filter(|heading| !["step", "time"].contains(&&*heading.name)) {
-                let part = QuantityPart { column: heading.name.clone(), at: time };
+            for heading in fine
+                .headings
+                .iter()
+                .filter(|heading| !["step", "time"].contains(&&*heading.name))
+            {
+                let part = QuantityPart {
+                    column: heading.name.clone(),
+                    at: time,
+                };
                 let value = |history: &Columns| part.value(history).map_err(|reason| Error::Usage { reason });
                 let values = [value(fine)?, value(middle)?, value(coarse)?];
                 let index = Index::of(grids.sizes, values);
@@ -83,7 +90,11 @@ impl VerifyReport {
             title: grids.own.title.clone(),
             cells: grids.sizes,
             points_per_cell: grids.own.bodies.iter().map(|body| body.points_per_cell).collect(),
-            time_step: if arguments.time_step == TimeStep::Kept { "kept" } else { "refined" },
+            time_step: if arguments.time_step == TimeStep::Kept {
+                "kept"
+            } else {
+                "refined"
+            },
             steps: [step(0), step(1), step(2)],
             rows,
             costs: outcomes.iter().map(|outcome| outcome.cost).collect(),
@@ -125,7 +136,10 @@ impl VerifyReport {
     /// A row a quantity and time.
     pub fn csv(&self) -> String {
         let mut table = ReportTable::of(&self.rows);
-        table.column("quantity", |row| &row.quantity).column("unit", |row| &row.unit).column("time", VerifyRow::time);
+        table
+            .column("quantity", |row| &row.quantity)
+            .column("unit", |row| &row.unit)
+            .column("time", VerifyRow::time);
         for (heading, cell) in ["h_fine", "h_middle", "h_coarse"].into_iter().zip(self.cells) {
             table.column(heading, |_| cell);
         }

@@ -108,15 +108,28 @@ impl Feature {
 }
 
 const fn law(name: &'static str, law: &'static str) -> Feature {
-    Feature { name, law: Some(law), ..Feature::NONE }
+    Feature {
+        name,
+        law: Some(law),
+        ..Feature::NONE
+    }
 }
 
 const fn tables(name: &'static str, extra: &'static str, extra_in_space: &'static str) -> Feature {
-    Feature { name, extra, extra_in_space: Some(extra_in_space), ..Feature::NONE }
+    Feature {
+        name,
+        extra,
+        extra_in_space: Some(extra_in_space),
+        ..Feature::NONE
+    }
 }
 
 const fn bottom(name: &'static str, support: &'static str) -> Feature {
-    Feature { name, bottom: Some(support), ..Feature::NONE }
+    Feature {
+        name,
+        bottom: Some(support),
+        ..Feature::NONE
+    }
 }
 
 pub const ROWS: &[Feature] = &[
@@ -159,7 +172,11 @@ pub const ROWS: &[Feature] = &[
         "model = \"mu-i\"\nyoung = \"10 MPa\"\npoisson = 0.3\nmu_s = 0.38\nmu_2 = 0.64\ninertial_number = 0.3\n\
          grain_diameter = \"1 mm\"\ngrain_density = 2500.0",
     ),
-    Feature { name: "automatic cells and steps (`accuracy`)", top: "accuracy = \"draft\"\n", ..Feature::NONE },
+    Feature {
+        name: "automatic cells and steps (`accuracy`)",
+        top: "accuracy = \"draft\"\n",
+        ..Feature::NONE
+    },
     tables(
         "initial stress: K0 procedure, plastic equilibrium",
         "[initial]\nk0 = 0.6\nequilibrium = \"plastic\"\n",
@@ -175,7 +192,11 @@ pub const ROWS: &[Feature] = &[
         ),
         ..Feature::NONE
     },
-    Feature { name: "factor of safety (`bsmpm fos`)", is_factor_of_safety: true, ..Feature::NONE },
+    Feature {
+        name: "factor of safety (`bsmpm fos`)",
+        is_factor_of_safety: true,
+        ..Feature::NONE
+    },
     tables(
         "surface loads that follow the surface",
         "[[traction]]\nfrom = [0.0, 2.0]\nto = [2.0, 2.0]\npressure = \"20 kPa\"\n",
@@ -260,7 +281,10 @@ pub const ROWS: &[Feature] = &[
         extra: "[water]\nlevel = 2.0\n",
         ..Feature::NONE
     },
-    Feature { extra: "[initial]\nk0 = 0.5\n", ..bottom("absorbing boundary", "absorbing") },
+    Feature {
+        extra: "[initial]\nk0 = 0.5\n",
+        ..bottom("absorbing boundary", "absorbing")
+    },
     Feature {
         name: "earthquake with free-field sides",
         right: Some("free-field"),
@@ -275,5 +299,9 @@ pub const ROWS: &[Feature] = &[
         "[shaking]\nacceleration = [[0.0, 0.0, 0.0], [0.5, 2.0, 0.0], [1.0, 0.0, 0.0]]\n",
         "[shaking]\nacceleration = [[0.0, 0.0, 0.0, 0.0], [0.5, 2.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]\n",
     ),
-    Feature { name: "outflow boundary", right: Some("outflow"), ..Feature::NONE },
+    Feature {
+        name: "outflow boundary",
+        right: Some("outflow"),
+        ..Feature::NONE
+    },
 ];

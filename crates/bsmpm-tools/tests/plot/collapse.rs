@@ -37,7 +37,11 @@ impl Collapse {
             ManifestCase::new("collapse.toml", title, "plane-strain", format!("title = \"{title}\"\n")),
         );
         manifest.picture_times = picture_times.to_vec();
-        manifest.grid = Some(GridExtent { lower: vec![0.0; 2], upper: self.grid.to_vec(), cell: vec![self.cell; 2] });
+        manifest.grid = Some(GridExtent {
+            lower: vec![0.0; 2],
+            upper: self.grid.to_vec(),
+            cell: vec![self.cell; 2],
+        });
         let directory = OutputDirectory::hold(directory, Unseen::Respect)
             .and_then(|held| held.claim(Existing::Refuse, &manifest))?;
         let mut frames = Frames::create(directory.path())?;
@@ -96,13 +100,26 @@ impl Collapse {
             Field::real("stress", 6, stress),
             Field::real("pressure", 1, pressure),
             Field::real("plastic_strain", 1, vec![0.0; count]),
-            Field { name: "material".to_owned(), components: 1, values: FieldValues::U16(vec![0; count]) },
-            Field { name: "id".to_owned(), components: 1, values: FieldValues::U64((0..count as u64).collect()) },
+            Field {
+                name: "material".to_owned(),
+                components: 1,
+                values: FieldValues::U16(vec![0; count]),
+            },
+            Field {
+                name: "id".to_owned(),
+                components: 1,
+                values: FieldValues::U64((0..count as u64).collect()),
+            },
         ];
         if volumes {
             fields.push(Field::real("volume", 1, vec![width * height / count as f64; count]));
         }
-        Frame { step: index * STEPS_PER_FRAME, time, position, fields }
+        Frame {
+            step: index * STEPS_PER_FRAME,
+            time,
+            position,
+            fields,
+        }
     }
 
     fn write_tables(&self, directory: &Path) -> Result<(), bsmpm_io::Error> {
@@ -121,7 +138,13 @@ impl Collapse {
             let runout = self.place([self.body[0], 0.0], progress)[0];
             let height = self.place([0.0, self.body[1]], progress)[1];
             let noise = 0.02 * progress * (1.5 + (step as f64 * 0.7).sin());
-            let energies = [progress * (1.0 - progress), progress, 0.1 * progress, 0.1 * progress, 0.0];
+            let energies = [
+                progress * (1.0 - progress),
+                progress,
+                0.1 * progress,
+                0.1 * progress,
+                0.0,
+            ];
             let lengths = [runout, 0.94 * runout, height, noise].into_iter();
             let cells: Vec<Cell> = lengths.chain(energies).map(Cell::Float).collect();
             history.row(&[&[Cell::Int(step), Cell::Float(time)], &cells[..]].concat())?;

@@ -29,14 +29,18 @@ const SCALED: &str = "E_delta_over_gamma_H2";
 /// with `code`, from `loose` on because a rigid body slips, and has no end above `lasts`.
 fn behaviour(folder: &Path, key: &str, otherwise: f64) -> f64 {
     let text = fs::read_to_string(folder.join("behaviour")).unwrap();
-    let value = text.split_whitespace().find_map(|word| word.strip_prefix(key)?.strip_prefix('='));
+    let value = text
+        .split_whitespace()
+        .find_map(|word| word.strip_prefix(key)?.strip_prefix('='));
     value.map_or(otherwise, |value| value.parse().unwrap())
 }
 
 /// No test of its own: the solver, when the variable says so.
 #[test]
 fn stub() {
-    let Some(folder) = env::var_os(STUB).map(PathBuf::from) else { return };
+    let Some(folder) = env::var_os(STUB).map(PathBuf::from) else {
+        return;
+    };
     let arguments: Vec<String> = env::args().skip_while(|word| word != "--").skip(1).collect();
     let after = |name: &str| {
         let pairs = arguments.windows(2).filter(|pair| pair[0] == name);
@@ -45,14 +49,22 @@ fn stub() {
     let bytes = fs::read(&arguments[0]).unwrap();
     let case = bsmpm_scene::Case::from_bytes(&arguments[0], &bytes, &after("--set")).unwrap();
     let factor = case.strength_reduction.unwrap();
-    let mut calls = OpenOptions::new().create(true).append(true).open(folder.join("calls")).unwrap();
+    let mut calls = OpenOptions::new()
+        .create(true)
+        .append(true)
+        .open(folder.join("calls"))
+        .unwrap();
     calls.write_all(format!("{factor}\n").as_bytes()).unwrap();
     if factor > behaviour(&folder, "breaks", f64::INFINITY) {
         eprintln!("it broke");
         std::process::exit(70);
     }
     if factor > behaviour(&folder, "lasts", f64::INFINITY) {
-        let mut pids = OpenOptions::new().create(true).append(true).open(folder.join("pids")).unwrap();
+        let mut pids = OpenOptions::new()
+            .create(true)
+            .append(true)
+            .open(folder.join("pids"))
+            .unwrap();
         pids.write_all(format!("{}\n", std::process::id()).as_bytes()).unwrap();
         std::thread::sleep(Duration::from_secs(600));
     }
@@ -64,8 +76,19 @@ fn stub() {
     };
     let output = after("--output").remove(0);
     let slips = factor >= behaviour(&folder, "loose", f64::INFINITY);
-    let (code, loose) = if slips { (80, Some("block".to_owned())) } else { (code, None) };
-    write_run(&case, arguments.clone(), Path::new(&output), 7.5e-3 * growth, code, loose);
+    let (code, loose) = if slips {
+        (80, Some("block".to_owned()))
+    } else {
+        (code, None)
+    };
+    write_run(
+        &case,
+        arguments.clone(),
+        Path::new(&output),
+        7.5e-3 * growth,
+        code,
+        loose,
+    );
     std::process::exit(i32::from(code));
 }
 
@@ -80,7 +103,11 @@ fn write_run(
 ) {
     let reported = ManifestCase::new("slope.toml", &case.title, "plane-strain", case.text.clone());
     let mut manifest = Manifest::begin("0.1.0", argv, reported);
-    manifest.grid = Some(GridExtent { lower: vec![0.0; 2], upper: vec![40.0, 12.0], cell: vec![1.0; 2] });
+    manifest.grid = Some(GridExtent {
+        lower: vec![0.0; 2],
+        upper: vec![40.0, 12.0],
+        cell: vec![1.0; 2],
+    });
     let directory = OutputDirectory::hold(directory, Unseen::Respect)
         .and_then(|held| held.claim(Existing::Delete, &manifest))
         .unwrap();
@@ -93,13 +120,20 @@ fn write_run(
             SCALED => Cell::Float(50.0 * displacement),
             _ => Cell::Float(displacement),
         });
-        [Cell::Int(step), Cell::Float(step as f64)].into_iter().chain(quantities).collect()
+        [Cell::Int(step), Cell::Float(step as f64)]
+            .into_iter()
+            .chain(quantities)
+            .collect()
     };
     table.row(&row(0, 0.0)).unwrap();
     table.row(&row(1, displacement)).unwrap();
-    let position: Vec<[f64; 3]> =
-        (0..100).map(|index| [f64::from(index % 10) + 0.5, f64::from(index / 10) + 0.5, 0.0]).collect();
-    let moved: Vec<f64> = position.iter().flat_map(|place| [displacement * place[1] / 10.0, 0.0, 0.0]).collect();
+    let position: Vec<[f64; 3]> = (0..100)
+        .map(|index| [f64::from(index % 10) + 0.5, f64::from(index / 10) + 0.5, 0.0])
+        .collect();
+    let moved: Vec<f64> = position
+        .iter()
+        .flat_map(|place| [displacement * place[1] / 10.0, 0.0, 0.0])
+        .collect();
     let strain: Vec<f64> = position.iter().map(|place| displacement * place[0] / 100.0).collect();
     let fields = vec![
         Field::real("displacement", 3, moved),
@@ -107,14 +141,29 @@ fn write_run(
         Field::real("stress", 6, vec![0.0; 600]),
     ];
     let mut frames = Frames::create(directory.path()).unwrap();
-    frames.write(&Frame { step: 1, time: 1.0, position, fields }).unwrap();
-    [COLLECTION, HISTORY, &Frames::file(1)].iter().for_each(|name| manifest.name_output(name));
+    frames
+        .write(&Frame {
+            step: 1,
+            time: 1.0,
+            position,
+            fields,
+        })
+        .unwrap();
+    [COLLECTION, HISTORY, &Frames::file(1)]
+        .iter()
+        .for_each(|name| manifest.name_output(name));
     if code == 0 {
         manifest.finish(Status::Finished, 0);
     } else {
         let reason = "no step converged".to_owned();
-        manifest.failure =
-            Some(ManifestFailure { step: 2, time: 0.875, reason, residuals: Vec::new(), worst: None, loose });
+        manifest.failure = Some(ManifestFailure {
+            step: 2,
+            time: 0.875,
+            reason,
+            residuals: Vec::new(),
+            worst: None,
+            loose,
+        });
         manifest.finish(Status::Failed, code);
     }
     manifest.write(directory.path()).unwrap();
@@ -126,13 +175,18 @@ struct Bench {
 
 impl Bench {
     fn new(case: &str, behaviour: &str) -> Self {
-        let bench = Self { folder: tempfile::tempdir().unwrap() };
+        let bench = Self {
+            folder: tempfile::tempdir().unwrap(),
+        };
         bench.write("slope.toml", case);
         bench.write("behaviour", behaviour);
         let program = env::current_exe().unwrap();
         bench.write(
             "solver",
-            &format!("#!/bin/sh\nexec '{}' --exact fos::stub --nocapture -- \"$@\"\n", program.display()),
+            &format!(
+                "#!/bin/sh\nexec '{}' --exact fos::stub --nocapture -- \"$@\"\n",
+                program.display()
+            ),
         );
         fs::set_permissions(bench.path("solver"), fs::Permissions::from_mode(0o755)).unwrap();
         bench
@@ -157,7 +211,10 @@ impl Bench {
     fn command(&self, jobs: &str, options: &[&str]) -> Command {
         let arguments = [&["fos", "slope.toml", "--jobs", jobs], options, &["--", "./solver"]].concat();
         let mut command = Command::new(env!("CARGO_BIN_EXE_bsmpm"));
-        command.current_dir(self.folder.path()).env(STUB, self.folder.path()).args(arguments);
+        command
+            .current_dir(self.folder.path())
+            .env(STUB, self.folder.path())
+            .args(arguments);
         command
     }
 
@@ -181,23 +238,42 @@ fn the_factor_is_found_and_written_with_its_conditions_and_pictures() {
     let said = text(&output.stdout);
     assert!(said.contains("\nUse the result by the kink"), "{said}");
     assert!(output.status.success(), "{output:?}");
-    assert!(said.contains("h = 1 m, 3 x 3 points a cell, order 2; consistent-f-bar; background 1e-4 E"), "{said}");
-    assert!(said.contains("10 load steps; tolerances 1e-8 (energy), 1e-4 (forces); E = 100 MPa"), "{said}");
+    assert!(
+        said.contains("h = 1 m, 3 x 3 points a cell, order 2; consistent-f-bar; background 1e-4 E"),
+        "{said}"
+    );
+    assert!(
+        said.contains("10 load steps; tolerances 1e-8 (energy), 1e-4 (forces); E = 100 MPa"),
+        "{said}"
+    );
     let found = bench.found();
     let factor = &found["factor_of_safety"];
     let number = |key: &str| factor[key].as_f64().unwrap();
-    assert!(number("last_stable") <= 1.373 && 1.373 <= number("first_failed"), "{factor}");
+    assert!(
+        number("last_stable") <= 1.373 && 1.373 <= number("first_failed"),
+        "{factor}"
+    );
     assert!(number("first_failed") - number("last_stable") < 0.0201 && (number("estimate") - 1.373).abs() < 2e-3);
     assert_eq!(found["criteria"][1]["criterion"], "doubled");
-    assert_eq!((&found["conditions"]["background"], &found["column"]), (&1e-4.into(), &SCALED.into()));
+    assert_eq!(
+        (&found["conditions"]["background"], &found["column"]),
+        (&1e-4.into(), &SCALED.into())
+    );
     let trials = found["trials"].as_array().unwrap();
     assert!(trials[0]["verdict"] == "elastic" && trials[0]["factor"] == 0.0 && trials[1]["status"] == "equilibrium");
-    assert!(trials.iter().all(|trial| trial["plastic_strain"].as_f64().unwrap() > 0.0));
+    assert!(
+        trials
+            .iter()
+            .all(|trial| trial["plastic_strain"].as_f64().unwrap() > 0.0)
+    );
     let table = fs::read_to_string(bench.path("slope.fos/fos.csv")).unwrap();
     assert_eq!((table.lines().count(), bench.calls()), (2 + trials.len(), trials.len()));
     for name in ["fos.png", "fos_plastic-strain.png", "fos_displacement.png"] {
         let path = bench.path("slope.fos").join(name);
-        assert!(said.contains(&format!("slope.fos/{name}")) && Picture::read(&path).colours() > 20, "{name}");
+        assert!(
+            said.contains(&format!("slope.fos/{name}")) && Picture::read(&path).colours() > 20,
+            "{name}"
+        );
     }
 }
 
@@ -212,10 +288,18 @@ fn a_trial_without_equilibrium_is_a_result() {
         assert!(said.contains("There is no kink. Use the first result"), "{said}");
         let found = bench.found();
         let number = |key: &str| found["factor_of_safety"][key].as_f64().unwrap();
-        assert!(number("last_stable") < 1.373 && 1.373 <= number("first_failed"), "{found}");
+        assert!(
+            number("last_stable") < 1.373 && 1.373 <= number("first_failed"),
+            "{found}"
+        );
         assert!(found["factor_of_safety"]["estimate"].is_null());
         let trials = found["trials"].as_array().unwrap();
-        assert!(trials.iter().any(|trial| trial["status"] == status && trial["load"] == 0.875), "{found}");
+        assert!(
+            trials
+                .iter()
+                .any(|trial| trial["status"] == status && trial["load"] == 0.875),
+            "{found}"
+        );
         assert!(bench.path("slope.fos/fos_displacement.png").exists());
     }
     // In the middle, where a weaker body stands.
@@ -246,11 +330,17 @@ fn a_body_that_never_stands_or_never_fails_is_reported() {
     let bench = Bench::new(SLOPE, "kink=0.3");
     let output = bench.fos(&[]);
     let said = text(&output.stderr);
-    assert!(output.status.code() == Some(80) && said.contains("bsmpm: error E0828: "), "{said}");
+    assert!(
+        output.status.code() == Some(80) && said.contains("bsmpm: error E0828: "),
+        "{said}"
+    );
     let bench = Bench::new(SLOPE, "kink=9");
     let output = bench.fos(&["--to", "2"]);
     let said = text(&output.stdout);
-    assert!(output.status.success() && said.contains("above 2: no failure up to there"), "{said}");
+    assert!(
+        output.status.success() && said.contains("above 2: no failure up to there"),
+        "{said}"
+    );
     assert!(!said.contains("Use the"), "{said}");
     assert!(bench.found()["factor_of_safety"]["first_failed"].is_null());
     assert!(bench.path("slope.fos/fos.png").exists() && !bench.path("slope.fos/fos_displacement.png").exists());
@@ -277,12 +367,21 @@ fn weight_that_comes_at_once_and_soft_soil_are_mended_and_reported() {
     };
     let (said, as_it_is, run) = of(&[]);
     assert!(!said.contains("stiffness") && !said.contains("at once"), "{said}");
-    assert!(as_it_is["conditions"]["stiffness"] == 1.0 && run.contains("elastic = true"), "{run}");
+    assert!(
+        as_it_is["conditions"]["stiffness"] == 1.0 && run.contains("elastic = true"),
+        "{run}"
+    );
     let (said, found, run) = of(&["gravity.ramp=0.0"]);
-    assert!(said.contains("note: a load acts at once in the case") && run.contains("unloaded = true"), "{said} {run}");
+    assert!(
+        said.contains("note: a load acts at once in the case") && run.contains("unloaded = true"),
+        "{said} {run}"
+    );
     assert_eq!(found["elastic_displacement"], as_it_is["elastic_displacement"]);
     let (said, found, _) = of(&["gravity.ramp=0.0", "initial.k0=0.5"]);
-    assert!(said.contains("note: the trials start without the initial stress"), "{said}");
+    assert!(
+        said.contains("note: the trials start without the initial stress"),
+        "{said}"
+    );
     assert_eq!(found["elastic_displacement"], as_it_is["elastic_displacement"]);
     // The weight of 10 m over E: 0.2 % as it is, 2 % with a tenth of E.
     let (said, found, run) = of(&["material.soil.young=1e7"]);
@@ -290,7 +389,10 @@ fn weight_that_comes_at_once_and_soft_soil_are_mended_and_reported() {
         said.contains("note: the trials use 10 times the stiffness of the case")
             && said.contains("E = 10 MPa, times 10")
     );
-    assert!(found["conditions"]["stiffness"] == 10.0 && run.contains("stiffness = 10.0"), "{run}");
+    assert!(
+        found["conditions"]["stiffness"] == 10.0 && run.contains("stiffness = 10.0"),
+        "{run}"
+    );
     // The stub moves as far whatever the stiffness: reported as of the case's own it is ten times that.
     let displacement = |found: &Value| found["elastic_displacement"].as_f64().unwrap();
     assert!((displacement(&found) / displacement(&as_it_is) - 10.0).abs() < 1e-12);
@@ -322,8 +424,14 @@ fn what_is_not_there_does_not_matter_and_what_softens_has_a_band() {
     assert!(!spare["factor_of_safety"]["estimate"].is_null());
     let soil = of(&[&format!("material.soil={}", softening(1e7, 20.0))], &[]);
     let found = &soil["factor_of_safety"];
-    assert!(soil["conditions"]["stiffness"] == 1.0 && found["estimate"].is_null(), "{soil}");
-    assert!(found["last_stable"].as_f64() < Some(1.42) && found["first_failed"].as_f64() > Some(1.41), "{soil}");
+    assert!(
+        soil["conditions"]["stiffness"] == 1.0 && found["estimate"].is_null(),
+        "{soil}"
+    );
+    assert!(
+        found["last_stable"].as_f64() < Some(1.42) && found["first_failed"].as_f64() > Some(1.41),
+        "{soil}"
+    );
     assert!(soil["notes"].to_string().contains("W0809"), "{soil}");
 }
 
@@ -333,10 +441,19 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
     let strip = "footing={ from = [0.0, 10.0], to = [2.0, 10.0], displacement = [0.0, -0.1] }";
     let wall = "rigid=[{ name = \"wall\", polygon = [[34, 0], [36, 0], [36, 4]], displacement = [-0.1, 0.0] }]";
     for (set, reported) in [
-        (vec!["solver.tolerance=2e-3"], "E0823: solver.tolerance = 2e-3 is too large"),
-        (vec!["solver.force_tolerance=1e-2"], "E0823: solver.force_tolerance = 1e-2"),
+        (
+            vec!["solver.tolerance=2e-3"],
+            "E0823: solver.tolerance = 2e-3 is too large",
+        ),
+        (
+            vec!["solver.force_tolerance=1e-2"],
+            "E0823: solver.force_tolerance = 1e-2",
+        ),
         (vec!["analysis.type=dynamic"], "E0810"),
-        (vec!["material.soil={ model = \"elastic\", young = 1e8, poisson = 0.3, density = 2e3 }"], "E0816"),
+        (
+            vec!["material.soil={ model = \"elastic\", young = 1e8, poisson = 0.3, density = 2e3 }"],
+            "E0816",
+        ),
         (
             vec![
                 "analysis.type=quasi-static-rate",
@@ -356,7 +473,10 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
         (vec!["stage=[{ at = 0.5, reset_displacements = true }]"], "E0814"),
         (vec!["gravity.acceleration=[0.0, 0.0]"], "E0817"),
         (vec!["gravity.ramp=2.0"], "E0819"),
-        (vec!["point_load=[{ at = [2.0, 9.0], force = [0.0, -1e3], amplitude = [[0.5, 1.0]] }]"], "E0818"),
+        (
+            vec!["point_load=[{ at = [2.0, 9.0], force = [0.0, -1e3], amplitude = [[0.5, 1.0]] }]"],
+            "E0818",
+        ),
         (vec![strip], "E0822"),
         (vec![wall], "E0821"),
         (vec!["grid.cel=1.0"], "grid.cel"),
@@ -364,7 +484,10 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
         let options: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
         let output = bench.fos(&options);
         let said = text(&output.stderr);
-        assert!(output.status.code() == Some(65) && said.contains(reported), "{set:?}: {output:?}");
+        assert!(
+            output.status.code() == Some(65) && said.contains(reported),
+            "{set:?}: {output:?}"
+        );
     }
     let stage = "stage=[{ at = 0.5, name = \"dug\", reset_displacements = true }]";
     let output = bench.fos(&["--set", stage, "--stage", "start"]);
@@ -377,8 +500,14 @@ fn a_case_without_a_factor_of_safety_is_refused_before_anything_runs() {
     );
     let output = bench.fos(&["--set", "solver.tolerance=1e-2", "--set", "gravity.ramp=2.0"]);
     let lines: Vec<String> = text(&output.stderr).lines().map(str::to_owned).collect();
-    assert!(lines[0].starts_with("bsmpm: error E0823: ") && lines[1].starts_with("error E0819: "), "{lines:?}");
-    assert!(lines.len() == 3 && lines[2].ends_with("no factor of safety; nothing was run"), "{lines:?}");
+    assert!(
+        lines[0].starts_with("bsmpm: error E0823: ") && lines[1].starts_with("error E0819: "),
+        "{lines:?}"
+    );
+    assert!(
+        lines.len() == 3 && lines[2].ends_with("no factor of safety; nothing was run"),
+        "{lines:?}"
+    );
     fs::remove_file(bench.path("slope.toml")).unwrap();
     assert_eq!(bench.fos(&[]).status.code(), Some(66));
     assert!(bench.calls() == 0 && !bench.path("slope.fos").exists());
@@ -414,7 +543,13 @@ fn a_wrong_command_line_is_refused_with_2() {
     }
     let without = |arguments: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_bsmpm"));
-        command.current_dir(bench.folder.path()).args(arguments).output().unwrap().status.code()
+        command
+            .current_dir(bench.folder.path())
+            .args(arguments)
+            .output()
+            .unwrap()
+            .status
+            .code()
     };
     assert_eq!(without(&["fos"]), Some(2));
     assert_eq!(without(&["fos", "slope.toml", "--jobs", "0"]), Some(2));
@@ -435,11 +570,17 @@ fn a_region_is_judged_alone() {
     let displacement = |found: &Value| found["elastic_displacement"].as_f64().unwrap();
     assert!(displacement(&lower) < 0.8 * displacement(&whole), "{lower}");
     assert!((displacement(&lower) - displacement(&whole)).abs() > 0.0 && whole["region"].is_null());
-    assert_eq!(lower["factor_of_safety"]["last_stable"], whole["factor_of_safety"]["last_stable"]);
+    assert_eq!(
+        lower["factor_of_safety"]["last_stable"],
+        whole["factor_of_safety"]["last_stable"]
+    );
     assert!(lower["mechanism"]["upper"][1].as_f64().unwrap() <= 5.0, "{lower}");
     for region in ["0,0,10", "0,0,10,0", "5,0,4,1"] {
         let output = bench.fos(&["--region", region]);
-        assert!(output.status.code() == Some(2) && text(&output.stderr).contains("E0832: --region"), "{output:?}");
+        assert!(
+            output.status.code() == Some(2) && text(&output.stderr).contains("E0832: --region"),
+            "{output:?}"
+        );
     }
     let output = bench.fos(&["--region", "20,0,30,5"]);
     assert!(text(&output.stderr).contains("E0832: no material point"), "{output:?}");

@@ -41,13 +41,19 @@ impl Still {
     pub fn write(&self, directory: &Path, picture_times: &[f64]) -> Result<(), bsmpm_io::Error> {
         let (title, upper) = match self.scene {
             Scene::Slope => ("Slope stability, Xie et al. (2023), section 3.2", [55.0, 16.0]),
-            Scene::Footing => ("Large penetration of a strip footing, Xie et al. (2023), section 3.3", [5.0, 11.0]),
+            Scene::Footing => (
+                "Large penetration of a strip footing, Xie et al. (2023), section 3.3",
+                [5.0, 11.0],
+            ),
         };
         let case = ManifestCase::new("still.toml", title, "plane-strain", self.text(title));
         let mut manifest = Manifest::begin("0.1.0", vec!["bsmpm-par".to_owned(), "still.toml".to_owned()], case);
         manifest.picture_times = picture_times.to_vec();
-        manifest.grid =
-            Some(GridExtent { lower: vec![0.0; 2], upper: upper.to_vec(), cell: vec![2.0 * self.spacing; 2] });
+        manifest.grid = Some(GridExtent {
+            lower: vec![0.0; 2],
+            upper: upper.to_vec(),
+            cell: vec![2.0 * self.spacing; 2],
+        });
         let directory = OutputDirectory::hold(directory, Unseen::Respect)
             .and_then(|held| held.claim(Existing::Refuse, &manifest))?;
         let mut frames = Frames::create(directory.path())?;
@@ -56,7 +62,9 @@ impl Still {
             frames.write(&self.frame(step))?;
         }
         self.write_tables(directory.path())?;
-        [COLLECTION, HISTORY, STEPS].iter().for_each(|file| manifest.name_output(file));
+        [COLLECTION, HISTORY, STEPS]
+            .iter()
+            .for_each(|file| manifest.name_output(file));
         if self.steps == ALL {
             manifest.finish(Status::Finished, 0);
         } else {
@@ -129,7 +137,11 @@ impl Still {
 
     fn frame(&self, step: u64) -> Frame {
         let time = step as f64 / ALL as f64;
-        let [width, height] = if self.scene == Scene::Slope { [55.0, 15.0] } else { [5.0, 10.0] };
+        let [width, height] = if self.scene == Scene::Slope {
+            [55.0, 15.0]
+        } else {
+            [5.0, 10.0]
+        };
         let count = |length: f64| (length / self.spacing).round() as usize;
         let mut position = Vec::new();
         let (mut displacement, mut stress, mut strain, mut pressure) = (vec![], vec![], vec![], vec![]);
@@ -154,7 +166,12 @@ impl Still {
             Field::real("plastic_strain", 1, strain),
             Field::real("volume", 1, volume),
         ];
-        Frame { step, time, position, fields }
+        Frame {
+            step,
+            time,
+            position,
+            fields,
+        }
     }
 
     fn write_tables(&self, directory: &Path) -> Result<(), bsmpm_io::Error> {
@@ -191,7 +208,13 @@ impl Still {
         }
         let rough = 0.1 * (step as f64 * 1.7).sin() * time;
         let pressure = (5.3 + 2.0 * time) / self.softness * (1.0 - (-12.0 * time).exp()) + rough;
-        vec![pressure, COHESION * pressure, 2.0 * time, 0.02 + rough.abs() / 10.0, 0.5 * time]
+        vec![
+            pressure,
+            COHESION * pressure,
+            2.0 * time,
+            0.02 + rough.abs() / 10.0,
+            0.5 * time,
+        ]
     }
 
     fn step(step: u64, time: f64) -> StepRow {

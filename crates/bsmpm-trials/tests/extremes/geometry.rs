@@ -28,14 +28,23 @@ fn inner_stress(shift: f64, background: f64) -> Vec<f64> {
             .body([2..10, 0..4], 3, 1.0, |x| x * 0.0)
             .support(Support::fixed(1, false))
             .gravity(2.0, 0.0);
-    scene.model.background = (background > 0.0).then_some(Background { coefficient: background });
+    scene.model.background = (background > 0.0).then_some(Background {
+        coefficient: background,
+    });
     let inside = |x: &Vector<2>| (x[0] - 1.5).abs() < 0.5 && (x[1] - 0.5).abs() < 0.25;
     let points = &mut scene.points;
-    let inner: HashSet<u64> = (0..points.len()).filter(|&p| inside(&points.x[p])).map(|p| points.id[p]).collect();
+    let inner: HashSet<u64> = (0..points.len())
+        .filter(|&p| inside(&points.x[p]))
+        .map(|p| points.id[p])
+        .collect();
     points.x.iter_mut().for_each(|x| x[0] += shift);
     points.sort_by_cell(&scene.model.grid);
     let points = scene.solved(1.0, 1.0).0.points;
-    by_id(&points).into_iter().filter(|&p| inner.contains(&points.id[p])).map(|p| points.sigma.at(p).0[1]).collect()
+    by_id(&points)
+        .into_iter()
+        .filter(|&p| inner.contains(&points.id[p]))
+        .map(|p| points.sigma.at(p).0[1])
+        .collect()
 }
 
 /// Largest change of the inner stress over all these shifts (in cells), relative.
@@ -44,9 +53,16 @@ fn change(shifts: impl Iterator<Item = f64>, background: f64) -> Found {
     let largest = reference.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
     let of = |shift: f64| {
         let found = inner_stress(shift * H, background);
-        found.iter().zip(&reference).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
+        found
+            .iter()
+            .zip(&reference)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max)
+            / largest
     };
-    let (shift, worst) = shifts.map(|shift| (shift, of(shift))).fold((0.0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
+    let (shift, worst) = shifts
+        .map(|shift| (shift, of(shift)))
+        .fold((0.0, 0.0), |a, b| if b.1 > a.1 { b } else { a });
     Found::Figure(worst, format!("worst {shift:.4} h off"))
 }
 
@@ -60,7 +76,10 @@ pub fn crossing(background: f64) -> Found {
 
 /// The outermost points 1e-2 to 1e-15 of a cell beyond the knot, and on it.
 pub fn entering(background: f64) -> Found {
-    change((2..=15).map(|k| ON_KNOT + 10.0_f64.powi(-k)).chain([ON_KNOT]), background)
+    change(
+        (2..=15).map(|k| ON_KNOT + 10.0_f64.powi(-k)).chain([ON_KNOT]),
+        background,
+    )
 }
 
 /// A block of 3 x 3 cells that falls freely and moves across a cell in 200 steps: largest acceleration of any node over
@@ -72,7 +91,10 @@ fn falling() -> (f64, f64) {
         .gravity(g, 0.0);
     let dt = H / speed[0] / f64::from(steps);
     let (halo, schedule) = (scene.halo(), Schedule::new(dt, dt * f64::from(steps), []));
-    let (mut solver, mut stepper) = (Skyline::new(&scene.model.grid), Stepper::new(scene.model.grid.nodes() * 2));
+    let (mut solver, mut stepper) = (
+        Skyline::new(&scene.model.grid),
+        Stepper::new(scene.model.grid.nodes() * 2),
+    );
     let mass: f64 = scene.points.mass.iter().sum();
     let (mut acceleration, mut lost, mut before) = (0.0_f64, 0.0_f64, speed);
     while let Some(step) = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
@@ -102,7 +124,10 @@ pub fn lost_momentum() -> f64 {
 /// with `swapped` axes the wall is the floor.
 fn thrown(is_mirrored: bool, is_swapped: bool, method: Stabilisation) -> Points<2> {
     let sign = if is_mirrored { -1.0 } else { 1.0 };
-    let (mut cells, mut axes) = ([if is_mirrored { 3..6 } else { 2..5 }, 0..3], [axis(0.5, 8, 2), axis(0.5, 5, 2)]);
+    let (mut cells, mut axes) = (
+        [if is_mirrored { 3..6 } else { 2..5 }, 0..3],
+        [axis(0.5, 8, 2), axis(0.5, 5, 2)],
+    );
     let (mut v, mut g, mut shift) = ([-0.8 * sign, 0.1], [0.0, -2.0], [-0.05 * sign, 0.0]);
     if is_swapped {
         cells.reverse();
@@ -115,7 +140,11 @@ fn thrown(is_mirrored: bool, is_swapped: bool, method: Stabilisation) -> Points<
         .support(Support::roller(wall, is_mirrored))
         .support(Support::fixed(floor, false))
         .stabilised(method);
-    scene.model.gravity = Some(Gravity { acceleration: g.into(), ramp: 0.0, starts_vertical: false });
+    scene.model.gravity = Some(Gravity {
+        acceleration: g.into(),
+        ramp: 0.0,
+        starts_vertical: false,
+    });
     scene.points.x.iter_mut().for_each(|x| *x += Vector::from(shift));
     scene.points.sort_by_cell(&scene.model.grid);
     scene.solved(0.01, 1.0).0.points
@@ -123,11 +152,22 @@ fn thrown(is_mirrored: bool, is_swapped: bool, method: Stabilisation) -> Points<
 
 /// Largest difference of position (m) and stress (over E) between points and the images of others, found by place.
 fn apart(points: &Points<2>, others: &Points<2>, image: impl Fn([f64; 2], [f64; 6]) -> ([f64; 2], [f64; 6])) -> f64 {
-    let images: Vec<_> = (0..others.len()).map(|p| image(others.x[p].into(), others.sigma.at(p).0)).collect();
+    let images: Vec<_> = (0..others.len())
+        .map(|p| image(others.x[p].into(), others.sigma.at(p).0))
+        .collect();
     let of = |p: usize| {
         let distance = |x: &[f64; 2]| (points.x[p] - Vector::from(*x)).norm();
-        let (x, sigma) = images.iter().min_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0))).expect("points");
-        let stress = points.sigma.at(p).0.into_iter().zip(sigma).map(|(a, b)| (a - b).abs() / 100.0);
+        let (x, sigma) = images
+            .iter()
+            .min_by(|a, b| distance(&a.0).total_cmp(&distance(&b.0)))
+            .expect("points");
+        let stress = points
+            .sigma
+            .at(p)
+            .0
+            .into_iter()
+            .zip(sigma)
+            .map(|(a, b)| (a - b).abs() / 100.0);
         stress.fold(distance(x), f64::max)
     };
     (0..points.len()).map(of).fold(0.0, f64::max)
@@ -151,13 +191,28 @@ pub fn swapped() -> f64 {
 /// what one unit in the last place of the cell changes, plus 1e-10 m.
 pub fn mirrored_collapse() -> Found {
     let ways = |is_mirrored: bool, cell: f64| {
-        let run = Run::of(&Collapse { mirrored: is_mirrored, cell, end: 0.05, ..Collapse::default() }.text(), 1, &[]);
+        let run = Run::of(
+            &Collapse {
+                mirrored: is_mirrored,
+                cell,
+                end: 0.05,
+                ..Collapse::default()
+            }
+            .text(),
+            1,
+            &[],
+        );
         let frame = run.frame();
         let moved = frame.real("displacement", 3).expect("displacements").to_vec();
         let sign = if is_mirrored { -1.0 } else { 1.0 };
         let row = |(x, u): (&[f64; 3], &[f64])| {
             let start = [x[0] - u[0], x[1] - u[1]];
-            [if is_mirrored { 56.0 * cell - start[0] } else { start[0] }, start[1], sign * u[0], u[1]]
+            [
+                if is_mirrored { 56.0 * cell - start[0] } else { start[0] },
+                start[1],
+                sign * u[0],
+                u[1],
+            ]
         };
         let mut rows: Vec<[f64; 4]> = frame.position.iter().zip(moved.chunks_exact(3)).map(row).collect();
         // Lattice places are 5 mm apart: whole numbers of them order the points alike.
@@ -166,12 +221,18 @@ pub fn mirrored_collapse() -> Found {
         rows
     };
     let difference = |a: &[[f64; 4]], b: &[[f64; 4]]| {
-        a.iter().zip(b).map(|(a, b)| (a[2] - b[2]).abs().max((a[3] - b[3]).abs())).fold(0.0, f64::max)
+        a.iter()
+            .zip(b)
+            .map(|(a, b)| (a[2] - b[2]).abs().max((a[3] - b[3]).abs()))
+            .fold(0.0, f64::max)
     };
     let left = ways(false, 0.01);
     let spread = difference(&left, &ways(false, 0.01_f64.next_up()));
     let found = difference(&left, &ways(true, 0.01));
-    Found::Figure(found / (10.0 * spread + 1e-10), format!("{found:.1e} m, spread {spread:.1e} m"))
+    Found::Figure(
+        found / (10.0 * spread + 1e-10),
+        format!("{found:.1e} m, spread {spread:.1e} m"),
+    )
 }
 
 /// Change of velocity a step (m/s at 1 m/s) and stress (over E) of a block that flies through 1000 cells, half a cell a
@@ -193,7 +254,12 @@ fn flight(order: usize) -> (f64, f64) {
             let id = points.id[p] as usize;
             change = change.max((v - last[id]).amax());
             last[id] = *v;
-            stress = points.sigma.at(p).0.iter().fold(stress, |most, s| most.max(s.abs() / young));
+            stress = points
+                .sigma
+                .at(p)
+                .0
+                .iter()
+                .fold(stress, |most, s| most.max(s.abs() / young));
         }
     });
     (change, stress)
@@ -232,7 +298,10 @@ fn shortened(order: usize) -> f64 {
 /// Cell-crossing noise of quadratic splines over that of linear ones, the control.
 pub fn crossing_noise() -> Found {
     let (linear, quadratic) = (shortened(1), shortened(2));
-    Found::Figure(quadratic / linear, format!("stress error {quadratic:.1e}, linear {linear:.1e}"))
+    Found::Figure(
+        quadratic / linear,
+        format!("stress error {quadratic:.1e}, linear {linear:.1e}"),
+    )
 }
 
 /// A square that spins ten times, 40 steps a turn: part of its angular momentum that is lost.

@@ -44,28 +44,40 @@ pub fn confined_by_round_off(poisson: f64, method: Stabilisation, columns: i32) 
 fn column(poisson: f64, method: Stabilisation, factor: f64) -> Found {
     let (cells, h) = (20, 0.05);
     let young = factor * (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson);
-    let mut scene =
-        Scene::<PlaneStrain, 2>::new([axis(h, 1, 2), axis(h, cells, 2)], hencky(young, poisson), Regime::QuasiStatic)
-            .body([0..1, 0..cells], 3, 1.0, |x| x * 0.0)
-            .rollers([0])
-            .support(Support::roller(1, false))
-            .gravity(0.4, 10.0)
-            .stabilised(method);
+    let mut scene = Scene::<PlaneStrain, 2>::new(
+        [axis(h, 1, 2), axis(h, cells, 2)],
+        hencky(young, poisson),
+        Regime::QuasiStatic,
+    )
+    .body([0..1, 0..cells], 3, 1.0, |x| x * 0.0)
+    .rollers([0])
+    .support(Support::roller(1, false))
+    .gravity(0.4, 10.0)
+    .stabilised(method);
     // Tight enough for the bound; quasi-Newton takes long for more.
-    scene.model.criteria = Criteria { energy: 1e-8, force: 1e-5, max_iterations: 1000 };
+    scene.model.criteria = Criteria {
+        energy: 1e-8,
+        force: 1e-5,
+        max_iterations: 1000,
+    };
     if let Err(failure) = march(&mut scene) {
         let reason = failure.attempts.last().map(ToString::to_string).unwrap_or_default();
         return Found::Warned(80, format!("t = {:.4}: {reason}", failure.t));
     }
     let points = &scene.points;
-    let top = (0..points.len()).max_by(|&a, &b| points.x[a][1].total_cmp(&points.x[b][1])).expect("points");
+    let top = (0..points.len())
+        .max_by(|&a, &b| points.x[a][1].total_cmp(&points.x[b][1]))
+        .expect("points");
     Found::from((points.x[top][1] + h / 6.0 * points.F.at(top)[(1, 1)] - SETTLED).abs())
 }
 
 /// Ten steps; fails where the program would.
 fn march(scene: &mut Scene<PlaneStrain, 2>) -> Result<(), Failure> {
     let (halo, schedule) = (scene.halo(), Schedule::new(1.0, 10.0, []));
-    let (mut solver, mut stepper) = (Skyline::new(&scene.model.grid), Stepper::new(scene.model.grid.nodes() * 2));
+    let (mut solver, mut stepper) = (
+        Skyline::new(&scene.model.grid),
+        Stepper::new(scene.model.grid.nodes() * 2),
+    );
     while let Some(step) = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
         step?;
         scene.points.sort_by_cell(&scene.model.grid);
@@ -75,14 +87,32 @@ fn march(scene: &mut Scene<PlaneStrain, 2>) -> Result<(), Failure> {
 
 /// p/c of the coarse footing at z/B = 0.1.
 pub fn footing(poisson: f64, method: &'static str) -> Found {
-    let run = Run::of(&Footing { poisson, method, ..Footing::default() }.text(), 1, &[]);
+    let run = Run::of(
+        &Footing {
+            poisson,
+            method,
+            ..Footing::default()
+        }
+        .text(),
+        1,
+        &[],
+    );
     run.found(|run| Found::Figure(Footing::factor(run.last("pressure")), run.effort()))
 }
 
 /// Root mean square of the pressure about the planes of neighbouring cells, under the footing at z/B = 0.1, over the
 /// mean of its absolute value.
 pub fn checkerboard(poisson: f64, method: &'static str) -> Found {
-    let run = Run::of(&Footing { poisson, method, ..Footing::default() }.text(), 1, &[]);
+    let run = Run::of(
+        &Footing {
+            poisson,
+            method,
+            ..Footing::default()
+        }
+        .text(),
+        1,
+        &[],
+    );
     run.found(|run| {
         let frame = run.frame();
         let pressure = frame.real("pressure", 1).expect("a pressure");
@@ -94,7 +124,16 @@ pub fn checkerboard(poisson: f64, method: &'static str) -> Found {
 /// Iterations of the footing with this Poisson's ratio over those with 0.3.
 pub fn iterations(poisson: f64, method: &'static str) -> Found {
     let [many, few] = [poisson, 0.3].map(|poisson| {
-        let run = Run::of(&Footing { poisson, method, ..Footing::default() }.text(), 1, &[]);
+        let run = Run::of(
+            &Footing {
+                poisson,
+                method,
+                ..Footing::default()
+            }
+            .text(),
+            1,
+            &[],
+        );
         run.manifest().summary.iterations as f64
     });
     Found::Figure(many / few, format!("{many} for {few}"))
@@ -123,6 +162,12 @@ pub fn bending(poisson: f64, method: &'static str) -> Found {
 
 /// Whether a case with this ratio is asked to be nearly incompressible.
 pub fn warned(poisson: f64) -> Found {
-    let text = Footing { poisson, steps: 100, depth: 1e-3, ..Footing::default() }.text();
+    let text = Footing {
+        poisson,
+        steps: 100,
+        depth: 1e-3,
+        ..Footing::default()
+    }
+    .text();
     Run::of(&text, 1, &["--max-steps", "1"]).found_or_warned("W0303", |_| f64::NAN)
 }

@@ -44,7 +44,11 @@ pub fn mass_in_bounce() -> Found {
 pub fn momentum() -> Found {
     flight().found(|run| {
         let (x, y) = (run.column("momentum-x"), run.column("momentum-y"));
-        x.iter().zip(&y).map(|(px, py)| (px - x[0]).hypot(*py)).fold(0.0, f64::max) / x[0]
+        x.iter()
+            .zip(&y)
+            .map(|(px, py)| (px - x[0]).hypot(*py))
+            .fold(0.0, f64::max)
+            / x[0]
     })
 }
 
@@ -52,7 +56,11 @@ pub fn momentum() -> Found {
 pub fn rebound() -> Found {
     bounce().found(|run| {
         let height = run.column("height");
-        let fall = height[..1000].iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(step, _)| step);
+        let fall = height[..1000]
+            .iter()
+            .enumerate()
+            .min_by(|a, b| a.1.total_cmp(b.1))
+            .map_or(0, |(step, _)| step);
         height[fall..].iter().copied().fold(0.0, f64::max) / height[0]
     })
 }
@@ -62,7 +70,11 @@ pub fn rebound() -> Found {
 fn growth(speed: f64) -> (f64, bool) {
     let scratch = Scratch::with_case(&block([speed, 0.0], STEPS, ""));
     let mut command = Command::new(program());
-    command.args(["case.toml", "-q"]).current_dir(scratch.path("")).stdin(Stdio::null()).stderr(Stdio::null());
+    command
+        .args(["case.toml", "-q"])
+        .current_dir(scratch.path(""))
+        .stdin(Stdio::null())
+        .stderr(Stdio::null());
     let mut child = command.spawn().expect("the program starts");
     let of_process = |name: &str| format!("/proc/{}/{name}", child.id());
     let (status, files) = (of_process("status"), of_process("fd"));
@@ -73,23 +85,38 @@ fn growth(speed: f64) -> (f64, bool) {
             break ended;
         }
         let text = std::fs::read_to_string(&status).unwrap_or_default();
-        let memory =
-            text.lines().find_map(|line| line.strip_prefix("VmRSS:")?.trim().strip_suffix(" kB")?.parse().ok());
+        let memory = text
+            .lines()
+            .find_map(|line| line.strip_prefix("VmRSS:")?.trim().strip_suffix(" kB")?.parse().ok());
         let open = std::fs::read_dir(&files).map_or(0, Iterator::count);
         samples.extend(memory.map(|memory: f64| (memory, open)));
     };
-    assert!(ended.success() && samples.len() >= 20, "{ended}, {} samples", samples.len());
+    assert!(
+        ended.success() && samples.len() >= 20,
+        "{ended}, {} samples",
+        samples.len()
+    );
     // The last samples may be of the program's end.
     let steady = &samples[samples.len() / 5..samples.len() - samples.len() / 20 - 1];
     let (first, last) = (steady[0].0, steady[steady.len() - 1].0);
     let steps = STEPS as f64 * steady.len() as f64 / samples.len() as f64;
-    (1e3 * (last - first) / steps, steady.iter().any(|(_, open)| *open != steady[0].1))
+    (
+        1e3 * (last - first) / steps,
+        steady.iter().any(|(_, open)| *open != steady[0].1),
+    )
 }
 
 /// Growth of the resident memory in a flight with that speed (m/s), kB per 1000 steps.
 pub fn memory(speed: f64) -> Found {
     let (slope, changes) = growth(speed);
-    Found::Figure(slope, if changes { "open files change".into() } else { "open files constant".into() })
+    Found::Figure(
+        slope,
+        if changes {
+            "open files change".into()
+        } else {
+            "open files constant".into()
+        },
+    )
 }
 
 /// The elastic bar with 80 steps a period: change of its energy, and the slope of it over the last half a step.
@@ -152,8 +179,23 @@ pub fn held(method: &str) -> Found {
 /// The footing to z/B = 0.1 with 8, 16, 32 and 64 steps: largest ratio of the change of p/c by a doubling to the change
 /// before; or a warning that results belong to their number of steps.
 pub fn step_count(method: &'static str) -> Found {
-    let runs = [8, 16, 32, 64].map(|steps| Run::of(&Footing { method, steps, ..Footing::default() }.text(), 1, &[]));
-    if let Some(missing) = runs.iter().map(|run| run.found(|_| 0.0)).find(|found| !matches!(found, Found::Figure(..))) {
+    let runs = [8, 16, 32, 64].map(|steps| {
+        Run::of(
+            &Footing {
+                method,
+                steps,
+                ..Footing::default()
+            }
+            .text(),
+            1,
+            &[],
+        )
+    });
+    if let Some(missing) = runs
+        .iter()
+        .map(|run| run.found(|_| 0.0))
+        .find(|found| !matches!(found, Found::Figure(..)))
+    {
         return missing;
     }
     let pressures = runs.each_ref().map(|run| Footing::factor(run.last("pressure")));
@@ -165,7 +207,14 @@ pub fn step_count(method: &'static str) -> Found {
 
 /// The footing pushed to z = 2 B in 320 steps: noise of the pressure about planes at its end, over c.
 pub fn deep(method: &'static str) -> Found {
-    let text = Footing { method, depth: 4.0, steps: 320, top: 12.0, ..Footing::default() }.text();
+    let text = Footing {
+        method,
+        depth: 4.0,
+        steps: 320,
+        top: 12.0,
+        ..Footing::default()
+    }
+    .text();
     Run::of(&text, 1, &[]).found(|run| {
         let p = Footing::factor(run.last("pressure"));
         Found::Figure(run.last("noise-plane") / 1e3, format!("p/c {p:.2}, {}", run.effort()))

@@ -14,11 +14,18 @@ const FRICTIONS: [f64; 6] = [0.0, 1e-9, 20.0, 45.0, 60.0, 89.9];
 /// Angles in degrees.
 fn mohr_coulomb(poisson: f64, friction: f64, dilation: f64, cohesion: f64) -> Material {
     let (friction, dilation) = (friction.to_radians(), dilation.to_radians());
-    Material::MohrCoulomb(MohrCoulomb::new(Elastic { young: YOUNG, poisson }, friction, dilation, cohesion))
+    Material::MohrCoulomb(MohrCoulomb::new(
+        Elastic { young: YOUNG, poisson },
+        friction,
+        dilation,
+        cohesion,
+    ))
 }
 
 fn respond(material: &Material, b: &Symmetric) -> Response {
-    material.respond(b, &[]).unwrap_or_else(|error| panic!("{error} for {material:?}"))
+    material
+        .respond(b, &[])
+        .unwrap_or_else(|error| panic!("{error} for {material:?}"))
 }
 
 fn largest(numbers: &[f64]) -> f64 {
@@ -42,7 +49,11 @@ fn rotation(random: &mut Random) -> Tensor {
         q
     };
     let z = about(0, 1, 3.0 * random.signed());
-    if random.unit() < 0.5 { z } else { z * about(1, 2, 3.0 * random.signed()) * about(2, 0, 3.0 * random.signed()) }
+    if random.unit() < 0.5 {
+        z
+    } else {
+        z * about(1, 2, 3.0 * random.signed()) * about(2, 0, 3.0 * random.signed())
+    }
 }
 
 fn stretched(eps: [f64; 3]) -> Symmetric {
@@ -72,7 +83,10 @@ pub fn apex() -> Found {
             let friction = pick(&mut random, &[20.0, 45.0, 60.0]);
             let dilation = friction * pick(&mut random, &[0.0, 0.5, 1.0]);
             let poisson = pick(&mut random, &[0.0, 0.3, 0.4999]);
-            let found = respond(&mohr_coulomb(poisson, friction, dilation, cohesion), &trial(&mut random, -7.0, 0.0));
+            let found = respond(
+                &mohr_coulomb(poisson, friction, dilation, cohesion),
+                &trial(&mut random, -7.0, 0.0),
+            );
             tips += usize::from(found.branch() == Branch::Apex);
             worst = worst.max(excess(found.principal_tau(), friction, cohesion) / YOUNG);
             assert!(found.tau().0.iter().chain(&found.b_e().0).all(|x| x.is_finite()));
@@ -87,11 +101,20 @@ pub fn yielding(friction: f64) -> f64 {
     let mut worst = 0.0_f64;
     for _ in 0..1_000_000 {
         let dilation = friction * pick(&mut random, &[0.0, 0.5, 1.0]);
-        let (poisson, cohesion) = (pick(&mut random, &[0.0, 0.3, 0.49, 0.49999]), pick(&mut random, &[0.0, 1e-6, 1.0]));
-        let found = respond(&mohr_coulomb(poisson, friction, dilation, cohesion), &trial(&mut random, -7.0, 0.3));
+        let (poisson, cohesion) = (
+            pick(&mut random, &[0.0, 0.3, 0.49, 0.49999]),
+            pick(&mut random, &[0.0, 1e-6, 1.0]),
+        );
+        let found = respond(
+            &mohr_coulomb(poisson, friction, dilation, cohesion),
+            &trial(&mut random, -7.0, 0.3),
+        );
         let tau = found.principal_tau();
         assert!(tau[0] >= tau[1] && tau[1] >= tau[2], "{tau:?} is out of order");
-        let (violation, size) = (excess(tau, friction, cohesion), cohesion + (tau[0] + tau[1] + tau[2]).abs() / 3.0);
+        let (violation, size) = (
+            excess(tau, friction, cohesion),
+            cohesion + (tau[0] + tau[1] + tau[2]).abs() / 3.0,
+        );
         if violation > 0.0 {
             worst = worst.max(violation / size);
         }
@@ -111,7 +134,10 @@ pub fn tangent() -> Found {
         let l = Tensor::from_fn(|_, _| random.signed());
         let found = respond(&material, &b);
         let (eps, tau) = (found.principal_eps_trial(), found.principal_tau());
-        let gaps = [(0, 1), (1, 2)].into_iter().filter(|(i, j)| tau[*i] != tau[*j]).map(|(i, j)| eps[i] - eps[j]);
+        let gaps = [(0, 1), (1, 2)]
+            .into_iter()
+            .filter(|(i, j)| tau[*i] != tau[*j])
+            .map(|(i, j)| eps[i] - eps[j]);
         let gap = gaps.fold(1.0, f64::min);
         let h = (3e-3 * gap).min(1e-5);
         let at = |steps: f64| respond(&material, &turned(&(Tensor::identity() + l * (steps * h)), &b));
@@ -120,7 +146,9 @@ pub fn tangent() -> Found {
             continue;
         }
         tried += 1;
-        let sum = around.iter().fold(Tensor::zeros(), |sum, (weight, moved)| sum + moved.tau().full() * *weight);
+        let sum = around.iter().fold(Tensor::zeros(), |sum, (weight, moved)| {
+            sum + moved.tau().full() * *weight
+        });
         let tangent = found.linearise(&l);
         let size = tangent.amax().max(1e-3 * material.elastic().oedometric() * l.amax());
         worst = worst.max((sum / (12.0 * h) - tangent).amax() / size);
@@ -134,13 +162,23 @@ pub fn projection() -> Found {
     let mut random = Random::new(5);
     let (mut worst, mut returned) = (0.0_f64, 0);
     while returned < 10_000 {
-        let (friction, poisson) = (pick(&mut random, &[20.0, 45.0, 60.0]), pick(&mut random, &[0.0, 0.3, 0.45]));
-        let found = respond(&mohr_coulomb(poisson, friction, friction, 1.0), &trial(&mut random, -3.0, -1.0));
+        let (friction, poisson) = (
+            pick(&mut random, &[20.0, 45.0, 60.0]),
+            pick(&mut random, &[0.0, 0.3, 0.45]),
+        );
+        let found = respond(
+            &mohr_coulomb(poisson, friction, friction, 1.0),
+            &trial(&mut random, -3.0, -1.0),
+        );
         if found.branch() == Branch::Elastic {
             continue;
         }
         returned += 1;
-        let (eps, eps_e, tau) = (found.principal_eps_trial(), found.principal_eps_e(), found.principal_tau());
+        let (eps, eps_e, tau) = (
+            found.principal_eps_trial(),
+            found.principal_eps_e(),
+            found.principal_tau(),
+        );
         let s: [f64; 3] = std::array::from_fn(|i| eps[i] - eps_e[i]);
         let apex = 1.0 / friction.to_radians().tan();
         let along: f64 = (0..3).map(|i| s[i] * (tau[i] - apex)).sum();
@@ -149,7 +187,9 @@ pub fn projection() -> Found {
         let edges = (0..3).flat_map(|i| [(i, ratio, 1.0), (i, 1.0, ratio)]);
         let out = edges.map(|(i, one, others)| -(0..3).map(|k| s[k] * if k == i { one } else { others }).sum::<f64>());
         let size = largest(&s);
-        worst = out.fold(worst.max(along.abs() / (size * (largest(&tau) + apex))), |most, out| most.max(out / size));
+        worst = out.fold(worst.max(along.abs() / (size * (largest(&tau) + apex))), |most, out| {
+            most.max(out / size)
+        });
     }
     Found::Figure(worst, "1e4 returns".into())
 }
@@ -240,7 +280,17 @@ pub fn dilated() -> f64 {
 /// Ten turns in steps of half a degree: change of the principal stress over E.
 pub fn turning() -> f64 {
     let angle = 0.5_f64.to_radians();
-    let q = Tensor::new(angle.cos(), -angle.sin(), 0.0, angle.sin(), angle.cos(), 0.0, 0.0, 0.0, 1.0);
+    let q = Tensor::new(
+        angle.cos(),
+        -angle.sin(),
+        0.0,
+        angle.sin(),
+        angle.cos(),
+        0.0,
+        0.0,
+        0.0,
+        1.0,
+    );
     let material = hencky(YOUNG, 0.3);
     let start = respond(&material, &Symmetric([1.2, 0.9, 1.05, 0.1, 0.0, 0.0]));
     let (mut b, mut worst) = (start.b_e(), 0.0_f64);
@@ -256,7 +306,12 @@ pub fn turning() -> f64 {
 /// Bits that F-bar with dJ-bar / dJ = 1 changes in dF, in both geometries.
 pub fn untouched() -> f64 {
     let mut random = Random::new(11);
-    let changed = |a: &Tensor, b: &Tensor| a.iter().zip(b.iter()).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+    let changed = |a: &Tensor, b: &Tensor| {
+        a.iter()
+            .zip(b.iter())
+            .filter(|(a, b)| a.to_bits() != b.to_bits())
+            .count()
+    };
     let one = |_| {
         let dF = Tensor::identity() + Tensor::from_fn(|_, _| 0.3 * random.signed());
         changed(&PlaneStrain::dilate(&dF, 1.0), &dF) + changed(&<Solid as Kinematics<3>>::dilate(&dF, 1.0), &dF)

@@ -26,19 +26,42 @@ pub fn stretched(per_cell: usize, stretch: f64) -> Found {
     run.found_or_warned("without points", |run| {
         let exact = 1e6 * stretch.ln() / stretch;
         let stress = run.last("middle-xx");
-        Found::Figure((stress / exact - 1.0).abs(), format!("{stress:.3e} for {exact:.3e} Pa, {}", run.effort()))
+        Found::Figure(
+            (stress / exact - 1.0).abs(),
+            format!("{stress:.3e} for {exact:.3e} Pa, {}", run.effort()),
+        )
     })
 }
 
 /// p/c of the coarse footing at z/B = 0.1 with so many points a cell and axis; or a warning that they are too few.
 pub fn footing(per_cell: usize) -> Found {
-    let run = Run::of(&Footing { per_cell, ..Footing::default() }.text(), 1, &[]);
-    run.found_or_warned("W0210", |run| Found::Figure(Footing::factor(run.last("pressure")), run.effort()))
+    let run = Run::of(
+        &Footing {
+            per_cell,
+            ..Footing::default()
+        }
+        .text(),
+        1,
+        &[],
+    );
+    run.found_or_warned("W0210", |run| {
+        Found::Figure(Footing::factor(run.last("pressure")), run.effort())
+    })
 }
 
 /// The way of the collapse's front with one point a cell over that with four.
 pub fn collapse() -> Found {
-    let run = |per_cell: usize| Run::of(&Collapse { per_cell, ..Collapse::default() }.text(), 1, &[]);
+    let run = |per_cell: usize| {
+        Run::of(
+            &Collapse {
+                per_cell,
+                ..Collapse::default()
+            }
+            .text(),
+            1,
+            &[],
+        )
+    };
     let way = |run: &Run, per_cell: f64| run.last("runout") - 0.2 + 0.005 / per_cell;
     let reference = way(&run(2), 2.0);
     run(1).found_or_warned("W0210", |run| way(run, 1.0) / reference)
@@ -48,12 +71,15 @@ pub fn collapse() -> Found {
 fn column(per_cell: usize) -> (f64, f64) {
     let (load, started) = (1e-7, Instant::now());
     let young = 1.3 * 0.4 / 0.7;
-    let mut scene =
-        Scene::<PlaneStrain, 2>::new([axis(0.25, 1, 2), axis(0.25, 4, 2)], hencky(young, 0.3), Regime::QuasiStatic)
-            .body([0..1, 0..4], per_cell, 1.0, |x| x * 0.0)
-            .rollers([0])
-            .support(Support::roller(1, false))
-            .gravity(load, 0.0);
+    let mut scene = Scene::<PlaneStrain, 2>::new(
+        [axis(0.25, 1, 2), axis(0.25, 4, 2)],
+        hencky(young, 0.3),
+        Regime::QuasiStatic,
+    )
+    .body([0..1, 0..4], per_cell, 1.0, |x| x * 0.0)
+    .rollers([0])
+    .support(Support::roller(1, false))
+    .gravity(load, 0.0);
     scene.march(1.0, 1.0, |_, _| ());
     let points = &scene.points;
     let error = |p: usize| (points.sigma.at(p).0[1] + load * (1.0 - points.height(p))).abs();
@@ -68,7 +94,10 @@ const MANY: [usize; 4] = [6, 10, 20, 100];
 pub fn many() -> Found {
     let errors = MANY.map(|n| column(n).0);
     let worst = errors.windows(2).map(|pair| pair[1] / pair[0]).fold(0.0, f64::max);
-    Found::Figure(worst, format!("errors {}", errors.map(|error| format!("{error:.1e}")).join(", ")))
+    Found::Figure(
+        worst,
+        format!("errors {}", errors.map(|error| format!("{error:.1e}")).join(", ")),
+    )
 }
 
 /// Time a point with 1e4 points a cell over that with 100.

@@ -10,7 +10,12 @@ pub struct Units {
 }
 
 /// SI, at the origin.
-pub const SI: Units = Units { length: 1.0, mass: 1.0, time: 1.0, origin: 0.0 };
+pub const SI: Units = Units {
+    length: 1.0,
+    mass: 1.0,
+    time: 1.0,
+    origin: 0.0,
+};
 
 impl Units {
     /// The value of a stress of 1 Pa.
@@ -33,7 +38,12 @@ pub struct Soil {
 }
 
 /// The rods of the collapse.
-pub const RODS: Soil = Soil { young: 5840e3, poisson: 0.3, friction: 21.9, cohesion: 0.0 };
+pub const RODS: Soil = Soil {
+    young: 5840e3,
+    poisson: 0.3,
+    friction: 21.9,
+    cohesion: 0.0,
+};
 
 /// The coarse column collapse with cells of `cell` m and `per_cell` x `per_cell` points, up to `end` s by steps of `dt`
 /// s.
@@ -51,21 +61,41 @@ pub struct Collapse {
 impl Default for Collapse {
     fn default() -> Self {
         let (soil, units) = (RODS, SI);
-        Self { soil, method: "modified-f-bar", end: 0.1, dt: 0.5e-3, cell: 0.01, per_cell: 2, mirrored: false, units }
+        Self {
+            soil,
+            method: "modified-f-bar",
+            end: 0.1,
+            dt: 0.5e-3,
+            cell: 0.01,
+            per_cell: 2,
+            mirrored: false,
+            units,
+        }
     }
 }
 
 impl Collapse {
     /// The text: 20 x 10 cells of material in a grid of 56 x 11.
     pub fn text(&self) -> String {
-        let Self { soil, method, cell, per_cell, units, .. } = self;
+        let Self {
+            soil,
+            method,
+            cell,
+            per_cell,
+            units,
+            ..
+        } = self;
         let [zero, top] = [0.0, 11.0 * cell].map(|y| units.place(y));
         let (left, right) = if self.mirrored { (36.0, 56.0) } else { (0.0, 20.0) };
         let [left, right, end] = [left, right, 56.0].map(|cells| units.place(cells * cell));
         let acceleration = -9.81 * units.length / (units.time * units.time);
         // The program takes density = unit_weight / 9.81 m/s2.
         let weight = 20.4e3 * units.mass / units.length.powi(3);
-        let strength = format!("friction_angle = {}\ncohesion = {}", soil.friction, soil.cohesion * units.stress());
+        let strength = format!(
+            "friction_angle = {}\ncohesion = {}",
+            soil.friction,
+            soil.cohesion * units.stress()
+        );
         format!(
             "geometry = \"plane-strain\"\n[analysis]\ntype = \"dynamic\"\nend = {}\ndt = {}\n\
              [grid]\nlower = [{zero}, {zero}]\nupper = [{end}, {top}]\ncell = {}\ndegree = \"quadratic\"\n\
@@ -102,14 +132,29 @@ pub struct Footing {
 impl Default for Footing {
     fn default() -> Self {
         let (depth, steps) = (0.2, 16);
-        Self { poisson: 0.495, method: "modified-f-bar", depth, steps, per_cell: 3, top: 7.0, solver: "", units: SI }
+        Self {
+            poisson: 0.495,
+            method: "modified-f-bar",
+            depth,
+            steps,
+            per_cell: 3,
+            top: 7.0,
+            solver: "",
+            units: SI,
+        }
     }
 }
 
 impl Footing {
     /// The text: 5 x 5 m of weightless clay, E/c = 100, under a strip 1 m wide beside the axis of symmetry.
     pub fn text(&self) -> String {
-        let Self { poisson, method, per_cell, units, .. } = self;
+        let Self {
+            poisson,
+            method,
+            per_cell,
+            units,
+            ..
+        } = self;
         let [zero, one, five, top] = [0.0, 1.0, 5.0, self.top].map(|x| units.place(x));
         let (depth, cell) = (self.depth * units.length, 0.5 * units.length);
         format!(

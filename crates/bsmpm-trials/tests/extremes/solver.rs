@@ -31,7 +31,10 @@ impl Run {
     pub fn of(text: &str, ranks: usize, further: &[&str]) -> Arc<Self> {
         let key = (text.to_owned(), ranks, further.join(" "));
         let mut runs = RUNS.lock().unwrap_or_else(PoisonError::into_inner);
-        Arc::clone(runs.entry(key).or_insert_with(|| Arc::new(Self::make(text, ranks, further))))
+        Arc::clone(
+            runs.entry(key)
+                .or_insert_with(|| Arc::new(Self::make(text, ranks, further))),
+        )
     }
 
     fn make(text: &str, ranks: usize, further: &[&str]) -> Self {
@@ -56,11 +59,18 @@ impl Run {
             Some(code @ (80 | 81)) => {
                 all_finite(&self.directory());
                 let failure = self.manifest().failure.expect("a reason");
-                Found::Warned(code, format!("t = {:.4}: {}", failure.time, first_sentence(&failure.reason)))
+                Found::Warned(
+                    code,
+                    format!("t = {:.4}: {}", failure.time, first_sentence(&failure.reason)),
+                )
             }
             Some(82) => {
                 all_finite(&self.directory());
-                let failed = self.manifest().indicators.into_iter().find(|(_, indicator)| indicator.failed);
+                let failed = self
+                    .manifest()
+                    .indicators
+                    .into_iter()
+                    .find(|(_, indicator)| indicator.failed);
                 let (name, indicator) = failed.expect("an indicator beyond its limit");
                 Found::Warned(82, format!("{name} is {:.2}: {}", indicator.value, indicator.meaning))
             }
@@ -71,11 +81,19 @@ impl Run {
 
     /// The same, but a warning that contains `part` is an answer, too.
     pub fn found_or_warned<F: Into<Found>>(&self, part: &str, value: impl FnOnce(&Self) -> F) -> Found {
-        let warned = (self.output.code != Some(65))
-            .then(|| self.manifest().warnings.into_iter().find(|warning| warning.contains(part)));
+        let warned = (self.output.code != Some(65)).then(|| {
+            self.manifest()
+                .warnings
+                .into_iter()
+                .find(|warning| warning.contains(part))
+        });
         match (self.found(value), warned.flatten()) {
             (Found::Figure(value, _), Some(warning)) => {
-                let figure = if value.is_finite() { format!("; figure {value:.3}") } else { String::new() };
+                let figure = if value.is_finite() {
+                    format!("; figure {value:.3}")
+                } else {
+                    String::new()
+                };
                 Found::Warned(0, first_sentence(&warning) + &figure)
             }
             (found, _) => found,
@@ -88,7 +106,10 @@ impl Run {
 
     /// A column of the history.
     pub fn column(&self, name: &str) -> Vec<f64> {
-        history(&self.directory()).get(name).unwrap_or_else(|| panic!("no column {name}")).to_vec()
+        history(&self.directory())
+            .get(name)
+            .unwrap_or_else(|| panic!("no column {name}"))
+            .to_vec()
     }
 
     /// The last number of a column of the history.
@@ -104,7 +125,10 @@ impl Run {
     /// Accepted steps, iterations and cuts.
     pub fn effort(&self) -> String {
         let sums = self.manifest().summary;
-        format!("{} steps, {} iterations, {} cuts", sums.steps, sums.iterations, sums.cutbacks)
+        format!(
+            "{} steps, {} iterations, {} cuts",
+            sums.steps, sums.iterations, sums.cutbacks
+        )
     }
 }
 

@@ -48,7 +48,10 @@ pub fn tiny(dt: f64) -> Found {
     let start = energy(&scene.points);
     let mut iterations = 0;
     scene.march(dt, 1000.0 * dt, |_, accepted| iterations += accepted.counts.iterations);
-    Found::Figure((energy(&scene.points) / start - 1.0).abs(), format!("{iterations} iterations"))
+    Found::Figure(
+        (energy(&scene.points) / start - 1.0).abs(),
+        format!("{iterations} iterations"),
+    )
 }
 
 /// The bar as it flies freely, 1000 steps of `dt` s: largest acceleration of a point, which should have none, over the
@@ -56,7 +59,13 @@ pub fn tiny(dt: f64) -> Found {
 pub fn acceleration_noise(dt: f64) -> f64 {
     let mut scene = bar();
     scene.model.boundary.supports.remove(0);
-    scene.points.motion.as_mut().expect("dynamic").v.fill([SPEED, 0.0].into());
+    scene
+        .points
+        .motion
+        .as_mut()
+        .expect("dynamic")
+        .v
+        .fill([SPEED, 0.0].into());
     let mut noise = 0.0_f64;
     scene.march(dt, 1000.0 * dt, |points, _| {
         let a = &points.motion.as_ref().expect("dynamic").a;
@@ -80,15 +89,28 @@ pub fn huge(dt: f64) -> f64 {
         let still = settling(Regime::QuasiStatic, method).solved(1.0, 1.0).0;
         let found = settling(Regime::Dynamic, method).solved(dt, dt).0;
         let size = still.points.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
-        still.points.u.iter().zip(&found.points.u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / size
+        still
+            .points
+            .u
+            .iter()
+            .zip(&found.points.u)
+            .map(|(a, b)| (a - b).norm())
+            .fold(0.0, f64::max)
+            / size
     };
-    [Stabilisation::None, Stabilisation::FBar].into_iter().map(of).fold(0.0, f64::max)
+    [Stabilisation::None, Stabilisation::FBar]
+        .into_iter()
+        .map(of)
+        .fold(0.0, f64::max)
 }
 
 /// 200 dynamic steps of `dt` s: largest distance from the static state over the last 100 steps, over that of the first
 /// 100 but for the first step. The trapezoidal rule keeps ringing; it must not ring louder.
 pub fn ringing(dt: f64) -> Found {
-    let still = settling(Regime::QuasiStatic, Stabilisation::None).solved(1.0, 1.0).0.points;
+    let still = settling(Regime::QuasiStatic, Stabilisation::None)
+        .solved(1.0, 1.0)
+        .0
+        .points;
     let size = still.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
     let mut away = Vec::new();
     settling(Regime::Dynamic, Stabilisation::None).march(dt, 200.0 * dt, |points, _| {
@@ -99,7 +121,10 @@ pub fn ringing(dt: f64) -> Found {
     let most = |part: &[f64]| part.iter().copied().fold(0.0, f64::max);
     let (before, after) = (most(&away[1..100]), most(&away[100..]));
     // Below this it is round-off that rings.
-    Found::Figure(after / before.max(1e-10), format!("{before:.1e}, then {after:.1e} of the settlement"))
+    Found::Figure(
+        after / before.max(1e-10),
+        format!("{before:.1e}, then {after:.1e} of the settlement"),
+    )
 }
 
 /// Where the farthest points of the collapse start, m: half a spacing of 5 mm within its face at 0.2 m.
@@ -107,16 +132,34 @@ const FARTHEST: f64 = 0.1975;
 
 /// The collapse with steps of `dt` s: error of the way of its front at `end`, over that with 0.5 ms.
 pub fn collapse(dt: f64, end: f64) -> Found {
-    let run = |dt: f64| Run::of(&Collapse { end, dt, ..Collapse::default() }.text(), 1, &[]);
+    let run = |dt: f64| {
+        Run::of(
+            &Collapse {
+                end,
+                dt,
+                ..Collapse::default()
+            }
+            .text(),
+            1,
+            &[],
+        )
+    };
     let way = |run: &Run| run.last("runout") - FARTHEST;
     let reference = way(&run(0.5e-3));
     let run = run(dt);
     let error = (way(&run) / reference - 1.0).abs();
-    let advance = run.manifest().indicators.remove("step-advance").filter(|indicator| indicator.unusual);
+    let advance = run
+        .manifest()
+        .indicators
+        .remove("step-advance")
+        .filter(|indicator| indicator.unusual);
     match advance {
         Some(reported) => Found::Warned(
             if reported.failed { 82 } else { 0 },
-            format!("step-advance is {:.2}: {}; figure {error:.3}", reported.value, reported.meaning),
+            format!(
+                "step-advance is {:.2}: {}; figure {error:.3}",
+                reported.value, reported.meaning
+            ),
         ),
         None => run.found(|run| Found::Figure(error, run.effort())),
     }
@@ -137,7 +180,12 @@ pub fn degenerate_broyden() -> f64 {
 
 /// The footing on nearly incompressible clay by Broyden's update, with more iterations than it keeps: p/c at z/B = 0.1.
 pub fn long_broyden() -> Found {
-    let text = Footing { poisson: 0.4999, solver: "nonlinear = \"broyden\"", ..Footing::default() }.text();
+    let text = Footing {
+        poisson: 0.4999,
+        solver: "nonlinear = \"broyden\"",
+        ..Footing::default()
+    }
+    .text();
     Run::of(&text, 1, &[]).found(|run| Found::Figure(Footing::factor(run.last("pressure")), run.effort()))
 }
 
@@ -145,7 +193,13 @@ pub fn long_broyden() -> Found {
 /// end.
 pub fn beyond_round_off() -> Found {
     let solver = "nonlinear = \"broyden\"\ntolerance = 1e-30\nforce_tolerance = 1e-15";
-    let text = Footing { solver, steps: 2, depth: 1e-3, ..Footing::default() }.text();
+    let text = Footing {
+        solver,
+        steps: 2,
+        depth: 1e-3,
+        ..Footing::default()
+    }
+    .text();
     Run::of(&text, 1, &[]).found(|run| Footing::factor(run.last("pressure")))
 }
 
@@ -154,7 +208,8 @@ pub fn no_load(is_dynamic: bool) -> Found {
     let text = layers(&[(1e7, 2e3, 4.0)], "", 10, 9.81);
     let text = text.replacen("acceleration = [0.0, -9.81]", "acceleration = [0.0, 0.0]", 1);
     let text = if is_dynamic {
-        text.replacen("quasi-static", "dynamic", 1).replacen("steps = 10", "end = 1.0\ndt = 0.1", 1)
+        text.replacen("quasi-static", "dynamic", 1)
+            .replacen("steps = 10", "end = 1.0\ndt = 0.1", 1)
     } else {
         text
     };
@@ -170,7 +225,10 @@ pub fn in_equilibrium() -> Found {
     let text = text.replacen("ramp = 1.0", "ramp = 0.0", 1);
     Run::of(&text, 1, &[]).found(|run| {
         let moved = run.last("max-displacement");
-        Found::Figure(run.manifest().summary.iterations as f64 / 10.0, format!("moved by {moved:.1e} m"))
+        Found::Figure(
+            run.manifest().summary.iterations as f64 / 10.0,
+            format!("moved by {moved:.1e} m"),
+        )
     })
 }
 
@@ -181,6 +239,9 @@ pub fn denormal() -> Found {
     tiny.found(|tiny| {
         let cost = |run: &Run| run.manifest().summary.residual_evaluations as f64;
         let seconds = |run: &Run| run.manifest().timers.get("wall").copied().unwrap_or(f64::NAN);
-        Found::Figure(cost(tiny) / cost(&usual), format!("time x {:.2}", seconds(tiny) / seconds(&usual)))
+        Found::Figure(
+            cost(tiny) / cost(&usual),
+            format!("time x {:.2}", seconds(tiny) / seconds(&usual)),
+        )
     })
 }

@@ -68,23 +68,40 @@ pub fn row<F: Into<Found>>(
     measure: impl Fn() -> F + 'static,
 ) -> Row {
     let measure = Box::new(move || measure().into());
-    Row { id, what, limit, depth: Depth::Short, may_refuse: false, known: None, measure }
+    Row {
+        id,
+        what,
+        limit,
+        depth: Depth::Short,
+        may_refuse: false,
+        known: None,
+        measure,
+    }
 }
 
 impl Row {
     /// In the full run only.
     pub fn full(self) -> Self {
-        Self { depth: Depth::Full, ..self }
+        Self {
+            depth: Depth::Full,
+            ..self
+        }
     }
 
     /// A clean refusal passes as well.
     pub fn or_refused(self) -> Self {
-        Self { may_refuse: true, ..self }
+        Self {
+            may_refuse: true,
+            ..self
+        }
     }
 
     /// It fails at present, and why.
     pub fn fails(self, why: &'static str) -> Self {
-        Self { known: Some(why), ..self }
+        Self {
+            known: Some(why),
+            ..self
+        }
     }
 
     /// Measures and judges.
@@ -93,7 +110,10 @@ impl Row {
         let found = caught(|| (self.measure)()).unwrap_or_else(Found::Broken);
         let crashed = matches!(found, Found::Broken(_));
         let verdict = Verdict::of(self.passes(&found), self.known.is_some(), crashed);
-        Judged { cells: self.cells(&found, verdict, started.elapsed().as_secs_f64()).into(), verdict }
+        Judged {
+            cells: self.cells(&found, verdict, started.elapsed().as_secs_f64()).into(),
+            verdict,
+        }
     }
 
     /// row, what, figure, bound, verdict, seconds, remark
@@ -111,10 +131,22 @@ impl Row {
             Found::Broken(reason) => ("none".into(), first_line(reason)),
         };
         let remarks = [remark.as_str(), self.known.unwrap_or_default()].map(str::to_owned);
-        let remark = remarks.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ");
+        let remark = remarks
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<_>>()
+            .join("; ");
         let refusal = if self.may_refuse { ", or a warning" } else { "" };
         let (id, what, verdict) = (self.id.to_owned(), self.what.to_owned(), verdict.word().to_owned());
-        [id, what, figure, limit + refusal, verdict, format!("{seconds:.1}"), remark]
+        [
+            id,
+            what,
+            figure,
+            limit + refusal,
+            verdict,
+            format!("{seconds:.1}"),
+            remark,
+        ]
     }
 
     fn passes(&self, found: &Found) -> bool {

@@ -11,13 +11,23 @@ const POWERS: [[i32; 3]; 3] = [[10, 20, 5], [-2, 5, -4], [3, -10, 6]];
 fn state(run: &Run, units: &Units) -> Vec<f64> {
     let frame = run.frame();
     let field = |name: &str, components: usize, unit: f64| {
-        frame.real(name, components).unwrap_or_default().iter().map(|x| x / unit).collect::<Vec<_>>()
+        frame
+            .real(name, components)
+            .unwrap_or_default()
+            .iter()
+            .map(|x| x / unit)
+            .collect::<Vec<_>>()
     };
     let place = frame.position.as_flattened().iter().map(|x| x / units.length);
     let displacement = field("displacement", 3, units.length);
     let velocity = field("velocity", 3, units.length / units.time);
     let stress = field("stress", 6, units.stress());
-    place.chain(displacement).chain(velocity).chain(stress).chain(field("plastic_strain", 1, 1.0)).collect()
+    place
+        .chain(displacement)
+        .chain(velocity)
+        .chain(stress)
+        .chain(field("plastic_strain", 1, 1.0))
+        .collect()
 }
 
 /// Numbers whose bits differ in any of the other units.
@@ -25,7 +35,12 @@ fn differing(text: impl Fn(Units) -> String) -> Found {
     let reference = state(&Run::of(&text(SI), 1, &[]), &SI);
     let (mut count, mut total) = (0, 0);
     for [length, mass, time] in POWERS.map(|powers| powers.map(|power| 2.0_f64.powi(power))) {
-        let units = Units { length, mass, time, origin: 0.0 };
+        let units = Units {
+            length,
+            mass,
+            time,
+            origin: 0.0,
+        };
         let run = Run::of(&text(units), 1, &[]);
         let found = run.found(|run| {
             let found = state(run, &units);
@@ -43,29 +58,62 @@ fn differing(text: impl Fn(Units) -> String) -> Found {
 
 /// The collapse, 40 steps of it.
 pub fn collapse(method: &'static str) -> Found {
-    differing(|units| Collapse { units, method, end: 0.02, ..Collapse::default() }.text())
+    differing(|units| {
+        Collapse {
+            units,
+            method,
+            end: 0.02,
+            ..Collapse::default()
+        }
+        .text()
+    })
 }
 
 /// The footing to z/B = 0.1.
 pub fn footing(method: &'static str) -> Found {
-    differing(|units| Footing { units, method, ..Footing::default() }.text())
+    differing(|units| {
+        Footing {
+            units,
+            method,
+            ..Footing::default()
+        }
+        .text()
+    })
 }
 
 /// The footing with an iterative linear solver, whose tolerances are relative.
 pub fn iterative() -> Found {
     let solver = "linear = { ksp = \"cg\", pc = \"jacobi\" }";
-    differing(|units| Footing { units, solver, steps: 4, depth: 0.01, ..Footing::default() }.text())
+    differing(|units| {
+        Footing {
+            units,
+            solver,
+            steps: 4,
+            depth: 0.01,
+            ..Footing::default()
+        }
+        .text()
+    })
 }
 
 /// Largest difference of two states over the largest number.
 fn relative(found: &[f64], reference: &[f64]) -> f64 {
     let size = reference.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    found.iter().zip(reference).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size
+    found
+        .iter()
+        .zip(reference)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+        / size
 }
 
 /// The collapse in mm, kPa and ms: largest difference, relative.
 pub fn prefixes() -> Found {
-    let plain = Collapse { end: 0.02, ..Collapse::default() }.text();
+    let plain = Collapse {
+        end: 0.02,
+        ..Collapse::default()
+    }
+    .text();
     let other = plain
         .replacen("dt = 0.0005", "dt = \"0.5 ms\"", 1)
         .replacen("cell = 0.01", "cell = \"10 mm\"", 1)
@@ -88,7 +136,13 @@ fn fields(run: &Run) -> Vec<f64> {
 pub fn exact_origin(origin: f64) -> Found {
     let text = |origin: f64| {
         let units = Units { origin, ..SI };
-        Collapse { units, cell: 1.0 / 128.0, end: 0.02, ..Collapse::default() }.text()
+        Collapse {
+            units,
+            cell: 1.0 / 128.0,
+            end: 0.02,
+            ..Collapse::default()
+        }
+        .text()
     };
     let reference = fields(&Run::of(&text(0.0), 1, &[]));
     Run::of(&text(origin), 1, &[]).found(|run| {
@@ -104,7 +158,12 @@ pub fn exact_origin(origin: f64) -> Found {
 pub fn origin(origin: f64) -> Found {
     let text = |origin: f64| {
         let units = Units { origin, ..SI };
-        Collapse { units, end: 0.02, ..Collapse::default() }.text()
+        Collapse {
+            units,
+            end: 0.02,
+            ..Collapse::default()
+        }
+        .text()
     };
     let moved = |run: &Run| run.frame().real("displacement", 3).expect("displacements").to_vec();
     let reference = moved(&Run::of(&text(0.0), 1, &[]));

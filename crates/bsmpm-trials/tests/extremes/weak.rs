@@ -24,7 +24,16 @@ pub fn resting(poisson: f64) -> Found {
 pub fn little_cohesion(end: f64) -> Found {
     let runout = |cohesion: f64| {
         let soil = Soil { cohesion, ..RODS };
-        Run::of(&Collapse { soil, end, ..Collapse::default() }.text(), 1, &[])
+        Run::of(
+            &Collapse {
+                soil,
+                end,
+                ..Collapse::default()
+            }
+            .text(),
+            1,
+            &[],
+        )
     };
     let reference = runout(0.0).last("runout");
     runout(1e-3 * 20.4e3 * 0.1).found(|run| (run.last("runout") / reference - 1.0).abs())
@@ -33,8 +42,25 @@ pub fn little_cohesion(end: f64) -> Found {
 /// The beginning of the collapse, 20 steps, with this Poisson's ratio: change of the largest displacement with steps of
 /// half the length.
 pub fn beginning(poisson: f64, friction: f64, method: &'static str) -> Found {
-    let soil = Soil { poisson, friction, ..RODS };
-    let run = |dt: f64| Run::of(&Collapse { soil, method, end: 0.01, dt, ..Collapse::default() }.text(), 1, &[]);
+    let soil = Soil {
+        poisson,
+        friction,
+        ..RODS
+    };
+    let run = |dt: f64| {
+        Run::of(
+            &Collapse {
+                soil,
+                method,
+                end: 0.01,
+                dt,
+                ..Collapse::default()
+            }
+            .text(),
+            1,
+            &[],
+        )
+    };
     let (coarse, fine) = (run(0.5e-3), run(0.25e-3));
     coarse.found(|coarse| {
         let change = |fine: &Run| (coarse.last("max-displacement") / fine.last("max-displacement") - 1.0).abs();
@@ -47,8 +73,14 @@ fn contrast(contrast: f64, is_airy: bool) -> (Arc<Run>, f64) {
     let (soil, air) = ((1e6, 2e3, 4.0), (1e3, 1.0, 2.0));
     let stack = [(1e6 * contrast, 2e3, 4.0), soil, air];
     let stack = if is_airy { &stack[..] } else { &stack[..2] };
-    let weight: f64 = stack.iter().map(|(_, density, height)| density * height * 2.0 * 9.81).sum();
-    (Run::of(&layers(stack, "[solver]\nforce_tolerance = 1e-8\n", 5, 9.81), 2, &[]), weight)
+    let weight: f64 = stack
+        .iter()
+        .map(|(_, density, height)| density * height * 2.0 * 9.81)
+        .sum();
+    (
+        Run::of(&layers(stack, "[solver]\nforce_tolerance = 1e-8\n", 5, 9.81), 2, &[]),
+        weight,
+    )
 }
 
 /// Error of the reaction of the base below layers of that contrast, with another layer 1e-3 as stiff as the soil on
@@ -73,7 +105,10 @@ pub fn interface(ratio: f64) -> Found {
     let (run, _) = contrast(ratio, false);
     run.found(|run| {
         let frame = run.frame();
-        let (stress, moved) = (frame.real("stress", 6).expect("stress"), frame.real("displacement", 3).expect("u"));
+        let (stress, moved) = (
+            frame.real("stress", 6).expect("stress"),
+            frame.real("displacement", 3).expect("u"),
+        );
         let above = |depth: f64| 2e3 * 9.81 * depth;
         let near = frame.position.iter().enumerate().filter_map(|(p, x)| {
             let depth = 8.0 - (x[1] - moved[3 * p + 1]);
@@ -85,15 +120,24 @@ pub fn interface(ratio: f64) -> Found {
 
 /// Displacement over size and stress over E of a block that settles, by id.
 fn settled(gravity: f64, young: f64) -> Vec<f64> {
-    let mut scene =
-        Scene::<PlaneStrain, 2>::new([axis(0.5, 5, 2), axis(0.5, 4, 2)], hencky(young, 0.3), Regime::QuasiStatic)
-            .body([0..3, 0..3], 3, 1.0, |x| x * 0.0)
-            .support(Support::roller(0, false))
-            .support(Support::fixed(1, false))
-            .gravity(gravity, 2.0);
+    let mut scene = Scene::<PlaneStrain, 2>::new(
+        [axis(0.5, 5, 2), axis(0.5, 4, 2)],
+        hencky(young, 0.3),
+        Regime::QuasiStatic,
+    )
+    .body([0..3, 0..3], 3, 1.0, |x| x * 0.0)
+    .support(Support::roller(0, false))
+    .support(Support::fixed(1, false))
+    .gravity(gravity, 2.0);
     scene.march(1.0, 2.0, |_, _| ());
     let points = &scene.points;
-    let row = |p: usize| points.u[p].iter().copied().chain(points.sigma.at(p).0.map(|s| s / young)).collect::<Vec<_>>();
+    let row = |p: usize| {
+        points.u[p]
+            .iter()
+            .copied()
+            .chain(points.sigma.at(p).0.map(|s| s / young))
+            .collect::<Vec<_>>()
+    };
     by_id(points).into_iter().flat_map(row).collect()
 }
 
@@ -101,7 +145,12 @@ fn settled(gravity: f64, young: f64) -> Vec<f64> {
 pub fn scaled_gravity(factor: f64) -> f64 {
     let (reference, scaled) = (settled(2.0, 100.0), settled(2.0 * factor, 100.0 * factor));
     let size = reference.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    reference.iter().zip(&scaled).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size
+    reference
+        .iter()
+        .zip(&scaled)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+        / size
 }
 
 /// A column under gravity x 1e3 that would be shortened to a third: error of the reaction of its base.

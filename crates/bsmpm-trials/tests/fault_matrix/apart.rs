@@ -12,9 +12,13 @@ const SOON: f64 = 10.0;
 /// Runs on `ranks` ranks, of which one has an empty folder in the place of `folder`.
 fn start(trial: &Trial, (ranks, blind): (usize, usize), folder: &str, arguments: &[&str]) -> Output {
     let mut launcher = Command::new("mpirun");
-    launcher.args(["-q", "--oversubscribe"]).current_dir(trial.scratch.path(""));
+    launcher
+        .args(["-q", "--oversubscribe"])
+        .current_dir(trial.scratch.path(""));
     for rank in 0..ranks {
-        launcher.args(if rank == 0 { &[][..] } else { &[":"] }).args(["-n", "1"]);
+        launcher
+            .args(if rank == 0 { &[][..] } else { &[":"] })
+            .args(["-n", "1"]);
         if rank == blind {
             let line = format!("mount -t tmpfs none {folder} && exec \"$0\" \"$@\"");
             launcher.args(["unshare", "--mount", "sh", "-c", &line]);
@@ -27,7 +31,10 @@ fn start(trial: &Trial, (ranks, blind): (usize, usize), folder: &str, arguments:
 /// Whether a process may have a view of the file system of its own.
 fn may() -> bool {
     let mut probe = Command::new("unshare");
-    probe.args(["--mount", "mount", "-t", "tmpfs", "none", "/mnt"]).stdout(Stdio::null()).stderr(Stdio::null());
+    probe
+        .args(["--mount", "mount", "-t", "tmpfs", "none", "/mnt"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
     probe.status().is_ok_and(|status| status.success())
 }
 
@@ -48,7 +55,11 @@ pub fn files(ground: &Ground, _: usize) -> Tried {
     let whole = ground.whole(2);
     let tried = trials(WAYS.len(), |index| {
         let (way, ranks, code, words) = WAYS[index];
-        let trial = if ["auto", "named"].contains(&way) { ground.stopped(2, 10) } else { ground.trial(2) };
+        let trial = if ["auto", "named"].contains(&way) {
+            ground.stopped(2, 10)
+        } else {
+            ground.trial(2)
+        };
         std::fs::create_dir(trial.scratch.path("kept")).unwrap();
         trial.scratch.write("kept/case.toml", ground.text());
         std::fs::create_dir_all(trial.directory()).unwrap();
@@ -59,7 +70,16 @@ pub fn files(ground: &Ground, _: usize) -> Tried {
             "auto" => ("run/checkpoint", "auto"),
             _ => ("run/checkpoint", file.to_str().unwrap()),
         };
-        let arguments = ["kept/case.toml", "-q", "-o", RUN, "--restart", from, "--max-steps", "12"];
+        let arguments = [
+            "kept/case.toml",
+            "-q",
+            "-o",
+            RUN,
+            "--restart",
+            from,
+            "--max-steps",
+            "12",
+        ];
         let output = start(&trial, ranks, folder, &arguments).expect(code);
         let seconds = output.elapsed.as_secs_f64();
         if !words.is_empty() {

@@ -19,7 +19,11 @@ fn refused(trial: &Trial, file: &Path, words: &str) -> f64 {
     let arguments = ["case.toml", "-q", "-o", "other", "--restart", file.to_str().unwrap()];
     let output = trial.scratch.direct(&arguments);
     let seconds = output.elapsed.as_secs_f64();
-    assert!([Some(76), Some(66)].contains(&output.code), "{}: {output:?}", file.display());
+    assert!(
+        [Some(76), Some(66)].contains(&output.code),
+        "{}: {output:?}",
+        file.display()
+    );
     assert!(output.said().contains(words), "{words:?}: {output:?}");
     assert!(!trial.scratch.path("other").exists(), "something was written");
     assert!(seconds < SOON, "{seconds} s");
@@ -55,7 +59,9 @@ pub fn truncated(ground: &Ground, count: usize) -> Tried {
         trial.becomes(&whole);
         0.0
     });
-    named.and(auto).figure(|seconds| format!("76 after {seconds} s at most; auto: B"))
+    named
+        .and(auto)
+        .figure(|seconds| format!("76 after {seconds} s at most; auto: B"))
 }
 
 /// One bit of the file or its record, as the program's own check sees it.
@@ -94,7 +100,10 @@ fn flips(ground: &Ground, count: usize, refuses: impl Fn(&Path)) -> Tried {
 }
 
 fn pipe(path: &Path) {
-    assert!(Command::new("mkfifo").arg(path).status().unwrap().success(), "a pipe can be made");
+    assert!(
+        Command::new("mkfifo").arg(path).status().unwrap().success(),
+        "a pipe can be made"
+    );
 }
 
 /// What is no checkpoint of ours.
@@ -142,7 +151,9 @@ fn stranger(trial: &Trial, kind: &str) -> PathBuf {
 /// Each of them, by name.
 pub fn foreign(ground: &Ground, _: usize) -> Tried {
     let trial = ground.stopped(1, 10);
-    let tried = trials(FOREIGN.len(), |index| refused(&trial, &stranger(&trial, FOREIGN[index]), "cannot be used"));
+    let tried = trials(FOREIGN.len(), |index| {
+        refused(&trial, &stranger(&trial, FOREIGN[index]), "cannot be used")
+    });
     tried.figure(|seconds| format!("76 after {seconds} s at most"))
 }
 
@@ -156,7 +167,10 @@ fn record(file: &Path, change: impl Fn(&mut serde_json::Value)) {
     record["blake3"] = blake3::hash(&bytes).to_string().into();
     change(record);
     let body = record.to_string();
-    let text = format!("{{\"blake3\":\"{}\",\"record\":{body}}}\n", blake3::hash(body.as_bytes()));
+    let text = format!(
+        "{{\"blake3\":\"{}\",\"record\":{body}}}\n",
+        blake3::hash(body.as_bytes())
+    );
     std::fs::write(file.with_extension("json"), text).unwrap();
 }
 
@@ -166,7 +180,9 @@ pub fn other_form(ground: &Ground, _: usize) -> Tried {
     let tried = trials(2, |index| {
         let trial = stopped.copy();
         let file = trial.checkpoint(NEWEST);
-        record(&file, |record| record["schema"] = if index == 0 { 5.into() } else { 0.into() });
+        record(&file, |record| {
+            record["schema"] = if index == 0 { 5.into() } else { 0.into() }
+        });
         refused(&trial, &file, "this program reads format 1")
     });
     tried.figure(|_| "76, with both numbers".into())
@@ -204,7 +220,12 @@ const NUMBERS: [(&str, usize, u64, &str); 16] = [
     ("x", 10, 1e9_f64.to_bits(), "outside the grid"),
     ("x", 10, (-1.0_f64).to_bits(), "outside the grid"),
     ("sigma", 3, f64::INFINITY.to_bits(), "sigma of point"),
-    ("sigma", 5, f64::INFINITY.to_bits(), "sigma has components out of the plane"),
+    (
+        "sigma",
+        5,
+        f64::INFINITY.to_bits(),
+        "sigma has components out of the plane",
+    ),
     ("guess", 5, f64::NAN.to_bits(), "a nodal displacement is not finite"),
     ("mass", 2, (-1.0_f64).to_bits(), "its mass is negative"),
     ("volume", 2, 0, "its volume is not positive"),
@@ -219,9 +240,13 @@ pub fn hostile(ground: &Ground, _: usize) -> Tried {
     let stopped = ground.stopped(2, 10);
     let forge = |trial: &Trial, arguments: &[&str]| {
         let mut command = Command::new(example("foreign"));
-        command.args([arguments[0], trial.checkpoint(NEWEST).to_str().unwrap()]).args(&arguments[1..]);
+        command
+            .args([arguments[0], trial.checkpoint(NEWEST).to_str().unwrap()])
+            .args(&arguments[1..]);
         let ears = crate::support::Ears::Open;
-        processes::start_beside(command, &[], ears, Duration::from_secs(60)).end().expect(0);
+        processes::start_beside(command, &[], ears, Duration::from_secs(60))
+            .end()
+            .expect(0);
         record(&trial.checkpoint(NEWEST), |_| ());
     };
     let tried = trials(FORGED.len() + NUMBERS.len() + 1, |index| {

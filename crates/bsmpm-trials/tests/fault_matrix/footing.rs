@@ -17,7 +17,11 @@ const TOLERATED: f64 = 1e-5;
 /// Both curves, for whoever wants to see them.
 fn write(whole: &Columns, killed: &Columns) {
     let column = |columns: &Columns, name: &str| columns.get(name).unwrap().to_vec();
-    let (at, one, other) = (column(whole, "penetration"), column(whole, "p_over_c"), column(killed, "p_over_c"));
+    let (at, one, other) = (
+        column(whole, "penetration"),
+        column(whole, "p_over_c"),
+        column(killed, "p_over_c"),
+    );
     let mut text = String::from("penetration,uninterrupted,killed\n# m,-,-\n");
     for ((at, one), other) in at.iter().zip(&one).zip(&other) {
         writeln!(text, "{at:?},{one:?},{other:?}").unwrap();
@@ -64,7 +68,10 @@ pub fn killed(_: &Ground, _: usize) -> Tried {
     let mut reported = String::new();
     let tried = trials(1, |_| {
         let case = shipped("short/strip_footing.toml").to_str().unwrap().to_owned();
-        let runs = Runs { case, scratch: Scratch::new() };
+        let runs = Runs {
+            case,
+            scratch: Scratch::new(),
+        };
         runs.job("whole", 2).run().expect(0);
         let at = runs.killed("killed");
         let directories = ["whole", "killed"].map(|name| runs.scratch.path(name));
@@ -73,12 +80,24 @@ pub fn killed(_: &Ground, _: usize) -> Tried {
         write(&whole, &killed);
         let [one, other] = [&whole, &killed].map(|columns| columns.get("p_over_c").unwrap());
         let largest = one.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
-        let difference = one.iter().zip(other).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / largest;
-        let ranks: Vec<String> =
-            manifest(&directories[1]).restarts.iter().map(|restart| restart.ranks.to_string()).collect();
-        reported = format!("killed after steps {at:?}; went on on {} ranks; p/c to {largest:.2}", ranks.join(", "));
+        let difference = one
+            .iter()
+            .zip(other)
+            .fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()))
+            / largest;
+        let ranks: Vec<String> = manifest(&directories[1])
+            .restarts
+            .iter()
+            .map(|restart| restart.ranks.to_string())
+            .collect();
+        reported = format!(
+            "killed after steps {at:?}; went on on {} ranks; p/c to {largest:.2}",
+            ranks.join(", ")
+        );
         assert!(difference <= TOLERATED, "{difference:e}: {reported}");
         difference
     });
-    tried.figure(|difference| format!("pressure differs by {difference}, relative")).remark(&reported)
+    tried
+        .figure(|difference| format!("pressure differs by {difference}, relative"))
+        .remark(&reported)
 }

@@ -47,8 +47,16 @@ impl Ground {
         let text = std::fs::read_to_string(shipped("faults/mini_footing.toml")).unwrap();
         let part = ["end  = \"0.3 s\"", "end  = \"0.15 s\""];
         assert!(text.contains(part[0]), "the end of the case");
-        let text = if depth == Depth::Short { text.replace(part[0], part[1]) } else { text };
-        Self { depth, text, wholes: RefCell::default() }
+        let text = if depth == Depth::Short {
+            text.replace(part[0], part[1])
+        } else {
+            text
+        };
+        Self {
+            depth,
+            text,
+            wholes: RefCell::default(),
+        }
     }
 
     /// The uninterrupted run on so many ranks.
@@ -60,14 +68,22 @@ impl Ground {
         let seconds = trial.start(&[], &[]).end().expect(0).elapsed.as_secs_f64();
         let results = results(&trial.directory());
         let steps = manifest(&trial.directory()).summary.steps;
-        let whole = Rc::new(Whole { scratch: trial.scratch, results, seconds, steps });
+        let whole = Rc::new(Whole {
+            scratch: trial.scratch,
+            results,
+            seconds,
+            steps,
+        });
         self.wholes.borrow_mut().insert(ranks, Rc::clone(&whole));
         whole
     }
 
     /// A new run on so many ranks.
     pub fn trial(&self, ranks: usize) -> Trial {
-        Trial { scratch: Scratch::with_case(&self.text), ranks }
+        Trial {
+            scratch: Scratch::with_case(&self.text),
+            ranks,
+        }
     }
 
     /// The text of the case.
@@ -107,7 +123,10 @@ impl Trial {
 
     /// Starts it, or lets it go on.
     pub fn start(&self, further: &[&str], variables: &[(&str, &str)]) -> Running {
-        variables.iter().fold(self.job(further), |job, (name, value)| job.variable(name, value)).start()
+        variables
+            .iter()
+            .fold(self.job(further), |job, (name, value)| job.variable(name, value))
+            .start()
     }
 
     /// Starts it, and waits until it has made so many steps and a share of the next one's time.
@@ -127,14 +146,21 @@ impl Trial {
 
     /// Where it went on the last time.
     pub fn resumed_from(&self) -> u64 {
-        manifest(&self.directory()).restarts.last().map_or(0, |restart| restart.step)
+        manifest(&self.directory())
+            .restarts
+            .last()
+            .map_or(0, |restart| restart.step)
     }
 
     /// Asserts that its manifest has a warning once; `-q` keeps them from the log.
     #[track_caller]
     pub fn has_warned(&self, words: &str) {
         let warnings = manifest(&self.directory()).warnings;
-        assert_eq!(warnings.iter().filter(|warning| warning.contains(words)).count(), 1, "{words:?}: {warnings:?}");
+        assert_eq!(
+            warnings.iter().filter(|warning| warning.contains(words)).count(),
+            1,
+            "{words:?}: {warnings:?}"
+        );
     }
 
     /// Lets it go on to its end, at once.
@@ -150,7 +176,11 @@ impl Trial {
         let is_over = Manifest::read(&self.directory()).is_ok_and(|run| run.status == Status::Finished);
         self.finish();
         same(&results(&self.directory()), &whole.results);
-        if is_over { 0 } else { made.saturating_sub(self.resumed_from()) }
+        if is_over {
+            0
+        } else {
+            made.saturating_sub(self.resumed_from())
+        }
     }
 
     /// Asserts that nothing is left that a run which goes on should have taken away.
@@ -164,7 +194,10 @@ impl Trial {
 
     /// Another run that is the same so far.
     pub fn copy(&self) -> Self {
-        let copy = Self { scratch: Scratch::new(), ranks: self.ranks };
+        let copy = Self {
+            scratch: Scratch::new(),
+            ranks: self.ranks,
+        };
         std::fs::copy(self.scratch.path("case.toml"), copy.scratch.path("case.toml")).unwrap();
         copy_all(&self.directory(), &copy.directory());
         copy
@@ -193,7 +226,9 @@ pub fn results(directory: &Path) -> Results {
     let steps = steps(directory);
     let cost = ["wall", "messages", "bytes"];
     let columns = steps.headings.iter().zip(&steps.values);
-    let free: Vec<_> = columns.filter(|(column, _)| !cost.contains(&column.name.as_str())).collect();
+    let free: Vec<_> = columns
+        .filter(|(column, _)| !cost.contains(&column.name.as_str()))
+        .collect();
     results.insert("steps.csv but for its cost".into(), format!("{free:?}").into_bytes());
     if let Some(checkpoint) = manifest(directory).checkpoint {
         results.insert("checkpoint".into(), arrays(&directory.join(checkpoint)).into_bytes());
@@ -205,7 +240,10 @@ pub fn results(directory: &Path) -> Results {
 #[track_caller]
 pub fn same(found: &Results, expected: &Results) {
     let beside: Vec<&String> = found.keys().filter(|name| !expected.contains_key(*name)).collect();
-    assert!(beside.iter().all(|name| name.starts_with("frames/")), "beside: {beside:?}");
+    assert!(
+        beside.iter().all(|name| name.starts_with("frames/")),
+        "beside: {beside:?}"
+    );
     for (name, bytes) in expected.iter().filter(|(name, _)| *name != LIST || beside.is_empty()) {
         let there = found.get(name).unwrap_or_else(|| panic!("{name} is not there"));
         assert!(there == bytes, "{name} differs from the uninterrupted run's");
@@ -230,7 +268,10 @@ pub fn same_but_for_frames(found: &Results, expected: &Results) {
 fn arrays(file: &Path) -> String {
     let mut command = Command::new(example("arrays"));
     command.arg(file);
-    processes::start_beside(command, &[], crate::support::Ears::Open, Duration::from_secs(HANGS)).end().expect(0).stdout
+    processes::start_beside(command, &[], crate::support::Ears::Open, Duration::from_secs(HANGS))
+        .end()
+        .expect(0)
+        .stdout
 }
 
 /// Numbers between 0 and 1 that fill the interval evenly, others for each `salt`.

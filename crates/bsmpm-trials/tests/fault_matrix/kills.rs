@@ -27,14 +27,19 @@ fn killed(ground: &Ground, (index, code): (usize, Option<i32>), kill: impl Fn(&R
 
 /// One of the ranks.
 pub fn rank(ground: &Ground, count: usize) -> Tried {
-    let tried =
-        trials(count, |index| killed(ground, (index, Some(137)), |running| running.signal_rank("KILL", index % 2)));
+    let tried = trials(count, |index| {
+        killed(ground, (index, Some(137)), |running| {
+            running.signal_rank("KILL", index % 2)
+        })
+    });
     tried.figure(|seconds| format!("dead after {seconds} s at most"))
 }
 
 /// The launcher, whose ranks are on their own then.
 pub fn launcher(ground: &Ground, count: usize) -> Tried {
-    let tried = trials(count, |index| killed(ground, (index, None), |running| running.signal("KILL")));
+    let tried = trials(count, |index| {
+        killed(ground, (index, None), |running| running.signal("KILL"))
+    });
     tried.figure(|seconds| format!("gone after {seconds} s at most"))
 }
 
@@ -46,7 +51,17 @@ pub fn all(ground: &Ground, count: usize) -> Tried {
 
 /// The rank that writes, in each phase of a checkpoint: `count` times nine.
 pub fn writer(ground: &Ground, count: usize) -> Tried {
-    let phases = ["opened", "midway", "written", "closed", "synced", "recorded", "named", "committed", "kept"];
+    let phases = [
+        "opened",
+        "midway",
+        "written",
+        "closed",
+        "synced",
+        "recorded",
+        "named",
+        "committed",
+        "kept",
+    ];
     let whole = ground.whole(2);
     let tried = trials(count * phases.len(), |index| {
         let (phase, round) = (phases[index % phases.len()], index / phases.len());
@@ -55,7 +70,11 @@ pub fn writer(ground: &Ground, count: usize) -> Tried {
         let fault = format!("kill:phase={phase},step={step}");
         trial.start(&[], &[("BSMPM_FAULT", &fault)]).end().expect(137);
         trial.becomes(&whole);
-        let usable = if ["committed", "kept"].contains(&phase) { step } else { step - INTERVAL };
+        let usable = if ["committed", "kept"].contains(&phase) {
+            step
+        } else {
+            step - INTERVAL
+        };
         assert_eq!(trial.resumed_from(), usable, "{phase}");
         (step - usable) as f64
     });
@@ -69,7 +88,10 @@ pub fn panic(ground: &Ground, count: usize) -> Tried {
         let (rank, step) = (index % 2, 1 + (spread(index, 3) * 0.9 * whole.steps as f64) as u64);
         let trial = ground.trial(2);
         let begun = Instant::now();
-        let output = trial.start(&[], &[("BSMPM_FAULT", &format!("panic:rank={rank},step={step}"))]).end().expect(70);
+        let output = trial
+            .start(&[], &[("BSMPM_FAULT", &format!("panic:rank={rank},step={step}"))])
+            .end()
+            .expect(70);
         output.says_once(&format!("panic on rank {rank}"));
         let lost = trial.becomes(&whole);
         assert!(lost <= INTERVAL, "{lost} steps are lost");

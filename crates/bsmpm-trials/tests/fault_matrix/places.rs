@@ -19,7 +19,12 @@ fn allow(scratch: &Scratch, name: &str, mode: u32) {
 
 /// Output directories that cannot be written to, as a user who is not root.
 pub fn no_permission(ground: &Ground, _: usize) -> Tried {
-    let ways = ["read-only directory", "forbidden parent", "file in its place", "file in the place of its parent"];
+    let ways = [
+        "read-only directory",
+        "forbidden parent",
+        "file in its place",
+        "file in the place of its parent",
+    ];
     let tried = trials(ways.len(), |index| {
         let trial = ground.trial(1);
         let scratch = &trial.scratch;
@@ -57,8 +62,13 @@ pub fn no_permission(ground: &Ground, _: usize) -> Tried {
             "-o",
             path,
         ]);
-        command.current_dir(scratch.path("")).env("TMPDIR", "/tmp").env("HOME", "/");
-        let output = processes::start_beside(command, &[], Ears::Open, Duration::from_secs(30)).end().expect(73);
+        command
+            .current_dir(scratch.path(""))
+            .env("TMPDIR", "/tmp")
+            .env("HOME", "/");
+        let output = processes::start_beside(command, &[], Ears::Open, Duration::from_secs(30))
+            .end()
+            .expect(73);
         assert!(output.said().contains(path.split('/').next().unwrap()), "{output:?}");
         output.elapsed.as_secs_f64()
     });
@@ -98,7 +108,9 @@ pub fn stale_lock(ground: &Ground, count: usize) -> Tried {
         trial.start(&["--break-lock"], &[]).end().expect(0);
         trial.becomes(&whole) as f64
     });
-    tried.figure(|_| "73 with the advice; --break-lock: B".into()).remark("of this host: every row that kills all")
+    tried
+        .figure(|_| "73 with the advice; --break-lock: B".into())
+        .remark("of this host: every row that kills all")
 }
 
 /// More ranks than there is material, or columns of cells.
@@ -134,7 +146,10 @@ pub fn memory(ground: &Ground, _: usize) -> Tried {
             trial.scratch.direct(&["case.toml", "-q", "--max-memory", "5MB"])
         } else {
             // 2.9 million points, some GB, for a process that may have 1.5 GB.
-            let line = format!("ulimit -v 1500000; exec {} case.toml -q --set body.0.points_per_cell=60", program());
+            let line = format!(
+                "ulimit -v 1500000; exec {} case.toml -q --set body.0.points_per_cell=60",
+                program()
+            );
             let mut command = Command::new("bash");
             command.args(["-c", &line]).current_dir(trial.scratch.path(""));
             processes::start_beside(command, &[], Ears::Open, Duration::from_secs(60)).end()
@@ -144,7 +159,9 @@ pub fn memory(ground: &Ground, _: usize) -> Tried {
         assert_eq!(trial.scratch.entries(), ["case.toml"]);
         seconds
     });
-    tried.figure(|seconds| format!("71 after {seconds} s at most")).remark("the estimate: bsmpm-scene/tests/shipped.rs")
+    tried
+        .figure(|seconds| format!("71 after {seconds} s at most"))
+        .remark("the estimate: bsmpm-scene/tests/shipped.rs")
 }
 
 /// Streams that take nothing any more.
@@ -193,22 +210,38 @@ pub fn clock(ground: &Ground, _: usize) -> Tried {
     let library = trial.scratch.path("clocks.so");
     trial.scratch.write("clocks.c", SET_CLOCKS);
     let mut compiler = Command::new("cc");
-    compiler.args(["-shared", "-fPIC", "clocks.c", "-o", "clocks.so", "-ldl"]).current_dir(trial.scratch.path(""));
+    compiler
+        .args(["-shared", "-fPIC", "clocks.c", "-o", "clocks.so", "-ldl"])
+        .current_dir(trial.scratch.path(""));
     if !compiler.status().is_ok_and(|status| status.success()) {
         return Tried::not("no C compiler");
     }
     let whole = ground.whole(1);
     let tried = trials(1, |_| {
         let mut command = Command::new(program());
-        command.args(["case.toml", "-q", "-o", RUN, "--restart", "auto", "--max-wall", "00:10:00"]);
+        command.args([
+            "case.toml",
+            "-q",
+            "-o",
+            RUN,
+            "--restart",
+            "auto",
+            "--max-wall",
+            "00:10:00",
+        ]);
         command.current_dir(trial.scratch.path("")).env("LD_PRELOAD", &library);
-        let output = processes::start_beside(command, &[], Ears::Open, Duration::from_secs(120)).end().expect(0);
+        let output = processes::start_beside(command, &[], Ears::Open, Duration::from_secs(120))
+            .end()
+            .expect(0);
         same(&results(&trial.directory()), &whole.results);
         let found = manifest(&trial.directory());
         let today = bsmpm_io::utc::now();
         assert_ne!(found.start[..10], today[..10], "the clock was set");
         let (wall, elapsed) = (found.timers["wall"], output.elapsed.as_secs_f64());
-        assert!((0.0..=elapsed).contains(&wall), "run.json reports {wall} s of {elapsed}");
+        assert!(
+            (0.0..=elapsed).contains(&wall),
+            "run.json reports {wall} s of {elapsed}"
+        );
         0.0
     });
     tried.figure(|_| "days ahead and behind: no limit reached, B".into())
@@ -226,7 +259,10 @@ pub fn left(_: &Ground, _: usize) -> Tried {
         let before = std::fs::read(scratch.path(RUN).join("history.csv")).unwrap();
         for _ in 0..3 {
             scratch.mpirun(2, &run).expect(81);
-            assert!(std::fs::read(scratch.path(RUN).join("history.csv")).unwrap() == before, "other steps");
+            assert!(
+                std::fs::read(scratch.path(RUN).join("history.csv")).unwrap() == before,
+                "other steps"
+            );
         }
         scratch.mpirun(2, &run).expect(72).says_once("restarts in a row");
         0.0

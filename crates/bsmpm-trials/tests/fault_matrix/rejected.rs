@@ -15,14 +15,23 @@ fn fault(step: u64) -> String {
 fn was_rejected(run: &Path, step: u64) {
     let reported = format!("W0725: step {step} is repeated");
     let warnings = manifest(run).warnings;
-    assert_eq!(warnings.iter().filter(|warning| warning.contains(&reported)).count(), 1, "{warnings:?}");
+    assert_eq!(
+        warnings.iter().filter(|warning| warning.contains(&reported)).count(),
+        1,
+        "{warnings:?}"
+    );
 }
 
 /// The first step, the one that is cut, and others all over the run, on one and on two ranks.
 pub fn footing(ground: &Ground, count: usize) -> Tried {
     let cut = {
         let table = steps(&ground.whole(2).scratch.path("run"));
-        1 + table.get("cutbacks").unwrap().iter().position(|&cuts| cuts > 0.0).expect("a step that is cut") as u64
+        1 + table
+            .get("cutbacks")
+            .unwrap()
+            .iter()
+            .position(|&cuts| cuts > 0.0)
+            .expect("a step that is cut") as u64
     };
     let tried = trials(count, |index| {
         let ranks = 1 + index % 2;
@@ -48,10 +57,19 @@ fn suite(cases: &[PathBuf], most: u64) -> Tried {
         let scratch = Scratch::new();
         let run = |name: &str, fault: &str| {
             let most = most.to_string();
-            let job = scratch.job(Some(2), &[case, "-q", "-o", name, "--max-steps", &most]).within(600);
-            let job = if fault.is_empty() { job } else { job.variable("BSMPM_FAULT", fault) };
+            let job = scratch
+                .job(Some(2), &[case, "-q", "-o", name, "--max-steps", &most])
+                .within(600);
+            let job = if fault.is_empty() {
+                job
+            } else {
+                job.variable("BSMPM_FAULT", fault)
+            };
             let output = job.run();
-            assert!([Some(0), Some(75), Some(77)].contains(&output.code), "{case}: {output:?}");
+            assert!(
+                [Some(0), Some(75), Some(77)].contains(&output.code),
+                "{case}: {output:?}"
+            );
         };
         run("whole", "");
         let step = manifest(&scratch.path("whole")).summary.steps.div_ceil(2);

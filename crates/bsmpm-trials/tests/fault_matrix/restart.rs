@@ -41,27 +41,41 @@ fn recovered(cases: &[PathBuf], most: u64) -> Tried {
             let stop = stop.to_string();
             let arguments = [case, "-q", "-o", name, "--restart", "auto", "--max-steps", &stop];
             let output = scratch.job(Some(2), &arguments).within(600).run();
-            assert!([Some(0), Some(75), Some(77)].contains(&output.code), "{case}: {output:?}");
+            assert!(
+                [Some(0), Some(75), Some(77)].contains(&output.code),
+                "{case}: {output:?}"
+            );
         };
         // Without a key for checkpoints, a run that reaches its end leaves none: the last step is not its.
         run("probe", most + 1);
         let steps = manifest(&scratch.path("probe")).summary.steps.min(most + 1) - 1;
         run("whole", steps);
-        let stop = if index % 2 == 0 { steps.div_ceil(2) } else { 2.min(steps - 1) };
+        let stop = if index % 2 == 0 {
+            steps.div_ceil(2)
+        } else {
+            2.min(steps - 1)
+        };
         run("part", stop);
         run("part", steps);
         assert_eq!(manifest(&scratch.path("part")).restarts.len(), 1, "{case}");
         same(&left(&scratch, "part"), &left(&scratch, "whole"));
         if index % 2 == 0 {
-            reported.push(format!("{} {steps}", cases[index / 2].file_stem().unwrap().to_string_lossy()));
+            reported.push(format!(
+                "{} {steps}",
+                cases[index / 2].file_stem().unwrap().to_string_lossy()
+            ));
         }
         steps as f64
     });
-    tried.figure(|_| format!("{} cases", cases.len())).remark(&format!("steps: {}", reported.join(", ")))
+    tried
+        .figure(|_| format!("{} cases", cases.len()))
+        .remark(&format!("steps: {}", reported.join(", ")))
 }
 
 pub fn cases(folder: &str) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(shipped(folder)).unwrap().map(|entry| entry.unwrap().path());
+    let entries = std::fs::read_dir(shipped(folder))
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
     let is_case =
         |path: &PathBuf| path.extension().is_some_and(|ending| ending == "toml") && !path.ends_with("matrix.toml");
     let mut cases: Vec<PathBuf> = entries.filter(is_case).collect();
@@ -90,7 +104,10 @@ pub fn intervals(ground: &Ground, _: usize) -> Tried {
     let ways = ["{every_steps=1}", "{every_steps=7}", "{wall=\"100 h\"}"];
     let tried = trials(ways.len(), |index| {
         let trial = ground.trial(2);
-        trial.start(&["--set", &format!("output.checkpoint={}", ways[index])], &[]).end().expect(0);
+        trial
+            .start(&["--set", &format!("output.checkpoint={}", ways[index])], &[])
+            .end()
+            .expect(0);
         same(&results(&trial.directory()), &whole.results);
         0.0
     });
@@ -107,7 +124,9 @@ pub fn other_ranks(ground: &Ground, _: usize) -> Tried {
         let mut trial = ground.stopped(before, whole.steps / 2);
         trial.ranks = after;
         trial.finish();
-        trial.has_warned(&format!("written on {before} rank(s), and the run continues on {after}"));
+        trial.has_warned(&format!(
+            "written on {before} rank(s), and the run continues on {after}"
+        ));
         let found = differences(&last_frame(&trial.directory()), &last_frame(&whole.scratch.path("run")));
         let (name, largest) = found.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
         reported.push(format!("{before} -> {after}: {largest:.0e} ({name})"));
@@ -117,7 +136,9 @@ pub fn other_ranks(ground: &Ground, _: usize) -> Tried {
         assert!(largest <= 1e-6, "{name} differs by {largest:e}");
         largest
     });
-    tried.figure(|largest| format!("last frame, relative: {largest}")).remark(&reported.join(", "))
+    tried
+        .figure(|largest| format!("last frame, relative: {largest}"))
+        .remark(&reported.join(", "))
 }
 
 /// The same run again while ranks are stopped and let go at random.
@@ -143,18 +164,33 @@ pub fn repeated(ground: &Ground, count: usize) -> Tried {
 
 /// Keys with which a checkpoint is of another case, with what must be reported of them.
 const BOUND: [(&str, &str); 9] = [
-    ("material.clay.poisson=0.31", "material.clay.poisson was 0.3, and is 0.31"),
-    ("material.clay.cohesion=\"6 kPa\"", "material.clay.cohesion was 5000.0, and is 6000.0"),
+    (
+        "material.clay.poisson=0.31",
+        "material.clay.poisson was 0.3, and is 0.31",
+    ),
+    (
+        "material.clay.cohesion=\"6 kPa\"",
+        "material.clay.cohesion was 5000.0, and is 6000.0",
+    ),
     ("grid.cell=\"0.2 m\"", "grid.cell was [0.1], and is [0.2]"),
-    ("grid.degree=\"cubic\"", "grid.degree was \"quadratic\", and is \"cubic\""),
+    (
+        "grid.degree=\"cubic\"",
+        "grid.degree was \"quadratic\", and is \"cubic\"",
+    ),
     ("body.0.points_per_cell=3", "body.0.points_per_cell was 2, and is 3"),
-    ("body.1.velocity=[21.0,0.0]", "body.1.velocity was [22.0, 0.0], and is [21.0, 0.0]"),
+    (
+        "body.1.velocity=[21.0,0.0]",
+        "body.1.velocity was [22.0, 0.0], and is [21.0, 0.0]",
+    ),
     (
         "stabilisation.method=\"modified-f-bar\"",
         "stabilisation.method was \"consistent-f-bar\", and is \"modified-f-bar\"",
     ),
     ("analysis.end=\"0.31 s\"", "analysis.end was"),
-    ("gravity.acceleration=[0.0,-9.81]", "gravity.acceleration was not given, and is [0.0, -9.81]"),
+    (
+        "gravity.acceleration=[0.0,-9.81]",
+        "gravity.acceleration was not given, and is [0.0, -9.81]",
+    ),
 ];
 
 /// Another case, by name and by `auto`; a material of another name.
@@ -166,13 +202,19 @@ pub fn other_case(ground: &Ground, _: usize) -> Tried {
     let tried = trials(2 * (BOUND.len() + 1), |index| {
         let from = if index % 2 == 0 { "auto" } else { file.to_str().unwrap() };
         let run = |case: &str, further: &[&str]| {
-            trial.scratch.direct(&[&[case, "-o", "run", "--restart", from], further].concat()).expect(76)
+            trial
+                .scratch
+                .direct(&[&[case, "-o", "run", "--restart", from], further].concat())
+                .expect(76)
         };
         match BOUND.get(index / 2) {
             Some((set, reported)) => run("case.toml", &["--set", set]).says_once(reported),
             None => run("named.toml", &[]).says_once("material.loam.cohesion was not given, and is 5000.0"),
         }
-        assert!(std::fs::read(trial.directory().join("run.json")).unwrap() == before, "the run is touched");
+        assert!(
+            std::fs::read(trial.directory().join("run.json")).unwrap() == before,
+            "the run is touched"
+        );
         0.0
     });
     tried.figure(|_| "76, with the key and both values".into())
@@ -202,7 +244,12 @@ pub fn free_keys(ground: &Ground, _: usize) -> Tried {
 /// Steps that cannot converge end the run with 80; it goes on with shorter ones, or as if that had not been.
 pub fn no_convergence(ground: &Ground, _: usize) -> Tried {
     let whole = ground.whole(2);
-    let measures = ["--set", "solver.tolerance=1e-30", "--set", "solver.force_tolerance=1e-30"];
+    let measures = [
+        "--set",
+        "solver.tolerance=1e-30",
+        "--set",
+        "solver.force_tolerance=1e-30",
+    ];
     let hard = [&measures[..], &["--set", "solver.max_iterations=1"]].concat();
     let stopped = ground.stopped(2, 10);
     stopped.start(&hard, &[]).end().expect(80);
@@ -210,7 +257,10 @@ pub fn no_convergence(ground: &Ground, _: usize) -> Tried {
         let trial = stopped.copy();
         assert!(trial.directory().join("failure.json").exists(), "failure.json");
         if index == 0 {
-            trial.start(&["--set", "analysis.dt=\"2.5 ms\"", "--max-steps", "20"], &[]).end().expect(75);
+            trial
+                .start(&["--set", "analysis.dt=\"2.5 ms\"", "--max-steps", "20"], &[])
+                .end()
+                .expect(75);
             let dt = steps(&trial.directory()).get("dt").unwrap().to_vec();
             assert!(dt[12..].iter().all(|&dt| dt < 2.6e-3), "{dt:?}");
         } else {

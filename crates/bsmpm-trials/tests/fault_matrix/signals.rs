@@ -31,7 +31,14 @@ fn any_step(ground: &Ground, index: usize) -> u64 {
 
 /// USR1 to the launcher.
 pub fn usr1(ground: &Ground, count: usize) -> Tried {
-    let one = |index| stopped(ground, (any_step(ground, index), 75), |running: &Running| running.signal("USR1"), &[]);
+    let one = |index| {
+        stopped(
+            ground,
+            (any_step(ground, index), 75),
+            |running: &Running| running.signal("USR1"),
+            &[],
+        )
+    };
     let tried = trials(count, one);
     tried.figure(|seconds| format!("stopped after {seconds} s at most"))
 }
@@ -67,7 +74,9 @@ pub fn usr2(ground: &Ground, count: usize) -> Tried {
 pub fn term(ground: &Ground, count: usize) -> Tried {
     let patient = [("OMPI_MCA_odls_base_sigkill_timeout", "1")];
     let soon = |index| 1 + (spread(index, 17) * 4.0) as u64;
-    let tried = trials(count, |index| stopped(ground, (soon(index), 1), |running| running.signal("TERM"), &patient));
+    let tried = trials(count, |index| {
+        stopped(ground, (soon(index), 1), |running| running.signal("TERM"), &patient)
+    });
     tried.figure(|seconds| format!("stopped after {seconds} s at most"))
 }
 
@@ -107,7 +116,13 @@ fn abrupt(ground: &Ground, count: usize, variables: &[(&str, &str)], send: impl 
 /// takes to launch a program which does nothing. Two seconds at first, more where no step can be made in that.
 pub fn max_wall(ground: &Ground, count: usize) -> Tried {
     let whole = ground.whole(2);
-    let launching = ground.trial(2).scratch.mpirun(2, &["--version"]).expect(0).elapsed.as_secs_f64();
+    let launching = ground
+        .trial(2)
+        .scratch
+        .mpirun(2, &["--version"])
+        .expect(0)
+        .elapsed
+        .as_secs_f64();
     let mut jobs = 0;
     let tried = trials(count, |_| {
         let trial = ground.trial(2);
@@ -122,11 +137,17 @@ pub fn max_wall(ground: &Ground, count: usize) -> Tried {
             let seconds = output.elapsed.as_secs_f64();
             output.expect(75);
             over = over.max(seconds - launching - f64::from(limit));
-            assert!(over <= 0.0, "{seconds} s for {limit} s, beside {launching} s to launch it");
+            assert!(
+                over <= 0.0,
+                "{seconds} s for {limit} s, beside {launching} s to launch it"
+            );
             limit += u32::from(trial.made() == before);
         }
         // On a fast machine the run may be over before; the whole case takes longer.
-        assert!(over.is_finite() || ground.depth == Depth::Short, "the run was over before any limit");
+        assert!(
+            over.is_finite() || ground.depth == Depth::Short,
+            "the run was over before any limit"
+        );
         trial.becomes(&whole);
         f64::from(limit)
     });

@@ -17,22 +17,41 @@ fn fails(case: &str, further: &[&str]) -> Value {
     scratch.mpirun(2, &arguments).expect(80);
     let run = scratch.path(RUN);
     all_finite(&run);
-    let checkpoint = manifest(&run).checkpoint.expect("a checkpoint of the last converged state");
+    let checkpoint = manifest(&run)
+        .checkpoint
+        .expect("a checkpoint of the last converged state");
     bsmpm_io::checkpoint::named(&run.join(checkpoint)).unwrap();
     serde_json::from_slice(&std::fs::read(run.join("failure.json")).unwrap()).unwrap()
 }
 
 /// Every attempt's reason.
 fn attempts(failure: &Value) -> Vec<&str> {
-    failure["attempts"].as_array().unwrap().iter().map(|reason| reason.as_str().unwrap()).collect()
+    failure["attempts"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|reason| reason.as_str().unwrap())
+        .collect()
 }
 
 /// Krylov methods that may not iterate long enough, and a factorisation that is none.
 const DIVERGING: [(&[&str], &str); 4] = [
-    (&["-ksp_type", "cg", "-pc_type", "jacobi", "-ksp_max_it", "1"], "DIVERGED_ITS (-3)"),
-    (&["-ksp_type", "gmres", "-pc_type", "bjacobi", "-ksp_max_it", "1"], "DIVERGED_ITS (-3)"),
-    (&["-ksp_type", "richardson", "-pc_type", "none", "-ksp_divtol", "10"], "DIVERGED_DTOL (-4)"),
-    (&["-ksp_type", "preonly", "-pc_type", "jacobi"], "the relative residual of the solution is"),
+    (
+        &["-ksp_type", "cg", "-pc_type", "jacobi", "-ksp_max_it", "1"],
+        "DIVERGED_ITS (-3)",
+    ),
+    (
+        &["-ksp_type", "gmres", "-pc_type", "bjacobi", "-ksp_max_it", "1"],
+        "DIVERGED_ITS (-3)",
+    ),
+    (
+        &["-ksp_type", "richardson", "-pc_type", "none", "-ksp_divtol", "10"],
+        "DIVERGED_DTOL (-4)",
+    ),
+    (
+        &["-ksp_type", "preonly", "-pc_type", "jacobi"],
+        "the relative residual of the solution is",
+    ),
 ];
 
 /// Linear solves that diverge, through the whole program.
@@ -42,7 +61,10 @@ pub fn diverging(_: &Ground, _: usize) -> Tried {
         let failure = fails(COLUMN, &[&["--"], options].concat());
         let attempts = attempts(&failure);
         assert_eq!(attempts.len(), CUTS + 1);
-        assert!(attempts.iter().all(|warning| warning.contains(reason)), "{reason}: {attempts:?}");
+        assert!(
+            attempts.iter().all(|warning| warning.contains(reason)),
+            "{reason}: {attempts:?}"
+        );
         0.0
     });
     tried
@@ -86,12 +108,25 @@ pub fn folded(_: &Ground, _: usize) -> Tried {
     let tried = trials(2, |index| {
         let inverted = if index == 0 {
             let failure = fails(&format!("{COLUMN}{CROSSING}"), &COARSE);
-            assert!(failure["worst"].as_array().is_some_and(|worst| !worst.is_empty()), "{failure}");
-            attempts(&failure).iter().filter(|reason| reason.contains(INVERTED)).count()
+            assert!(
+                failure["worst"].as_array().is_some_and(|worst| !worst.is_empty()),
+                "{failure}"
+            );
+            attempts(&failure)
+                .iter()
+                .filter(|reason| reason.contains(INVERTED))
+                .count()
         } else {
             // Two hundred times its weight.
             let scratch = Scratch::with_case(COLUMN);
-            let heavy = ["case.toml", "-vv", "-o", RUN, "--set", "gravity.acceleration=[0.0,-2000.0]"];
+            let heavy = [
+                "case.toml",
+                "-vv",
+                "-o",
+                RUN,
+                "--set",
+                "gravity.acceleration=[0.0,-2000.0]",
+            ];
             let output = scratch.mpirun(2, &[&heavy, &COARSE[..6]].concat()).expect(0);
             all_finite(&scratch.path(RUN));
             output.count(INVERTED)

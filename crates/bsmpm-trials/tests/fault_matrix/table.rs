@@ -28,7 +28,10 @@ pub struct Tried {
 impl Tried {
     /// With the largest number of the trials, in words.
     pub fn figure(self, words: impl Fn(&str) -> String) -> Self {
-        Self { figure: words(&number(self.largest)), ..self }
+        Self {
+            figure: words(&number(self.largest)),
+            ..self
+        }
     }
 
     /// With what the reader should know if nothing went wrong.
@@ -41,12 +44,19 @@ impl Tried {
 
     /// Not tried, and why.
     pub fn not(why: &str) -> Self {
-        Self { remark: format!("not tried: {why}"), ..Self::default() }
+        Self {
+            remark: format!("not tried: {why}"),
+            ..Self::default()
+        }
     }
 
     /// Both together.
     pub fn and(self, other: Self) -> Self {
-        let remark = if self.remark.is_empty() { other.remark } else { self.remark };
+        let remark = if self.remark.is_empty() {
+            other.remark
+        } else {
+            self.remark
+        };
         Self {
             tried: self.tried + other.tried,
             passed: self.passed + other.passed,
@@ -59,7 +69,10 @@ impl Tried {
 
 /// Tries something so often. A trial fails by its panic; the first one's words are kept.
 pub fn trials(count: usize, mut one: impl FnMut(usize) -> f64) -> Tried {
-    let mut all = Tried { tried: count, ..Tried::default() };
+    let mut all = Tried {
+        tried: count,
+        ..Tried::default()
+    };
     for index in 0..count {
         match caught(|| one(index)) {
             Ok(figure) => {
@@ -90,7 +103,12 @@ pub struct Row {
 
 /// A row with its trials in the short and in the full run.
 pub fn row(id: &'static str, what: &'static str, trials: [usize; 2], measure: fn(&Ground, usize) -> Tried) -> Row {
-    Row { id, what, trials, measure }
+    Row {
+        id,
+        what,
+        trials,
+        measure,
+    }
 }
 
 impl Row {
@@ -103,13 +121,31 @@ impl Row {
         let count = self.trials[usize::from(ground.depth == Depth::Full)];
         let (tried, crashed) = match caught(|| (self.measure)(ground, count)) {
             Ok(tried) => (tried, false),
-            Err(words) => (Tried { tried: 1, remark: first_line(&words), ..Tried::default() }, true),
+            Err(words) => (
+                Tried {
+                    tried: 1,
+                    remark: first_line(&words),
+                    ..Tried::default()
+                },
+                true,
+            ),
         };
         let passes = tried.passed == tried.tried;
         let verdict = Verdict::of(passes, false, crashed);
         let word = if tried.tried == 0 { "not tried" } else { verdict.word() };
         let (count, passed) = (tried.tried.to_string(), tried.passed.to_string());
-        let cells = [self.id.into(), self.what.into(), count, passed, tried.figure, word.into(), tried.remark];
-        Judged { cells: cells.into(), verdict }
+        let cells = [
+            self.id.into(),
+            self.what.into(),
+            count,
+            passed,
+            tried.figure,
+            word.into(),
+            tried.remark,
+        ];
+        Judged {
+            cells: cells.into(),
+            verdict,
+        }
     }
 }

@@ -17,10 +17,15 @@ pub fn storm(_: &Ground, count: usize) -> Tried {
     let directory = scratch.path("").to_str().unwrap().to_owned();
     let mut first = Command::new(example("checkpoints"));
     first.args(["write", &directory, POINTS, "1"]);
-    processes::start_beside(first, &[], Ears::Open, Duration::from_secs(60)).end().expect(0);
+    processes::start_beside(first, &[], Ears::Open, Duration::from_secs(60))
+        .end()
+        .expect(0);
     let tried = trials(count, |index| {
         let mut command = Command::new(example("checkpoints"));
-        command.args(["storm", &directory, POINTS]).env("OMP_NUM_THREADS", "1").stdin(Stdio::null());
+        command
+            .args(["storm", &directory, POINTS])
+            .env("OMP_NUM_THREADS", "1")
+            .stdin(Stdio::null());
         // Killed processes leave MPI's files; other runs must not stumble over them.
         command.env("TMPDIR", &directory);
         let mut writer = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
@@ -49,7 +54,10 @@ impl Disk {
 
     fn mount(&self, options: &str) -> bool {
         let mut mount = Command::new("mount");
-        mount.args(["-t", "tmpfs", "-o", options, "none"]).arg(&self.0).stderr(Stdio::null());
+        mount
+            .args(["-t", "tmpfs", "-o", options, "none"])
+            .arg(&self.0)
+            .stderr(Stdio::null());
         mount.status().is_ok_and(|status| status.success())
     }
 
@@ -73,7 +81,10 @@ fn size(path: &Path) -> u64 {
 fn sizes(ground: &Ground) -> (u64, u64) {
     let run = ground.whole(2).scratch.path(RUN);
     let checkpoint = run.join(manifest(&run).checkpoint.unwrap());
-    (size(&run.join("frames/step_000000000.vtu")), size(&checkpoint) + size(&checkpoint.with_extension("json")))
+    (
+        size(&run.join("frames/step_000000000.vtu")),
+        size(&checkpoint) + size(&checkpoint.with_extension("json")),
+    )
 }
 
 /// What must be there after a checkpoint that found no room.
@@ -133,7 +144,15 @@ pub fn foreseen(ground: &Ground, _: usize) -> Tried {
                 let output = trial.start(&short, &[]).end().expect(74);
                 output.says_once(reported);
                 assert_eq!(entries(&trial.directory()), [""; 0]);
-                let mebibytes = output.said().split_once(reported).unwrap().1.split_once(' ').unwrap().0.parse::<f64>();
+                let mebibytes = output
+                    .said()
+                    .split_once(reported)
+                    .unwrap()
+                    .1
+                    .split_once(' ')
+                    .unwrap()
+                    .0
+                    .parse::<f64>();
                 let ratio = mebibytes.unwrap() * f64::from(1 << 20) / takes as f64;
                 assert!((0.95..1.5).contains(&ratio), "{ratio}");
                 return ratio;
@@ -144,7 +163,12 @@ pub fn foreseen(ground: &Ground, _: usize) -> Tried {
             }
             _ => {
                 trial.start(&short, &[]).end().expect(75);
-                assert!(!manifest(&trial.directory()).warnings.iter().any(|warning| warning.contains(reported)));
+                assert!(
+                    !manifest(&trial.directory())
+                        .warnings
+                        .iter()
+                        .any(|warning| warning.contains(reported))
+                );
             }
         }
         drop(disk);
@@ -160,10 +184,15 @@ pub fn small_files(ground: &Ground, count: usize) -> Tried {
     let tried = trials(count, |index| {
         let trial = ground.trial(2);
         let limit = (frame + (spread(index, 14) * 0.9 * (checkpoint - frame) as f64) as u64) / 1024 + 1;
-        let line = format!("ulimit -f {limit}; exec {} case.toml -q -o {RUN} --restart auto", program());
+        let line = format!(
+            "ulimit -f {limit}; exec {} case.toml -q -o {RUN} --restart auto",
+            program()
+        );
         let mut command = Command::new("bash");
         command.args(["-c", &line]).current_dir(trial.scratch.path(""));
-        let output = processes::start_beside(command, &[], Ears::Open, Duration::from_secs(60)).end().expect(74);
+        let output = processes::start_beside(command, &[], Ears::Open, Duration::from_secs(60))
+            .end()
+            .expect(74);
         has_stopped(&trial, "was not written: the file needs", &output);
         trial.becomes(&whole);
         0.0
@@ -184,9 +213,16 @@ pub fn full_frames(ground: &Ground, count: usize) -> Tried {
         let disk = Disk::new(trial.directory().join("frames"), room).expect("a disk");
         let output = trial.start(&[], &[]).end().expect(74);
         assert!(output.said().contains("frames/"), "{output:?}");
-        assert_eq!(manifest(&trial.directory()).exit_code, Some(74), "run.json reports how it ended");
+        assert_eq!(
+            manifest(&trial.directory()).exit_code,
+            Some(74),
+            "run.json reports how it ended"
+        );
         let frames = entries(&trial.directory().join("frames"));
-        assert!(frames.iter().all(|name| size(&disk.0.join(name)) > 100_000), "half a frame: {frames:?}");
+        assert!(
+            frames.iter().all(|name| size(&disk.0.join(name)) > 100_000),
+            "half a frame: {frames:?}"
+        );
         disk.grow();
         trial.becomes(&whole) as f64
     });
@@ -197,7 +233,15 @@ pub fn full_frames(ground: &Ground, count: usize) -> Tried {
 fn calls(trace: &str) -> Vec<String> {
     let reports = |line: &str| -> Option<String> {
         let name = line.split('(').next()?.split_whitespace().last()?.to_owned();
-        let what = ["fsync", "fdatasync", "rename", "renameat", "renameat2", "unlink", "unlinkat"];
+        let what = [
+            "fsync",
+            "fdatasync",
+            "rename",
+            "renameat",
+            "renameat2",
+            "unlink",
+            "unlinkat",
+        ];
         if !what.contains(&name.as_str()) || !line.contains("/checkpoint") || line.contains("= -1") {
             return None;
         }
@@ -208,7 +252,9 @@ fn calls(trace: &str) -> Vec<String> {
         } else {
             "unlink"
         };
-        let file = ["json", "h5"].into_iter().find(|ending| line.contains(&format!(".{ending}")));
+        let file = ["json", "h5"]
+            .into_iter()
+            .find(|ending| line.contains(&format!(".{ending}")));
         Some(format!("{kind} {}", file.unwrap_or("folder")))
     };
     trace.lines().filter_map(reports).collect()
@@ -217,7 +263,10 @@ fn calls(trace: &str) -> Vec<String> {
 /// A run under strace; none where that is not there or not allowed.
 fn traced(trial: &Trial, options: &[&str]) -> Option<String> {
     let trace = trial.scratch.path("trace");
-    let may = Command::new("strace").args(["-o", "/dev/null", "true"]).status().is_ok_and(|status| status.success());
+    let may = Command::new("strace")
+        .args(["-o", "/dev/null", "true"])
+        .status()
+        .is_ok_and(|status| status.success());
     if !may {
         return None;
     }
@@ -225,7 +274,9 @@ fn traced(trial: &Trial, options: &[&str]) -> Option<String> {
     command.args(["-f", "-y", "-o", trace.to_str().unwrap()]).args(options);
     command.args([program(), "case.toml", "-q", "-o", RUN, "--restart", "auto"]);
     command.current_dir(trial.scratch.path(""));
-    processes::start_beside(command, &[], Ears::Open, Duration::from_secs(300)).end().expect(0);
+    processes::start_beside(command, &[], Ears::Open, Duration::from_secs(300))
+        .end()
+        .expect(0);
     Some(std::fs::read_to_string(trace).unwrap())
 }
 
@@ -233,19 +284,34 @@ fn traced(trial: &Trial, options: &[&str]) -> Option<String> {
 pub fn order(ground: &Ground, _: usize) -> Tried {
     let trial = ground.trial(1);
     let filter = ["-e", "trace=fsync,fdatasync,rename,renameat,renameat2,unlink,unlinkat"];
-    let Some(trace) = traced(&trial, &filter) else { return Tried::not("no strace") };
+    let Some(trace) = traced(&trial, &filter) else {
+        return Tried::not("no strace");
+    };
     let calls = calls(&trace);
-    let commits: Vec<usize> =
-        calls.iter().enumerate().filter(|(_, call)| *call == "rename json").map(|(at, _)| at).collect();
+    let commits: Vec<usize> = calls
+        .iter()
+        .enumerate()
+        .filter(|(_, call)| *call == "rename json")
+        .map(|(at, _)| at)
+        .collect();
     let tried = trials(commits.len(), |index| {
         let at = commits[index];
         let before = ["sync h5", "sync json", "rename h5"];
-        assert!(at >= 3 && calls[at - 3..at] == before, "{:?}", &calls[at.saturating_sub(4)..=at]);
+        assert!(
+            at >= 3 && calls[at - 3..at] == before,
+            "{:?}",
+            &calls[at.saturating_sub(4)..=at]
+        );
         assert_eq!(calls[at + 1], "sync folder");
         // Whatever is removed later, the new one is on the disk.
-        let removed = calls[at + 2..].iter().take_while(|call| !call.starts_with("sync h5")).collect::<Vec<_>>();
+        let removed = calls[at + 2..]
+            .iter()
+            .take_while(|call| !call.starts_with("sync h5"))
+            .collect::<Vec<_>>();
         assert!(
-            removed.iter().all(|call| ["unlink json", "unlink h5", "sync folder"].contains(&call.as_str())),
+            removed
+                .iter()
+                .all(|call| ["unlink json", "unlink h5", "sync folder"].contains(&call.as_str())),
             "{removed:?}"
         );
         0.0
@@ -258,7 +324,12 @@ pub fn order(ground: &Ground, _: usize) -> Tried {
 pub fn slow(ground: &Ground, _: usize) -> Tried {
     let whole = ground.whole(1);
     let trial = ground.trial(1);
-    let slow = ["-e", "trace=fsync,fdatasync", "-e", "inject=fsync,fdatasync:delay_exit=50000"];
+    let slow = [
+        "-e",
+        "trace=fsync,fdatasync",
+        "-e",
+        "inject=fsync,fdatasync:delay_exit=50000",
+    ];
     if traced(&trial, &slow).is_none() {
         return Tried::not("no strace");
     }

@@ -85,7 +85,11 @@ pub fn slope(beyond: f64) -> String {
 
 /// The same block on a floor with friction, 0.3 mm above it at the start, so that it drops, slides and rocks.
 pub fn frictional_block() -> String {
-    let text = changed(SLIDING_BLOCK, "bottom = \"roller\"", "bottom = { friction_coefficient = 0.4 }");
+    let text = changed(
+        SLIDING_BLOCK,
+        "bottom = \"roller\"",
+        "bottom = { friction_coefficient = 0.4 }",
+    );
     let text = changed(&text, "box = { lower = [0.1, 0.0]", "box = { lower = [0.1, 0.0003]");
     let histories = ["contact", "gap", "slip-rate", "friction-power", "reaction"];
     let history = |quantity| format!("\n[[history]]\nquantity = \"{quantity}\"\nface = \"bottom\"\n");
@@ -155,10 +159,18 @@ pub fn endless() -> String {
 
 /// A cut in clay under a weight that it can hardly bear, by many thousand iterations: its third step takes long.
 pub fn long_step() -> String {
-    let clay = changed(COLUMN, "model   = \"elastic\"", "model = \"tresca\"\ncohesion = \"6 kPa\"");
+    let clay = changed(
+        COLUMN,
+        "model   = \"elastic\"",
+        "model = \"tresca\"\ncohesion = \"6 kPa\"",
+    );
     let cut = changed(&clay, "upper = [4.0, 4.0]", "upper = [2.0, 4.0]");
     let fine = changed(&cut, "\"1 m\"", "\"40 mm\"");
-    changed(&fine, "steps = 5", "steps = 10\n\n[solver]\nnonlinear = \"broyden\"\nmax_iterations = 100000")
+    changed(
+        &fine,
+        "steps = 5",
+        "steps = 10\n\n[solver]\nnonlinear = \"broyden\"\nmax_iterations = 100000",
+    )
 }
 
 /// The text with one part replaced, which must be in it once. Spaces that align equals signs do not count.

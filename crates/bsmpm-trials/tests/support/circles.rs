@@ -85,7 +85,12 @@ impl Embankment {
         } else {
             (self.fill[1], self.fill[2].to_radians().tan())
         };
-        Slice { weight, sine, cohesion, friction }
+        Slice {
+            weight,
+            sine,
+            cohesion,
+            friction,
+        }
     }
 }
 
@@ -101,7 +106,8 @@ pub fn strip_on_two_clays(height: f64, ratio: f64) -> f64 {
         let [whole, below] = [up, up + height].map(|depth| (depth / radius).min(1.0).acos());
         2.0 * radius * radius * (whole - below + ratio * below) / (WIDTH * (ahead - WIDTH / 2.0))
     };
-    let centres =
-        along(3.0 * WIDTH).filter(|&ahead| ahead > 0.6 * WIDTH).flat_map(|x| along(2.0 * WIDTH).map(move |y| (x, y)));
+    let centres = along(3.0 * WIDTH)
+        .filter(|&ahead| ahead > 0.6 * WIDTH)
+        .flat_map(|x| along(2.0 * WIDTH).map(move |y| (x, y)));
     centres.map(|(x, y)| pressure(x, y)).fold(f64::INFINITY, f64::min)
 }

@@ -17,7 +17,10 @@ pub struct Sum {
 
 impl Sum {
     pub fn constant(constant: f64) -> Self {
-        Self { constant, ..Self::default() }
+        Self {
+            constant,
+            ..Self::default()
+        }
     }
 
     pub fn is_zero(&self) -> bool {
@@ -25,7 +28,9 @@ impl Sum {
     }
 
     pub fn value(&self, variables: &[f64]) -> f64 {
-        self.terms.iter().fold(self.constant, |sum, &(variable, factor)| sum + factor * variables[variable])
+        self.terms.iter().fold(self.constant, |sum, &(variable, factor)| {
+            sum + factor * variables[variable]
+        })
     }
 }
 
@@ -33,7 +38,10 @@ impl Add<&Sum> for &Sum {
     type Output = Sum;
 
     fn add(self, other: &Sum) -> Sum {
-        Sum { terms: [&self.terms[..], &other.terms].concat(), constant: self.constant + other.constant }
+        Sum {
+            terms: [&self.terms[..], &other.terms].concat(),
+            constant: self.constant + other.constant,
+        }
     }
 }
 
@@ -51,7 +59,10 @@ impl Mul<f64> for &Sum {
     fn mul(self, factor: f64) -> Sum {
         let terms = self.terms.iter().filter(|_| factor != 0.0);
         let terms = terms.map(|&(variable, value)| (variable, factor * value)).collect();
-        Sum { terms, constant: factor * self.constant }
+        Sum {
+            terms,
+            constant: factor * self.constant,
+        }
     }
 }
 
@@ -84,7 +95,10 @@ impl Program {
     /// A new variable, and what a unit of it costs.
     pub fn variable(&mut self, cost: f64) -> Sum {
         self.costs.push(cost);
-        Sum { terms: vec![(self.costs.len() - 1, 1.0)], constant: 0.0 }
+        Sum {
+            terms: vec![(self.costs.len() - 1, 1.0)],
+            constant: 0.0,
+        }
     }
 
     /// What the variables of a sum cost besides.
@@ -114,7 +128,12 @@ impl Program {
     pub fn minimum(self) -> (f64, Vec<f64>) {
         let mut cones = vec![ZeroConeT(self.zero.len()), NonnegativeConeT(self.positive.len())];
         cones.extend(self.cones.iter().map(|sums| SecondOrderConeT(sums.len())));
-        let rows = || self.zero.iter().chain(&self.positive).chain(self.cones.iter().flatten());
+        let rows = || {
+            self.zero
+                .iter()
+                .chain(&self.positive)
+                .chain(self.cones.iter().flatten())
+        };
         let right: Vec<f64> = rows().map(|sum| sum.constant).collect();
         let (mut places, mut values) = ([Vec::new(), Vec::new()], Vec::new());
         for (row, sum) in rows().enumerate() {
@@ -140,6 +159,10 @@ fn settings() -> DefaultSettings<f64> {
     let mut settings = DefaultSettingsBuilder::default();
     // tractions that agree around a node say a thing twice: with the default shift, 1e-8, such programs are not solved
     settings.static_regularization_constant(1e-7);
-    settings.tol_feas(TOLERANCE).tol_gap_abs(TOLERANCE).tol_gap_rel(TOLERANCE).verbose(false);
+    settings
+        .tol_feas(TOLERANCE)
+        .tol_gap_abs(TOLERANCE)
+        .tol_gap_rel(TOLERANCE)
+        .verbose(false);
     settings.build().expect("settings that are sound")
 }

@@ -68,10 +68,22 @@ impl Request {
     /// None without `--short` or `--full`, as `cargo test` calls it.
     pub fn read() -> Option<Self> {
         let arguments: Vec<String> = std::env::args().skip(1).collect();
-        let after = |name: &str| arguments.iter().skip_while(|argument| *argument != name).nth(1).cloned();
+        let after = |name: &str| {
+            arguments
+                .iter()
+                .skip_while(|argument| *argument != name)
+                .nth(1)
+                .cloned()
+        };
         let depths = [("--short", Depth::Short), ("--full", Depth::Full)];
-        let (_, depth) = depths.into_iter().find(|(name, _)| arguments.iter().any(|argument| argument == name))?;
-        Some(Self { depth, part: after("--only").unwrap_or_default(), output: after("--output") })
+        let (_, depth) = depths
+            .into_iter()
+            .find(|(name, _)| arguments.iter().any(|argument| argument == name))?;
+        Some(Self {
+            depth,
+            part: after("--only").unwrap_or_default(),
+            output: after("--output"),
+        })
     }
 
     /// Whether a row is wanted.
@@ -88,7 +100,10 @@ impl Request {
         println!("{}", line(columns, columns.iter().map(|column| column.heading)));
         for row in rows {
             judged.push(judge(row));
-            println!("{}", line(columns, judged[judged.len() - 1].cells.iter().map(String::as_str)));
+            println!(
+                "{}",
+                line(columns, judged[judged.len() - 1].cells.iter().map(String::as_str))
+            );
             if let Some(path) = &self.output {
                 std::fs::write(path, markdown(columns, &judged)).expect("the table can be written");
             }
@@ -118,7 +133,8 @@ pub fn look_through(script: &str, numbers: impl Iterator<Item = String>, ids: &[
 pub fn caught<T>(measure: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(measure)).map_err(|panic| {
         let text = panic.downcast_ref::<String>().cloned();
-        text.or_else(|| panic.downcast_ref::<&str>().map(|&text| text.into())).unwrap_or_default()
+        text.or_else(|| panic.downcast_ref::<&str>().map(|&text| text.into()))
+            .unwrap_or_default()
     })
 }
 
@@ -137,21 +153,33 @@ pub struct Column {
 
 /// A column of words.
 pub const fn words(heading: &'static str, width: usize) -> Column {
-    Column { heading, width, is_right: false }
+    Column {
+        heading,
+        width,
+        is_right: false,
+    }
 }
 
 /// A column of numbers.
 pub const fn numbers(heading: &'static str, width: usize) -> Column {
-    Column { heading, width, is_right: true }
+    Column {
+        heading,
+        width,
+        is_right: true,
+    }
 }
 
 fn line<'a>(columns: &[Column], cells: impl Iterator<Item = &'a str>) -> String {
-    let aligned =
-        columns.iter().zip(cells).map(
-            |(&Column { width, is_right, .. }, cell)| {
-                if is_right { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
-            },
-        );
+    let aligned = columns
+        .iter()
+        .zip(cells)
+        .map(|(&Column { width, is_right, .. }, cell)| {
+            if is_right {
+                format!("{cell:>width$}")
+            } else {
+                format!("{cell:<width$}")
+            }
+        });
     aligned.collect::<Vec<_>>().join("  ").trim_end().to_owned()
 }
 
@@ -173,5 +201,9 @@ pub fn number(value: f64) -> String {
     }
     let digits = (3 - value.abs().max(1.0).log10().floor() as i32).max(0) as usize;
     let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }

@@ -33,23 +33,40 @@ impl Footing {
     /// of it far away.
     pub fn mesh(&self, finest: f64, growth: f64) -> Mesh {
         let [columns, rows] = self.lines(|x| finest + growth * x.abs() * (1.0 + x.abs() / 2.0));
-        let mut mesh = Mesh { round: self.round, nodes: Vec::new(), triangles: Vec::new(), faces: BTreeMap::new() };
+        let mut mesh = Mesh {
+            round: self.round,
+            nodes: Vec::new(),
+            triangles: Vec::new(),
+            faces: BTreeMap::new(),
+        };
         let mut placed = BTreeMap::new();
         for [i, j] in (1..columns.len()).flat_map(|i| (1..rows.len()).map(move |j| [i, j])) {
             let (left, right, top) = (columns[i - 1], columns[i], rows[j]);
             if right <= 1.0 && top > 0.0 {
                 continue;
             }
-            let around = [[i - 1, j - 1], [i, j - 1], [i, j], [i - 1, j]]
-                .map(|at @ [i, j]| *placed.entry(at).or_insert_with(|| mesh.add(self.place([columns[i], rows[j]]))));
+            let around = [[i - 1, j - 1], [i, j - 1], [i, j], [i - 1, j]].map(|at @ [i, j]| {
+                *placed
+                    .entry(at)
+                    .or_insert_with(|| mesh.add(self.place([columns[i], rows[j]])))
+            });
             mesh.add_cell(around, if top > self.layer() { 1.0 } else { self.below });
-            let body = |meets: bool| if meets { Face::Body { rough: self.rough } } else { Face::Free };
+            let body = |meets: bool| {
+                if meets {
+                    Face::Body { rough: self.rough }
+                } else {
+                    Face::Free
+                }
+            };
             let [above, beside] = [right <= 1.0 && top == 0.0, left == 1.0 && top > 0.0];
             let on = [
                 (j == 1, Face::Held),
                 (i + 1 == columns.len(), Face::Sliding),
                 (above || j + 1 == rows.len(), body(above)),
-                (beside || i == 1, if beside { body(top <= self.side) } else { Face::Sliding }),
+                (
+                    beside || i == 1,
+                    if beside { body(top <= self.side) } else { Face::Sliding },
+                ),
             ];
             for (k, (_, face)) in on.into_iter().enumerate().filter(|(_, (meets, _))| *meets) {
                 let [a, b] = [around[k], around[(k + 1) % 4]];
@@ -63,7 +80,14 @@ impl Footing {
     fn lines(&self, size: impl Fn(f64) -> f64) -> [Vec<f64>; 2] {
         let mut columns: Vec<f64> = self.outline.iter().map(|point| point[0]).collect();
         columns.push(if self.round { GROUND } else { 2.0 * GROUND });
-        let mut rows = vec![self.depth - GROUND, self.flat(), self.layer(), 0.0, self.side, self.depth];
+        let mut rows = vec![
+            self.depth - GROUND,
+            self.flat(),
+            self.layer(),
+            0.0,
+            self.side,
+            self.depth,
+        ];
         rows.retain(|&z| z <= self.depth);
         rows.sort_by(f64::total_cmp);
         rows.dedup();
@@ -77,12 +101,18 @@ impl Footing {
 
     /// m  below this, lines of cells do not follow the outline
     fn flat(&self) -> f64 {
-        if self.layer() < self.outline[0][1] { self.layer() } else { -1.0 }
+        if self.layer() < self.outline[0][1] {
+            self.layer()
+        } else {
+            -1.0
+        }
     }
 
     fn place(&self, [r, z]: [f64; 2]) -> [f64; 2] {
         let span = self.outline.windows(2).find(|ends| r <= ends[1][0]);
-        let height = span.map_or(0.0, |e| e[0][1] + (r - e[0][0]) / (e[1][0] - e[0][0]) * (e[1][1] - e[0][1]));
+        let height = span.map_or(0.0, |e| {
+            e[0][1] + (r - e[0][0]) / (e[1][0] - e[0][0]) * (e[1][1] - e[0][1])
+        });
         let share = if z > 0.0 { 0.0 } else { (1.0 - z / self.flat()).max(0.0) };
         [r, z + height * share]
     }
@@ -98,7 +128,8 @@ impl Mesh {
     fn add_cell(&mut self, corners: [usize; 4], strength: f64) {
         let middle = [0, 1].map(|axis| corners.iter().map(|&node| self.nodes[node][axis]).sum::<f64>() / 4.0);
         let middle = self.add(middle);
-        self.triangles.extend((0..4).map(|k| ([corners[k], corners[(k + 1) % 4], middle], strength)));
+        self.triangles
+            .extend((0..4).map(|k| ([corners[k], corners[(k + 1) % 4], middle], strength)));
     }
 }
 

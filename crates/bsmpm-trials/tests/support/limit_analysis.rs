@@ -39,18 +39,26 @@ impl Mesh {
     /// Pa  No more than the mean pressure on a body that is 2 m wide.
     pub fn lower_bound(&self) -> f64 {
         let mut program = Program::default();
-        let stress: Vec<_> = (0..self.triangles.len()).map(|triangle| self.stress(&mut program, triangle)).collect();
+        let stress: Vec<_> = (0..self.triangles.len())
+            .map(|triangle| self.stress(&mut program, triangle))
+            .collect();
         for (nodes, triangles) in self.edges() {
             let (length, normal) = self.normal(nodes, triangles[0]);
             for node in nodes {
                 let traction = |triangle: usize| {
                     let [r, z, shear] = &stress[triangle][self.corner(triangle, node)];
-                    [&(r * normal[0]) + &(shear * normal[1]), &(shear * normal[0]) + &(z * normal[1])]
+                    [
+                        &(r * normal[0]) + &(shear * normal[1]),
+                        &(shear * normal[0]) + &(z * normal[1]),
+                    ]
                 };
                 let [r, z] = traction(triangles[0]);
                 let along = &(&z * normal[0]) - &(&r * normal[1]);
                 match self.faces.get(&nodes) {
-                    None => traction(triangles[1]).iter().zip([r, z]).for_each(|(a, b)| program.zero(&b - a)),
+                    None => traction(triangles[1])
+                        .iter()
+                        .zip([r, z])
+                        .for_each(|(a, b)| program.zero(&b - a)),
                     Some(Face::Free) => [r, z].into_iter().for_each(|part| program.zero(part)),
                     Some(Face::Sliding) => program.zero(along),
                     Some(Face::Held) => (),
@@ -71,8 +79,13 @@ impl Mesh {
     pub fn upper_bound(&self) -> f64 {
         let mut program = Program::default();
         let edges = self.edges();
-        let flow = Flow { mesh: self, stream: self.stream(&mut program, &edges) };
-        let mut work: Vec<Work> = (0..self.triangles.len()).flat_map(|triangle| flow.shear(triangle)).collect();
+        let flow = Flow {
+            mesh: self,
+            stream: self.stream(&mut program, &edges),
+        };
+        let mut work: Vec<Work> = (0..self.triangles.len())
+            .flat_map(|triangle| flow.shear(triangle))
+            .collect();
         work.extend(edges.iter().flat_map(|(&nodes, triangles)| flow.slip(nodes, triangles)));
         for part in &work {
             part.state(&mut program);
@@ -95,14 +108,21 @@ impl Mesh {
         let mut edges = Edges::new();
         for (triangle, (corners, _)) in self.triangles.iter().enumerate() {
             for k in 0..3 {
-                edges.entry(pair(corners[k], corners[(k + 1) % 3])).or_default().push(triangle);
+                edges
+                    .entry(pair(corners[k], corners[(k + 1) % 3]))
+                    .or_default()
+                    .push(triangle);
             }
         }
         edges
     }
 
     fn corner(&self, triangle: usize, node: usize) -> usize {
-        self.triangles[triangle].0.iter().position(|&other| other == node).expect("a node of the triangle")
+        self.triangles[triangle]
+            .0
+            .iter()
+            .position(|&other| other == node)
+            .expect("a node of the triangle")
     }
 
     /// Area, and gradients of the area coordinates.
@@ -130,10 +150,18 @@ impl Mesh {
         let by = self.shape(triangle).1;
         let weights = corners.map(|node| self.weight(node));
         let stress = weights.map(|weight| {
-            [(); 3].map(|()| if weight > 0.0 { &program.variable(0.0) * weight } else { Sum::default() })
+            [(); 3].map(|()| {
+                if weight > 0.0 {
+                    &program.variable(0.0) * weight
+                } else {
+                    Sum::default()
+                }
+            })
         });
         let divergence = |of: usize, and: usize| -> Sum {
-            (0..3).map(|k| &(&stress[k][of] * by[k][0]) + &(&stress[k][and] * by[k][1])).sum()
+            (0..3)
+                .map(|k| &(&stress[k][of] * by[k][0]) + &(&stress[k][and] * by[k][1]))
+                .sum()
         };
         let hoop = divergence(0, 2);
         program.zero(divergence(2, 1));
@@ -150,7 +178,9 @@ impl Mesh {
             let left = &most - &radius;
             let off = &(&hoop * weight) - &(&(r + z) * 0.5);
             program.cone(vec![radius, half, shear.clone()]);
-            [&off, &(&off * -1.0)].into_iter().for_each(|off| program.positive(&(&left + &most) + off));
+            [&off, &(&off * -1.0)]
+                .into_iter()
+                .for_each(|off| program.positive(&(&left + &most) + off));
             program.positive(left);
         }
         stress
@@ -163,16 +193,30 @@ impl Mesh {
             for (p, q) in [(a, a), (b, b), (a, b)] {
                 let r = (self.nodes[p][0] + self.nodes[q][0]) / 2.0;
                 let moves = matches!(face, Face::Body { .. });
-                stream.insert([p, q], if moves { Sum::constant(self.falling(r)) } else { Sum::default() });
+                stream.insert(
+                    [p, q],
+                    if moves {
+                        Sum::constant(self.falling(r))
+                    } else {
+                        Sum::default()
+                    },
+                );
             }
         }
         for node in 0..self.nodes.len() {
             stream.entry([node; 2]).or_insert_with(|| program.variable(0.0));
         }
-        for &[a, b] in edges.keys().filter(|nodes| !self.faces.get(*nodes).is_some_and(|face| *face != Face::Free)) {
+        for &[a, b] in edges
+            .keys()
+            .filter(|nodes| !self.faces.get(*nodes).is_some_and(|face| *face != Face::Free))
+        {
             let outer = if self.weight(a) == 0.0 { b } else { a };
             let from_axis = self.weight(a) * self.weight(b) == 0.0;
-            let middle = if from_axis { &stream[&[outer; 2]] * 0.25 } else { program.variable(0.0) };
+            let middle = if from_axis {
+                &stream[&[outer; 2]] * 0.25
+            } else {
+                program.variable(0.0)
+            };
             stream.insert([a, b], middle);
         }
         stream
@@ -199,7 +243,11 @@ impl Flow<'_> {
             let part = |(corner, by): (usize, [f64; 2])| {
                 let factor = if corner == node { 3.0 } else { -1.0 };
                 let end = &self.stream[&[corner; 2]] * (factor * by[axis]);
-                if corner == node { end } else { &end + &(&self.stream[&pair(corner, node)] * (4.0 * by[axis])) }
+                if corner == node {
+                    end
+                } else {
+                    &end + &(&self.stream[&pair(corner, node)] * (4.0 * by[axis]))
+                }
             };
             corners.into_iter().zip(by).map(part).sum()
         })
@@ -213,8 +261,10 @@ impl Flow<'_> {
         let second = |of: usize, along: usize| -> Sum { (0..3).map(|k| &gradients[k][of] * by[k][along]).sum() };
         let (mixed, bent) = (second(0, 1), &second(1, 1) - &second(0, 0));
         let weights = corners.map(|node| self.mesh.weight(node));
-        let (count, turned) =
-            weights.iter().filter(|&&r| r > 0.0).fold((0.0, 0.0), |(n, sum), r| (n + 1.0, sum + 1.0 / r));
+        let (count, turned) = weights
+            .iter()
+            .filter(|&&r| r > 0.0)
+            .fold((0.0, 0.0), |(n, sum), r| (n + 1.0, sum + 1.0 / r));
         let at = |([along_r, along_z], r): (&[Sum; 2], f64)| {
             if !self.mesh.round {
                 return Work {
@@ -224,8 +274,15 @@ impl Flow<'_> {
             }
             // 1/r is convex: no more than what lies linearly between the corners
             let share = area / (count * (count + 1.0)) * (turned + 1.0 / r);
-            let rates = [&(&mixed * r) - &(along_z * 0.5), &(&(&bent * r) + along_r) * 0.5, along_z.clone()];
-            Work { factor: 2.0 * strength * share, rates }
+            let rates = [
+                &(&mixed * r) - &(along_z * 0.5),
+                &(&(&bent * r) + along_r) * 0.5,
+                along_z.clone(),
+            ];
+            Work {
+                factor: 2.0 * strength * share,
+                rates,
+            }
         };
         gradients.iter().zip(weights).filter(|at| at.1 > 0.0).map(at).collect()
     }
@@ -234,7 +291,10 @@ impl Flow<'_> {
     fn slip(&self, nodes: [usize; 2], triangles: &[usize]) -> Vec<Work> {
         let mesh = self.mesh;
         let (length, normal) = mesh.normal(nodes, triangles[0]);
-        let strength = triangles.iter().map(|&triangle| mesh.triangles[triangle].1).fold(f64::INFINITY, f64::min);
+        let strength = triangles
+            .iter()
+            .map(|&triangle| mesh.triangles[triangle].1)
+            .fold(f64::INFINITY, f64::min);
         let at = |node: usize| {
             let slope = |triangle: usize| {
                 let [r, z] = self.gradient(triangle, node);
@@ -247,9 +307,16 @@ impl Flow<'_> {
                 Some(_) => return None,
             };
             let rates = [Sum::default(), &slope(triangles[0]) - &other, Sum::default()];
-            Some(Work { factor: strength * length / 2.0, rates })
+            Some(Work {
+                factor: strength * length / 2.0,
+                rates,
+            })
         };
-        nodes.into_iter().filter(|&node| mesh.weight(node) > 0.0).filter_map(at).collect()
+        nodes
+            .into_iter()
+            .filter(|&node| mesh.weight(node) > 0.0)
+            .filter_map(at)
+            .collect()
     }
 }
 

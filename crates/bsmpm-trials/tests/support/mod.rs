@@ -81,7 +81,8 @@ impl Scratch {
         self.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
         let on = ["case.toml", "-q", "-o", &part, "--restart", "auto"];
         for stop in stops {
-            self.mpirun(ranks, &[&on[..], &["--max-steps", stop]].concat()).expect(75);
+            self.mpirun(ranks, &[&on[..], &["--max-steps", stop]].concat())
+                .expect(75);
         }
         self.mpirun(ranks, &on).expect(0);
         let text = |name: &str| std::fs::read_to_string(self.path(name).join("history.csv")).unwrap();
@@ -111,7 +112,9 @@ impl Scratch {
 /// Names of everything that is directly in a directory, sorted.
 pub fn entries(directory: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(directory).unwrap();
-    let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
     names.sort();
     names
 }
@@ -183,7 +186,11 @@ impl Job {
 
     fn command(self) -> Command {
         let shell = self.limit.map(|limit| format!("ulimit {limit} && exec \"$0\" \"$@\""));
-        let words = shell.iter().flat_map(|line| ["sh", "-c", line]).chain([program()]).collect::<Vec<_>>();
+        let words = shell
+            .iter()
+            .flat_map(|line| ["sh", "-c", line])
+            .chain([program()])
+            .collect::<Vec<_>>();
         let mut command = match self.ranks {
             None => Command::new(words[0]),
             Some(ranks) => {
@@ -192,7 +199,10 @@ impl Job {
                 launcher
             }
         };
-        command.args(&words[1..]).args(self.arguments).current_dir(self.directory);
+        command
+            .args(&words[1..])
+            .args(self.arguments)
+            .current_dir(self.directory);
         command
     }
 }

@@ -78,7 +78,13 @@ pub struct Running {
 /// Runs a command to its end. Panics if that does not come within `patience`, or if a process outlives the run. What
 /// is said goes to `/dev/full` if nobody is to hear it.
 pub fn run(command: Command, variables: &[(String, String)], heard: bool, patience: Duration) -> Output {
-    start(command, variables, if heard { Ears::Open } else { Ears::Full }, patience).end()
+    start(
+        command,
+        variables,
+        if heard { Ears::Open } else { Ears::Full },
+        patience,
+    )
+    .end()
 }
 
 /// Waits until all runs that were started in turn have ended, and holds back the next ones: for what starts runs by
@@ -101,7 +107,9 @@ pub fn start_beside(mut command: Command, variables: &[(String, String)], ears: 
     let (stdout, stderr) = (tempfile::tempfile().unwrap(), tempfile::tempfile().unwrap());
     command.process_group(0);
     command.env("OMP_NUM_THREADS", "1").env(MARK, &mark);
-    command.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+    command
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
     // Shared memory will do; looking for faster networks takes most of the time of a start.
     command.env("OMPI_MCA_pml", "ob1");
     // Nor does mpirun wait a second for ranks to go after one has left with an error: they have nothing left to do
@@ -116,11 +124,24 @@ pub fn start_beside(mut command: Command, variables: &[(String, String)], ears: 
         Ears::Full => File::options().write(true).open("/dev/full").unwrap().into(),
         Ears::Gone => std::io::pipe().unwrap().1.into(),
     };
-    command.stdin(Stdio::null()).stdout(stream(&stdout)).stderr(stream(&stderr));
+    command
+        .stdin(Stdio::null())
+        .stdout(stream(&stdout))
+        .stderr(stream(&stderr));
     let started = Instant::now();
     let line = format!("{command:?}");
     let child = command.spawn().unwrap_or_else(|error| panic!("{line}: {error}"));
-    Running { line, child, mark, stdout, stderr, started, patience, ended: false, _turn: None }
+    Running {
+        line,
+        child,
+        mark,
+        stdout,
+        stderr,
+        started,
+        patience,
+        ended: false,
+        _turn: None,
+    }
 }
 
 impl Running {
@@ -130,8 +151,17 @@ impl Running {
         let started = Instant::now();
         while !holds() {
             let ended = self.child.try_wait().unwrap();
-            assert!(ended.is_none(), "ended before {what}: {}: {}", self.line, text(&mut self.stderr));
-            assert!(started.elapsed() < self.patience, "waits in vain for {what}: {}", self.line);
+            assert!(
+                ended.is_none(),
+                "ended before {what}: {}: {}",
+                self.line,
+                text(&mut self.stderr)
+            );
+            assert!(
+                started.elapsed() < self.patience,
+                "waits in vain for {what}: {}",
+                self.line
+            );
             std::thread::sleep(Duration::from_millis(5));
         }
     }
@@ -155,7 +185,9 @@ impl Running {
 
     /// Kills all of its processes at once.
     pub fn kill(&self) {
-        marked(&mark_of(&self.mark)).iter().for_each(|process| signal("KILL", process));
+        marked(&mark_of(&self.mark))
+            .iter()
+            .for_each(|process| signal("KILL", process));
     }
 
     /// Waits for the end. Panics if that does not come in time, or if a process outlives the run.
@@ -171,7 +203,11 @@ impl Running {
             elapsed,
         };
         assert!(status.is_some(), "hangs: {}: {output:#?}", self.line);
-        assert!(left.is_empty(), "processes {left:?} outlive their run: {}: {output:#?}", self.line);
+        assert!(
+            left.is_empty(),
+            "processes {left:?} outlive their run: {}: {output:#?}",
+            self.line
+        );
         output
     }
 
@@ -243,8 +279,9 @@ fn rank_of(mark: &str, rank: usize) -> Option<String> {
     let processes = marked(&mark_of(mark));
     let is_rank = |process: &&String| {
         let environment = std::fs::read(format!("/proc/{process}/environ")).unwrap_or_default();
-        let reported =
-            environment.split(|&byte| byte == 0).find_map(|entry| entry.strip_prefix(b"OMPI_COMM_WORLD_RANK="));
+        let reported = environment
+            .split(|&byte| byte == 0)
+            .find_map(|entry| entry.strip_prefix(b"OMPI_COMM_WORLD_RANK="));
         let name = std::fs::read_to_string(format!("/proc/{process}/comm")).unwrap_or_default();
         name.trim() == "bsmpm-par" && reported.unwrap_or(b"0") == rank.to_string().as_bytes()
     };
@@ -253,7 +290,9 @@ fn rank_of(mark: &str, rank: usize) -> Option<String> {
 
 /// Numbers of the living processes whose environment holds `mark`; a zombie has none.
 fn marked(mark: &[u8]) -> Vec<String> {
-    let processes = std::fs::read_dir("/proc").unwrap().filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let processes = std::fs::read_dir("/proc")
+        .unwrap()
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok());
     let numbers = processes.filter(|name| name.bytes().all(|byte| byte.is_ascii_digit()));
     let holds = |number: &String| {
         let environment = std::fs::read(format!("/proc/{number}/environ")).unwrap_or_default();
@@ -264,6 +303,8 @@ fn marked(mark: &[u8]) -> Vec<String> {
 
 fn text(file: &mut File) -> String {
     let mut bytes = Vec::new();
-    file.seek(SeekFrom::Start(0)).and_then(|_| file.read_to_end(&mut bytes)).unwrap();
+    file.seek(SeekFrom::Start(0))
+        .and_then(|_| file.read_to_end(&mut bytes))
+        .unwrap();
     String::from_utf8_lossy(&bytes).into_owned()
 }

@@ -49,7 +49,10 @@ impl Ground {
 
     fn edges(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2], Edge)> {
         let next = |k: usize| self.corners[(k + 1) % self.corners.len()].0;
-        self.corners.iter().enumerate().map(move |(k, &(corner, edge))| (corner, next(k), edge))
+        self.corners
+            .iter()
+            .enumerate()
+            .map(move |(k, &(corner, edge))| (corner, next(k), edge))
     }
 
     fn nodes(&self, spacing: f64) -> Vec<[f64; 2]> {
@@ -60,7 +63,10 @@ impl Ground {
         }
         let range = |axis: usize| {
             let all = || self.corners.iter().map(move |corner| corner.0[axis] / spacing);
-            let [low, high] = [all().fold(f64::MAX, f64::min).ceil(), all().fold(f64::MIN, f64::max).floor()];
+            let [low, high] = [
+                all().fold(f64::MAX, f64::min).ceil(),
+                all().fold(f64::MIN, f64::max).floor(),
+            ];
             (low as i64..=high as i64).map(move |k| k as f64 * spacing)
         };
         for point in range(0).flat_map(|x| range(1).map(move |y| [x, y])) {
@@ -84,22 +90,44 @@ impl Ground {
         let near = |(a, b): ([f64; 2], [f64; 2])| distance(a, b) < self.longest + CLOSE;
         let pairs = (0..nodes.len()).flat_map(|i| (i + 1..nodes.len()).map(move |j| (i, j)));
         let pairs = pairs.filter(|&(i, j)| near((nodes[i], nodes[j])));
-        let others = |i, j| nodes.iter().enumerate().filter(move |&(k, _)| k != i && k != j).map(|(_, node)| *node);
+        let others = |i, j| {
+            nodes
+                .iter()
+                .enumerate()
+                .filter(move |&(k, _)| k != i && k != j)
+                .map(|(_, node)| *node)
+        };
         let shortest = pairs.filter(|&(i, j)| others(i, j).all(|node| off(nodes[i], nodes[j], node) > CLOSE));
-        shortest.filter_map(|(i, j)| self.slip([i, j], [nodes[i], nodes[j]])).collect()
+        shortest
+            .filter_map(|(i, j)| self.slip([i, j], [nodes[i], nodes[j]]))
+            .collect()
     }
 
     /// Along an edge with the ground on its left, or within the ground.
     fn slip(&self, nodes: [usize; 2], [a, b]: [[f64; 2]; 2]) -> Option<Slip> {
         let lies_on = |from: [f64; 2], to: [f64; 2]| [a, b].iter().all(|&node| off(from, to, node) < CLOSE);
         let (cost, weight) = (self.cost(a, b), self.unit_weight * self.above(a, b));
-        let inner = Slip { nodes, along: minus(b, a), edge: None, cost, weight };
+        let inner = Slip {
+            nodes,
+            along: minus(b, a),
+            edge: None,
+            cost,
+            weight,
+        };
         let Some((from, to, edge)) = self.edges().find(|&(from, to, _)| lies_on(from, to)) else {
             return (self.holds(between(a, b, 0.5)) && self.clears(a, b)).then_some(inner);
         };
-        let outer = Slip { edge: Some(edge), cost: if edge == Edge::Held { cost } else { 0.0 }, ..inner };
+        let outer = Slip {
+            edge: Some(edge),
+            cost: if edge == Edge::Held { cost } else { 0.0 },
+            ..inner
+        };
         let turned = dot(minus(b, a), minus(to, from)) < 0.0;
-        let back = |slip: Slip| Slip { nodes: [nodes[1], nodes[0]], along: minus(a, b), ..slip };
+        let back = |slip: Slip| Slip {
+            nodes: [nodes[1], nodes[0]],
+            along: minus(a, b),
+            ..slip
+        };
         Some(if turned { back(outer) } else { outer })
     }
 
@@ -107,7 +135,9 @@ impl Ground {
     fn cost(&self, a: [f64; 2], b: [f64; 2]) -> f64 {
         let [low, high] = [a[1].min(b[1]), a[1].max(b[1])];
         let tops = std::iter::once(f64::INFINITY).chain(self.layers.iter().map(|layer| layer.0));
-        let within = tops.zip(&self.layers).filter(|&(top, layer)| low < top + CLOSE && high > layer.0 - CLOSE);
+        let within = tops
+            .zip(&self.layers)
+            .filter(|&(top, layer)| low < top + CLOSE && high > layer.0 - CLOSE);
         let shares = within.map(|(top, layer)| ((high.min(top) - low.max(layer.0)) / (high - low), layer.1));
         let strength = match high - low < CLOSE {
             true => shares.map(|(_, cohesion)| cohesion).fold(f64::INFINITY, f64::min),
@@ -170,7 +200,11 @@ impl Jumps {
 /// of an edge is the ground's motion.
 fn mechanism(nodes: usize, slips: &[Slip], loaded: bool) -> f64 {
     let none = || [Sum::default(), Sum::default()];
-    let mut jumps = Jumps { program: Program::default(), around: vec![none(); nodes], work: Sum::default() };
+    let mut jumps = Jumps {
+        program: Program::default(),
+        around: vec![none(); nodes],
+        work: Sum::default(),
+    };
     for slip in slips {
         let length = slip.along[0].hypot(slip.along[1]);
         let along = slip.along.map(|x| x / length);
@@ -178,7 +212,9 @@ fn mechanism(nodes: usize, slips: &[Slip], loaded: bool) -> f64 {
         let forwards = jumps.add(slip, along, slip.cost);
         if slip.cost > 0.0 {
             let backwards = jumps.add(slip, back, slip.cost);
-            [forwards, backwards].into_iter().for_each(|size| jumps.program.positive(size));
+            [forwards, backwards]
+                .into_iter()
+                .for_each(|size| jumps.program.positive(size));
         }
         if let Some(Edge::Free | Edge::Pushed(_)) = slip.edge {
             let off = jumps.add(slip, across, 0.0);
@@ -187,7 +223,11 @@ fn mechanism(nodes: usize, slips: &[Slip], loaded: bool) -> f64 {
             }
         }
     }
-    let Jumps { mut program, around, work } = jumps;
+    let Jumps {
+        mut program,
+        around,
+        work,
+    } = jumps;
     around.into_iter().flatten().for_each(|sum| program.zero(sum));
     if loaded {
         program.zero(&work - &Sum::constant(1.0));

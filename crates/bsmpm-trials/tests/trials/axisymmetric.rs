@@ -85,13 +85,24 @@ fn a_body_of_revolution_is_the_same_on_1_2_and_3_ranks_and_over_restarts() {
     let of = |name: &str, t: f64| at(&table, name, t);
     assert!((of("mass", 0.06) / (1800.0 * PI) - 1.0).abs() < 1e-12);
     // k0 leaves 0.8 % in so few cells.
-    assert!((of("reaction-y", 0.0) / (1800.0 * PI * 9.81) - 1.0).abs() < 0.01, "{}", of("reaction-y", 0.0));
+    assert!(
+        (of("reaction-y", 0.0) / (1800.0 * PI * 9.81) - 1.0).abs() < 0.01,
+        "{}",
+        of("reaction-y", 0.0)
+    );
     assert!(of("rigid-force-y", 0.06) > 100.0 && of("rigid-work", 0.06) > 0.0);
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| of(name, 0.06).abs());
     assert!(closure < 1e-5 * external, "{closure:e} of {external:e}");
     let reported = manifest(&scratch.path("whole1"));
-    assert_eq!((reported.case.geometry.as_str(), reported.frame_units["volume"].as_str()), ("axisymmetric", "m3/rad"));
-    let whole = reported.choices.iter().find(|choice| choice.key == "geometry").expect("what forces are of");
+    assert_eq!(
+        (reported.case.geometry.as_str(), reported.frame_units["volume"].as_str()),
+        ("axisymmetric", "m3/rad")
+    );
+    let whole = reported
+        .choices
+        .iter()
+        .find(|choice| choice.key == "geometry")
+        .expect("what forces are of");
     assert!(whole.reason.contains("of the whole circle"));
 }
 
@@ -99,7 +110,11 @@ fn a_body_of_revolution_is_the_same_on_1_2_and_3_ranks_and_over_restarts() {
 /// of the base.
 #[test]
 fn forces_and_works_of_a_disc_are_of_the_whole_of_it() {
-    let pressed = changed(CASE, "type = \"dynamic\"\nend = 0.06\ndt = 0.002", "type = \"quasi-static\"\nsteps = 4");
+    let pressed = changed(
+        CASE,
+        "type = \"dynamic\"\nend = 0.06\ndt = 0.002",
+        "type = \"quasi-static\"\nsteps = 4",
+    );
     let pressed = changed(&pressed, "model = \"drucker-prager\"", "model = \"elastic\"");
     let pressed = changed(&pressed, "friction_angle = 30\ncohesion = \"1 kPa\"\n", "");
     let (before, _) = pressed.split_once("[[rigid]]").unwrap();
@@ -111,14 +126,25 @@ fn forces_and_works_of_a_disc_are_of_the_whole_of_it() {
         ["footing-force", "footing-pressure", "energy"].map(|name| format!("[[history]]\nquantity = \"{name}\"\n"));
     let base = "[[history]]\nquantity = \"reaction\"\nface = \"bottom\"\n";
     let work = "[[history]]\nquantity = \"work\"\nof = \"footing\"\n";
-    let scratch = Scratch::with_case(&format!("{before}{footing}[boundary]{after}{}{base}{work}", wanted.concat()));
+    let scratch = Scratch::with_case(&format!(
+        "{before}{footing}[boundary]{after}{}{base}{work}",
+        wanted.concat()
+    ));
     scratch.mpirun(2, &["case.toml", "-q", "-o", "disc"]).expect(0);
     let table = history(&scratch.path("disc"));
     let of = |name: &str| at(&table, name, 1.0);
     let (force, pressure) = (of("footing-force"), of("footing-pressure"));
-    assert!(force > 100.0 && (pressure * PI * 0.25 / force - 1.0).abs() < 1e-12, "{force} {pressure}");
+    assert!(
+        force > 100.0 && (pressure * PI * 0.25 / force - 1.0).abs() < 1e-12,
+        "{force} {pressure}"
+    );
     assert!((of("reaction-y") / force - 1.0).abs() < 1e-6);
-    assert!((of("work") / (0.5 * force * 1e-3) - 1.0).abs() < 0.02, "{} {}", of("work"), 0.5 * force * 1e-3);
+    assert!(
+        (of("work") / (0.5 * force * 1e-3) - 1.0).abs() < 0.02,
+        "{} {}",
+        of("work"),
+        0.5 * force * 1e-3
+    );
     assert!((of("energy-elastic") / of("work") - 1.0).abs() < 0.02);
 }
 
@@ -128,7 +154,11 @@ fn forces_and_works_of_a_disc_are_of_the_whole_of_it() {
 fn a_free_piston_falls_on_a_round_column_as_on_a_plane_one() {
     let elastic = changed(CASE, "model = \"drucker-prager\"", "model = \"elastic\"");
     let elastic = changed(&elastic, "friction_angle = 30\ncohesion = \"1 kPa\"\n", "");
-    let elastic = changed(&changed(&elastic, "upper = [1.5, 1.5]", "upper = [1.0, 1.5]"), "\"free\"", "\"roller\"");
+    let elastic = changed(
+        &changed(&elastic, "upper = [1.5, 1.5]", "upper = [1.0, 1.5]"),
+        "\"free\"",
+        "\"roller\"",
+    );
     // The exponents of F-bar differ, 1/3 here, 1/2 in a plane, and points do not integrate hoop stress exactly.
     let elastic = changed(&elastic, "\"consistent-f-bar\"", "\"none\"");
     let elastic = changed(&changed(&elastic, "poisson = 0.3", "poisson = 0"), "k0 = 0.5", "k0 = 0");
@@ -138,14 +168,23 @@ fn a_free_piston_falls_on_a_round_column_as_on_a_plane_one() {
     let piston = "[[rigid]]\nname = \"piston\"\npolygon = [[-1.5, 1.005], [1.5, 1.005], [1.5, 1.205], [-1.5, 1.205]]\n";
     let reported = ["force", "displacement", "velocity"]
         .map(|of| format!("[[history]]\nquantity = \"rigid-{of}\"\nrigid = \"piston\"\n"));
-    let of = |mass: &str| format!("{before}{piston}free = [\"y\"]\n{mass}\n[gravity]{after}{}", reported.concat());
+    let of = |mass: &str| {
+        format!(
+            "{before}{piston}free = [\"y\"]\n{mass}\n[gravity]{after}{}",
+            reported.concat()
+        )
+    };
     let scratch = Scratch::with_case(&of(&format!("density = {}", 500.0 / 0.45)));
     let plane = changed(&of("mass = 500"), "\"axisymmetric\"", "\"plane-strain\"");
     std::fs::write(scratch.path("plane.toml"), plane).unwrap();
     scratch.mpirun(2, &["case.toml", "-q", "-o", "round"]).expect(0);
     scratch.mpirun(1, &["plane.toml", "-q", "-o", "plane"]).expect(0);
     let [round, plane] = ["round", "plane"].map(|name| history(&scratch.path(name)));
-    for (name, whole) in [("rigid-force-y", PI), ("rigid-displacement-y", 1.0), ("rigid-velocity-y", 1.0)] {
+    for (name, whole) in [
+        ("rigid-force-y", PI),
+        ("rigid-displacement-y", 1.0),
+        ("rigid-velocity-y", 1.0),
+    ] {
         let [round, plane] = [&round, &plane].map(|table| at(table, name, 0.06));
         assert!((round / (whole * plane) - 1.0).abs() < 1e-9, "{name}: {round} {plane}");
     }

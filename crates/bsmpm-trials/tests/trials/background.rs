@@ -37,7 +37,9 @@ interface = "smooth"
 #[track_caller]
 fn found(scratch: &Scratch, name: &str, set: &[&str]) -> Option<Indicator> {
     let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
-    scratch.direct(&[&["case.toml", "-q", "--force"][..], &set].concat()).expect(0);
+    scratch
+        .direct(&[&["case.toml", "-q", "--force"][..], &set].concat())
+        .expect(0);
     manifest(&scratch.path("case.out")).indicators.get(name).cloned()
 }
 
@@ -54,11 +56,21 @@ fn a_function_that_creeps_is_reported_and_no_other() {
         ("off", "20", true),
         ("off", "100", true),
     ] {
-        let remedy = if extension == "off" { "solver.extension" } else { "points_per_cell" };
-        let [extension, steps] = [format!("solver.extension={extension}"), format!("analysis.steps={steps}")];
+        let remedy = if extension == "off" {
+            "solver.extension"
+        } else {
+            "points_per_cell"
+        };
+        let [extension, steps] = [
+            format!("solver.extension={extension}"),
+            format!("analysis.steps={steps}"),
+        ];
         let indicator = share(&[&extension, &steps]);
         println!("{extension}, {steps}: {}", indicator.value);
-        assert!(indicator.unusual == is_wrong && indicator.advice.contains(remedy), "{indicator:?}");
+        assert!(
+            indicator.unusual == is_wrong && indicator.advice.contains(remedy),
+            "{indicator:?}"
+        );
     }
     // An embankment whose displacement is the same in 10 to 80 steps.
     let embankment = Scratch::with_case(&std::fs::read_to_string(shipped("validation/embankment.toml")).unwrap());
@@ -72,7 +84,11 @@ fn a_load_is_judged_where_nothing_moves_as_prescribed() {
     let scratch = Scratch::with_case(SAND);
     assert_eq!(found(&scratch, "background-load-share", &[]), None);
     // It comes to rest, and gravity acts on.
-    let text = changed(SAND, "displacement = [0.0, -0.01]\n", "path = [[0.5, 0.0, -0.001], [1.0, 0.0, -0.001]]\n");
+    let text = changed(
+        SAND,
+        "displacement = [0.0, -0.01]\n",
+        "path = [[0.5, 0.0, -0.001], [1.0, 0.0, -0.001]]\n",
+    );
     assert!(found(&Scratch::with_case(&text), "background-load-share", &[]).is_some());
 }
 
@@ -94,7 +110,13 @@ fn works_that_cancel_do_not_make_the_background_seem_large() {
 #[test]
 fn a_footing_on_sand_that_finds_no_equilibrium_names_the_cohesion() {
     let scratch = Scratch::with_case(SAND);
-    let steep = ["case.toml", "--set", "material.sand.friction_angle=40", "--set", "material.sand.dilation_angle=10"];
+    let steep = [
+        "case.toml",
+        "--set",
+        "material.sand.friction_angle=40",
+        "--set",
+        "material.sand.dilation_angle=10",
+    ];
     let rough = ["--set", "footing.interface=rough"];
     let failed = scratch.direct(&[&steep[..], &rough].concat()).expect(80);
     failed.says_once("Set `analysis.purpose = \"limit-load\"`");

@@ -12,7 +12,10 @@ const FEW: &str = "50";
 
 fn run(ranks: usize, arguments: &[&str]) -> Output {
     let mut launcher = Command::new("mpirun");
-    launcher.args(["-q", "--oversubscribe", "-n", &ranks.to_string()]).arg(example("checkpoints")).args(arguments);
+    launcher
+        .args(["-q", "--oversubscribe", "-n", &ranks.to_string()])
+        .arg(example("checkpoints"))
+        .args(arguments);
     processes::run(launcher, &[], true, Duration::from_secs(120))
 }
 
@@ -39,7 +42,9 @@ fn a_checkpoint_is_read_to_the_bit_on_any_number_of_ranks() {
 fn a_checkpoint_without_points_is_one_too() {
     let scratch = Scratch::new();
     run(2, &["write", &at(&scratch, ""), "0", "1"]).expect(0);
-    run(3, &["newest", &at(&scratch, "checkpoint"), "0"]).expect(0).says_once("good: step 1");
+    run(3, &["newest", &at(&scratch, "checkpoint"), "0"])
+        .expect(0)
+        .says_once("good: step 1");
 }
 
 #[test]
@@ -54,7 +59,17 @@ fn equal_checkpoints_are_equal_files() {
 
 #[test]
 fn an_aborted_writer_leaves_the_checkpoint_before_or_the_new_one() {
-    let phases = ["Opened", "Midway", "Written", "Closed", "Synced", "Recorded", "Named", "Committed", "Kept"];
+    let phases = [
+        "Opened",
+        "Midway",
+        "Written",
+        "Closed",
+        "Synced",
+        "Recorded",
+        "Named",
+        "Committed",
+        "Kept",
+    ];
     for phase in phases {
         let scratch = Scratch::new();
         let directory = at(&scratch, "");
@@ -66,8 +81,15 @@ fn an_aborted_writer_leaves_the_checkpoint_before_or_the_new_one() {
         output.says_once(&format!("good: step {step}"));
         assert_eq!(output.count("passed over"), 0, "{phase}: {output:#?}");
         run(2, &["write", &directory, FEW, "2"]).expect(0);
-        run(1, &["newest", &at(&scratch, "checkpoint"), FEW]).expect(0).says_once("good: step 2");
-        assert!(entries(&scratch.path("checkpoint")).iter().all(|name| !name.starts_with('.')), "{phase}");
+        run(1, &["newest", &at(&scratch, "checkpoint"), FEW])
+            .expect(0)
+            .says_once("good: step 2");
+        assert!(
+            entries(&scratch.path("checkpoint"))
+                .iter()
+                .all(|name| !name.starts_with('.')),
+            "{phase}"
+        );
     }
 }
 
@@ -80,7 +102,10 @@ fn a_killed_writer_always_leaves_a_good_checkpoint() {
     run(1, &["write", &directory, MANY, "1"]).expect(0);
     for time in 0..times {
         let mut command = Command::new(example("checkpoints"));
-        command.args(["storm", &directory, MANY]).env("OMP_NUM_THREADS", "1").stdin(Stdio::null());
+        command
+            .args(["storm", &directory, MANY])
+            .env("OMP_NUM_THREADS", "1")
+            .stdin(Stdio::null());
         // Killed processes leave MPI's files; other runs must not stumble over them.
         command.env("TMPDIR", scratch.path(""));
         let mut writer = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
@@ -95,7 +120,9 @@ fn a_killed_writer_always_leaves_a_good_checkpoint() {
         let (found, damaged) = bsmpm_io::checkpoint::newest(&scratch.path("checkpoint")).unwrap();
         assert!(found.is_some() && damaged.is_empty(), "kill {time}: {damaged:?}");
     }
-    run(2, &["newest", &at(&scratch, "checkpoint"), MANY]).expect(0).says_once("good: step");
+    run(2, &["newest", &at(&scratch, "checkpoint"), MANY])
+        .expect(0)
+        .says_once("good: step");
 }
 
 #[test]
@@ -145,8 +172,14 @@ impl Disk {
     fn new(path: PathBuf, size: &str) -> Option<Self> {
         std::fs::create_dir(&path).unwrap();
         let mut mount = Command::new("mount");
-        mount.args(["-t", "tmpfs", "-o", &format!("size={size}"), "none"]).arg(&path).stderr(Stdio::null());
-        mount.status().is_ok_and(|status| status.success()).then_some(Self(path))
+        mount
+            .args(["-t", "tmpfs", "-o", &format!("size={size}"), "none"])
+            .arg(&path)
+            .stderr(Stdio::null());
+        mount
+            .status()
+            .is_ok_and(|status| status.success())
+            .then_some(Self(path))
     }
 }
 
@@ -170,21 +203,34 @@ fn on_a_full_disk_nothing_is_written_and_the_older_checkpoint_stays() {
         let output = run(2, &["write", directory, MANY, "2"]).expect(74);
         output.says_once("E0766: ");
         assert!(output.said().contains("bytes, but "), "{output:#?}");
-        assert_eq!(entries(&disk.0.join("checkpoint")), ["step_000000001.h5", "step_000000001.json"]);
+        assert_eq!(
+            entries(&disk.0.join("checkpoint")),
+            ["step_000000001.h5", "step_000000001.json"]
+        );
     }
-    run(2, &["newest", disk.0.join("checkpoint").to_str().unwrap(), MANY]).expect(0).says_once("good: step 1");
+    run(2, &["newest", disk.0.join("checkpoint").to_str().unwrap(), MANY])
+        .expect(0)
+        .says_once("good: step 1");
 }
 
 #[test]
 fn where_files_must_not_grow_nothing_is_written_and_the_older_checkpoint_stays() {
     let scratch = Scratch::new();
     run(2, &["write", &at(&scratch, ""), FEW, "1"]).expect(0);
-    let limited =
-        format!("ulimit -f 12000; exec {} write {} {MANY} 2", example("checkpoints").display(), at(&scratch, ""));
+    let limited = format!(
+        "ulimit -f 12000; exec {} write {} {MANY} 2",
+        example("checkpoints").display(),
+        at(&scratch, "")
+    );
     let mut alone = Command::new("bash");
     alone.args(["-c", &limited]);
     let output = processes::run(alone, &[], true, Duration::from_secs(60)).expect(74);
     output.says_once("was not written: the file needs");
-    assert_eq!(entries(&scratch.path("checkpoint")), ["step_000000001.h5", "step_000000001.json"]);
-    run(2, &["newest", &at(&scratch, "checkpoint"), FEW]).expect(0).says_once("good: step 1");
+    assert_eq!(
+        entries(&scratch.path("checkpoint")),
+        ["step_000000001.h5", "step_000000001.json"]
+    );
+    run(2, &["newest", &at(&scratch, "checkpoint"), FEW])
+        .expect(0)
+        .says_once("good: step 1");
 }

@@ -84,7 +84,10 @@ fn terzaghis_column_by_a_face_and_by_a_surface_within_a_cell() {
         let table = history(&scratch.path("one"));
         for (time, consolidated, pressure) in TERZAGHI {
             let of = |column: &str| at(&table, column, time * 1e6);
-            let errors = [-of("displacement-y") / FINAL - consolidated, of("excess-pressure") / LOAD - pressure];
+            let errors = [
+                -of("displacement-y") / FINAL - consolidated,
+                of("excess-pressure") / LOAD - pressure,
+            ];
             assert!(errors.iter().all(|error| error.abs() < 0.01), "{time}: {errors:?}");
             // The point nearest to the top has 1 % of the load more. The flux is the rate of the settlement.
             let terms = (0..20).map(|k| (f64::from(2 * k + 1) * std::f64::consts::FRAC_PI_2).powi(2));
@@ -111,7 +114,9 @@ fn ranks_agree_and_a_run_in_two_parts_is_one() {
         assert!(apart < 1e-8 * one.abs(), "{column}: {one} {two} {three}");
     }
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-    scratch.mpirun(1, &[&part[..], &["--max-steps", "20"]].concat()).expect(75);
+    scratch
+        .mpirun(1, &[&part[..], &["--max-steps", "20"]].concat())
+        .expect(75);
     scratch.mpirun(1, &part).expect(0);
     let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
     assert!(text("one") == text("part"));
@@ -120,7 +125,9 @@ fn ranks_agree_and_a_run_in_two_parts_is_one() {
 #[test]
 fn a_run_reports_how_its_water_was_solved_for_and_balanced() {
     let scratch = Scratch::with_case(COLUMN);
-    scratch.mpirun(2, &["case.toml", "-q", "-o", "out", "--set", "output.residuals=true"]).expect(0);
+    scratch
+        .mpirun(2, &["case.toml", "-q", "-o", "out", "--set", "output.residuals=true"])
+        .expect(0);
     let found = manifest(&scratch.path("out"));
     let balance = &found.indicators["water-balance"];
     println!("balance {:e}, {:?}", balance.value, found.linear["water"]);
@@ -134,14 +141,28 @@ fn a_run_reports_how_its_water_was_solved_for_and_balanced() {
 /// Water pressed in from below lifts the column out of the grid that ends at its top.
 #[test]
 fn a_drain_that_leaves_the_grid_is_reported() {
-    let lifted =
-        changed(COLUMN, "face = \"top\"", "surface = true\n[[drain]]\nface = \"bottom\"\npressure = \"200 Pa\"");
+    let lifted = changed(
+        COLUMN,
+        "face = \"top\"",
+        "surface = true\n[[drain]]\nface = \"bottom\"\npressure = \"200 Pa\"",
+    );
     let load = "[[traction]]\nfrom = [0, 1.0]\nto = [0.4, 1.0]\nstress = [0, \"-100 Pa\"]\n";
     let scratch = Scratch::with_case(&changed(&lifted, load, ""));
     let run = |name: &str, set: &str| {
         // The background alone holds the column once it is out of the grid's reach.
         let accept = "output.accept=[\"background-work\"]";
-        let arguments = ["case.toml", "-q", "-o", name, "--set", set, "--set", "history=[]", "--set", accept];
+        let arguments = [
+            "case.toml",
+            "-q",
+            "-o",
+            name,
+            "--set",
+            set,
+            "--set",
+            "history=[]",
+            "--set",
+            accept,
+        ];
         scratch.mpirun(1, &arguments).expect(0);
         manifest(&scratch.path(name)).warnings
     };
@@ -163,9 +184,14 @@ fn ground_that_leaves_a_drained_face_is_reported() {
     let run = |name: &str, sets: &[&str]| {
         let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", *set]).collect();
         let case = case.to_str().expect("UTF-8");
-        scratch.direct(&[&[case, "-q", "-o", name, "--set", "output={ }"][..], &sets].concat()).expect(0);
+        scratch
+            .direct(&[&[case, "-q", "-o", name, "--set", "output={ }"][..], &sets].concat())
+            .expect(0);
         let reported = manifest(&scratch.path(name)).warnings;
-        reported.into_iter().filter(|warning| warning.contains("`drain.0`")).collect::<Vec<_>>()
+        reported
+            .into_iter()
+            .filter(|warning| warning.contains("`drain.0`"))
+            .collect::<Vec<_>>()
     };
     let face = "drain=[{ name = \"top\", face = \"top\" }]";
     let load = "traction.0.stress=[0, -1e5]";
@@ -187,7 +213,9 @@ fn a_load_of_half_the_stiffness_leaves_pores_open_under_f_bar() {
     let scratch = Scratch::new();
     let case = shipped("validation/large_consolidation.toml");
     let law = "material.clay.permeability_law=kozeny-carman";
-    scratch.direct(&[case.to_str().expect("UTF-8"), "--set", law, "-q", "-o", "out"]).expect(0);
+    scratch
+        .direct(&[case.to_str().expect("UTF-8"), "--set", law, "-q", "-o", "out"])
+        .expect(0);
     let found = history(&scratch.path("out"));
     // By lines, 200 and 400 cells, extrapolated.
     for (time, settled) in [(1e5, 0.09887), (2e5, 0.13970), (5e5, 0.21296), (1e6, 0.26489)] {
@@ -222,13 +250,26 @@ fn oscillation(keys: &[String]) -> f64 {
     let frame = last_frame(&scratch.path("out"));
     let mut pressure = vec![f64::NAN; 48 * 48];
     let excess = frame.real("excess_pressure", 1);
-    for (point, (at, effective)) in frame.position.iter().zip(frame.real("pressure", 1).unwrap()).enumerate() {
+    for (point, (at, effective)) in frame
+        .position
+        .iter()
+        .zip(frame.real("pressure", 1).unwrap())
+        .enumerate()
+    {
         let [column, row] = [0, 1].map(|axis| (at[axis] * 48.0) as usize);
         pressure[row * 48 + column] = effective + excess.map_or(0.0, |excess| excess[point]);
     }
-    let inner: Vec<usize> = (12..36).flat_map(|row| (12..36).map(move |column| row * 48 + column)).collect();
-    let apart =
-        |at: usize| pressure[at] - [at - 1, at + 1, at - 48, at + 48].map(|at| pressure[at]).iter().sum::<f64>() / 4.0;
+    let inner: Vec<usize> = (12..36)
+        .flat_map(|row| (12..36).map(move |column| row * 48 + column))
+        .collect();
+    let apart = |at: usize| {
+        pressure[at]
+            - [at - 1, at + 1, at - 48, at + 48]
+                .map(|at| pressure[at])
+                .iter()
+                .sum::<f64>()
+                / 4.0
+    };
     (inner.iter().map(|&at| apart(at).powi(2)).sum::<f64>() / inner.len() as f64).sqrt()
 }
 
@@ -237,9 +278,19 @@ fn nearly_incompressible_material_as_undrained_soil_has_a_smooth_pressure() {
     let method = |name: &str| vec![format!("stabilisation.method={name}"), "output.every=1.0".to_owned()];
     let [plain, pairs] = ["consistent-f-bar", "subgrid-f-bar"].map(|name| oscillation(&method(name)));
     let mut keys = as_undrained("rubber", 1e6, 0.4999);
-    keys.extend(["stabilisation.method=consistent-f-bar", "output.every=1 s", "analysis.end=1 s"].map(str::to_owned));
+    keys.extend(
+        [
+            "stabilisation.method=consistent-f-bar",
+            "output.every=1 s",
+            "analysis.end=1 s",
+        ]
+        .map(str::to_owned),
+    );
     let undrained = oscillation(&keys);
-    assert!(undrained < 0.3 * pairs && undrained < 0.003 * plain, "{undrained} {pairs} {plain}");
+    assert!(
+        undrained < 0.3 * pairs && undrained < 0.003 * plain,
+        "{undrained} {pairs} {plain}"
+    );
 }
 
 #[test]
@@ -253,8 +304,14 @@ fn nearly_incompressible_clay_as_undrained_soil_takes_a_third_of_the_iterations(
         let load = at(&history(&scratch.path("out")), "p_over_c", 0.25);
         (load, manifest(&scratch.path("out")).summary.iterations as f64)
     };
-    let (load, many) =
-        evaluations(&["material.clay.poisson=0.4999", "analysis.end=0.25", "output.times=[0.25]"].map(str::to_owned));
+    let (load, many) = evaluations(
+        &[
+            "material.clay.poisson=0.4999",
+            "analysis.end=0.25",
+            "output.times=[0.25]",
+        ]
+        .map(str::to_owned),
+    );
     let mut keys = as_undrained("clay", 1e5, 0.4999);
     keys.extend(["analysis.end=0.25 s", "output.times=[\"0.25 s\"]"].map(str::to_owned));
     let (undrained, few) = evaluations(&keys);
@@ -271,8 +328,13 @@ fn a_river_that_rises_seeps_through_a_levee() {
     let case = shipped("levee.toml");
     let scratch = Scratch::new();
     let run = |ranks: usize, name: &str, more: &[&str]| {
-        let set = ["grid.cell=1", coarse, "stage=[]", "analysis.end=\"31 d\""].map(|set| ["--set", set]).concat();
-        scratch.mpirun(ranks, &[&[case.to_str().unwrap(), "-q", "-o", name][..], &set, more].concat())
+        let set = ["grid.cell=1", coarse, "stage=[]", "analysis.end=\"31 d\""]
+            .map(|set| ["--set", set])
+            .concat();
+        scratch.mpirun(
+            ranks,
+            &[&[case.to_str().unwrap(), "-q", "-o", name][..], &set, more].concat(),
+        )
     };
     run(1, "one", &[]).expect(0);
     run(2, "two", &[]).expect(0);
@@ -303,11 +365,20 @@ fn a_river_that_rises_seeps_through_a_levee() {
 fn drawn_down() -> String {
     let case = std::fs::read_to_string(shipped("rapid_drawdown.toml")).unwrap();
     let changes = [
-        ("end    = \"10 d\"\ndt     = \"1 h\"\ngrowth = 1.1\ndt_max = \"3 h\"", "end = \"4 d\"\ndt = \"12 h\""),
+        (
+            "end    = \"10 d\"\ndt     = \"1 h\"\ngrowth = 1.1\ndt_max = \"3 h\"",
+            "end = \"4 d\"\ndt = \"12 h\"",
+        ),
         ("cell  = \"1 m\"", "cell = \"2 m\""),
         ("equilibrium = \"plastic\"\n", ""),
-        ("level_path = [[\"0 d\", 15.0], [\"10 d\", 5.0]]", "level_path = [[0, 15], [\"2 d\", 13], [\"20 d\", 5]]"),
-        ("quantity = \"water-balance\"", "quantity = \"water-outflow\"\ndrain = \"ground\""),
+        (
+            "level_path = [[\"0 d\", 15.0], [\"10 d\", 5.0]]",
+            "level_path = [[0, 15], [\"2 d\", 13], [\"20 d\", 5]]",
+        ),
+        (
+            "quantity = \"water-balance\"",
+            "quantity = \"water-outflow\"\ndrain = \"ground\"",
+        ),
     ];
     let case = changes.iter().fold(case, |case, (part, by)| changed(&case, part, by));
     case + "[strength_reduction]\nfactor = 1.2\nstage = \"end\"\nsteps = 3\n"
@@ -319,24 +390,46 @@ fn drawn_down() -> String {
 fn strength_falls_at_the_pore_pressures_that_consolidation_has_left() {
     let until = 4.0 * 86400.0;
     let case = drawn_down();
-    let still = changed(&case, "level_path = [[0, 15], [\"2 d\", 13], [\"20 d\", 5]]", "level = 15");
+    let still = changed(
+        &case,
+        "level_path = [[0, 15], [\"2 d\", 13], [\"20 d\", 5]]",
+        "level = 15",
+    );
     let still = changed(&still, "factor = 1.2", "factor = 1.7");
     // What the state by k0 lacks to equilibrium would make pressures.
     let still = changed(&still, "[initial]\n", "[initial]\nequilibrium = \"plastic\"\n");
     let parts = [
-        ("\"consolidation\"\nend = \"4 d\"\ndt = \"12 h\"", "\"quasi-static\"\nsteps = 4"),
-        ("drainage     = \"coupled\"\nporosity     = 0.4\npermeability = \"1e-9 m/s\"\n", ""),
+        (
+            "\"consolidation\"\nend = \"4 d\"\ndt = \"12 h\"",
+            "\"quasi-static\"\nsteps = 4",
+        ),
+        (
+            "drainage     = \"coupled\"\nporosity     = 0.4\npermeability = \"1e-9 m/s\"\n",
+            "",
+        ),
         ("[[drain]]\nname    = \"ground\"\nsurface = true\n", ""),
         ("[[history]]\nquantity = \"water-outflow\"\ndrain = \"ground\"\n", ""),
         ("quantity = \"excess-pressure\"", "quantity = \"pore-pressure\""),
-        ("every  = \"1 d\"\nfields = [\"excess-pressure\", \"pore-pressure\", \"deviatoric-strain\"]", ""),
+        (
+            "every  = \"1 d\"\nfields = [\"excess-pressure\", \"pore-pressure\", \"deviatoric-strain\"]",
+            "",
+        ),
     ];
-    let given = parts.iter().fold(still.clone(), |case, (part, by)| changed(&case, part, by));
+    let given = parts
+        .iter()
+        .fold(still.clone(), |case, (part, by)| changed(&case, part, by));
     let sudden = changed(&case, "stage = \"end\"", "stage = \"end\"\ndrainage = \"undrained\"");
     let rest = changed(&case, "factor = 1.2", "factor = 1.0001");
     let scratch = Scratch::new();
     let mut reported = Vec::new();
-    let runs = [("one", 1), ("two", 2), ("still", 1), ("given", 1), ("rest", 1), ("sudden", 2)];
+    let runs = [
+        ("one", 1),
+        ("two", 2),
+        ("still", 1),
+        ("given", 1),
+        ("rest", 1),
+        ("sudden", 2),
+    ];
     for ((name, ranks), case) in runs.into_iter().zip([&case, &case, &still, &given, &rest, &sudden]) {
         scratch.write("case.toml", case);
         reported.push(scratch.mpirun(ranks, &["case.toml", "-o", name]).expect(0).stderr);
@@ -349,12 +442,22 @@ fn strength_falls_at_the_pore_pressures_that_consolidation_has_left() {
     let tables = runs.map(|(name, _)| history(&scratch.path(name)));
     let moved = [0, 1, 2, 3, 4].map(|k| *tables[k].get("max-displacement").unwrap().last().unwrap());
     println!("moved {moved:?} m");
-    assert!(moved[4] < 1e-2 * moved[0] && (moved[2] / moved[3] - 1.0).abs() < 1e-3, "{moved:?}");
+    assert!(
+        moved[4] < 1e-2 * moved[0] && (moved[2] / moved[3] - 1.0).abs() < 1e-3,
+        "{moved:?}"
+    );
     assert!((moved[1] / moved[0] - 1.0).abs() < 1e-4, "{moved:?}");
-    let (time, pressure) = (tables[0].get("time").unwrap(), tables[0].get("excess-pressure").unwrap());
+    let (time, pressure) = (
+        tables[0].get("time").unwrap(),
+        tables[0].get("excess-pressure").unwrap(),
+    );
     let left = at(&tables[0], "excess-pressure", until);
     assert!(left > 5e3, "{left}");
-    let held = time.iter().zip(pressure).filter(|(t, _)| **t >= until).map(|(_, pressure)| *pressure);
+    let held = time
+        .iter()
+        .zip(pressure)
+        .filter(|(t, _)| **t >= until)
+        .map(|(_, pressure)| *pressure);
     assert!(
         held.clone().count() == 5 && held.clone().all(|pressure| pressure == left),
         "{:?}",
@@ -362,12 +465,22 @@ fn strength_falls_at_the_pore_pressures_that_consolidation_has_left() {
     );
     // Without drainage nothing leaves, and the pressures follow the strain.
     let sudden = |name: &str| tables[5].get(name).unwrap().last().copied().unwrap();
-    assert!(!reported[5].contains("keeps pore pressures constant"), "{}", reported[5]);
+    assert!(
+        !reported[5].contains("keeps pore pressures constant"),
+        "{}",
+        reported[5]
+    );
     assert_eq!(sudden("water-outflow"), at(&tables[5], "water-outflow", until));
-    assert!((sudden("excess-pressure") / left - 1.0).abs() > 1e-2, "{} {left}", sudden("excess-pressure"));
+    assert!(
+        (sudden("excess-pressure") / left - 1.0).abs() > 1e-2,
+        "{} {left}",
+        sudden("excess-pressure")
+    );
     scratch.write("case.toml", &case);
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-    scratch.mpirun(1, &[&part[..], &["--max-steps", "10"]].concat()).expect(75);
+    scratch
+        .mpirun(1, &[&part[..], &["--max-steps", "10"]].concat())
+        .expect(75);
     scratch.mpirun(1, &part).expect(0);
     let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
     assert!(text("one") == text("part"));

@@ -128,7 +128,9 @@ fn a_heavy_block_does_not_hide_what_is_out_of_balance_in_the_slope_beside_it() {
     let mut crest = Vec::new();
     for density in ["2e3", "2e8"] {
         let scratch = Scratch::with_case(BESIDE);
-        scratch.mpirun(1, &["case.toml", "--set", &format!("material.block.density={density}")]).expect(0);
+        scratch
+            .mpirun(1, &["case.toml", "--set", &format!("material.block.density={density}")])
+            .expect(0);
         crest.push(value(&scratch, "crest-y"));
     }
     assert!((crest[1] / crest[0] - 1.0).abs() < 0.015, "{crest:?}");
@@ -147,10 +149,24 @@ fn a_failure_names_both_measures_their_tolerances_and_what_to_try() {
         reason.starts_with("E0747: no convergence after 4 iterations (the limit). Final residuals: energy residual"),
         "{reason}"
     );
-    assert!(reason.contains("tolerance 1e-6), force residual") && reason.contains("tolerance 1e-3)"), "{reason}");
+    assert!(
+        reason.contains("tolerance 1e-6), force residual") && reason.contains("tolerance 1e-3)"),
+        "{reason}"
+    );
     let tolerances = failure.tolerances.unwrap();
     assert_eq!((tolerances.energy, tolerances.force), (Some(1e-6), Some(1e-3)));
-    let (energy, force) = failure.history.last().map(|last| (last.energy.unwrap(), last.force.unwrap())).unwrap();
+    let (energy, force) = failure
+        .history
+        .last()
+        .map(|last| (last.energy.unwrap(), last.force.unwrap()))
+        .unwrap();
     assert!(energy >= 1e-6 || force >= 1e-3, "{energy} {force}");
-    assert!(failure.advice.iter().any(|advice| advice.contains("max_iterations` (now 4)")), "{:?}", failure.advice);
+    assert!(
+        failure
+            .advice
+            .iter()
+            .any(|advice| advice.contains("max_iterations` (now 4)")),
+        "{:?}",
+        failure.advice
+    );
 }

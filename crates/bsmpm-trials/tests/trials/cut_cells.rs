@@ -6,7 +6,9 @@ use crate::support::results::{agree, at, history, last_frame, manifest};
 
 /// m  largest displacement at the end.
 fn largest_displacement(scratch: &Scratch, set: &[&str]) -> f64 {
-    scratch.direct(&[&["case.toml", "-q", "-o", "out", "--force"], set].concat()).expect(0);
+    scratch
+        .direct(&[&["case.toml", "-q", "-o", "out", "--force"], set].concat())
+        .expect(0);
     at(&history(&scratch.path("out")), "max-displacement", 1.0)
 }
 
@@ -21,7 +23,10 @@ fn a_stable_slope_moves_as_far_in_any_number_of_steps() {
         assert!((found / 7.633e-3 - 1.0).abs() < 1e-3, "{steps} steps: {found:e}");
     }
     let sizes = manifest(&scratch.path("out")).sizes;
-    assert!(sizes["most_tied_functions"] > 0 && sizes["most_untied_functions"] == 0, "{sizes:?}");
+    assert!(
+        sizes["most_tied_functions"] > 0 && sizes["most_untied_functions"] == 0,
+        "{sizes:?}"
+    );
 }
 
 #[test]
@@ -189,7 +194,9 @@ fn a_limit_load_under_prescribed_motion_does_not_depend_on_the_background() {
     let scratch = Scratch::with_case(SAND);
     let factor = |coefficient: &str| {
         let set = format!("solver.background={coefficient}");
-        scratch.direct(&["case.toml", "-q", "-o", "out", "--force", "--set", &set]).expect(0);
+        scratch
+            .direct(&["case.toml", "-q", "-o", "out", "--force", "--set", &set])
+            .expect(0);
         let summary = manifest(&scratch.path("out")).summary;
         assert_eq!(summary.cutbacks, 0, "{coefficient}");
         at(&history(&scratch.path("out")), "N", 1.0)
@@ -197,7 +204,10 @@ fn a_limit_load_under_prescribed_motion_does_not_depend_on_the_background() {
     let [stiff, usual, soft] = ["1e-3", "1e-4", "1e-5"].map(factor);
     println!("N_gamma = {stiff}, {usual}, {soft}");
     // 18.99, 18.92 and 18.93 were found; exact 14.754 (Martin, 2005).
-    assert!((stiff / usual - 1.0).abs() < 5e-3 && (soft / usual - 1.0).abs() < 5e-3, "{stiff} {usual} {soft}");
+    assert!(
+        (stiff / usual - 1.0).abs() < 5e-3 && (soft / usual - 1.0).abs() < 5e-3,
+        "{stiff} {usual} {soft}"
+    );
 }
 
 /// The last step's displacement is all that the background needs, and it is in every checkpoint.

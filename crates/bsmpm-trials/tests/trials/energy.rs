@@ -4,7 +4,12 @@ use crate::support::results::history;
 use crate::support::{Scratch, shipped};
 use bsmpm_io::table::Columns;
 
-const TIGHT: [&str; 4] = ["--set", "solver.tolerance=1e-14", "--set", "solver.force_tolerance=1e-10"];
+const TIGHT: [&str; 4] = [
+    "--set",
+    "solver.tolerance=1e-14",
+    "--set",
+    "solver.force_tolerance=1e-10",
+];
 
 /// Histories of the first steps of a short case on 1 and 2 ranks.
 fn both(name: &str, steps: &str, further: &[&str]) -> [Columns; 2] {
@@ -13,7 +18,11 @@ fn both(name: &str, steps: &str, further: &[&str]) -> [Columns; 2] {
     [1, 2].map(|ranks| {
         let directory = format!("{ranks}.out");
         let own = ["case.toml", "-q", "-o", &directory, "--max-steps", steps];
-        scratch.job(Some(ranks), &[&own, &TIGHT[..], further].concat()).within(240).run().expect(75);
+        scratch
+            .job(Some(ranks), &[&own, &TIGHT[..], further].concat())
+            .within(240)
+            .run()
+            .expect(75);
         history(&scratch.path(&directory))
     })
 }
@@ -21,7 +30,9 @@ fn both(name: &str, steps: &str, further: &[&str]) -> [Columns; 2] {
 /// Largest closure over the largest energy, after the columns were found to add up; and the largest difference
 /// between the ranks over it.
 fn closure(histories: &[Columns; 2]) -> (f64, f64) {
-    let [column, other] = histories.each_ref().map(|history| move |name: &str| history.get(name).unwrap());
+    let [column, other] = histories
+        .each_ref()
+        .map(|history| move |name: &str| history.get(name).unwrap());
     let names = history_names(&histories[0]);
     let largest = |name: &str| column(name).iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     let scale = names.iter().map(|name| largest(name)).fold(0.0, f64::max);
@@ -32,7 +43,13 @@ fn closure(histories: &[Columns; 2]) -> (f64, f64) {
         let left = at("external") - at("kinetic") - at("elastic") - at("plastic") - at("numerical");
         assert!((left - at("closure")).abs() <= 1e-14 * scale, "row {row}");
     }
-    let apart = |name: &String| column(name).iter().zip(other(name)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let apart = |name: &String| {
+        column(name)
+            .iter()
+            .zip(other(name))
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max)
+    };
     let spread = names.iter().map(apart).fold(0.0, f64::max);
     (largest("energy-closure") / scale, spread / scale)
 }
@@ -46,7 +63,11 @@ fn history_names(history: &Columns) -> Vec<String> {
 
 #[test]
 fn the_collapse_closes_with_and_without_numerical_damping_on_1_and_2_ranks() {
-    for further in [&[][..], &["--set", "analysis.spectral_radius=0.8"], &["--set", "analysis.newmark_gamma=0.6"]] {
+    for further in [
+        &[][..],
+        &["--set", "analysis.spectral_radius=0.8"],
+        &["--set", "analysis.newmark_gamma=0.6"],
+    ] {
         let histories = both("short/column_collapse.toml", "100", further);
         let (closure, spread) = closure(&histories);
         println!("{further:?}: closure {closure:.1e}, ranks differ by {spread:.1e}");

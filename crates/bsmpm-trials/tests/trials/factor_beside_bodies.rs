@@ -45,7 +45,14 @@ fn found(text: &str, (range, stage): ((f64, f64), Option<&str>), set: &[&str]) -
     let dir = tempfile::tempdir().unwrap();
     let case = dir.path().join("case.toml");
     std::fs::write(&case, text).unwrap();
-    of_stage((range, 0.02, stage), case.to_str().unwrap(), set, 2, &dir.path().join("out")).0
+    of_stage(
+        (range, 0.02, stage),
+        case.to_str().unwrap(),
+        set,
+        2,
+        &dir.path().join("out"),
+    )
+    .0
 }
 
 fn band(found: &Value) -> [f64; 2] {
@@ -72,8 +79,16 @@ fn a_block_on_rock_has_the_factor_of_its_friction_inclined_to_the_cells_or_not()
         let found = found(BLOCK, ((1.2, 1.8), None), set);
         let [stands, fails] = band(&found);
         println!("{stands} to {fails}");
-        assert!(found["notes"].to_string().contains("the friction coefficient of interfaces"), "{found}");
-        assert!(stands <= 1.5 && 1.5 <= fails && fails - stands < 0.0201, "{set:?}: {stands} {fails}");
+        assert!(
+            found["notes"]
+                .to_string()
+                .contains("the friction coefficient of interfaces"),
+            "{found}"
+        );
+        assert!(
+            stands <= 1.5 && 1.5 <= fails && fails - stands < 0.0201,
+            "{set:?}: {stands} {fails}"
+        );
     }
 }
 
@@ -120,7 +135,10 @@ fn a_layer_of_sensitive_clay_has_the_factor_of_its_peak_and_exchanged_clay_that_
         "initial.k0=0.6",
     ];
     let of = |stage, set: &[&str]| estimate(&found(LAYER, ((1.0, 4.0), stage), &[&slope, set].concat()));
-    let [clay, strength] = [of(Some("fails"), &exchanged), of(None, &[&format!("material.clay{tresca}")])];
+    let [clay, strength] = [
+        of(Some("fails"), &exchanged),
+        of(None, &[&format!("material.clay{tresca}")]),
+    ];
     println!("{clay} of what was Cam-clay, {strength} of what never was");
     assert!((clay / strength - 1.0).abs() < 0.03, "{clay} {strength}");
 }
@@ -140,7 +158,10 @@ fn a_slope_held_by_a_wall_has_the_factor_of_one_held_by_a_face() {
     let [face, wall_holds, open] = [&[][..], &held, &ground]
         .map(|set| estimate(&of(None, &[set, &["analysis.end=1", "analysis.steps=10"]].concat())));
     println!("{face} held by a face, {wall_holds} by a wall, {open} by nothing");
-    assert!((wall_holds / face - 1.0).abs() < 2e-3 && open < 0.7 * face, "{face} {wall_holds} {open}");
+    assert!(
+        (wall_holds / face - 1.0).abs() < 2e-3 && open < 0.7 * face,
+        "{face} {wall_holds} {open}"
+    );
     let stages = "stage=[{ name = \"built\", at = 1, reset_displacements = true }, \
                   { name = \"moved\", at = 2, reset_displacements = true }]";
     let [on, stops] = ["[3, 0.05, 0]", "[3, 0.01, 0]"].map(|last| {
@@ -149,13 +170,19 @@ fn a_slope_held_by_a_wall_has_the_factor_of_one_held_by_a_face() {
     });
     assert_eq!(on["factor_of_safety"], stops["factor_of_safety"]);
     assert!((estimate(&on) / face - 1.0).abs() < 0.01, "{on}");
-    assert!(on["notes"].to_string().contains("are fixed at the end of the stage"), "{on}");
+    assert!(
+        on["notes"].to_string().contains("are fixed at the end of the stage"),
+        "{on}"
+    );
     // A strip at the face that goes as far the other way, and stops.
     let strip = "prescribed=[{ face = \"right\", components = \"normal\", path = [[1, 0, 0], [2, -0.01, 0]] }]";
     let moved = of(Some("built"), &["boundary.right=free", strip, stages]);
     println!("{} held by a strip that has moved", estimate(&moved));
     assert!((estimate(&moved) / face - 1.0).abs() < 0.01, "{moved}");
-    assert!(moved["notes"].to_string().contains("are fixed at the end of the stage"), "{moved}");
+    assert!(
+        moved["notes"].to_string().contains("are fixed at the end of the stage"),
+        "{moved}"
+    );
 }
 
 /// A body that no material comes near is none: 0.970513 and 0.970514. With bodies equilibrium is sought in two passes,
@@ -163,7 +190,12 @@ fn a_slope_held_by_a_wall_has_the_factor_of_one_held_by_a_face() {
 #[test]
 fn a_body_far_away_does_not_change_the_factor() {
     let of = |set: &[&str]| {
-        let still = ["analysis.end=1", "analysis.steps=10", "boundary.right=free", "grid.upper=[34, 12]"];
+        let still = [
+            "analysis.end=1",
+            "analysis.steps=10",
+            "boundary.right=free",
+            "grid.upper=[34, 12]",
+        ];
         estimate(&found(SLOPE, ((0.8, 1.2), None), &[&still, set].concat()))
     };
     let far = "rigid=[{ name = \"far\", polygon = [[30, 6], [33, 6], [33, 9], [30, 9]], friction_coefficient = 0.3 }]";
@@ -176,7 +208,10 @@ fn a_body_far_away_does_not_change_the_factor() {
 /// the end of a stage 1.559.
 #[test]
 fn a_footing_that_carries_a_load_has_the_factor_of_prandtls_limit() {
-    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/validation/rigid_punch.toml"));
+    let text = std::fs::read_to_string(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../cases/validation/rigid_punch.toml"
+    ));
     let footing = "rigid=[{ name = \"punch\", polygon = [[-1, 3], [1, 3], [1, 3.5], [-1, 3.5]], free = [\"y\"], \
                    force = [0, -3.4e3], ramp = 1.0 }]";
     let set = [footing, "history=[{ quantity = \"max-displacement\" }]"];
@@ -193,11 +228,20 @@ fn a_footing_that_carries_a_load_has_the_factor_of_prandtls_limit() {
 /// does not tilt leaves 1.336, a traction of 20 kPa in its place 1.374.
 #[test]
 fn a_slope_has_the_factor_of_the_load_of_a_free_block_on_it() {
-    let ground = ["analysis.end=1", "analysis.steps=10", "grid.upper=[40, 12]", "boundary.right=roller"];
+    let ground = [
+        "analysis.end=1",
+        "analysis.steps=10",
+        "grid.upper=[40, 12]",
+        "boundary.right=roller",
+    ];
     let slope = "body=[{ material = \"soil\", polygon = [[0, 0], [32, 0], [12, 10], [0, 10]], points_per_cell = 3 }]";
     let block = "rigid=[{ name = \"block\", polygon = [[4, 10], [8, 10], [8, 12], [4, 12]], friction_coefficient = 0.3, \
                  free = [\"x\", \"y\", \"rotation\"], force = [0, -80e3] }]";
-    let set = [&ground[..], &[slope, block, "history=[{ quantity = \"max-displacement\" }]"]].concat();
+    let set = [
+        &ground[..],
+        &[slope, block, "history=[{ quantity = \"max-displacement\" }]"],
+    ]
+    .concat();
     let factor = estimate(&found(SLOPE, ((1.25, 1.45), None), &set));
     println!("{factor}");
     assert!((1.33..1.39).contains(&factor), "{factor}");

@@ -11,7 +11,11 @@ use std::time::Duration;
 const HANGS: u64 = 30;
 
 fn with_fault(scratch: &Scratch, ranks: Option<usize>, fault: &str) -> Output {
-    scratch.job(ranks, &["case.toml", "--force"]).variable("BSMPM_FAULT", fault).within(HANGS).run()
+    scratch
+        .job(ranks, &["case.toml", "--force"])
+        .variable("BSMPM_FAULT", fault)
+        .within(HANGS)
+        .run()
 }
 
 #[test]
@@ -27,9 +31,15 @@ fn a_panic_on_any_rank_ends_the_job_with_70_and_one_message() {
 #[test]
 fn a_panic_in_the_first_step_and_without_a_launcher_ends_with_70() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
-    with_fault(&scratch, Some(2), "panic:rank=1,step=1").expect(70).says_once("panic on rank 1");
-    with_fault(&scratch, Some(1), "panic:rank=0,step=3").expect(70).says_once("panic on rank 0");
-    with_fault(&scratch, None, "panic:rank=0,step=3").expect(70).says_once("panic on rank 0");
+    with_fault(&scratch, Some(2), "panic:rank=1,step=1")
+        .expect(70)
+        .says_once("panic on rank 1");
+    with_fault(&scratch, Some(1), "panic:rank=0,step=3")
+        .expect(70)
+        .says_once("panic on rank 0");
+    with_fault(&scratch, None, "panic:rank=0,step=3")
+        .expect(70)
+        .says_once("panic on rank 0");
 }
 
 /// The manifest of a run that was killed says `running`, names what there is, and lets `--force` clear it away.
@@ -37,8 +47,18 @@ fn a_panic_in_the_first_step_and_without_a_launcher_ends_with_70() {
 fn what_a_panic_leaves_is_readable_and_can_be_replaced() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
     // A thread ends frames: a checkpoint waits for all before it, those of the last moments are lost with the run.
-    let arguments = ["case.toml", "--force", "--set", "output.checkpoint={ every_steps = 25 }"];
-    scratch.job(Some(2), &arguments).variable("BSMPM_FAULT", "panic:rank=1,step=30").within(HANGS).run().expect(70);
+    let arguments = [
+        "case.toml",
+        "--force",
+        "--set",
+        "output.checkpoint={ every_steps = 25 }",
+    ];
+    scratch
+        .job(Some(2), &arguments)
+        .variable("BSMPM_FAULT", "panic:rank=1,step=30")
+        .within(HANGS)
+        .run()
+        .expect(70);
     let directory = scratch.path("case.out");
     assert_eq!(manifest(&directory).status, Status::Running);
     assert_eq!(*steps(&directory).get("step").unwrap().last().unwrap(), 29.0);
@@ -66,7 +86,9 @@ fn a_fault_that_cannot_be_read_or_cannot_happen_is_refused() {
         assert_eq!(scratch.entries(), ["case.toml"], "{fault}");
     }
     let scratch = Scratch::with_case(COLUMN);
-    with_fault(&scratch, Some(2), "panic:rank=2,step=1").expect(2).says_once("error E0708: BSMPM_FAULT");
+    with_fault(&scratch, Some(2), "panic:rank=2,step=1")
+        .expect(2)
+        .says_once("error E0708: BSMPM_FAULT");
 }
 
 /// What a failed run must have left, whatever the reason.
@@ -75,11 +97,18 @@ fn failed(scratch: &Scratch, code: u8) -> bsmpm_io::manifest::Manifest {
     all_finite(&directory);
     let manifest = manifest(&directory);
     assert_eq!((manifest.status, manifest.exit_code), (Status::Failed, Some(code)));
-    assert_eq!(manifest.checkpoint, Some(format!("checkpoint/step_{:09}.h5", manifest.summary.steps)));
+    assert_eq!(
+        manifest.checkpoint,
+        Some(format!("checkpoint/step_{:09}.h5", manifest.summary.steps))
+    );
     let failure = manifest.failure.as_ref().expect("a failure");
     let times = history(&directory).get("time").unwrap().to_vec();
     let (frames, last) = (all_frames(&directory), *times.last().unwrap());
-    assert_eq!(frames.last().unwrap().time, last, "the last converged state is in the last frame");
+    assert_eq!(
+        frames.last().unwrap().time,
+        last,
+        "the last converged state is in the last frame"
+    );
     assert_eq!((failure.time, failure.step), (last, times.len() as u64));
     manifest
 }
@@ -108,14 +137,24 @@ fn a_first_step_that_never_converges_ends_with_80_and_saves_the_start() {
 /// Gravity grows beyond what a cut in clay can bear; five iterations are enough for the elastic steps before only.
 #[test]
 fn a_later_step_that_never_converges_ends_with_80_and_saves_the_last_good_state() {
-    let clay = changed(COLUMN, "model   = \"elastic\"", "model = \"tresca\"\ncohesion = \"6 kPa\"");
+    let clay = changed(
+        COLUMN,
+        "model   = \"elastic\"",
+        "model = \"tresca\"\ncohesion = \"6 kPa\"",
+    );
     let cut = changed(&clay, "upper = [4.0, 4.0]", "upper = [2.0, 4.0]");
     let scratch = Scratch::with_case(&changed(&cut, "steps = 5", "steps = 10"));
     let few = ["--set", "solver.max_iterations=5", "--set", "solver.nonlinear=broyden"];
     for ranks in [1, 2] {
-        scratch.mpirun(ranks, &[&["case.toml", "-q", "--force"], &few[..]].concat()).expect(80);
+        scratch
+            .mpirun(ranks, &[&["case.toml", "-q", "--force"], &few[..]].concat())
+            .expect(80);
         let manifest = failed(&scratch, 80);
-        assert!(manifest.summary.steps > 0 && manifest.summary.cutbacks > 0, "{:?}", manifest.summary);
+        assert!(
+            manifest.summary.steps > 0 && manifest.summary.cutbacks > 0,
+            "{:?}",
+            manifest.summary
+        );
         let time = manifest.failure.unwrap().time;
         assert!((0.1..0.5).contains(&time), "{time}");
     }

@@ -40,15 +40,24 @@ fn a_block_finds_its_equilibrium_on_ground_that_spreads_beneath_it() {
     let scratch = Scratch::new();
     let settled = |friction: &str, ranks: usize| {
         scratch.write("case.toml", changed(BLOCK, "MU", friction));
-        scratch.mpirun(ranks, &["case.toml", "-q", "-o", "out", "--force"]).expect(0);
-        assert_eq!(manifest(&scratch.path("out")).summary.cutbacks, 0, "friction {friction}");
+        scratch
+            .mpirun(ranks, &["case.toml", "-q", "-o", "out", "--force"])
+            .expect(0);
+        assert_eq!(
+            manifest(&scratch.path("out")).summary.cutbacks,
+            0,
+            "friction {friction}"
+        );
         let history = history(&scratch.path("out"));
         let [x, y] = ["rigid-force-x", "rigid-force-y"].map(|column| at(&history, column, 1.0));
         assert!(x.abs() < 1e-3 && (y / 20e3 - 1.0).abs() < 1e-6, "{x} {y}");
         ["rigid-displacement-x", "rigid-displacement-y"].map(|column| at(&history, column, 1.0))
     };
     let (rough, smooth) = (settled("1.0", 1), settled("0.1", 1));
-    println!("settlement {:.4e} m with friction 1, {:.4e} m with 0.1, aside {:.1e} m", rough[1], smooth[1], smooth[0]);
+    println!(
+        "settlement {:.4e} m with friction 1, {:.4e} m with 0.1, aside {:.1e} m",
+        rough[1], smooth[1], smooth[0]
+    );
     // 1.008 was found; the block may be anywhere between two points of its base that slide in opposite directions.
     assert!((1.0..1.015).contains(&(smooth[1] / rough[1])), "{smooth:?} {rough:?}");
     assert!(smooth[0].abs() < 0.05 * smooth[1].abs(), "{smooth:?}");
@@ -60,9 +69,18 @@ fn a_block_finds_its_equilibrium_on_ground_that_spreads_beneath_it() {
 #[test]
 fn a_block_that_nothing_holds_is_named() {
     let scratch = Scratch::with_case(&changed(BLOCK, "MU", "0.0"));
-    scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(80).says_once("error E0751: ");
-    scratch.write("case.toml", changed(&changed(BLOCK, "MU", "0.1"), "[0.0, -20e3]", "[3e3, -20e3]"));
-    scratch.mpirun(1, &["case.toml", "-q", "-o", "slides"]).expect(80).says_once("its friction is exhausted");
+    scratch
+        .mpirun(1, &["case.toml", "-q", "-o", "out"])
+        .expect(80)
+        .says_once("error E0751: ");
+    scratch.write(
+        "case.toml",
+        changed(&changed(BLOCK, "MU", "0.1"), "[0.0, -20e3]", "[3e3, -20e3]"),
+    );
+    scratch
+        .mpirun(1, &["case.toml", "-q", "-o", "slides"])
+        .expect(80)
+        .says_once("its friction is exhausted");
 }
 
 /// A block of 36 kPa on sand and clay with weight, whose pressure spreads it.
@@ -121,11 +139,17 @@ fn a_mass_on_a_column_keeps_its_amplitude() {
     let scratch = Scratch::with_case(COLUMN);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(0);
     let extremes = extremes(&scratch, "out", "rigid-displacement-y");
-    let swings: Vec<f64> = extremes.windows(2).map(|pair| (pair[1][1] - pair[0][1]).abs()).collect();
+    let swings: Vec<f64> = extremes
+        .windows(2)
+        .map(|pair| (pair[1][1] - pair[0][1]).abs())
+        .collect();
     let halves = swings.len() - 1;
     let loss = 1.0 - (swings[halves] / swings[0]).powf(2.0 / halves as f64);
     let period = 2.0 * (extremes[halves + 1][0] - extremes[0][0]) / (halves + 1) as f64;
-    println!("loss {:.2} % a period of {period:.4} s, over {halves} half periods", 100.0 * loss);
+    println!(
+        "loss {:.2} % a period of {period:.4} s, over {halves} half periods",
+        100.0 * loss
+    );
     // 0.8 % of it, and a period of 0.479 s, were found.
     assert!(halves >= 8 && (0.0..0.02).contains(&loss), "{swings:?}");
     assert!((period / 0.481 - 1.0).abs() < 0.01, "{period}");
@@ -171,14 +195,25 @@ fn paths_that_make_rigid_bodies_overlap_are_refused() {
     scratch.write("case.toml", changed(PISTONS, "0.6, 0.0", "0.45, 0.0"));
     scratch.direct(&["case.toml", "--check"]).expect(0);
     // Drawn so and moved as one they are parts of one shape.
-    let one = changed(&changed(PISTONS, "[2.0, 1.5]", "[1.4, 1.5]"), "[2.0, 2.0]", "[1.4, 2.0]");
-    scratch.write("case.toml", changed(&one, "displacement = [0.0, 0.0]", "path = [[1.0, 0.6, 0.0]]"));
+    let one = changed(
+        &changed(PISTONS, "[2.0, 1.5]", "[1.4, 1.5]"),
+        "[2.0, 2.0]",
+        "[1.4, 2.0]",
+    );
+    scratch.write(
+        "case.toml",
+        changed(&one, "displacement = [0.0, 0.0]", "path = [[1.0, 0.6, 0.0]]"),
+    );
     scratch.direct(&["case.toml", "-q", "-o", "one"]).expect(0);
 }
 
 #[test]
 fn a_free_body_that_runs_into_another_one_ends_the_run() {
-    let case = changed(PISTONS, "type = \"quasi-static\", steps = 10", "type = \"dynamic\", end = 1.0, dt = 0.05");
+    let case = changed(
+        PISTONS,
+        "type = \"quasi-static\", steps = 10",
+        "type = \"dynamic\", end = 1.0, dt = 0.05",
+    );
     let case = changed(&case, "poisson = 0.3", "poisson = 0.3\ndensity = 1800");
     let moves = "free = [\"x\"]\nmass = 100.0\nstart_velocity = [1.0, 0.0]";
     let scratch = Scratch::with_case(&changed(&case, "path = [[1.0, 0.6, 0.0]]", moves));
@@ -219,12 +254,17 @@ face = "bottom"
 fn a_heap_on_a_base_with_friction_alone_has_an_equilibrium_at_the_start() {
     let scratch = Scratch::with_case(HEAP);
     for ranks in [1, 2] {
-        scratch.mpirun(ranks, &["case.toml", "-q", "-o", "out", "--force"]).expect(0);
+        scratch
+            .mpirun(ranks, &["case.toml", "-q", "-o", "out", "--force"])
+            .expect(0);
         let found = history(&scratch.path("out"));
         let [moved, x, y] = ["max-displacement", "reaction-x", "reaction-y"].map(|column| at(&found, column, 1.0));
         println!("{ranks} ranks: moved {moved:.1e} m, reaction {x:.2} and {y:.1} N");
         // Before, the start ended with "is every body held?".
-        assert!(moved < 1e-5 && x.abs() < 1e-3 * y && (y / 144e3 - 1.0).abs() < 1e-3, "{moved} {x} {y}");
+        assert!(
+            moved < 1e-5 && x.abs() < 1e-3 * y && (y / 144e3 - 1.0).abs() < 1e-3,
+            "{moved} {x} {y}"
+        );
     }
 }
 
@@ -271,16 +311,28 @@ fn bodies_that_approach_each_other_are_warned_of_with_the_distance() {
     let scratch = Scratch::with_case(APPROACHING);
     let warned = |set: &[&str]| {
         let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
-        scratch.direct(&[&["case.toml", "--check"], &set[..]].concat()).expect(0).stdout
+        scratch
+            .direct(&[&["case.toml", "--check"], &set[..]].concat())
+            .expect(0)
+            .stdout
     };
     let near = "W0229: body.0 and body.1 come closer than a cell at t = 0.30";
     assert!(warned(&[]).contains(near), "{}", warned(&[]));
     assert!(warned(&[]).contains("From 1.5 cells (0.15 m) on they push"));
-    for apart in ["body.0.velocity=[-1, 0]", "body.1.velocity=[1, 0]", "body.0.velocity=[0, 2]", "analysis.end=0.2"] {
+    for apart in [
+        "body.0.velocity=[-1, 0]",
+        "body.1.velocity=[1, 0]",
+        "body.0.velocity=[0, 2]",
+        "analysis.end=0.2",
+    ] {
         assert!(!warned(&[apart]).contains("W0229"), "{apart}");
     }
     // One falls onto the other, which lies on the bottom.
-    let falls = ["gravity={ acceleration = [0, -9.81] }", "boundary.bottom=fixed", "body.0.velocity=[0, 0]"];
+    let falls = [
+        "gravity={ acceleration = [0, -9.81] }",
+        "boundary.bottom=fixed",
+        "body.0.velocity=[0, 0]",
+    ];
     let below = "body.1.box={ lower = [0.5, 0], upper = [2, 0.5] }";
     assert!(warned(&[&falls[..], &[below]].concat()).contains("W0229"));
     assert!(!warned(&falls).contains("W0229"));

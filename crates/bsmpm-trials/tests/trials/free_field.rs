@@ -74,15 +74,26 @@ fn ground_beside_a_free_field_is_the_same_on_any_number_of_ranks_and_over_restar
     // Earth pressure at rest of both layers, k0 = 0.5.
     let [upper, lower] = [1800.0, 2000.0].map(|density| 9.81 * density);
     let at_rest = 0.5 * (0.5 * upper * 4.0 + upper * 4.0 + 0.5 * lower * 4.0);
-    assert!((at(&found, "reaction-x", 0.0) / at_rest - 1.0).abs() < 0.1, "{}", at(&found, "reaction-x", 0.0));
+    assert!(
+        (at(&found, "reaction-x", 0.0) / at_rest - 1.0).abs() < 0.1,
+        "{}",
+        at(&found, "reaction-x", 0.0)
+    );
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&found, name, 0.15).abs());
     assert!(closure < 1e-6 * external, "{closure:e} of {external:e}");
     assert!(at(&found, "velocity-x", 0.05).abs() > 0.01, "it shakes");
     scratch.write(
         "case.toml",
-        changed(SLOPE, "right = \"free-field\"\nbottom = \"absorbing\"", "right = \"roller\"\nbottom = \"roller\""),
+        changed(
+            SLOPE,
+            "right = \"free-field\"\nbottom = \"absorbing\"",
+            "right = \"roller\"\nbottom = \"roller\"",
+        ),
     );
-    scratch.mpirun(1, &["case.toml", "--check"]).expect(65).says_once("error E0246: ");
+    scratch
+        .mpirun(1, &["case.toml", "--check"])
+        .expect(65)
+        .says_once("error E0246: ");
 }
 
 /// Level ground on which a stage places a lift, away from the sides, before it shakes.
@@ -145,7 +156,15 @@ fn ground_beside_a_free_field_is_built_and_then_shakes() {
     let fixed = "stage.0={ name = \"built\", at = 0.05, add = [\"lift\"], boundary = { bottom = \"absorbing\" } }";
     for (name, set) in [("rests", &[][..]), ("held", &["boundary.bottom=fixed", fixed])] {
         let set = rests.iter().chain(set).flat_map(|set| ["--set", *set]);
-        scratch.mpirun(1, &["case.toml", "-q", "-o", name].into_iter().chain(set).collect::<Vec<_>>()).expect(0);
+        scratch
+            .mpirun(
+                1,
+                &["case.toml", "-q", "-o", name]
+                    .into_iter()
+                    .chain(set)
+                    .collect::<Vec<_>>(),
+            )
+            .expect(0);
         let found = history(&scratch.path(name));
         let [before, after] = [3.0, 4.0].map(|time| at(&found, "displacement-y", time));
         println!("{name}: {before:e} and {after:e} m");
@@ -153,8 +172,14 @@ fn ground_beside_a_free_field_is_built_and_then_shakes() {
     }
     for (wrong, reported) in [
         ("stage.0.at=0.15", "let [shaking] begin later"),
-        ("body.1.polygon=[[0.5, 4], [9, 4], [8, 5], [4, 5]]", "error E0628: stage.0.add: "),
+        (
+            "body.1.polygon=[[0.5, 4], [9, 4], [8, 5], [4, 5]]",
+            "error E0628: stage.0.add: ",
+        ),
     ] {
-        scratch.mpirun(1, &["case.toml", "--check", "--set", wrong]).expect(65).says_once(reported);
+        scratch
+            .mpirun(1, &["case.toml", "--check", "--set", wrong])
+            .expect(65)
+            .says_once(reported);
     }
 }

@@ -18,8 +18,12 @@ fn of(scratch: &Scratch, ranks: usize, arguments: &[&str], code: i32) -> Indicat
 }
 
 /// Every rank factorises the whole system, so that the runs themselves have the same bits on any number of ranks.
-const WHOLE: [&str; 4] =
-    ["--set", "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}", "--set", "solver.nonlinear=broyden"];
+const WHOLE: [&str; 4] = [
+    "--set",
+    "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}",
+    "--set",
+    "solver.nonlinear=broyden",
+];
 
 /// Asserts that all are the same on 1 to 4 ranks to round-off, and returns their names.
 #[track_caller]
@@ -29,7 +33,11 @@ fn agree(scratch: &Scratch, arguments: &[&str], code: i32) -> Vec<String> {
         assert!(run.keys().eq(runs[0].keys()));
         for (name, found) in run {
             let first = runs[0][name].value;
-            assert!((found.value - first).abs() <= 1e-12 * first.abs(), "{name}: {} and {first}", found.value);
+            assert!(
+                (found.value - first).abs() <= 1e-12 * first.abs(),
+                "{name}: {} and {first}",
+                found.value
+            );
         }
     }
     runs[0].keys().cloned().collect()
@@ -67,11 +75,29 @@ fn they_are_the_same_on_1_2_3_and_4_ranks() {
     );
     let footing = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
     let names = agree(&footing, &["--max-steps", "4"], 75);
-    assert_eq!(names, sorted(&["background-work", "cells-across-footing", "slip", "smoothing-length", "support-pull"]));
+    assert_eq!(
+        names,
+        sorted(&[
+            "background-work",
+            "cells-across-footing",
+            "slip",
+            "smoothing-length",
+            "support-pull"
+        ])
+    );
     // It slides over the bounds of slabs, smooths nothing, and keeps books.
     let block = Scratch::with_case(&format!("{SLIDING_BLOCK}\n[[history]]\nquantity = \"energy\"\n"));
     let names = agree(&block, &[], 0);
-    assert_eq!(names, sorted(&["energy-closure", "energy-growth", "energy-loss", "step-advance", "support-pull"]));
+    assert_eq!(
+        names,
+        sorted(&[
+            "energy-closure",
+            "energy-growth",
+            "energy-loss",
+            "step-advance",
+            "support-pull"
+        ])
+    );
 }
 
 #[test]
@@ -79,13 +105,26 @@ fn a_run_that_goes_on_has_those_of_one_that_was_not_stopped() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap());
     let whole = of(&scratch, 1, &["--max-steps", "60"], 75);
     of(&scratch, 2, &["--max-steps", "30"], 75);
-    let go_on = ["case.toml", "-q", "--restart", "auto", "-o", "2.out", "--max-steps", "60"];
+    let go_on = [
+        "case.toml",
+        "-q",
+        "--restart",
+        "auto",
+        "-o",
+        "2.out",
+        "--max-steps",
+        "60",
+    ];
     scratch.mpirun(2, &go_on).expect(75);
     let parts = manifest(&scratch.path("2.out")).indicators;
     assert!(parts.keys().eq(whole.keys()));
     for (name, found) in parts {
         let first = whole[&name].value;
-        assert!((found.value - first).abs() <= 1e-6 * first.abs().max(1e-3), "{name}: {} and {first}", found.value);
+        assert!(
+            (found.value - first).abs() <= 1e-6 * first.abs().max(1e-3),
+            "{name}: {} and {first}",
+            found.value
+        );
     }
 }
 
@@ -94,11 +133,23 @@ fn one_point_a_cell_is_reported_at_the_end() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
     // Not longer: what is so unstable soon follows the last digits, which differ from machine to machine.
     let coarse = ["case.toml", "--max-steps", "10", "--set", "body.0.points_per_cell=1"];
-    let bad = scratch.direct(&[&coarse[..], &["--set", "stabilisation.method=none"]].concat()).expect(75);
-    assert!(bad.stderr.contains("warning I0002: ") && bad.stderr.contains("warning I0005: "), "{}", bad.stderr);
-    let good = scratch.direct(&["case.toml", "--force", "--max-steps", "40"]).expect(75);
+    let bad = scratch
+        .direct(&[&coarse[..], &["--set", "stabilisation.method=none"]].concat())
+        .expect(75);
+    assert!(
+        bad.stderr.contains("warning I0002: ") && bad.stderr.contains("warning I0005: "),
+        "{}",
+        bad.stderr
+    );
+    let good = scratch
+        .direct(&["case.toml", "--force", "--max-steps", "40"])
+        .expect(75);
     let codes = good.stderr.matches("warning I").count();
-    assert!(codes == 1 && good.stderr.contains("warning I0023: "), "four cells across the footing: {}", good.stderr);
+    assert!(
+        codes == 1 && good.stderr.contains("warning I0023: "),
+        "four cells across the footing: {}",
+        good.stderr
+    );
 }
 
 /// The strip footing of the paper: noise of 13.4 (`none`), 1.46 (`f-bar`), 0.38 and 0.31 (`modified-f-bar`,
@@ -116,12 +167,22 @@ fn the_advice_against_noise_is_not_the_method_in_use() {
         ("consistent-f-bar", "0.499", "drainage = \"undrained\""),
         ("subgrid-f-bar", "0.499", "drainage = \"undrained\""),
     ] {
-        let [method_key, poisson_key] =
-            [format!("stabilisation.method={method}"), format!("material.clay.poisson={poisson}")];
-        let found = of(&scratch, 1, &["--max-steps", "1", "--set", &method_key, "--set", &poisson_key], 75);
+        let [method_key, poisson_key] = [
+            format!("stabilisation.method={method}"),
+            format!("material.clay.poisson={poisson}"),
+        ];
+        let found = of(
+            &scratch,
+            1,
+            &["--max-steps", "1", "--set", &method_key, "--set", &poisson_key],
+            75,
+        );
         let advice = &found["pressure-noise-plane"].advice;
         let recommended = format!("method = \"{method}\"");
-        assert!(advice.contains(remedy) && !advice.contains(&recommended), "{method}, {poisson}: {advice}");
+        assert!(
+            advice.contains(remedy) && !advice.contains(&recommended),
+            "{method}, {poisson}: {advice}"
+        );
     }
 }
 
@@ -135,7 +196,11 @@ fn stiffness(scratch: &Scratch, set: &[&str]) -> (Indicator, Option<f64>, String
     let accepting = ["case.toml", "--force", "--set", ACCEPTING];
     let log = scratch.direct(&[&accepting[..], &set].concat()).expect(0).stderr;
     let manifest = manifest(&scratch.path("case.out"));
-    (manifest.indicators["stiffness-loss"].clone(), manifest.summary.failed_at, log)
+    (
+        manifest.indicators["stiffness-loss"].clone(),
+        manifest.summary.failed_at,
+        log,
+    )
 }
 
 /// `bsmpm fos` finds a factor of 1.37. A loss of 2.4 to 3.0 was found at 1.3, and 1.1 at 1.
@@ -146,8 +211,15 @@ fn a_slope_that_stands_keeps_its_stiffness_in_any_number_of_steps() {
         for (factor, least, most) in [("1.0", 1.05, 1.15), ("1.3", 2.0, 4.0)] {
             let (found, failed_at, log) = stiffness(&scratch, &[steps, &format!("strength_reduction.factor={factor}")]);
             println!("{factor}, {steps}: {}", found.value);
-            assert!((least..most).contains(&found.value) && !found.unusual, "{factor}, {steps}: {}", found.value);
-            assert!(failed_at.is_none() && !log.contains("I0027"), "{factor}, {steps}: {log}");
+            assert!(
+                (least..most).contains(&found.value) && !found.unusual,
+                "{factor}, {steps}: {}",
+                found.value
+            );
+            assert!(
+                failed_at.is_none() && !log.contains("I0027"),
+                "{factor}, {steps}: {log}"
+            );
         }
     }
 }
@@ -161,7 +233,10 @@ fn a_slope_that_has_failed_is_reported_with_the_time() {
             let (found, failed_at, log) = stiffness(&scratch, &[steps, &format!("strength_reduction.factor={factor}")]);
             println!("{factor}, {steps}: {} from {failed_at:?} on", found.value);
             let failed_at = failed_at.expect("it has failed");
-            assert!(found.unusual && found.value > 300.0 && within.contains(&failed_at), "{found:?}, {failed_at}");
+            assert!(
+                found.unusual && found.value > 300.0 && within.contains(&failed_at),
+                "{found:?}, {failed_at}"
+            );
             assert!(log.contains("warning I0027: ") && log.contains("`bsmpm fos`"), "{log}");
             let reported = format!("the ground failed at t = {}:", (failed_at * 1e6).round() / 1e6);
             assert!(log.contains(&reported), "{log}");
@@ -175,10 +250,21 @@ fn a_slope_that_has_failed_is_reported_with_the_time() {
 fn ground_that_comes_to_rest_has_not_failed() {
     let begins = "\n[initial]\ngravity = \"elastic\"\n[strength_reduction]\nfactor = 1.3\n";
     let weakens = "\n[[stage]]\nat = 0.5\nstrength_reduction = 1.3\n";
-    for (more, ramp) in [("", "gravity.ramp=0"), (begins, "gravity.ramp=0"), (weakens, "gravity.ramp=0.4")] {
+    for (more, ramp) in [
+        ("", "gravity.ramp=0"),
+        (begins, "gravity.ramp=0"),
+        (weakens, "gravity.ramp=0.4"),
+    ] {
         let scratch = Scratch::with_case(&format!("{}{more}", slope(0.0)));
-        let reduced = if more.is_empty() { "strength_reduction.factor=1.3" } else { "analysis.steps=20" };
-        let log = scratch.direct(&["case.toml", "--set", ramp, "--set", reduced]).expect(0).stderr;
+        let reduced = if more.is_empty() {
+            "strength_reduction.factor=1.3"
+        } else {
+            "analysis.steps=20"
+        };
+        let log = scratch
+            .direct(&["case.toml", "--set", ramp, "--set", reduced])
+            .expect(0)
+            .stderr;
         assert!(!log.contains("I0027"), "{log}");
     }
 }
@@ -189,12 +275,20 @@ fn failure_is_reported_alike_on_any_number_of_ranks_and_after_restarts() {
     // Broyden's method finds no equilibrium so far beyond failure.
     let linear = &[&WHOLE[..2], &["--set", ACCEPTING]].concat()[..];
     let whole = of(&scratch, 1, linear, 0)["stiffness-loss"].clone();
-    assert!(whole.unusual && whole.meaning.contains("the ground failed at t = 0.7"), "{whole:?}");
+    assert!(
+        whole.unusual && whole.meaning.contains("the ground failed at t = 0.7"),
+        "{whole:?}"
+    );
     let parts = [&["case.toml", "-q", "-o", "parts.out", "--restart", "auto"][..], linear].concat();
-    scratch.mpirun(2, &[&parts[..], &["--max-steps", "7"]].concat()).expect(75);
+    scratch
+        .mpirun(2, &[&parts[..], &["--max-steps", "7"]].concat())
+        .expect(75);
     scratch.mpirun(3, &parts).expect(0);
     let found = manifest(&scratch.path("parts.out")).indicators["stiffness-loss"].clone();
-    assert!((found.value / whole.value - 1.0).abs() < 1e-6 && found.meaning == whole.meaning, "{found:?}, {whole:?}");
+    assert!(
+        (found.value / whole.value - 1.0).abs() < 1e-6 && found.meaning == whole.meaning,
+        "{found:?}, {whole:?}"
+    );
 }
 
 /// A motion that is prescribed leaves no load that the ground could fail under.

@@ -50,10 +50,20 @@ const NAMES: [&str; 4] = ["softening", "sensitive", "clay", "grains"];
 /// The block, 2 m wide and 1 m high, and of a solid so `thick` (m) between what holds its front and its back.
 fn block(geometry: &str, thick: f64, back: &str) -> String {
     let is_solid = geometry == "solid";
-    let place = |x: f64, y: f64, z: f64| if is_solid { format!("[{x}, {y}, {z}]") } else { format!("[{x}, {z}]") };
+    let place = |x: f64, y: f64, z: f64| {
+        if is_solid {
+            format!("[{x}, {y}, {z}]")
+        } else {
+            format!("[{x}, {z}]")
+        }
+    };
     let part = |k: usize, name: &str| {
         let (left, right) = (0.5 * k as f64, 0.5 * (k + 1) as f64);
-        let [lower, upper, middle] = [place(left, 0.0, 0.0), place(right, thick, 1.0), place(left + 0.3, 0.1, 0.3)];
+        let [lower, upper, middle] = [
+            place(left, 0.0, 0.0),
+            place(right, thick, 1.0),
+            place(left + 0.3, 0.1, 0.3),
+        ];
         format!(
             "[[body]]\nmaterial = \"{name}\"\nbox = {{ lower = {lower}, upper = {upper} }}\npoints_per_cell = 2\n\
              [[history]]\nname = \"{name}\"\nquantity = \"stress\"\nat = {middle}\n\
@@ -61,7 +71,11 @@ fn block(geometry: &str, thick: f64, back: &str) -> String {
         )
     };
     let parts: String = NAMES.iter().enumerate().map(|(k, name)| part(k, name)).collect();
-    let sides = if is_solid { format!("front = \"roller\"\nback = \"{back}\"\n") } else { String::new() };
+    let sides = if is_solid {
+        format!("front = \"roller\"\nback = \"{back}\"\n")
+    } else {
+        String::new()
+    };
     format!(
         "geometry = \"{geometry}\"\n\
          analysis = {{ type = \"dynamic\", end = 0.2, dt = 0.02 }}\n\
@@ -86,7 +100,10 @@ fn laws_with_a_state_go_on_to_the_bit_in_the_round_and_in_space() {
         assert!(whole == part);
         let (strain, ids) = (whole.real("plastic_strain", 1).unwrap(), ids(&whole));
         for (body, name) in NAMES.iter().enumerate() {
-            let own = ids.iter().zip(strain).filter(|(id, _)| **id as usize * NAMES.len() / ids.len() == body);
+            let own = ids
+                .iter()
+                .zip(strain)
+                .filter(|(id, _)| **id as usize * NAMES.len() / ids.len() == body);
             let most = own.map(|(_, strain)| *strain).fold(0.0, f64::max);
             assert!(most > 1e-3, "{name} flows: {most:e}");
         }
@@ -100,13 +117,22 @@ fn a_slice_of_laws_with_a_state_is_plane_strain() {
         scratch.direct(&["case.toml", "-q", "-o", "out"]).expect(0);
         history(&scratch.path("out"))
     };
-    let (plane, solid) = (run(&block("plane-strain", 0.0, "")), run(&block("solid", 0.25, "roller")));
+    let (plane, solid) = (
+        run(&block("plane-strain", 0.0, "")),
+        run(&block("solid", 0.25, "roller")),
+    );
     for name in NAMES {
-        for (of_plane, of_solid) in
-            [("xx", "xx"), ("yy", "zz"), ("zz", "yy"), ("moved-x", "moved-x"), ("moved-y", "moved-z")]
-        {
-            let [expected, found] =
-                [at(&plane, &format!("{name}-{of_plane}"), 0.2), at(&solid, &format!("{name}-{of_solid}"), 0.2)];
+        for (of_plane, of_solid) in [
+            ("xx", "xx"),
+            ("yy", "zz"),
+            ("zz", "yy"),
+            ("moved-x", "moved-x"),
+            ("moved-y", "moved-z"),
+        ] {
+            let [expected, found] = [
+                at(&plane, &format!("{name}-{of_plane}"), 0.2),
+                at(&solid, &format!("{name}-{of_solid}"), 0.2),
+            ];
             let apart = found / expected - 1.0;
             println!("{name}, {of_solid}: {expected:e}, {apart:e}");
             assert!(apart.abs() < 1e-9, "{name}, {of_solid}: {found} for {expected}");

@@ -101,7 +101,9 @@ fn terzaghi(first: impl Fn(f64) -> f64, t: f64) -> f64 {
 /// What a run of a case warns of before its first step.
 fn warnings(case: &str) -> Vec<String> {
     let scratch = Scratch::with_case(case);
-    scratch.mpirun(1, &["case.toml", "-q", "-o", "out", "--max-steps", "1"]).expect(75);
+    scratch
+        .mpirun(1, &["case.toml", "-q", "-o", "out", "--max-steps", "1"])
+        .expect(75);
     manifest(&scratch.path("out")).warnings
 }
 
@@ -112,7 +114,11 @@ fn a_lift_loads_the_water_below_and_both_drain_through_its_top() {
     let scratch = Scratch::with_case(LIFTED);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "whole"]).expect(0);
     let reported = manifest(&scratch.path("whole"));
-    assert!(reported.warnings.iter().all(|warning| !warning.contains("stage.0")), "{:?}", reported.warnings);
+    assert!(
+        reported.warnings.iter().all(|warning| !warning.contains("stage.0")),
+        "{:?}",
+        reported.warnings
+    );
     assert_eq!(
         (&reported.stages[0].applied[..], &reported.stages[0].released[..]),
         (&["crest".into()][..], &["ground".into()][..])
@@ -121,8 +127,16 @@ fn a_lift_loads_the_water_below_and_both_drain_through_its_top() {
     let of = |name: &str, t: f64| at(&found, name, t);
     let whole = BUOYANT * LIFT;
     // Ground at rest stays so, but for what the first stress is off by.
-    assert!(["base", "within"].iter().all(|name| of(name, 0.25).abs() < 1e-3 * whole));
-    assert!((of("base", 0.255) / whole - 1.0).abs() < 1e-3, "{}, exactly {whole}", of("base", 0.255));
+    assert!(
+        ["base", "within"]
+            .iter()
+            .all(|name| of(name, 0.25).abs() < 1e-3 * whole)
+    );
+    assert!(
+        (of("base", 0.255) / whole - 1.0).abs() < 1e-3,
+        "{}, exactly {whole}",
+        of("base", 0.255)
+    );
     // At first gamma' z in the lift and gamma' h below.
     let of_lift = |k: f64| 2.0 * BUOYANT * (k * LIFT).sin() / (k * k);
     for t in [0.1, 0.3] {
@@ -135,7 +149,10 @@ fn a_lift_loads_the_water_below_and_both_drain_through_its_top() {
         }
         // The ground's surface sinks by the mean of what has drained below it, over M.
         let below = terzaghi(|k| of_lift(k) * (k * LIFT).cos() / k, t);
-        let (settled, exact) = (of("top-y", 0.25) - of("top-y", 0.25 + t), (whole * GROUND - below) / 1e8);
+        let (settled, exact) = (
+            of("top-y", 0.25) - of("top-y", 0.25 + t),
+            (whole * GROUND - below) / 1e8,
+        );
         println!("settled after {t} s: {settled:e} m, exactly {exact:e}");
         assert!((settled / exact - 1.0).abs() < 0.01, "{settled:e}, exactly {exact:e}");
     }
@@ -146,9 +163,18 @@ fn a_lift_loads_the_water_below_and_both_drain_through_its_top() {
     println!("balance {balance:e}");
     assert!(balance < 1e-7, "{balance:e}");
     let covered = warnings(&changed(LIFTED, "deactivate = [\"ground\"]\n", ""));
-    assert!(covered.iter().any(|warning| warning.contains("W0545") && warning.contains("drain.0")), "{covered:?}");
+    assert!(
+        covered
+            .iter()
+            .any(|warning| warning.contains("W0545") && warning.contains("drain.0")),
+        "{covered:?}"
+    );
     // Before, at and after the stage.
-    repeats(&scratch, &["base", "within", "top-y", "crest"], &["49", "50", "51", "60"]);
+    repeats(
+        &scratch,
+        &["base", "within", "top-y", "crest"],
+        &["49", "50", "51", "60"],
+    );
 }
 
 /// Clay between sand below and fill that a stage places above, both of which let water through as if it were none:
@@ -172,25 +198,50 @@ fn clay_between_sand_and_fill_in_which_no_water_flows_drains_to_both() {
         "[[body]]\nmaterial = \"soil\"\nbox = { lower = [0, 0]",
         "[[body]]\nmaterial = \"sand\"\nbox = { lower = [0, 0]",
     );
-    let case = changed(&case, "name = \"lift\"\nmaterial = \"soil\"", "name = \"lift\"\nmaterial = \"sand\"");
-    let case = changed(&case, "from = [0, 1]\nto = [0.1, 1]", "from = [0, 0.25]\nto = [0.1, 0.25]");
+    let case = changed(
+        &case,
+        "name = \"lift\"\nmaterial = \"soil\"",
+        "name = \"lift\"\nmaterial = \"sand\"",
+    );
+    let case = changed(
+        &case,
+        "from = [0, 1]\nto = [0.1, 1]",
+        "from = [0, 0.25]\nto = [0.1, 0.25]",
+    );
     let case = changed(&case, "deactivate = [\"ground\"]\nactivate = [\"crest\"]\n", "");
     let case = changed(&case, "dt = \"5 ms\"", "dt = \"1 ms\"");
-    let case = changed(&case, "name = \"base\"\nat = [0.025, 0.025]", "name = \"middle\"\nat = [0.025, 0.4917]");
+    let case = changed(
+        &case,
+        "name = \"base\"\nat = [0.025, 0.025]",
+        "name = \"middle\"\nat = [0.025, 0.4917]",
+    );
     let scratch = Scratch::with_case(&case);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "out"]).expect(0);
     let warned = manifest(&scratch.path("out")).warnings;
-    assert!(warned.iter().all(|warning| !warning.contains("drain") && !warning.contains("stage.0")), "{warned:?}");
+    assert!(
+        warned
+            .iter()
+            .all(|warning| !warning.contains("drain") && !warning.contains("stage.0")),
+        "{warned:?}"
+    );
     let [a, b, c] = ["[[drain]]", "[[stage]]", "[[history]]"].map(|table| case.find(table).expect("a table"));
     let closed = warnings(&(case[..a].to_owned() + &case[b..c]));
-    assert!(closed.iter().any(|warning| warning.starts_with("W0543: material.sand: ")), "{closed:?}");
+    assert!(
+        closed
+            .iter()
+            .any(|warning| warning.starts_with("W0543: material.sand: ")),
+        "{closed:?}"
+    );
     let found = history(&scratch.path("out"));
     let of = |name: &str, t: f64| at(&found, name, t);
     let weight = 20e3 * LIFT;
     assert!(of("middle", 0.25).abs() < 1e-3 * weight && of("top-y", 0.25).abs() < 1e-3 * weight / 1e8);
     for t in [0.01, 0.03] {
         // A quarter of a metre to either side.
-        let exact = terzaghi(|k| weight * 2.0 / k * (k * (0.25 - 0.0083) / 0.25).sin(), t / (0.25 * 0.25));
+        let exact = terzaghi(
+            |k| weight * 2.0 / k * (k * (0.25 - 0.0083) / 0.25).sin(),
+            t / (0.25 * 0.25),
+        );
         let p = of("middle", 0.25 + t);
         println!("after {t} s: {p} Pa, exactly {exact}");
         assert!((p - exact).abs() < 0.02 * weight, "{p}, exactly {exact}");
@@ -215,7 +266,9 @@ fn a_head_and_an_inflow_begin_with_a_stage() {
     let case = changed(&case, "upper = [0.1, 1]\ncell", "upper = [0.1, 1.1]\ncell");
     let a = case.find("[[drain]]").expect("drains");
     let b = case.find("[solver]").expect("a solver");
-    let c = case.find("[[history]]\nquantity = \"water-outflow\"").expect("outflows");
+    let c = case
+        .find("[[history]]\nquantity = \"water-outflow\"")
+        .expect("outflows");
     let drains = format!(
         "[[drain]]\nname = \"base\"\nface = \"bottom\"\n[[drain]]\nname = \"artesian\"\nface = \"bottom\"\nhead = {HEAD}\n\
          [[drain]]\nname = \"crest\"\nsurface = true\n\
@@ -244,7 +297,11 @@ fn a_head_and_an_inflow_begin_with_a_stage() {
     assert!(rate.abs() < 1e-6 * RATE, "steady: {rate:e}");
     let balance = of("water-balance", 9.0).abs();
     assert!(balance < 1e-6, "{balance:e}");
-    repeats(&scratch, &["base", "within", "out"], &["19", "20", "21", "99", "100", "110"]);
+    repeats(
+        &scratch,
+        &["base", "within", "out"],
+        &["19", "20", "21", "99", "100", "110"],
+    );
 }
 
 /// A lift of silt that keeps water under suction comes when the level has fallen: with what its pores hold then, which
@@ -252,7 +309,11 @@ fn a_head_and_an_inflow_begin_with_a_stage() {
 #[test]
 fn a_lift_comes_with_the_suction_of_its_time() {
     let case = changed(LIFTED, "level = 1.0", "level_path = [[0, 0.75], [0.2, 0.45]]");
-    let case = changed(&case, "porosity = 0.4", "porosity = 0.4\nretention = { alpha = 2.0, n = 2.0 }");
+    let case = changed(
+        &case,
+        "porosity = 0.4",
+        "porosity = 0.4\nretention = { alpha = 2.0, n = 2.0 }",
+    );
     let case = changed(
         &case,
         "[[drain]]\nname = \"ground\"\nfrom = [0, 0.75]\nto = [0.1, 0.75]",
@@ -260,7 +321,11 @@ fn a_lift_comes_with_the_suction_of_its_time() {
     );
     let case = changed(&case, "[[drain]]\nname = \"crest\"\nfrom = [0, 1]\nto = [0.1, 1]\n", "");
     let case = changed(&case, "deactivate = [\"ground\"]\nactivate = [\"crest\"]\n", "");
-    let case = changed(&case, "[[history]]\nquantity = \"water-outflow\"\ndrain = \"ground\"\nname = \"ground\"\n", "");
+    let case = changed(
+        &case,
+        "[[history]]\nquantity = \"water-outflow\"\ndrain = \"ground\"\nname = \"ground\"\n",
+        "",
+    );
     let case = changed(&case, "drain = \"crest\"\nname = \"crest\"", "name = \"out\"");
     let case = changed(
         &case,
@@ -270,7 +335,12 @@ fn a_lift_comes_with_the_suction_of_its_time() {
     let scratch = Scratch::with_case(&case);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "whole"]).expect(0);
     let reported = manifest(&scratch.path("whole")).warnings;
-    assert!(reported.iter().any(|warning| warning.starts_with("W0544: stage.0.add: the added body.1")), "{reported:?}");
+    assert!(
+        reported
+            .iter()
+            .any(|warning| warning.starts_with("W0544: stage.0.add: the added body.1")),
+        "{reported:?}"
+    );
     let found = history(&scratch.path("whole"));
     // Under its own weight what pores hold bears little: p is near that of still water, gamma_w (0.45 - 0.875) m.
     let (suction, still) = (at(&found, "within", 0.255), 9810.0 * (0.45 - 0.875));

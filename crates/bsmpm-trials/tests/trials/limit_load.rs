@@ -16,13 +16,21 @@ struct LimitLoad {
 /// The text and `limit-load.json` of a shipped case with settings.
 fn limit_load(scratch: &Scratch, case: &str, settings: &[&str]) -> (String, Value) {
     let (output, case) = (scratch.path("out"), shipped(&format!("limit_load/{case}.toml")));
-    let mut words =
-        vec!["limit-load", case.to_str().expect("a path"), "-o", output.to_str().expect("a path"), "--force"];
+    let mut words = vec![
+        "limit-load",
+        case.to_str().expect("a path"),
+        "-o",
+        output.to_str().expect("a path"),
+        "--force",
+    ];
     settings.iter().for_each(|setting| words.extend(["--set", setting]));
     let arguments = LimitLoad::parse_from([&words[..], &["--", program()]].concat()).arguments;
     let found = limit_load::run(&arguments, |_| ()).expect("a limit load");
     let text = found.text;
-    assert!(found.is_reached && found.files.iter().all(|file| file.is_file()), "{text}");
+    assert!(
+        found.is_reached && found.files.iter().all(|file| file.is_file()),
+        "{text}"
+    );
     let json = std::fs::read_to_string(output.join("limit-load.json")).expect("limit-load.json");
     (text, serde_json::from_str(&json).expect("JSON"))
 }
@@ -43,13 +51,23 @@ fn undrained_limit_loads_are_within_5_per_cent_and_extrapolated_within_2() {
     let scratch = Scratch::new();
     let level = 2.0 + std::f64::consts::PI;
     let crest = level - std::f64::consts::FRAC_PI_3;
-    for (case, exact) in [("strip_on_clay", level), ("strip_at_crest", crest), ("punch_on_clay", 1e4 * level)] {
+    for (case, exact) in [
+        ("strip_on_clay", level),
+        ("strip_at_crest", crest),
+        ("punch_on_clay", 1e4 * level),
+    ] {
         let (text, found) = limit_load(&scratch, case, &[]);
         let [fine, extrapolated] = errors(&found, exact);
         println!("{case}: {fine:+.4}, {extrapolated:+.4}");
         // +1.0, +4.4 and +0.9 %; +0.1, -0.3 and 0.0 % were found.
-        assert!((0.0..0.05).contains(&fine) && extrapolated.abs() < 0.02, "{case}: {fine} {extrapolated}");
-        assert!(text.contains("too high (the unsafe side)") && !text.contains("warning"), "{text}");
+        assert!(
+            (0.0..0.05).contains(&fine) && extrapolated.abs() < 0.02,
+            "{case}: {fine} {extrapolated}"
+        );
+        assert!(
+            text.contains("too high (the unsafe side)") && !text.contains("warning"),
+            "{text}"
+        );
     }
 }
 
@@ -66,7 +84,10 @@ fn limit_loads_of_soil_with_friction_are_too_high_and_extrapolated_near_the_exac
         let (_, found) = limit_load(&scratch, case, &[]);
         let [fine, extrapolated] = errors(&found, exact);
         println!("{case}: {fine:+.4}, {extrapolated:+.4}");
-        assert!((0.0..bounds[0]).contains(&fine) && extrapolated.abs() < bounds[1], "{case}: {fine} {extrapolated}");
+        assert!(
+            (0.0..bounds[0]).contains(&fine) && extrapolated.abs() < bounds[1],
+            "{case}: {fine} {extrapolated}"
+        );
         assert_eq!(found["grids"][0]["cuts"], 0, "{case}");
     }
 }
@@ -93,15 +114,23 @@ fn a_limit_load_is_the_same_on_any_number_of_ranks_and_over_restarts() {
         let whole = format!("whole{ranks}");
         scratch.mpirun(ranks, &[&set[..], &["-o", &whole]].concat()).expect(0);
         assert!(text("whole1") == text(&whole), "{ranks} ranks");
-        assert_eq!(manifest(&scratch.path("whole1")).limit_loads, manifest(&scratch.path(&whole)).limit_loads);
+        assert_eq!(
+            manifest(&scratch.path("whole1")).limit_loads,
+            manifest(&scratch.path(&whole)).limit_loads
+        );
     }
     let on = [&set[..], &["-o", "part", "--restart", "auto"]].concat();
-    scratch.mpirun(2, &[&on[..], &["--max-steps", "15"]].concat()).expect(75);
+    scratch
+        .mpirun(2, &[&on[..], &["--max-steps", "15"]].concat())
+        .expect(75);
     scratch.mpirun(3, &on).expect(0);
     agree(&scratch.path("part"), &scratch.path("whole1"));
     let loads = manifest(&scratch.path("part")).limit_loads;
     assert_eq!(loads, manifest(&scratch.path("whole1")).limit_loads);
-    assert!((loads[0].value / 5.2432 - 1.0).abs() < 0.01 && loads[0].change.abs() < 1e-3, "{loads:?}");
+    assert!(
+        (loads[0].value / 5.2432 - 1.0).abs() < 0.01 && loads[0].change.abs() < 1e-3,
+        "{loads:?}"
+    );
 }
 
 #[test]
@@ -118,5 +147,9 @@ fn a_load_that_still_grows_is_reported() {
     let mut arguments = LimitLoad::parse_from(words).arguments;
     arguments.options.output = Some(directory);
     let found = limit_load::run(&arguments, |_| ()).expect("a table");
-    assert!(!found.is_reached && !found.text.contains("extrapolated"), "{}", found.text);
+    assert!(
+        !found.is_reached && !found.text.contains("extrapolated"),
+        "{}",
+        found.text
+    );
 }

@@ -38,9 +38,22 @@ fn a_second_run_is_refused_with_73_and_the_first_one_goes_on_as_it_was() {
     for ranks in [None, Some(2)] {
         let running = under_way(&scratch, ranks);
         let holder = lock(&scratch);
-        for arguments in [&["case.toml"][..], &["case.toml", "--force"], &["case.toml", "--force", "--break-lock"]] {
-            let output = scratch.job(ranks, arguments).variable("PBS_JOBID", "41").start_beside().end().expect(73);
-            output.says_once(&format!("process {} on host {}", holder["pid"], holder["host"].as_str().unwrap()));
+        for arguments in [
+            &["case.toml"][..],
+            &["case.toml", "--force"],
+            &["case.toml", "--force", "--break-lock"],
+        ] {
+            let output = scratch
+                .job(ranks, arguments)
+                .variable("PBS_JOBID", "41")
+                .start_beside()
+                .end()
+                .expect(73);
+            output.says_once(&format!(
+                "process {} on host {}",
+                holder["pid"],
+                holder["host"].as_str().unwrap()
+            ));
             assert!(output.stderr.contains("case.out"), "{output:#?}");
         }
         assert_eq!(lock(&scratch), holder);
@@ -49,7 +62,13 @@ fn a_second_run_is_refused_with_73_and_the_first_one_goes_on_as_it_was() {
         assert!(!scratch.path("case.out/.lock").exists());
         let first = history(&scratch.path("case.out"));
         let last = first.get("step").unwrap().last().unwrap().to_string();
-        scratch.job(ranks, &["case.toml", "-q", "--force", "-o", "alone", "--max-steps", &last]).run().expect(75);
+        scratch
+            .job(
+                ranks,
+                &["case.toml", "-q", "--force", "-o", "alone", "--max-steps", &last],
+            )
+            .run()
+            .expect(75);
         assert_eq!(first.values, history(&scratch.path("alone")).values, "to the bit");
     }
 }
@@ -96,12 +115,23 @@ fn a_dead_runs_lock_on_this_host_is_taken_over_and_that_is_reported() {
     for ranks in [None, Some(2)] {
         killed(&scratch, ranks);
         let holder = lock(&scratch);
-        scratch.job(ranks, &["case.toml"]).run().expect(73).says_once("error E0769: ");
+        scratch
+            .job(ranks, &["case.toml"])
+            .run()
+            .expect(73)
+            .says_once("error E0769: ");
         killed(&scratch, ranks);
         assert_ne!(lock(&scratch), holder);
-        scratch.job(ranks, &ONE_STEP).run().expect(75).says_once("W0737: the output directory was locked by process");
+        scratch
+            .job(ranks, &ONE_STEP)
+            .run()
+            .expect(75)
+            .says_once("W0737: the output directory was locked by process");
         let warnings = manifest(&scratch.path("case.out")).warnings;
-        assert!(warnings.iter().any(|warning| warning.contains("the process is gone")), "{warnings:?}");
+        assert!(
+            warnings.iter().any(|warning| warning.contains("the process is gone")),
+            "{warnings:?}"
+        );
         assert!(!scratch.path("case.out/.lock").exists());
     }
 }
@@ -113,7 +143,11 @@ fn a_lock_of_another_process_that_got_the_number_is_taken_over() {
     let mut holder = lock(&scratch);
     holder["pid"] = std::process::id().into();
     scratch.write("case.out/.lock", holder.to_string());
-    scratch.job(None, &ONE_STEP).run().expect(75).says_once("another has its number");
+    scratch
+        .job(None, &ONE_STEP)
+        .run()
+        .expect(75)
+        .says_once("another has its number");
 }
 
 #[test]
@@ -127,17 +161,33 @@ fn a_lock_of_another_host_holds_until_it_is_broken_unless_its_job_has_been_start
     let before = std::fs::read(scratch.path("case.out/run.json")).unwrap();
     for job in ["", "42"] {
         let output = scratch.job(None, &ONE_STEP).variable("PBS_JOBID", job).run().expect(73);
-        ["--break-lock", "on host elsewhere", "PBS_JOBID=41"].into_iter().for_each(|text| output.says_once(text));
+        ["--break-lock", "on host elsewhere", "PBS_JOBID=41"]
+            .into_iter()
+            .for_each(|text| output.says_once(text));
         assert_eq!(std::fs::read(scratch.path("case.out/run.json")).unwrap(), before);
     }
-    scratch.job(None, &ONE_STEP).variable("PBS_JOBID", "41").run().expect(75).says_once("has been started again");
+    scratch
+        .job(None, &ONE_STEP)
+        .variable("PBS_JOBID", "41")
+        .run()
+        .expect(75)
+        .says_once("has been started again");
     lend();
-    scratch.job(None, &[&ONE_STEP[..], &["--break-lock"]].concat()).run().expect(75).says_once("by --break-lock");
+    scratch
+        .job(None, &[&ONE_STEP[..], &["--break-lock"]].concat())
+        .run()
+        .expect(75)
+        .says_once("by --break-lock");
     // A file that names nobody, and a takeover that was never finished.
     for files in [&[".lock"][..], &[".lock", ".lock.takeover"]] {
-        files.iter().for_each(|file| scratch.write(&format!("case.out/{file}"), "?"));
+        files
+            .iter()
+            .for_each(|file| scratch.write(&format!("case.out/{file}"), "?"));
         scratch.job(None, &ONE_STEP).run().expect(73).says_once("--break-lock");
-        scratch.job(None, &[&ONE_STEP[..], &["--break-lock"]].concat()).run().expect(75);
+        scratch
+            .job(None, &[&ONE_STEP[..], &["--break-lock"]].concat())
+            .run()
+            .expect(75);
         assert!(files.iter().all(|file| !scratch.path("case.out").join(file).exists()));
     }
 }
@@ -146,7 +196,9 @@ fn a_lock_of_another_host_holds_until_it_is_broken_unless_its_job_has_been_start
 #[test]
 fn a_run_that_fails_lets_the_directory_go() {
     let scratch = Scratch::with_case(&endless());
-    let job = scratch.job(Some(2), &["case.toml", "--force"]).variable("BSMPM_FAULT", "panic:rank=0,step=3");
+    let job = scratch
+        .job(Some(2), &["case.toml", "--force"])
+        .variable("BSMPM_FAULT", "panic:rank=0,step=3");
     job.run().expect(70);
     assert!(!scratch.path("case.out/.lock").exists());
     scratch.write("case.out/steps.csv", "");

@@ -99,12 +99,18 @@ fn last(scratch: &Scratch, case: &str, cell: &str, column: &str) -> f64 {
 fn a_trapdoor_beside_a_floor_has_the_load_of_limit_analysis() {
     let scratch = Scratch::new();
     let [coarse, fine] = ["0.25", "0.125"].map(|cell| (50e3 - last(&scratch, TRAPDOOR, cell, "door-y")) / 10e3);
-    println!("8 cells: {coarse:.3}, 16 cells: {fine:.3}, extrapolated: {:.3}", 2.0 * fine - coarse);
+    println!(
+        "8 cells: {coarse:.3}, 16 cells: {fine:.3}, extrapolated: {:.3}",
+        2.0 * fine - coarse
+    );
     // 1.877, 1.896 and 1.915 were found; before, no run ended.
     assert!((1.95 * 0.9..2.0 * 1.1).contains(&coarse), "{coarse}");
     assert!((1.95 * 0.95..2.0 * 1.05).contains(&(2.0 * fine - coarse)), "{fine}");
     let history = history(&scratch.path("out"));
-    let total: f64 = ["door-y", "floor-y"].map(|column| at(&history, column, 1.0)).iter().sum();
+    let total: f64 = ["door-y", "floor-y"]
+        .map(|column| at(&history, column, 1.0))
+        .iter()
+        .sum();
     assert!((total / 300e3 - 1.0).abs() < 1e-4, "{total}");
 }
 
@@ -112,9 +118,15 @@ fn a_trapdoor_beside_a_floor_has_the_load_of_limit_analysis() {
 fn a_wall_above_a_side_at_rest_has_rankines_passive_force() {
     let scratch = Scratch::new();
     let [coarse, fine] = ["0.5", "0.25"].map(|cell| last(&scratch, WALL, cell, "wall-x"));
-    println!("4 cells: {coarse:.3}, 8 cells: {fine:.3}, extrapolated: {:.3}", 2.0 * fine - coarse);
+    println!(
+        "4 cells: {coarse:.3}, 8 cells: {fine:.3}, extrapolated: {:.3}",
+        2.0 * fine - coarse
+    );
     // 3.186, 3.171 and 3.156 were found; before: 1732, 21, 7 and 4.75 with finer and finer cells.
-    assert!((fine / 3.17 - 1.0).abs() < 0.1 && ((2.0 * fine - coarse) / 3.17 - 1.0).abs() < 0.05, "{coarse} {fine}");
+    assert!(
+        (fine / 3.17 - 1.0).abs() < 0.1 && ((2.0 * fine - coarse) / 3.17 - 1.0).abs() < 0.05,
+        "{coarse} {fine}"
+    );
 }
 
 #[test]
@@ -154,7 +166,11 @@ fn strips_at_a_right_angle_and_strips_that_face_each_other_keep_their_motions() 
     };
     let scratch = Scratch::new();
     // A strain of 1 %: 100 kN. Of the layer 0.2 m high in cells of 0.25 m, too: its platens are less than a cell apart.
-    for (side, top, upper) in [("0.0", "-0.01", "1.0"), ("1e-9", "-0.01", "1.0"), ("0.0", "-0.002", "0.2")] {
+    for (side, top, upper) in [
+        ("0.0", "-0.01", "1.0"),
+        ("1e-9", "-0.01", "1.0"),
+        ("0.0", "-0.002", "0.2"),
+    ] {
         scratch.write("case.toml", platen(side, top, upper));
         scratch.direct(&["case.toml", "-q", "-o", "out", "--force"]).expect(0);
         let history = history(&scratch.path("out"));
@@ -184,8 +200,12 @@ fn motions_that_the_rule_does_not_cover_are_refused_by_name() {
     let rigid = "\n[[rigid]]\nname = \"block\"\nfriction_coefficient = 0.0\npolygon = [[1.0, -0.5], [6.0, -0.5], [6.0, 0.0], [1.0, 0.0]]\n";
     let text = changed(TRAPDOOR, "CELL", "0.25");
     let (door, floor) = text.split_once("[[prescribed]]\nname = \"floor\"").expect("a floor");
-    let (_, rest) = floor.split_once("displacement = [0.0, 0.0]\n").expect("its displacement");
-    let (rest, _) = rest.split_once("[[history]]\nquantity = \"reaction\"\nof = \"floor\"").expect("its history");
+    let (_, rest) = floor
+        .split_once("displacement = [0.0, 0.0]\n")
+        .expect("its displacement");
+    let (rest, _) = rest
+        .split_once("[[history]]\nquantity = \"reaction\"\nof = \"floor\"")
+        .expect("its history");
     scratch.write("rigid.toml", door.to_owned() + rigid + rest);
     let output = scratch.direct(&["rigid.toml", "--check"]).expect(65);
     output.says_once("E0251: prescribed.0.from: `prescribed.0` ([[prescribed]] or [footing]) and `rigid.0` ([[rigid]]) share an edge");
@@ -206,7 +226,9 @@ fn rigid_bodies_that_meet_in_one_plane_are_warned_of_with_the_error_and_refused_
     let scratch = Scratch::with_case(&case);
     let warning = "warning W0232: rigid bodies `door` and `floor` touch and move differently. The smaller one is 12 cells \
                    wide, so the forces are about 8 % too large.";
-    let refused = scratch.direct(&["case.toml", "--check", "--set", "grid.cell=0.25"]).expect(65);
+    let refused = scratch
+        .direct(&["case.toml", "--check", "--set", "grid.cell=0.25"])
+        .expect(65);
     refused.says_once("error E0250: rigid.1.name: rigid bodies `door` and `floor`");
     scratch.direct(&["case.toml", "--check"]).expect(0).says_once(warning);
     scratch.direct(&["case.toml", "-q", "-o", "out"]).expect(0);
@@ -214,6 +236,15 @@ fn rigid_bodies_that_meet_in_one_plane_are_warned_of_with_the_error_and_refused_
     println!("N = {found:.3}");
     assert!((found / 2.0 - 1.067).abs() < 0.02, "{found}");
     // Bodies that move as one have nothing to warn of.
-    scratch.write("case.toml", changed(&case, "path = [[0.2, 0.0, 0.0], [1.0, 0.0, -0.02]]\n", ""));
-    assert!(!scratch.direct(&["case.toml", "--check"]).expect(0).stderr.contains("W0232"));
+    scratch.write(
+        "case.toml",
+        changed(&case, "path = [[0.2, 0.0, 0.0], [1.0, 0.0, -0.02]]\n", ""),
+    );
+    assert!(
+        !scratch
+            .direct(&["case.toml", "--check"])
+            .expect(0)
+            .stderr
+            .contains("W0232")
+    );
 }

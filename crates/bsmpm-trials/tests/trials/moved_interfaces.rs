@@ -57,14 +57,23 @@ fn an_interface_that_leaves_its_line_is_reported_with_its_distance() {
         for ranks in [1, 3] {
             // A quarter of a cell is beyond the limit of 0.1.
             let code = if is_unusual { 82 } else { 0 };
-            let output = scratch.mpirun(ranks, &["case.toml", "-o", "out", "--force"]).expect(code);
+            let output = scratch
+                .mpirun(ranks, &["case.toml", "-o", "out", "--force"])
+                .expect(code);
             let indicator = &manifest(&scratch.path("out")).indicators["interface-shift"];
             let history = history(&scratch.path("out"));
             let settled = -at(&history, "interface-y", 1.0);
-            println!("E = {young:e} Pa, {ranks} ranks: {:.4} cells, settlement {settled:.4} m", indicator.value);
+            println!(
+                "E = {young:e} Pa, {ranks} ranks: {:.4} cells, settlement {settled:.4} m",
+                indicator.value
+            );
             assert_eq!(indicator.unusual, is_unusual);
             // The points nearest to the interface lie a sixth of a cell above and below it.
-            assert!((indicator.value / settled - 1.0).abs() < 0.1, "{} {settled}", indicator.value);
+            assert!(
+                (indicator.value / settled - 1.0).abs() < 0.1,
+                "{} {settled}",
+                indicator.value
+            );
             if is_unusual {
                 output.says_once("output.accept = [\"interface-shift\"]");
                 let stress = at(&history, "above-yy", 1.0);
@@ -72,7 +81,15 @@ fn an_interface_that_leaves_its_line_is_reported_with_its_distance() {
             }
         }
     }
-    let fitted = ["case.toml", "-q", "-o", "out", "--force", "--set", "solver.quadrature=fitted"];
+    let fitted = [
+        "case.toml",
+        "-q",
+        "-o",
+        "out",
+        "--force",
+        "--set",
+        "solver.quadrature=fitted",
+    ];
     scratch.direct(&fitted).expect(0);
     let indicator = &manifest(&scratch.path("out")).indicators["interface-shift"];
     assert!(
@@ -108,7 +125,9 @@ fn a_layer_of_low_permeability_that_leaves_its_lines_is_reported() {
     for (silt, is_reported) in [("2e-8", true), ("5e-7", false)] {
         scratch.write("case.toml", changed(LEAK, "SILT", silt));
         let code = if is_reported { 82 } else { 0 };
-        scratch.direct(&["case.toml", "-q", "-o", "out", "--force"]).expect(code);
+        scratch
+            .direct(&["case.toml", "-q", "-o", "out", "--force"])
+            .expect(code);
         let indicators = manifest(&scratch.path("out")).indicators;
         let found = indicators.get("permeability-shift");
         println!("{silt}: {found:?}");

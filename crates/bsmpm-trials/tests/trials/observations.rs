@@ -101,7 +101,11 @@ const TABLES: [&str; 3] = ["history.csv", "profile_depth.csv", "profile_window.c
 
 fn largest_difference(found: &Columns, expected: &Columns) -> f64 {
     assert_eq!(found.headings, expected.headings);
-    let scale = expected.values.iter().flatten().fold(1.0_f64, |largest, value| largest.max(value.abs()));
+    let scale = expected
+        .values
+        .iter()
+        .flatten()
+        .fold(1.0_f64, |largest, value| largest.max(value.abs()));
     let pairs = found.values.iter().flatten().zip(expected.values.iter().flatten());
     pairs.fold(0.0, |largest, (a, b)| largest.max((a - b).abs() / scale))
 }
@@ -112,8 +116,12 @@ pub fn goes_the_same_way(scratch: &Scratch, tables: &[&str], (ranks, bound): (us
     let name = format!("part-{ranks}");
     let part = ["case.toml", "-q", "-o", &name];
     if ranks == 1 {
-        scratch.mpirun(1, &[&part[..], &["--max-steps", "3"]].concat()).expect(75);
-        scratch.mpirun(1, &[&part[..], &["--restart", "auto"]].concat()).expect(0);
+        scratch
+            .mpirun(1, &[&part[..], &["--max-steps", "3"]].concat())
+            .expect(75);
+        scratch
+            .mpirun(1, &[&part[..], &["--restart", "auto"]].concat())
+            .expect(0);
     } else {
         scratch.mpirun(ranks, &part).expect(0);
     }
@@ -140,11 +148,19 @@ fn parts_lines_and_places_of_a_column_have_its_weight_on_any_ranks_and_after_a_r
     let end = |name: &str| at(&rows, name, 1.0);
     assert!((end("mass") / (2.0 * 20e3 / 9.81) - 1.0).abs() < 1e-12);
     // Rock carries the soil and the half of itself.
-    assert!((end("mean-stress-yy") / -65e3 - 1.0).abs() < 1e-3, "{}", end("mean-stress-yy"));
+    assert!(
+        (end("mean-stress-yy") / -65e3 - 1.0).abs() < 1e-3,
+        "{}",
+        end("mean-stress-yy")
+    );
     assert!((end("height") - 0.9375).abs() < 1e-3);
     // 1.5 m of soil.
     let normal = end("section-forces-n") / -60e3 - 1.0;
-    println!("N off by {normal:.1e}; at the surface {} Pa, nearest {} Pa", end("surface-yy"), end("nearest-yy"));
+    println!(
+        "N off by {normal:.1e}; at the surface {} Pa, nearest {} Pa",
+        end("surface-yy"),
+        end("nearest-yy")
+    );
     assert!(normal.abs() < 1e-4 && end("section-forces-m").abs() < 1.0);
     assert!(end("surface-yy").abs() < end("nearest-yy").abs());
 
@@ -154,16 +170,31 @@ fn parts_lines_and_places_of_a_column_have_its_weight_on_any_ranks_and_after_a_r
     let of_end: Vec<usize> = (0..times.len()).filter(|&row| times[row] == 1.0).collect();
     assert_eq!(of_end.len(), 9);
     for &row in &of_end {
-        let exact = if places[row] <= 2.0 { -20e3 * places[row] } else { -40e3 - 25e3 * (places[row] - 2.0) };
+        let exact = if places[row] <= 2.0 {
+            -20e3 * places[row]
+        } else {
+            -40e3 - 25e3 * (places[row] - 2.0)
+        };
         let off = (stress[row] - exact).abs() / 90e3;
         println!("{} m: off by {off:.1e} of the largest", places[row]);
-        assert!(off < if [0.0, 2.0, 4.0].contains(&places[row]) { 1e-2 } else { 1e-3 });
+        assert!(
+            off < if [0.0, 2.0, 4.0].contains(&places[row]) {
+                1e-2
+            } else {
+                1e-3
+            }
+        );
     }
     // Times of its own; what is above the body is left out.
     let window = table::read(&one.join("profile_window.csv")).unwrap();
     assert_eq!(window.get("time").unwrap(), [[0.55; 4], [1.0; 4]].as_flattened());
     let reported = manifest(&one);
-    assert!(TABLES.iter().all(|file| reported.outputs.iter().any(|of| of.path == *file && of.blake3.is_some())));
+    assert!(TABLES.iter().all(|file| {
+        reported
+            .outputs
+            .iter()
+            .any(|of| of.path == *file && of.blake3.is_some())
+    }));
 
     for ranks in [3, 1] {
         let name = goes_the_same_way(&scratch, &TABLES, (ranks, 1e-8));
@@ -181,19 +212,29 @@ fn frames_have_the_fields_that_are_asked_for_with_names_of_bodies() {
     let (stress, q, principal) = (real("stress", 6), real("q", 1), real("principal_stresses", 3));
     let (mobilised, density) = (real("mobilised_strength", 1), real("density", 1));
     let number = |name: &str| frame.fields.iter().find(|field| field.name == name).unwrap();
-    let FieldValues::U64(bodies) = &number("body").values else { panic!("bodies are numbers") };
+    let FieldValues::U64(bodies) = &number("body").values else {
+        panic!("bodies are numbers")
+    };
     for (p, x) in frame.position.iter().enumerate() {
         let (xx, yy) = (stress[6 * p], stress[6 * p + 1]);
         assert!((q[p] - (xx - yy).abs()).abs() < 1e-3 * q[p].max(1.0));
         assert!((principal[3 * p] - xx).abs() < 1e-3 * yy.abs() && (principal[3 * p + 2] - yy).abs() < 1e-3 * yy.abs());
-        let body = if x[1] < 1.0 { 0 } else { 1 + u64::from(x[1] > 2.0 - 1e-3) };
+        let body = if x[1] < 1.0 {
+            0
+        } else {
+            1 + u64::from(x[1] > 2.0 - 1e-3)
+        };
         assert_eq!(bodies[p], body);
         assert!((density[p] * 9.81 / if body == 0 { 25e3 } else { 20e3 } - 1.0).abs() < 1e-3);
         // Rock has no strength to mobilise; soil is not at yield: with c' = m c, tan phi' = m tan phi it would be.
         let (tan, c) = (mobilised[p] * 30.0_f64.to_radians().tan(), mobilised[p] * 5e3);
         let (sin, cos) = tan.atan().sin_cos();
         let excess = (xx - yy) + (xx + yy) * sin - 2.0 * c * cos;
-        assert!(if body == 0 { mobilised[p] == 0.0 } else { excess.abs() < 1e-3 * yy.abs() });
+        assert!(if body == 0 {
+            mobilised[p] == 0.0
+        } else {
+            excess.abs() < 1e-3 * yy.abs()
+        });
     }
     assert!(real("yielding", 1).iter().all(|&yielding| yielding == 0.0));
     let reported = manifest(&scratch.path("asked"));

@@ -123,12 +123,19 @@ fn ground_on_a_base_that_absorbs_is_the_same_on_any_number_of_ranks_and_over_res
     let scratch = repeats(SHAKEN, &["7", "20"]);
     let found = history(&scratch.path("whole1"));
     let weight = 9.81 * 6.0 * 3.0 * (2000.0 + 1800.0);
-    assert!((at(&found, "reaction-y", 0.0) / weight - 1.0).abs() < 5e-3, "{}", at(&found, "reaction-y", 0.0));
+    assert!(
+        (at(&found, "reaction-y", 0.0) / weight - 1.0).abs() < 5e-3,
+        "{}",
+        at(&found, "reaction-y", 0.0)
+    );
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&found, name, 0.2).abs());
     assert!(closure < 1e-6 * external, "{closure:e} of {external:e}");
     assert!(at(&found, "velocity-x", 0.05).abs() > 0.01, "it shakes");
     scratch.write("case.toml", changed(SHAKEN, "[initial]\nk0 = 0.5\n", ""));
-    scratch.mpirun(1, &["case.toml", "--check"]).expect(65).says_once("error E0672: ");
+    scratch
+        .mpirun(1, &["case.toml", "--check"])
+        .expect(65)
+        .says_once("error E0672: ");
 }
 
 #[test]
@@ -136,10 +143,18 @@ fn what_leaves_is_counted_and_the_rest_goes_on() {
     let scratch = repeats(SHELF, &["30", "31", "60"]);
     let found = history(&scratch.path("whole1"));
     let (mass, left) = (at(&found, "mass", 0.5), at(&found, "outflow", 0.5));
-    assert!(left > 0.1 * mass && (mass + left - 320.0).abs() < 1e-9, "{mass} kg stay, {left} leave");
+    assert!(
+        left > 0.1 * mass && (mass + left - 320.0).abs() < 1e-9,
+        "{mass} kg stay, {left} leave"
+    );
     let reported = manifest(&scratch.path("whole1"));
     assert_eq!(reported.outflow.map(|outflow| outflow.mass), Some(left));
-    assert!(reported.warnings.iter().any(|warning| warning.starts_with("W0713: ") && warning.contains("`lost`")));
+    assert!(
+        reported
+            .warnings
+            .iter()
+            .any(|warning| warning.starts_with("W0713: ") && warning.contains("`lost`"))
+    );
     assert_eq!(at(&found, "lost-x", 0.5), 0.0);
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&found, name, 0.5).abs());
     assert!(closure < 1e-4 * external, "{closure:e} of {external:e}");

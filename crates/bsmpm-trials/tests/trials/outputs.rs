@@ -12,7 +12,10 @@ use std::path::Path;
 fn rows(path: &Path) -> Vec<Vec<String>> {
     let text = std::fs::read_to_string(path).unwrap();
     assert!(text.ends_with('\n'));
-    text.lines().skip(2).map(|line| line.split(',').map(str::to_owned).collect()).collect()
+    text.lines()
+        .skip(2)
+        .map(|line| line.split(',').map(str::to_owned).collect())
+        .collect()
 }
 
 /// Counts are whole numbers; floats the shortest text that reads back to the same bits.
@@ -21,7 +24,11 @@ fn shortest(rows: &[Vec<String>], counts: &[usize]) {
     for row in rows {
         for (column, text) in row.iter().enumerate() {
             let value: f64 = text.parse().unwrap();
-            let expected = if counts.contains(&column) { format!("{value}") } else { format!("{value:?}") };
+            let expected = if counts.contains(&column) {
+                format!("{value}")
+            } else {
+                format!("{value:?}")
+            };
             assert_eq!(*text, expected);
         }
     }
@@ -42,7 +49,13 @@ fn history_has_names_units_and_one_row_a_step_from_the_start_on() {
     assert_eq!(history.get("step").unwrap(), numbers);
     let start: Vec<f64> = history.values.iter().map(|column| column[0]).collect();
     let expected = [0.0, 0.0, 0.4875, 80.0, 320.0, 0.0];
-    assert!(start.iter().zip(expected).all(|(value, expected)| (value - expected).abs() < 1e-9), "{start:?}");
+    assert!(
+        start
+            .iter()
+            .zip(expected)
+            .all(|(value, expected)| (value - expected).abs() < 1e-9),
+        "{start:?}"
+    );
     let times = history.get("time").unwrap();
     assert!(times.is_sorted() && *times.last().unwrap() == 0.05);
 }
@@ -55,22 +68,42 @@ fn steps_reports_how_hard_each_step_was() {
     let text = std::fs::read_to_string(directory.join("steps.csv")).unwrap();
     let names = "step,time,dt,iterations,residual,linear_iterations,cutbacks,active_nodes,wall,\
                  newton_iterations,evaluations,products,factorisations,reductions,messages,bytes,imbalance\n";
-    assert!(text.starts_with(&format!("{names}# -,s,s,-,-,-,-,-,s,-,-,-,-,-,-,-,-\n")), "{}", &text[..200]);
-    shortest(&rows(&directory.join("steps.csv")), &[0, 3, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15]);
+    assert!(
+        text.starts_with(&format!("{names}# -,s,s,-,-,-,-,-,s,-,-,-,-,-,-,-,-\n")),
+        "{}",
+        &text[..200]
+    );
+    shortest(
+        &rows(&directory.join("steps.csv")),
+        &[0, 3, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15],
+    );
     let (steps, history) = (steps(&directory), history(&directory));
     for name in ["step", "time"] {
         assert_eq!(steps.get(name).unwrap(), &history.get(name).unwrap()[1..]);
     }
     let times = history.get("time").unwrap();
     let lengths = times.windows(2).map(|pair| pair[1] - pair[0]);
-    assert!(steps.get("dt").unwrap().iter().zip(lengths).all(|(dt, length)| (dt - length).abs() < 1e-15));
+    assert!(
+        steps
+            .get("dt")
+            .unwrap()
+            .iter()
+            .zip(lengths)
+            .all(|(dt, length)| (dt - length).abs() < 1e-15)
+    );
     assert!(steps.get("iterations").unwrap().iter().all(|count| *count >= 1.0));
     assert!(steps.get("residual").unwrap().iter().all(|residual| *residual >= 0.0));
     assert!(steps.get("active_nodes").unwrap().iter().all(|count| *count >= 60.0));
     let summary = manifest(&directory).summary;
     assert_eq!(summary.steps, 50);
-    assert_eq!(summary.iterations as f64, steps.get("iterations").unwrap().iter().sum::<f64>());
-    assert_eq!(summary.linear_iterations as f64, steps.get("linear_iterations").unwrap().iter().sum::<f64>());
+    assert_eq!(
+        summary.iterations as f64,
+        steps.get("iterations").unwrap().iter().sum::<f64>()
+    );
+    assert_eq!(
+        summary.linear_iterations as f64,
+        steps.get("linear_iterations").unwrap().iter().sum::<f64>()
+    );
     assert!(summary.residual_evaluations >= summary.iterations && summary.cpu_seconds > 0.0);
     assert!(summary.peak_memory.len() == 2 && summary.peak_memory.iter().all(|bytes| *bytes > 1_000_000));
 }
@@ -87,7 +120,10 @@ fn what_the_ranks_tell_each_other_is_counted() {
         assert!(total("reductions") > 2.0 * total("iterations") && reductions.calls as f64 >= total("reductions"));
         assert_eq!(reductions.messages, 0);
         if ranks == 1 {
-            assert_eq!((sums.messages, moves.messages, total("messages"), manifest.balance), (0, 0, 0.0, None));
+            assert_eq!(
+                (sums.messages, moves.messages, total("messages"), manifest.balance),
+                (0, 0, 0.0, None)
+            );
             continue;
         }
         assert!(sums.calls > 2 * manifest.summary.iterations);
@@ -111,10 +147,19 @@ fn frames_have_the_projected_pressure_on_request() {
     };
     scratch.mpirun(1, &["case.toml", "-q"]).expect(0);
     let plain = all_frames(&scratch.path("case.out"));
-    assert!(plain.iter().all(|frame| !fields(frame).contains(&"projected_pressure".to_owned())));
+    assert!(
+        plain
+            .iter()
+            .all(|frame| !fields(frame).contains(&"projected_pressure".to_owned()))
+    );
     let mut found: Vec<Vec<f64>> = Vec::new();
     for ranks in [1, 2] {
-        scratch.mpirun(ranks, &["case.toml", "-q", "--force", "--set", "output.projected_pressure=true"]).expect(0);
+        scratch
+            .mpirun(
+                ranks,
+                &["case.toml", "-q", "--force", "--set", "output.projected_pressure=true"],
+            )
+            .expect(0);
         let frames = all_frames(&scratch.path("case.out"));
         let last = frames.last().unwrap();
         let [projected, own] = ["projected_pressure", "pressure"].map(|name| last.real(name, 1).unwrap().to_vec());
@@ -129,7 +174,12 @@ fn frames_have_the_projected_pressure_on_request() {
         found.push(projected);
     }
     let largest = found[0].iter().copied().fold(0.0, f64::max);
-    assert!(found[0].iter().zip(&found[1]).all(|(a, b)| (a - b).abs() <= 1e-6 * largest));
+    assert!(
+        found[0]
+            .iter()
+            .zip(&found[1])
+            .all(|(a, b)| (a - b).abs() <= 1e-6 * largest)
+    );
 }
 
 #[test]
@@ -141,9 +191,19 @@ fn residuals_are_kept_on_request_until_both_criteria_hold() {
     ] {
         let scratch = Scratch::with_case(SLIDING_BLOCK);
         let nonlinear = format!("solver.nonlinear={nonlinear}");
-        scratch.mpirun(2, &["case.toml", "-q", "--set", "output.residuals=true", "--set", &nonlinear]).expect(0);
+        scratch
+            .mpirun(
+                2,
+                &["case.toml", "-q", "--set", "output.residuals=true", "--set", &nonlinear],
+            )
+            .expect(0);
         let directory = scratch.path("case.out");
-        assert!(manifest(&directory).outputs.iter().any(|output| output.path == "residuals.csv"));
+        assert!(
+            manifest(&directory)
+                .outputs
+                .iter()
+                .any(|output| output.path == "residuals.csv")
+        );
         let rows = residuals::read(&directory.join("residuals.csv")).unwrap();
         let steps = steps(&directory);
         for (index, step) in steps.get("step").unwrap().iter().enumerate() {
@@ -155,7 +215,10 @@ fn residuals_are_kept_on_request_until_both_criteria_hold() {
             assert!(directions.iter().all(|found| *found == method));
             let last = of_step.last().unwrap();
             assert_eq!(last.force, steps.get("residual").unwrap()[index]);
-            assert!(last.force < 1e-4 && (last.energy < 1e-8 || last.method.is_none()), "{last:?}");
+            assert!(
+                last.force < 1e-4 && (last.energy < 1e-8 || last.method.is_none()),
+                "{last:?}"
+            );
         }
         assert_eq!(rows.last().unwrap().step, 50);
     }
@@ -170,9 +233,19 @@ fn frames_are_at_the_start_the_wanted_times_and_the_end() {
     let scratch = Scratch::with_case(&changed(SLIDING_BLOCK, "every = \"20 ms\"", times));
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
     let directory = scratch.path("case.out");
-    let listed: Vec<f64> = frames::read_collection(&directory).unwrap().iter().map(|entry| entry.time).collect();
+    let listed: Vec<f64> = frames::read_collection(&directory)
+        .unwrap()
+        .iter()
+        .map(|entry| entry.time)
+        .collect();
     assert_eq!(listed, [0.0, 0.0075, 0.02, 0.033, 0.04, 0.05]);
-    assert_eq!(all_frames(&directory).iter().map(|frame| frame.time).collect::<Vec<_>>(), listed);
+    assert_eq!(
+        all_frames(&directory)
+            .iter()
+            .map(|frame| frame.time)
+            .collect::<Vec<_>>(),
+        listed
+    );
     let times = history(&directory).get("time").unwrap().to_vec();
     assert!(listed.iter().all(|time| times.contains(time)), "hit exactly");
 }
@@ -191,16 +264,37 @@ fn a_frame_holds_every_point_once_by_id_with_all_its_quantities() {
     scratch.mpirun(3, &["case.toml", "-q"]).expect(0);
     for frame in all_frames(&scratch.path("case.out")) {
         let ids = ids(&frame);
-        assert!(ids.len() == 128 && ids.windows(2).all(|pair| pair[0] < pair[1]), "{ids:?}");
-        let fields: Vec<_> = frame.fields.iter().map(|field| (field.name.as_str(), field.components)).collect();
-        for field in [("displacement", 3), ("velocity", 3), ("stress", 6), ("pressure", 1), ("plastic_strain", 1)] {
+        assert!(
+            ids.len() == 128 && ids.windows(2).all(|pair| pair[0] < pair[1]),
+            "{ids:?}"
+        );
+        let fields: Vec<_> = frame
+            .fields
+            .iter()
+            .map(|field| (field.name.as_str(), field.components))
+            .collect();
+        for field in [
+            ("displacement", 3),
+            ("velocity", 3),
+            ("stress", 6),
+            ("pressure", 1),
+            ("plastic_strain", 1),
+        ] {
             assert!(fields.contains(&field), "{field:?} in {fields:?}");
         }
         assert!(fields.contains(&("material", 1)));
         let (stress, pressure) = (frame.real("stress", 6).unwrap(), frame.real("pressure", 1).unwrap());
         let mean = stress.chunks_exact(6).map(|s| -(s[0] + s[1] + s[2]) / 3.0);
-        assert!(mean.zip(pressure).all(|(mean, pressure)| (mean - pressure).abs() <= 1e-9 * mean.abs()));
-        assert!(frame.position.iter().all(|x| x[2] == 0.0 && (0.0..=1.0).contains(&x[0])));
+        assert!(
+            mean.zip(pressure)
+                .all(|(mean, pressure)| (mean - pressure).abs() <= 1e-9 * mean.abs())
+        );
+        assert!(
+            frame
+                .position
+                .iter()
+                .all(|x| x[2] == 0.0 && (0.0..=1.0).contains(&x[0]))
+        );
     }
     all_finite(&scratch.path("case.out"));
 }
@@ -208,18 +302,30 @@ fn a_frame_holds_every_point_once_by_id_with_all_its_quantities() {
 /// Where a point is, less its displacement, is where it began.
 #[test]
 fn positions_are_in_the_coordinates_of_the_case() {
-    let text =
-        changed(SLIDING_BLOCK, "lower = [0.0, 0.0]\nupper = [1.0, 0.3]", "lower = [-0.5, 2.0]\nupper = [0.5, 2.3]");
-    let text =
-        changed(&text, "{ lower = [0.1, 0.0], upper = [0.5, 0.2] }", "{ lower = [-0.4, 2.0], upper = [0.0, 2.2] }");
+    let text = changed(
+        SLIDING_BLOCK,
+        "lower = [0.0, 0.0]\nupper = [1.0, 0.3]",
+        "lower = [-0.5, 2.0]\nupper = [0.5, 2.3]",
+    );
+    let text = changed(
+        &text,
+        "{ lower = [0.1, 0.0], upper = [0.5, 0.2] }",
+        "{ lower = [-0.4, 2.0], upper = [0.0, 2.2] }",
+    );
     let scratch = Scratch::with_case(&text);
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
     let frames = all_frames(&scratch.path("case.out"));
     let last = frames.last().unwrap();
     let displacement = last.real("displacement", 3).unwrap().chunks_exact(3);
     for ((x, u), start) in last.position.iter().zip(displacement).zip(&frames[0].position) {
-        assert!((0..2).all(|axis| (x[axis] - u[axis] - start[axis]).abs() < 1e-12), "{x:?} {u:?} {start:?}");
-        assert!((-0.4..0.0).contains(&start[0]) && (2.0..2.2).contains(&start[1]), "{start:?}");
+        assert!(
+            (0..2).all(|axis| (x[axis] - u[axis] - start[axis]).abs() < 1e-12),
+            "{x:?} {u:?} {start:?}"
+        );
+        assert!(
+            (-0.4..0.0).contains(&start[0]) && (2.0..2.2).contains(&start[1]),
+            "{start:?}"
+        );
     }
     let runout = history(&scratch.path("case.out")).get("runout").unwrap()[0];
     assert!((runout + 0.0125).abs() < 1e-12, "{runout}");
@@ -229,16 +335,26 @@ fn positions_are_in_the_coordinates_of_the_case() {
 #[track_caller]
 fn complete(directory: &Path, manifest: &Manifest) {
     let mut named: Vec<_> = manifest.outputs.iter().map(|output| output.path.clone()).collect();
-    let of_frames = entries(&directory.join("frames")).into_iter().map(|name| format!("frames/{name}"));
-    let plain = entries(directory).into_iter().filter(|name| !["frames", "run.json"].contains(&name.as_str()));
+    let of_frames = entries(&directory.join("frames"))
+        .into_iter()
+        .map(|name| format!("frames/{name}"));
+    let plain = entries(directory)
+        .into_iter()
+        .filter(|name| !["frames", "run.json"].contains(&name.as_str()));
     let mut there: Vec<_> = plain.chain(of_frames).collect();
     named.sort();
     there.sort();
     assert_eq!(named, there);
     let mut sealed = manifest.clone();
-    sealed.outputs.iter_mut().for_each(|output| (output.bytes, output.blake3) = (None, None));
+    sealed
+        .outputs
+        .iter_mut()
+        .for_each(|output| (output.bytes, output.blake3) = (None, None));
     sealed.seal(directory).unwrap();
-    assert_eq!(sealed.outputs, manifest.outputs, "sizes and hashes are those of the files");
+    assert_eq!(
+        sealed.outputs, manifest.outputs,
+        "sizes and hashes are those of the files"
+    );
     assert!(manifest.outputs.iter().all(|output| output.blake3.is_some()));
 }
 
@@ -251,13 +367,20 @@ fn the_manifest_explains_a_finished_run() {
     let manifest = manifest(&directory);
     assert_eq!((manifest.status, manifest.exit_code), (Status::Finished, Some(0)));
     assert_eq!((manifest.case.file.as_str(), &manifest.case.text), ("case.toml", &text));
-    assert_eq!(manifest.case, bsmpm_io::manifest::ManifestCase::new("case.toml", "", "plane-strain", text));
+    assert_eq!(
+        manifest.case,
+        bsmpm_io::manifest::ManifestCase::new("case.toml", "", "plane-strain", text)
+    );
     assert_eq!((manifest.ranks, manifest.threads), (2, 1));
     for (size, expected) in [("points", 64), ("cells", 20), ("nodes", 42)] {
         assert_eq!(manifest.sizes.get(size), Some(&expected), "{size}");
     }
     for name in ["petsc", "mpi"] {
-        assert!(manifest.versions.get(name).is_some_and(|version| !version.is_empty()), "{:?}", manifest.versions);
+        assert!(
+            manifest.versions.get(name).is_some_and(|version| !version.is_empty()),
+            "{:?}",
+            manifest.versions
+        );
     }
     assert!(manifest.argv.iter().any(|argument| argument == "case.toml"));
     assert!(manifest.timers.values().all(|seconds| *seconds >= 0.0) && manifest.timers.contains_key("wall"));
@@ -268,24 +391,45 @@ fn the_manifest_explains_a_finished_run() {
         (&[0.0; 2][..], &[4.0, 5.0][..], &[1.0; 2][..])
     );
     assert!(manifest.failure.is_none() && manifest.checkpoint.is_none() && manifest.warnings.is_empty());
-    let background = manifest.choices.iter().find(|choice| choice.key == "solver.background").unwrap();
-    assert!(background.value == "0.0001" && background.reason.contains("nearly empty cells"), "{background:?}");
+    let background = manifest
+        .choices
+        .iter()
+        .find(|choice| choice.key == "solver.background")
+        .unwrap();
+    assert!(
+        background.value == "0.0001" && background.reason.contains("nearly empty cells"),
+        "{background:?}"
+    );
     assert_eq!(manifest.sizes.get("most_background_cells"), Some(&16));
     let check = &manifest.checks[0];
-    assert!(check.passed && check.value == history(&directory).get("height").unwrap().last().copied(), "{check:?}");
+    assert!(
+        check.passed && check.value == history(&directory).get("height").unwrap().last().copied(),
+        "{check:?}"
+    );
     complete(&directory, &manifest);
 }
 
 /// 3 x 0.3 is not 0.9 in binary: the check takes its value where a wanted time stands for another.
 #[test]
 fn a_check_takes_its_value_at_its_time() {
-    let text = changed(&changed(COLUMN, "steps = 5", "end = 1.2\nsteps = 4"), "every = 0.4", "every = 0.3");
+    let text = changed(
+        &changed(COLUMN, "steps = 5", "end = 1.2\nsteps = 4"),
+        "every = 0.4",
+        "every = 0.3",
+    );
     let check = |at: &str| format!("\n[[check]]\nquantity = \"height\"\nat = {at}\nmin = 3.0\n");
     let scratch = Scratch::with_case(&[text, check("0.9"), check("0.45"), check("1.2")].concat());
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
     let directory = scratch.path("case.out");
-    let values: Vec<_> = manifest(&directory).checks.iter().map(|check| check.value.unwrap()).collect();
-    assert_eq!(values, [0.9, 0.45, 1.2].map(|time| at(&history(&directory), "height", time)));
+    let values: Vec<_> = manifest(&directory)
+        .checks
+        .iter()
+        .map(|check| check.value.unwrap())
+        .collect();
+    assert_eq!(
+        values,
+        [0.9, 0.45, 1.2].map(|time| at(&history(&directory), "height", time))
+    );
 }
 
 /// The figures of the issue, on two ranks and without a failed step.
@@ -294,20 +438,49 @@ fn the_short_collapse_runs_out_as_the_paper_says() {
     let scratch = Scratch::new();
     let case = shipped("short/column_collapse.toml");
     // The paper's method; the case's own check is of the shipped one.
-    let paper = ["--set", "stabilisation.method=modified-f-bar", "--set", "check.0.max=0.48"];
-    scratch.mpirun(2, &[&[case.to_str().unwrap(), "-q", "-o", "out"], &paper[..]].concat()).expect(0);
+    let paper = [
+        "--set",
+        "stabilisation.method=modified-f-bar",
+        "--set",
+        "check.0.max=0.48",
+    ];
+    scratch
+        .mpirun(2, &[&[case.to_str().unwrap(), "-q", "-o", "out"], &paper[..]].concat())
+        .expect(0);
     let directory = scratch.path("out");
     let history = history(&directory);
-    let expected = [(0.109, 0.237), (0.235, 0.333), (0.3, 0.372), (0.351, 0.398), (0.42, 0.419), (0.607, 0.467)];
+    let expected = [
+        (0.109, 0.237),
+        (0.235, 0.333),
+        (0.3, 0.372),
+        (0.351, 0.398),
+        (0.42, 0.419),
+        (0.607, 0.467),
+    ];
     let found = expected.map(|(time, _)| at(&history, "runout", time));
-    assert!(found.iter().zip(expected).all(|(found, (_, runout))| (found - runout).abs() < 0.01), "{found:?}");
+    assert!(
+        found
+            .iter()
+            .zip(expected)
+            .all(|(found, (_, runout))| (found - runout).abs() < 0.01),
+        "{found:?}"
+    );
     let manifest = manifest(&directory);
     assert_eq!(manifest.summary.cutbacks, 0);
     assert!(
-        table::read(&directory.join("steps.csv")).unwrap().get("cutbacks").unwrap().iter().all(|cuts| *cuts == 0.0)
+        table::read(&directory.join("steps.csv"))
+            .unwrap()
+            .get("cutbacks")
+            .unwrap()
+            .iter()
+            .all(|cuts| *cuts == 0.0)
     );
     let frames = frames::read_collection(&directory).unwrap();
-    assert!(expected.iter().all(|(time, _)| frames.iter().any(|entry| entry.time == *time)));
+    assert!(
+        expected
+            .iter()
+            .all(|(time, _)| frames.iter().any(|entry| entry.time == *time))
+    );
     assert_eq!(manifest.picture_times, expected.map(|(time, _)| time));
     assert!(manifest.checks.len() == 1 && manifest.checks[0].passed);
     complete(&directory, &manifest);

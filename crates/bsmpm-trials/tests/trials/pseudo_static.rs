@@ -40,9 +40,21 @@ fn inertia_begins_at_the_state_at_rest_and_changes_neither_weight_nor_water() {
     assert!((of("stress-xx", 0.0) / of("stress-yy", 0.0) - 0.5).abs() < 1e-9);
     for time in [0.5, 1.0] {
         // Half a cell of water above the ground is 0.4 % of the effective stress there.
-        assert!((of("stress-yy", time) / (weight + water) - 1.0).abs() < 0.005, "{}", of("stress-yy", time));
-        assert!((of("stress-xy", time) / (0.2 * time * weight) - 1.0).abs() < 0.005, "{}", of("stress-xy", time));
-        assert!((of("water", time) / of("water", 0.0) - 1.0).abs() < 1e-6, "{}", of("water", time));
+        assert!(
+            (of("stress-yy", time) / (weight + water) - 1.0).abs() < 0.005,
+            "{}",
+            of("stress-yy", time)
+        );
+        assert!(
+            (of("stress-xy", time) / (0.2 * time * weight) - 1.0).abs() < 0.005,
+            "{}",
+            of("stress-xy", time)
+        );
+        assert!(
+            (of("water", time) / of("water", 0.0) - 1.0).abs() < 1e-6,
+            "{}",
+            of("water", time)
+        );
     }
     [1, 3].iter().for_each(|&ranks| scratch.goes_on(ranks, &["2"]));
 }
@@ -80,7 +92,13 @@ const BLOCK: &str = r#"
 fn critical(text: &str, [from, to]: [f64; 2], pushed: PushedSide) -> [Option<f64>; 3] {
     let scratch = Scratch::with_case(text);
     let (from, to, seismic) = (Some(from), Some(to), Some(pushed));
-    let arguments = FosArguments { from, to, seismic, jobs: Some(2), ..FosArguments::of(scratch.path("case.toml")) };
+    let arguments = FosArguments {
+        from,
+        to,
+        seismic,
+        jobs: Some(2),
+        ..FosArguments::of(scratch.path("case.toml"))
+    };
     let (found, _) = searched(arguments, &scratch.path("out"));
     let finding = &found["critical_seismic_coefficient"];
     assert!(!finding.is_null() && found["factor_of_safety"].is_null(), "{found}");
@@ -93,7 +111,10 @@ fn critical(text: &str, [from, to]: [f64; 2], pushed: PushedSide) -> [Option<f64
 fn a_layer_of_clay_slides_at_the_strength_of_its_base_over_its_weight() {
     let [.., estimate] = critical(LAYER, [0.3, 0.5], PushedSide::Left);
     println!("{estimate:?}");
-    assert!(estimate.is_some_and(|found| (found / 0.45 - 1.0).abs() < 0.03), "{estimate:?}");
+    assert!(
+        estimate.is_some_and(|found| (found / 0.45 - 1.0).abs() < 0.03),
+        "{estimate:?}"
+    );
 }
 
 /// The coefficient of friction, with pore pressure 0.75 (1 - 0.4) = 0.45.
@@ -104,6 +125,9 @@ fn a_block_slides_at_its_friction_on_the_effective_weight() {
         let [stable, failed, _] = critical(&text, [0.2, 0.8], PushedSide::Right);
         println!("{stable:?} {failed:?}");
         let (stable, failed) = (stable.unwrap(), failed.unwrap());
-        assert!(stable < 1.01 * exact && exact < 1.01 * failed && failed - stable < 0.0101, "{stable} {failed}");
+        assert!(
+            stable < 1.01 * exact && exact < 1.01 * failed && failed - stable < 0.0101,
+            "{stable} {failed}"
+        );
     }
 }

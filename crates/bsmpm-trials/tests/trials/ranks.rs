@@ -23,14 +23,23 @@ fn agree(scratch: &Scratch, case: &str, further: &[&str], ranks: &[usize], toler
         .collect();
     for (frame, count) in frames.iter().zip(ranks) {
         for (field, difference) in differences(frame, &frames[0]) {
-            assert!(difference <= tolerance, "{field} on {count} ranks differs by {difference:.1e}");
+            assert!(
+                difference <= tolerance,
+                "{field} on {count} ranks differs by {difference:.1e}"
+            );
         }
     }
 }
 
 #[test]
 fn an_elastic_block_that_slides_from_slab_to_slab_is_the_same_on_1_2_3_and_4_ranks() {
-    agree(&Scratch::with_case(SLIDING_BLOCK), "case.toml", &[], &[1, 2, 3, 4], 1e-9);
+    agree(
+        &Scratch::with_case(SLIDING_BLOCK),
+        "case.toml",
+        &[],
+        &[1, 2, 3, 4],
+        1e-9,
+    );
     agree(&Scratch::with_case(&pressed_block()), "case.toml", &[], &[1, 3], 1e-8);
 }
 
@@ -40,15 +49,30 @@ fn a_block_with_friction_is_the_same_on_1_2_3_and_4_ranks() {
     let scratch = Scratch::with_case(&frictional_block());
     agree(&scratch, "case.toml", &[], &[1, 2, 3, 4], 1e-8);
     let histories = [1, 4].map(|count| history(&scratch.path(&format!("{count}.out"))));
-    for column in ["contact-closed", "contact-sliding", "gap-largest", "slip-rate", "friction-power", "reaction-x"] {
+    for column in [
+        "contact-closed",
+        "contact-sliding",
+        "gap-largest",
+        "slip-rate",
+        "friction-power",
+        "reaction-x",
+    ] {
         let [one, four] = histories.each_ref().map(|history| history.get(column).unwrap());
         let largest = one.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        assert!(largest > 0.0 && one.iter().zip(four).all(|(a, b)| (a - b).abs() <= 1e-6 * largest), "{column}");
+        assert!(
+            largest > 0.0 && one.iter().zip(four).all(|(a, b)| (a - b).abs() <= 1e-6 * largest),
+            "{column}"
+        );
     }
     let [closed, pushed, friction_work] =
         ["contact-closed", "reaction-y", "reaction-x"].map(|column| histories[0].get(column).unwrap());
     assert!(closed[1..].contains(&0.0) && closed.contains(&1.0));
-    assert!(pushed.iter().zip(friction_work).all(|(push, rub)| *push >= 0.0 && rub.abs() <= 0.4 * push * (1.0 + 1e-9)));
+    assert!(
+        pushed
+            .iter()
+            .zip(friction_work)
+            .all(|(push, rub)| *push >= 0.0 && rub.abs() <= 0.4 * push * (1.0 + 1e-9))
+    );
 }
 
 /// Zhao's F-bar gives the points a state of its own, the consistent one exchanges functions of the degree below.
@@ -56,7 +80,13 @@ fn a_block_with_friction_is_the_same_on_1_2_3_and_4_ranks() {
 fn the_block_is_the_same_on_1_2_3_and_4_ranks_with_every_f_bar() {
     for method in ["f-bar-zhao", "consistent-f-bar"] {
         let scratch = Scratch::with_case(&format!("{SLIDING_BLOCK}\n[stabilisation]\nmethod = \"{method}\"\n"));
-        agree(&scratch, "case.toml", &["--set", "analysis.end=0.02"], &[1, 2, 3, 4], 1e-9);
+        agree(
+            &scratch,
+            "case.toml",
+            &["--set", "analysis.end=0.02"],
+            &[1, 2, 3, 4],
+            1e-9,
+        );
     }
 }
 
@@ -77,7 +107,10 @@ fn the_bits_are_the_same_with_the_vectors_of_any_machine() {
             Some(std::fs::read_to_string(scratch.path(vectors).join("history.csv")).unwrap())
         });
         let first = histories.next().expect("one of them");
-        assert!(first.lines().count() > 10 && histories.all(|history| history == first), "{case}");
+        assert!(
+            first.lines().count() > 10 && histories.all(|history| history == first),
+            "{case}"
+        );
     }
 }
 
@@ -85,7 +118,13 @@ fn the_bits_are_the_same_with_the_vectors_of_any_machine() {
 #[test]
 fn the_block_is_the_same_on_1_2_3_and_4_ranks_with_a_consistent_mass() {
     let further = ["--set", "analysis.mass=consistent", "--set", "analysis.end=0.02"];
-    agree(&Scratch::with_case(SLIDING_BLOCK), "case.toml", &further, &[1, 2, 3, 4], 1e-9);
+    agree(
+        &Scratch::with_case(SLIDING_BLOCK),
+        "case.toml",
+        &further,
+        &[1, 2, 3, 4],
+        1e-9,
+    );
 }
 
 /// Plastic flow, whose largest values neighbours tell each other, and gaps, which go along with the points.
@@ -107,7 +146,10 @@ fn the_filter_of_consistent_f_bar_and_gaps_are_the_same_on_1_2_and_3_ranks() {
 fn messages_longer_than_a_block_arrive_whole_on_1_2_3_and_4_ranks() {
     for (ranks, block) in [(1, "16"), (2, "1"), (3, "7"), (4, "4096")] {
         let mut launcher = Command::new("mpirun");
-        launcher.args(["-q", "--oversubscribe", "-n", &ranks.to_string()]).arg(example("exchange")).arg(block);
+        launcher
+            .args(["-q", "--oversubscribe", "-n", &ranks.to_string()])
+            .arg(example("exchange"))
+            .arg(block);
         processes::run(launcher, &[], true, Duration::from_secs(120)).expect(0);
     }
 }
@@ -122,7 +164,10 @@ fn the_total_mass_is_the_same_in_every_step_to_the_bit() {
         let mass = history.get("mass").unwrap();
         let masses: BTreeSet<u64> = mass.iter().map(|value| value.to_bits()).collect();
         let masses: Vec<f64> = masses.into_iter().map(f64::from_bits).collect();
-        assert!(masses.len() == 1 && (masses[0] - 80.0).abs() < 1e-10, "on {ranks} ranks: {masses:?}");
+        assert!(
+            masses.len() == 1 && (masses[0] - 80.0).abs() < 1e-10,
+            "on {ranks} ranks: {masses:?}"
+        );
     }
 }
 
@@ -134,7 +179,11 @@ fn the_sliding_block_does_cross_the_bounds_of_slabs() {
     scratch.mpirun(1, &["case.toml", "-q"]).expect(0);
     let frames = all_frames(&scratch.path("case.out"));
     let (first, last) = (&frames[0], &frames[frames.len() - 1]);
-    let moved = first.position.iter().zip(&last.position).map(|(from, to)| to[0] - from[0]);
+    let moved = first
+        .position
+        .iter()
+        .zip(&last.position)
+        .map(|(from, to)| to[0] - from[0]);
     let least = moved.fold(f64::INFINITY, f64::min);
     assert!(least > 3.0 * 0.05, "{least}");
 }
@@ -146,7 +195,13 @@ fn blocks_that_move_in_opposite_directions_are_the_same_on_1_2_3_and_4_ranks() {
                   points_per_cell = 2\nvelocity = [-4.0, 0.0]\n\n[gravity]";
     let apart = changed(SLIDING_BLOCK, "upper = [0.5, 0.2]", "upper = [0.35, 0.2]");
     let scratch = Scratch::with_case(&changed(&apart, "[gravity]", second));
-    agree(&scratch, "case.toml", &["--set", "analysis.end=0.035"], &[1, 2, 3, 4], 1e-9);
+    agree(
+        &scratch,
+        "case.toml",
+        &["--set", "analysis.end=0.035"],
+        &[1, 2, 3, 4],
+        1e-9,
+    );
 }
 
 #[test]
@@ -160,7 +215,9 @@ fn a_run_repeats_to_the_bit_on_as_many_ranks() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
     for ranks in [1, 2, 4] {
         let runs = [1, 2, 3].map(|_| {
-            scratch.mpirun(ranks, &["case.toml", "-q", "--force", "--set", "analysis.end=0.02"]).expect(0);
+            scratch
+                .mpirun(ranks, &["case.toml", "-q", "--force", "--set", "analysis.end=0.02"])
+                .expect(0);
             let read = |name: &str| std::fs::read(scratch.path("case.out").join(name)).unwrap();
             (read("history.csv"), read("frames/step_000000020.vtu"))
         });
@@ -183,7 +240,11 @@ fn where_all_ranks_factorise_the_whole_the_collapse_has_the_same_bits_on_1_2_3_a
     let mumps = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
     let arguments = ["case.toml", "-q", "--force", "--max-steps", "120", "--set", mumps];
     let runs = [1, 2, 3, 4].map(|ranks| left(&scratch, ranks, &arguments, 120));
-    assert_eq!(manifest(&scratch.path("case.out")).summary.products, 0, "Newton's method has PETSc's sums");
+    assert_eq!(
+        manifest(&scratch.path("case.out")).summary.products,
+        0,
+        "Newton's method has PETSc's sums"
+    );
     assert!(runs[1..].iter().all(|run| *run == runs[0]));
 }
 
@@ -193,7 +254,11 @@ fn where_all_ranks_factorise_the_whole_the_collapse_has_the_same_bits_on_1_2_3_a
 fn where_all_ranks_factorise_the_whole_the_footing_has_the_same_bits_on_1_2_3_and_4_ranks() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
     let mumps = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
-    for further in ["grid.degree=cubic", "solver.quadrature=fitted", "stabilisation.method=subgrid-f-bar"] {
+    for further in [
+        "grid.degree=cubic",
+        "solver.quadrature=fitted",
+        "stabilisation.method=subgrid-f-bar",
+    ] {
         let set = ["--set", mumps, "--set", "solver.nonlinear=broyden", "--set", further];
         let arguments = [&["case.toml", "-q", "--force", "--max-steps", "3"], &set[..]].concat();
         let runs = [1, 2, 3, 4].map(|ranks| left(&scratch, ranks, &arguments, 3));
@@ -207,13 +272,20 @@ fn where_all_ranks_factorise_the_whole_the_footing_has_the_same_bits_on_1_2_3_an
 fn a_factor_of_single_precision_that_is_too_coarse_is_made_again_on_1_2_and_3_ranks() {
     let reports = |nu: &str, ranks: usize| {
         let mut launcher = Command::new("mpirun");
-        launcher.args(["-q", "--oversubscribe", "-n", &ranks.to_string()]).arg(example("solvers"));
+        launcher
+            .args(["-q", "--oversubscribe", "-n", &ranks.to_string()])
+            .arg(example("solvers"));
         launcher.args(["direct", nu, "20"]);
-        processes::run(launcher, &[], true, Duration::from_secs(120)).expect(0).stdout
+        processes::run(launcher, &[], true, Duration::from_secs(120))
+            .expect(0)
+            .stdout
     };
     for ranks in [1, 2, 3] {
         let (stiff, usual) = (reports("0.499999", ranks), reports("0.3", ranks));
-        assert!(stiff.contains("1 factorisations more") && usual.contains("0 factorisations more"), "{stiff} {usual}");
+        assert!(
+            stiff.contains("1 factorisations more") && usual.contains("0 factorisations more"),
+            "{stiff} {usual}"
+        );
     }
 }
 
@@ -224,10 +296,17 @@ fn a_factor_of_single_precision_that_is_too_coarse_is_made_again_on_1_2_and_3_ra
 fn the_stiffness_is_the_same_on_1_3_10_and_12_ranks_of_one_column_at_most() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
     let shared = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
-    let (quadratic, cubic, shared) =
-        (["grid.degree=quadratic"], ["grid.degree=cubic"], [shared, "solver.reproducible=false"]);
-    let cases =
-        [(&quadratic, &[][..], 5e-2), (&cubic, &[], 5e-2), (&quadratic, &shared, 1e-5), (&cubic, &shared, 1e-5)];
+    let (quadratic, cubic, shared) = (
+        ["grid.degree=quadratic"],
+        ["grid.degree=cubic"],
+        [shared, "solver.reproducible=false"],
+    );
+    let cases = [
+        (&quadratic, &[][..], 5e-2),
+        (&cubic, &[], 5e-2),
+        (&quadratic, &shared, 1e-5),
+        (&cubic, &shared, 1e-5),
+    ];
     for (order, solver, most) in cases {
         let further = [&order[..], solver].concat();
         let set: Vec<&str> = further.iter().flat_map(|key| ["--set", key]).collect();
@@ -240,7 +319,11 @@ fn the_stiffness_is_the_same_on_1_3_10_and_12_ranks_of_one_column_at_most() {
         for [iterations, residual] in &found[1..] {
             assert_eq!(*iterations, found[0][0], "{further:?}");
             let close = |(a, b): (&f64, &f64)| (a - b).abs() <= most * b; // round-off, through a dozen iterations
-            assert!(residual.iter().zip(&found[0][1]).all(close), "{further:?}: {residual:?} for {:?}", found[0][1]);
+            assert!(
+                residual.iter().zip(&found[0][1]).all(close),
+                "{further:?}: {residual:?} for {:?}",
+                found[0][1]
+            );
         }
     }
 }
@@ -249,7 +332,15 @@ fn the_stiffness_is_the_same_on_1_3_10_and_12_ranks_of_one_column_at_most() {
 #[test]
 fn frames_of_several_blocks_have_the_same_bytes_on_1_2_and_3_ranks() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap());
-    let arguments = ["case.toml", "-q", "--force", "--max-steps", "1", "--set", "body.0.points_per_cell=13"];
+    let arguments = [
+        "case.toml",
+        "-q",
+        "--force",
+        "--max-steps",
+        "1",
+        "--set",
+        "body.0.points_per_cell=13",
+    ];
     let frames = [1, 2, 3].map(|ranks| {
         scratch.mpirun(ranks, &arguments).expect(75);
         std::fs::read(scratch.path("case.out/frames/step_000000000.vtu")).unwrap()
@@ -265,7 +356,17 @@ fn the_number_of_threads_changes_no_bit() {
     let run = |threads: &str| {
         // More points on a rank than threads take at a time.
         let points = "body.0.points_per_cell=6";
-        let arguments = ["case.toml", "-q", "--force", "--max-steps", "20", "--threads", threads, "--set", points];
+        let arguments = [
+            "case.toml",
+            "-q",
+            "--force",
+            "--max-steps",
+            "20",
+            "--threads",
+            threads,
+            "--set",
+            points,
+        ];
         let left = left(&scratch, 2, &arguments, 20);
         assert_eq!(manifest(&scratch.path("case.out")).threads.to_string(), threads);
         left
@@ -291,7 +392,13 @@ fn multigrid_gives_the_same_on_1_2_4_and_8_ranks() {
     let set = ["--set", "solver.linear.pc=gamg"];
     agree(&Scratch::new(), case.to_str().unwrap(), &set, &[1, 2, 4, 8], 1e-7);
     let scratch = Scratch::with_case(&changed(SLIDING_BLOCK, "upper = [0.5, 0.2]", "upper = [0.2, 0.2]"));
-    agree(&scratch, "case.toml", &[&set[..], &["--set", "analysis.end=0.01"]].concat(), &[1, 4], 1e-7);
+    agree(
+        &scratch,
+        "case.toml",
+        &[&set[..], &["--set", "analysis.end=0.01"]].concat(),
+        &[1, 4],
+        1e-7,
+    );
 }
 
 /// The column is 4 cells wide: on 4 ranks slabs of one column have ghosts from beyond the next slab, on 8 and 9 slabs
@@ -301,7 +408,13 @@ fn slabs_thinner_than_the_splines_reach_work_for_every_order() {
     let case = shipped("short/self_weight_column.toml");
     for order in ["linear", "quadratic", "cubic"] {
         let order = format!("grid.degree={order}");
-        agree(&Scratch::new(), case.to_str().unwrap(), &["--set", &order], &[1, 3, 4, 8, 9], 1e-9);
+        agree(
+            &Scratch::new(),
+            case.to_str().unwrap(),
+            &["--set", &order],
+            &[1, 3, 4, 8, 9],
+            1e-9,
+        );
     }
 }
 
@@ -329,7 +442,10 @@ fn more_ranks_than_slabs_and_parts_allow_are_refused_with_the_most_that_are_poss
     let case = shipped("short/self_weight_column.toml");
     let output = scratch.mpirun(11, &[case.to_str().unwrap()]).expect(65);
     let lines: Vec<&str> = output.stderr.lines().filter(|line| line.contains("ranks")).collect();
-    assert!(lines.len() == 1 && lines[0].contains("11") && lines[0].contains('4'), "{output:#?}");
+    assert!(
+        lines.len() == 1 && lines[0].contains("11") && lines[0].contains('4'),
+        "{output:#?}"
+    );
     assert_eq!(scratch.entries(), [""; 0]);
 }
 
@@ -345,14 +461,24 @@ fn the_collapse_runs_out_as_far_on_1_2_3_and_4_ranks_whose_slabs_follow_it() {
     let runouts = [1, 2, 3, 4].map(|ranks| {
         let directory = format!("{ranks}.out");
         // Four ranks on two cores take their time when others want those too.
-        scratch.job(Some(ranks), &["case.toml", "-q", "-o", &directory]).within(240).run().expect(0);
+        scratch
+            .job(Some(ranks), &["case.toml", "-q", "-o", &directory])
+            .within(240)
+            .run()
+            .expect(0);
         if let Some(balance) = manifest(&scratch.path(&directory)).balance {
-            assert!(balance.mean <= 1.1 && (balance.cuts > 0 || ranks < 4), "{balance:?} on {ranks} ranks");
+            assert!(
+                balance.mean <= 1.1 && (balance.cuts > 0 || ranks < 4),
+                "{balance:?} on {ranks} ranks"
+            );
         }
         let history = history(&scratch.path(&directory));
         *history.get("runout").unwrap().last().unwrap()
     });
     assert!(runouts[0] > 0.36, "{runouts:?}");
     // Measured 3e-14 m at 0.3 s and 5e-12 m at 0.607 s.
-    assert!(runouts.iter().all(|runout| (runout - runouts[0]).abs() < 1e-9), "{runouts:?}");
+    assert!(
+        runouts.iter().all(|runout| (runout - runouts[0]).abs() < 1e-9),
+        "{runouts:?}"
+    );
 }

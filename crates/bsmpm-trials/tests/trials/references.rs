@@ -31,7 +31,10 @@ fn what_presses_on_the_bottom_of_a_silo_is_janssens() {
             let has_friction = friction * ratio / 2.0;
             let janssen = 15e3 / has_friction * (1.0 - (-has_friction * depth).exp());
             let pressure = at(&found, "bottom-y", t) / 2.0;
-            assert!((pressure / janssen - 1.0).abs() < slack, "{poisson} {depth} m: {pressure}, {janssen}");
+            assert!(
+                (pressure / janssen - 1.0).abs() < slack,
+                "{poisson} {depth} m: {pressure}, {janssen}"
+            );
             let all = at(&found, "bottom-y", t) + at(&found, "wall-y", t);
             assert!((all / (30e3 * depth) - 1.0).abs() < 1e-4, "{all}");
         }
@@ -42,16 +45,31 @@ fn what_presses_on_the_bottom_of_a_silo_is_janssens() {
 /// cells of B/8, which are too stiff by 6 %, gave 5.44, 3.92 and 2.70.
 #[test]
 fn a_strip_on_strong_clay_over_soft_clay_carries_less_than_a_circle() {
-    assert!((strip_on_two_clays(1.0, 1.0) - 5.5204).abs() < 1e-3, "Button's, of one clay");
+    assert!(
+        (strip_on_two_clays(1.0, 1.0) - 5.5204).abs() < 1e-3,
+        "Button's, of one clay"
+    );
     for (cohesion, ratio) in [("20e3", 1.0), ("10e3", 0.5), ("5e3", 0.25)] {
         let soft = format!("material.soft.cohesion={cohesion}");
-        let small = ["footing.displacement=[0.0, -0.02]", "strength_reduction={ factor = 1.0, stiffness = 50.0 }"];
-        let found = run("punch_through.toml", &[small[0], small[1], &soft, "accuracy=\"draft\"", "check=[]"]);
+        let small = [
+            "footing.displacement=[0.0, -0.02]",
+            "strength_reduction={ factor = 1.0, stiffness = 50.0 }",
+        ];
+        let found = run(
+            "punch_through.toml",
+            &[small[0], small[1], &soft, "accuracy=\"draft\"", "check=[]"],
+        );
         let (factor, circle) = (at(&found, "N", 1.0), strip_on_two_clays(1.0, ratio));
         let (prandtl, blocks) = (2.0 + std::f64::consts::PI, strip(ratio, 4));
         println!("{ratio}: {factor}; circle {circle}, blocks {blocks}");
-        assert!(prandtl * ratio < factor && factor < 1.01 * circle, "{ratio}: {factor}, {circle}");
-        assert!(prandtl * ratio < blocks && factor < 1.03 * blocks, "{ratio}: {factor}, {blocks}");
+        assert!(
+            prandtl * ratio < factor && factor < 1.01 * circle,
+            "{ratio}: {factor}, {circle}"
+        );
+        assert!(
+            prandtl * ratio < blocks && factor < 1.03 * blocks,
+            "{ratio}: {factor}, {blocks}"
+        );
         assert!(ratio < 1.0 || blocks < 1.04 * prandtl, "{blocks}");
         assert!(ratio < 1.0 || factor < 1.08 * prandtl, "{factor}");
     }
@@ -61,12 +79,26 @@ fn a_strip_on_strong_clay_over_soft_clay_carries_less_than_a_circle() {
 /// bounds of coarse triangles.
 #[test]
 fn bounds_of_triangles_hold_what_is_known() {
-    let disc = Footing { round: true, rough: false, outline: FLAT, depth: 0.0, side: 0.0, below: 1.0 };
-    let known = [(5.69, disc), (6.05, Footing { rough: true, ..disc }), (5.1416, Footing { round: false, ..disc })];
+    let disc = Footing {
+        round: true,
+        rough: false,
+        outline: FLAT,
+        depth: 0.0,
+        side: 0.0,
+        below: 1.0,
+    };
+    let known = [
+        (5.69, disc),
+        (6.05, Footing { rough: true, ..disc }),
+        (5.1416, Footing { round: false, ..disc }),
+    ];
     for (exact, footing) in known {
         let mesh = footing.mesh(0.1, 0.3);
         let (lower, upper) = (mesh.lower_bound(), mesh.upper_bound());
-        assert!(lower < exact && exact < upper && upper - lower < 0.13 * exact, "{exact}: {lower}, {upper}");
+        assert!(
+            lower < exact && exact < upper && upper - lower < 0.13 * exact,
+            "{exact}: {lower}, {upper}"
+        );
     }
 }
 
@@ -81,7 +113,10 @@ fn a_pipe_that_is_pulled_out_of_clay_carries_less_than_blocks_above_it() {
     for t in [0.5, 0.75, 1.0] {
         let factor = at(&found, "N-y", t);
         println!("{factor} at {t}; blocks {blocks}");
-        assert!(factor < blocks && factor > 0.92 * blocks && (factor / 3.21 - 1.0).abs() < 0.03, "{factor} at {t}");
+        assert!(
+            factor < blocks && factor > 0.92 * blocks && (factor / 3.21 - 1.0).abs() < 0.03,
+            "{factor} at {t}"
+        );
     }
 }
 
@@ -95,12 +130,22 @@ fn an_anchor_plate_carries_less_in_smaller_cells_towards_what_blocks_allow() {
     let body = format!("rigid.0={{ name = \"pipe\", polygon = {corners}, displacement = [0.0, 0.01] }}");
     let of = |cell: f64| {
         let cell = format!("grid.cell={cell}");
-        at(&run("pipe_uplift.toml", &[hole, &body, &cell, "analysis.steps=10", "check=[]"]), "N-y", 1.0)
+        at(
+            &run(
+                "pipe_uplift.toml",
+                &[hole, &body, &cell, "analysis.steps=10", "check=[]"],
+            ),
+            "N-y",
+            1.0,
+        )
     };
     let ([coarse, fine], rough, blocks) = ([0.125, 0.0625].map(of), 2.56 * 4_f64.ln(), plate(2.0, 0.25, 4));
     println!("{coarse}, {fine}; blocks {blocks}");
     assert!(rough < blocks && rough < fine, "{fine}, {rough}, {blocks}");
-    assert!(coarse < 1.09 * blocks && fine - blocks < 0.55 * (coarse - blocks), "{coarse} {fine}, {blocks}");
+    assert!(
+        coarse < 1.09 * blocks && fine - blocks < 0.55 * (coarse - blocks),
+        "{coarse} {fine}, {blocks}"
+    );
 }
 
 /// It rolls with 2/3 g sin(theta), and with little friction slips with g (sin(theta) - mu cos(theta)). Cells of a
@@ -114,10 +159,19 @@ fn a_disc_rolls_and_slips_down_an_incline() {
     let way = t * t / 2.0 - ramp * t / 2.0 + ramp * ramp / 6.0;
     let slips = (along - 0.05 * across) * way;
     for (friction, exact, behind) in [(0.5, along * 2.0 / 3.0 * way, 0.035), (0.05, slips, 0.045)] {
-        let found = run("rolling_disc.toml", &[&format!("rigid.0.friction_coefficient={friction}"), "check=[]"]);
+        let found = run(
+            "rolling_disc.toml",
+            &[&format!("rigid.0.friction_coefficient={friction}"), "check=[]"],
+        );
         let gone = at(&found, "rigid-displacement-x", t);
-        assert!((gone / exact - 1.0).abs() < behind, "friction {friction}: {gone}, {exact}");
+        assert!(
+            (gone / exact - 1.0).abs() < behind,
+            "friction {friction}: {gone}, {exact}"
+        );
         let rolled = -at(&found, "rigid-rotation", t).to_radians() * radius;
-        assert!((rolled / gone - 1.0).abs() < 0.01 || (friction < 0.1 && rolled < 0.5 * gone), "{rolled} of {gone}");
+        assert!(
+            (rolled / gone - 1.0).abs() < 0.01 || (friction < 0.1 && rolled < 0.5 * gone),
+            "{rolled} of {gone}"
+        );
     }
 }

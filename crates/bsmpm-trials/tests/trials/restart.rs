@@ -16,12 +16,19 @@ fn results(directory: &Path) -> (String, String, Vec<u8>) {
     let steps = text("steps.csv");
     let names: Vec<&str> = steps.lines().next().unwrap().split(',').collect();
     let untimed = |line: &str| {
-        let cells = names.iter().zip(line.split(',')).filter(|(name, _)| !["wall", "messages", "bytes"].contains(name));
+        let cells = names
+            .iter()
+            .zip(line.split(','))
+            .filter(|(name, _)| !["wall", "messages", "bytes"].contains(name));
         cells.map(|(_, cell)| cell).collect::<Vec<_>>().join(",")
     };
     let frame = format!("frames/step_{:09}.vtu", last_frame(directory).step);
     let frame = std::fs::read(directory.join(frame)).unwrap();
-    (text("history.csv"), steps.lines().map(untimed).collect::<Vec<_>>().join("\n"), frame)
+    (
+        text("history.csv"),
+        steps.lines().map(untimed).collect::<Vec<_>>().join("\n"),
+        frame,
+    )
 }
 
 #[test]
@@ -31,9 +38,14 @@ fn a_run_that_was_stopped_goes_on_to_the_bit() {
         scratch.mpirun(ranks, &["case.toml", "-q", "-o", "whole"]).expect(0);
         for stop in ["0", "7", "20"] {
             let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-            scratch.mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
+            scratch
+                .mpirun(ranks, &[&part[..], &["--max-steps", stop]].concat())
+                .expect(75);
             scratch.mpirun(ranks, &part).expect(0);
-            assert!(results(&scratch.path("whole")) == results(&scratch.path("part")), "{ranks} ranks, step {stop}");
+            assert!(
+                results(&scratch.path("whole")) == results(&scratch.path("part")),
+                "{ranks} ranks, step {stop}"
+            );
             let (whole, part) = (manifest(&scratch.path("whole")), manifest(&scratch.path("part")));
             assert_eq!(part.restarts.len(), 1);
             assert_eq!(whole.summary.iterations, part.summary.iterations);
@@ -48,7 +60,9 @@ fn a_run_that_was_stopped_goes_on_to_the_bit() {
 /// pressure its direction and how that changes are kept.
 #[test]
 fn a_block_with_friction_goes_on_to_the_bit_and_so_does_one_that_is_pressed() {
-    [frictional_block(), pressed_block()].iter().for_each(|case| goes_on_to_the_bit(case));
+    [frictional_block(), pressed_block()]
+        .iter()
+        .for_each(|case| goes_on_to_the_bit(case));
 }
 
 fn goes_on_to_the_bit(case: &str) {
@@ -56,7 +70,9 @@ fn goes_on_to_the_bit(case: &str) {
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
     scratch.mpirun(2, &["case.toml", "-q", "-o", "whole"]).expect(0);
     for stop in ["9", "17", "31"] {
-        scratch.mpirun(2, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
+        scratch
+            .mpirun(2, &[&part[..], &["--max-steps", stop]].concat())
+            .expect(75);
     }
     scratch.mpirun(2, &part).expect(0);
     assert!(results(&scratch.path("whole")) == results(&scratch.path("part")));
@@ -69,11 +85,30 @@ fn of_a_chain_of_restarts_every_step_is_there_once() {
     let number = manifest(&scratch.path("whole")).summary.steps;
     for stop in (3..number).step_by(3) {
         let stop = stop.to_string();
-        scratch.mpirun(2, &["case.toml", "-q", "-o", "part", "--restart", "auto", "--max-steps", &stop]).expect(75);
+        scratch
+            .mpirun(
+                2,
+                &[
+                    "case.toml",
+                    "-q",
+                    "-o",
+                    "part",
+                    "--restart",
+                    "auto",
+                    "--max-steps",
+                    &stop,
+                ],
+            )
+            .expect(75);
     }
-    scratch.mpirun(2, &["case.toml", "-q", "-o", "part", "--restart", "auto"]).expect(0);
+    scratch
+        .mpirun(2, &["case.toml", "-q", "-o", "part", "--restart", "auto"])
+        .expect(0);
     assert!(results(&scratch.path("whole")) == results(&scratch.path("part")));
-    let listed: Vec<u64> = all_frames(&scratch.path("part")).iter().map(|frame| frame.step).collect();
+    let listed: Vec<u64> = all_frames(&scratch.path("part"))
+        .iter()
+        .map(|frame| frame.step)
+        .collect();
     assert!(listed.is_sorted_by(|a, b| a < b), "{listed:?}");
     let every = steps(&scratch.path("part")).get("step").unwrap().to_vec();
     assert_eq!(every, (1..=number).map(|step| step as f64).collect::<Vec<_>>());
@@ -99,13 +134,18 @@ fn the_state_of_a_law_goes_along() {
     let scratch = Scratch::with_case(&case);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "whole"]).expect(0);
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-    scratch.mpirun(2, &[&part[..], &["--max-steps", "20"]].concat()).expect(75);
+    scratch
+        .mpirun(2, &[&part[..], &["--max-steps", "20"]].concat())
+        .expect(75);
     scratch.mpirun(2, &part).expect(0);
     assert!(results(&scratch.path("whole")) == results(&scratch.path("part")));
     let frame = last_frame(&scratch.path("whole"));
     let [state, flow] = ["hardening_strain", "plastic_strain"].map(|name| frame.real(name, 1).unwrap().to_vec());
     assert!(flow.iter().copied().fold(0.0, f64::max) > 1e-3, "it yields");
-    assert!(state.iter().zip(&flow).all(|(a, b)| (a - b).abs() <= 1e-12), "von Mises hardens with its plastic strain");
+    assert!(
+        state.iter().zip(&flow).all(|(a, b)| (a - b).abs() <= 1e-12),
+        "von Mises hardens with its plastic strain"
+    );
     goes_on_on_other_ranks(&case, &[(2, 3)]);
 }
 
@@ -116,8 +156,12 @@ fn goes_on_on_other_ranks(case: &str, ranks: &[(usize, usize)]) {
     let whole = last_frame(&scratch.path("whole"));
     for &(first, then) in ranks {
         let part = ["case.toml", "-o", "part"];
-        scratch.mpirun(first, &[&part[..], &["-q", "--max-steps", "12"]].concat()).expect(75);
-        let output = scratch.mpirun(then, &[&part[..], &["--restart", "auto"]].concat()).expect(0);
+        scratch
+            .mpirun(first, &[&part[..], &["-q", "--max-steps", "12"]].concat())
+            .expect(75);
+        let output = scratch
+            .mpirun(then, &[&part[..], &["--restart", "auto"]].concat())
+            .expect(0);
         output.says_once(&format!(
             "W0734: the checkpoint was written on {first} rank(s), and the run continues on {then}"
         ));
@@ -135,15 +179,24 @@ fn a_checkpoint_that_is_named_is_gone_back_to_and_what_came_later_is_forgotten()
     scratch.mpirun(2, &[&run[..], &["-o", "whole"]].concat()).expect(0);
     scratch.mpirun(2, &[&run[..], &["-o", "part"]].concat()).expect(0);
     let back = ["--restart", "part/checkpoint/step_000000010.h5"];
-    scratch.mpirun(2, &[&run[..], &["-o", "part", "--max-steps", "10"], &back].concat()).expect(75);
+    scratch
+        .mpirun(2, &[&run[..], &["-o", "part", "--max-steps", "10"], &back].concat())
+        .expect(75);
     let checkpoints = ["step_000000005", "step_000000010"].map(|name| [format!("{name}.h5"), format!("{name}.json")]);
     assert_eq!(entries(&scratch.path("part/checkpoint")), checkpoints.as_flattened());
-    assert_eq!(*history(&scratch.path("part")).get("step").unwrap().last().unwrap(), 10.0);
+    assert_eq!(
+        *history(&scratch.path("part")).get("step").unwrap().last().unwrap(),
+        10.0
+    );
     assert!(all_frames(&scratch.path("part")).iter().all(|frame| frame.step <= 10));
-    scratch.mpirun(2, &[&run[..], &["-o", "part", "--restart", "auto"]].concat()).expect(0);
+    scratch
+        .mpirun(2, &[&run[..], &["-o", "part", "--restart", "auto"]].concat())
+        .expect(0);
     assert!(results(&scratch.path("whole")) == results(&scratch.path("part")));
     // In another directory it is a run of its own, with the rows of the older one.
-    scratch.mpirun(2, &[&run[..], &["-o", "other"], &back].concat()).expect(0);
+    scratch
+        .mpirun(2, &[&run[..], &["-o", "other"], &back].concat())
+        .expect(0);
     assert!(results(&scratch.path("whole")) == results(&scratch.path("other")));
 }
 
@@ -153,8 +206,14 @@ fn restart_auto_starts_what_was_not_begun_and_leaves_alone_what_is_complete() {
     let run = ["case.toml", "-q", "--restart", "auto"];
     scratch.mpirun(2, &run).expect(0);
     let before = std::fs::read(scratch.path("case.out/run.json")).unwrap();
-    scratch.mpirun(2, &run).expect(0).says_once("`case.out` is already complete");
-    scratch.mpirun(1, &run).expect(0).says_once("`case.out` is already complete");
+    scratch
+        .mpirun(2, &run)
+        .expect(0)
+        .says_once("`case.out` is already complete");
+    scratch
+        .mpirun(1, &run)
+        .expect(0)
+        .says_once("`case.out` is already complete");
     assert_eq!(std::fs::read(scratch.path("case.out/run.json")).unwrap(), before);
 }
 
@@ -164,14 +223,26 @@ fn with_fitted_volumes_it_goes_on_to_the_bit_and_not_without() {
     let scratch = Scratch::with_case(&changed(COLUMN, "\"1 MPa\"", "\"100 kPa\""));
     let fitted = ["case.toml", "-q", "--set", "solver.quadrature=fitted"];
     for ranks in [1, 2] {
-        scratch.mpirun(ranks, &[&fitted[..], &["-o", "whole", "--force"]].concat()).expect(0);
-        scratch.mpirun(ranks, &[&fitted[..], &["-o", "part", "--force", "--max-steps", "3"]].concat()).expect(75);
+        scratch
+            .mpirun(ranks, &[&fitted[..], &["-o", "whole", "--force"]].concat())
+            .expect(0);
+        scratch
+            .mpirun(
+                ranks,
+                &[&fitted[..], &["-o", "part", "--force", "--max-steps", "3"]].concat(),
+            )
+            .expect(75);
         let go_on = ["-o", "part", "--restart", "auto"];
         let output = scratch.mpirun(ranks, &[&["case.toml"], &go_on[..]].concat()).expect(76);
         output.says_once("solver.quadrature was");
         scratch.mpirun(ranks, &[&fitted[..], &go_on].concat()).expect(0);
-        assert!(results(&scratch.path("whole")) == results(&scratch.path("part")), "{ranks} ranks");
-        scratch.mpirun(ranks, &["case.toml", "-q", "-o", "points", "--force"]).expect(0);
+        assert!(
+            results(&scratch.path("whole")) == results(&scratch.path("part")),
+            "{ranks} ranks"
+        );
+        scratch
+            .mpirun(ranks, &["case.toml", "-q", "-o", "points", "--force"])
+            .expect(0);
         let [whole, points] = ["whole", "points"].map(|name| history(&scratch.path(name)));
         let height = |table: &bsmpm_io::table::Columns| *table.get("height").unwrap().last().unwrap();
         assert_ne!(height(&whole), height(&points), "it is seen");
@@ -193,8 +264,14 @@ fn another_case_is_refused_by_the_keys_that_differ_and_nothing_is_touched() {
         output.says_once("body.0.points_per_cell was ");
         assert!(output.said().contains(", and is 3"), "{output:#?}");
     }
-    assert_eq!((content(), entries(&scratch.path("case.out/checkpoint"))), (before, listed));
-    scratch.mpirun(2, &["case.toml", "--restart", "nowhere.h5", "-o", "new"]).expect(76).says_once("nowhere.json");
+    assert_eq!(
+        (content(), entries(&scratch.path("case.out/checkpoint"))),
+        (before, listed)
+    );
+    scratch
+        .mpirun(2, &["case.toml", "--restart", "nowhere.h5", "-o", "new"])
+        .expect(76)
+        .says_once("nowhere.json");
     assert!(!scratch.path("new").exists());
 }
 
@@ -241,14 +318,20 @@ fn lines_with_one_checksum(key: &str) -> [String; 2] {
 fn forge(file: &Path, part: &str, by: &str) {
     assert_eq!(part.len(), by.len());
     let mut bytes = std::fs::read(file).unwrap();
-    let at = bytes.windows(part.len()).position(|window| window == part.as_bytes()).expect("the case is in it");
+    let at = bytes
+        .windows(part.len())
+        .position(|window| window == part.as_bytes())
+        .expect("the case is in it");
     bytes[at..at + part.len()].copy_from_slice(by.as_bytes());
     std::fs::write(file, &bytes).unwrap();
     let text = std::fs::read_to_string(file.with_extension("json")).unwrap();
     let mut record: serde_json::Value = serde_json::from_str(&text).unwrap();
     record["record"]["blake3"] = blake3::hash(&bytes).to_string().into();
     let body = record["record"].to_string();
-    let text = format!("{{\"blake3\":\"{}\",\"record\":{body}}}\n", blake3::hash(body.as_bytes()));
+    let text = format!(
+        "{{\"blake3\":\"{}\",\"record\":{body}}}\n",
+        blake3::hash(body.as_bytes())
+    );
     std::fs::write(file.with_extension("json"), text).unwrap();
 }
 
@@ -259,13 +342,20 @@ fn a_run_goes_on_with_a_later_end_and_says_what_has_changed() {
     let run = ["case.toml", "--set", OFTEN, "-o", "part"];
     scratch.mpirun(2, &[&run[..], &["-q"]].concat()).expect(0);
     let later = format!("analysis.end={}", 1.5 * end);
-    let output = scratch.mpirun(2, &[&run[..], &["--set", &later, "--restart", "auto"]].concat()).expect(0);
+    let output = scratch
+        .mpirun(2, &[&run[..], &["--set", &later, "--restart", "auto"]].concat())
+        .expect(0);
     output.says_once("W0732: the case has changed since the checkpoint: analysis.end was");
-    scratch.mpirun(2, &["case.toml", "-q", "-o", "whole", "--set", &later]).expect(0);
+    scratch
+        .mpirun(2, &["case.toml", "-q", "-o", "whole", "--set", &later])
+        .expect(0);
     let (part, whole) = (history(&scratch.path("part")), history(&scratch.path("whole")));
     assert_eq!(part.get("time").unwrap().last(), whole.get("time").unwrap().last());
     let changed = &manifest(&scratch.path("part")).restarts[0].changed;
-    assert!(changed.len() == 1 && changed[0].starts_with("analysis.end was"), "{changed:?}");
+    assert!(
+        changed.len() == 1 && changed[0].starts_with("analysis.end was"),
+        "{changed:?}"
+    );
 }
 
 /// The end of the sliding block's case.
@@ -282,7 +372,12 @@ fn restarts_that_come_to_nothing_end_with_72() {
         scratch.mpirun(2, &run).expect(75);
     }
     scratch.mpirun(2, &run).expect(72).says_once("3 restarts in a row");
-    scratch.mpirun(2, &["case.toml", "-q", "--restart", "case.out/checkpoint/step_000000005.h5"]).expect(0);
+    scratch
+        .mpirun(
+            2,
+            &["case.toml", "-q", "--restart", "case.out/checkpoint/step_000000005.h5"],
+        )
+        .expect(0);
 }
 
 #[test]
@@ -295,7 +390,11 @@ fn a_table_that_was_changed_since_is_not_gone_on_with() {
     let manifest = std::fs::read(scratch.path("case.out/run.json")).unwrap();
     let output = scratch.mpirun(2, &["case.toml", "-q", "--restart", "auto"]).expect(74);
     output.says_once("bytes are not those that the run had written");
-    assert_eq!(std::fs::read(scratch.path("case.out/run.json")).unwrap(), manifest, "nothing was touched");
+    assert_eq!(
+        std::fs::read(scratch.path("case.out/run.json")).unwrap(),
+        manifest,
+        "nothing was touched"
+    );
     std::fs::remove_file(&path).unwrap();
     let output = scratch.mpirun(2, &["case.toml", "--restart", "auto"]).expect(0);
     output
@@ -307,13 +406,23 @@ fn a_table_that_was_changed_since_is_not_gone_on_with() {
 fn the_clock_can_ask_for_checkpoints_and_they_change_nothing() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "never"]).expect(0);
-    assert!(!scratch.path("never/checkpoint").exists(), "nothing is written where nothing is asked for");
-    for (name, wanted) in
-        [("clock", "{wall=\"1 us\",keep=3}"), ("steps", "{every_steps=1}"), ("seventh", "{every_steps=7}")]
-    {
+    assert!(
+        !scratch.path("never/checkpoint").exists(),
+        "nothing is written where nothing is asked for"
+    );
+    for (name, wanted) in [
+        ("clock", "{wall=\"1 us\",keep=3}"),
+        ("steps", "{every_steps=1}"),
+        ("seventh", "{every_steps=7}"),
+    ] {
         let set = format!("output.checkpoint={wanted}");
-        scratch.mpirun(2, &["case.toml", "-q", "-o", name, "--set", &set]).expect(0);
-        assert!(results(&scratch.path(name)) == results(&scratch.path("never")), "{name}");
+        scratch
+            .mpirun(2, &["case.toml", "-q", "-o", name, "--set", &set])
+            .expect(0);
+        assert!(
+            results(&scratch.path(name)) == results(&scratch.path("never")),
+            "{name}"
+        );
         let kept = entries(&scratch.path(name).join("checkpoint")).len();
         assert_eq!(kept, if name == "clock" { 6 } else { 4 });
     }
@@ -326,7 +435,10 @@ fn materials_in_another_order_are_another_case() {
     let scratch = Scratch::with_case(&SLIDING_BLOCK.replacen("[[body]]", CLAY, 1));
     scratch.mpirun(2, &["case.toml", "-q", "--max-steps", "5"]).expect(75);
     let clay = CLAY.strip_suffix("[[body]]").unwrap();
-    scratch.write("case.toml", SLIDING_BLOCK.replacen("[material.rubber]", &format!("{clay}[material.rubber]"), 1));
+    scratch.write(
+        "case.toml",
+        SLIDING_BLOCK.replacen("[material.rubber]", &format!("{clay}[material.rubber]"), 1),
+    );
     let output = scratch.mpirun(2, &["case.toml", "-q", "--restart", "auto"]).expect(76);
     output.says_once("material was rubber, clay, and is clay, rubber");
 }
@@ -342,8 +454,17 @@ fn a_run_that_has_ended_is_never_begun_again_by_itself() {
     scratch.mpirun(2, &shorter).expect(0).says_once("is already complete");
     assert_eq!(std::fs::read(scratch.path("case.out/history.csv")).unwrap(), before);
     // Nor is one whose checks failed, which is complete with its own code.
-    let check = ["--set", "check.0.quantity=runout", "--set", "check.0.max=0.1", "-o", "checked"];
-    scratch.mpirun(2, &[&["case.toml", "-q"][..], &check].concat()).expect(77);
+    let check = [
+        "--set",
+        "check.0.quantity=runout",
+        "--set",
+        "check.0.max=0.1",
+        "-o",
+        "checked",
+    ];
+    scratch
+        .mpirun(2, &[&["case.toml", "-q"][..], &check].concat())
+        .expect(77);
     scratch
         .mpirun(2, &[&["case.toml", "-q", "--restart", "auto"][..], &check].concat())
         .expect(77)
@@ -353,8 +474,12 @@ fn a_run_that_has_ended_is_never_begun_again_by_itself() {
 #[test]
 fn a_run_that_is_killed_before_its_first_checkpoint_starts_again_but_not_for_ever() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
-    let run =
-        |fault: &str| scratch.job(Some(2), &["case.toml", "--restart", "auto"]).variable("BSMPM_FAULT", fault).run();
+    let run = |fault: &str| {
+        scratch
+            .job(Some(2), &["case.toml", "--restart", "auto"])
+            .variable("BSMPM_FAULT", fault)
+            .run()
+    };
     run("panic:rank=1,step=5").expect(70);
     for _ in 0..3 {
         run("panic:rank=1,step=5").expect(70).says_once("warning W0730: ");
@@ -367,27 +492,59 @@ fn a_run_that_is_killed_before_its_first_checkpoint_starts_again_but_not_for_eve
 #[test]
 fn a_branch_in_another_directory_has_a_checkpoint_of_its_own_at_once() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
-    scratch.mpirun(2, &["case.toml", "-q", "-o", "a", "--max-steps", "5"]).expect(75);
+    scratch
+        .mpirun(2, &["case.toml", "-q", "-o", "a", "--max-steps", "5"])
+        .expect(75);
     let branch = ["case.toml", "-q", "-o", "b", "--restart"];
     let from = ["a/checkpoint/step_000000005.h5", "--max-steps", "5"];
     scratch.mpirun(2, &[&branch[..], &from].concat()).expect(75);
-    assert_eq!(entries(&scratch.path("b/checkpoint")), ["step_000000005.h5", "step_000000005.json"]);
+    assert_eq!(
+        entries(&scratch.path("b/checkpoint")),
+        ["step_000000005.h5", "step_000000005.json"]
+    );
     scratch.mpirun(2, &[&branch[..], &["auto"]].concat()).expect(0);
-    assert_eq!(history(&scratch.path("b")).get("step").unwrap()[0], 0.0, "the rows of before are there");
-    let beyond = ["-o", "c", "--set", "analysis.end=0.001", "--restart", "a/checkpoint/step_000000005.h5"];
-    scratch.mpirun(2, &[&["case.toml", "-q"][..], &beyond].concat()).expect(76).says_once("error E0723: ");
+    assert_eq!(
+        history(&scratch.path("b")).get("step").unwrap()[0],
+        0.0,
+        "the rows of before are there"
+    );
+    let beyond = [
+        "-o",
+        "c",
+        "--set",
+        "analysis.end=0.001",
+        "--restart",
+        "a/checkpoint/step_000000005.h5",
+    ];
+    scratch
+        .mpirun(2, &[&["case.toml", "-q"][..], &beyond].concat())
+        .expect(76)
+        .says_once("error E0723: ");
 }
 
 #[test]
 fn a_failure_that_was_mended_is_no_longer_reported() {
     let scratch = Scratch::with_case(COLUMN);
     let run = ["case.toml", "-q", "--set", OFTEN];
-    scratch.mpirun(2, &[&run[..], &["--max-steps", "2"]].concat()).expect(75);
-    let stuck = ["solver.nonlinear=broyden", "solver.max_iterations=1", "solver.tolerance=1e-15"];
-    let stuck = [&run[..], stuck.map(|set| ["--set", set]).as_flattened(), &["--restart", "auto"]].concat();
+    scratch
+        .mpirun(2, &[&run[..], &["--max-steps", "2"]].concat())
+        .expect(75);
+    let stuck = [
+        "solver.nonlinear=broyden",
+        "solver.max_iterations=1",
+        "solver.tolerance=1e-15",
+    ];
+    let stuck = [
+        &run[..],
+        stuck.map(|set| ["--set", set]).as_flattened(),
+        &["--restart", "auto"],
+    ]
+    .concat();
     scratch.mpirun(2, &stuck).expect(80);
     assert!(scratch.path("case.out/failure.json").exists());
-    scratch.mpirun(2, &[&run[..], &["--restart", "auto"]].concat()).expect(0);
+    scratch
+        .mpirun(2, &[&run[..], &["--restart", "auto"]].concat())
+        .expect(0);
     assert!(!scratch.path("case.out/failure.json").exists());
     let manifest = manifest(&scratch.path("case.out"));
     assert!(manifest.failure.is_none() && manifest.outputs.iter().all(|output| output.path != "failure.json"));

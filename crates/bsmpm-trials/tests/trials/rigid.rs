@@ -92,9 +92,15 @@ fn rigid_bodies_are_the_same_on_any_number_of_ranks_and_over_restarts() {
         scratch.goes_on(ranks, &["5", "22"]);
     }
     let [one, three] = ["whole1", "whole3"].map(|name| history(&scratch.path(name)));
-    for name in
-        ["block-y", "rigid-velocity-x", "rigid-velocity-y", "roller-x", "roller-y", "rigid-moment", "rigid-work"]
-    {
+    for name in [
+        "block-y",
+        "rigid-velocity-x",
+        "rigid-velocity-y",
+        "roller-x",
+        "roller-y",
+        "rigid-moment",
+        "rigid-work",
+    ] {
         let (a, b) = (at(&one, name, 0.12), at(&three, name, 0.12));
         assert!((a - b).abs() < 1e-8 * a.abs(), "{name}: {a} and {b}");
     }
@@ -104,7 +110,10 @@ fn rigid_bodies_are_the_same_on_any_number_of_ranks_and_over_restarts() {
     assert!(x > 0.25 * y && moment > 0.25 * 0.5 * y, "{x} {y} {moment}");
     assert!((at(&one, "rigid-displacement-x", 0.12) - 0.05).abs() < 1e-12);
     let [before, after] = [0.06, 0.12].map(|t| at(&one, "rigid-displacement-y", t));
-    assert!((before + 0.03).abs() < 1e-12 && after.abs() < 1e-12, "{before:e}, from the stage on {after:e}");
+    assert!(
+        (before + 0.03).abs() < 1e-12 && after.abs() < 1e-12,
+        "{before:e}, from the stage on {after:e}"
+    );
     assert!(at(&one, "rigid-work", 0.12) > 0.0, "it goes into the soil");
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&one, name, 0.12).abs());
     assert!(closure < 1e-6 * external, "{closure:e} of {external:e}");
@@ -112,18 +121,34 @@ fn rigid_bodies_are_the_same_on_any_number_of_ranks_and_over_restarts() {
 
 #[test]
 fn what_is_doubtful_of_rigid_bodies_is_reported_and_what_nothing_holds_ends_the_run() {
-    let met = changed(CASE, "centre = [2.8, 1.5], radius = 0.5", "centre = [1.3, 1.9], radius = 0.5");
+    let met = changed(
+        CASE,
+        "centre = [2.8, 1.5], radius = 0.5",
+        "centre = [1.3, 1.9], radius = 0.5",
+    );
     let met = changed(&met, "[0.06, 0.0, -0.03]", "[0.06, -0.1, -0.3]");
     let scratch = Scratch::with_case(&changed(&met, "dt = 0.003", "dt = 0.03"));
-    scratch.mpirun(1, &["case.toml", "--check"]).expect(0).says_once("warning W0411");
+    scratch
+        .mpirun(1, &["case.toml", "--check"])
+        .expect(0)
+        .says_once("warning W0411");
     scratch.write("case.toml", met);
-    let output = scratch.mpirun(1, &["case.toml", "-q", "-o", "met", "--max-steps", "20"]).expect(80);
+    let output = scratch
+        .mpirun(1, &["case.toml", "-q", "-o", "met", "--max-steps", "20"])
+        .expect(80);
     output.says_once("error E0752: ");
     let free = changed(CASE, "type = \"dynamic\"", "type = \"quasi-static\"");
     let free = changed(&free, "start_velocity = [0.3, -0.5]\n", "");
-    let free = changed(&free, "[[history]]\nquantity = \"rigid-velocity\"\nrigid = \"block\"\n", "");
+    let free = changed(
+        &free,
+        "[[history]]\nquantity = \"rigid-velocity\"\nrigid = \"block\"\n",
+        "",
+    );
     scratch.write("case.toml", free);
-    scratch.mpirun(1, &["case.toml", "-q", "-o", "loose"]).expect(80).says_once("error E0751: ");
+    scratch
+        .mpirun(1, &["case.toml", "-q", "-o", "loose"])
+        .expect(80)
+        .says_once("error E0751: ");
 }
 
 /// A rigid wall that retains sand at rest on a rough base, and goes away from it from the first step on.
@@ -193,15 +218,30 @@ fn thrust(case: &str, ranks: usize, force: &str) -> [f64; 2] {
 fn a_rigid_wall_that_goes_away_from_sand_has_rankines_and_coulombs_active_thrust() {
     // Gravity that grows before it moves, in the place of stress at rest.
     let grown = changed(WALL, "[initial]\nk0 = 0.5\n", "");
-    let grown = changed(&grown, "acceleration = [0, -9.81]", "acceleration = [0, -9.81]\nramp = 0.5");
-    let grown = changed(&grown, "displacement = [-0.02, 0]", "path = [[0.5, 0, 0], [1, -0.02, 0]]");
+    let grown = changed(
+        &grown,
+        "acceleration = [0, -9.81]",
+        "acceleration = [0, -9.81]\nramp = 0.5",
+    );
+    let grown = changed(
+        &grown,
+        "displacement = [-0.02, 0]",
+        "path = [[0.5, 0, 0], [1, -0.02, 0]]",
+    );
     let [smooth, two] = [1, 2].map(|ranks| thrust(&grown, ranks, "rigid-force"));
     // The base holds half a cell of what would come down: -2.4 %, in cells twice as long -10 %.
     assert!((smooth[0] / active(0.0) - 1.0).abs() < 0.03, "{smooth:?}");
     // 7e-13 seen.
-    assert!((two[0] / smooth[0] - 1.0).abs() < 1e-6, "{two:?} on two ranks, {smooth:?} on one");
+    assert!(
+        (two[0] / smooth[0] - 1.0).abs() < 1e-6,
+        "{two:?} on two ranks, {smooth:?} on one"
+    );
     // From rest; -2.2 %, and all of it slides: friction is 0.3 to rounding.
-    let rough = thrust(&changed(WALL, "friction_coefficient = 0.0", "friction_coefficient = 0.3"), 1, "rigid-force");
+    let rough = thrust(
+        &changed(WALL, "friction_coefficient = 0.0", "friction_coefficient = 0.3"),
+        1,
+        "rigid-force",
+    );
     assert!((rough[0] / active(0.3) - 1.0).abs() < 0.03, "{rough:?}");
     assert!((rough[1] / rough[0] / 0.3 - 1.0).abs() < 1e-9, "{rough:?}");
 }
@@ -213,11 +253,18 @@ fn a_strip_in_contact_that_goes_away_from_sand_at_rest_has_rankines_and_coulombs
         "[[rigid]]\nname = \"wall\"\npolygon = [[-0.9, 0], [0, 0], [0, 3.3], [-0.9, 3.3]]\nfriction_coefficient = 0.0";
     let strip =
         "[[prescribed]]\nname = \"wall\"\nfrom = [0, 0]\nto = [0, 3]\ncomponents = { friction_coefficient = MU }";
-    let as_strip = changed(&changed(WALL, body, strip), "\"rigid-force\"\nrigid", "\"reaction\"\nof");
+    let as_strip = changed(
+        &changed(WALL, body, strip),
+        "\"rigid-force\"\nrigid",
+        "\"reaction\"\nof",
+    );
     for friction in [0.0, 0.3] {
         let found = thrust(&changed(&as_strip, "MU", &format!("{friction:?}")), 1, "reaction").map(f64::abs);
         // -2.2 and -2.1 %.
-        assert!((found[0] / active(friction) - 1.0).abs() < 0.03, "{friction}: {found:?}");
+        assert!(
+            (found[0] / active(friction) - 1.0).abs() < 0.03,
+            "{friction}: {found:?}"
+        );
         assert!((found[1] / found[0] - friction).abs() < 1e-9, "{friction}: {found:?}");
     }
 }
@@ -305,13 +352,23 @@ fn stages_place_rigid_bodies_and_take_them_away() {
     }
     let [one, three] = ["whole1", "whole3"].map(|name| history(&scratch.path(name)));
     let exact = -1e6 / 2.0 * 2.0 / 1.2e11;
-    assert_eq!([at(&one, "force-y", 1.0), at(&one, "top-y", 1.0), at(&one, "plate-y", 1.0)], [0.0; 3]);
+    assert_eq!(
+        [
+            at(&one, "force-y", 1.0),
+            at(&one, "top-y", 1.0),
+            at(&one, "plate-y", 1.0)
+        ],
+        [0.0; 3]
+    );
     for (t, share) in [(1.5, 0.5), (2.0, 1.0), (3.0, 1.0)] {
         assert!((at(&one, "force-y", t) / (1e6 * share) - 1.0).abs() < 1e-6, "t = {t}");
         // The points' quadrature at the surface: 3.8e-4; the plate goes into them by the penalty, 3.0e-3.
         let [top, plate] = ["top-y", "plate-y"].map(|name| at(&one, name, t) / (exact * share) - 1.0);
         assert!(top.abs() < 5e-4 && plate.abs() < 4e-3, "t = {t}: {top:e} {plate:e}");
-        assert!((at(&three, "top-y", t) / at(&one, "top-y", t) - 1.0).abs() < 1e-8, "t = {t}");
+        assert!(
+            (at(&three, "top-y", t) / at(&one, "top-y", t) - 1.0).abs() < 1e-8,
+            "t = {t}"
+        );
     }
     assert_eq!(at(&one, "force-y", 4.0), 0.0);
     assert!((at(&one, "top-y", 4.0) / exact).abs() < 1e-3);
@@ -328,15 +385,22 @@ fn a_rigid_body_that_a_stage_places_falls_from_then_on() {
         "circle = { centre = [1, 3.3], radius = 0.2 }",
     );
     let case = changed(&case, "force = [0, -1e6]\nramp = 1", "density = 2500");
-    let case =
-        changed(&case, "[[stage]]\nat = 3\ndeactivate = [\"plate\"]\n", "[gravity]\nacceleration = [0, -9.81]\n");
+    let case = changed(
+        &case,
+        "[[stage]]\nat = 3\ndeactivate = [\"plate\"]\n",
+        "[gravity]\nacceleration = [0, -9.81]\n",
+    );
     let scratch = Scratch::with_case(&changed(&case, "at = 1\n", "at = 0.2\n"));
     scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(0);
     let found = history(&scratch.path("out"));
     assert_eq!(at(&found, "plate-y", 0.2), 0.0);
     for t in [0.25, 0.4] {
         let fallen = -0.5 * 9.81 * (t - 0.2_f64).powi(2);
-        assert!((at(&found, "plate-y", t) / fallen - 1.0).abs() < 1e-12, "t = {t}: {}", at(&found, "plate-y", t));
+        assert!(
+            (at(&found, "plate-y", t) / fallen - 1.0).abs() < 1e-12,
+            "t = {t}: {}",
+            at(&found, "plate-y", t)
+        );
     }
 }
 
@@ -348,8 +412,20 @@ fn a_rough_punch_on_clay_goes_the_whole_way() {
     let case = shipped("validation/rigid_punch.toml");
     for (lines, expected) in [("none", 6.09), ("automatic", 5.46)] {
         let lines = format!("grid.c0_lines={lines}");
-        let set = ["--set", "rigid.0.friction_coefficient=1.0", "--set", "check=[]", "--set", &lines];
-        scratch.mpirun(1, &[&[case.to_str().unwrap(), "-q", "--force", "-o", "out"][..], &set].concat()).expect(0);
+        let set = [
+            "--set",
+            "rigid.0.friction_coefficient=1.0",
+            "--set",
+            "check=[]",
+            "--set",
+            &lines,
+        ];
+        scratch
+            .mpirun(
+                1,
+                &[&[case.to_str().unwrap(), "-q", "--force", "-o", "out"][..], &set].concat(),
+            )
+            .expect(0);
         let pressure = at(&history(&scratch.path("out")), "p_over_c-y", 1.0);
         assert!((pressure / expected - 1.0).abs() < 0.005, "{pressure} for {expected}");
     }
@@ -396,5 +472,8 @@ fn a_wedge_that_lies_in_a_notch_touches_its_sides() {
     };
     let (by_body, by_footing) = (force(wedge, "f-y"), force(footing, "f"));
     // measured 10,804 for 12,006; in cells half as long 11,137 for 11,849, a quarter 11,257 for 11,731
-    assert!((by_body / by_footing - 1.0).abs() < 0.12, "{by_body} for {by_footing} N");
+    assert!(
+        (by_body / by_footing - 1.0).abs() < 0.12,
+        "{by_body} for {by_footing} N"
+    );
 }

@@ -6,7 +6,10 @@ use crate::support::{Scratch, shipped};
 use std::path::Path;
 
 /// One factorisation of the whole on every rank: then nothing depends on the cut.
-const WHOLE: [&str; 2] = ["--set", "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}"];
+const WHOLE: [&str; 2] = [
+    "--set",
+    "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}",
+];
 
 /// The histories and the frame of a step, as bytes.
 fn left(directory: &Path, step: usize) -> (Vec<u8>, Vec<u8>) {
@@ -20,12 +23,18 @@ fn left(directory: &Path, step: usize) -> (Vec<u8>, Vec<u8>) {
 fn agree(scratch: &Scratch, ranks: &[usize], uppers: &[&str], further: &[&str], step: usize) {
     let steps = step.to_string();
     let mut first = None;
-    for (ranks, upper) in ranks.iter().flat_map(|ranks| uppers.iter().map(move |upper| (*ranks, upper))) {
+    for (ranks, upper) in ranks
+        .iter()
+        .flat_map(|ranks| uppers.iter().map(move |upper| (*ranks, upper)))
+    {
         let upper = format!("grid.upper={upper}");
         let arguments = ["case.toml", "-q", "--force", "--max-steps", &steps, "--set", &upper];
         scratch.mpirun(ranks, &[&arguments[..], further].concat()).expect(75);
         let found = left(&scratch.path("case.out"), step);
-        assert!(*first.get_or_insert_with(|| found.clone()) == found, "{ranks} ranks, {upper}");
+        assert!(
+            *first.get_or_insert_with(|| found.clone()) == found,
+            "{ranks} ranks, {upper}"
+        );
     }
 }
 
@@ -33,7 +42,13 @@ fn agree(scratch: &Scratch, ranks: &[usize], uppers: &[&str], further: &[&str], 
 #[test]
 fn the_sliding_block_has_the_same_bits_in_a_grid_ten_times_as_long_and_as_high_on_1_2_and_4_ranks() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
-    agree(&scratch, &[1, 2, 4], &["[1.0,0.3]", "[10.0,0.3]", "[10.0,3.0]"], &WHOLE, 40);
+    agree(
+        &scratch,
+        &[1, 2, 4],
+        &["[1.0,0.3]", "[10.0,0.3]", "[10.0,3.0]"],
+        &WHOLE,
+        40,
+    );
 }
 
 /// A grid of 14 columns is held whole from the start, one of 20 is not: there the block outruns its room in the first
@@ -51,7 +66,11 @@ fn what_couples_further_than_a_cell_has_the_same_bits_in_larger_grids() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
     for order in ["linear", "quadratic", "cubic"] {
         let order = format!("grid.degree={order}");
-        let set = [&WHOLE[..], &["--set", "stabilisation.method=consistent-f-bar", "--set", &order]].concat();
+        let set = [
+            &WHOLE[..],
+            &["--set", "stabilisation.method=consistent-f-bar", "--set", &order],
+        ]
+        .concat();
         agree(&scratch, &[1, 3], &["[1.0,0.3]", "[6.0,1.8]"], &set, 30);
     }
 }
@@ -66,7 +85,9 @@ fn the_footing_has_the_same_bits_in_a_grid_ten_times_as_high() {
 /// The newest checkpoint of a run: its bytes, and the room that its state reports, a text in one piece.
 fn newest(directory: &Path) -> (usize, String) {
     let files = std::fs::read_dir(directory.join(bsmpm_io::checkpoint::FOLDER)).unwrap();
-    let files = files.map(|file| file.unwrap().path()).filter(|path| path.extension().is_some_and(|end| end == "h5"));
+    let files = files
+        .map(|file| file.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|end| end == "h5"));
     let bytes = std::fs::read(files.max().unwrap()).unwrap();
     let text = String::from_utf8_lossy(&bytes);
     let (_, rest) = text.split_once("\"room\":").expect("a room");
@@ -83,13 +104,20 @@ fn a_run_in_a_large_grid_goes_on_to_the_bit_and_keeps_no_more() {
         let upper = format!("grid.upper={upper}");
         let case = ["case.toml", "-q", "--set", &upper, "-o", name, "--restart", "auto"];
         for stop in ["7", "33"] {
-            scratch.mpirun(2, &[&case[..], &["--max-steps", stop]].concat()).expect(75);
+            scratch
+                .mpirun(2, &[&case[..], &["--max-steps", stop]].concat())
+                .expect(75);
             found.push(newest(&scratch.path(name)));
         }
         scratch.mpirun(2, &case).expect(0);
-        scratch.mpirun(2, &["case.toml", "-q", "--force", "--set", &upper, "-o", "whole"]).expect(0);
+        scratch
+            .mpirun(2, &["case.toml", "-q", "--force", "--set", &upper, "-o", "whole"])
+            .expect(0);
         let last = manifest(&scratch.path("whole")).summary.steps as usize;
-        assert!(left(&scratch.path("whole"), last) == left(&scratch.path(name), last), "{name}");
+        assert!(
+            left(&scratch.path("whole"), last) == left(&scratch.path(name), last),
+            "{name}"
+        );
     }
     assert_ne!(found[2].1, found[3].1, "the block has outrun its room");
     assert!(found[3].0 < found[1].0 + found[1].0 / 10, "{found:?}");
@@ -102,7 +130,9 @@ fn more_ranks_than_the_room_had_columns_can_go_on() {
     let scratch = Scratch::with_case(&changed(&narrow, "quadratic", "linear"));
     scratch.mpirun(1, &["case.toml", "-q", "-o", "whole"]).expect(0);
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-    scratch.mpirun(1, &[&part[..], &["--max-steps", "3"]].concat()).expect(75);
+    scratch
+        .mpirun(1, &[&part[..], &["--max-steps", "3"]].concat())
+        .expect(75);
     scratch.mpirun(9, &part).expect(0);
     let [whole, part] = ["whole", "part"].map(|name| crate::support::results::last_frame(&scratch.path(name)));
     for (field, difference) in crate::support::results::differences(&part, &whole) {

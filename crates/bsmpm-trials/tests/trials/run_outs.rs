@@ -58,7 +58,11 @@ fn run_out(further: &[&str]) -> RunOut {
     let closure = manifest.indicators["energy-closure"].value;
     assert!(closure < 1e-4, "{closure}");
     let excess = manifest.indicators["wall-velocity"].value;
-    let found = RunOut { points: relative("r99"), front: relative("front"), excess };
+    let found = RunOut {
+        points: relative("r99"),
+        front: relative("front"),
+        excess,
+    };
     println!("{further:?}: {found:.3?}");
     found
 }
@@ -67,7 +71,10 @@ fn run_out(further: &[&str]) -> RunOut {
 fn the_run_out_of_a_dam_break_is_right_at_draft_and_nearer_at_standard() {
     let [draft, standard] = ["accuracy=draft", "accuracy=standard"].map(|accuracy| run_out(&["--set", accuracy]));
     let errors = [&draft, &standard].map(|found| (found.points / RUN_OUT - 1.0).abs());
-    assert!(errors[0] < 0.1 && errors[1] < 0.05 && errors[1] < errors[0], "{errors:?}");
+    assert!(
+        errors[0] < 0.1 && errors[1] < 0.05 && errors[1] < errors[0],
+        "{errors:?}"
+    );
     for found in [&draft, &standard] {
         assert!(found.excess < 0.05, "{found:?}");
         // The tip, thinner than a cell, runs ahead.
@@ -126,8 +133,16 @@ fn the_choice_for_flow_is_noted_and_refused_without_inertia() {
     scratch.write("sand.toml", format!("{before}{sand}{after}"));
     let said = scratch.direct(&["sand.toml", "--check"]).expect(0).said();
     assert!(!said.contains("wall_velocity"), "{said}");
-    let still = changed(DAM_BREAK, "\"dynamic\", end = 2.0", "\"quasi-static\", wall_velocity = \"own\"");
+    let still = changed(
+        DAM_BREAK,
+        "\"dynamic\", end = 2.0",
+        "\"quasi-static\", wall_velocity = \"own\"",
+    );
     scratch.write("still.toml", still);
     let refused = scratch.direct(&["still.toml", "--check"]).expect(65);
-    assert!(refused.stderr.contains("error E0218: analysis.wall_velocity: "), "{}", refused.stderr);
+    assert!(
+        refused.stderr.contains("error E0218: analysis.wall_velocity: "),
+        "{}",
+        refused.stderr
+    );
 }

@@ -76,7 +76,9 @@ fn telegraph_equation_on_ranks_and_in_two_parts() {
             assert!((two - one).abs() < 1e-8 * FINAL, "{time}: {one} {two}");
         }
         let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-        scratch.mpirun(1, &[&part[..], &["--max-steps", "50"]].concat()).expect(75);
+        scratch
+            .mpirun(1, &[&part[..], &["--max-steps", "50"]].concat())
+            .expect(75);
         scratch.mpirun(1, &part).expect(0);
         let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
         assert!(text("one") == text("part"));

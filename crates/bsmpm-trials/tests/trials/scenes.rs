@@ -94,7 +94,12 @@ fn spread(scratch: &Scratch, case: &str, further: &[&str]) -> f64 {
         scratch.job(Some(ranks), &arguments).within(240).run().expect(0);
         last_frame(&scratch.path(&directory))
     });
-    let of = |frame| differences(frame, &frames[0]).into_iter().map(|(_, difference)| difference).fold(0.0, f64::max);
+    let of = |frame| {
+        differences(frame, &frames[0])
+            .into_iter()
+            .map(|(_, difference)| difference)
+            .fold(0.0, f64::max)
+    };
     frames[1..].iter().map(of).fold(0.0, f64::max)
 }
 
@@ -107,7 +112,10 @@ fn strips_loads_layers_and_initial_stress_are_the_same_on_1_2_3_and_4_ranks() {
     for (column, other) in histories[0].values.iter().zip(&histories[1].values) {
         let largest = column.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         // Slips are differences of nearly equal numbers.
-        assert!(column.iter().zip(other).all(|(a, b)| (a - b).abs() <= 1e-6 * largest), "{column:?} {other:?}");
+        assert!(
+            column.iter().zip(other).all(|(a, b)| (a - b).abs() <= 1e-6 * largest),
+            "{column:?} {other:?}"
+        );
     }
 }
 
@@ -135,8 +143,18 @@ fn the_footings_histories_are_true() {
     let initial = manifest.initial.expect("the stress at the start is reported");
     assert!(initial.unbalance < 1e-8 && initial.yielding == 0, "{initial:?}");
     assert!(manifest.summary.largest_slip.is_some_and(|slip| slip < 1e-2));
-    assert!(manifest.summary.largest_accumulated_slip.is_some_and(|slip| slip > 1e-6 && slip < 4e-3));
-    assert!(manifest.choices.iter().any(|choice| choice.key == "penalty of rigid strips"));
+    assert!(
+        manifest
+            .summary
+            .largest_accumulated_slip
+            .is_some_and(|slip| slip > 1e-6 && slip < 4e-3)
+    );
+    assert!(
+        manifest
+            .choices
+            .iter()
+            .any(|choice| choice.key == "penalty of rigid strips")
+    );
 }
 
 #[test]
@@ -197,10 +215,19 @@ fn a_face_moves_the_body_wherever_the_grid_starts() {
     let reactions = places.map(|(lower, upper)| {
         let scratch = Scratch::with_case(&platen(lower, upper));
         scratch.mpirun(1, &["case.toml", "-q"]).expect(0);
-        *history(&scratch.path("case.out")).get("reaction-x").unwrap().last().unwrap()
+        *history(&scratch.path("case.out"))
+            .get("reaction-x")
+            .unwrap()
+            .last()
+            .unwrap()
     });
     assert!(reactions[0] > 18e3, "E eps H = 20 kN/m at small strain: {reactions:?}");
-    assert!(reactions.iter().all(|reaction| (reaction / reactions[0] - 1.0).abs() < 1e-6), "{reactions:?}");
+    assert!(
+        reactions
+            .iter()
+            .all(|reaction| (reaction / reactions[0] - 1.0).abs() < 1e-6),
+        "{reactions:?}"
+    );
 }
 
 #[test]
@@ -208,23 +235,49 @@ fn the_footing_on_clay_is_the_same_on_1_2_3_and_4_ranks() {
     let case = shipped("short/strip_footing.toml");
     let scratch = Scratch::new();
     let case = case.to_str().unwrap();
-    let further = ["--max-steps", "20", "--set", "solver.tolerance=1e-12", "--set", "solver.force_tolerance=1e-8"];
+    let further = [
+        "--max-steps",
+        "20",
+        "--set",
+        "solver.tolerance=1e-12",
+        "--set",
+        "solver.force_tolerance=1e-8",
+    ];
     let pressures = [1, 2, 3, 4].map(|ranks| {
         let directory = format!("{ranks}.out");
         let arguments = [&[case, "-q", "-o", &directory], &further[..]].concat();
         scratch.job(Some(ranks), &arguments).within(240).run().expect(75);
-        *history(&scratch.path(&directory)).get("p_over_c").unwrap().last().unwrap()
+        *history(&scratch.path(&directory))
+            .get("p_over_c")
+            .unwrap()
+            .last()
+            .unwrap()
     });
     // Without extended splines, and with a background that resists every displacement, 6.219.
-    assert!((pressures[0] - 6.205).abs() < 0.005, "what this coarse grid gave before: {pressures:?}");
-    assert!(pressures.iter().all(|pressure| (pressure / pressures[0] - 1.0).abs() < 1e-6), "{pressures:?}");
+    assert!(
+        (pressures[0] - 6.205).abs() < 0.005,
+        "what this coarse grid gave before: {pressures:?}"
+    );
+    assert!(
+        pressures
+            .iter()
+            .all(|pressure| (pressure / pressures[0] - 1.0).abs() < 1e-6),
+        "{pressures:?}"
+    );
 }
 
 /// The draft preset's graded cells against the paper's discretisation.
 #[test]
 fn a_draft_of_the_footing_is_within_a_tenth_for_a_four_hundredth_of_the_work() {
     let (case, scratch) = (shipped("presets/strip_footing.toml"), Scratch::new());
-    let arguments = [case.to_str().unwrap(), "-q", "-o", "draft.out", "--set", "accuracy=draft"];
+    let arguments = [
+        case.to_str().unwrap(),
+        "-q",
+        "-o",
+        "draft.out",
+        "--set",
+        "accuracy=draft",
+    ];
     scratch.direct(&arguments).expect(0);
     let pressures = history(&scratch.path("draft.out"));
     for (time, of_paper) in [(0.1, 4.97), (0.25, 5.84), (0.5, 6.17), (1.0, 6.65)] {
@@ -239,7 +292,12 @@ fn a_draft_of_the_footing_is_within_a_tenth_for_a_four_hundredth_of_the_work() {
 #[test]
 fn the_slope_is_the_same_on_1_2_3_and_4_ranks() {
     let case = shipped("short/slope_stability.toml");
-    let further = ["--set", "solver.tolerance=1e-12", "--set", "solver.force_tolerance=1e-9"];
+    let further = [
+        "--set",
+        "solver.tolerance=1e-12",
+        "--set",
+        "solver.force_tolerance=1e-9",
+    ];
     let spread = spread(&Scratch::new(), case.to_str().unwrap(), &further);
     assert!(spread <= 1e-6, "{spread:.1e}");
 }
@@ -251,13 +309,28 @@ fn a_weaker_slope_moves_more() {
     let moved = ["0.8", "1.35"].map(|factor| {
         let factor = format!("strength_reduction.factor={factor}");
         let paper = ["--set", "stabilisation.method=modified-f-bar"];
-        let arguments = [case.to_str().unwrap(), "-q", "--force", "-o", "slope.out", "--set", &factor];
+        let arguments = [
+            case.to_str().unwrap(),
+            "-q",
+            "--force",
+            "-o",
+            "slope.out",
+            "--set",
+            &factor,
+        ];
         scratch.mpirun(2, &[&arguments[..], &paper[..]].concat()).expect(0);
-        *history(&scratch.path("slope.out")).get("E_delta_over_gamma_H2").unwrap().last().unwrap()
+        *history(&scratch.path("slope.out"))
+            .get("E_delta_over_gamma_H2")
+            .unwrap()
+            .last()
+            .unwrap()
     });
     // Measured before: 0.3874 and 0.589 with another quasi-Newton method, and without extended splines. With them
     // 0.571, as the surface's cells are a little stiffer.
-    assert!((moved[0] - 0.387).abs() < 0.002 && (moved[1] - 0.571).abs() < 0.01, "{moved:?}");
+    assert!(
+        (moved[0] - 0.387).abs() < 0.002 && (moved[1] - 0.571).abs() < 0.01,
+        "{moved:?}"
+    );
 }
 
 #[test]
@@ -265,7 +338,12 @@ fn a_load_that_starts_away_from_every_body_is_an_error_of_the_case() {
     let case = changed(LOADED, "at    = [5.0, 4.5]", "at    = [5.0, 4.9]");
     let scratch = Scratch::with_case(&case);
     let output = scratch.mpirun(2, &["case.toml", "-q"]);
-    assert!(output.stderr.contains("error E0401: point_load.0.at: no body lies at [5.000, 4.900]"), "{output:#?}");
+    assert!(
+        output
+            .stderr
+            .contains("error E0401: point_load.0.at: no body lies at [5.000, 4.900]"),
+        "{output:#?}"
+    );
     output.expect(65);
 }
 
@@ -276,22 +354,35 @@ fn a_load_whose_points_leave_the_grid_is_reported_and_ends_the_run() {
         .replace("upper = [0.7, 0.7]\ncell", "upper = [0.7, 0.8]\ncell")
         .replace("steps = 1", "steps = 8")
         .replace("displacement = [-0.02, 0.0]", "displacement = [0.0, 0.0]")
-        .replace("from = [0.7, 0.1]\nto   = [0.7, 0.6]", "from = [0.1, 0.7]\nto   = [0.6, 0.7]")
+        .replace(
+            "from = [0.7, 0.1]\nto   = [0.7, 0.6]",
+            "from = [0.1, 0.7]\nto   = [0.6, 0.7]",
+        )
         .replace("stress = [0.0, -1.0]", "stress = [0.0, 3e5]\nramp = 1.0");
     let scratch = Scratch::with_case(&case);
     let output = scratch.mpirun(2, &["case.toml", "-q"]);
-    assert!(output.stderr.contains("of its points lie outside the soil"), "{output:#?}");
+    assert!(
+        output.stderr.contains("of its points lie outside the soil"),
+        "{output:#?}"
+    );
     output.expect(81);
     let manifest = manifest(&scratch.path("case.out"));
     let reason = manifest.failure.expect("the failure is kept").reason;
-    assert!(reason.contains("of its points lie outside the soil") && manifest.summary.steps > 0, "{reason}");
+    assert!(
+        reason.contains("of its points lie outside the soil") && manifest.summary.steps > 0,
+        "{reason}"
+    );
 }
 
 #[test]
 fn a_start_that_is_out_of_balance_or_beyond_yield_is_warned_of() {
     // Earth pressure at rest belongs to level ground: on the slope of this body it is off balance.
     let weak = "model = \"mohr-coulomb\"\nfriction_angle = 20\ndilation_angle = 0\ncohesion = \"10 kPa\"";
-    let case = changed(&changed(LOADED, "model       = \"elastic\"", weak), "gravity = \"elastic\"", "k0 = 0.1");
+    let case = changed(
+        &changed(LOADED, "model       = \"elastic\"", weak),
+        "gravity = \"elastic\"",
+        "k0 = 0.1",
+    );
     let warnings = |case: &str| {
         let scratch = Scratch::with_case(case);
         scratch.mpirun(2, &["case.toml", "-q", "--max-steps", "1"]);
@@ -299,10 +390,16 @@ fn a_start_that_is_out_of_balance_or_beyond_yield_is_warned_of() {
     };
     let reports = |warnings: &[String], text: &str| warnings.iter().any(|warning| warning.contains(text));
     let far = warnings(&changed(&case, "ramp   = 0.5", "ramp = 0.0"));
-    assert!(reports(&far, "% of the largest force is unbalanced") && reports(&far, "W0719: "), "{far:?}");
+    assert!(
+        reports(&far, "% of the largest force is unbalanced") && reports(&far, "W0719: "),
+        "{far:?}"
+    );
     assert!(reports(&far, "W0405: traction.0: "), "{far:?}");
     let near = warnings(LOADED);
-    assert!(!reports(&near, "unbalanced") && !reports(&near, "W0719: ") && !reports(&near, "from time 0"), "{near:?}");
+    assert!(
+        !reports(&near, "unbalanced") && !reports(&near, "W0719: ") && !reports(&near, "from time 0"),
+        "{near:?}"
+    );
 }
 
 #[test]
@@ -319,12 +416,19 @@ fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_
     still.mpirun(1, &["case.toml", "-q"]).expect(0);
     assert_ne!(of(&inline), of(&still));
     let warnings = manifest(&named.path("case.out")).warnings;
-    assert!(warnings.iter().any(|warning| warning.starts_with("W0670: shaking: the base moves along x")));
+    assert!(
+        warnings
+            .iter()
+            .any(|warning| warning.starts_with("W0670: shaking: the base moves along x"))
+    );
     // The case that is kept has the rows, so that a restart needs no file.
     let text = manifest(&named.path("case.out")).case.text;
     assert!(text.contains("300.0 cm/s2") && !text.contains("quake.csv"), "{text}");
     named.write("quake.csv", "t [ms], a [cm/s2]\n10, 300\n30, -100\n");
-    named.mpirun(1, &["case.toml", "-q", "--restart", "auto"]).expect(76).says_once("shaking.acceleration was");
+    named
+        .mpirun(1, &["case.toml", "-q", "--restart", "auto"])
+        .expect(76)
+        .says_once("shaking.acceleration was");
     named.write("quake.csv", "t [ms], a [cm/s2]\n10, 300\n30, fast\n");
     let refused = named.mpirun(2, &["case.toml", "-q", "--force"]).expect(65);
     refused.says_once("error E0028: quake.csv: `fast` in line 3 of the data file");
@@ -335,7 +439,10 @@ fn rows_from_a_file_are_those_of_the_case_on_any_number_of_ranks_and_wrong_ones_
         .expect(65)
         .says_once("error E0021: shaking.acceleration: column 1 of all 40 rows: ");
     std::fs::remove_file(named.path("quake.csv")).unwrap();
-    named.mpirun(2, &["case.toml", "-q", "--force"]).expect(66).says_once("error E0001: quake.csv: ");
+    named
+        .mpirun(2, &["case.toml", "-q", "--force"])
+        .expect(66)
+        .says_once("error E0001: quake.csv: ");
 }
 
 /// A bar of 2 m by 0.5 m that its left end holds and its right end bends, by a stress that grows with depth.
@@ -382,5 +489,8 @@ fn a_stress_by_depth_acts_on_a_surface_with_its_force_and_moment() {
     let bent = [("n", -50.0), ("q", 60.0), ("m", -60.0 - 400.0 * 0.25 / 12.0)];
     let inside = bent.map(|(name, expected)| at(&rows, &format!("section-forces-{name}"), 1.0) / expected - 1.0);
     println!("reactions off by {off:?}, section forces by {inside:?}");
-    assert!(off.iter().all(|off| off.abs() < 1e-8) && inside.iter().all(|off| off.abs() < 1e-3), "{off:?} {inside:?}");
+    assert!(
+        off.iter().all(|off| off.abs() < 1e-8) && inside.iter().all(|off| off.abs() < 1e-3),
+        "{off:?} {inside:?}"
+    );
 }

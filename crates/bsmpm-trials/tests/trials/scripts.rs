@@ -35,7 +35,10 @@ fn setup(code: i32) -> (String, Option<i32>) {
         .env("PATH", format!("{}:{path}", programs.display()))
         .output()
         .unwrap();
-    (String::from_utf8_lossy(&output.stderr).into_owned(), output.status.code())
+    (
+        String::from_utf8_lossy(&output.stderr).into_owned(),
+        output.status.code(),
+    )
 }
 
 /// PETSc's libraries are there, as the tests were built with them.
@@ -43,7 +46,10 @@ fn setup(code: i32) -> (String, Option<i32>) {
 fn setup_says_nothing_of_alternatives_that_a_package_makes_itself() {
     for code in [0, 100] {
         let (said, ended) = setup(code);
-        assert!(ended == Some(0) && !said.contains("update-alternatives"), "{ended:?}: {said}");
+        assert!(
+            ended == Some(0) && !said.contains("update-alternatives"),
+            "{ended:?}: {said}"
+        );
         // A user who is not root and has the libraries installs nothing.
         let installs = said.contains("installing gcc");
         let errors = said.matches("E: an error that matters").count();
@@ -63,14 +69,25 @@ fn run_script(scratch: &Scratch, arguments: &[&str]) -> Command {
     let programs = scratch.path("programs");
     std::fs::create_dir_all(&programs).unwrap();
     let [solver, companion] = ["bsmpm-par", "bsmpm"].map(|name| executable(name).to_str().unwrap());
-    program(&programs, "cargo", &CARGO.replace("SOLVER", solver).replace("COMPANION", companion));
+    program(
+        &programs,
+        "cargo",
+        &CARGO.replace("SOLVER", solver).replace("COMPANION", companion),
+    );
     // As the program of that name, which follows OpenMP.
     program(&programs, "nproc", "echo \"${OMP_NUM_THREADS:-2}\"");
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scripts/run");
     // Jobs in the background ignore the signal, and so would all that they start.
     let mut command = Command::new("env");
-    command.args(["--default-signal=INT", "bash"]).arg(&script).args(arguments).current_dir(scratch.path(""));
-    command.env("PATH", format!("{}:{}", programs.display(), std::env::var("PATH").unwrap()));
+    command
+        .args(["--default-signal=INT", "bash"])
+        .arg(&script)
+        .args(arguments)
+        .current_dir(scratch.path(""));
+    command.env(
+        "PATH",
+        format!("{}:{}", programs.display(), std::env::var("PATH").unwrap()),
+    );
     command
 }
 
@@ -96,7 +113,9 @@ fn a_script_takes_as_many_ranks_as_the_check_recommends() {
     for (case, ranks) in [(endless(), 1), (SLOPE.to_owned(), 2)] {
         let scratch = Scratch::with_case(&case);
         let command = run_script(&scratch, &["case.toml", "--max-steps", "1"]);
-        processes::start(command, &[], Ears::Open, Duration::from_secs(120)).end().expect(75);
+        processes::start(command, &[], Ears::Open, Duration::from_secs(120))
+            .end()
+            .expect(75);
         assert_eq!(manifest(&scratch.path("case.out")).ranks, ranks);
     }
 }

@@ -65,8 +65,14 @@ fn a_body_that_hangs_on_a_face_is_reported_and_one_that_lies_on_it_is_not() {
     let scratch = Scratch::with_case(LAYER);
     let lies = scratch.direct(&["case.toml"]).expect(0);
     assert!(!lies.stderr.contains("I0016"), "{}", lies.stderr);
-    let hangs = scratch.direct(&["case.toml", "--force", "--set", "gravity.acceleration=[0.0, 9.81]"]).expect(0);
-    assert!(hangs.stderr.contains("warning I0016: ") && hangs.stderr.contains("\"contact\""), "{}", hangs.stderr);
+    let hangs = scratch
+        .direct(&["case.toml", "--force", "--set", "gravity.acceleration=[0.0, 9.81]"])
+        .expect(0);
+    assert!(
+        hangs.stderr.contains("warning I0016: ") && hangs.stderr.contains("\"contact\""),
+        "{}",
+        hangs.stderr
+    );
     let manifest = manifest(&scratch.path("case.out"));
     let pull = &manifest.indicators["support-pull"];
     assert!(pull.unusual && pull.value > 0.9 && !pull.advice.is_empty(), "{pull:?}");
@@ -79,10 +85,15 @@ fn velocities_beside_a_fixed_face_that_are_no_motion_are_reported() {
     for (mass, reported) in [("lumped", true), ("consistent", false)] {
         let scratch = Scratch::with_case(&case);
         let mass = format!("analysis.mass={mass}");
-        scratch.mpirun(2, &["case.toml", "-q", "--set", "analysis.end=0.03", "--set", &mass]).expect(0);
+        scratch
+            .mpirun(2, &["case.toml", "-q", "--set", "analysis.end=0.03", "--set", &mass])
+            .expect(0);
         let found = &manifest(&scratch.path("case.out")).indicators["wall-velocity"];
         println!("{mass}: {}", found.value);
-        assert!(found.unusual == reported && !found.advice.is_empty(), "{mass}: {found:?}");
+        assert!(
+            found.unusual == reported && !found.advice.is_empty(),
+            "{mass}: {found:?}"
+        );
     }
 }
 
@@ -93,7 +104,9 @@ fn a_background_that_carries_the_body_is_reported() {
     scratch.direct(&["case.toml", "-q"]).expect(0);
     let usual = manifest(&scratch.path("case.out")).indicators["background-work"].clone();
     assert!(!usual.unusual && usual.value > 0.0 && usual.value < 1e-3, "{usual:?}");
-    let stiff = scratch.direct(&["case.toml", "--force", "--set", "solver.background=0.5"]).expect(82);
+    let stiff = scratch
+        .direct(&["case.toml", "--force", "--set", "solver.background=0.5"])
+        .expect(82);
     assert!(stiff.stderr.contains("error I0028: "), "{}", stiff.stderr);
     // Of uniaxial strain under a load that grows from the first step to the second, E int eps:eps / 2 against 1.35 E of
     // the body.
@@ -101,7 +114,11 @@ fn a_background_that_carries_the_body_is_reported() {
     assert!((0.1..0.5).contains(&share), "{share}");
     let none = Scratch::with_case(&format!("{LAYER}\n[solver]\nbackground = 0.0\n"));
     none.direct(&["case.toml", "-q"]).expect(0);
-    assert!(!manifest(&none.path("case.out")).indicators.contains_key("background-work"));
+    assert!(
+        !manifest(&none.path("case.out"))
+            .indicators
+            .contains_key("background-work")
+    );
 }
 
 /// Sand whose gaps close: at 0.3565 s the tip thins out to less than half a cell.
@@ -122,22 +139,41 @@ fn a_front_that_goes_back_is_reported_with_what_to_do() {
         "--set",
         "check=[]",
     ];
-    let reported = scratch.direct(&[&set[..], &["--set", "output.times=[]"]].concat()).expect(0);
+    let reported = scratch
+        .direct(&[&set[..], &["--set", "output.times=[]"]].concat())
+        .expect(0);
     assert!(reported.stderr.contains("warning I0017: "), "{}", reported.stderr);
     let manifest = manifest(&scratch.path("case.out"));
     assert!(manifest.indicators["front-setback"].value > 0.015);
     // The end is a frame, and no time is singled out for pictures.
     assert!(manifest.picture_times.is_empty());
-    assert!(manifest.indicators.values().all(|indicator| !indicator.advice.is_empty()));
+    assert!(
+        manifest
+            .indicators
+            .values()
+            .all(|indicator| !indicator.advice.is_empty())
+    );
 }
 
 #[test]
 fn the_advice_on_an_elastic_start_is_not_to_make_one() {
-    let weak = changed(LAYER, "model       = \"elastic\"", "model       = \"tresca\"\ncohesion    = \"0.5 kPa\"");
+    let weak = changed(
+        LAYER,
+        "model       = \"elastic\"",
+        "model       = \"tresca\"\ncohesion    = \"0.5 kPa\"",
+    );
     let scratch = Scratch::with_case(&format!("{weak}\n[initial]\ngravity = \"elastic\"\n"));
     let reported = scratch.direct(&["case.toml", "--max-steps", "1"]);
-    let line = reported.stderr.lines().find(|line| line.contains("unbalanced")).unwrap_or_default();
-    assert!(line.contains("W0717: ") && !line.contains("gravity = \"elastic\""), "{}", reported.stderr);
+    let line = reported
+        .stderr
+        .lines()
+        .find(|line| line.contains("unbalanced"))
+        .unwrap_or_default();
+    assert!(
+        line.contains("W0717: ") && !line.contains("gravity = \"elastic\""),
+        "{}",
+        reported.stderr
+    );
 }
 
 /// Four layers that lie on each other are as thick as one body of their height: smoothing along 0.25 m is usual in
@@ -147,8 +183,12 @@ fn smoothing_is_judged_by_the_thickness_of_connected_material() {
     let block = changed(LAYER, "upper = [2.0, 1.5]", "upper = [4.0, 4.5]");
     let block = format!("{block}\n[stabilisation]\nmethod = \"modified-f-bar\"\n");
     let of = |lower: f64, upper: f64| format!("box = {{ lower = [0.0, {lower:?}], upper = [4.0, {upper:?}] }}");
-    let body =
-        |lower: f64, upper: f64| format!("[[body]]\nmaterial = \"soil\"\npoints_per_cell = 3\n{}\n", of(lower, upper));
+    let body = |lower: f64, upper: f64| {
+        format!(
+            "[[body]]\nmaterial = \"soil\"\npoints_per_cell = 3\n{}\n",
+            of(lower, upper)
+        )
+    };
     let first = "box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }";
     let whole = changed(&block, first, &of(0.0, 4.0));
     let more: String = [1.0, 2.0, 3.0].map(|lower| body(lower, lower + 1.0)).concat();
@@ -167,7 +207,11 @@ fn smoothing_is_judged_by_the_thickness_of_connected_material() {
 /// all points count; nothing slides.
 #[test]
 fn velocities_beside_a_fixed_face_of_ground_at_rest_are_usual() {
-    let dynamic = changed(LAYER, "type  = \"quasi-static\"\nsteps = 2", "type = \"dynamic\"\nend = 0.2\ndt = 5e-3");
+    let dynamic = changed(
+        LAYER,
+        "type  = \"quasi-static\"\nsteps = 2",
+        "type = \"dynamic\"\nend = 0.2\ndt = 5e-3",
+    );
     for upper in ["[2.0, 0.25]", "[2.0, 1.0]"] {
         let scratch = Scratch::with_case(&dynamic);
         let set = format!("body.0.box.upper={upper}");

@@ -60,7 +60,10 @@ quantity = "max-displacement"
 /// sigma_xx, sigma_yy, sigma_xy of a frame's points.
 fn stresses(frame: &Frame) -> Vec<[f64; 3]> {
     let stress = frame.real("stress", 6).expect("a stress");
-    stress.chunks_exact(6).map(|stress| [stress[0], stress[1], stress[3]]).collect()
+    stress
+        .chunks_exact(6)
+        .map(|stress| [stress[0], stress[1], stress[3]])
+        .collect()
 }
 
 fn initial(scratch: &Scratch, name: &str) -> ManifestInitial {
@@ -78,7 +81,10 @@ fn level_layers_keep_k0_and_nothing_moves() {
     for frame in all_frames(&scratch.path("out")) {
         for (place, [side, vertical, shear]) in frame.position.iter().zip(stresses(&frame)) {
             let k0 = if place[1] < 4.0 { low } else { 0.65 };
-            assert!((side / vertical - k0).abs() < 1e-12 && shear.abs() < 1e-9 * vertical.abs(), "{place:?}");
+            assert!(
+                (side / vertical - k0).abs() < 1e-12 && shear.abs() < 1e-9 * vertical.abs(),
+                "{place:?}"
+            );
         }
     }
     // The weight above as it is given is off by the points' quadrature, and moves them.
@@ -150,7 +156,12 @@ fn a_slope_of_sand_near_its_friction_angle_begins_at_rest() {
         let found = initial(&scratch, name);
         println!("{name}: {found:?}, moves {:.1e} of {:.1e}", moved(name), moved("grown"));
         assert!(found.unbalance < 1e-4 && found.yielding == 0, "{name}: {found:?}");
-        assert!(moved(name) < 1e-2 * moved("grown"), "{name}: {:e} {:e}", moved(name), moved("grown"));
+        assert!(
+            moved(name) < 1e-2 * moved("grown"),
+            "{name}: {:e} {:e}",
+            moved(name),
+            moved("grown")
+        );
     }
     for (name, case) in [("weight", SAND), ("loaded", &elastic)] {
         scratch.write("case.toml", changed(case, "equilibrium = \"plastic\"", ""));
@@ -179,8 +190,11 @@ fn a_slope_of_cam_clay_begins_at_rest() {
 /// Shaken from the start: at rest before, the same on three ranks, and to the bit however it is cut.
 #[test]
 fn a_settled_slope_is_shaken_the_same_on_any_ranks_and_in_parts() {
-    let case =
-        changed(SAND, "type = \"quasi-static\"\nend = 1.0\nsteps = 4", "type = \"dynamic\"\nend = 0.2\ndt = 0.01");
+    let case = changed(
+        SAND,
+        "type = \"quasi-static\"\nend = 1.0\nsteps = 4",
+        "type = \"dynamic\"\nend = 0.2\ndt = 0.01",
+    );
     let case = changed(&case, "every_steps = 1", "every_steps = 20");
     let case = case
         + "[shaking]\nacceleration = [[0.05, 0, 0], [0.1, 2, 0], [0.15, 0, 0]]\n\
@@ -192,13 +206,18 @@ fn a_settled_slope_is_shaken_the_same_on_any_ranks_and_in_parts() {
     }
     let columns = history(&scratch.path("1"));
     let [before, after] = [0.05, 0.2].map(|t| at(&columns, "max-displacement", t));
-    println!("moved {before:.1e} before, {after:.1e} after: {:?}", initial(&scratch, "1"));
+    println!(
+        "moved {before:.1e} before, {after:.1e} after: {:?}",
+        initial(&scratch, "1")
+    );
     assert!(before < 1e-4 * after, "{before:e} {after:e}");
     for (field, difference) in differences(&last_frame(&scratch.path("3")), &last_frame(&scratch.path("1"))) {
         assert!(difference < 1e-8, "{field} on 3 ranks differs by {difference:.1e}");
     }
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-    scratch.mpirun(1, &[&part[..], &["--max-steps", "3"]].concat()).expect(75);
+    scratch
+        .mpirun(1, &[&part[..], &["--max-steps", "3"]].concat())
+        .expect(75);
     scratch.mpirun(1, &part).expect(0);
     let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
     assert!(text("1") == text("part"));
@@ -219,18 +238,32 @@ fn ground_that_cannot_stand_has_no_start() {
 #[test]
 fn a_toe_that_ends_in_a_point_needs_extended_splines_or_more_points() {
     let changes = [
-        ("[[0, 0], [32, 0], [32, 2], [24, 2], [8, 10], [0, 10]]", "[[0, 0], [18, 0], [8, 5], [0, 5]]"),
+        (
+            "[[0, 0], [32, 0], [32, 2], [24, 2], [8, 10], [0, 10]]",
+            "[[0, 0], [18, 0], [8, 5], [0, 5]]",
+        ),
         ("upper = [32, 12]", "upper = [20, 6]"),
         ("cell = \"2 m\"", "cell = \"1 m\""),
-        ("cohesion = 0.0\nfriction_angle = 30.0", "cohesion = \"10 kPa\"\nfriction_angle = 25.0"),
+        (
+            "cohesion = 0.0\nfriction_angle = 30.0",
+            "cohesion = \"10 kPa\"\nfriction_angle = 25.0",
+        ),
     ];
-    let case = changes.iter().fold(SAND.to_owned(), |case, (part, by)| changed(&case, part, by));
+    let case = changes
+        .iter()
+        .fold(SAND.to_owned(), |case, (part, by)| changed(&case, part, by));
     let two = changed(&case, "points_per_cell = 3", "points_per_cell = 2");
     let scratch = Scratch::with_case(&two);
     let off = ["--set", "solver.extension=off"];
-    let run = scratch.mpirun(2, &[&["case.toml", "-q", "-o", "off"], &off[..]].concat()).expect(80);
+    let run = scratch
+        .mpirun(2, &[&["case.toml", "-q", "-o", "off"], &off[..]].concat())
+        .expect(80);
     let place = run.stderr.split_once("Location: node ").expect("the place").1;
-    assert!(place.contains(" at [17.5") && run.stderr.contains("points_per_cell = 3"), "{}", run.stderr);
+    assert!(
+        place.contains(" at [17.5") && run.stderr.contains("points_per_cell = 3"),
+        "{}",
+        run.stderr
+    );
     scratch.mpirun(2, &["case.toml", "-q", "-o", "two"]).expect(0);
     scratch.write("case.toml", &case);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "three"]).expect(0);
@@ -242,7 +275,11 @@ fn a_toe_that_ends_in_a_point_needs_extended_splines_or_more_points() {
 
 /// Clay with a step of 3 m in its surface, at x = 12 m.
 fn stepped() -> String {
-    let case = changed(SAND, "cohesion = 0.0\nfriction_angle = 30.0", "cohesion = \"15 kPa\"\nfriction_angle = 20.0");
+    let case = changed(
+        SAND,
+        "cohesion = 0.0\nfriction_angle = 30.0",
+        "cohesion = \"15 kPa\"\nfriction_angle = 20.0",
+    );
     let case = changed(
         &case,
         "[[0, 0], [32, 0], [32, 2], [24, 2], [8, 10], [0, 10]]",
@@ -276,7 +313,11 @@ fn beneath_a_step_of_the_surface_the_weight_is_spread_as_by_gravity_that_grows()
         row
     };
     let [settled, given, grown] = [&settled, &given, &grown].map(row);
-    let jump = |row: &[(f64, f64)]| row.windows(2).map(|pair| (pair[1].1 - pair[0].1).abs()).fold(0.0, f64::max);
+    let jump = |row: &[(f64, f64)]| {
+        row.windows(2)
+            .map(|pair| (pair[1].1 - pair[0].1).abs())
+            .fold(0.0, f64::max)
+    };
     let weight = 2e4 * 3.0;
     println!(
         "jumps of {weight}: given {:.0}, settled {:.0}, grown {:.0} Pa",
@@ -284,7 +325,13 @@ fn beneath_a_step_of_the_surface_the_weight_is_spread_as_by_gravity_that_grows()
         jump(&settled),
         jump(&grown)
     );
-    let off = |row: &[(f64, f64)]| row.iter().zip(&grown).map(|(a, b)| (a.1 - b.1).abs()).fold(0.0, f64::max) / weight;
+    let off = |row: &[(f64, f64)]| {
+        row.iter()
+            .zip(&grown)
+            .map(|(a, b)| (a.1 - b.1).abs())
+            .fold(0.0, f64::max)
+            / weight
+    };
     println!(
         "off from gravity that grows, of the step's weight: given {:.3}, settled {:.3}",
         off(&given),
@@ -345,18 +392,33 @@ at = [15, 3]
 /// moves, and nothing is squeezed, by more than the tolerance.
 #[test]
 fn a_slope_in_which_water_flows_starts_as_one_in_which_it_rests() {
-    let dry = changed(WET, "drainage = \"coupled\"\nporosity = 0.4\npermeability = \"1e-6 m/s\"\n", "");
-    let dry = changed(&dry, "\"consolidation\"\nend = \"1 d\"\ndt = \"6 h\"", "\"quasi-static\"\nsteps = 4");
+    let dry = changed(
+        WET,
+        "drainage = \"coupled\"\nporosity = 0.4\npermeability = \"1e-6 m/s\"\n",
+        "",
+    );
+    let dry = changed(
+        &dry,
+        "\"consolidation\"\nend = \"1 d\"\ndt = \"6 h\"",
+        "\"quasi-static\"\nsteps = 4",
+    );
     let dry = changed(&dry, "[[history]]\nquantity = \"excess-pressure\"\nat = [15, 3]\n", "");
     // Above its level water rests by suction.
     let tide = changed(WET, "level = 11.0", "level = 4.0");
-    let tide = changed(&tide, "porosity = 0.4", "porosity = 0.4\nretention = { alpha = 1.0, n = 2.0, residual = 0.1 }");
+    let tide = changed(
+        &tide,
+        "porosity = 0.4",
+        "porosity = 0.4\nretention = { alpha = 1.0, n = 2.0, residual = 0.1 }",
+    );
     let scratch = Scratch::with_case(WET);
     for (name, case, ranks) in [("wet", WET, 1), ("wet2", WET, 2), ("dry", &dry, 1), ("tide", &tide, 1)] {
         scratch.write("case.toml", format!("{case}[output]\nevery_steps = 4\n"));
         scratch.mpirun(ranks, &["case.toml", "-q", "-o", name]).expect(0);
         let found = initial(&scratch, name);
-        assert!(found.settling.expect("it was led there").rounds > 0 && found.unbalance < 1e-4, "{name}: {found:?}");
+        assert!(
+            found.settling.expect("it was led there").rounds > 0 && found.unbalance < 1e-4,
+            "{name}: {found:?}"
+        );
         let history = history(&scratch.path(name));
         let moved = history.get("max-displacement").unwrap().last().unwrap();
         assert!(*moved < 2e-5, "{name}: {moved}");
@@ -370,8 +432,15 @@ fn a_slope_in_which_water_flows_starts_as_one_in_which_it_rests() {
     for (name, difference) in differences(&two, &wet).into_iter().filter(|(name, _)| name == "stress") {
         assert!(difference < 1e-6, "{name}: {difference:e}");
     }
-    let largest = stresses(&dry).concat().into_iter().fold(0.0, |most: f64, of| most.max(of.abs()));
-    let off = stresses(&wet).concat().into_iter().zip(stresses(&dry).concat()).map(|(a, b)| (a - b).abs());
+    let largest = stresses(&dry)
+        .concat()
+        .into_iter()
+        .fold(0.0, |most: f64, of| most.max(of.abs()));
+    let off = stresses(&wet)
+        .concat()
+        .into_iter()
+        .zip(stresses(&dry).concat())
+        .map(|(a, b)| (a - b).abs());
     assert!(off.fold(0.0, f64::max) < 1e-9 * largest);
 }
 
@@ -385,10 +454,19 @@ fn a_slope_in_space_starts_as_in_plane_strain() {
     let mut slice = plane.clone();
     for (of_plane, of_solid) in [
         ("\"plane-strain\"", "\"solid\""),
-        ("lower = [0, 0]\nupper = [32, 12]", "lower = [0, 0, 0]\nupper = [32, 2, 12]"),
-        (outline, &format!("extrude = {{ {outline}, along = \"y\", from = 0, to = 2 }}")),
+        (
+            "lower = [0, 0]\nupper = [32, 12]",
+            "lower = [0, 0, 0]\nupper = [32, 2, 12]",
+        ),
+        (
+            outline,
+            &format!("extrude = {{ {outline}, along = \"y\", from = 0, to = 2 }}"),
+        ),
         ("[0, -9.81]", "[0, 0, -9.81]"),
-        ("bottom = \"fixed\"", "bottom = \"fixed\"\nfront = \"roller\"\nback = \"roller\""),
+        (
+            "bottom = \"fixed\"",
+            "bottom = \"fixed\"\nfront = \"roller\"\nback = \"roller\"",
+        ),
     ] {
         slice = changed(&slice, of_plane, of_solid);
     }
@@ -396,17 +474,28 @@ fn a_slope_in_space_starts_as_in_plane_strain() {
     let slice = slice + &stress("toe", "[22, 1, 1]") + &stress("middle", "[14, 1, 3]");
     let [(of_plane, plane), (of_slice, slice)] = [plane, slice].map(|case| {
         let scratch = Scratch::with_case(&case);
-        scratch.direct(&["case.toml", "-q", "-o", "out", "--max-steps", "1"]).expect(75);
+        scratch
+            .direct(&["case.toml", "-q", "-o", "out", "--max-steps", "1"])
+            .expect(75);
         (initial(&scratch, "out"), history(&scratch.path("out")))
     });
-    assert!(of_plane.settling.is_some() && of_slice.settling.is_some() && of_slice.unbalance < 1e-4, "{of_slice:?}");
+    assert!(
+        of_plane.settling.is_some() && of_slice.settling.is_some() && of_slice.unbalance < 1e-4,
+        "{of_slice:?}"
+    );
     for place in ["toe", "middle"] {
         let vertical = at(&plane, &format!("{place}-yy"), 0.0);
         for (a, b) in [("xx", "xx"), ("yy", "zz"), ("zz", "yy"), ("xy", "xz")] {
-            let [a, b] = [at(&plane, &format!("{place}-{a}"), 0.0), at(&slice, &format!("{place}-{b}"), 0.0)];
+            let [a, b] = [
+                at(&plane, &format!("{place}-{a}"), 0.0),
+                at(&slice, &format!("{place}-{b}"), 0.0),
+            ];
             println!("{place}: {a} {b}: {:e}", (a - b) / vertical);
             assert!((a - b).abs() < 1e-4 * vertical.abs(), "{place}: {a} and {b}");
         }
-        assert!(at(&plane, &format!("{place}-xy"), 0.0) > 0.1 * vertical.abs(), "k0 alone has no shear");
+        assert!(
+            at(&plane, &format!("{place}-xy"), 0.0) > 0.1 * vertical.abs(),
+            "k0 alone has no shear"
+        );
     }
 }

@@ -37,7 +37,9 @@ fn under_way(scratch: &Scratch, ranks: Option<usize>) -> Running {
     let _ = std::fs::remove_dir_all(scratch.path("case.out"));
     let mut running = scratch.job(ranks, &["case.toml", "-v"]).within(HANGS).start();
     running.until("its tenth step", || made(scratch) >= 10);
-    running.until("the frame of the start", || scratch.path("case.out/frames.pvd").exists());
+    running.until("the frame of the start", || {
+        scratch.path("case.out/frames.pvd").exists()
+    });
     running
 }
 
@@ -53,8 +55,15 @@ fn stopped(scratch: &Scratch) {
     let last = *steps.get("step").unwrap().last().unwrap();
     assert_eq!(manifest.summary.steps as f64, last);
     assert_eq!(*history.get("step").unwrap().last().unwrap(), last);
-    assert_eq!(manifest.summary.iterations as f64, steps.get("iterations").unwrap().iter().sum::<f64>());
-    assert_eq!(last_frame(&directory).step as f64, last, "the last state is in the last frame");
+    assert_eq!(
+        manifest.summary.iterations as f64,
+        steps.get("iterations").unwrap().iter().sum::<f64>()
+    );
+    assert_eq!(
+        last_frame(&directory).step as f64,
+        last,
+        "the last state is in the last frame"
+    );
     assert!(!scratch.path("case.out/.lock").exists());
 }
 
@@ -121,9 +130,20 @@ fn usr2_writes_a_frame_and_a_checkpoint_and_changes_nothing_else() {
         to.send("USR1", &running);
         let output = running.end().expect(75);
         stopped(&scratch);
-        let (directory, count) = (scratch.path("case.out"), output.count("Writing a frame and a checkpoint"));
-        assert_eq!(all_frames(&directory).len(), 2 + count, "start, on request, end: {output:#?}");
-        assert_eq!(output.count("Checkpoint of step"), 1 + count, "on request, end: {output:#?}");
+        let (directory, count) = (
+            scratch.path("case.out"),
+            output.count("Writing a frame and a checkpoint"),
+        );
+        assert_eq!(
+            all_frames(&directory).len(),
+            2 + count,
+            "start, on request, end: {output:#?}"
+        );
+        assert_eq!(
+            output.count("Checkpoint of step"),
+            1 + count,
+            "on request, end: {output:#?}"
+        );
         let interrupted = history(&directory);
         let last = interrupted.get("step").unwrap().last().unwrap().to_string();
         let whole = ["case.toml", "-q", "-o", "whole", "--force", "--max-steps", &last];
@@ -148,7 +168,9 @@ fn term_to_mpirun_stops_cleanly_where_it_leaves_the_time_and_spoils_nothing_wher
         let directory = scratch.path("case.out");
         assert!([Status::Stopped, Status::Running].contains(&manifest(&directory).status));
         assert!(!all_frames(&directory).is_empty());
-        scratch.mpirun(2, &["case.toml", "-q", "--force", "--max-steps", "1"]).expect(75);
+        scratch
+            .mpirun(2, &["case.toml", "-q", "--force", "--max-steps", "1"])
+            .expect(75);
     }
 }
 
@@ -166,13 +188,17 @@ fn a_second_term_or_int_ends_a_run_at_once() {
         assert_eq!(manifest(&scratch.path("case.out")).status, Status::Running);
     }
     let running = under_way(&scratch, None);
-    ["STOP", "INT", "TERM", "CONT"].into_iter().for_each(|name| running.signal(name));
+    ["STOP", "INT", "TERM", "CONT"]
+        .into_iter()
+        .for_each(|name| running.signal(name));
     assert_eq!(running.end().code, None, "ended by a signal");
     let running = under_way(&scratch, Some(2));
     running.signal("TERM");
     running.signal("TERM");
     running.end();
-    scratch.mpirun(2, &["case.toml", "-q", "--force", "--max-steps", "1"]).expect(75);
+    scratch
+        .mpirun(2, &["case.toml", "-q", "--force", "--max-steps", "1"])
+        .expect(75);
 }
 
 /// A reader that goes away, as `head` does, costs the run nothing but its words.

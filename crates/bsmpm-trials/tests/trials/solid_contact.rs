@@ -58,7 +58,10 @@ fn a_block_slides_obliquely_with_its_acceleration_and_sticks_with_more_friction(
     let gained = [0, 1].map(|axis| (speed(0.5)[axis] - speed(0.2)[axis]) / 0.3);
     let expected = along - 0.3 * down;
     println!("{gained:?} {expected}");
-    assert!((gained[0].hypot(gained[1]) / expected - 1.0).abs() < 0.01, "{gained:?} {expected}");
+    assert!(
+        (gained[0].hypot(gained[1]) / expected - 1.0).abs() < 0.01,
+        "{gained:?} {expected}"
+    );
     assert!((gained[1] / gained[0] - 0.75).abs() < 1e-3, "{gained:?}");
     let force = ["x", "y", "z"].map(|axis| at(&table, &format!("reaction-{axis}"), 0.5));
     println!("{force:?}");
@@ -69,7 +72,11 @@ fn a_block_slides_obliquely_with_its_acceleration_and_sticks_with_more_friction(
 /// Above the tangent of the slope it rests where the elastic block leaves it.
 #[test]
 fn a_block_sticks_where_friction_is_more_than_the_slope() {
-    let scratch = Scratch::with_case(&changed(BLOCK, "friction_coefficient = 0.3", "friction_coefficient = 0.6"));
+    let scratch = Scratch::with_case(&changed(
+        BLOCK,
+        "friction_coefficient = 0.3",
+        "friction_coefficient = 0.6",
+    ));
     scratch.mpirun(2, &["case.toml", "-q", "-o", "sticks"]).expect(0);
     let table = history(&scratch.path("sticks"));
     for axis in ["x", "y"] {
@@ -92,10 +99,14 @@ fn a_block_in_a_corner_is_the_same_on_all_numbers_of_ranks() {
     );
     let wall = changed(&wall, "upper = [2.0, 1.75, 0.5]", "upper = [2.0, 1.0, 0.5]");
     let wall = changed(&wall, "end = 0.5", "end = 0.25");
-    let wall =
-        changed(&wall, "[[history]]\nquantity = \"energy\"", "[solver]\ntolerance = 1e-16\nforce_tolerance = 1e-10");
-    let scratch =
-        Scratch::with_case(&format!("{wall}[[history]]\nquantity = \"reaction\"\nname = \"wall\"\nface = \"back\"\n"));
+    let wall = changed(
+        &wall,
+        "[[history]]\nquantity = \"energy\"",
+        "[solver]\ntolerance = 1e-16\nforce_tolerance = 1e-10",
+    );
+    let scratch = Scratch::with_case(&format!(
+        "{wall}[[history]]\nquantity = \"reaction\"\nname = \"wall\"\nface = \"back\"\n"
+    ));
     scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
     let (table, time) = (history(&scratch.path("one")), 0.25);
     let wall = ["x", "y", "z"].map(|axis| at(&table, &format!("wall-{axis}"), time));
@@ -107,7 +118,10 @@ fn a_block_in_a_corner_is_the_same_on_all_numbers_of_ranks() {
         let found = history(&scratch.path(&out));
         for column in ["momentum-x", "reaction-z", "wall-y", "friction-power"] {
             let [found, expected] = [at(&found, column, time), at(&table, column, time)];
-            assert!((found / expected - 1.0).abs() < 1e-7, "{ranks}, {column}: {found} {expected}");
+            assert!(
+                (found / expected - 1.0).abs() < 1e-7,
+                "{ranks}, {column}: {found} {expected}"
+            );
         }
     }
     scratch.goes_on(2, &["11", "27"]);
@@ -128,7 +142,10 @@ fn a_slice_that_slides_is_plane_strain() {
     for (from, to) in [
         ("lower = [0, 0]", "lower = [0, 0, 0]"),
         ("upper = [2.0, 0.5]", "upper = [2.0, 0.25, 0.5]"),
-        ("lower = [0.5, 0], upper = [1.0, 0.25]", "lower = [0.5, 0, 0], upper = [1.0, 0.25, 0.25]"),
+        (
+            "lower = [0.5, 0], upper = [1.0, 0.25]",
+            "lower = [0.5, 0, 0], upper = [1.0, 0.25, 0.25]",
+        ),
         ("[4.3871653, -8.7743305]", "[4.3871653, 0, -8.7743305]"),
         (
             "bottom = { friction_coefficient = 0.3 }",
@@ -143,7 +160,11 @@ fn a_slice_that_slides_is_plane_strain() {
         history(&scratch.path("out"))
     };
     let (plane, solid) = (run(plane), run(&slice));
-    let pairs = [("momentum-x", "momentum-x"), ("reaction-x", "reaction-x"), ("reaction-y", "reaction-z")];
+    let pairs = [
+        ("momentum-x", "momentum-x"),
+        ("reaction-x", "reaction-x"),
+        ("reaction-y", "reaction-z"),
+    ];
     for (flat, along) in pairs.into_iter().chain([("friction-power", "friction-power")]) {
         let (expected, found) = (at(&plane, flat, 0.2), at(&solid, along, 0.2) / 0.25);
         println!("{flat}: {:e}", found / expected - 1.0);
@@ -156,7 +177,11 @@ fn a_slice_that_slides_is_plane_strain() {
 fn a_bar_meets_a_wall_and_leaves_it() {
     let bar = changed(BLOCK, "bottom = { friction_coefficient = 0.3 }", "right = \"contact\"");
     let bar = changed(&bar, "box = { lower = [0.5, 0.5, 0], upper = [1.0, 1.0, 0.25] }", BAR);
-    let bar = changed(&bar, "[gravity]\nacceleration = [3.50973224, 2.63229918, -8.7743305]\nramp = \"0.1 s\"\n", "");
+    let bar = changed(
+        &bar,
+        "[gravity]\nacceleration = [3.50973224, 2.63229918, -8.7743305]\nramp = \"0.1 s\"\n",
+        "",
+    );
     let bar = changed(&bar, "end = 0.5\ndt = \"5 ms\"", "end = 0.06\ndt = \"0.2 ms\"");
     let bar = bar.replace("face = \"bottom\"", "face = \"right\"");
     let scratch = Scratch::with_case(&bar);
@@ -214,7 +239,9 @@ fn a_cylinder_that_slips_in_part_is_the_axisymmetric_one() {
     for friction in [0.05, 0.1, 0.2] {
         let [(force, power, sliding), (round_force, round_power, round_sliding)] = [true, false].map(|solid| {
             let scratch = Scratch::with_case(&pressed(solid, friction));
-            scratch.mpirun(1 + usize::from(solid), &["case.toml", "-q", "-o", "out"]).expect(0);
+            scratch
+                .mpirun(1 + usize::from(solid), &["case.toml", "-q", "-o", "out"])
+                .expect(0);
             let table = history(&scratch.path("out"));
             let (down, share) = if solid { ("z", 4.0) } else { ("y", 1.0) };
             (

@@ -55,22 +55,35 @@ fn root(f: impl Fn(f64) -> f64, mut ends: [f64; 2]) -> f64 {
 fn a_cube_under_a_dead_load_and_under_a_pressure_is_that_of_henckys_law() {
     let (young, poisson, load) = (1e6, 0.3, 1e5);
     let dead = root(|l| young * f64::ln(l) + load * l, [0.5, 1.0]);
-    let pressed = root(|l| young * f64::ln(l) + load * f64::powf(l, 1.0 - 2.0 * poisson), [0.5, 1.0]);
+    let pressed = root(
+        |l| young * f64::ln(l) + load * f64::powf(l, 1.0 - 2.0 * poisson),
+        [0.5, 1.0],
+    );
     let top = "{ lower = [0, 0, 1], upper = [1, 1, 1] }\nstress = [0, 0, \"-100 kPa\"]";
     let right = "{ lower = [1, 0, 0], upper = [1, 1, 1] }\nstress = [\"-100 kPa\", 0, 0]";
     let back = "{ lower = [0, 1, 0], upper = [1, 1, 1] }\npressure = \"100 kPa\"";
-    for (number, (axis, line, expected)) in
-        [("z", top, dead), ("x", right, dead), ("y", back, pressed)].into_iter().enumerate()
+    for (number, (axis, line, expected)) in [("z", top, dead), ("x", right, dead), ("y", back, pressed)]
+        .into_iter()
+        .enumerate()
     {
         // In one step points stand where they integrate exactly.
         let scratch = Scratch::with_case(&changed(CUBE, top, line));
-        scratch.mpirun(1 + number % 2, &["case.toml", "-q", "-o", "out"]).expect(0);
+        scratch
+            .mpirun(1 + number % 2, &["case.toml", "-q", "-o", "out"])
+            .expect(0);
         let table = history(&scratch.path("out"));
         for along in ["x", "y", "z"] {
             let stretch = 1.0 + at(&table, &format!("displacement-{along}"), 1.0);
-            let expected = if along == axis { expected } else { expected.powf(-poisson) };
+            let expected = if along == axis {
+                expected
+            } else {
+                expected.powf(-poisson)
+            };
             println!("{axis}, {along}: {stretch} for {expected}");
-            assert!((stretch - expected).abs() < 1e-9, "{axis}, {along}: {stretch} for {expected}");
+            assert!(
+                (stretch - expected).abs() < 1e-9,
+                "{axis}, {along}: {stretch} for {expected}"
+            );
         }
     }
 }
@@ -130,7 +143,11 @@ fn bar(loads: &[([f64; 2], [f64; 2], [f64; 3])], cell: f64, places: &[(f64, f64)
         format!("[[history]]\nname = \"at{number}\"\nquantity = \"displacement\"\nat = [{x}, 0.375, {z}]\n")
     });
     let bar = changed(BAR, "cell = 0.125", &format!("cell = {cell}"));
-    let scratch = Scratch::with_case(&format!("{bar}{}{}", loads.collect::<String>(), reported.collect::<String>()));
+    let scratch = Scratch::with_case(&format!(
+        "{bar}{}{}",
+        loads.collect::<String>(),
+        reported.collect::<String>()
+    ));
     scratch.direct(&["case.toml", "-q", "-o", "out"]).expect(0);
     let table = history(&scratch.path("out"));
     let moved = |number: usize| ["x", "y", "z"].map(|along| at(&table, &format!("at{number}-{along}"), 1.0));
@@ -211,9 +228,11 @@ fn a_plate_across_a_slice_is_the_strip_of_plane_strain() {
         footing = { rectangle = { lower = [0.5, 0, 1], upper = [1, 0.5, 1] }, displacement = [AHEAD, 0, -0.005], base = BASE }";
     // What has friction in soil that yields needs far smaller steps.
     let has_friction = "{ friction_coefficient = 0.1, separates = true }";
-    for (base, ahead, cohesion) in
-        [("\"smooth\"", "0", "1 kPa"), ("\"rough\"", "0", "1 kPa"), (has_friction, "0.02", "1 MPa")]
-    {
+    for (base, ahead, cohesion) in [
+        ("\"smooth\"", "0", "1 kPa"),
+        ("\"rough\"", "0", "1 kPa"),
+        (has_friction, "0.02", "1 MPa"),
+    ] {
         let run = |geometry: &str, ranks: usize| {
             let geometry = geometry.replace("BASE", base).replace("AHEAD", ahead);
             let case = changed(&changed(GROUND, "GEOMETRY", &geometry), "1 kPa", cohesion);
@@ -221,7 +240,13 @@ fn a_plate_across_a_slice_is_the_strip_of_plane_strain() {
             scratch.mpirun(ranks, &["case.toml", "-q", "-o", "out"]).expect(0);
             let table = history(&scratch.path("out"));
             let of = |name: &str| at(&table, name, 1.0);
-            [of("footing-force"), of("footing-pressure"), of("work"), of("reaction-x"), of("energy-elastic")]
+            [
+                of("footing-force"),
+                of("footing-pressure"),
+                of("work"),
+                of("reaction-x"),
+                of("energy-elastic"),
+            ]
         };
         let expected = run(plane, 1);
         for ranks in [1, 2] {
@@ -342,7 +367,11 @@ fn eighth(radius: f64, parts: usize, closed: bool) -> String {
             }
         }
         if closed {
-            for [from, to] in [[(0, i), (0, i + 1)], [(i + 1, 0), (i, 0)], [(i, parts - i), (i + 1, parts - i - 1)]] {
+            for [from, to] in [
+                [(0, i), (0, i + 1)],
+                [(i + 1, 0), (i, 0)],
+                [(i, parts - i), (i + 1, parts - i - 1)],
+            ] {
                 rows.push(["0.0, 0.0, 0.0".into(), corner(from), corner(to)]);
             }
         }
@@ -357,7 +386,10 @@ fn eighth(radius: f64, parts: usize, closed: bool) -> String {
 fn a_hollow_sphere_under_pressure_inside_is_lames_by_a_sphere_and_by_triangles() {
     let (a, b, young, poisson, load) = (0.5_f64, 1.0_f64, 1e7, 0.3, 1e3);
     let wall = (1.0 - 2.0 * poisson) * a + (1.0 + poisson) * b.powi(3) / (2.0 * a * a);
-    let (moved, held) = (load * a.powi(3) * wall / (young * (b.powi(3) - a.powi(3))), load * PI * a * a / 4.0);
+    let (moved, held) = (
+        load * a.powi(3) * wall / (young * (b.powi(3) - a.powi(3))),
+        load * PI * a * a / 4.0,
+    );
     let hollow = changed(HOLLOW, "BALL", &eighth(b, 24, true));
     let sphere = "sphere = { centre = [0, 0, 0], radius = 0.5 }\npressure";
     let triangles = format!("surface = {{ triangles = {} }}\npressure", eighth(a, 24, false));

@@ -86,7 +86,12 @@ fn lines_and_places_of_a_block_have_its_weight_on_any_ranks_and_after_a_restart(
     let of_section = |name: &str| at(&rows, &format!("section-forces-{name}"), 1.0);
     let normal = of_section("n") / (-WEIGHT * 1.4 * 0.375) - 1.0;
     println!("N off by {normal:.1e}");
-    assert!(normal.abs() < 1e-4 && ["q1", "q2", "t", "m1", "m2"].iter().all(|name| of_section(name).abs() < 1e-3));
+    assert!(
+        normal.abs() < 1e-4
+            && ["q1", "q2", "t", "m1", "m2"]
+                .iter()
+                .all(|name| of_section(name).abs() < 1e-3)
+    );
 
     let depth = table::read(&one.join("profile_depth.csv")).unwrap();
     let of = |name: &str| depth.get(name).unwrap();
@@ -110,7 +115,13 @@ fn lines_and_places_of_a_block_have_its_weight_on_any_ranks_and_after_a_restart(
     // Times of its own; what is above the body is left out, and the line stays where it is.
     let window = table::read(&one.join("profile_window.csv")).unwrap();
     assert_eq!(window.get("time").unwrap(), [[0.6; 4], [1.0; 4]].as_flattened());
-    for (z, stress) in window.get("z").unwrap().iter().zip(window.get("stress-zz").unwrap()).skip(4) {
+    for (z, stress) in window
+        .get("z")
+        .unwrap()
+        .iter()
+        .zip(window.get("stress-zz").unwrap())
+        .skip(4)
+    {
         let off = (stress + WEIGHT * (1.0 - z)).abs() / largest;
         println!("z {z}: off by {off:.1e}");
         assert!(off < if *z > 0.8 { 2e-2 } else { 1e-3 });
@@ -143,7 +154,11 @@ fn sections_of_a_bar_have_the_weight_beyond_its_moment_and_the_couple() {
         )
     });
     let gravity = "[gravity]\nacceleration = [0, 0, -9.81]\nramp = 1.0\n";
-    let bar = changed(BAR, "poisson = 0.3\n", &format!("poisson = 0.3\nunit_weight = \"{unit_weight} N/m3\"\n"));
+    let bar = changed(
+        BAR,
+        "poisson = 0.3\n",
+        &format!("poisson = 0.3\nunit_weight = \"{unit_weight} N/m3\"\n"),
+    );
     let scratch = Scratch::with_case(&format!("{bar}{gravity}{}{}", loads.concat(), reported.concat()));
     scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
     let rows = history(&scratch.path("one"));
@@ -152,11 +167,18 @@ fn sections_of_a_bar_have_the_weight_beyond_its_moment_and_the_couple() {
         let of = |component: &str| at(&rows, &format!("{name}-{component}"), 1.0);
         let beyond = length - x;
         let (shear, moment) = (per_length * beyond, 0.5 * per_length * beyond * beyond);
-        let off = [of("q2") / -shear - 1.0, of("t") / couple - 1.0, (of("m2") - moment) / moment];
+        let off = [
+            of("q2") / -shear - 1.0,
+            of("t") / couple - 1.0,
+            (of("m2") - moment) / moment,
+        ];
         let others = [of("n") / shear, of("q1") / shear, of("m1") / moment];
         println!("{name}: Q, T, M off by {off:?}; N, Q1, M1 {others:?}");
         // The cut is smeared: M is too large by 0.16 w h^2.
-        assert!(off[0].abs() < 2e-3 && off[1].abs() < 2e-3 && off[2].abs() < 4e-3, "{off:?}");
+        assert!(
+            off[0].abs() < 2e-3 && off[1].abs() < 2e-3 && off[2].abs() < 4e-3,
+            "{off:?}"
+        );
         assert!(others.iter().all(|other| other.abs() < 2e-3), "{others:?}");
     }
     goes_the_same_way(&scratch, &["history.csv"], (2, 1e-9));
@@ -166,12 +188,21 @@ fn sections_of_a_bar_have_the_weight_beyond_its_moment_and_the_couple() {
 /// in a plane and in space, held against sums over the points that frames have there.
 #[test]
 fn boxes_of_histories_count_the_points_that_frames_have_there() {
-    const QUANTITIES: [&str; 6] =
-        ["mass", "mean-stress", "mean-displacement", "mean-velocity", "plastic-strain", "kinetic-energy"];
+    const QUANTITIES: [&str; 6] = [
+        "mass",
+        "mean-stress",
+        "mean-displacement",
+        "mean-velocity",
+        "plastic-strain",
+        "kinetic-energy",
+    ];
     const AXES: [&str; 3] = ["x", "y", "z"];
     // In the plane of the slump, (x, height).
-    let boxes =
-        [("toe", [[0.55, 0.1], [1.3, 0.9]]), ("ahead", [[1.02, 0.0], [4.0, 2.0]]), ("never", [[3.0, 1.0], [4.0, 2.0]])];
+    let boxes = [
+        ("toe", [[0.55, 0.1], [1.3, 0.9]]),
+        ("ahead", [[1.02, 0.0], [4.0, 2.0]]),
+        ("never", [[3.0, 1.0], [4.0, 2.0]]),
+    ];
     for (text, dims) in [(PLANE.to_owned(), 2), (slice(), 3)] {
         let corner = |[x, up]: [f64; 2], across: f64| if dims == 2 { vec![x, up] } else { vec![x, across, up] };
         let within = |(_, [lower, upper]): &(&str, [[f64; 2]; 2])| [corner(*lower, 0.1), corner(*upper, 0.25)];
@@ -188,33 +219,54 @@ fn boxes_of_histories_count_the_points_that_frames_have_there() {
         let (one, mut counts) = (scratch.path("one"), Vec::new());
         all_finite(&one);
         let rows = history(&one);
-        for (frame, of) in all_frames(&one).iter().flat_map(|frame| boxes.iter().map(move |of| (frame, of))) {
+        for (frame, of) in all_frames(&one)
+            .iter()
+            .flat_map(|frame| boxes.iter().map(move |of| (frame, of)))
+        {
             let real = |name: &str, components: usize| frame.real(name, components).unwrap();
             let [lower, upper] = within(of);
             let inside = |x: &[f64; 3]| (0..dims).all(|axis| lower[axis] <= x[axis] && x[axis] <= upper[axis]);
-            let found: Vec<usize> = (0..frame.position.len()).filter(|&p| inside(&frame.position[p])).collect();
+            let found: Vec<usize> = (0..frame.position.len())
+                .filter(|&p| inside(&frame.position[p]))
+                .collect();
             counts.push((of.0, found.len()));
             let volume = |p: usize| real("volume", 1)[p];
             let sum = |value: &dyn Fn(usize) -> f64| found.iter().map(|&p| value(p)).sum::<f64>();
             let mean = |value: &dyn Fn(usize) -> f64| {
-                if found.is_empty() { 0.0 } else { sum(&|p| volume(p) * value(p)) / sum(&volume) }
+                if found.is_empty() {
+                    0.0
+                } else {
+                    sum(&|p| volume(p) * value(p)) / sum(&volume)
+                }
             };
             let mass = |p: usize| volume(p) * real("density", 1)[p];
             let speed2 = |p: usize| real("velocity", 3)[3 * p..3 * p + 3].iter().map(|v| v * v).sum::<f64>();
             let mut expected = vec![
                 ("mass".to_owned(), sum(&mass), 2e3),
                 ("kinetic-energy".to_owned(), sum(&|p| 0.5 * mass(p) * speed2(p)), 1e3),
-                ("plastic-strain-mean".to_owned(), mean(&|p| real("plastic_strain", 1)[p]), 0.1),
+                (
+                    "plastic-strain-mean".to_owned(),
+                    mean(&|p| real("plastic_strain", 1)[p]),
+                    0.1,
+                ),
                 (
                     "plastic-strain-largest".to_owned(),
                     found.iter().map(|&p| real("plastic_strain", 1)[p]).fold(0.0, f64::max),
                     0.1,
                 ),
                 ("mean-stress-xx".to_owned(), mean(&|p| real("stress", 6)[6 * p]), 1e4),
-                ("mean-stress-xy".to_owned(), mean(&|p| real("stress", 6)[6 * p + 3]), 1e4),
+                (
+                    "mean-stress-xy".to_owned(),
+                    mean(&|p| real("stress", 6)[6 * p + 3]),
+                    1e4,
+                ),
             ];
             for (axis, name) in AXES.into_iter().enumerate().take(dims) {
-                expected.push((format!("mean-velocity-{name}"), mean(&|p| real("velocity", 3)[3 * p + axis]), 1.0));
+                expected.push((
+                    format!("mean-velocity-{name}"),
+                    mean(&|p| real("velocity", 3)[3 * p + axis]),
+                    1.0,
+                ));
                 let along = mean(&|p| real("displacement", 3)[3 * p + axis]);
                 expected.push((format!("mean-displacement-{name}"), along, 0.1));
             }
@@ -228,12 +280,23 @@ fn boxes_of_histories_count_the_points_that_frames_have_there() {
             }
         }
         println!("{dims} axes: points in boxes {counts:?}");
-        let of = |name: &str| counts.iter().filter(move |of| of.0 == name).map(|of| of.1).collect::<Vec<_>>();
-        assert!(of("toe")[0] > 0 && of("ahead")[0] == 0 && of("ahead")[3] > 0 && of("never") == [0; 4], "{counts:?}");
+        let of = |name: &str| {
+            counts
+                .iter()
+                .filter(move |of| of.0 == name)
+                .map(|of| of.1)
+                .collect::<Vec<_>>()
+        };
+        assert!(
+            of("toe")[0] > 0 && of("ahead")[0] == 0 && of("ahead")[3] > 0 && of("never") == [0; 4],
+            "{counts:?}"
+        );
         let warned = manifest(&one).warnings;
         let never = QUANTITIES.map(|quantity| format!("never-{quantity}")).join(", ");
         assert!(
-            warned.iter().any(|warning| warning.contains(&format!("the box of these histories: {never}."))),
+            warned
+                .iter()
+                .any(|warning| warning.contains(&format!("the box of these histories: {never}."))),
             "{warned:?}"
         );
         // Sums are exact: the same bits as long as what is summed is.
@@ -243,8 +306,13 @@ fn boxes_of_histories_count_the_points_that_frames_have_there() {
         }
         // A sum over no point is zero; no mean is any number.
         for (quantity, code) in [("never-mass", 0), ("never-plastic-strain-largest", 77)] {
-            scratch.write("checked.toml", format!("{case}[[check]]\nquantity = \"{quantity}\"\nmax = 1.0\n"));
-            scratch.mpirun(1, &["checked.toml", "-q", "-o", "checked", "--force"]).expect(code);
+            scratch.write(
+                "checked.toml",
+                format!("{case}[[check]]\nquantity = \"{quantity}\"\nmax = 1.0\n"),
+            );
+            scratch
+                .mpirun(1, &["checked.toml", "-q", "-o", "checked", "--force"])
+                .expect(code);
         }
     }
 }

@@ -59,11 +59,26 @@ fn a_rigid_block_in_a_slice_is_that_of_plane_strain() {
     let mut slice = PLANE.to_owned();
     for (plane, solid) in [
         ("geometry = \"plane-strain\"", "geometry = \"3d\""),
-        ("lower = [0, 0]\nupper = [4, 2]", "lower = [0, 0, 0]\nupper = [4, 0.25, 2]"),
-        ("{ lower = [0, 0], upper = [4, 1] }", "{ lower = [0, 0, 0], upper = [4, 0.25, 1] }"),
-        ("polygon = [[1.5, 1], [2.5, 1], [2.5, 2], [1.5, 2]]", "box = { lower = [1.5, -1, 1], upper = [2.5, 1, 2] }"),
-        ("[[0.5, 0, -0.01], [1, 0.01, -0.01]]", "[[0.5, 0, 0, -0.01], [1, 0.01, 0, -0.01]]"),
-        ("right = \"roller\"", "right = \"roller\"\nfront = \"roller\"\nback = \"roller\""),
+        (
+            "lower = [0, 0]\nupper = [4, 2]",
+            "lower = [0, 0, 0]\nupper = [4, 0.25, 2]",
+        ),
+        (
+            "{ lower = [0, 0], upper = [4, 1] }",
+            "{ lower = [0, 0, 0], upper = [4, 0.25, 1] }",
+        ),
+        (
+            "polygon = [[1.5, 1], [2.5, 1], [2.5, 2], [1.5, 2]]",
+            "box = { lower = [1.5, -1, 1], upper = [2.5, 1, 2] }",
+        ),
+        (
+            "[[0.5, 0, -0.01], [1, 0.01, -0.01]]",
+            "[[0.5, 0, 0, -0.01], [1, 0.01, 0, -0.01]]",
+        ),
+        (
+            "right = \"roller\"",
+            "right = \"roller\"\nfront = \"roller\"\nback = \"roller\"",
+        ),
         ("at = [2, 1]", "at = [2, 0.125, 1]"),
     ] {
         slice = changed(&slice, plane, solid);
@@ -86,7 +101,10 @@ fn a_rigid_block_in_a_slice_is_that_of_plane_strain() {
             let [expected, found] = [share * at(&plane, of_plane, t), at(&solid, of_solid, t)];
             // Along x nothing pushes at first.
             let none = t == 0.5 && of_solid == "rigid-force-x";
-            assert!(none || (found / expected - 1.0).abs() < 1e-8, "{of_solid}: {found} for {expected}");
+            assert!(
+                none || (found / expected - 1.0).abs() < 1e-8,
+                "{of_solid}: {found} for {expected}"
+            );
         }
     }
     // It slides: friction is 0.3 of the normal force.
@@ -102,10 +120,19 @@ fn sliding(friction: f64) -> String {
         format!("{:?}, {:?}, {:?}", at[0], at[1], at[2])
     };
     let corner = |k: usize| place((k & 1) as f64, (k >> 1 & 1) as f64, 0.5 * (k >> 2) as f64);
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
     let triangle = |[a, b, c]: [usize; 3]| format!("[{}, {}, {}]", corner(a), corner(b), corner(c));
-    let rows: Vec<String> =
-        faces.into_iter().flat_map(|[a, b, c, d]| [triangle([a, b, c]), triangle([a, c, d])]).collect();
+    let rows: Vec<String> = faces
+        .into_iter()
+        .flat_map(|[a, b, c, d]| [triangle([a, b, c]), triangle([a, c, d])])
+        .collect();
     format!(
         "geometry = \"3d\"\n[analysis]\ntype = \"dynamic\"\nend = 0.5\ndt = 0.01\n\
          [grid]\nlower = [0, 0, 0]\nupper = [6, 4, 5]\ncell = 0.25\ndegree = \"quadratic\"\n\
@@ -142,7 +169,11 @@ fn a_block_slides_on_rigid_terrain_and_goes_on_to_the_bit_on_1_and_2_ranks() {
     });
     let (normal, tangential) = (-force[0] * sin - force[2] * cos, force[0] * cos - force[2] * sin);
     assert!((along / exact - 1.0).abs() < 0.02, "acceleration {along} for {exact}");
-    assert!((tangential / normal / 0.3 - 1.0).abs() < 1e-5, "friction {}", tangential / normal);
+    assert!(
+        (tangential / normal / 0.3 - 1.0).abs() < 1e-5,
+        "friction {}",
+        tangential / normal
+    );
     assert!(gained("y").abs() < 1e-3, "it goes straight down");
 }
 
@@ -239,13 +270,19 @@ fn a_sphere_pressed_into_a_quarter_of_a_block_is_the_axisymmetric_one() {
     let mut quarter = BALL.to_owned();
     for (round, solid) in [
         ("geometry = \"axisymmetric\"", "geometry = \"3d\""),
-        ("lower = [0, 0]\nupper = [1.5, 1.3]", "lower = [0, 0, 0]\nupper = [1.5, 1.5, 1.3]"),
+        (
+            "lower = [0, 0]\nupper = [1.5, 1.3]",
+            "lower = [0, 0, 0]\nupper = [1.5, 1.5, 1.3]",
+        ),
         (
             "box = { lower = [0, 0], upper = [1.2, 1.2] }",
             "extrude = { circle = { centre = [0, 0], radius = 1.2 }, along = \"z\", from = 0, to = 1.2 }\nsubtract = [\
              { box = { lower = [-2, -2, 0], upper = [0, 2, 1.2] } }, { box = { lower = [-2, -2, 0], upper = [2, 0, 1.2] } }]",
         ),
-        ("circle = { centre = [0, 2.2], radius = 1 }", "sphere = { centre = [0, 0, 2.2], radius = 1 }"),
+        (
+            "circle = { centre = [0, 2.2], radius = 1 }",
+            "sphere = { centre = [0, 0, 2.2], radius = 1 }",
+        ),
         ("[0, -0.04]", "[0, 0, -0.04]"),
         ("left = \"roller\"", "left = \"roller\"\nfront = \"roller\""),
     ] {

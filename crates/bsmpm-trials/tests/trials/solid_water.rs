@@ -74,10 +74,19 @@ fn slice(plane: &str) -> String {
     let mut slice = plane.to_owned();
     for (plane, solid) in [
         ("geometry = \"plane-strain\"", "geometry = \"3d\""),
-        ("lower = [0, 0]\nupper = [4, 2]", "lower = [0, 0, 0]\nupper = [4, 0.25, 2]"),
-        ("box = { lower = [0, 0], upper = [1, 1.5] }", "box = { lower = [0, 0, 0], upper = [1, 0.25, 1.5] }"),
+        (
+            "lower = [0, 0]\nupper = [4, 2]",
+            "lower = [0, 0, 0]\nupper = [4, 0.25, 2]",
+        ),
+        (
+            "box = { lower = [0, 0], upper = [1, 1.5] }",
+            "box = { lower = [0, 0, 0], upper = [1, 0.25, 1.5] }",
+        ),
         ("[0, -9.81]", "[0, 0, -9.81]"),
-        ("bottom = \"fixed\"", "bottom = \"fixed\"\nfront = \"roller\"\nback = \"roller\""),
+        (
+            "bottom = \"fixed\"",
+            "bottom = \"fixed\"\nfront = \"roller\"\nback = \"roller\"",
+        ),
         ("at = [1, 1.5]", "at = [1, 0.125, 1.5]"),
     ] {
         slice = changed(&slice, plane, solid);
@@ -124,28 +133,57 @@ const FLOWN: [(&str, &str); 4] = [
 fn a_slice_through_which_water_flows_is_plane_strain() {
     assert!(apart(PLANE, 0.3, &[MOVED.as_slice(), &FLOWN].concat()) < 1e-9);
     let tight = changed(PLANE, "drainage = \"coupled\"", "drainage = \"undrained\"");
-    let tight =
-        changed(&tight, "permeability = [\"2e-4 m/s\", \"1e-4 m/s\"]\npermeability_law = \"kozeny-carman\"\n", "");
+    let tight = changed(
+        &tight,
+        "permeability = [\"2e-4 m/s\", \"1e-4 m/s\"]\npermeability_law = \"kozeny-carman\"\n",
+        "",
+    );
     let tight = changed(&tight, "[[drain]]\nface = \"left\"\n", "").replace("\"flux\", ", "");
     let tight = changed(&tight, "[[history]]\nquantity = \"flux\"\nat = [0.5, 0.25]\n", "");
     assert!(apart(&tight, 0.3, &[MOVED.as_slice(), &FLOWN[..1]].concat()) < 1e-9);
-    let silt =
-        changed(PLANE, "type = \"dynamic\"\nend = 0.3\ndt = 0.02", "type = \"consolidation\"\nend = 3600\ndt = 60");
-    let silt = changed(&silt, "porosity = 0.4", "porosity = 0.4\nretention = { alpha = 1.0, n = 2.0, residual = 0.1 }");
+    let silt = changed(
+        PLANE,
+        "type = \"dynamic\"\nend = 0.3\ndt = 0.02",
+        "type = \"consolidation\"\nend = 3600\ndt = 60",
+    );
+    let silt = changed(
+        &silt,
+        "porosity = 0.4",
+        "porosity = 0.4\nretention = { alpha = 1.0, n = 2.0, residual = 0.1 }",
+    );
     let silt = changed(&silt, "cohesion = \"1 kPa\"", "cohesion = \"20 kPa\"");
-    let silt = changed(&silt, "level = 0.8", "level = 0.4\nsuction = \"20 kPa\"\n[initial]\nk0 = 0.5");
-    let silt = changed(&silt, "face = \"left\"", "face = \"bottom\"\nhead_path = [[0, 0.4], [3600, 1.4]]");
+    let silt = changed(
+        &silt,
+        "level = 0.8",
+        "level = 0.4\nsuction = \"20 kPa\"\n[initial]\nk0 = 0.5",
+    );
+    let silt = changed(
+        &silt,
+        "face = \"left\"",
+        "face = \"bottom\"\nhead_path = [[0, 0.4], [3600, 1.4]]",
+    );
     assert!(apart(&silt, 3600.0, &[MOVED.as_slice(), &FLOWN].concat()) < 1e-9);
 }
 
 /// Silt into which it rains from above, and whose side lets out what seeps there.
 #[test]
 fn a_slice_into_which_it_rains_and_that_seeps_is_plane_strain() {
-    let rain =
-        changed(PLANE, "type = \"dynamic\"\nend = 0.3\ndt = 0.02", "type = \"consolidation\"\nend = 7200\ndt = 240");
-    let rain = changed(&rain, "porosity = 0.4", "porosity = 0.4\nretention = { alpha = 1.0, n = 2.0, residual = 0.1 }");
+    let rain = changed(
+        PLANE,
+        "type = \"dynamic\"\nend = 0.3\ndt = 0.02",
+        "type = \"consolidation\"\nend = 7200\ndt = 240",
+    );
+    let rain = changed(
+        &rain,
+        "porosity = 0.4",
+        "porosity = 0.4\nretention = { alpha = 1.0, n = 2.0, residual = 0.1 }",
+    );
     let rain = changed(&rain, "cohesion = \"1 kPa\"", "cohesion = \"20 kPa\"");
-    let rain = changed(&rain, "level = 0.8", "level = 0.4\nsuction = \"20 kPa\"\n[initial]\nk0 = 0.5");
+    let rain = changed(
+        &rain,
+        "level = 0.8",
+        "level = 0.4\nsuction = \"20 kPa\"\n[initial]\nk0 = 0.5",
+    );
     let rain = changed(
         &rain,
         "face = \"left\"",
@@ -153,8 +191,11 @@ fn a_slice_into_which_it_rains_and_that_seeps_is_plane_strain() {
          [[inflow]]\nfrom = [0, 1.5]\nto = [1, 1.5]\nrate = \"1e-4 m/s\"\nrunoff = true",
     );
     let solid = slice(&rain);
-    let solid =
-        changed(&solid, "from = [1, 0]\nto = [1, 1.5]", "rectangle = { lower = [1, 0, 0], upper = [1, 0.25, 1.5] }");
+    let solid = changed(
+        &solid,
+        "from = [1, 0]\nto = [1, 1.5]",
+        "rectangle = { lower = [1, 0, 0], upper = [1, 0.25, 1.5] }",
+    );
     let solid = changed(
         &solid,
         "from = [0, 1.5]\nto = [1, 1.5]",
@@ -164,9 +205,15 @@ fn a_slice_into_which_it_rains_and_that_seeps_is_plane_strain() {
     for (of_plane, of_solid) in MOVED.into_iter().chain(FLOWN) {
         let [expected, found] = [at(&plane, of_plane, 7200.0), at(&found, of_solid, 7200.0)];
         println!("{of_solid}: {expected:e}, {:e}", found / expected - 1.0);
-        assert!((found / expected - 1.0).abs() < 1e-8, "{of_solid}: {found} for {expected}");
+        assert!(
+            (found / expected - 1.0).abs() < 1e-8,
+            "{of_solid}: {found} for {expected}"
+        );
     }
-    let out = [at(&plane, "water-outflow", 7200.0), 4.0 * at(&found, "water-outflow", 7200.0)];
+    let out = [
+        at(&plane, "water-outflow", 7200.0),
+        4.0 * at(&found, "water-outflow", 7200.0),
+    ];
     println!("{out:?}");
     assert!(out[0] < 0.0 && (out[1] / out[0] - 1.0).abs() < 1e-8, "{out:?}");
 }
@@ -174,20 +221,41 @@ fn a_slice_into_which_it_rains_and_that_seeps_is_plane_strain() {
 /// A slope under a water table, at rest.
 #[test]
 fn a_slice_with_still_water_is_plane_strain() {
-    let dry = changed(PLANE, "type = \"dynamic\"\nend = 0.3\ndt = 0.02", "type = \"quasi-static\"\nsteps = 3");
+    let dry = changed(
+        PLANE,
+        "type = \"dynamic\"\nend = 0.3\ndt = 0.02",
+        "type = \"quasi-static\"\nsteps = 3",
+    );
     let dry = changed(&dry, "model = \"mohr-coulomb\"", "model = \"elastic\"");
     let dry = changed(
         &dry,
         "friction_angle = 25\ndilation_angle = 0\ncohesion = \"1 kPa\"\ndrainage = \"coupled\"\nporosity = 0.4\n",
         "",
     );
-    let dry = changed(&dry, "permeability = [\"2e-4 m/s\", \"1e-4 m/s\"]\npermeability_law = \"kozeny-carman\"\n", "");
+    let dry = changed(
+        &dry,
+        "permeability = [\"2e-4 m/s\", \"1e-4 m/s\"]\npermeability_law = \"kozeny-carman\"\n",
+        "",
+    );
     let dry = changed(&dry, "[[drain]]\nface = \"left\"\n", "");
-    let dry = changed(&dry, "\"pore-pressure\", \"excess-pressure\", \"flux\", \"porosity\"", "\"pore-pressure\"");
-    let cut = dry.find("[[history]]\nquantity = \"excess-pressure\"").expect("histories of flow");
-    let still = format!("{}[[history]]\nquantity = \"pore-pressure\"\nat = [0.5, 0.25]\n", &dry[..cut]);
+    let dry = changed(
+        &dry,
+        "\"pore-pressure\", \"excess-pressure\", \"flux\", \"porosity\"",
+        "\"pore-pressure\"",
+    );
+    let cut = dry
+        .find("[[history]]\nquantity = \"excess-pressure\"")
+        .expect("histories of flow");
+    let still = format!(
+        "{}[[history]]\nquantity = \"pore-pressure\"\nat = [0.5, 0.25]\n",
+        &dry[..cut]
+    );
     let columns = [MOVED.as_slice(), &[("pore-pressure", "pore-pressure")]].concat();
-    let wet = changed(&still, "density = 2000", "unit_weight = \"17 kN/m3\"\nsaturated_unit_weight = \"20 kN/m3\"");
+    let wet = changed(
+        &still,
+        "density = 2000",
+        "unit_weight = \"17 kN/m3\"\nsaturated_unit_weight = \"20 kN/m3\"",
+    );
     let line = changed(&wet, "level = 0.8", "line = [[0, 1.2], [1, 0.9]]");
     let falls = changed(&wet, "level = 0.8", "level_path = [[0, 1.4], [1, 0.7]]");
     let share = changed(&still, "density = 2000", "density = 2000\nru = 0.3");
@@ -248,7 +316,9 @@ fields = ["pore-pressure", "flux"]
 const SIDES: [&str; 6] = ["left", "right", "front", "back", "bottom", "top"];
 
 fn cube() -> String {
-    let drains = SIDES.map(|side| format!("[[drain]]\nface = \"{side}\"\npressure = 100\n")).concat();
+    let drains = SIDES
+        .map(|side| format!("[[drain]]\nface = \"{side}\"\npressure = 100\n"))
+        .concat();
     let rollers = SIDES.map(|side| format!("{side} = \"roller\"\n")).concat();
     changed(CUBE, "[solver]", &format!("{drains}[boundary]\n{rollers}[solver]"))
 }
@@ -258,9 +328,14 @@ fn slab(x: f64, t: f64) -> [f64; 2] {
     let term = |n: i32| {
         let m = 0.5 * PI * f64::from(2 * n + 1);
         let fallen = (-m * m * t).exp();
-        [2.0 / m * f64::from(1 - 2 * (n % 2)) * (m * x).cos() * fallen, 2.0 / (m * m) * fallen]
+        [
+            2.0 / m * f64::from(1 - 2 * (n % 2)) * (m * x).cos() * fallen,
+            2.0 / (m * m) * fallen,
+        ]
     };
-    (0..100).map(term).fold([0.0; 2], |sum, term| [sum[0] + term[0], sum[1] + term[1]])
+    (0..100)
+        .map(term)
+        .fold([0.0; 2], |sum, term| [sum[0] + term[0], sum[1] + term[1]])
 }
 
 #[test]
@@ -271,7 +346,11 @@ fn a_cube_drained_on_six_sides_follows_the_series() {
         let (centre, side, mean) = (slab(0.25, 4.0 * t), slab(0.75, 4.0 * t), slab(0.0, 4.0 * t)[1]);
         let expected = [centre[0].powi(3), side[0] * centre[0].powi(2), mean.powi(3)].map(|left| 1.0 - left);
         let found = ["centre", "side", "pore-pressures-mean"].map(|column| at(&table, column, t) / 100.0);
-        let errors: Vec<f64> = found.iter().zip(expected).map(|(found, expected)| found - expected).collect();
+        let errors: Vec<f64> = found
+            .iter()
+            .zip(expected)
+            .map(|(found, expected)| found - expected)
+            .collect();
         println!("{t}: {errors:?}, balance {:e}", at(&table, "water-balance", t));
         assert!(errors.iter().all(|error| error.abs() < 0.02), "{t}: {errors:?}");
         assert!(at(&table, "all", t) < 0.0 && at(&table, "water-balance", t).abs() < 1e-8);
@@ -330,7 +409,11 @@ face = "bottom"
 "#);
     let of = |column: &str| at(&table, column, 1.0);
     let expected = -(20e3 - 9810.0) * 3.5;
-    println!("{:e} of {expected}, {:e} m", of("stress-zz") - expected, of("max-displacement"));
+    println!(
+        "{:e} of {expected}, {:e} m",
+        of("stress-zz") - expected,
+        of("max-displacement")
+    );
     assert!((of("stress-zz") - expected).abs() < 1e-6 && of("max-displacement") < 1e-12);
     assert!((of("pore-pressure") - 9810.0 * 6.5).abs() < 1e-9);
     assert!((of("reaction-z") / (56.0 * (20e3 - 9810.0)) - 1.0).abs() < 1e-10);

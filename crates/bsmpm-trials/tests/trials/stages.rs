@@ -41,7 +41,9 @@ fn run(case: &str) -> bsmpm_io::table::Columns {
 /// gamma/M (z (H - z) + h z - h²/2), in the limit of thin ones gamma z (H - z)/M.
 #[test]
 fn an_embankment_in_lifts_settles_as_layers_that_are_placed_one_after_the_other() {
-    let stages: String = (1..LIFTS).map(|k| format!("[[stage]]\nat = {k}\nadd = [\"lift-{k}\"]\n")).collect();
+    let stages: String = (1..LIFTS)
+        .map(|k| format!("[[stage]]\nat = {k}\nadd = [\"lift-{k}\"]\n"))
+        .collect();
     let [coarse, found] = [0.5, 0.25].map(|cell| run(&column(&stages, cell)));
     let height = LIFTS as f64 * LIFT;
     for k in 0..LIFTS {
@@ -78,15 +80,28 @@ fn a_load_acts_on_what_a_stage_has_placed() {
     let [one, two] = ["one", "two"].map(|name| history(&out(name)));
     let moved = |column: &str, t: f64| at(&one, column, t) - at(&one, column, 2.0);
     let expected = -LOAD * LIFT * LIFTS as f64 / MODULUS;
-    assert!((moved("top-3-y", 3.0) / expected - 1.0).abs() < 1e-3, "{:e} {expected:e}", moved("top-3-y", 3.0));
+    assert!(
+        (moved("top-3-y", 3.0) / expected - 1.0).abs() < 1e-3,
+        "{:e} {expected:e}",
+        moved("top-3-y", 3.0)
+    );
     // Without the load and the last lift: the ground rises by what its weight had pressed it down.
     let rise = WEIGHT * LIFT * LIFT / MODULUS;
-    assert!((moved("top-0-y", 4.0) / rise - 1.0).abs() < 1e-3, "{:e} {rise:e}", moved("top-0-y", 4.0));
+    assert!(
+        (moved("top-0-y", 4.0) / rise - 1.0).abs() < 1e-3,
+        "{:e} {rise:e}",
+        moved("top-0-y", 4.0)
+    );
     for (t, column) in [(3.0, "top-3-y"), (4.0, "top-2-y")] {
-        assert!((at(&two, column, t) / at(&one, column, t) - 1.0).abs() < 1e-9, "{column}");
+        assert!(
+            (at(&two, column, t) / at(&one, column, t) - 1.0).abs() < 1e-9,
+            "{column}"
+        );
     }
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-    scratch.mpirun(1, &[&part[..], &["--max-steps", "1"]].concat()).expect(75);
+    scratch
+        .mpirun(1, &[&part[..], &["--max-steps", "1"]].concat())
+        .expect(75);
     scratch.mpirun(1, &part).expect(0);
     let text = |name: &str| std::fs::read_to_string(out(name).join("history.csv")).unwrap();
     assert!(text("one") == text("part"));
@@ -98,15 +113,24 @@ fn ground_heaves_by_what_is_taken_away_in_one_stage_or_two() {
     let stage = |t: usize, names: &str| format!("[[stage]]\nat = {t}\nremove = [{names}]\n");
     let reset = "[[stage]]\nat = 1\nreset_displacements = true\n";
     let once = run(&column(&(reset.to_owned() + &stage(2, "\"lift-2\", \"lift-3\"")), 0.5));
-    let twice = run(&column(&(reset.to_owned() + &stage(2, "\"lift-3\"") + &stage(3, "\"lift-2\"")), 0.5));
+    let twice = run(&column(
+        &(reset.to_owned() + &stage(2, "\"lift-3\"") + &stage(3, "\"lift-2\"")),
+        0.5,
+    ));
     for k in 0..2 {
         let name = format!("top-{k}-y");
         let exact = WEIGHT * 2.0 * LIFT * (k + 1) as f64 * LIFT / MODULUS;
         let [one, two] = [&once, &twice].map(|found| at(found, &name, 4.0));
         // The points' quadrature beside the new surface: 2.0e-4.
         assert!((one / exact - 1.0).abs() < 3e-4, "{one:e}, exactly {exact:e}");
-        assert!((one / two - 1.0).abs() < 1e-6, "{one:e} at once, {two:e} one after the other");
-        assert!(at(&once, &name, 2.0).abs() < 1e-4 * exact, "displacements count from the stage that resets them");
+        assert!(
+            (one / two - 1.0).abs() < 1e-6,
+            "{one:e} at once, {two:e} one after the other"
+        );
+        assert!(
+            at(&once, &name, 2.0).abs() < 1e-4 * exact,
+            "displacements count from the stage that resets them"
+        );
     }
 }
 
@@ -148,7 +172,10 @@ fn a_tunnel_that_a_pressure_holds_stays_as_it_was() {
     let plug = 0.5 * std::f64::consts::PI * WEIGHT;
     for (found, share) in [(&whole, 0.0), (&half, 0.5), (&none, 1.0)] {
         let lost = (floor(found, 0.0) - floor(found, 2.0)) / plug;
-        assert!((lost - share).abs() < 0.05, "{lost} of the plug's weight, exactly {share}");
+        assert!(
+            (lost - share).abs() < 0.05,
+            "{lost} of the plug's weight, exactly {share}"
+        );
     }
 }
 
@@ -178,7 +205,10 @@ fn a_dynamic_run_goes_on_to_the_bit_before_at_and_after_a_stage_and_ranks_agree(
     assert!(last_frame(&whole) == last_frame(&part));
     let stages = manifest(&part).stages;
     assert_eq!(stages, manifest(&whole).stages);
-    let reported: Vec<_> = stages.iter().map(|stage| (stage.step, stage.removed, stage.added, stage.reset)).collect();
+    let reported: Vec<_> = stages
+        .iter()
+        .map(|stage| (stage.step, stage.removed, stage.added, stage.reset))
+        .collect();
     assert_eq!(reported, [(20, 64, 0, false), (30, 0, 48, true)]);
     agree(&whole, &one);
     let found = history(&scratch.path("whole1"));
@@ -279,8 +309,14 @@ fn loads_props_and_laws_act_while_stages_say_so_and_runs_go_on_to_the_bit() {
         assert!((top / exact - 1.0).abs() < 3e-4, "at {t}: {top:e}, exactly {exact:e}");
     }
     let moved = at(&found, "top-y", 3.0) - at(&found, "top-y", 2.0);
-    assert!(moved.abs() < 1e-9 * settled, "another law at the same stress moves nothing: {moved:e}");
-    assert!((at(&found, "stress-yy", 4.0) / -PRESSURE - 1.0).abs() < 1e-3, "the prop holds what the load pressed");
+    assert!(
+        moved.abs() < 1e-9 * settled,
+        "another law at the same stress moves nothing: {moved:e}"
+    );
+    assert!(
+        (at(&found, "stress-yy", 4.0) / -PRESSURE - 1.0).abs() < 1e-3,
+        "the prop holds what the load pressed"
+    );
     assert!(at(&found, "stress-yy", 5.0).abs() < 1e-6 * PRESSURE);
     let [closure, external] = ["energy-closure", "energy-external"].map(|name| at(&found, name, 5.0));
     assert!(closure.abs() < 1e-6 * external, "{closure:e} of {external:e}");
@@ -289,7 +325,11 @@ fn loads_props_and_laws_act_while_stages_say_so_and_runs_go_on_to_the_bit() {
         (&reported[1].applied[..], &reported[1].exchanged[..]),
         (&["prop".into()][..], &["soil follows other".into()][..])
     );
-    repeats(&scratch, &["top-y", "stress-xx", "stress-yy"], &["3", "4", "5", "6", "8", "9"]);
+    repeats(
+        &scratch,
+        &["top-y", "stress-xx", "stress-yy"],
+        &["3", "4", "5", "6", "8", "9"],
+    );
 }
 
 /// The whole run on one and three ranks, to 1e-8 of the largest number of a column, and each in parts that end after so
@@ -305,7 +345,10 @@ pub fn repeats(scratch: &Scratch, columns: &[&str], stops: &[&str]) {
             let [one, more] = [&one, &more].map(|found| found.get(column).expect("a column"));
             let largest = one.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
             let off = one.iter().zip(more).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            assert!(off < 1e-8 * largest, "{column} on {ranks} ranks differs by {off:.1e} of {largest:e}");
+            assert!(
+                off < 1e-8 * largest,
+                "{column} on {ranks} ranks differs by {off:.1e} of {largest:e}"
+            );
         }
     }
 }
@@ -334,17 +377,30 @@ fn a_gate_that_opens_lets_a_column_give_way() {
     let between = PRESSURE * COLUMN / SOFT;
     let free = PRESSURE * COLUMN * (1.0 - poisson * poisson) / young;
     let side = free / COLUMN * 2.0 * poisson / (1.0 - poisson);
-    for (column, t, exact) in
-        [("top-y", 2.0, -between), ("top-y", 3.0, -free), ("side-x", 3.0, side), ("top-y", 4.0, 0.0)]
-    {
+    for (column, t, exact) in [
+        ("top-y", 2.0, -between),
+        ("top-y", 3.0, -free),
+        ("side-x", 3.0, side),
+        ("top-y", 4.0, 0.0),
+    ] {
         let off = at(&found, column, t) - exact;
-        assert!(off.abs() < 3e-4 * between, "{column} at {t}: off by {off:e} of {exact:e}");
+        assert!(
+            off.abs() < 3e-4 * between,
+            "{column} at {t}: off by {off:e} of {exact:e}"
+        );
     }
     let wall = at(&found, "reaction-x", 2.0);
-    assert!((wall / (-PRESSURE * COLUMN * poisson / (1.0 - poisson)) - 1.0).abs() < 1e-3, "{wall}");
+    assert!(
+        (wall / (-PRESSURE * COLUMN * poisson / (1.0 - poisson)) - 1.0).abs() < 1e-3,
+        "{wall}"
+    );
     assert_eq!(at(&found, "reaction-x", 3.0), 0.0);
     assert_eq!(manifest(&scratch.path("whole")).stages[1].faces, ["right is free"]);
-    repeats(&scratch, &["top-y", "side-x", "stress-xx", "stress-yy", "reaction-x"], &["4", "5", "8"]);
+    repeats(
+        &scratch,
+        &["top-y", "side-x", "stress-xx", "stress-yy", "reaction-x"],
+        &["4", "5", "8"],
+    );
 }
 
 /// A law of less strength returns the stress that it takes over: in a column the load stays, and the sides take what
@@ -363,7 +419,10 @@ fn a_weaker_law_returns_the_stress_that_it_takes_over() {
     assert!((before - 1.0 / 3.0).abs() < 1e-3, "nu/(1 - nu): {before}");
     // The law bounds the Kirchhoff stress: the Cauchy stress over J, the top's height over that of the start.
     let volume = 1.0 + at(&found, "top-y", 3.0) / COLUMN;
-    assert!((volume * (vertical - after) - YIELD / PRESSURE).abs() < 1e-6, "{vertical} - {after}");
+    assert!(
+        (volume * (vertical - after) - YIELD / PRESSURE).abs() < 1e-6,
+        "{vertical} - {after}"
+    );
 }
 
 /// The same by a stage that divides the strength: of a yield stress of 8 kPa a half, and then all of it again. What has
@@ -379,7 +438,11 @@ fn a_stage_divides_the_strength_under_the_stress_that_is_there() {
         "activate = [\"prop\"]\nmaterials = [{ from = \"soil\", to = \"other\" }]",
         "strength_reduction = 2",
     );
-    let case = changed(&case, "at = 3\ndeactivate = [\"load\"]", "at = 3\nstrength_reduction = 1");
+    let case = changed(
+        &case,
+        "at = 3\ndeactivate = [\"load\"]",
+        "at = 3\nstrength_reduction = 1",
+    );
     let a = case.find("[[stage]]\nat = 4").expect("the last stage");
     let b = case.find("[[history]]").expect("histories");
     let c = case.find("[[prescribed]]").expect("a prop");
@@ -393,10 +456,17 @@ fn a_stage_divides_the_strength_under_the_stress_that_is_there() {
         // The Cauchy stress is the Kirchhoff stress over J = 1 - 8e-5.
         assert!((deviator(t) - 0.4).abs() < 1e-4, "{t}: {}", deviator(t));
     }
-    let reported: Vec<_> =
-        manifest(&scratch.path("whole")).stages.iter().map(|stage| stage.strength_reduction).collect();
+    let reported: Vec<_> = manifest(&scratch.path("whole"))
+        .stages
+        .iter()
+        .map(|stage| stage.strength_reduction)
+        .collect();
     assert_eq!(reported, [None, Some(2.0), Some(1.0)]);
-    repeats(&scratch, &["top-y", "stress-xx", "stress-yy"], &["3", "4", "5", "6", "7"]);
+    repeats(
+        &scratch,
+        &["top-y", "stress-xx", "stress-yy"],
+        &["3", "4", "5", "6", "7"],
+    );
 }
 
 /// A run goes on with another factor until it has divided the strength by one.
@@ -411,13 +481,18 @@ fn a_checkpoint_before_the_reduction_is_of_any_factor_and_one_after_it_of_its_ow
     run("base", &["--max-steps", "10"]).expect(75);
     run("late", &["--max-steps", "12"]).expect(75);
     let checkpoint = |name: &str| {
-        let name = scratch.path(name).join(manifest(&scratch.path(name)).checkpoint.expect("a checkpoint"));
+        let name = scratch
+            .path(name)
+            .join(manifest(&scratch.path(name)).checkpoint.expect("a checkpoint"));
         name.to_str().expect("UTF-8").to_owned()
     };
     run("branch", &[&factor[..], &["--restart", &checkpoint("base")]].concat()).expect(0);
     run("whole", &factor).expect(0);
     let [branch, whole] = ["branch", "whole"].map(|name| last_frame(&scratch.path(name)));
-    assert!(branch == whole, "a trial that goes on from the common part is the trial");
+    assert!(
+        branch == whole,
+        "a trial that goes on from the common part is the trial"
+    );
     let refused = run("other", &[&factor[..], &["--restart", &checkpoint("late")]].concat()).expect(76);
     assert!(refused.stderr.contains("error E0722: "), "{}", refused.stderr);
 }

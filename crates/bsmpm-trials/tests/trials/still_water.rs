@@ -66,14 +66,27 @@ fn submerged_level_ground_has_its_buoyant_weight_and_rests() {
     let moved = at(&history(&scratch.path("out")), "max-displacement", 1.0);
     assert!(moved < 1e-12, "{moved}");
     for frame in all_frames(&scratch.path("out")) {
-        let (stress, pore) = (frame.real("stress", 6).unwrap(), frame.real("pore_pressure", 1).unwrap());
+        let (stress, pore) = (
+            frame.real("stress", 6).unwrap(),
+            frame.real("pore_pressure", 1).unwrap(),
+        );
         for (p, place) in frame.position.iter().enumerate() {
             let [side, vertical, shear] = [stress[6 * p], stress[6 * p + 1], stress[6 * p + 3]];
             // Points on thirds hold the mean of the linear stress in a cell, not its value.
             let buoyant = (20_000.0 - 9810.0) * (9.0 - place[1]);
-            assert!((vertical + buoyant).abs() < 1e-8 * PRESSURE + 0.05 * 10_190.0, "{place:?} {vertical}");
-            assert!((side - 0.5 * vertical).abs() < 1e-8 * PRESSURE && shear.abs() < 1e-8 * PRESSURE, "{place:?}");
-            assert!((pore[p] - 9810.0 * (12.0 - place[1])).abs() < 1e-8 * PRESSURE, "{place:?} {}", pore[p]);
+            assert!(
+                (vertical + buoyant).abs() < 1e-8 * PRESSURE + 0.05 * 10_190.0,
+                "{place:?} {vertical}"
+            );
+            assert!(
+                (side - 0.5 * vertical).abs() < 1e-8 * PRESSURE && shear.abs() < 1e-8 * PRESSURE,
+                "{place:?}"
+            );
+            assert!(
+                (pore[p] - 9810.0 * (12.0 - place[1])).abs() < 1e-8 * PRESSURE,
+                "{place:?} {}",
+                pore[p]
+            );
         }
     }
 }
@@ -109,16 +122,23 @@ fn a_submerged_slope_is_one_of_buoyant_weight() {
     let slope = changed(GROUND, LEVEL, SLOPE).replace("[initial]\nk0 = 0.5\nequilibrium = \"plastic\"\n", TIGHT);
     let slope = changed(&slope, "-9.81]", "-9.81]\nramp = 1.0");
     let dry = changed(&slope, "[water]\nlevel = 12.0\n", "");
-    let dry = dry.replace("saturated_unit_weight = \"20 kN/m3\"\n", "").replace("17 kN/m3", "10.19 kN/m3");
-    let dry =
-        dry.replace("fields = [\"pore-pressure\"]", "").replace("at = [1, 5.5]", "at = [1, 5.5]\nname = \"none\"");
+    let dry = dry
+        .replace("saturated_unit_weight = \"20 kN/m3\"\n", "")
+        .replace("17 kN/m3", "10.19 kN/m3");
+    let dry = dry
+        .replace("fields = [\"pore-pressure\"]", "")
+        .replace("at = [1, 5.5]", "at = [1, 5.5]\nname = \"none\"");
     let scratch = Scratch::with_case(&slope);
     scratch.write("dry.toml", &dry);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "wet"]).expect(0);
     scratch.mpirun(1, &["dry.toml", "-q", "-o", "dry"]).expect(0);
     let [wet, dry] = ["wet", "dry"].map(|name| last_frame(&scratch.path(name)));
     let [wet, dry] = [&wet, &dry].map(|frame| frame.real("stress", 6).unwrap().to_vec());
-    let largest = wet.iter().zip(&dry).map(|(wet, dry)| (wet - dry).abs()).fold(0.0, f64::max);
+    let largest = wet
+        .iter()
+        .zip(&dry)
+        .map(|(wet, dry)| (wet - dry).abs())
+        .fold(0.0, f64::max);
     println!("submerged and buoyant: {largest} Pa of {PRESSURE}");
     assert!(wet.len() == dry.len() && largest < 1e-8 * PRESSURE, "{largest}");
     let [wet, dry] = ["wet", "dry"].map(|name| at(&history(&scratch.path(name)), "max-displacement", 1.0));
@@ -143,7 +163,9 @@ fn a_level_that_falls_is_followed_and_goes_on_to_the_bit() {
     let [one, two] = [&one, &two].map(|table| at(table, "max-displacement", 1.0));
     assert!(one > 1e-4 && (one - two).abs() < 1e-8 * one, "{one} {two}");
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-    scratch.mpirun(1, &[&part[..], &["--max-steps", "2"]].concat()).expect(75);
+    scratch
+        .mpirun(1, &[&part[..], &["--max-steps", "2"]].concat())
+        .expect(75);
     scratch.mpirun(1, &part).expect(0);
     let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
     assert!(text("one") == text("part"));
@@ -164,12 +186,21 @@ fn level_ground_by_a_ratio_has_the_rest_of_its_weight_and_rests() {
     assert!(found.unbalance < 1e-12 && found.yielding == 0, "{found:?}");
     assert!(at(&history(&scratch.path("out")), "max-displacement", 1.0) < 1e-12);
     let frame = last_frame(&scratch.path("out"));
-    let (stress, pore) = (frame.real("stress", 6).unwrap(), frame.real("pore_pressure", 1).unwrap());
+    let (stress, pore) = (
+        frame.real("stress", 6).unwrap(),
+        frame.real("pore_pressure", 1).unwrap(),
+    );
     for (p, place) in frame.position.iter().enumerate() {
         let [side, vertical] = [stress[6 * p], stress[6 * p + 1]];
         let weight = 17_000.0 * (9.0 - place[1]);
-        assert!((vertical + 0.7 * weight).abs() < 0.05 * 17_000.0, "{place:?} {vertical}");
-        assert!((side - 0.5 * vertical).abs() < 1e-8 * weight, "{place:?} {side} {vertical}");
+        assert!(
+            (vertical + 0.7 * weight).abs() < 0.05 * 17_000.0,
+            "{place:?} {vertical}"
+        );
+        assert!(
+            (side - 0.5 * vertical).abs() < 1e-8 * weight,
+            "{place:?} {side} {vertical}"
+        );
         assert!((pore[p] - 0.3 * weight).abs() < 1e-8 * weight, "{place:?} {}", pore[p]);
     }
 }
@@ -183,7 +214,9 @@ fn a_slope_by_a_ratio_moves_the_same_on_two_ranks_and_goes_on_to_the_bit() {
     scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
     scratch.mpirun(2, &["case.toml", "-q", "-o", "two"]).expect(0);
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-    scratch.mpirun(1, &[&part[..], &["--max-steps", "2"]].concat()).expect(75);
+    scratch
+        .mpirun(1, &[&part[..], &["--max-steps", "2"]].concat())
+        .expect(75);
     scratch.mpirun(1, &part).expect(0);
     let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
     assert!(text("one") == text("part"));

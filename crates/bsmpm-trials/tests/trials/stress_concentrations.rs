@@ -56,27 +56,46 @@ const NOTCH: [&str; 5] = [
 #[track_caller]
 fn concentration(scratch: &Scratch, component: &str, set: &[&str]) -> f64 {
     let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
-    scratch.direct(&[&["case.toml", "-q", "--force"][..], &set].concat()).expect(0);
+    scratch
+        .direct(&[&["case.toml", "-q", "--force"][..], &set].concat())
+        .expect(0);
     let table = std::fs::read_to_string(scratch.path("case.out/history.csv")).unwrap();
     let mut rows = table.lines();
-    let column = rows.next().unwrap().split(',').position(|name| name == format!("crown-{component}")).unwrap();
-    rows.next_back().unwrap().split(',').nth(column).unwrap().parse::<f64>().unwrap() / 2e3
+    let column = rows
+        .next()
+        .unwrap()
+        .split(',')
+        .position(|name| name == format!("crown-{component}"))
+        .unwrap();
+    rows.next_back()
+        .unwrap()
+        .split(',')
+        .nth(column)
+        .unwrap()
+        .parse::<f64>()
+        .unwrap()
+        / 2e3
 }
 
 /// 1.49, 2.33 and 2.9 before, with 1, 2 and 4 cells across the hole.
 #[test]
 fn presets_find_the_stress_at_holes_and_notches() {
     let scratch = Scratch::with_case(PLATE);
-    for (name, component, set, right) in
-        [("hole", "xx", &[][..], 3.03), ("cavity", "yy", &CAVITY[..], 2.0), ("notch", "yy", &NOTCH[..], 3.03)]
-    {
+    for (name, component, set, right) in [
+        ("hole", "xx", &[][..], 3.03),
+        ("cavity", "yy", &CAVITY[..], 2.0),
+        ("notch", "yy", &NOTCH[..], 3.03),
+    ] {
         for word in ["draft", "standard"] {
             let accuracy = format!("accuracy={word}");
             let found = concentration(&scratch, component, &[set, &[&accuracy]].concat());
             println!("{name}, {word}: {found:.3} for {right}");
             assert!((found / right - 1.0).abs() < 0.10, "{name}, {word}: {found}");
             let narrowest = &manifest(&scratch.path("case.out")).indicators["cells-across-opening"];
-            assert!(!narrowest.unusual && narrowest.value > 7.0, "{name}, {word}: {narrowest:?}");
+            assert!(
+                !narrowest.unusual && narrowest.value > 7.0,
+                "{name}, {word}: {narrowest:?}"
+            );
         }
     }
 }
@@ -98,7 +117,9 @@ fn knots(across: f64, first: f64) -> String {
         end += edge;
         growing.push(end);
     }
-    let stretched = growing.iter().map(|to| from + (to - from) * (10.0 - from) / (end - from));
+    let stretched = growing
+        .iter()
+        .map(|to| from + (to - from) * (10.0 - from) / (end - from));
     knots.extend([from].into_iter().chain(stretched).chain([11.0]));
     format!("grid.knots={{ x = {knots:?}, y = {knots:?} }}")
 }
@@ -133,14 +154,32 @@ fn enough_cells_across_a_hole_find_the_stress_at_its_edge() {
 #[test]
 fn too_few_cells_across_a_hole_are_reported() {
     let scratch = Scratch::with_case(PLATE);
-    let check = scratch.direct(&["case.toml", "--check", "--set", "grid.cell=0.5"]).expect(0);
-    assert!(check.stdout.contains("hole or notch    2.0 cells across body.0.subtract.0"), "{}", check.stdout);
+    let check = scratch
+        .direct(&["case.toml", "--check", "--set", "grid.cell=0.5"])
+        .expect(0);
+    assert!(
+        check
+            .stdout
+            .contains("hole or notch    2.0 cells across body.0.subtract.0"),
+        "{}",
+        check.stdout
+    );
     let warning = "W0227: body.0.subtract.0: the hole or notch, 1 m wide, has 2.0 cells across, but needs at least 8";
     assert!(check.stdout.contains(warning), "{}", check.stdout);
-    let log = scratch.mpirun(2, &["case.toml", "--set", "grid.cell=0.5"]).expect(0).stderr;
+    let log = scratch
+        .mpirun(2, &["case.toml", "--set", "grid.cell=0.5"])
+        .expect(0)
+        .stderr;
     assert!(log.contains(warning) && log.contains("warning I0024: "), "{log}");
     let manifest = manifest(&scratch.path("case.out"));
     let found = &manifest.indicators["cells-across-opening"];
-    assert!(found.unusual && (found.value - 2.0).abs() < 0.01 && found.advice.contains("grid.knots"), "{found:?}");
-    assert!(manifest.warnings.iter().any(|line| line.starts_with(warning)), "{:?}", manifest.warnings);
+    assert!(
+        found.unusual && (found.value - 2.0).abs() < 0.01 && found.advice.contains("grid.knots"),
+        "{found:?}"
+    );
+    assert!(
+        manifest.warnings.iter().any(|line| line.starts_with(warning)),
+        "{:?}",
+        manifest.warnings
+    );
 }

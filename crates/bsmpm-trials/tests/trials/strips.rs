@@ -91,12 +91,27 @@ fn a_strip_with_friction_that_separates_is_the_same_on_any_ranks_by_newton_and_a
     for row in 1..rows {
         let (time, dt) = (of("time")[row], of("time")[row] - of("time")[row - 1]);
         for (strip, ground) in [(x, of("ground-x")), (y, of("ground-y"))] {
-            assert!((strip[row] + ground[row]).abs() < 1e-6 * most, "t = {time}: {} {}", strip[row], ground[row]);
+            assert!(
+                (strip[row] + ground[row]).abs() < 1e-6 * most,
+                "t = {time}: {} {}",
+                strip[row],
+                ground[row]
+            );
         }
         work += dt * of("friction-power")[row];
-        assert!(x[row].abs() <= 0.4 * -y[row] * (1.0 + 1e-6) + 1e-6 * most, "t = {time}: {} {}", x[row], y[row]);
+        assert!(
+            x[row].abs() <= 0.4 * -y[row] * (1.0 + 1e-6) + 1e-6 * most,
+            "t = {time}: {} {}",
+            x[row],
+            y[row]
+        );
         if of("contact-sliding")[row] == 1.0 {
-            assert!((x[row] / -y[row] / 0.4 - 1.0).abs() < 1e-6, "t = {time}: {} {}", x[row], y[row]);
+            assert!(
+                (x[row] / -y[row] / 0.4 - 1.0).abs() < 1e-6,
+                "t = {time}: {} {}",
+                x[row],
+                y[row]
+            );
             slid += 1;
         }
         if of("contact-closed")[row] == 0.0 {
@@ -108,10 +123,28 @@ fn a_strip_with_friction_that_separates_is_the_same_on_any_ranks_by_newton_and_a
         assert!(lost.abs() < 1e-10 * scale, "t = {time}: {lost} of {scale}");
     }
     assert!(slid >= 2 && open >= 4, "{slid} {open}");
-    let pressed = (0..rows).find(|&row| (of("time")[row] - 0.2).abs() < 1e-9).expect("a row");
-    println!("pressed {} and again {}; slid {slid}, open {open}", y[pressed], y[rows - 1]);
-    assert!((y[rows - 1] / y[pressed] - 1.0).abs() < 2e-3, "{} {}", y[rows - 1], y[pressed]);
-    let newton = ["case.toml", "-q", "-o", "newton", "--set", "solver.nonlinear=\"newton\""];
+    let pressed = (0..rows)
+        .find(|&row| (of("time")[row] - 0.2).abs() < 1e-9)
+        .expect("a row");
+    println!(
+        "pressed {} and again {}; slid {slid}, open {open}",
+        y[pressed],
+        y[rows - 1]
+    );
+    assert!(
+        (y[rows - 1] / y[pressed] - 1.0).abs() < 2e-3,
+        "{} {}",
+        y[rows - 1],
+        y[pressed]
+    );
+    let newton = [
+        "case.toml",
+        "-q",
+        "-o",
+        "newton",
+        "--set",
+        "solver.nonlinear=\"newton\"",
+    ];
     scratch.mpirun(1, &newton).expect(0);
     scratch.mpirun(3, &["case.toml", "-q", "-o", "three"]).expect(0);
     for (run, tolerance) in [("newton", 1e-5), ("three", 1e-8)] {
@@ -126,7 +159,9 @@ fn a_strip_with_friction_that_separates_is_the_same_on_any_ranks_by_newton_and_a
     }
     let part = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
     for stop in ["9", "14", "18"] {
-        scratch.mpirun(3, &[&part[..], &["--max-steps", stop]].concat()).expect(75);
+        scratch
+            .mpirun(3, &[&part[..], &["--max-steps", stop]].concat())
+            .expect(75);
     }
     scratch.mpirun(3, &part).expect(0);
     let text = |run: &str| std::fs::read_to_string(scratch.path(run).join("history.csv")).unwrap();
@@ -150,15 +185,25 @@ fn a_strip_with_friction_is_applied_and_released_by_stages_on_two_ranks_and_over
     for name in ["reaction-x", "reaction-y", "work"] {
         let (a, b) = (one.get(name).unwrap(), two.get(name).unwrap());
         let scale = a.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        assert!(scale > 0.0 && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-8 * scale), "{name}");
+        assert!(
+            scale > 0.0 && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-8 * scale),
+            "{name}"
+        );
     }
-    let (time, [x, y]) =
-        (two.get("time").unwrap(), ["x", "y"].map(|axis| two.get(&format!("reaction-{axis}")).unwrap()));
+    let (time, [x, y]) = (
+        two.get("time").unwrap(),
+        ["x", "y"].map(|axis| two.get(&format!("reaction-{axis}")).unwrap()),
+    );
     let mut slid = 0;
     for (row, t) in time.iter().enumerate() {
         let acts = *t > 0.2 + 1e-9 && *t < 0.7 + 1e-9;
         assert_eq!(acts, y[row] < 0.0, "t = {t}: {}", y[row]);
-        assert!(x[row].abs() <= 0.4 * -y[row] * (1.0 + 1e-6), "t = {t}: {} {}", x[row], y[row]);
+        assert!(
+            x[row].abs() <= 0.4 * -y[row] * (1.0 + 1e-6),
+            "t = {t}: {} {}",
+            x[row],
+            y[row]
+        );
         slid += usize::from(acts && (x[row] / y[row]).abs() > 0.4 * (1.0 - 1e-6));
     }
     assert!(slid >= 2, "{slid}");
@@ -215,14 +260,30 @@ scale = 1e-4
 fn a_strip_carries_more_by_the_rate_in_quasi_static_time() {
     let scratch = Scratch::with_case(RATED);
     let end = |name: &str, more: &[&str]| {
-        scratch.mpirun(1, &[&["case.toml", "-q", "-o", name], more].concat()).expect(0);
+        scratch
+            .mpirun(1, &[&["case.toml", "-q", "-o", name], more].concat())
+            .expect(0);
         let found = history(&scratch.path(name));
         *found.get("N").unwrap().last().unwrap()
     };
     let (slow, fast) = (end("slow", &[]), end("fast", &["--set", "analysis.end=100 s"]));
-    let same = end("same", &["--set", "analysis.end=100 s", "--set", "material.clay.reference_rate=1e-11"]);
-    assert!((same / slow - 1.0).abs() < 1e-9, "the rate counts over that of the reference: {slow} {same}");
-    scratch.write("case.toml", RATED.replace("rate_parameter   = 0.1\nreference_rate   = 1e-12\n", ""));
+    let same = end(
+        "same",
+        &[
+            "--set",
+            "analysis.end=100 s",
+            "--set",
+            "material.clay.reference_rate=1e-11",
+        ],
+    );
+    assert!(
+        (same / slow - 1.0).abs() < 1e-9,
+        "the rate counts over that of the reference: {slow} {same}"
+    );
+    scratch.write(
+        "case.toml",
+        RATED.replace("rate_parameter   = 0.1\nreference_rate   = 1e-12\n", ""),
+    );
     let still = end("still", &[]);
     let gained = (fast - slow) / (0.1 * still);
     // 1.0056 was found with a background of 1e-3 and of 1e-4.
@@ -236,8 +297,13 @@ const STEP: f64 = 0.01;
 /// s, m: where the ground is after every step, by the exact integral of its acceleration.
 fn ground() -> Vec<(f64, f64)> {
     let acceleration = |t: f64| {
-        let rows = SHAKING.iter().zip(&SHAKING[1..]).find(|(from, to)| from.0 <= t && t <= to.0);
-        rows.map_or(0.0, |(from, to)| from.1 + (to.1 - from.1) * (t - from.0) / (to.0 - from.0))
+        let rows = SHAKING
+            .iter()
+            .zip(&SHAKING[1..])
+            .find(|(from, to)| from.0 <= t && t <= to.0);
+        rows.map_or(0.0, |(from, to)| {
+            from.1 + (to.1 - from.1) * (t - from.0) / (to.0 - from.0)
+        })
     };
     let (mut u, mut v, mut moved) = (0.0, 0.0, vec![(0.0, 0.0)]);
     for step in 0..40 {
@@ -280,16 +346,25 @@ fn a_base_motion_is_the_shaking_of_that_ground() {
         history(&scratch.path("out")).get("top-x").unwrap().to_vec()
     };
     let rows: Vec<String> = SHAKING.iter().map(|(t, a)| format!("[{t}, {a}, 0]")).collect();
-    let shaking = format!("boundary = {{ bottom = \"fixed\" }}\nshaking = {{ acceleration = [{}] }}", rows.join(", "));
+    let shaking = format!(
+        "boundary = {{ bottom = \"fixed\" }}\nshaking = {{ acceleration = [{}] }}",
+        rows.join(", ")
+    );
     let ground = ground();
     let path: Vec<String> = ground.iter().map(|(t, u)| format!("[{t}, {u}, 0]")).collect();
     let motion = format!("prescribed = [{{ face = \"bottom\", path = [{}] }}]", path.join(", "));
     for (cell, most) in [(0.25, 0.01), (0.125, 0.003)] {
         let (beside, whole) = (run(cell, &shaking), run(cell, &motion));
         let largest = beside.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
-        let apart = ground.iter().zip(beside.iter().zip(&whole)).map(|((_, ground), (u, v))| (v - ground - u).abs());
+        let apart = ground
+            .iter()
+            .zip(beside.iter().zip(&whole))
+            .map(|((_, ground), (u, v))| (v - ground - u).abs());
         let apart = apart.fold(0.0, f64::max) / largest;
         println!("cells of {cell} m: {apart:e} of {largest} m");
-        assert!(largest > 8e-3 && apart < most, "cells of {cell} m: {apart:e} of {largest} m");
+        assert!(
+            largest > 8e-3 && apart < most,
+            "cells of {cell} m: {apart:e} of {largest} m"
+        );
     }
 }

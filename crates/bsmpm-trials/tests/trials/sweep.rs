@@ -11,7 +11,14 @@ use clap::Parser;
 use serde_json::Value;
 
 const COLUMN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/short/column_collapse.toml");
-const SHORT: [&str; 6] = ["--set", "analysis.end=0.02", "--set", "check=[]", "--set", "output.times=[0.02]"];
+const SHORT: [&str; 6] = [
+    "--set",
+    "analysis.end=0.02",
+    "--set",
+    "check=[]",
+    "--set",
+    "output.times=[0.02]",
+];
 
 #[derive(Parser)]
 struct Sweep {
@@ -57,7 +64,11 @@ impl Bench {
         let line = Sweep::parse_from(words.concat());
         let (text, files) = sweep::run(&line.arguments, |line| lines.push(line.to_owned())).unwrap();
         assert!(files.iter().all(|file| file.is_file()), "{files:?}");
-        (text, lines, serde_json::from_str(&fs::read_to_string(output.join("sweep.json")).unwrap()).unwrap())
+        (
+            text,
+            lines,
+            serde_json::from_str(&fs::read_to_string(output.join("sweep.json")).unwrap()).unwrap(),
+        )
     }
 }
 
@@ -66,7 +77,10 @@ fn runs(found: &Value) -> Vec<&Value> {
 }
 
 fn states(found: &Value) -> Vec<String> {
-    runs(found).iter().map(|run| run["state"].as_str().unwrap().to_owned()).collect()
+    runs(found)
+        .iter()
+        .map(|run| run["state"].as_str().unwrap().to_owned())
+        .collect()
 }
 
 #[test]
@@ -88,16 +102,31 @@ fn runs_that_fail_end_nothing_and_what_is_there_is_kept() {
         "2",
     ];
     let (text, lines, found) = bench.sweep(&options);
-    assert_eq!(states(&found), ["invalid", "invalid", "broken", "done", "broken", "done"], "{text}");
+    assert_eq!(
+        states(&found),
+        ["invalid", "invalid", "broken", "done", "broken", "done"],
+        "{text}"
+    );
     assert_eq!(lines.len(), 4, "those that were begun: {lines:?}");
-    let [invalid, _, broken, coarse, _, fine] = runs(&found)[..] else { panic!("{found}") };
-    assert!(broken["code"] == 70 && invalid["reason"].as_str().unwrap().contains("grid"), "{found}");
+    let [invalid, _, broken, coarse, _, fine] = runs(&found)[..] else {
+        panic!("{found}")
+    };
+    assert!(
+        broken["code"] == 70 && invalid["reason"].as_str().unwrap().contains("grid"),
+        "{found}"
+    );
     assert!(fine["is_reference"] == true && coarse["is_baseline"] == true, "{found}");
     let error = |index: usize| coarse["errors"][index].as_f64().unwrap();
     // Cells of 10 mm are good for a few per cent of a length of 0.2 m, and no two grids agree to rounding.
-    assert!((1e-7..0.05).contains(&error(0)) && (1e-7..0.05).contains(&error(1)), "{coarse}");
+    assert!(
+        (1e-7..0.05).contains(&error(0)) && (1e-7..0.05).contains(&error(1)),
+        "{coarse}"
+    );
     assert!(coarse["cpu_seconds"].as_f64().unwrap() > 0.0 && coarse["peak_memory"].as_u64().unwrap() > 1 << 20);
-    assert!(text.contains("cheapest within 10 % of all quantities: cell 10 mm, degree quadratic"), "{text}");
+    assert!(
+        text.contains("cheapest within 10 % of all quantities: cell 10 mm, degree quadratic"),
+        "{text}"
+    );
 
     // Only the broken ones are tried again.
     let (_, _, again) = bench.sweep(&options);
@@ -109,12 +138,23 @@ fn runs_that_fail_end_nothing_and_what_is_there_is_kept() {
 #[test]
 fn a_run_that_was_stopped_goes_on_to_the_same_end() {
     let bench = Bench::new();
-    let options = ["--vary", "solver.tolerance=1e-8,1e-6", "--quantity", "runout", "--jobs", "1"];
+    let options = [
+        "--vary",
+        "solver.tolerance=1e-8,1e-6",
+        "--quantity",
+        "runout",
+        "--jobs",
+        "1",
+    ];
     let (_, _, found) = bench.sweep(&options);
     assert_eq!(states(&found), ["done", "done"]);
     let [run, _] = runs(&found)[..] else { panic!("{found}") };
     let directory = Path::new(run["directory"].as_str().unwrap());
-    let sets = run["set"].as_array().unwrap().iter().flat_map(|set| ["--set", set.as_str().unwrap()]);
+    let sets = run["set"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .flat_map(|set| ["--set", set.as_str().unwrap()]);
     let turn = processes::turn();
     let stopped = Command::new(program())
         .arg(COLUMN)
@@ -127,7 +167,9 @@ fn a_run_that_was_stopped_goes_on_to_the_same_end() {
     drop(turn);
     assert_eq!(stopped.code(), Some(75));
     let (_, _, again) = bench.sweep(&options);
-    let [first, second] = runs(&again)[..] else { panic!("{again}") };
+    let [first, second] = runs(&again)[..] else {
+        panic!("{again}")
+    };
     assert!(first["kept"] == false && second["kept"] == true, "{again}");
     assert_eq!((&first["state"], &first["values"]), (&run["state"], &run["values"]));
     let manifest = fs::read_to_string(directory.join("run.json")).unwrap();
@@ -182,7 +224,12 @@ fn runs_that_would_not_fit_are_not_begun() {
     let error = sweep::run(&Sweep::parse_from(words).arguments, |line| panic!("{line}")).unwrap_err();
     assert_eq!(error.exit_code(), 80);
     let table = fs::read_to_string(output.join("sweep.csv")).unwrap();
-    assert!(table.lines().nth(1).is_some_and(|row| row.starts_with("10 mm,memory,") && row.contains("it needs about")));
+    assert!(
+        table
+            .lines()
+            .nth(1)
+            .is_some_and(|row| row.starts_with("10 mm,memory,") && row.contains("it needs about"))
+    );
     assert!(!output.join("runs").exists());
 }
 
@@ -191,8 +238,16 @@ fn three_grids_tell_an_order_or_why_there_is_none() {
     let bench = Bench::new();
     let output = bench.path("verify");
     let words = [
-        &["verify-case", COLUMN, "--output", output.to_str().unwrap(), "--cells", "12.5 mm,10 mm,5 mm", "--at", "0.01"]
-            [..],
+        &[
+            "verify-case",
+            COLUMN,
+            "--output",
+            output.to_str().unwrap(),
+            "--cells",
+            "12.5 mm,10 mm,5 mm",
+            "--at",
+            "0.01",
+        ][..],
         &SHORT,
         &["--", program()],
     ];
@@ -201,23 +256,54 @@ fn three_grids_tell_an_order_or_why_there_is_none() {
     let (text, _) = verify_case::run(&line.arguments, |_| ()).unwrap();
     let found: Value = serde_json::from_str(&fs::read_to_string(output.join("verify.json")).unwrap()).unwrap();
     let rows = found["rows"].as_array().unwrap();
-    let row = |name: &str| rows.iter().find(|row| row["quantity"] == name && row["time"].is_null()).unwrap();
-    assert!(row("mass")["course"] == "unchanged" && row("mass")["verdict"] == "does not depend on the grid", "{text}");
-    assert!(row("runout")["values"].as_array().unwrap().iter().all(|value| value.as_f64().unwrap() > 0.19), "{text}");
+    let row = |name: &str| {
+        rows.iter()
+            .find(|row| row["quantity"] == name && row["time"].is_null())
+            .unwrap()
+    };
+    assert!(
+        row("mass")["course"] == "unchanged" && row("mass")["verdict"] == "does not depend on the grid",
+        "{text}"
+    );
+    assert!(
+        row("runout")["values"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .all(|value| value.as_f64().unwrap() > 0.19),
+        "{text}"
+    );
     assert_eq!(rows.iter().filter(|row| row["time"] == 0.01).count(), rows.len() / 2);
-    assert_eq!(fs::read_to_string(output.join("verify.csv")).unwrap().lines().count(), rows.len() + 1);
+    assert_eq!(
+        fs::read_to_string(output.join("verify.csv")).unwrap().lines().count(),
+        rows.len() + 1
+    );
 }
 
 /// A body of revolution: the outer wall of a thick cylinder under pressure, continued from three cells to none (Lamé).
 #[test]
 fn a_sweep_of_a_thick_cylinder_leads_to_its_closed_form() {
     let bench = Bench::new();
-    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases/validation/thick_cylinder.toml");
+    let case = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../cases/validation/thick_cylinder.toml"
+    );
     let (output, solver) = (bench.path("sweep"), bench.path("solver"));
-    let linear = ["traction.0.stress=[1, 0]", "material.wall.young=1 MPa", "solver.background=1e-9"];
+    let linear = [
+        "traction.0.stress=[1, 0]",
+        "material.wall.young=1 MPa",
+        "solver.background=1e-9",
+    ];
     let set = linear.iter().flat_map(|set| ["--set", set]).collect::<Vec<_>>();
     let words = [
-        &["sweep", case, "--output", output.to_str().unwrap(), "--vary", "grid.cell=0.1,0.05,0.025"][..],
+        &[
+            "sweep",
+            case,
+            "--output",
+            output.to_str().unwrap(),
+            "--vary",
+            "grid.cell=0.1,0.05,0.025",
+        ][..],
         &["--quantity", "outer-x", "--reference", "extrapolated"],
         &set,
         &["--", solver.to_str().unwrap()],

@@ -44,7 +44,14 @@ impl Lines {
         let p: Vec<f64> = (0..cells).map(|k| -WEIGHT * (k as f64 + 0.5) * h).collect();
         let held: Vec<f64> = p.iter().map(|p| POROSITY * saturation(*p)).collect();
         let pressed = p.iter().map(|p| saturation(*p) * p).collect();
-        Self { h, start: held.clone(), held, pressed, load: vec![0.0; cells], p }
+        Self {
+            h,
+            start: held.clone(),
+            held,
+            pressed,
+            load: vec![0.0; cells],
+            p,
+        }
     }
 
     fn strain(&self, k: usize, p: f64) -> f64 {
@@ -57,8 +64,11 @@ impl Lines {
 
     /// m/s, upwards, through the lower face of cell `k` from the pressures below and above it.
     fn flux(&self, k: usize, below: f64, above: f64) -> f64 {
-        let (length, kept) =
-            if k == 0 { (self.h / 2.0, 1.0) } else { (self.h, 0.5 * (conducts(below) + conducts(above))) };
+        let (length, kept) = if k == 0 {
+            (self.h / 2.0, 1.0)
+        } else {
+            (self.h, 0.5 * (conducts(below) + conducts(above)))
+        };
         -K * kept * ((above - below) / (WEIGHT * length) + 1.0)
     }
 
@@ -91,7 +101,12 @@ impl Lines {
         const D: f64 = 1e-3;
         let n = self.p.len();
         let through = |k: usize, below: f64, above: f64| if k == n { -rain } else { self.flux(k, below, above) };
-        let around = |k: usize| (if k == 0 { 0.0 } else { self.p[k - 1] }, if k + 1 < n { self.p[k + 1] } else { 0.0 });
+        let around = |k: usize| {
+            (
+                if k == 0 { 0.0 } else { self.p[k - 1] },
+                if k + 1 < n { self.p[k + 1] } else { 0.0 },
+            )
+        };
         let of = |k: usize, [b, p, a]: [f64; 3]| {
             (self.holds(k, p) - self.held[k]) * self.h + dt * (through(k + 1, p, a) - through(k, b, p))
         };
@@ -106,7 +121,11 @@ impl Lines {
                 (of(k, moved) - r) / D
             };
             let lower = if k == 0 { 0.0 } else { by(0) };
-            let (before, rest) = if k == 0 { (0.0, 0.0) } else { (upper[k - 1], right[k - 1]) };
+            let (before, rest) = if k == 0 {
+                (0.0, 0.0)
+            } else {
+                (upper[k - 1], right[k - 1])
+            };
             let pivot = by(1) - lower * before;
             upper[k] = if k + 1 < n { by(2) / pivot } else { 0.0 };
             right[k] = (-r - lower * rest) / pivot;
@@ -155,7 +174,9 @@ fn a_column_drains_as_by_lines_with_a_measured_retention_curve() {
     let reference = by_lines(160, 5.0, &times);
     let scratch = Scratch::new();
     let case = shipped("validation/liakopoulos.toml");
-    scratch.mpirun(1, &[case.to_str().expect("a path in UTF-8"), "-q", "-o", "one"]).expect(0);
+    scratch
+        .mpirun(1, &[case.to_str().expect("a path in UTF-8"), "-q", "-o", "one"])
+        .expect(0);
     let table = history(&scratch.path("one"));
     let of = |time: f64| {
         ["middle", "upper", "water-outflow", "top-y", "water-balance"].map(|column| at(&table, column, RAIN + time))
@@ -164,10 +185,20 @@ fn a_column_drains_as_by_lines_with_a_measured_retention_curve() {
     for (time, exact) in times.iter().zip(&reference) {
         let found = of(*time);
         let found = [found[0], found[1], (found[2] - start[2]) / WIDTH, start[3] - found[3]];
-        let off: Vec<f64> = found.iter().zip(exact).map(|(found, exact)| found / exact - 1.0).collect();
+        let off: Vec<f64> = found
+            .iter()
+            .zip(exact)
+            .map(|(found, exact)| found / exact - 1.0)
+            .collect();
         // Measured: 3.7 Pa; 0.05, 0.3 and 0.3 %. The reference is of small strain, which is 0.3 % here.
-        assert!((0..2).all(|k| (found[k] - exact[k]).abs() < 5e-4 * WEIGHT), "{time}: {found:?} {exact:?}");
-        assert!(off[2].abs() < 1e-3 && off[3].abs() < 5e-3, "{time}: {found:?} {exact:?}");
+        assert!(
+            (0..2).all(|k| (found[k] - exact[k]).abs() < 5e-4 * WEIGHT),
+            "{time}: {found:?} {exact:?}"
+        );
+        assert!(
+            off[2].abs() < 1e-3 && off[3].abs() < 5e-3,
+            "{time}: {found:?} {exact:?}"
+        );
         assert!(of(*time)[4].abs() < 1e-6, "balance of water");
     }
 }

@@ -32,7 +32,10 @@ fn a_run_beyond_a_limit_ends_with_82_unless_its_case_accepts_that() {
     scratch.direct(&again).expect(82);
     assert_eq!(manifest(&scratch.path("out")).summary.steps, 10);
     let accepting = [&["case.toml", "-o", "accepted"][..], &HELD, &ACCEPTING].concat();
-    scratch.direct(&accepting).expect(0).says_once("(limit: below 10 %, accepted by output.accept)");
+    scratch
+        .direct(&accepting)
+        .expect(0)
+        .says_once("(limit: below 10 %, accepted by output.accept)");
     let indicator = &manifest(&scratch.path("accepted")).indicators[NAME];
     assert!(indicator.failed && indicator.accepted, "{indicator:?}");
 }
@@ -47,7 +50,17 @@ fn a_check_that_fails_comes_before_an_indicator() {
 #[test]
 fn only_indicators_that_have_a_limit_can_be_accepted() {
     let scratch = Scratch::with_case(&slope(0.0));
-    let arguments = ["case.toml", "-o", "out", "--set", "output.accept=[\"pressure-noise-plane\"]"];
+    let arguments = [
+        "case.toml",
+        "-o",
+        "out",
+        "--set",
+        "output.accept=[\"pressure-noise-plane\"]",
+    ];
     let output = scratch.direct(&arguments).expect(65);
-    assert!(output.said().contains("output.accept") && output.said().contains("wall-velocity"), "{}", output.said());
+    assert!(
+        output.said().contains("output.accept") && output.said().contains("wall-velocity"),
+        "{}",
+        output.said()
+    );
 }

@@ -43,7 +43,10 @@ const SIDE: [[&str; 2]; 3] = [
         "boundary = { bottom = { friction_coefficient = 0.4 } }",
         "boundary = { left = { friction_coefficient = 0.4 }, right = \"roller\" }",
     ],
-    ["face = \"left\"\ndisplacement = [0.02, 0.0]", "face = \"bottom\"\ndisplacement = [0.0, 0.001]"],
+    [
+        "face = \"left\"\ndisplacement = [0.02, 0.0]",
+        "face = \"bottom\"\ndisplacement = [0.0, 0.001]",
+    ],
     ["face = \"bottom\"\nname = \"base\"", "face = \"left\"\nname = \"side\""],
 ];
 
@@ -73,7 +76,11 @@ fn a_block_is_pushed_against_the_friction_of_its_effective_weight() {
 fn a_side_has_the_friction_of_its_effective_normal_force() {
     let scratch = Scratch::new();
     for ratio in [1e-3, 0.5] {
-        let text = SIDE.iter().fold(filled("0.25", &format!("{ratio:?}")), |text, [from, to]| changed(&text, from, to));
+        let text = SIDE
+            .iter()
+            .fold(filled("0.25", &format!("{ratio:?}")), |text, [from, to]| {
+                changed(&text, from, to)
+            });
         let text = changed(&text, "upper = [4.0, 1.0]", "upper = [8.0, 1.0]");
         scratch.write("case.toml", text);
         scratch.direct(&["case.toml", "-q", "-o", "out", "--force"]).expect(0);
@@ -82,7 +89,10 @@ fn a_side_has_the_friction_of_its_effective_normal_force() {
         // Pore pressure on a side 1 m high: its mean is half of that at the base.
         let water = ratio * 18e3 * 0.5;
         println!("ru = {ratio}: normal force {normal:.1} N, of it water {water:.1} N, friction {friction:.1} N");
-        assert!((friction / (-0.4 * (normal - water)) - 1.0).abs() < 0.02, "{normal} {water} {friction}");
+        assert!(
+            (friction / (-0.4 * (normal - water)) - 1.0).abs() < 0.02,
+            "{normal} {water} {friction}"
+        );
     }
 }
 
@@ -90,12 +100,21 @@ fn a_side_has_the_friction_of_its_effective_normal_force() {
 const ON_A_BASE: [[&str; 2]; 4] = [
     ["steps = 5", "steps = 10"],
     ["acceleration = [0.0, -9.81]", "acceleration = [0.0, -9.81], ramp = 0.4"],
-    ["initial  = { k0 = 0.3 }\nboundary = { bottom = { friction_coefficient = 0.4 } }\n", ""],
-    ["box = { lower = [0.0, 0.0], upper = [4.0, 1.0] }", "box = { lower = [0.0, 0.5], upper = [4.0, 1.5] }"],
+    [
+        "initial  = { k0 = 0.3 }\nboundary = { bottom = { friction_coefficient = 0.4 } }\n",
+        "",
+    ],
+    [
+        "box = { lower = [0.0, 0.0], upper = [4.0, 1.0] }",
+        "box = { lower = [0.0, 0.5], upper = [4.0, 1.5] }",
+    ],
 ];
 const WALL: [[&str; 2]; 2] = [
     ["face = \"left\"", "from = [0.0, 0.5]\nto = [0.0, 1.5]"],
-    ["displacement = [0.02, 0.0]", "path = [[0.4, 0.0, 0.0], [1.0, 0.02, 0.0]]"],
+    [
+        "displacement = [0.02, 0.0]",
+        "path = [[0.4, 0.0, 0.0], [1.0, 0.02, 0.0]]",
+    ],
 ];
 const BASE: &str = "[[history]]\nquantity = \"reaction\"\nface = \"bottom\"\nname = \"base\"\n";
 const STRIP: &str = "[[prescribed]]\nname = \"base\"\nfrom = [0.0, 0.5]\nto = [4.0, 0.5]\ndisplacement = [0.0, 0.0]\n\
@@ -110,9 +129,14 @@ fn strips_and_rigid_bodies_rub_by_the_effective_weight() {
     for (base, ranks) in [(STRIP, 1), (RIGID, 1), (STRIP, 3), (RIGID, 3)] {
         for ratio in [0.25, 0.5] {
             let text = filled("0.5", &format!("{ratio:?}"));
-            let text = ON_A_BASE.iter().chain(&WALL).fold(text, |text, [from, to]| changed(&text, from, to));
+            let text = ON_A_BASE
+                .iter()
+                .chain(&WALL)
+                .fold(text, |text, [from, to]| changed(&text, from, to));
             scratch.write("case.toml", changed(&text, BASE, base));
-            scratch.mpirun(ranks, &["case.toml", "-q", "-o", "out", "--force"]).expect(0);
+            scratch
+                .mpirun(ranks, &["case.toml", "-q", "-o", "out", "--force"])
+                .expect(0);
             let history = history(&scratch.path("out"));
             let [wall, base] = ["wall-x", "base-x"].map(|column| at(&history, column, 1.0));
             println!("ru = {ratio}, {ranks} ranks: wall {wall:.1} N, base {base:.1} N");
@@ -132,9 +156,19 @@ fn a_block_slides_where_its_pore_pressure_takes_its_friction() {
     let of_wall = "[[history]]\nquantity = \"reaction\"\nof = \"wall\"\nname = \"wall\"\n";
     let scratch = Scratch::new();
     let slid = |ratio: &str, base: &str| {
-        let text = ON_A_BASE.iter().fold(filled("0.5", ratio), |text, [from, to]| changed(&text, from, to));
-        let text = changed(&changed(&text, wall, ""), of_wall, "[[history]]\nquantity = \"mean-velocity\"\n");
-        let text = changed(&text, "type = \"quasi-static\", steps = 10", "type = \"dynamic\", end = 1.0, dt = 0.01");
+        let text = ON_A_BASE
+            .iter()
+            .fold(filled("0.5", ratio), |text, [from, to]| changed(&text, from, to));
+        let text = changed(
+            &changed(&text, wall, ""),
+            of_wall,
+            "[[history]]\nquantity = \"mean-velocity\"\n",
+        );
+        let text = changed(
+            &text,
+            "type = \"quasi-static\", steps = 10",
+            "type = \"dynamic\", end = 1.0, dt = 0.01",
+        );
         let text = changed(
             &text,
             "box = { lower = [0.0, 0.5], upper = [4.0, 1.5] }",
@@ -144,8 +178,11 @@ fn a_block_slides_where_its_pore_pressure_takes_its_friction() {
         scratch.direct(&["case.toml", "-q", "-o", "out", "--force"]).expect(0);
         at(&history(&scratch.path("out")), "mean-velocity-x", 1.0)
     };
-    let strip =
-        changed(&changed(STRIP, "from = [0.0, 0.5]", "from = [1.0, 0.5]"), "to = [4.0, 0.5]", "to = [5.0, 0.5]");
+    let strip = changed(
+        &changed(STRIP, "from = [0.0, 0.5]", "from = [1.0, 0.5]"),
+        "to = [4.0, 0.5]",
+        "to = [5.0, 0.5]",
+    );
     for base in [&strip, RIGID] {
         let [held, slides] = ["1e-3", "0.5"].map(|ratio| slid(ratio, base));
         println!("velocity {held:.4} and {slides:.4} m/s");

@@ -58,7 +58,10 @@ fn seepage_along_an_infinite_slope_leaves_the_share_of_its_buoyant_weight() {
     let closed = (1.0 - WEIGHTS[1] / WEIGHTS[0]) * tan(FRICTION) / tan(INCLINED);
     println!("seepage along the slope, h = 0.5, 0.25 m: {found:.4?}; {closed:.4}");
     assert!((closed - 0.9802).abs() < 5e-5);
-    assert!(found.iter().all(|found| (found / closed - 1.0).abs() < 1e-3), "{found:?}");
+    assert!(
+        found.iter().all(|found| (found / closed - 1.0).abs() < 1e-3),
+        "{found:?}"
+    );
 }
 
 /// Still water whose line is the surface: its pressure is that of the depth straight below. On rock that the
@@ -93,7 +96,10 @@ fn a_line_along_an_infinite_slope_presses_as_its_depth_straight_below() {
     let closed = tan(FRICTION) / tan(INCLINED) * (1.0 - WEIGHTS[1] / (WEIGHTS[0] * cos * cos));
     println!("a line along the slope, h = 0.5, 0.25 m: {found:.4?}; {closed:.4}");
     assert!((closed - 0.8552).abs() < 5e-5);
-    assert!((found[0] / closed - 1.0).abs() < 0.0125 && (found[1] / closed - 1.0).abs() < 0.002, "{found:?}");
+    assert!(
+        (found[0] / closed - 1.0).abs() < 0.0125 && (found[1] / closed - 1.0).abs() < 0.002,
+        "{found:?}"
+    );
 }
 
 /// m above the toe; the middle of another program's band by twice the elastic displacement; Lane and Griffiths
@@ -120,9 +126,16 @@ fn a_slope_under_a_level_has_the_factor_of_each_level() {
             };
             one["estimate"].as_f64().unwrap()
         };
-        println!("level {level} m: doubled {} ({doubled}), kink {} ({published:?})", of("doubled"), of("kink"));
+        println!(
+            "level {level} m: doubled {} ({doubled}), kink {} ({published:?})",
+            of("doubled"),
+            of("kink")
+        );
         assert!((of("doubled") - doubled).abs() < 0.03, "{level}: {found}");
-        assert!(published.is_none_or(|published| (of("kink") - published).abs() < 0.03), "{level}: {found}");
+        assert!(
+            published.is_none_or(|published| (of("kink") - published).abs() < 0.03),
+            "{level}: {found}"
+        );
     }
 }
 

@@ -79,7 +79,10 @@ fn harmonic(t: f64) -> f64 {
 fn delay(table: &Columns) -> f64 {
     let times = table.get("time").unwrap();
     let phase = |name: &str| {
-        let rows = times.iter().zip(table.get(name).unwrap()).filter(|(t, _)| **t > END - 2.0 / FREQUENCY + 1e-9);
+        let rows = times
+            .iter()
+            .zip(table.get(name).unwrap())
+            .filter(|(t, _)| **t > END - 2.0 / FREQUENCY + 1e-9);
         let sums = rows.fold([0.0; 2], |[c, s], (t, v)| {
             let angle = TAU * FREQUENCY * t;
             [c + v * angle.cos(), s + v * angle.sin()]
@@ -94,7 +97,9 @@ fn delay(table: &Columns) -> f64 {
 /// Error of the speed with so many cells a wavelength.
 fn speed_error(cells: f64, order: &str, mass: &str) -> f64 {
     let scratch = Scratch::with_case(&bar(WAVELENGTH / cells, order, 0.01 / FREQUENCY, harmonic));
-    scratch.direct(&["case.toml", "-q", "--set", &format!("analysis.mass={mass}")]).expect(0);
+    scratch
+        .direct(&["case.toml", "-q", "--set", &format!("analysis.mass={mass}")])
+        .expect(0);
     1.0 / (1.0 + delay(&history(&scratch.path("case.out")))) - 1.0
 }
 
@@ -110,7 +115,10 @@ fn with_as_many_cells_as_the_warning_asks_for_the_speed_is_within_2_per_cent() {
         ("consistent", "cubic", 8.0),
     ] {
         let [at, below] = [fewest, 0.75 * fewest].map(|cells| speed_error(cells, order, mass));
-        println!("{mass}, {order}: {at:.4} with {fewest} cells, {below:.4} with {}", 0.75 * fewest);
+        println!(
+            "{mass}, {order}: {at:.4} with {fewest} cells, {below:.4} with {}",
+            0.75 * fewest
+        );
         assert!(at.abs() <= 0.02 && below.abs() > 0.02, "{mass}, {order}: {at}, {below}");
     }
 }
@@ -128,8 +136,14 @@ fn the_speed_converges_with_the_square_of_the_cell() {
             };
             let errors = [8.0, 10.0, 12.0, 16.0, 20.0, 24.0, 32.0].map(error);
             let order = (errors[3] / errors[6]).log2();
-            assert!(errors.is_sorted_by(|coarse, fine| coarse > fine), "{mass}, {degree}: {errors:?}");
-            assert!((1.5..2.5).contains(&order), "{mass}, {degree}: order {order:.2} between 16 and 32 cells");
+            assert!(
+                errors.is_sorted_by(|coarse, fine| coarse > fine),
+                "{mass}, {degree}: {errors:?}"
+            );
+            assert!(
+                (1.5..2.5).contains(&order),
+                "{mass}, {degree}: order {order:.2} between 16 and 32 cells"
+            );
         }
     }
 }
@@ -144,8 +158,14 @@ fn a_wave_of_12_cells_has_its_speed_within_1_per_cent_by_default() {
     assert!(error.abs() < 0.01, "{error}");
     assert!(!run.stderr.contains("W0680"), "{}", run.stderr);
     let choices = manifest(&scratch.path("case.out")).choices;
-    assert!(choices.iter().any(|choice| choice.key == "analysis.mass" && choice.value == "consistent"));
-    let given = scratch.direct(&["case.toml", "--set", "analysis.mass=lumped", "-o", "given"]).expect(0);
+    assert!(
+        choices
+            .iter()
+            .any(|choice| choice.key == "analysis.mass" && choice.value == "consistent")
+    );
+    let given = scratch
+        .direct(&["case.toml", "--set", "analysis.mass=lumped", "-o", "given"])
+        .expect(0);
     let slow = 1.0 / (1.0 + delay(&history(&scratch.path("given")))) - 1.0;
     assert!(slow < -0.05, "{slow}");
     let choices = manifest(&scratch.path("given")).choices;
@@ -266,7 +286,10 @@ fn a_column_without_drainage_vibrates_with_the_period_of_its_water() {
             scratch.mpirun(ranks, &["case.toml", "-q", "--force"]).expect(0);
             let rest = -0.5 * DENSITY * 0.01 * HEIGHT * HEIGHT / ((1.0 + ratio) * SKELETON);
             let (found, kept) = vibration(&history(&scratch.path("case.out")), rest);
-            println!("K/(n M) = {ratio}: period {:.4} of the exact one, swing {kept:.4} after 9", found / period);
+            println!(
+                "K/(n M) = {ratio}: period {:.4} of the exact one, swing {kept:.4} after 9",
+                found / period
+            );
             assert!((found / period - 1.0).abs() < 0.005, "{ratio}: {found} {period}");
             assert!((kept - 1.0).abs() < 0.02, "{ratio}: {kept}");
         }

@@ -51,12 +51,19 @@ pub(super) struct CellBlock(Vec<f64>);
 impl CellBlock {
     /// Adds `factor` times the block to a patch's block of D unknowns a node.
     fn add_to(&self, factor: f64, block: &mut [f64]) {
-        block.iter_mut().zip(&self.0).for_each(|(sum, value)| *sum += factor * value);
+        block
+            .iter_mut()
+            .zip(&self.0)
+            .for_each(|(sum, value)| *sum += factor * value);
     }
 
     /// Writes the block times the nodes' `u` into `product`.
     fn multiply(&self, u: &[f64], product: &mut [f64]) {
-        lanes::run(BlockProduct { form: &self.0, u, product });
+        lanes::run(BlockProduct {
+            form: &self.0,
+            u,
+            product,
+        });
     }
 }
 
@@ -101,7 +108,12 @@ impl<const D: usize> Forms<D> {
             3 => CellForms::ByAxes(TensorForms::new(integrals.clone())),
             _ => CellForms::Blocks(Vec::new()),
         };
-        Self { integrals, alike, numbers: BTreeMap::new(), found }
+        Self {
+            integrals,
+            alike,
+            numbers: BTreeMap::new(),
+            found,
+        }
     }
 
     /// Number of a cell's form among those found.
@@ -127,7 +139,9 @@ fn first_alike(products: &[FormProducts]) -> Vec<usize> {
     let are_alike = |one: &FormProducts, other: &FormProducts| {
         one.iter().zip(other).all(|(one, other)| {
             let largest = one.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-            one.iter().zip(other).all(|(one, other)| (one - other).abs() <= ALIKE * largest)
+            one.iter()
+                .zip(other)
+                .all(|(one, other)| (one - other).abs() <= ALIKE * largest)
         })
     };
     let mut first = 0;

@@ -29,9 +29,15 @@ impl Integrals {
         let (width, nodes) = (grid.order() + 1, grid.cell_nodes());
         let of_axis = |axis: usize| {
             let along = |k: usize| k / width.pow((D - 1 - axis) as u32) % width;
-            (0..nodes * nodes).map(|entry| along(entry / nodes) * width + along(entry % nodes)).collect()
+            (0..nodes * nodes)
+                .map(|entry| along(entry / nodes) * width + along(entry % nodes))
+                .collect()
         };
-        Self { width, products: products(grid).into(), entries: (0..D).map(of_axis).collect() }
+        Self {
+            width,
+            products: products(grid).into(),
+            entries: (0..D).map(of_axis).collect(),
+        }
     }
 
     /// Row-major D (q + 1)^D square, with the room behind it: eps : eps is half of |grad u|^2, which does not couple

@@ -45,7 +45,10 @@ pub(super) struct TensorForms {
 
 impl TensorForms {
     pub(super) fn new(integrals: Integrals) -> Self {
-        Self { integrals, cells: Vec::new() }
+        Self {
+            integrals,
+            cells: Vec::new(),
+        }
     }
 
     /// The number of another cell's form.
@@ -118,7 +121,13 @@ impl<const W: usize> InLanes for TensorProduct<'_, W> {
         }
         for (i, f) in f.iter_mut().enumerate() {
             for j in 0..D {
-                add::<W, S>(chosen(&matrices, across(j)), half_unless(j == i), &u[i], f, &mut scratch);
+                add::<W, S>(
+                    chosen(&matrices, across(j)),
+                    half_unless(j == i),
+                    &u[i],
+                    f,
+                    &mut scratch,
+                );
                 if j != i {
                     add::<W, S>(chosen(&matrices, mixed(i, j)), 0.5, &u[j], f, &mut scratch);
                 }
@@ -127,7 +136,9 @@ impl<const W: usize> InLanes for TensorProduct<'_, W> {
         for number in 0..nodes * D {
             let values = f[number % D][number / D].numbers();
             let at = self.products.iter_mut().skip(number).step_by(nodes * D);
-            at.zip(values).take(self.cells.len()).for_each(|(product, value)| *product = value);
+            at.zip(values)
+                .take(self.cells.len())
+                .for_each(|(product, value)| *product = value);
         }
     }
 }

@@ -46,7 +46,11 @@ impl Dashpots {
             // A point's mass weighs by its own radius, what it says of the face by the face's.
             let weight = |x: &Vector<D>| {
                 let mut on_face = *x;
-                on_face[face.axis] = if face.upper { grid.axes()[face.axis].length() } else { 0.0 };
+                on_face[face.axis] = if face.upper {
+                    grid.axes()[face.axis].length()
+                } else {
+                    0.0
+                };
                 K::weight(&on_face) / K::weight(x)
             };
             let at_face = |p: usize| match grid.locate(&points.x[p]) {
@@ -62,7 +66,13 @@ impl Dashpots {
                     let impedance = if component == face.axis { compression } else { shear };
                     let held = held.map_or(0.0, |held| held[place[1]][component]);
                     let component = Nodal::<D>::at(node, component);
-                    dashpots.push(Dashpot { component, impedance, held, beside: 0.0, place });
+                    dashpots.push(Dashpot {
+                        component,
+                        impedance,
+                        held,
+                        beside: 0.0,
+                        place,
+                    });
                 }
             }
         }
@@ -81,7 +91,14 @@ impl Dashpots {
 
     /// Adds their forces at the end of the step, N, to what is out of balance and to the `reaction`.
     pub fn add_forces(&self, inertia: &Inertia, u: &[f64], f_oob: &mut [f64], reaction: &mut [f64]) {
-        for &Dashpot { component, impedance, held, beside, .. } in &self.0 {
+        for &Dashpot {
+            component,
+            impedance,
+            held,
+            beside,
+            ..
+        } in &self.0
+        {
             let force = held - impedance * (inertia.velocity(component, u[component]) - beside);
             f_oob[component] += force;
             reaction[component] += force;
@@ -90,14 +107,19 @@ impl Dashpots {
 
     /// N/m  component by component, what they resist a displacement with.
     pub fn stiffness<'a>(&'a self, inertia: &'a Inertia) -> impl Iterator<Item = (usize, f64)> + 'a {
-        self.0.iter().map(|at| (at.component, at.impedance * inertia.velocity_factor(at.component)))
+        self.0
+            .iter()
+            .map(|at| (at.component, at.impedance * inertia.velocity_factor(at.component)))
     }
 
     /// J  work of the dashpots on this rank's own nodes, relative to what is beside them, without that of what
     /// holds the start.
     pub fn work<const D: usize>(&self, inertia: &Inertia, u: &[f64], halo: &dyn Halo) -> Vec<f64> {
         let owned = halo.owned();
-        let own = self.0.iter().filter(|at| owned.contains(Nodal::<D>::node(at.component)));
+        let own = self
+            .0
+            .iter()
+            .filter(|at| owned.contains(Nodal::<D>::node(at.component)));
         let work = |at: &Dashpot| {
             let faster = inertia.velocity(at.component, u[at.component]) - at.beside;
             -at.impedance * faster * (u[at.component] - at.beside * inertia.dt)
@@ -109,7 +131,11 @@ impl Dashpots {
 impl<const D: usize> Support<D> {
     /// The cell at the face along its axis.
     pub fn last_cell(&self, grid: &Grid<D>) -> usize {
-        if self.upper { grid.axes()[self.axis].cells() - 1 } else { 0 }
+        if self.upper {
+            grid.axes()[self.axis].cells() - 1
+        } else {
+            0
+        }
     }
 }
 
@@ -136,7 +162,11 @@ impl<const D: usize> Boundary<D> {
 
     /// Whether forces are those of the nodes of the faces that absorb, or none.
     pub fn fits(&self, grid: &Grid<D>, held: &[Vec<Vector<D>>]) -> bool {
-        held.is_empty() || self.absorbing().map(|face| nodes_on(grid, face)).eq(held.iter().map(Vec::len))
+        held.is_empty()
+            || self
+                .absorbing()
+                .map(|face| nodes_on(grid, face))
+                .eq(held.iter().map(Vec::len))
     }
 
     /// N  of every node of every absorbing face the nodal `reaction` that holds the state of the start, each once: the
@@ -146,7 +176,11 @@ impl<const D: usize> Boundary<D> {
         let mut counted = vec![false; reaction.len()];
         let mut of_face = |face: &Support<D>| {
             let mut forces = vec![0.0; nodes_on(grid, face) * D];
-            for node in grid.face_nodes(face.axis, face.upper).into_iter().filter(|&node| owned.contains(node)) {
+            for node in grid
+                .face_nodes(face.axis, face.upper)
+                .into_iter()
+                .filter(|&node| owned.contains(node))
+            {
                 for component in 0..D {
                     let place = Nodal::<D>::at(node, component);
                     if !std::mem::replace(&mut counted[place], true) {
@@ -168,7 +202,9 @@ fn along<const D: usize>(normal: usize) -> impl Iterator<Item = usize> {
 
 /// Nodes of a face of the whole grid.
 fn nodes_on<const D: usize>(grid: &Grid<D>, face: &Support<D>) -> usize {
-    along::<D>(face.axis).map(|axis| grid.axes()[axis].functions()).product()
+    along::<D>(face.axis)
+        .map(|axis| grid.axes()[axis].functions())
+        .product()
 }
 
 /// Number of a node (local) among those of its face of the whole grid.
@@ -184,7 +220,9 @@ fn across<const D: usize>(grid: &Grid<D>, face: &Support<D>, node: usize, nodal:
     for behind in 0..=grid.order() {
         let mut at = grid.node_at(node);
         at[face.axis] = if face.upper { at[face.axis] - behind } else { behind };
-        let of = grid.node_index(&at).map_or(&[0.0; 2][..], |at| &nodal[Nodal::<2>::of(at)]);
+        let of = grid
+            .node_index(&at)
+            .map_or(&[0.0; 2][..], |at| &nodal[Nodal::<2>::of(at)]);
         sum.iter_mut().zip(of).for_each(|(sum, of)| *sum += of);
     }
     sum

@@ -80,7 +80,10 @@ impl Anchors {
         halo: &dyn Halo,
     ) -> Self {
         let boundary = surfaces.boundary;
-        let found = [!(carried.strips.is_empty() && carried.loads.is_empty()), !carried.water.is_empty()];
+        let found = [
+            !(carried.strips.is_empty() && carried.loads.is_empty()),
+            !carried.water.is_empty(),
+        ];
         let mut starts: Vec<StartPlace<D>> = surfaces.starts_of_boundary().filter(|_| !found[0]).collect();
         starts.extend(surfaces.starts_of_water().filter(|_| !found[1]));
         if starts.is_empty() {
@@ -109,12 +112,19 @@ impl Anchors {
         halo: &dyn Halo,
     ) -> Self {
         let mut anchors = self.clone();
-        let held = anchors.strips.iter_mut().chain(&mut anchors.loads).flatten().zip(surfaces.starts_of_boundary());
+        let held = anchors
+            .strips
+            .iter_mut()
+            .chain(&mut anchors.loads)
+            .flatten()
+            .zip(surfaces.starts_of_boundary());
         let wet = anchors.water.iter_mut().flatten().zip(surfaces.starts_of_water());
         let (mut lost, places): (Vec<&mut u64>, Vec<StartPlace<D>>) =
             held.chain(wet).filter(|(id, _)| gone(**id)).unzip();
         if !lost.is_empty() {
-            lost.iter_mut().zip(nearest((&places, &surfaces.dry), points, halo)).for_each(|(id, found)| **id = found);
+            lost.iter_mut()
+                .zip(nearest((&places, &surfaces.dry), points, halo))
+                .for_each(|(id, found)| **id = found);
         }
         anchors
     }
@@ -129,16 +139,32 @@ impl Anchors {
         halo: &dyn Halo,
     ) -> Self {
         let mut anchors = self.clone();
-        let loads = surfaces.boundary.loads.iter().map(|load| (&load.points[..], false)).zip(&idle.loads);
+        let loads = surfaces
+            .boundary
+            .loads
+            .iter()
+            .map(|load| (&load.points[..], false))
+            .zip(&idle.loads);
         // Before a first step nothing is anchored yet.
-        let water = surfaces.water.iter().map(|points| (*points, true)).zip(&idle.water).take(anchors.water.len());
+        let water = surfaces
+            .water
+            .iter()
+            .map(|points| (*points, true))
+            .zip(&idle.water)
+            .take(anchors.water.len());
         let lost = loads.chain(water).filter(|(_, idle)| **idle);
         let places = lost.flat_map(|((points, wet), _)| points.iter().map(move |point| (point.x, wet)));
         let places: Vec<StartPlace<D>> = places.collect();
         if !places.is_empty() {
-            let all = anchors.loads.iter_mut().zip(&idle.loads).chain(anchors.water.iter_mut().zip(&idle.water));
+            let all = anchors
+                .loads
+                .iter_mut()
+                .zip(&idle.loads)
+                .chain(anchors.water.iter_mut().zip(&idle.water));
             let renewed = all.filter(|(_, idle)| **idle).flat_map(|(ids, _)| ids);
-            renewed.zip(nearest((&places, &surfaces.dry), points, halo)).for_each(|(id, found)| *id = found);
+            renewed
+                .zip(nearest((&places, &surfaces.dry), points, halo))
+                .for_each(|(id, found)| *id = found);
         }
         anchors
     }
@@ -180,9 +206,14 @@ impl<const D: usize> AnchorPlaces<D> {
         let moved = strip.path.at(t);
         let normal = strip.normal.or(strip.contact.map(|contact| contact.inward));
         let held = normal.map_or(moved, |normal| normal * normal.dot(&moved));
-        let Some(ahead) = held.try_normalize(0.0).filter(|_| strip.acts() && !strip.lifts()) else { return 0 };
-        let reach =
-            |x: &Vector<D>| 0.5 * grid.locate(x).map_or(grid.smallest_edge(), |cell| grid.cell_box(&cell).1.min());
+        let Some(ahead) = held.try_normalize(0.0).filter(|_| strip.acts() && !strip.lifts()) else {
+            return 0;
+        };
+        let reach = |x: &Vector<D>| {
+            0.5 * grid
+                .locate(x)
+                .map_or(grid.smallest_edge(), |cell| grid.cell_box(&cell).1.min())
+        };
         let held = self.strips.get(number).map_or(&[][..], Vec::as_slice);
         let lags = |(at, place): &(usize, &Vector<D>)| {
             let x = strip.points[*at].x + displacement(strips, number, *at, t);
@@ -197,7 +228,9 @@ impl<const D: usize> Anchored<'_, D> {
     pub(crate) fn visit<'i>(&self, ids: impl Iterator<Item = &'i u64>, mut each: impl FnMut(usize, usize)) {
         let mut anchored: Vec<(u64, usize)> = ids.copied().zip(0..).collect();
         anchored.sort_unstable();
-        let (Some(first), Some(last)) = (anchored.first(), anchored.last()) else { return };
+        let (Some(first), Some(last)) = (anchored.first(), anchored.last()) else {
+            return;
+        };
         for p in (0..self.id.len()).filter(|&p| (first.0..=last.0).contains(&self.id[p])) {
             let from = anchored.partition_point(|(id, _)| *id < self.id[p]);
             for (_, at) in anchored[from..].iter().take_while(|(id, _)| *id == self.id[p]) {
@@ -254,7 +287,10 @@ fn within<const D: usize>(
 /// Places of all surface points at the start, m: those of strips, then those of loads.
 fn starts<const D: usize>(boundary: &Boundary<D>) -> Vec<Vector<D>> {
     let strips = boundary.strips.iter().flat_map(|strip| &strip.points);
-    strips.chain(boundary.loads.iter().flat_map(|load| &load.points)).map(|point| point.x).collect()
+    strips
+        .chain(boundary.loads.iter().flat_map(|load| &load.points))
+        .map(|point| point.x)
+        .collect()
 }
 
 /// Ids of the points that were nearest to places at the start; of equally near ones the smallest. Where water crosses,
@@ -280,7 +316,13 @@ fn nearest<const D: usize>(
     let own = least.clone();
     least.iter_mut().for_each(|distance| *distance = -*distance);
     halo.maximum(&mut least);
-    let candidate = |k: usize| if -least[k] == own[k] { -(ids[k] as f64) } else { f64::NEG_INFINITY };
+    let candidate = |k: usize| {
+        if -least[k] == own[k] {
+            -(ids[k] as f64)
+        } else {
+            f64::NEG_INFINITY
+        }
+    };
     let mut smallest: Vec<f64> = (0..at.len()).map(candidate).collect();
     halo.maximum(&mut smallest);
     smallest.into_iter().map(|id| -id as u64).collect()

@@ -47,8 +47,15 @@ impl<const D: usize> Contacts<D> {
         };
         for (support, face) in boundary.supports.iter().enumerate() {
             let Some(law) = face.contact else { continue };
-            let gaps = law.lifts.then(|| gaps((boundary, grid, shape, points), (face.axis, face.upper), halo));
-            let rivals = || boundary.supports.iter().filter(|other| other.contact.is_some() && other.axis != face.axis);
+            let gaps = law
+                .lifts
+                .then(|| gaps((boundary, grid, shape, points), (face.axis, face.upper), halo));
+            let rivals = || {
+                boundary
+                    .supports
+                    .iter()
+                    .filter(|other| other.contact.is_some() && other.axis != face.axis)
+            };
             for node in grid.face_nodes(face.axis, face.upper) {
                 if !free[Nodal::<D>::at(node, face.axis)] {
                     continue;
@@ -85,14 +92,22 @@ impl<const D: usize> Contacts<D> {
                     (true, false) => behind[axis] + 1,
                     (false, _) => behind[axis],
                 });
-                let moved = |node: usize| guess.get(Nodal::<D>::of(node)).is_some_and(|u| u.iter().any(|u| *u != 0.0));
+                let moved = |node: usize| {
+                    guess
+                        .get(Nodal::<D>::of(node))
+                        .is_some_and(|u| u.iter().any(|u| *u != 0.0))
+                };
                 let had_material = grid.node_index(&behind).is_some_and(moved);
                 at.recall((t, guess), face_cell(grid, face.axis, face.upper), had_material);
                 nodes.push(at);
             }
         }
         let released = vec![false; nodes.len()];
-        Self { nodes, released, first_energy: None }
+        Self {
+            nodes,
+            released,
+            first_energy: None,
+        }
     }
 
     /// Whether there is no such node on this rank.
@@ -134,7 +149,11 @@ impl<const D: usize> Contacts<D> {
     /// Marks components that the face may stop in a step of `dt` (s) in which the nodes start with `v`, m/s: those on
     /// or near it that have not been at rest.
     pub fn moving(&self, v: &[f64], dt: f64) -> Vec<bool> {
-        let mut moving = if self.is_empty() { Vec::new() } else { vec![false; v.len()] };
+        let mut moving = if self.is_empty() {
+            Vec::new()
+        } else {
+            vec![false; v.len()]
+        };
         for at in &self.nodes {
             let near = at.gap <= MEETING * dt * v[Nodal::<D>::at(at.node, at.axis)].abs();
             for component in (0..D).filter(|&component| near && at.decides(component) && !at.rested[component]) {
@@ -166,7 +185,11 @@ impl<const D: usize> Contacts<D> {
             let acts = at.limit(reaction) > 0.0;
             let factor = if acts { at.law.friction * at.inward } else { 0.0 };
             let normal = out[Nodal::<D>::at(at.node, at.axis)];
-            let beside = if acts { at.friction_force(&direction, &at.slip(v), 0.0) } else { Vector::zeros() };
+            let beside = if acts {
+                at.friction_force(&direction, &at.slip(v), 0.0)
+            } else {
+                Vector::zeros()
+            };
             for component in (0..D).filter(|&component| at.along[component]) {
                 out[Nodal::<D>::at(at.node, component)] += factor * direction[component] * normal - beside[component];
             }
@@ -206,7 +229,11 @@ impl<const D: usize> Contacts<D> {
     pub fn work(&self, u: &[f64], reaction: &[f64], halo: &dyn Halo) -> [Exact; 2] {
         let owned = halo.owned();
         let mut work = [Exact::ZERO; 2];
-        for at in self.nodes.iter().filter(|at| at.status != Status::Open && owned.contains(at.node)) {
+        for at in self
+            .nodes
+            .iter()
+            .filter(|at| at.status != Status::Open && owned.contains(at.node))
+        {
             let normal = Nodal::<D>::at(at.node, at.axis);
             work[0].add(reaction[normal] * u[normal]);
             work[1].add(0.5 * at.friction(reaction).dot(&at.slip(u)));
@@ -217,7 +244,12 @@ impl<const D: usize> Contacts<D> {
     /// What every face with contact did under the converged displacement `u`, m, with the `reaction`, N.
     pub fn report(&self, boundary: &Boundary<D>, u: &[f64], reaction: &[f64], halo: &dyn Halo) -> Vec<ContactReport> {
         let (owned, mut reports) = (halo.owned(), Vec::new());
-        for (support, _) in boundary.supports.iter().enumerate().filter(|(_, support)| support.contact.is_some()) {
+        for (support, _) in boundary
+            .supports
+            .iter()
+            .enumerate()
+            .filter(|(_, support)| support.contact.is_some())
+        {
             let mut sums: [Exact; 6] = std::array::from_fn(|_| Exact::ZERO);
             let mut ends = [f64::NEG_INFINITY; 2];
             let own = |at: &&ContactNode<D>| at.support == support && owned.contains(at.node) && at.gap.is_finite();
@@ -238,7 +270,15 @@ impl<const D: usize> Contacts<D> {
             let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
             let gap = if nodes > 0.0 { [-ends[0], ends[1]] } else { [0.0; 2] };
             let (closed, sliding, slip) = (share(closed, nodes), share(sliding, pushed), share(slipped, pushed));
-            reports.push(ContactReport { support, nodes: nodes as usize, closed, sliding, slip, dissipated, gap });
+            reports.push(ContactReport {
+                support,
+                nodes: nodes as usize,
+                closed,
+                sliding,
+                slip,
+                dissipated,
+                gap,
+            });
         }
         reports
     }

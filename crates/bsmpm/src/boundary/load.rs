@@ -32,12 +32,22 @@ pub struct Load<const D: usize> {
 impl<const D: usize> Load<D> {
     /// The same traction at all points, whatever becomes of the surface.
     pub fn dead(points: Vec<SurfacePoint<D>>, traction: Vector<D>, ramp: f64) -> Self {
-        Self { traction: vec![traction; points.len()], points, follows: false, ramp, amplitude: Vec::new() }
+        Self {
+            traction: vec![traction; points.len()],
+            points,
+            follows: false,
+            ramp,
+            amplitude: Vec::new(),
+        }
     }
 
     /// What a surface at rest knows of its traction, Pa: that of a load that follows it.
     pub(super) fn at_rest(&self) -> Vec<Vector<D>> {
-        if self.follows { self.traction.clone() } else { Vec::new() }
+        if self.follows {
+            self.traction.clone()
+        } else {
+            Vec::new()
+        }
     }
 
     /// Whether nothing of it ever acts: there may be no material at it yet, or any more.
@@ -47,7 +57,11 @@ impl<const D: usize> Load<D> {
 
     /// Whether its course turns sharply in a step.
     pub(super) fn turns(&self, step: (f64, f64)) -> bool {
-        let rows = if self.amplitude.is_empty() { &[(self.ramp, 1.0)][..] } else { &self.amplitude };
+        let rows = if self.amplitude.is_empty() {
+            &[(self.ramp, 1.0)][..]
+        } else {
+            &self.amplitude
+        };
         turns(rows, 0.0, f64::abs, step)
     }
 
@@ -107,9 +121,15 @@ pub fn add_forces<const D: usize>(
     let lacks = |number: &usize| found(*number) < loads[*number].points.len() as f64;
     let lost = (0..loads.len()).filter(|&number| !loads[number].is_idle()).find(lacks);
     if let Some(load) = lost {
-        return Err(StepError::Unloaded { load, points: loads[load].points.len() - found(load) as usize });
+        return Err(StepError::Unloaded {
+            load,
+            points: loads[load].points.len() - found(load) as usize,
+        });
     }
-    f_ext.iter_mut().zip(halo.sum(&force)).for_each(|(sum, force)| *sum += force);
+    f_ext
+        .iter_mut()
+        .zip(halo.sum(&force))
+        .for_each(|(sum, force)| *sum += force);
     Ok(followers)
 }
 
@@ -128,10 +148,15 @@ pub fn moved<const D: usize>(
     let offsets = grid.offsets();
     let place = |x: &Vector<D>| {
         let attachment = Attachment::at(grid, &offsets, |node| active[node], x);
-        attachment.map_or_else(Vector::zeros, |attachment| x + attachment.displacement::<D>(&offsets, u))
+        attachment.map_or_else(Vector::zeros, |attachment| {
+            x + attachment.displacement::<D>(&offsets, u)
+        })
     };
-    let mut position: Vec<Vec<Vector<D>>> =
-        surface.position.iter().map(|points| points.iter().map(place).collect()).collect();
+    let mut position: Vec<Vec<Vector<D>>> = surface
+        .position
+        .iter()
+        .map(|points| points.iter().map(place).collect())
+        .collect();
     reduce(&mut position, halo);
     position
 }
@@ -150,7 +175,10 @@ pub fn work<const D: usize>(
             false => load.traction.clone(),
         };
         let full = |traction: &[Vector<D>]| {
-            let moved = before.position[number].iter().zip(&after.position[number]).map(|(from, to)| to - from);
+            let moved = before.position[number]
+                .iter()
+                .zip(&after.position[number])
+                .map(|(from, to)| to - from);
             let work = |(k, moved): (usize, Vector<D>)| load.points[k].area * traction[k].dot(&moved);
             moved.enumerate().map(work).sum::<f64>()
         };

@@ -99,7 +99,9 @@ impl<const D: usize> RigidContacts<D> {
         }
         let mut marks = vec![0.0; nodes];
         for point in self.points.iter().filter(|point| point.status != ContactStatus::Open) {
-            self.offsets.iter().for_each(|offset| marks[point.first_node + offset] = 1.0);
+            self.offsets
+                .iter()
+                .for_each(|offset| marks[point.first_node + offset] = 1.0);
         }
         halo.max(&mut marks, 1);
         marks.into_iter().map(|mark| mark > 0.0).collect()
@@ -125,8 +127,12 @@ impl<const D: usize> RigidContacts<D> {
                 }
                 whole[(k, k)] += 1.0 - free(k);
             }
-            let inverse = whole.try_inverse().filter(|inverse| inverse.iter().all(|entry| entry.is_finite()));
-            let Some(mut inverse) = inverse else { return Err(StepError::Loose { body: number }) };
+            let inverse = whole
+                .try_inverse()
+                .filter(|inverse| inverse.iter().all(|entry| entry.is_finite()));
+            let Some(mut inverse) = inverse else {
+                return Err(StepError::Loose { body: number });
+            };
             (0..MOTIONS).for_each(|k| inverse[(k, k)] -= 1.0 - free(k));
             at.resists = inverse;
         }
@@ -155,7 +161,10 @@ impl<const D: usize> RigidContacts<D> {
                 }
             }
         }
-        halo.total(&sums).chunks_exact(MOTIONS * MOTIONS).map(Matrix3::from_row_slice).collect()
+        halo.total(&sums)
+            .chunks_exact(MOTIONS * MOTIONS)
+            .map(Matrix3::from_row_slice)
+            .collect()
     }
 
     /// What the bodies' free motions add to what was predicted, in balance with the forces under `u`; one reduction.
@@ -165,7 +174,11 @@ impl<const D: usize> RigidContacts<D> {
         }
         let force = |point: &RigidPoint<D>| point.force(&point.displacement(&self.offsets, u));
         let forces = self.on_bodies(force, halo);
-        self.bodies.iter().zip(forces).map(|(at, force)| at.resists * (at.unbalanced + force)).collect()
+        self.bodies
+            .iter()
+            .zip(forces)
+            .map(|(at, force)| at.resists * (at.unbalanced + force))
+            .collect()
     }
 
     /// How the free motions change with `v`; one reduction.
@@ -175,7 +188,11 @@ impl<const D: usize> RigidContacts<D> {
         }
         let force = |point: &RigidPoint<D>| point.rate(&point.displacement(&self.offsets, v), whole);
         let forces = self.on_bodies(force, halo);
-        self.bodies.iter().zip(forces).map(|(at, force)| at.resists * force).collect()
+        self.bodies
+            .iter()
+            .zip(forces)
+            .map(|(at, force)| at.resists * force)
+            .collect()
     }
 
     /// What the opposite of the points' forces does to every body, N, N and N m.
@@ -185,7 +202,10 @@ impl<const D: usize> RigidContacts<D> {
             let on = point.on_motions(&-force(point));
             (0..MOTIONS).for_each(|k| sums[point.body * MOTIONS + k].add(on[k]));
         }
-        halo.total(&sums).chunks_exact(MOTIONS).map(Vector::<3>::from_column_slice).collect()
+        halo.total(&sums)
+            .chunks_exact(MOTIONS)
+            .map(Vector::<3>::from_column_slice)
+            .collect()
     }
 
     /// What the material at a point has moved, as seen from its body.
@@ -271,7 +291,11 @@ impl<const D: usize> RigidContacts<D> {
         let motions = self.found(u, halo);
         let length = ROUNDING * self.edge;
         let moved: Vec<Vector<D>> = self.points.iter().map(|point| self.moved(point, u, &motions)).collect();
-        let statuses = self.points.iter().zip(&moved).map(|(point, moved)| point.corrected(moved, force, length));
+        let statuses = self
+            .points
+            .iter()
+            .zip(&moved)
+            .map(|(point, moved)| point.corrected(moved, force, length));
         let statuses: Vec<(ContactStatus, f64)> = statuses.collect();
         let kind = usize::from(D > 2) + usize::from(D > 2 && self.dt == 0.0);
         let share = if passes < AT_ONCE[kind] {
@@ -293,7 +317,11 @@ impl<const D: usize> RigidContacts<D> {
             }
         }
         halo.reduce(&mut corrected);
-        let held = if corrected[0] > 0.0 { self.hold_neutral(&moved, &released, halo) } else { 0 };
+        let held = if corrected[0] > 0.0 {
+            self.hold_neutral(&moved, &released, halo)
+        } else {
+            0
+        };
         self.strike(halo);
         self.settle(halo)?;
         Ok(corrected[0] as usize + held)
@@ -307,7 +335,10 @@ impl<const D: usize> RigidContacts<D> {
         let mut met = vec![0.0; self.bodies.len()];
         let is_new =
             |point: &&RigidPoint<D>| point.status != ContactStatus::Open && point.gap_before() > CLOSE * self.edge;
-        self.points.iter().filter(is_new).for_each(|point| met[point.body] = 1.0);
+        self.points
+            .iter()
+            .filter(is_new)
+            .for_each(|point| met[point.body] = 1.0);
         halo.maximum(&mut met);
         for (at, _) in self.bodies.iter_mut().zip(met).filter(|(_, met)| *met > 0.0) {
             at.strike(self.dt);
@@ -325,7 +356,11 @@ impl<const D: usize> RigidContacts<D> {
             let way = point.displacement(&self.offsets, u);
             work[0].add(mean.dot(&way));
             work[1].add(grown.dot(&way));
-            work[2].add(if self.dt > 0.0 { 0.5 * point.friction_work(&moved) } else { 0.0 });
+            work[2].add(if self.dt > 0.0 {
+                0.5 * point.friction_work(&moved)
+            } else {
+                0.0
+            });
         }
         work
     }
@@ -363,12 +398,21 @@ impl<const D: usize> RigidContacts<D> {
             let (pushed, _) = point.pushed(&moved);
             let advance = point.carried_by(&motions[point.body]).norm().max(point.way);
             let touched = f64::from(u8::from(pushed > 0.0));
-            let work = point.mean(&moved, self.dt > 0.0).0.dot(&point.displacement(&self.offsets, u));
+            let work = point
+                .mean(&moved, self.dt > 0.0)
+                .0
+                .dot(&point.displacement(&self.offsets, u));
             let slipped = pushed.max(0.0) * point.slipped(&moved);
             let each = [touched, pushed.max(0.0), slipped, -point.friction_work(&moved), work];
-            sums[5 * point.body..].iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));
+            sums[5 * point.body..]
+                .iter_mut()
+                .zip(each)
+                .for_each(|(sum, value)| sum.add(value));
             let each = [-gap, -gap * touched / self.edge, advance * touched / self.edge];
-            most[3 * point.body..].iter_mut().zip(each).for_each(|(most, value)| *most = most.max(value));
+            most[3 * point.body..]
+                .iter_mut()
+                .zip(each)
+                .for_each(|(most, value)| *most = most.max(value));
         }
         let sums = halo.total(&sums);
         halo.maximum(&mut most);

@@ -89,7 +89,10 @@ impl<const D: usize> Strip<D> {
     /// m  of its points
     fn middle(&self) -> Vector<D> {
         let area: f64 = self.points.iter().map(|point| point.area).sum();
-        self.points.iter().fold(Vector::<D>::zeros(), |sum, point| sum + point.x * point.area) / area
+        self.points
+            .iter()
+            .fold(Vector::<D>::zeros(), |sum, point| sum + point.x * point.area)
+            / area
     }
 
     /// Other strips whose motions one of its points follows in part.
@@ -99,7 +102,9 @@ impl<const D: usize> Strip<D> {
 
     /// What other strips leave of a vector at one of its points.
     fn own(&self, point: usize, vector: &Vector<D>) -> Vector<D> {
-        self.others(point).iter().fold(*vector, |rest, other| rest - other.of(vector))
+        self.others(point)
+            .iter()
+            .fold(*vector, |rest, other| rest - other.of(vector))
     }
 }
 
@@ -107,7 +112,10 @@ impl<const D: usize> Strip<D> {
 pub fn displacement<const D: usize>(strips: &[Strip<D>], number: usize, point: usize, t: f64) -> Vector<D> {
     let strip = &strips[number];
     let own = strip.own(point, &strip.path.at(t));
-    strip.others(point).iter().fold(own, |sum, other| sum + other.of(&strips[other.strip].path.at(t)))
+    strip
+        .others(point)
+        .iter()
+        .fold(own, |sum, other| sum + other.of(&strips[other.strip].path.at(t)))
 }
 
 /// Force of a strip on the body.
@@ -121,7 +129,13 @@ struct Resultant<const D: usize> {
 /// motions it follows, by the same parts, so that force times motion is the work.
 fn resultants<const D: usize>(strips: &[Strip<D>], carried: &[Vec<Vector<D>>]) -> Vec<Resultant<D>> {
     let middles: Vec<Vector<D>> = strips.iter().map(Strip::middle).collect();
-    let mut resultants = vec![Resultant { force: Vector::zeros(), moment: 0.0 }; strips.len()];
+    let mut resultants = vec![
+        Resultant {
+            force: Vector::zeros(),
+            moment: 0.0
+        };
+        strips.len()
+    ];
     for (number, strip) in strips.iter().enumerate() {
         for (at, (point, carried)) in strip.points.iter().zip(&carried[number]).enumerate() {
             let acting = strip.contact.map_or(*carried, |contact| contact.acting(carried)) * point.area;
@@ -131,7 +145,10 @@ fn resultants<const D: usize>(strips: &[Strip<D>], carried: &[Vec<Vector<D>>]) -
                 resultants[strip].moment += arm[0] * force[1] - arm[1] * force[0];
             };
             add(number, strip.own(at, &acting));
-            strip.others(at).iter().for_each(|other| add(other.strip, other.of(&acting)));
+            strip
+                .others(at)
+                .iter()
+                .for_each(|other| add(other.strip, other.of(&acting)));
         }
     }
     resultants
@@ -239,7 +256,11 @@ impl<const D: usize> StripAttachments<D> {
                 });
             }
         }
-        Self { offsets, span: (t, dt), held }
+        Self {
+            offsets,
+            span: (t, dt),
+            held,
+        }
     }
 
     /// Takes what pore water carries of the pressure at points in contact off what friction acts on.
@@ -247,7 +268,9 @@ impl<const D: usize> StripAttachments<D> {
         let Some(pores) = pores else { return };
         let offsets = &self.offsets;
         for held in &mut self.held {
-            let Some(attachment) = held.attachment.iter().flatten().next() else { continue };
+            let Some(attachment) = held.attachment.iter().flatten().next() else {
+                continue;
+            };
             let water = pores.at(attachment.weights(offsets), &held.place);
             held.state.iter_mut().for_each(|state| state.water = water);
         }
@@ -322,7 +345,8 @@ impl<const D: usize> StripAttachments<D> {
             work.given.add(mean.dot(&held.motion));
             work.taken.add(mean.dot(&moved));
             if let Some(state) = &held.state {
-                work.friction_work.add(mean.dot(&state.slid(&held.trial(state, &self.offsets, u), held.penalty)));
+                work.friction_work
+                    .add(mean.dot(&state.slid(&held.trial(state, &self.offsets, u), held.penalty)));
                 // The force at the end, less the one that is counted.
                 work.grown.add((after * held.area - mean).dot(&moved));
             } else {
@@ -360,7 +384,9 @@ impl<const D: usize> StripAttachments<D> {
             let (mean, (t, dt)) = (held.mean(&self.offsets, u), self.span);
             let motion = |strip: usize| strips[strip].path.at(t + dt) - strips[strip].path.at(t);
             let strip = &strips[held.strip];
-            sums[held.strip].given.add(strip.own(held.point, &mean).dot(&motion(held.strip)));
+            sums[held.strip]
+                .given
+                .add(strip.own(held.point, &mean).dot(&motion(held.strip)));
             for other in strip.others(held.point) {
                 sums[other.strip].given.add(other.of(&mean).dot(&motion(other.strip)));
             }
@@ -412,8 +438,14 @@ impl<const D: usize> StripAttachments<D> {
         surface: &Surface<D>,
         traction: &mut [Vec<Vector<D>>],
     ) {
-        for (number, strip) in strips.iter().enumerate().filter(|(_, strip)| strip.acts() && strip.lifts()) {
-            let Some(StripContact { inward, .. }) = strip.contact else { continue };
+        for (number, strip) in strips
+            .iter()
+            .enumerate()
+            .filter(|(_, strip)| strip.acts() && strip.lifts())
+        {
+            let Some(StripContact { inward, .. }) = strip.contact else {
+                continue;
+            };
             let (t, dt) = self.span;
             for (point, _) in there[number].iter().enumerate().filter(|(_, there)| there[0] == 0.0) {
                 let [start, end] = [t, t + dt].map(|t| displacement(strips, number, point, t));
@@ -427,8 +459,16 @@ impl<const D: usize> StripAttachments<D> {
 
 /// Sums vectors of which each is non-zero on one rank only: exact.
 pub(super) fn reduce<const D: usize>(lists: &mut [Vec<Vector<D>>], halo: &dyn Halo) {
-    let mut flat: Vec<f64> = lists.iter().flatten().flat_map(|vector| vector.iter().copied()).collect();
+    let mut flat: Vec<f64> = lists
+        .iter()
+        .flatten()
+        .flat_map(|vector| vector.iter().copied())
+        .collect();
     halo.reduce(&mut flat);
     let summed = flat.chunks_exact(D).map(Vector::from_column_slice);
-    lists.iter_mut().flatten().zip(summed).for_each(|(vector, sum)| *vector = sum);
+    lists
+        .iter_mut()
+        .flatten()
+        .zip(summed)
+        .for_each(|(vector, sum)| *vector = sum);
 }

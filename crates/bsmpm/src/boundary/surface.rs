@@ -36,13 +36,21 @@ pub const CORNERS: usize = 4;
 impl<const D: usize> SurfacePoint<D> {
     /// A point of a surface whose extent is of no concern.
     pub fn at(x: Vector<D>, area: f64) -> Self {
-        Self { x, area, corners: [x; CORNERS] }
+        Self {
+            x,
+            area,
+            corners: [x; CORNERS],
+        }
     }
 
     /// In the middle of a triangle, whose turn its corners have.
     pub fn of_triangle([a, b, c]: [Vector<D>; 3]) -> Self {
         let corners = [a, b, c, c];
-        Self { x: (a + b + c) / 3.0, area: area(&corners).norm(), corners }
+        Self {
+            x: (a + b + c) / 3.0,
+            area: area(&corners).norm(),
+            corners,
+        }
     }
 }
 
@@ -73,9 +81,15 @@ pub fn along<K: Kinematics<D>, const D: usize>(
         let off = middle - 0.5 * (part[0] + part[1]);
         let x = from + (to - from) * (middle + off * (spread::<K, D>((from, to), part, count) - 1.0));
         let [a, b] = [0.0, 1.0].map(|end| from + (to - from) * (part[0] + (k as f64 + end) * share));
-        SurfacePoint { x, area: share * length * K::weight(&x), corners: [a, a, b, b] }
+        SurfacePoint {
+            x,
+            area: share * length * K::weight(&x),
+            corners: [a, a, b, b],
+        }
     };
-    cuts.windows(2).flat_map(|part| (0..count).map(move |k| piece(part, k))).collect()
+    cuts.windows(2)
+        .flat_map(|part| (0..count).map(move |k| piece(part, k)))
+        .collect()
 }
 
 /// [`Kinematics::spread`] of the points of a part of a segment: that along the axis along which they are others than
@@ -83,7 +97,11 @@ pub fn along<K: Kinematics<D>, const D: usize>(
 fn spread<K: Kinematics<D>, const D: usize>((from, to): (&Vector<D>, &Vector<D>), part: &[f64], count: usize) -> f64 {
     let along = |axis: usize| {
         let [a, b] = [part[0], part[1]].map(|share| from[axis] + (to[axis] - from[axis]) * share);
-        if a == b { 1.0 } else { K::spread(axis, [a.min(b), a.max(b)], count) }
+        if a == b {
+            1.0
+        } else {
+            K::spread(axis, [a.min(b), a.max(b)], count)
+        }
     };
     (0..D).map(along).product()
 }
@@ -150,7 +168,9 @@ pub fn within<K: Kinematics<D>, const D: usize>(
     count: usize,
 ) -> Vec<SurfacePoint<D>> {
     let mut plane = (0..D).filter(|axis| lower[*axis] < upper[*axis]);
-    let (Some(a), Some(b)) = (plane.next(), plane.next()) else { return Vec::new() };
+    let (Some(a), Some(b)) = (plane.next(), plane.next()) else {
+        return Vec::new();
+    };
     // Area and its moments of what is inside, in strips across an axis.
     let strips = |(piece, edges): (&SurfacePoint<D>, &Vector<D>), across: usize, along: usize| {
         let width = edges[across] / STRIPS as f64;
@@ -175,9 +195,16 @@ pub fn within<K: Kinematics<D>, const D: usize>(
         let mut x = piece.x;
         (x[a], x[b]) = (moment[a] / area, moment[b] / area);
         let corners = corners(&piece.x, &edges);
-        (area > 0.0).then(|| SurfacePoint { x, area: area * K::weight(&x), corners })
+        (area > 0.0).then(|| SurfacePoint {
+            x,
+            area: area * K::weight(&x),
+            corners,
+        })
     };
-    pieces(grid, lower, upper, count).into_iter().filter_map(clipped).collect()
+    pieces(grid, lower, upper, count)
+        .into_iter()
+        .filter_map(clipped)
+        .collect()
 }
 
 /// Middles and lengths of the pieces of an edge along an axis, m.
@@ -193,7 +220,9 @@ fn along_axis<const D: usize>(
         (start + length * (part[0] + (k as f64 + 0.5) * share), length * share)
     };
     let cuts = cuts(grid, from, to);
-    cuts.windows(2).flat_map(|part| (0..count).map(move |k| piece(part, k))).collect()
+    cuts.windows(2)
+        .flat_map(|part| (0..count).map(move |k| piece(part, k)))
+        .collect()
 }
 
 /// Parts of the way along a straight segment at which the grid's lines cut it, its ends among them.
@@ -277,7 +306,11 @@ impl Attachment {
 
     /// The nodes with their shares, by the `offsets` that it was made with.
     pub fn weights<'a>(&'a self, offsets: &'a [usize]) -> impl Iterator<Item = (usize, f64)> + 'a {
-        offsets.iter().zip(&self.N).filter(|(_, N)| **N != 0.0).map(|(offset, N)| (self.first_node + offset, *N))
+        offsets
+            .iter()
+            .zip(&self.N)
+            .filter(|(_, N)| **N != 0.0)
+            .map(|(offset, N)| (self.first_node + offset, *N))
     }
 
     fn by<const D: usize>(
@@ -315,7 +348,11 @@ impl Attachment {
 
     /// sum_I N_I p_I of a nodal array of one number a node.
     pub fn value(&self, offsets: &[usize], nodal: &[f64]) -> f64 {
-        self.N.iter().zip(offsets).map(|(N, offset)| N * nodal[self.first_node + offset]).sum()
+        self.N
+            .iter()
+            .zip(offsets)
+            .map(|(N, offset)| N * nodal[self.first_node + offset])
+            .sum()
     }
 
     /// out_I += N_I value, the last of the numbers of every node.
@@ -355,7 +392,11 @@ pub(super) fn on_grid<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D
         let knots = &grid.axes()[axis];
         let inside = x[axis].clamp(0.0, knots.length());
         let slack = ROUNDING * knots.length() / knots.cells() as f64;
-        if (x[axis] - inside).abs() <= slack { inside } else { x[axis] }
+        if (x[axis] - inside).abs() <= slack {
+            inside
+        } else {
+            x[axis]
+        }
     })
 }
 
@@ -374,13 +415,21 @@ mod tests {
     #[test]
     fn the_points_of_a_disc_have_its_area_and_its_middle() {
         let grid = Grid::<3>::new([0; 3].map(|_| KnotVector::uniform(0.5, 8, 2).unwrap())).unwrap();
-        for (center, radius) in [([2.0, 2.0], 1.0), ([2.1, 1.9], 0.4), ([2.1, 1.9], 0.12), ([2.03, 1.95], 0.02)] {
+        for (center, radius) in [
+            ([2.0, 2.0], 1.0),
+            ([2.1, 1.9], 0.4),
+            ([2.1, 1.9], 0.12),
+            ([2.03, 1.95], 0.02),
+        ] {
             let center = Vector::<3>::new(center[0], center[1], 1.0);
             let [lower, upper] = [-radius, radius].map(|by| center + Vector::<3>::new(by, by, 0.0));
             let points = within::<Solid, 3>(&grid, (&lower, &upper), (&center, radius), 4);
             let area: f64 = points.iter().map(|point| point.area).sum();
             let middle = points.iter().map(|point| point.x * point.area).sum::<Vector<3>>() / area;
-            assert!((area / (std::f64::consts::PI * radius.powi(2)) - 1.0).abs() < 3e-4, "{area}");
+            assert!(
+                (area / (std::f64::consts::PI * radius.powi(2)) - 1.0).abs() < 3e-4,
+                "{area}"
+            );
             assert!((middle - center).norm() < 1e-3 * radius, "{middle}");
         }
     }

@@ -47,12 +47,23 @@ impl Budget {
     /// Opened in a state.
     pub fn open(stored: Stored) -> Self {
         let start = stored.kinetic + stored.elastic;
-        Self { start, largest: start, ..Self::default() }
+        Self {
+            start,
+            largest: start,
+            ..Self::default()
+        }
     }
 
     /// All of it.
     pub fn numbers(&self) -> [f64; 6] {
-        [self.start, self.external, self.plastic, self.damped, self.largest, self.growth]
+        [
+            self.start,
+            self.external,
+            self.plastic,
+            self.damped,
+            self.largest,
+            self.growth,
+        ]
     }
 
     /// Enters a step. While nothing but round-off moves and strains, such as ground at rest below a rigid body that
@@ -95,7 +106,11 @@ impl Budget {
     /// It has, by more than the slack of a right run.
     pub fn require(&self) -> Result<(), StepError> {
         let given = self.start + self.external;
-        let grown = StepError::EnergyMade { growth: self.growth, given, slack: SLACK };
+        let grown = StepError::EnergyMade {
+            growth: self.growth,
+            given,
+            slack: SLACK,
+        };
         if self.growth > SLACK { Err(grown) } else { Ok(()) }
     }
 }
@@ -106,17 +121,39 @@ mod tests {
 
     /// A step that took that in, J, and what there is after it.
     fn turnover(external: f64, kinetic: f64) -> Turnover {
-        Turnover { external, stored: Stored { kinetic, ..Stored::default() }, ..Turnover::default() }
+        Turnover {
+            external,
+            stored: Stored {
+                kinetic,
+                ..Stored::default()
+            },
+            ..Turnover::default()
+        }
     }
 
     #[test]
     fn round_off_of_ground_at_rest_is_no_growth() {
         let mut budget = Budget::open(Stored::default());
-        let at_rest = Turnover { round_off: 1e-17, ..turnover(1e-26, 5e-26) };
+        let at_rest = Turnover {
+            round_off: 1e-17,
+            ..turnover(1e-26, 5e-26)
+        };
         budget.enter(&at_rest);
         assert_eq!(budget, Budget::default());
-        budget.enter(&Turnover { stored: Stored { kinetic: 2e-17, ..Stored::default() }, ..at_rest });
-        budget.enter(&Turnover { stored: Stored { kinetic: 4e-17, ..Stored::default() }, ..at_rest });
+        budget.enter(&Turnover {
+            stored: Stored {
+                kinetic: 2e-17,
+                ..Stored::default()
+            },
+            ..at_rest
+        });
+        budget.enter(&Turnover {
+            stored: Stored {
+                kinetic: 4e-17,
+                ..Stored::default()
+            },
+            ..at_rest
+        });
         assert!(budget.require().is_err(), "{budget:?}");
     }
 
@@ -138,10 +175,17 @@ mod tests {
             v += 0.5 * dt * (a + next);
             a = next;
             let taken = 30.0 * du * du / dt;
-            damped.enter(&Turnover { plastic: taken, damped: taken, ..turnover(du, 0.5 * v * v) });
+            damped.enter(&Turnover {
+                plastic: taken,
+                damped: taken,
+                ..turnover(du, 0.5 * v * v)
+            });
             assert!(damped.growth <= 1e-12, "{damped:?}");
         }
-        let mut moving = Budget::open(Stored { kinetic: 1.0, ..Stored::default() });
+        let mut moving = Budget::open(Stored {
+            kinetic: 1.0,
+            ..Stored::default()
+        });
         moving.enter(&turnover(0.0, 1.1));
         assert!(moving.require().is_err());
     }

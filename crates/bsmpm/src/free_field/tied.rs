@@ -17,16 +17,23 @@ pub struct TiedHalo {
 impl TiedHalo {
     /// Of such a grid.
     pub fn of<const D: usize>(grid: &Grid<D>) -> Self {
-        Self { layer: grid.layer_nodes() }
+        Self {
+            layer: grid.layer_nodes(),
+        }
     }
 
     /// Puts for the numbers of the first layer what `join` makes of those of all layers, and for all others these.
     fn fold(self, nodal: &mut [f64], width: usize, join: impl Fn(f64, f64) -> f64) {
         let (first, others) = nodal.split_at_mut(self.layer * width);
         for layer in others.chunks_exact(first.len()) {
-            first.iter_mut().zip(layer).for_each(|(value, other)| *value = join(*value, *other));
+            first
+                .iter_mut()
+                .zip(layer)
+                .for_each(|(value, other)| *value = join(*value, *other));
         }
-        others.chunks_exact_mut(first.len()).for_each(|layer| layer.copy_from_slice(first));
+        others
+            .chunks_exact_mut(first.len())
+            .for_each(|layer| layer.copy_from_slice(first));
     }
 }
 
@@ -87,23 +94,34 @@ impl Band {
     }
 
     fn picked(&self, nodal: &[f64]) -> Vec<f64> {
-        self.number.iter().zip(nodal).filter_map(|(number, value)| number.map(|_| *value)).collect()
+        self.number
+            .iter()
+            .zip(nodal)
+            .filter_map(|(number, value)| number.map(|_| *value))
+            .collect()
     }
 
     /// Spreads the unknowns over all layers.
     fn spread(&self, x: &[f64], solution: &mut [f64]) {
         for layer in solution.chunks_exact_mut(self.layer) {
-            layer.iter_mut().zip(&self.number).for_each(|(value, number)| *value = number.map_or(0.0, |i| x[i]));
+            layer
+                .iter_mut()
+                .zip(&self.number)
+                .for_each(|(value, number)| *value = number.map_or(0.0, |i| x[i]));
         }
     }
 
     fn substituted(&self, mut x: Vec<f64>) -> Vec<f64> {
         let n = x.len();
         for i in 0..n {
-            x[i] -= (i.saturating_sub(self.half)..i).map(|j| self.rows[self.at(i, j)] * x[j]).sum::<f64>();
+            x[i] -= (i.saturating_sub(self.half)..i)
+                .map(|j| self.rows[self.at(i, j)] * x[j])
+                .sum::<f64>();
         }
         for i in (0..n).rev() {
-            let known: f64 = (i + 1..(i + self.half + 1).min(n)).map(|j| self.rows[self.at(i, j)] * x[j]).sum();
+            let known: f64 = (i + 1..(i + self.half + 1).min(n))
+                .map(|j| self.rows[self.at(i, j)] * x[j])
+                .sum();
             x[i] = (x[i] - known) / self.rows[self.at(i, i)];
         }
         x
@@ -129,7 +147,11 @@ impl LinearSolver for Band {
     fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
         let components = self.components;
         let of_node = |&node: &usize| (0..components).map(move |c| node * components + c);
-        let unknowns: Vec<_> = nodes.iter().flat_map(of_node).map(|c| self.number[c % self.layer]).collect();
+        let unknowns: Vec<_> = nodes
+            .iter()
+            .flat_map(of_node)
+            .map(|c| self.number[c % self.layer])
+            .collect();
         for (row, values) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
             for (column, value) in unknowns.iter().zip(values) {
                 if let (Some(row), Some(column)) = (row, column) {
@@ -153,9 +175,15 @@ impl LinearSolver for Band {
         let n = self.unknowns();
         for k in 0..n {
             let pivot = self.rows[self.at(k, k)];
-            let is_wrong = if symmetry == Symmetry::Definite { pivot <= 0.0 } else { pivot == 0.0 };
+            let is_wrong = if symmetry == Symmetry::Definite {
+                pivot <= 0.0
+            } else {
+                pivot == 0.0
+            };
             if is_wrong || !pivot.is_finite() {
-                return Err(SolveError::Failed(format!("free field: pivot {pivot:e} of unknown {k} of {n}")));
+                return Err(SolveError::Failed(format!(
+                    "free field: pivot {pivot:e} of unknown {k} of {n}"
+                )));
             }
             for i in k + 1..(k + self.half + 1).min(n) {
                 let of_k = self.at(i, k);
@@ -178,7 +206,10 @@ impl LinearSolver for Band {
             return Err(SolveError::NotFinite);
         }
         self.spread(&x, solution);
-        Ok(Solved { iterations: 1, ..Solved::default() })
+        Ok(Solved {
+            iterations: 1,
+            ..Solved::default()
+        })
     }
 
     /// By iterative refinement, as long as it helps: the matrix is the product's but for far averages.
@@ -195,7 +226,12 @@ impl LinearSolver for Band {
         let (mut x, mut left, mut residual) = (vec![0.0; right.len()], right.clone(), 1.0);
         let (mut trial, mut image, mut iterations) = (vec![0.0; rhs.len()], vec![0.0; rhs.len()], 0);
         while residual > relative && scale > 0.0 && iterations < CORRECTIONS {
-            let better: Vec<f64> = self.substituted(left.clone()).iter().zip(&x).map(|(dx, x)| x + dx).collect();
+            let better: Vec<f64> = self
+                .substituted(left.clone())
+                .iter()
+                .zip(&x)
+                .map(|(dx, x)| x + dx)
+                .collect();
             self.spread(&better, &mut trial);
             product(&trial, &mut image);
             let remains: Vec<f64> = right.iter().zip(self.picked(&image)).map(|(b, Ax)| b - Ax).collect();
@@ -210,6 +246,9 @@ impl LinearSolver for Band {
             return Err(SolveError::Residual(residual));
         }
         self.spread(&x, solution);
-        Ok(Krylov { iterations, residual: if scale > 0.0 { residual } else { 0.0 } })
+        Ok(Krylov {
+            iterations,
+            residual: if scale > 0.0 { residual } else { 0.0 },
+        })
     }
 }

@@ -27,7 +27,14 @@ impl Contributions {
         columns: Vec<usize>,
     ) -> Self {
         let layer = layer_nodes * width;
-        Self { sums: vec![0.0; columns.len() * layers * layer], columns, layers, layer, width, nodes }
+        Self {
+            sums: vec![0.0; columns.len() * layers * layer],
+            columns,
+            layers,
+            layer,
+            width,
+            nodes,
+        }
     }
 
     /// Numbers a node.
@@ -53,7 +60,8 @@ impl Contributions {
         let size = self.column_size();
         let place = self.columns.binary_search(&column).unwrap_or_else(|place| {
             self.columns.insert(place, column);
-            self.sums.splice(place * size..place * size, std::iter::repeat_n(0.0, size));
+            self.sums
+                .splice(place * size..place * size, std::iter::repeat_n(0.0, size));
             place
         });
         let within = first_node * self.width - column * self.layer;
@@ -69,17 +77,31 @@ impl Contributions {
 
     /// Adds what the columns of this rank contribute to the nodal array of the window.
     pub fn add_to(&self, nodal: &mut [f64]) {
-        for (&column, sums) in self.columns.iter().zip(self.sums.chunks_exact(self.column_size().max(1))) {
+        for (&column, sums) in self
+            .columns
+            .iter()
+            .zip(self.sums.chunks_exact(self.column_size().max(1)))
+        {
             // Past the window's last layer there is nothing: only columns that couple with others reach so far.
-            nodal[column * self.layer..].iter_mut().zip(sums).for_each(|(total, sum)| *total += sum);
+            nodal[column * self.layer..]
+                .iter_mut()
+                .zip(sums)
+                .for_each(|(total, sum)| *total += sum);
         }
     }
 
     /// Largest number that a column has for each of the nodal array, zero where none is larger.
     pub(super) fn highest(&self) -> Vec<f64> {
         let mut nodal = self.nodal();
-        for (&column, sums) in self.columns.iter().zip(self.sums.chunks_exact(self.column_size().max(1))) {
-            nodal[column * self.layer..].iter_mut().zip(sums).for_each(|(most, value)| *most = most.max(*value));
+        for (&column, sums) in self
+            .columns
+            .iter()
+            .zip(self.sums.chunks_exact(self.column_size().max(1)))
+        {
+            nodal[column * self.layer..]
+                .iter_mut()
+                .zip(sums)
+                .for_each(|(most, value)| *most = most.max(*value));
         }
         nodal
     }
@@ -87,9 +109,17 @@ impl Contributions {
     /// Product with a nodal array of the window: what forces that contribute work on a displacement.
     pub fn dot(&self, nodal: &[f64]) -> Exact {
         let of = |(&column, sums): (&usize, &[f64])| {
-            nodal[column * self.layer..].iter().zip(sums).map(|(value, sum)| value * sum).sum::<f64>()
+            nodal[column * self.layer..]
+                .iter()
+                .zip(sums)
+                .map(|(value, sum)| value * sum)
+                .sum::<f64>()
         };
-        self.columns.iter().zip(self.sums.chunks_exact(self.column_size().max(1))).map(of).collect()
+        self.columns
+            .iter()
+            .zip(self.sums.chunks_exact(self.column_size().max(1)))
+            .map(of)
+            .collect()
     }
 
     /// Zeros for the nodes of the window.

@@ -43,7 +43,10 @@ impl<const D: usize> Homes<D> {
     /// In a grid; functions on a face in `kept_faces` (lower and upper of each axis) have homes in the cells at that
     /// face only.
     pub fn of(grid: &Grid<D>, kept_faces: [[bool; 2]; D]) -> Self {
-        Self { sides: grid.axes().each_ref().map(sides), kept_faces }
+        Self {
+            sides: grid.axes().each_ref().map(sides),
+            kept_faces,
+        }
     }
 
     /// How near a cell (global, along each axis) is to a function (global); `None` where it cannot be a home: too far
@@ -52,7 +55,11 @@ impl<const D: usize> Homes<D> {
         let (mut is_on_side, mut apart, mut off_centre, mut number) = (true, 0, 0.0, 0);
         for axis in 0..D {
             let (knots, j, l) = (&grid.axes()[axis], function[axis], cell[axis]);
-            let steps = if j < l { l - j } else { j.saturating_sub(l + knots.order()) };
+            let steps = if j < l {
+                l - j
+            } else {
+                j.saturating_sub(l + knots.order())
+            };
             if steps > REACH || !knots.has_length(l) || !self.keeps_to_faces(knots, axis, j, l) {
                 return None;
             }
@@ -64,7 +71,12 @@ impl<const D: usize> Homes<D> {
         }
         let off_centre = (off_centre / RESOLUTION).round();
         let beyond_line = f64::from(u8::from(!is_on_side));
-        Some(Nearness { beyond_line, apart: apart as f64, off_centre, cell: number as f64 })
+        Some(Nearness {
+            beyond_line,
+            apart: apart as f64,
+            off_centre,
+            cell: number as f64,
+        })
     }
 
     /// Whether no C0 line lies between the support of function `j` and cell `l`.
@@ -137,10 +149,17 @@ mod tests {
             for (j, home) in (0..knots.functions()).flat_map(|j| (0..knots.cells()).map(move |home| (j, home))) {
                 let weights = weights(&knots, j, home);
                 let sum: f64 = weights.iter().sum();
-                let place: f64 = weights.iter().enumerate().map(|(a, w)| w * knots.greville(home + a)).sum();
+                let place: f64 = weights
+                    .iter()
+                    .enumerate()
+                    .map(|(a, w)| w * knots.greville(home + a))
+                    .sum();
                 let size: f64 = weights.iter().map(|w| w.abs()).sum();
                 assert!((sum - 1.0).abs() <= 1e-14 * size, "{order} {j} {home}: {sum}");
-                assert!((place - knots.greville(j)).abs() <= 1e-13 * size, "{order} {j} {home}: {place}");
+                assert!(
+                    (place - knots.greville(j)).abs() <= 1e-13 * size,
+                    "{order} {j} {home}: {place}"
+                );
             }
         }
     }
@@ -151,7 +170,10 @@ mod tests {
         for steps in 1..=REACH {
             let far = steps as f64;
             let close = |found: Vec<f64>, expected: [f64; 3]| {
-                found.iter().zip(expected).for_each(|(found, expected)| assert!((found - expected).abs() < 1e-13));
+                found
+                    .iter()
+                    .zip(expected)
+                    .for_each(|(found, expected)| assert!((found - expected).abs() < 1e-13));
             };
             close(weights(&knots, 5 + 2 + steps, 5), [0.0, -far, 1.0 + far]);
             close(weights(&knots, 5 - steps, 5), [1.0 + far, -far, 0.0]);
@@ -172,7 +194,10 @@ mod tests {
         assert_eq!([2, 4].map(|l| is_beyond(5, l)), [true, false]);
         let [own_side, other_side] = [0, 4].map(|l| homes.nearness(&grid, &[3, 3], &[l, 2]).unwrap());
         assert!(own_side < other_side, "though the other one is nearer");
-        assert!(homes.nearness(&grid, &[4, 3], &[3, 2]).is_none(), "a cell without length");
+        assert!(
+            homes.nearness(&grid, &[4, 3], &[3, 2]).is_none(),
+            "a cell without length"
+        );
         let linear = KnotVector::uniform(1.0, 4, 1).unwrap();
         assert_eq!(sides(&linear), [0; 4]);
     }
@@ -185,9 +210,15 @@ mod tests {
         let at_faces = Homes::of(&grid, [[true, false], [false, true]]);
         assert!(anywhere.nearness(&grid, &[0, 4], &[3, 4]).is_some());
         assert!(anywhere.nearness(&grid, &[0, 4], &[4, 4]).is_none(), "four cells away");
-        assert!(at_faces.nearness(&grid, &[0, 4], &[1, 4]).is_none(), "off the lower face of axis 0");
+        assert!(
+            at_faces.nearness(&grid, &[0, 4], &[1, 4]).is_none(),
+            "off the lower face of axis 0"
+        );
         assert!(at_faces.nearness(&grid, &[0, 10], &[0, 8]).is_some());
-        assert!(at_faces.nearness(&grid, &[0, 10], &[0, 7]).is_none(), "off the upper face of axis 1");
+        assert!(
+            at_faces.nearness(&grid, &[0, 10], &[0, 7]).is_none(),
+            "off the upper face of axis 1"
+        );
         let [near, far] = [[4, 5], [3, 5]].map(|cell| anywhere.nearness(&grid, &[7, 5], &cell).unwrap());
         assert!(near < far);
     }

@@ -21,7 +21,11 @@ impl<'a, const D: usize> Occupied<'a, D> {
     pub(crate) fn of(grid: &'a Grid<D>, cells: impl Iterator<Item = usize>, halo: &dyn Halo) -> Self {
         let width = [grid.order() + 1, if grid.is_parted() { grid.order() + 1 } else { 1 }];
         let marks = width[0] * width[1];
-        let mut occupied = Self { grid, width, marks: vec![0.0; marks * grid.nodes()] };
+        let mut occupied = Self {
+            grid,
+            width,
+            marks: vec![0.0; marks * grid.nodes()],
+        };
         for index in cells {
             let cell = grid.cell_at(index);
             for mark in 0..marks {

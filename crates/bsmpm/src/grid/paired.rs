@@ -26,19 +26,35 @@ impl Paired {
         let support: Vec<_> = (0..count).map(support).collect();
         // The end of the pair that a function starts to vanish behind; past the last one, as many nodes as functions
         // are left.
-        let slots: Vec<usize> = (0..count).map(|k| pairs[k.min(last)].end - 1 + k.saturating_sub(last)).collect();
+        let slots: Vec<usize> = (0..count)
+            .map(|k| pairs[k.min(last)].end - 1 + k.saturating_sub(last))
+            .collect();
         let mut of_slot = vec![None; axis.functions()];
         slots.iter().enumerate().for_each(|(k, &slot)| of_slot[slot] = Some(k));
-        let of_cell: Vec<usize> =
-            pairs.iter().enumerate().flat_map(|(first, pair)| pair.clone().map(move |_| first)).collect();
+        let of_cell: Vec<usize> = pairs
+            .iter()
+            .enumerate()
+            .flat_map(|(first, pair)| pair.clone().map(move |_| first))
+            .collect();
         let knots = Knots::of(axis, &pairs);
         let shares = (0..cells)
             .flat_map(|cell| (0..=degree).map(move |a| (cell, a)))
             .flat_map(|(cell, a)| (0..=degree).map(move |b| (cell, a, b)))
             .map(|(cell, a, b)| knots.share(of_cell[cell] + a, cell + b, degree))
             .collect();
-        let long = support.iter().map(|cells| cells.clone().filter(|&cell| axis.has_length(cell)).count()).collect();
-        Self { degree, of_cell, shares, support, long, slots, of_slot }
+        let long = support
+            .iter()
+            .map(|cells| cells.clone().filter(|&cell| axis.has_length(cell)).count())
+            .collect();
+        Self {
+            degree,
+            of_cell,
+            shares,
+            support,
+            long,
+            slots,
+            of_slot,
+        }
     }
 
     /// Number of function `a` of a cell.
@@ -106,8 +122,18 @@ impl Knots {
         if degree == 0 {
             return f64::from(u8::from(T[k] <= t[j] && t[j] < T[k + 1]));
         }
-        let part = |from: usize, length: f64, share: f64| if T[from + degree] > T[from] { length * share } else { 0.0 };
-        let rising = part(k, (t[j + degree] - T[k]) / (T[k + degree] - T[k]), self.share(k, j, degree - 1));
+        let part = |from: usize, length: f64, share: f64| {
+            if T[from + degree] > T[from] {
+                length * share
+            } else {
+                0.0
+            }
+        };
+        let rising = part(
+            k,
+            (t[j + degree] - T[k]) / (T[k + degree] - T[k]),
+            self.share(k, j, degree - 1),
+        );
         let falling = (T[k + degree + 1] - t[j + degree]) / (T[k + degree + 1] - T[k + 1]);
         rising + part(k + 1, falling, self.share(k + 1, j, degree - 1))
     }

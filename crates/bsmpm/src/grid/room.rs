@@ -86,7 +86,10 @@ mod tests {
 
     #[test]
     fn the_room_is_as_wide_as_what_is_coupled_and_a_part_of_the_extent() {
-        assert_eq!(around(&[100..164, 3..5], [1000, 1000], (2, 1), [1; 2]), [89..175, 0..10]);
+        assert_eq!(
+            around(&[100..164, 3..5], [1000, 1000], (2, 1), [1; 2]),
+            [89..175, 0..10]
+        );
         assert_eq!(around(&[1..9, 0..20], [12, 20], (3, 0), [1; 2]), [0..12, 0..20]);
     }
 
@@ -113,12 +116,19 @@ mod tests {
         let part = whole.within([10..30, 5..12]).window(14..20);
         for node in 0..part.nodes() {
             let at = part.node_at(node);
-            assert_eq!((part.node_index(&at), part.number_of(node)), (Some(node), whole.node_index(&at).unwrap()));
+            assert_eq!(
+                (part.node_index(&at), part.number_of(node)),
+                (Some(node), whole.node_index(&at).unwrap())
+            );
         }
         assert!((0..part.cells()).all(|cell| part.cell_index(&part.cell_at(cell)) == cell));
-        let held = (0..whole.nodes()).filter(|&node| part.node_index(&whole.node_at(node)).is_some()).count();
+        let held = (0..whole.nodes())
+            .filter(|&node| part.node_index(&whole.node_at(node)).is_some())
+            .count();
         assert_eq!((held, part.nodes()), (8 * 9, 8 * 9));
-        let held = (0..whole.cells()).filter(|&cell| part.holds(&whole.cell_at(cell))).count();
+        let held = (0..whole.cells())
+            .filter(|&cell| part.holds(&whole.cell_at(cell)))
+            .count();
         assert_eq!((held, part.cells()), (6 * 7, 6 * 7));
     }
 

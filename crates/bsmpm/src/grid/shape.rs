@@ -105,15 +105,25 @@ impl<const D: usize> Shape<D> {
         let x = points.places();
         let cells = threads::each(x.len(), |p| grid.locate(&x[p]).filter(|cell| grid.holds(cell)));
         for (p, located) in cells.iter().enumerate() {
-            let outside = || StepError::Outside { id: points.id(p), x: x[p].as_slice().to_vec() };
+            let outside = || StepError::Outside {
+                id: points.id(p),
+                x: x[p].as_slice().to_vec(),
+            };
             let located = located.as_ref().ok_or_else(outside)?;
             let cell = grid.cell_index(located);
             match self.patches.last_mut() {
                 Some(patch) if patch.cell == cell => patch.points.end = p + 1,
-                _ => self.patches.push(Patch { cell, first_node: grid.first_node(located), points: p..p + 1 }),
+                _ => self.patches.push(Patch {
+                    cell,
+                    first_node: grid.first_node(located),
+                    points: p..p + 1,
+                }),
             }
         }
-        debug_assert!(self.patches.is_sorted_by(|a, b| a.cell < b.cell), "points must be sorted by cell");
+        debug_assert!(
+            self.patches.is_sorted_by(|a, b| a.cell < b.cell),
+            "points must be sorted by cell"
+        );
         threads::change(&mut self.rows[..x.len() * 2 * D * W], 2 * D * W, |p, row| {
             let Some(cell) = &cells[p] else { return };
             for (axis, row) in row.chunks_exact_mut(2 * W).enumerate() {
@@ -144,7 +154,10 @@ impl<const D: usize> Shape<D> {
         let inside = |k: usize| (0..D).all(|axis| k / self.width.pow(axis as u32) % self.width < width);
         let mut lower = Self {
             width,
-            offsets: (0..self.offsets.len()).filter(|&k| inside(k)).map(|k| self.offsets[k]).collect(),
+            offsets: (0..self.offsets.len())
+                .filter(|&k| inside(k))
+                .map(|k| self.offsets[k])
+                .collect(),
             patches: self.patches.clone(),
             columns: self.columns.clone(),
             extent: self.extent,
@@ -233,14 +246,19 @@ impl<const D: usize> Shape<D> {
     pub(crate) fn support<const W: usize>(&self, p: usize) -> PointSupport<'_, D, W> {
         let size = 2 * D * W;
         debug_assert_eq!(self.stride, 2 * W, "lowered functions have values only");
-        PointSupport { rows: &self.rows[p * size..(p + 1) * size] }
+        PointSupport {
+            rows: &self.rows[p * size..(p + 1) * size],
+        }
     }
 
     /// Rows of values of point `p`, the first of each axis at its multiple of the stride.
     #[inline(always)]
     pub(crate) fn values<const W: usize>(&self, p: usize) -> Values<'_, D, W> {
         let size = D * self.stride;
-        Values { rows: &self.rows[p * size..(p + 1) * size], stride: self.stride }
+        Values {
+            rows: &self.rows[p * size..(p + 1) * size],
+            stride: self.stride,
+        }
     }
 
     /// N_Ip of every node of point `p`, axis 0 slowest, for sums over a patch.

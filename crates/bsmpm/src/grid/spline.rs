@@ -36,7 +36,9 @@ impl KnotVector {
         if !(1..=MAX_ORDER).contains(&order) {
             return Err(GridError::Order(order));
         }
-        let &[from, .., last] = breakpoints else { return Err(GridError::Breakpoints) };
+        let &[from, .., last] = breakpoints else {
+            return Err(GridError::Breakpoints);
+        };
         let length = last - from;
         let mut knots = vec![0.0; order];
         knots.extend(breakpoints.iter().map(|x| x - from));
@@ -52,7 +54,11 @@ impl KnotVector {
         if (1..knots.len() - order - 1).any(|i| torn(&knots[i..=i + order])) {
             return Err(GridError::Breakpoints);
         }
-        Ok(Self { order, knots, inverse_cell: None })
+        Ok(Self {
+            order,
+            knots,
+            inverse_cell: None,
+        })
     }
 
     /// Polynomial order q.

@@ -198,7 +198,10 @@ fn scatter_columns<const D: usize, const C: usize, F: FnMut(Range<usize>, &mut P
     let mut contributions = nothing(shape, count * C);
     let sums = apart(&mut contributions);
     share(sums.len(), &|index| {
-        let (column, sums) = (&shape.columns()[index], &mut *sums[index].lock().expect("the column's only thread"));
+        let (column, sums) = (
+            &shape.columns()[index],
+            &mut *sums[index].lock().expect("the column's only thread"),
+        );
         let (first, mut fill) = (column.column * shape.extent().1, filling(column));
         let mut block = [[0.0; C]; MOST_NODES];
         for number in column.patches.clone() {
@@ -243,7 +246,11 @@ fn at_points<const D: usize, S, T: Clone + Send>(
         }
         found[p - points.start].clone()
     };
-    (0..shape.len()).into_par_iter().with_min_len(CHUNK).map_init(begin, of_point).collect()
+    (0..shape.len())
+        .into_par_iter()
+        .with_min_len(CHUNK)
+        .map_init(begin, of_point)
+        .collect()
 }
 
 /// Contributions of no point yet, `width` numbers a node and level.
@@ -272,7 +279,13 @@ fn gathered<const D: usize, const C: usize>(
     };
     let mut pairs = [[0.0; C]; MOST_NODES];
     gather(nodal, shape.offsets(), first, (2 * group, 2 * groups), block);
-    gather(nodal, merged.offsets(number), first, (2 * group + 1, 2 * groups), &mut pairs);
+    gather(
+        nodal,
+        merged.offsets(number),
+        first,
+        (2 * group + 1, 2 * groups),
+        &mut pairs,
+    );
     *block = merged.combine((number, group), [*block, pairs]);
 }
 

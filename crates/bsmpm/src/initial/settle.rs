@@ -76,9 +76,18 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
     (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
 ) -> Result<Settling, StepError> {
     let model = &model.settling();
-    let Criteria { force, max_iterations, .. } = model.criteria;
-    let criteria = Criteria { energy: ANY, force: WITHIN * force, max_iterations };
-    let sought = &Model { criteria, ..model.clone() };
+    let Criteria {
+        force, max_iterations, ..
+    } = model.criteria;
+    let criteria = Criteria {
+        energy: ANY,
+        force: WITHIN * force,
+        max_iterations,
+    };
+    let sought = &Model {
+        criteria,
+        ..model.clone()
+    };
     let at_rest = vec![0.0; model.grid.nodes() * D];
     let (mut held, mut counts, mut rounds) = (None::<Vec<f64>>, Counts::default(), 0);
     let (mut left, mut part) = (1.0_f64, 1.0_f64);
@@ -89,23 +98,44 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
         let is_balanced =
             balance.measure() <= model.criteria.force || RoundOff::of(&problem).covers(&balance, &problem);
         if is_balanced && (left == 0.0 || rounds == 0 && super::balance(model, points, halo)?.yielding == 0) {
-            return Ok(Settling { rounds, evaluations: counts.evaluations });
+            return Ok(Settling {
+                rounds,
+                evaluations: counts.evaluations,
+            });
         }
         if rounds == MOST_ROUNDS {
             let worst = worst_nodes(&problem, &balance);
-            return Err(StepError::Unbalanced { rounds, force: balance.measure(), worst });
+            return Err(StepError::Unbalanced {
+                rounds,
+                force: balance.measure(),
+                worst,
+            });
         }
         // What is out of balance at first, the stress beyond yield returned, is held by forces that go.
         let (held, next) = (held.get_or_insert(balance.f_oob), (left - part).max(0.0));
-        start.nodes.f_ext.iter_mut().zip(&*held).for_each(|(force, held)| *force -= next * held);
+        start
+            .nodes
+            .f_ext
+            .iter_mut()
+            .zip(&*held)
+            .for_each(|(force, held)| *force -= next * held);
         let around = (&mut start.attachments, &*points);
-        let found =
-            solve::contact::find(sought, &start.shape, &mut start.nodes, around, &at_rest, (halo, solver), &mut counts);
+        let found = solve::contact::find(
+            sought,
+            &start.shape,
+            &mut start.nodes,
+            around,
+            &at_rest,
+            (halo, solver),
+            &mut counts,
+        );
         match found {
             Ok(found) => {
                 let (answers, state) = commit::answers(model, &found.trial, points, halo)?;
                 let (_, traction) =
-                    start.attachments.conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
+                    start
+                        .attachments
+                        .conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
                 points.surface.traction = traction;
                 for (p, answer) in answers.iter().enumerate() {
                     points.b_e.set(p, answer.b_e);

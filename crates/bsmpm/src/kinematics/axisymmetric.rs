@@ -51,7 +51,17 @@ impl Kinematics<2> for Axisymmetric {
     #[inline(always)]
     fn gradient<R: Real>(grad: &SMatrix<R, 2, 3>) -> Tensor<R> {
         let zero = grad[(0, 0)].like(0.0);
-        Tensor::new(grad[(0, 0)], grad[(0, 1)], zero, grad[(1, 0)], grad[(1, 1)], zero, zero, zero, grad[(0, 2)])
+        Tensor::new(
+            grad[(0, 0)],
+            grad[(0, 1)],
+            zero,
+            grad[(1, 0)],
+            grad[(1, 1)],
+            zero,
+            zero,
+            zero,
+            grad[(0, 2)],
+        )
     }
 
     #[inline(always)]

@@ -35,7 +35,17 @@ impl Kinematics<2> for PlaneStrain {
     #[inline(always)]
     fn gradient<R: Real>(grad: &SMatrix<R, 2, 2>) -> Tensor<R> {
         let zero = grad[(0, 0)].like(0.0);
-        Tensor::new(grad[(0, 0)], grad[(0, 1)], zero, grad[(1, 0)], grad[(1, 1)], zero, zero, zero, zero)
+        Tensor::new(
+            grad[(0, 0)],
+            grad[(0, 1)],
+            zero,
+            grad[(1, 0)],
+            grad[(1, 1)],
+            zero,
+            zero,
+            zero,
+            zero,
+        )
     }
 
     #[inline(always)]
@@ -67,7 +77,10 @@ impl Kinematics<2> for PlaneStrain {
         let (row_x, row_y) = ((a * xx + b * xy, a * xy + b * yy), (c * xx + d * xy, c * xy + d * yy));
         let normal = dF[(2, 2)] * dF[(2, 2)] * zz;
         let zero = a.like(0.0);
-        let (along, across) = ([row_x.0 * a + row_x.1 * b, row_y.0 * c + row_y.1 * d], row_x.0 * c + row_x.1 * d);
+        let (along, across) = (
+            [row_x.0 * a + row_x.1 * b, row_y.0 * c + row_y.1 * d],
+            row_x.0 * c + row_x.1 * d,
+        );
         Symmetric([along[0], along[1], normal, across, zero, zero])
     }
 

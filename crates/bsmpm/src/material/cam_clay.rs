@@ -54,8 +54,19 @@ impl CamClay {
         let moduli = elastic.moduli();
         let (swelling, compression) = (kappa / (1.0 - kappa), lambda / (1.0 - lambda));
         let (hardening, reference) = (compression - swelling, swelling * moduli.bulk());
-        let constants = Constants { swelling, hardening, ratio, mu: moduli.mu, reference };
-        Self { elastic, moduli, numbers: [kappa, lambda, ratio, preconsolidation, ocr], constants }
+        let constants = Constants {
+            swelling,
+            hardening,
+            ratio,
+            mu: moduli.mu,
+            reference,
+        };
+        Self {
+            elastic,
+            moduli,
+            numbers: [kappa, lambda, ratio, preconsolidation, ocr],
+            constants,
+        }
     }
 
     /// The pressure at which the bulk modulus is that of the elastic part, Pa.
@@ -82,7 +93,11 @@ impl Constants {
         let share = self.swelling * self.hardening / (self.swelling + self.hardening);
         let lost = logarithm(before / (pressure * (r * r + 1.0))) * share;
         let preconsolidation = before * exponential(lost / -self.hardening);
-        (lost, preconsolidation, preconsolidation * r * (self.ratio / (3.0 * self.mu)) / (r * r + 1.0))
+        (
+            lost,
+            preconsolidation,
+            preconsolidation * r * (self.ratio / (3.0 * self.mu)) / (r * r + 1.0),
+        )
     }
 
     /// The stress ratio over M at which the plastic strain lies along the normal of the ellipse: where
@@ -173,7 +188,12 @@ impl Law for CamClay {
     fn energy(&self, eps: [f64; 3]) -> f64 {
         let volume = eps[0] + eps[1] + eps[2];
         let squares: f64 = eps.iter().map(|eps| (eps - volume / 3.0).powi(2)).sum();
-        let Constants { swelling, reference, mu, .. } = self.constants;
+        let Constants {
+            swelling,
+            reference,
+            mu,
+            ..
+        } = self.constants;
         swelling * reference * (-volume / swelling).exp() + mu * squares
     }
 
@@ -181,7 +201,11 @@ impl Law for CamClay {
         let (mean, _, norm) = split(tau);
         let [.., preconsolidation, ocr] = self.numbers;
         let slope = 1.5_f64.sqrt() * norm / self.constants.ratio;
-        state[0] = if preconsolidation > 0.0 { preconsolidation } else { ocr * (slope * slope / -mean - mean) };
+        state[0] = if preconsolidation > 0.0 {
+            preconsolidation
+        } else {
+            ocr * (slope * slope / -mean - mean)
+        };
     }
 
     #[inline(always)]
@@ -197,11 +221,18 @@ impl Law for CamClay {
         let (none, pressure, q) = (mean.like(0.0), -mean, norm * 1.5_f64.sqrt());
         let yields = !constants.excess((pressure, q), before).at_most(none);
         let shear = q / (3.0 * constants.mu);
-        let r = if R::any(yields) { constants.solve((pressure, shear), before) } else { none };
+        let r = if R::any(yields) {
+            constants.solve((pressure, shear), before)
+        } else {
+            none
+        };
         let (lost, after, kept) = constants.at_ratio(r, pressure, before);
         let square = r * r + 1.0;
         // Of the two parts of the plastic strain along the normal: one of them may be none.
-        let along = [after * (r * r - 1.0) / square, after * r * (2.0 / constants.ratio) / square];
+        let along = [
+            after * (r * r - 1.0) / square,
+            after * r * (2.0 / constants.ratio) / square,
+        ];
         let multiplier = (lost * along[0] + (shear - kept) * along[1]) / (along[0] * along[0] + along[1] * along[1]);
         let returned = after / square;
         let over = R::choose(none.below(q), returned * r * constants.ratio / q, none);
@@ -230,12 +261,27 @@ impl Law for CamClay {
     /// `∂P/∂ε_v, ∂P/∂ε_s; ∂Q/∂ε_v, ∂Q/∂ε_s` of a return along the normal (Borja and Tamagnini, 1998, section 3.3), its
     /// three equations linearised and the multiplier eliminated.
     fn tangent(flow: &CamClayReturn<f64>, _moduli: Moduli) -> Tensor {
-        let CamClayReturn { constants, direction: n, preconsolidation, multiplier, .. } = *flow;
-        let Constants { swelling, hardening, ratio, mu, .. } = constants;
+        let CamClayReturn {
+            constants,
+            direction: n,
+            preconsolidation,
+            multiplier,
+            ..
+        } = *flow;
+        let Constants {
+            swelling,
+            hardening,
+            ratio,
+            mu,
+            ..
+        } = constants;
         let (mean, bulk) = (-flow.pressure, flow.pressure / swelling);
         let growth = preconsolidation / hardening; // of p_c with the volume
         let normal = [2.0 * mean + preconsolidation, 2.0 * flow.deviator / (ratio * ratio)];
-        let scale = [1.0 + multiplier * (2.0 * bulk + growth), 1.0 + multiplier * 6.0 * mu / (ratio * ratio)];
+        let scale = [
+            1.0 + multiplier * (2.0 * bulk + growth),
+            1.0 + multiplier * 6.0 * mu / (ratio * ratio),
+        ];
         let rate = [normal[0] * bulk + mean * growth, 3.0 * mu * normal[1]]; // of f with elastic strains
         let drive = rate[0] * normal[0] / scale[0] + rate[1] * normal[1] / scale[1];
         let moved = |volume: f64, shear: f64| {
@@ -244,7 +290,10 @@ impl Law for CamClay {
             }
             let right = [(1.0 + multiplier * growth) * volume, shear];
             let by = (rate[0] * right[0] / scale[0] + rate[1] * right[1] / scale[1] - mean * growth * volume) / drive;
-            [bulk * (right[0] - normal[0] * by) / scale[0], 3.0 * mu * (right[1] - normal[1] * by) / scale[1]]
+            [
+                bulk * (right[0] - normal[0] * by) / scale[0],
+                3.0 * mu * (right[1] - normal[1] * by) / scale[1],
+            ]
         };
         let turned = 2.0 * mu * flow.kept();
         let along = (2.0_f64 / 3.0).sqrt();
@@ -266,7 +315,10 @@ impl Law for CamClay {
 
     fn elastic_moduli(flow: &CamClayReturn<f64>, moduli: Moduli) -> Moduli {
         let bulk = flow.pressure / flow.constants.swelling;
-        Moduli { lambda: bulk - moduli.mu * (2.0 / 3.0), ..moduli }
+        Moduli {
+            lambda: bulk - moduli.mu * (2.0 / 3.0),
+            ..moduli
+        }
     }
 
     fn elastic_energy(flow: &CamClayReturn<f64>, moduli: Moduli, _eps: [f64; 3]) -> f64 {

@@ -25,8 +25,14 @@ impl Match {
     fn slopes(self, angle: f64) -> (f64, f64) {
         let (sin, cos, tan) = (angle.sin(), angle.cos(), angle.tan());
         match self {
-            Self::Outer => (6.0 * sin / (3_f64.sqrt() * (3.0 - sin)), 6.0 * cos / (3_f64.sqrt() * (3.0 - sin))),
-            Self::Inner => (6.0 * sin / (3_f64.sqrt() * (3.0 + sin)), 6.0 * cos / (3_f64.sqrt() * (3.0 + sin))),
+            Self::Outer => (
+                6.0 * sin / (3_f64.sqrt() * (3.0 - sin)),
+                6.0 * cos / (3_f64.sqrt() * (3.0 - sin)),
+            ),
+            Self::Inner => (
+                6.0 * sin / (3_f64.sqrt() * (3.0 + sin)),
+                6.0 * cos / (3_f64.sqrt() * (3.0 + sin)),
+            ),
             Self::PlaneStrain => {
                 let root = (9.0 + 12.0 * tan * tan).sqrt();
                 (3.0 * tan / root, 3.0 / root)
@@ -68,7 +74,16 @@ impl DruckerPrager {
     pub fn new(elastic: Elastic, (friction, dilation, cohesion): (f64, f64, f64), fit: Match) -> Self {
         let (moduli, (eta, xi)) = (elastic.moduli(), fit.slopes(friction));
         let slopes = [eta, fit.slopes(dilation).0];
-        Self { elastic, friction, dilation, cohesion, fit, moduli, slopes, strength: xi * cohesion }
+        Self {
+            elastic,
+            friction,
+            dilation,
+            cohesion,
+            fit,
+            moduli,
+            slopes,
+            strength: xi * cohesion,
+        }
     }
 
     /// Shear strength over that of Mohr-Coulomb where plastic flow goes on in plane strain.
@@ -79,7 +94,11 @@ impl DruckerPrager {
     pub fn strength_in_plane_strain(&self) -> f64 {
         let [eta, eta_psi] = self.slopes;
         let (sin, cos) = self.friction.sin_cos();
-        let slope = if sin > 0.0 { eta / sin } else { self.fit.slopes(0.0).1 / cos };
+        let slope = if sin > 0.0 {
+            eta / sin
+        } else {
+            self.fit.slopes(0.0).1 / cos
+        };
         slope * (1.0 - eta_psi * eta_psi / 3.0).sqrt() / (1.0 - eta * eta_psi / 3.0)
     }
 
@@ -139,8 +158,17 @@ impl Law for DruckerPrager {
         let excess = root + mean * eta - self.strength;
         let yields = !excess.at_most(zero);
         if !R::any(yields) {
-            let flow = DruckerPragerReturn { apex: yields, direction: deviator, kept: root, slopes: self.slopes };
-            return Projection { tau: trial, yields, flow };
+            let flow = DruckerPragerReturn {
+                apex: yields,
+                direction: deviator,
+                kept: root,
+                slopes: self.slopes,
+            };
+            return Projection {
+                tau: trial,
+                yields,
+                flow,
+            };
         }
         let bulk = self.moduli.bulk();
         let p = mean - excess * (bulk * eta_psi) / (mu + bulk * eta * eta_psi);
@@ -151,7 +179,16 @@ impl Law for DruckerPrager {
         let returned = three(|k| R::choose(apex, tip, p + kept * deviator[k]));
         let tau = three(|k| R::choose(yields, returned[k], trial[k]));
         let direction = three(|k| deviator[k] / norm);
-        Projection { tau, yields, flow: DruckerPragerReturn { apex, direction, kept, slopes: self.slopes } }
+        Projection {
+            tau,
+            yields,
+            flow: DruckerPragerReturn {
+                apex,
+                direction,
+                kept,
+                slopes: self.slopes,
+            },
+        }
     }
 
     #[inline]
@@ -163,7 +200,12 @@ impl Law for DruckerPrager {
     /// `2μ r (I₄ - ⅓ I ⊗ I) + 2μ (1 - r - μ A) n ⊗ n - √2 μ A K (η n ⊗ I + η_ψ I ⊗ n) + K (1 - K η η_ψ A) I ⊗ I`;
     /// at the tip 0.
     fn tangent(flow: &DruckerPragerReturn<f64>, moduli: Moduli) -> Tensor {
-        let DruckerPragerReturn { direction: n, kept, slopes: [eta, eta_psi], apex } = *flow;
+        let DruckerPragerReturn {
+            direction: n,
+            kept,
+            slopes: [eta, eta_psi],
+            apex,
+        } = *flow;
         if apex {
             return Tensor::zeros();
         }

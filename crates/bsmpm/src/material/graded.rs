@@ -19,7 +19,11 @@ pub struct Profile {
 impl Profile {
     /// The same everywhere.
     pub fn constant(value: f64) -> Self {
-        Self { value, at: 0.0, per_metre: 0.0 }
+        Self {
+            value,
+            at: 0.0,
+            per_metre: 0.0,
+        }
     }
 
     /// The parameter at a height, m from the grid's lower corner.
@@ -49,19 +53,37 @@ impl Graded {
     /// The `law` with other numbers: Young's modulus (Pa) and its parameters by the height, for points that are placed
     /// at `heights` (m from the grid's lower corner); its strength divided by `reduction` (section 3.2).
     pub fn new(law: &Material, young: Profile, parameters: Vec<Profile>, heights: Range<f64>, reduction: f64) -> Self {
-        let stiffest = Elastic { young: young.bounds(&heights).1, ..law.elastic().clone() };
-        let most: Vec<f64> = parameters.iter().map(|parameter| parameter.bounds(&heights).1).collect();
-        Self { young, law: Box::new(law.with(stiffest.clone(), &most)), stiffest, parameters, reduction }
+        let stiffest = Elastic {
+            young: young.bounds(&heights).1,
+            ..law.elastic().clone()
+        };
+        let most: Vec<f64> = parameters
+            .iter()
+            .map(|parameter| parameter.bounds(&heights).1)
+            .collect();
+        Self {
+            young,
+            law: Box::new(law.with(stiffest.clone(), &most)),
+            stiffest,
+            parameters,
+            reduction,
+        }
     }
 
     /// The same in a step of the length `dt`, s; `None` where that does not matter to it.
     pub(super) fn over(&self, dt: f64) -> Option<Self> {
-        Some(Self { law: Box::new(self.law.over(dt)?), ..self.clone() })
+        Some(Self {
+            law: Box::new(self.law.over(dt)?),
+            ..self.clone()
+        })
     }
 
     /// The same with its strength divided by a further `factor`.
     pub(super) fn reduced(self, factor: f64) -> Self {
-        Self { reduction: self.reduction * factor, ..self }
+        Self {
+            reduction: self.reduction * factor,
+            ..self
+        }
     }
 
     /// The elastic part where it is stiffest.
@@ -88,11 +110,16 @@ impl Graded {
 
     /// The law at a height.
     pub fn at(&self, height: f64) -> Material {
-        let elastic = Elastic { young: self.young.at(height), ..self.stiffest };
+        let elastic = Elastic {
+            young: self.young.at(height),
+            ..self.stiffest
+        };
         let mut parameters = [0.0; MOST_PARAMETERS];
         for (parameter, profile) in parameters.iter_mut().zip(&self.parameters) {
             *parameter = profile.at(height);
         }
-        self.law.with(elastic, &parameters[..self.parameters.len()]).reduced(self.reduction)
+        self.law
+            .with(elastic, &parameters[..self.parameters.len()])
+            .reduced(self.reduction)
     }
 }

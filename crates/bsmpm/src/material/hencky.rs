@@ -40,7 +40,11 @@ impl Law for Hencky {
     #[inline(always)]
     fn project<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, ()> {
         let never = trial[0].like(1.0).below(trial[0].like(0.0));
-        Projection { tau: trial, yields: never, flow: () }
+        Projection {
+            tau: trial,
+            yields: never,
+            flow: (),
+        }
     }
 
     fn branch(_flow: &()) -> Branch {

@@ -101,7 +101,11 @@ pub trait Law {
     /// In 0..2μ, since returns shrink stress differences; here 0 of equal strains, as what is near an edge returns to
     /// it. The bounds keep rounding of a tiny difference inside.
     fn chord(_flow: &Self::Flow<f64>, moduli: Moduli, (tau, eps): (f64, f64)) -> f64 {
-        if eps > 0.0 { (tau / eps).max(0.0).min(2.0 * moduli.mu) } else { 0.0 }
+        if eps > 0.0 {
+            (tau / eps).max(0.0).min(2.0 * moduli.mu)
+        } else {
+            0.0
+        }
     }
 
     /// Principal elastic strains after a return to the stress `tau`, Pa.
@@ -187,8 +191,11 @@ pub enum Separation {
 }
 
 /// Parameters of laws with friction: φ, ψ, c.
-pub(super) const FRICTIONAL: [Variable; 3] =
-    [Variable::new("friction_angle", "rad"), Variable::new("dilation_angle", "rad"), Variable::new("cohesion", "Pa")];
+pub(super) const FRICTIONAL: [Variable; 3] = [
+    Variable::new("friction_angle", "rad"),
+    Variable::new("dilation_angle", "rad"),
+    Variable::new("cohesion", "Pa"),
+];
 
 /// These parameters, with ψ at most φ.
 pub(super) fn frictional(parameters: &[f64]) -> [f64; 3] {

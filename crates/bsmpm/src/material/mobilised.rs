@@ -29,7 +29,11 @@ impl Material {
         let mut lower = 0.5 * upper * f64::from(u8::from(upper > 1.0));
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (lower + upper);
-            if outside(middle) { lower = middle } else { upper = middle }
+            if outside(middle) {
+                lower = middle
+            } else {
+                upper = middle
+            }
         }
         // What is less than can be determined is nothing.
         if lower == 0.0 { 0.0 } else { upper }

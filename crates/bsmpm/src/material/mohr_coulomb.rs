@@ -104,8 +104,15 @@ impl<P: Real> Slopes<P> {
     #[inline(always)]
     fn right(self, moduli: Moduli) -> YieldEdge<P> {
         let ((minus, plus), one) = (self.flow(), self.sin_psi.like(1.0));
-        let (dev, trace) = (self.sin_psi * (6.0 * moduli.bulk()), (self.sin_psi + 3.0) * (2.0 * moduli.mu));
-        YieldEdge::new([self.ratio(), one, one], [minus, plus, plus], [trace - dev * 2.0, trace + dev, trace + dev])
+        let (dev, trace) = (
+            self.sin_psi * (6.0 * moduli.bulk()),
+            (self.sin_psi + 3.0) * (2.0 * moduli.mu),
+        );
+        YieldEdge::new(
+            [self.ratio(), one, one],
+            [minus, plus, plus],
+            [trace - dev * 2.0, trace + dev, trace + dev],
+        )
     }
 
     /// The left edge (τ₁ = τ₂), on which the potentials of the planes 1-3 and 2-3 flow together.
@@ -114,7 +121,11 @@ impl<P: Real> Slopes<P> {
         let ((minus, plus), one) = (self.flow(), self.sin_psi.like(1.0));
         let trace = (self.sin_psi.like(3.0) - self.sin_psi) * (2.0 * moduli.mu);
         let (dev, ratio) = (self.sin_psi * (6.0 * moduli.bulk()), self.ratio());
-        YieldEdge::new([ratio, ratio, one], [minus, minus, plus], [trace - dev, trace - dev, trace + dev * 2.0])
+        YieldEdge::new(
+            [ratio, ratio, one],
+            [minus, minus, plus],
+            [trace - dev, trace - dev, trace + dev * 2.0],
+        )
     }
 }
 
@@ -134,7 +145,11 @@ impl Slopes {
                 moduli.tangent() - Tensor::from_fn(|i, j| d_m[i] * d_n[j] / scale)
             }
             edge => {
-                let edge = if edge == Branch::LeftEdge { self.left(moduli) } else { self.right(moduli) };
+                let edge = if edge == Branch::LeftEdge {
+                    self.left(moduli)
+                } else {
+                    self.right(moduli)
+                };
                 let scale = 18.0 * moduli.bulk() * moduli.mu / edge.slope;
                 Tensor::from_fn(|i, j| scale * edge.along[i] * edge.kept[j])
             }
@@ -146,7 +161,12 @@ impl<P: Real> YieldEdge<P> {
     #[inline(always)]
     fn new(along: [P; 3], kept: [P; 3], weight: [P; 3]) -> Self {
         let slope = weight[0] * along[0] + weight[1] * along[1] + weight[2] * along[2];
-        Self { along, kept, weight, slope }
+        Self {
+            along,
+            kept,
+            weight,
+            slope,
+        }
     }
 
     /// τ₃ after the return to this edge: `τ₃ = w · (τ_trial - o)/(w · along)`, o the edge's point where τ₃ = 0.
@@ -186,7 +206,11 @@ impl<P: Real> Pyramid<P> {
         let excess = self.excess(trial);
         let inside = excess.at_most(excess.like(0.0));
         let none = inside & !inside;
-        let mut corners = Corners { left_edge: none, right_edge: none, apex: none };
+        let mut corners = Corners {
+            left_edge: none,
+            right_edge: none,
+            apex: none,
+        };
         let mut tau = trial;
         if R::any(!inside) {
             let (face, keeps_order) = self.face(trial, excess);
@@ -221,7 +245,9 @@ impl<P: Real> Pyramid<P> {
     /// the apex (never when sin φ = 0).
     #[inline(always)]
     fn edge<R: With<P>>(&self, trial: [R; 3]) -> ([R; 3], R::Mask, R::Mask) {
-        let Self { slopes, moduli, shift, .. } = *self;
+        let Self {
+            slopes, moduli, shift, ..
+        } = *self;
         let (upper, lower) = (trial[0] - trial[1], trial[1] - trial[2]);
         let ((minus, plus), none) = (slopes.flow(), shift.like(0.0));
         let is_right = (lower * plus).below(upper * minus);
@@ -231,16 +257,30 @@ impl<P: Real> Pyramid<P> {
         );
         let third = R::choose(is_right, right, left);
         let first = third * slopes.ratio() + shift;
-        ([first, R::choose(is_right, third, first), third], is_right, third.at_most(first))
+        (
+            [first, R::choose(is_right, third, first), third],
+            is_right,
+            third.at_most(first),
+        )
     }
 }
 
 impl MohrCoulomb {
     /// A law with friction angle 0 ≤ φ < π/2 (rad), dilation angle 0 ≤ ψ ≤ φ (rad) and cohesion c ≥ 0 (Pa).
     pub fn new(elastic: Elastic, friction: f64, dilation: f64, cohesion: f64) -> Self {
-        let slopes = Slopes { sin_phi: friction.sin(), sin_psi: dilation.sin() };
+        let slopes = Slopes {
+            sin_phi: friction.sin(),
+            sin_psi: dilation.sin(),
+        };
         let pyramid = Pyramid::new(elastic.moduli(), slopes, cohesion * friction.cos());
-        Self { elastic, friction, dilation, cohesion, separation: Separation::default(), pyramid }
+        Self {
+            elastic,
+            friction,
+            dilation,
+            cohesion,
+            separation: Separation::default(),
+            pyramid,
+        }
     }
 
     /// The law with another answer to what comes apart.
@@ -280,7 +320,14 @@ impl Law for MohrCoulomb {
     #[inline(always)]
     fn project<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, MohrCoulombReturn<R>> {
         let (tau, yields, corners) = self.pyramid.project(trial);
-        Projection { tau, yields, flow: MohrCoulombReturn { corners, slopes: self.pyramid.slopes } }
+        Projection {
+            tau,
+            yields,
+            flow: MohrCoulombReturn {
+                corners,
+                slopes: self.pyramid.slopes,
+            },
+        }
     }
 
     #[inline]

@@ -33,7 +33,12 @@ impl MuI {
     /// A law by `[μ_s, μ_2, I_0, d, ρ_s]`: 0 ≤ μ_s ≤ μ_2, the others positive, d in m and ρ_s in kg/m3.
     pub fn new(elastic: Elastic, parameters: [f64; 5]) -> Self {
         let moduli = elastic.moduli();
-        Self { elastic, parameters, moduli, quickness: 0.0 }
+        Self {
+            elastic,
+            parameters,
+            moduli,
+            quickness: 0.0,
+        }
     }
 
     /// The plastic shear γ of a return from √J₂ = T at the pressure p: the root of `(T - G γ)(I_0 √p + k γ) =
@@ -85,12 +90,18 @@ impl Law for MuI {
     fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
         let mut own: [f64; 5] = std::array::from_fn(|k| parameters[k]);
         own[1] = own[1].max(own[0]);
-        Self { quickness: self.quickness, ..Self::new(elastic, own) }
+        Self {
+            quickness: self.quickness,
+            ..Self::new(elastic, own)
+        }
     }
 
     fn over(&self, dt: f64) -> Option<Self> {
         let [.., diameter, density] = self.parameters;
-        Some(Self { quickness: diameter * density.sqrt() / dt, ..self.clone() })
+        Some(Self {
+            quickness: diameter * density.sqrt() / dt,
+            ..self.clone()
+        })
     }
 
     /// `f = √J₂ - μ_s p`.
@@ -112,8 +123,12 @@ impl Law for MuI {
             let returned = R::choose(apex, zero, mean + kept * deviator[k]);
             R::choose(yields, returned, trial[k])
         });
-        let flow =
-            MuIReturn { apex, direction: three(|k| deviator[k] / norm), kept, rates: [rates[0] * mu, rates[1] * mu] };
+        let flow = MuIReturn {
+            apex,
+            direction: three(|k| deviator[k] / norm),
+            kept,
+            rates: [rates[0] * mu, rates[1] * mu],
+        };
         Projection { tau, yields, flow }
     }
 
@@ -125,7 +140,12 @@ impl Law for MuI {
     /// With n the direction, r what is kept of √J₂ and a, b the rates of what is taken with T and p:
     /// `2μ r (I₄ - ⅓ I ⊗ I) + 2μ (1 - r - a) n ⊗ n + √2 K b n ⊗ I + K I ⊗ I`; at the tip 0.
     fn tangent(flow: &MuIReturn<f64>, moduli: Moduli) -> Tensor {
-        let MuIReturn { apex, direction: n, kept, rates: [with_root, with_pressure] } = *flow;
+        let MuIReturn {
+            apex,
+            direction: n,
+            kept,
+            rates: [with_root, with_pressure],
+        } = *flow;
         if apex {
             return Tensor::zeros();
         }

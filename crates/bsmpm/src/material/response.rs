@@ -18,7 +18,13 @@ pub struct Response {
 impl Response {
     #[inline]
     pub(super) fn new(b_trial: Symmetric, trial: Spectrum, moduli: Moduli, (tau, flowed): ([f64; 3], Flowed)) -> Self {
-        Self { b_trial, trial, moduli, tau, flowed }
+        Self {
+            b_trial,
+            trial,
+            moduli,
+            tau,
+            flowed,
+        }
     }
 
     /// Of elastic material to a left Cauchy-Green tensor, by Lamé's moduli in Pa.
@@ -27,7 +33,12 @@ impl Response {
     /// As [`Material::respond`](super::Material::respond).
     pub fn elastic(b: &Symmetric, (lambda, mu): (f64, f64)) -> Result<Self, MaterialError> {
         let (spectrum, moduli) = (Spectrum::of(b)?, Moduli { lambda, mu });
-        Ok(Self::new(*b, spectrum, moduli, (moduli.stress(spectrum.eps), Flowed::Elastic)))
+        Ok(Self::new(
+            *b,
+            spectrum,
+            moduli,
+            (moduli.stress(spectrum.eps), Flowed::Elastic),
+        ))
     }
 
     /// Hencky strain of the trial: `½ ln b_trial`.
@@ -169,7 +180,11 @@ impl Response {
     /// yields.
     fn unreturned(&self) -> Option<Self> {
         let yields = self.branch() != Branch::Elastic;
-        yields.then(|| Self { tau: self.moduli.stress(self.trial.eps), flowed: Flowed::Elastic, ..*self })
+        yields.then(|| Self {
+            tau: self.moduli.stress(self.trial.eps),
+            flowed: Flowed::Elastic,
+            ..*self
+        })
     }
 
     /// Puts the law's state after the return in the place of that before it.

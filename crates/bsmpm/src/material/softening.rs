@@ -80,12 +80,26 @@ impl SofteningMohrCoulomb {
         };
         let (first, last) = (numbers(peak), numbers(residual));
         let (moduli, change) = (elastic.moduli(), [0, 1, 2].map(|k| last[k] - first[k]));
-        Self { elastic, moduli, peak, residual, strain, decay, first, change, rate: None, dt: f64::INFINITY }
+        Self {
+            elastic,
+            moduli,
+            peak,
+            residual,
+            strain,
+            decay,
+            first,
+            change,
+            rate: None,
+            dt: f64::INFINITY,
+        }
     }
 
     /// The same law with a cohesion that grows with the rate of shear.
     pub fn at_rate(self, rate: Rate) -> Self {
-        Self { rate: Some(rate), ..self }
+        Self {
+            rate: Some(rate),
+            ..self
+        }
     }
 
     /// How much more the cohesion is where κ has grown by `growth` in the step, and what that grows by with it.
@@ -124,7 +138,11 @@ impl SofteningMohrCoulomb {
     fn pyramid<R: Real>(&self, kappa: R, growth: R) -> Pyramid<R> {
         let (progress, _) = self.progress(kappa);
         let [sin_phi, sin_psi, strength] = three(|k| progress * self.change[k] + self.first[k]);
-        let strength = if self.rate.is_some() { strength * self.quickened(growth).0 } else { strength };
+        let strength = if self.rate.is_some() {
+            strength * self.quickened(growth).0
+        } else {
+            strength
+        };
         Pyramid::new(self.moduli, Slopes { sin_phi, sin_psi }, strength)
     }
 
@@ -210,18 +228,35 @@ impl Law for SofteningMohrCoulomb {
     }
 
     fn parameters(&self) -> Vec<f64> {
-        let Self { peak, residual, strain, .. } = *self;
+        let Self {
+            peak, residual, strain, ..
+        } = *self;
         vec![peak.0, peak.1, peak.2, residual.0, residual.1, residual.2, strain]
     }
 
     /// ψ is at most φ.
     fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
-        let [friction, dilation, cohesion, last_friction, last_dilation, last_cohesion, strain] = parameters[..7]
+        let [
+            friction,
+            dilation,
+            cohesion,
+            last_friction,
+            last_dilation,
+            last_cohesion,
+            strain,
+        ] = parameters[..7]
         else {
             unreachable!("seven numbers")
         };
-        let (peak, residual) = ((friction, dilation, cohesion), (last_friction, last_dilation, last_cohesion));
-        Self { rate: self.rate, dt: self.dt, ..Self::new(elastic, peak, residual, strain, self.decay) }
+        let (peak, residual) = (
+            (friction, dilation, cohesion),
+            (last_friction, last_dilation, last_cohesion),
+        );
+        Self {
+            rate: self.rate,
+            dt: self.dt,
+            ..Self::new(elastic, peak, residual, strain, self.decay)
+        }
     }
 
     fn over(&self, dt: f64) -> Option<Self> {
@@ -237,7 +272,11 @@ impl Law for SofteningMohrCoulomb {
     fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, SofteningReturn<R>> {
         let kappa = state[0];
         let (_, yields, _) = self.pyramid(kappa, kappa.like(0.0)).project(trial);
-        let growth = if R::any(yields) { self.solve(trial, kappa) } else { kappa.like(0.0) };
+        let growth = if R::any(yields) {
+            self.solve(trial, kappa)
+        } else {
+            kappa.like(0.0)
+        };
         let growth = R::choose(yields, growth, kappa.like(0.0));
         let (pyramid, (_, rate)) = (self.pyramid(kappa + growth, growth), self.progress(kappa + growth));
         let (projected, _, corners) = pyramid.project(trial);
@@ -248,7 +287,19 @@ impl Law for SofteningMohrCoulomb {
             rates[2] = rates[2] * quickened + pyramid.strength / quickened * slope;
         }
         let (slopes, strength) = (pyramid.slopes, pyramid.strength);
-        Projection { tau, yields, flow: SofteningReturn { corners, trial, tau, slopes, strength, rates, growth } }
+        Projection {
+            tau,
+            yields,
+            flow: SofteningReturn {
+                corners,
+                trial,
+                tau,
+                slopes,
+                strength,
+                rates,
+                growth,
+            },
+        }
     }
 
     #[inline]
@@ -282,7 +333,11 @@ impl Law for SofteningMohrCoulomb {
             return self;
         }
         let (peak, residual) = (reduced(self.peak, factor), reduced(self.residual, factor));
-        Self { rate: self.rate, dt: self.dt, ..Self::new(self.elastic, peak, residual, self.strain, self.decay) }
+        Self {
+            rate: self.rate,
+            dt: self.dt,
+            ..Self::new(self.elastic, peak, residual, self.strain, self.decay)
+        }
     }
 
     fn hardens(&self) -> bool {
@@ -320,7 +375,10 @@ impl SofteningReturn<f64> {
             }
             let (second, (a, b, c, d)) = (right(planes[1]), (entry(0, 0), entry(0, 1), entry(1, 0), entry(1, 1)));
             let determinant = a * d - b * c;
-            [(first * d - b * second) / determinant, (a * second - c * first) / determinant]
+            [
+                (first * d - b * second) / determinant,
+                (a * second - c * first) / determinant,
+            ]
         };
         let stressed = |direction: &dyn Fn(Plane) -> [f64; 3], by: [f64; 2]| {
             let mut sum = [0.0; 3];

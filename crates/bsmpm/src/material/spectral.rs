@@ -54,7 +54,11 @@ impl Spectrum {
     /// Of eigenvalues that are sums of a component of b and a gain.
     #[inline(always)]
     fn of_sums([x, y, z]: [(f64, f64); 3], axes: Axes<f64>) -> Result<Self, MaterialError> {
-        let principal = [Principal::of(x.0, x.1)?, Principal::of(y.0, y.1)?, Principal::of(z.0, z.1)?];
+        let principal = [
+            Principal::of(x.0, x.1)?,
+            Principal::of(y.0, y.1)?,
+            Principal::of(z.0, z.1)?,
+        ];
         Ok(Self::sorted(principal, axes))
     }
 
@@ -104,7 +108,11 @@ impl<R: Real> Spectrum<R> {
             return None;
         }
         // Not by a closure: not inlined, it would make a call of every operation between lanes.
-        let principal = [Principal::of_sum(sums[0]), Principal::of_sum(sums[1]), Principal::of_sum(sums[2])];
+        let principal = [
+            Principal::of_sum(sums[0]),
+            Principal::of_sum(sums[1]),
+            Principal::of_sum(sums[2]),
+        ];
         Some(Self::sorted(principal, axes))
     }
 
@@ -112,8 +120,17 @@ impl<R: Real> Spectrum<R> {
     #[inline(always)]
     fn sorted([x, y, z]: [Principal<R>; 3], axes: Axes<R>) -> Self {
         let below = [x.eps.below(y.eps), y.eps.below(z.eps), x.eps.below(z.eps)];
-        let found = Self { b: [x.b, y.b, z.b], eps: [x.eps, y.eps, z.eps], below, axes };
-        Self { b: found.descending(found.b), eps: found.descending(found.eps), ..found }
+        let found = Self {
+            b: [x.b, y.b, z.b],
+            eps: [x.eps, y.eps, z.eps],
+            below,
+            axes,
+        };
+        Self {
+            b: found.descending(found.b),
+            eps: found.descending(found.eps),
+            ..found
+        }
     }
 
     /// What belongs to the axes, in the order of the values.
@@ -122,7 +139,11 @@ impl<R: Real> Spectrum<R> {
         let [a, b, c] = self.below;
         [
             R::choose(a | c, R::choose(b, z, y), x),
-            R::choose(a, R::choose(c, R::choose(b, y, z), x), R::choose(c, x, R::choose(b, z, y))),
+            R::choose(
+                a,
+                R::choose(c, R::choose(b, y, z), x),
+                R::choose(c, x, R::choose(b, z, y)),
+            ),
             R::choose(a & c, x, R::choose(b & !a, y, z)),
         ]
     }
@@ -161,7 +182,14 @@ impl<R: Real> Spectrum<R> {
         let (first, third, n) = (s[0] - s[1], s[2] - s[1], [component(0), component(1), component(2)]);
         let at = |i: usize, j: usize| first * (n[i][0] * n[j][0]) + third * (n[i][2] * n[j][2]);
         let spherical = s[1];
-        Symmetric([spherical + at(0, 0), spherical + at(1, 1), spherical + at(2, 2), at(0, 1), at(1, 2), at(0, 2)])
+        Symmetric([
+            spherical + at(0, 0),
+            spherical + at(1, 1),
+            spherical + at(2, 2),
+            at(0, 1),
+            at(1, 2),
+            at(0, 2),
+        ])
     }
 }
 
@@ -179,7 +207,10 @@ impl<R: Real> Principal<R> {
     fn of_sum((start, gain): (R, R)) -> Self {
         let (b, strain) = (start + gain, (start - 1.0) + gain);
         let far = !(b - 1.0).magnitude().below(b.like(NEAR));
-        Self { b, eps: artanh(strain / (strain + 2.0)).unless(far, [start, gain], logarithm) }
+        Self {
+            b,
+            eps: artanh(strain / (strain + 2.0)).unless(far, [start, gain], logarithm),
+        }
     }
 }
 
@@ -188,7 +219,11 @@ impl Principal<f64> {
     #[inline(always)]
     fn of(start: f64, gain: f64) -> Result<Self, MaterialError> {
         let b = start + gain;
-        if b < SMALLEST { Err(MaterialError::NotPositive(b)) } else { Ok(Self::of_sum((start, gain))) }
+        if b < SMALLEST {
+            Err(MaterialError::NotPositive(b))
+        } else {
+            Ok(Self::of_sum((start, gain)))
+        }
     }
 }
 
@@ -268,15 +303,23 @@ mod tests {
     fn the_series_is_the_logarithm() {
         for k in -999..=999 {
             let strain = 1e-4 * f64::from(k);
-            let found = Principal::of(1.0, strain).ok().map_or(f64::NAN, |principal| principal.eps);
+            let found = Principal::of(1.0, strain)
+                .ok()
+                .map_or(f64::NAN, |principal| principal.eps);
             // A unit in the last place of either.
-            assert!((found - 0.5 * strain.ln_1p()).abs() <= 4.5e-16 * found.abs(), "{strain}: {found:e}");
+            assert!(
+                (found - 0.5 * strain.ln_1p()).abs() <= 4.5e-16 * found.abs(),
+                "{strain}: {found:e}"
+            );
         }
     }
 
     #[test]
     fn an_eigenvalue_that_cancels_is_none_however_large_the_terms() {
-        assert!(matches!(Principal::of(2.6e27, -2.6e27), Err(MaterialError::NotPositive(_))));
+        assert!(matches!(
+            Principal::of(2.6e27, -2.6e27),
+            Err(MaterialError::NotPositive(_))
+        ));
     }
 
     #[test]

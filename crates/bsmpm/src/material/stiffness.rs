@@ -17,8 +17,10 @@ const FLOW: f64 = 1e-10;
 /// 1/sqrt(6)
 const FRAC_1_SQRT_6: f64 = 0.408_248_290_463_863;
 /// Orthonormal principal strains without volume.
-const SHAPES: [[f64; 3]; 2] =
-    [[FRAC_1_SQRT_2, -FRAC_1_SQRT_2, 0.0], [FRAC_1_SQRT_6, FRAC_1_SQRT_6, -2.0 * FRAC_1_SQRT_6]];
+const SHAPES: [[f64; 3]; 2] = [
+    [FRAC_1_SQRT_2, -FRAC_1_SQRT_2, 0.0],
+    [FRAC_1_SQRT_6, FRAC_1_SQRT_6, -2.0 * FRAC_1_SQRT_6],
+];
 
 /// A stiffness as a linear map of the symmetric part of a displacement gradient, in the axes of the trial b.
 #[derive(Clone, Copy, Debug)]
@@ -66,7 +68,10 @@ impl Stiffness {
         let n = |a: usize, i: usize| self.axes[(a, i)];
         let dyad = |a: usize| seen(&Tensor::from_fn(|i, j| n(a, i) * n(a, j)));
         let pair = |(a, b): (usize, usize)| seen(&Tensor::from_fn(|i, j| n(a, i) * n(b, j) + n(b, i) * n(a, j)));
-        let (v, w) = ([dyad(0), dyad(1), dyad(2)], [pair(PAIRS[0]), pair(PAIRS[1]), pair(PAIRS[2])]);
+        let (v, w) = (
+            [dyad(0), dyad(1), dyad(2)],
+            [pair(PAIRS[0]), pair(PAIRS[1]), pair(PAIRS[2])],
+        );
         let mut moduli = G::moduli(|_, _| G::zeros());
         for m in 0..3 {
             let [a, b, c] = [self.principal[(m, 0)], self.principal[(m, 1)], self.principal[(m, 2)]];

@@ -31,7 +31,12 @@ impl VonMises {
     /// A law with the uniaxial yield stress σ_y > 0 (Pa) and the hardening modulus H ≥ 0 (Pa), dσ_y per plastic strain.
     pub fn new(elastic: Elastic, yield_stress: f64, hardening: f64) -> Self {
         let moduli = elastic.moduli();
-        Self { elastic, moduli, yield_stress, hardening }
+        Self {
+            elastic,
+            moduli,
+            yield_stress,
+            hardening,
+        }
     }
 
     /// The stress that q reaches after the plastic strain of `state`, Pa.
@@ -76,8 +81,17 @@ impl Law for VonMises {
         let (q, strength) = (norm * 1.5_f64.sqrt(), self.strength(state));
         let yields = !q.at_most(strength);
         if !R::any(yields) {
-            let flow = VonMisesReturn { direction: deviator, kept: q, followed: 0.0, growth: q };
-            return Projection { tau: trial, yields, flow };
+            let flow = VonMisesReturn {
+                direction: deviator,
+                kept: q,
+                followed: 0.0,
+                growth: q,
+            };
+            return Projection {
+                tau: trial,
+                yields,
+                flow,
+            };
         }
         let shear = 3.0 * self.moduli.mu;
         let growth = (q - strength) / (shear + self.hardening);
@@ -86,7 +100,16 @@ impl Law for VonMises {
         let tau = three(|k| R::choose(yields, mean + kept * deviator[k], trial[k]));
         let direction = three(|k| deviator[k] / norm);
         let followed = self.hardening / (shear + self.hardening);
-        Projection { tau, yields, flow: VonMisesReturn { direction, kept, followed, growth } }
+        Projection {
+            tau,
+            yields,
+            flow: VonMisesReturn {
+                direction,
+                kept,
+                followed,
+                growth,
+            },
+        }
     }
 
     fn branch(_flow: &VonMisesReturn<f64>) -> Branch {
@@ -95,7 +118,12 @@ impl Law for VonMises {
 
     /// `K I ⊗ I + 2μ (r (I₄ - ⅓ I ⊗ I) + (r' - r) n ⊗ n)`: r = q/q_trial along the surface, r' = dq/dq_trial across it.
     fn tangent(flow: &VonMisesReturn<f64>, moduli: Moduli) -> Tensor {
-        let VonMisesReturn { direction: n, kept, followed, .. } = *flow;
+        let VonMisesReturn {
+            direction: n,
+            kept,
+            followed,
+            ..
+        } = *flow;
         let entry = |a: usize, b: usize| {
             let deviator = if a == b { 2.0 / 3.0 } else { -1.0 / 3.0 };
             moduli.bulk() + 2.0 * moduli.mu * (kept * deviator + (followed - kept) * n[a] * n[b])

@@ -32,7 +32,10 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
     }
     // Of a cell one rank alone has points.
     let volume = |points: &CellPoints| points.iter().map(|[_, volume]| volume).sum::<f64>();
-    let mut sums: Vec<f64> = held.iter().flat_map(|points| [points.len() as f64, volume(points)]).collect();
+    let mut sums: Vec<f64> = held
+        .iter()
+        .flat_map(|points| [points.len() as f64, volume(points)])
+        .collect();
     halo.reduce(&mut sums);
     let mut front = 0.0_f64;
     for at in (0..held.len()).rev() {
@@ -40,14 +43,18 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
             break;
         }
         // Copies of a breakpoint bound cells without length, which hold nothing.
-        let before = (0..at / strands).rev().find(|&column| grid.axes()[0].has_length(column));
+        let before = (0..at / strands)
+            .rev()
+            .find(|&column| grid.axes()[0].has_length(column));
         let before = before.map(|column| column * strands + at % strands);
         let cells = [before, Some(at)].map(|cell| cell.filter(|&cell| sums[2 * cell] > 0.0));
         let cell = std::array::from_fn(|axis| match axis {
             0 => at / strands,
             _ if axis == D - 1 => row,
             _ => {
-                grid.axes()[axis + 1..D - 1].iter().fold(at % strands, |at, axis| at / axis.cells())
+                grid.axes()[axis + 1..D - 1]
+                    .iter()
+                    .fold(at % strands, |at, axis| at / axis.cells())
                     % grid.axes()[axis].cells()
             }
         });
@@ -57,7 +64,11 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
         if cells[1].is_some() && most >= wanted * (1.0 - f64::EPSILON.sqrt()) {
             let all = of_all_ranks(&held, &sums, &cells, halo);
             let first = grid.axes()[0].breakpoint(cell[0]);
-            front = front.max(end_of_full(&all, size[0], wanted).filter(|&x| x >= first).unwrap_or(0.0));
+            front = front.max(
+                end_of_full(&all, size[0], wanted)
+                    .filter(|&x| x >= first)
+                    .unwrap_or(0.0),
+            );
         }
     }
     front
@@ -75,7 +86,10 @@ fn of_all_ranks(held: &[CellPoints], sums: &[f64], cells: &[Option<usize>], halo
     for &cell in cells.iter().flatten() {
         let from = numbers.len();
         numbers.resize(from + 2 * sums[2 * cell] as usize, 0.0);
-        numbers[from..].iter_mut().zip(held[cell].as_flattened()).for_each(|(slot, number)| *slot = *number);
+        numbers[from..]
+            .iter_mut()
+            .zip(held[cell].as_flattened())
+            .for_each(|(slot, number)| *slot = *number);
     }
     halo.reduce(&mut numbers);
     let mut all: CellPoints = numbers.chunks_exact(2).map(|point| [point[0], point[1]]).collect();

@@ -63,12 +63,27 @@ pub fn shift<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, halo: &
     let mut all = Neighbours::new();
     for item in halo.gather(&message).chunks_exact(8) {
         let [axis, below, across, above, material] = [0, 1, 2, 3, 4].map(|at| item[at] as usize);
-        let side = LineSide { axis, below, across, is_above: above == 1 };
-        keep(&mut all, side, material, Neighbour { distance: item[5], moved: item[6], is_c0: item[7] == 1.0 });
+        let side = LineSide {
+            axis,
+            below,
+            across,
+            is_above: above == 1,
+        };
+        keep(
+            &mut all,
+            side,
+            material,
+            Neighbour {
+                distance: item[5],
+                moved: item[6],
+                is_c0: item[7] == 1.0,
+            },
+        );
     }
     let permeability = |material: usize, axis: usize| {
         let soil = flow.and_then(|flow| flow.soils.get(material)?.as_ref());
-        soil.and_then(|soil| soil.permeability.as_ref()).map(|permeability| permeability.along[axis])
+        soil.and_then(|soil| soil.permeability.as_ref())
+            .map(|permeability| permeability.along[axis])
     };
     let mut found = InterfaceShift::default();
     for (&(side, lower), below) in all.iter().filter(|((side, _), _)| !side.is_above) {
@@ -89,13 +104,18 @@ pub fn shift<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, halo: &
 }
 
 fn keep(all: &mut Neighbours, side: LineSide, material: usize, neighbour: Neighbour) {
-    let nearest = all.get(&(side, material)).map_or(neighbour, |known| known.nearer(neighbour));
+    let nearest = all
+        .get(&(side, material))
+        .map_or(neighbour, |known| known.nearer(neighbour));
     all.insert((side, material), nearest);
 }
 
 /// Of the points of this rank, in the half of a cell next to each line.
 fn neighbours<K, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Neighbours {
-    let (grid, flows) = (&model.grid, model.water.as_ref().is_some_and(|water| water.flow.is_some()));
+    let (grid, flows) = (
+        &model.grid,
+        model.water.as_ref().is_some_and(|water| water.flow.is_some()),
+    );
     let mut found = Neighbours::new();
     for p in 0..points.len() {
         let start: Vector<D> = points.x[p] - points.u[p];
@@ -104,16 +124,31 @@ fn neighbours<K, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Nei
             let knots = &grid.axes()[axis];
             let [lower, upper] = [0, 1].map(|end| knots.breakpoint(cell[axis] + end));
             let is_upper = start[axis] > 0.5 * (lower + upper);
-            let Some(line) = line_beside(knots, cell[axis], is_upper) else { continue };
+            let Some(line) = line_beside(knots, cell[axis], is_upper) else {
+                continue;
+            };
             if !line.is_c0 && !flows {
                 continue;
             }
             let others = (0..D).filter(|other| *other != axis);
             let across = others.fold(0, |number, other| number * grid.axes()[other].cells() + cell[other]);
-            let side = LineSide { axis, below: line.below, across, is_above: !is_upper };
-            let distance = if is_upper { upper - start[axis] } else { start[axis] - lower };
+            let side = LineSide {
+                axis,
+                below: line.below,
+                across,
+                is_above: !is_upper,
+            };
+            let distance = if is_upper {
+                upper - start[axis]
+            } else {
+                start[axis] - lower
+            };
             let moved = points.u[p][axis].abs() / (upper - lower);
-            let neighbour = Neighbour { distance, moved, is_c0: line.is_c0 };
+            let neighbour = Neighbour {
+                distance,
+                moved,
+                is_c0: line.is_c0,
+            };
             keep(&mut found, side, usize::from(points.material[p]), neighbour);
         }
     }
@@ -134,5 +169,8 @@ fn line_beside(knots: &KnotVector, cell: usize, is_upper: bool) -> Option<InnerL
     } else {
         [(0..cell).rev().find(has_length)?, cell]
     };
-    Some(InnerLine { below, is_c0: above - below >= knots.order() })
+    Some(InnerLine {
+        below,
+        is_c0: above - below >= knots.order(),
+    })
 }

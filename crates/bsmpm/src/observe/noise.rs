@@ -38,8 +38,18 @@ pub fn stress_noise<const D: usize>(
     component: usize,
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
-    let squares = Squares::of(grid, (points, &Part::Whole), weighting, &|p| points.sigma.at(p).0[component], halo)?;
-    Ok(if squares.mean == 0.0 { Noise::default() } else { squares.noise(squares.mean) })
+    let squares = Squares::of(
+        grid,
+        (points, &Part::Whole),
+        weighting,
+        &|p| points.sigma.at(p).0[component],
+        halo,
+    )?;
+    Ok(if squares.mean == 0.0 {
+        Noise::default()
+    } else {
+        squares.noise(squares.mean)
+    })
 }
 
 /// Noise of the pressure -tr(sigma)/3, Pa, over the points of a part.
@@ -64,7 +74,11 @@ pub fn relative_pressure_noise<const D: usize>(
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
     let squares = Squares::of(grid, (points, &Part::Whole), weighting, &|p| pressure(points, p), halo)?;
-    Ok(if squares.mean <= ROUNDING * young { Noise::default() } else { squares.noise(squares.mean) })
+    Ok(if squares.mean <= ROUNDING * young {
+        Noise::default()
+    } else {
+        squares.noise(squares.mean)
+    })
 }
 
 /// -tr(sigma)/3 of a point, Pa.
@@ -110,11 +124,18 @@ impl Squares {
         let sums = halo.total(&sums);
         let [count, absolute, average, plane] = [0, 1, 2, 3].map(|k| sums[k]);
         let mean = |sum: f64| if count > 0.0 { sum / count } else { 0.0 };
-        Ok(Self { mean: mean(absolute), average: mean(average), plane: mean(plane) })
+        Ok(Self {
+            mean: mean(absolute),
+            average: mean(average),
+            plane: mean(plane),
+        })
     }
 
     fn noise(&self, unit: f64) -> Noise {
-        Noise { about_average: self.average.sqrt() / unit, about_plane: self.plane.sqrt() / unit }
+        Noise {
+            about_average: self.average.sqrt() / unit,
+            about_plane: self.plane.sqrt() / unit,
+        }
     }
 }
 
@@ -178,7 +199,11 @@ fn planes<const D: usize>(
             if !(0..D).all(|axis| grid.axes()[axis].has_length(cell[axis])) {
                 continue;
             }
-            add_moved(moments, &between(grid, (&own, &cell)), &mut sums[offset * WIDTH..(offset + 1) * WIDTH]);
+            add_moved(
+                moments,
+                &between(grid, (&own, &cell)),
+                &mut sums[offset * WIDTH..(offset + 1) * WIDTH],
+            );
         }
     }
     let sums = halo.sum(&sums);
@@ -229,5 +254,9 @@ fn fit<const D: usize>(sum: &[f64]) -> [f64; MOST] {
     }
     let mean = [right[0] / matrix[(0, 0)], 0.0, 0.0, 0.0];
     let singular = matrix.determinant() <= SINGULAR * matrix[(0, 0)].powi(D as i32 + 1);
-    if singular { mean } else { matrix.lu().solve(&right).map_or(mean, |plane| plane.into()) }
+    if singular {
+        mean
+    } else {
+        matrix.lu().solve(&right).map_or(mean, |plane| plane.into())
+    }
 }

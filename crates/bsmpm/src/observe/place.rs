@@ -45,7 +45,13 @@ pub fn values<K: Kinematics<D>, const D: usize, const C: usize>(
     halo: &dyn Halo,
 ) -> Vec<Option<[f64; C]>> {
     let scale = places.iter().map(|at| cell_about(grid, at)).collect();
-    let fit = Fit { points, places, configuration, weight: K::weight, scale };
+    let fit = Fit {
+        points,
+        places,
+        configuration,
+        weight: K::weight,
+        scale,
+    };
     let materials = fit.materials(halo);
     let width = PRODUCTS + TERMS * C;
     let mut sums = vec![Exact::ZERO; places.len() * width];
@@ -140,7 +146,10 @@ impl<const D: usize> Fit<'_, D> {
         };
         let mut materials: Vec<f64> = nearest.iter().zip(&ids).map(own).collect();
         halo.maximum(&mut materials);
-        materials.iter().map(|&material| (material >= 0.0).then_some(material as u16)).collect()
+        materials
+            .iter()
+            .map(|&material| (material >= 0.0).then_some(material as u16))
+            .collect()
     }
 }
 
@@ -150,7 +159,11 @@ const REACH: f64 = 1.5;
 /// The quadratic B-spline about 0 whose pieces have the length 1.
 fn spline(x: f64) -> f64 {
     let x = x.abs();
-    if x <= 0.5 { 0.75 - x * x } else { 0.5 * (REACH - x).powi(2) }
+    if x <= 0.5 {
+        0.75 - x * x
+    } else {
+        0.5 * (REACH - x).powi(2)
+    }
 }
 
 /// Edges of the cell that a place is in, m; `None` outside the grid.

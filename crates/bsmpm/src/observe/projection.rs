@@ -26,5 +26,10 @@ pub fn projected_pressure<K, const D: usize>(
     for sums in nodal.chunks_exact_mut(2) {
         sums[1] = if sums[0] > 0.0 { sums[1] / sums[0] } else { 0.0 };
     }
-    Ok(transfer::to_points_grouped(&shape, grouped, &nodal, |_, [_, mean]: [f64; 2]| mean))
+    Ok(transfer::to_points_grouped(
+        &shape,
+        grouped,
+        &nodal,
+        |_, [_, mean]: [f64; 2]| mean,
+    ))
 }

@@ -59,7 +59,12 @@ pub fn section_forces<K: Kinematics<D>, const D: usize>(
         }
     }
     let sums = halo.total(&sums);
-    SectionForces { normal: sums[0], shear: [sums[1], sums[2]], torsion: sums[3], bending: [sums[4], sums[5]] }
+    SectionForces {
+        normal: sums[0],
+        shear: [sums[1], sums[2]],
+        torsion: sums[3],
+        bending: [sums[4], sums[5]],
+    }
 }
 
 /// A section that cuts the grid.
@@ -93,7 +98,10 @@ impl<const D: usize> SectionPlane<D> {
     fn of(grid: &Grid<D>, section: &Section<D>) -> Option<Self> {
         let middles = section.lines.iter().map(|[from, to]| (from + to) / 2.0);
         let middle = onto(grid, middles.sum::<Vector<D>>() / section.lines.len() as f64);
-        let mut lines = section.lines.iter().map(|[from, to]| (spatial(&(to - from)), (to - from).norm()));
+        let mut lines = section
+            .lines
+            .iter()
+            .map(|[from, to]| (spatial(&(to - from)), (to - from).norm()));
         let (first, length) = lines.next().filter(|(_, length)| *length > 0.0)?;
         let first = first / length;
         let (second, other) = match lines.next() {
@@ -111,7 +119,16 @@ impl<const D: usize> SectionPlane<D> {
         });
         let reach = 0.5 * smear + (grid.order() as f64 + 1.0) * support;
         let (along, halves) = ([first, second], [0.5 * length, 0.5 * other]);
-        Some(Self { middle, along, across, halves, round: section.round, smear, reach, ramps: vec![[0.0, 1.0]] })
+        Some(Self {
+            middle,
+            along,
+            across,
+            halves,
+            round: section.round,
+            smear,
+            reach,
+            ramps: vec![[0.0, 1.0]],
+        })
     }
 
     /// With ramps that neither what holds the material nor a load on its surface has a part in: its forces are those at
@@ -150,7 +167,11 @@ impl<const D: usize> SectionPlane<D> {
         let least = (0.5 * grid.order() as f64 + 1.0) * self.smear;
         let far = 2.0 * least + 3.0 * self.smear;
         let mut ends = [-far; 2];
-        let wide = Self { reach: far, ramps: Vec::new(), ..*self };
+        let wide = Self {
+            reach: far,
+            ramps: Vec::new(),
+            ..*self
+        };
         for p in 0..points.len() {
             let volume = points.volume[p] * points.F.at(p).determinant() / K::weight(&points.x[p]);
             if wide.share(&points.x[p], volume) > 0.0 {
@@ -165,7 +186,11 @@ impl<const D: usize> SectionPlane<D> {
             let held = room + 0.25 * self.smear >= face;
             // At a face one node moves what is held, and the cells of as many nodes as the order are shorter: a ramp
             // over them moves another weight than is beyond its middle.
-            let at_face = Side { room: face, least: 0.5 * grid.order() as f64 * self.smear, held };
+            let at_face = Side {
+                room: face,
+                least: 0.5 * grid.order() as f64 * self.smear,
+                held,
+            };
             if held { at_face } else { Side { room, least, held } }
         })
     }
@@ -178,7 +203,11 @@ impl<const D: usize> SectionPlane<D> {
             let tilt: f64 = (0..D - 1).map(|k| self.halves[k] * self.along[k][axis].abs()).sum();
             let tilt = if tilt < 0.25 * self.smear { tilt } else { 0.0 };
             let straight = if slope > 0.0 { length - at } else { at };
-            if slope == 0.0 { f64::INFINITY } else { (straight - tilt) / slope.abs() }
+            if slope == 0.0 {
+                f64::INFINITY
+            } else {
+                (straight - tilt) / slope.abs()
+            }
         };
         (0..D).map(distance).fold(f64::INFINITY, f64::min)
     }
@@ -204,7 +233,10 @@ impl<const D: usize> SectionPlane<D> {
         };
         let at = self.along.map(|along| apart.dot(&along));
         if self.round {
-            let (away, part) = (at[0].hypot(at[1]), (at[0] / self.halves[0]).hypot(at[1] / self.halves[1]));
+            let (away, part) = (
+                at[0].hypot(at[1]),
+                (at[0] / self.halves[0]).hypot(at[1] / self.halves[1]),
+            );
             // As far as the edge is on the ray through the point.
             return if part > 0.0 { within(away, away / part) } else { 1.0 };
         }
@@ -223,8 +255,13 @@ impl<const D: usize> SectionPlane<D> {
             let arm = spatial::<D>(&(place - self.middle));
             let beyond = self.beyond(arm.dot(&self.across));
             let gradient = spatial(&Vector::<D>::from_fn(|along, _| {
-                let factor =
-                    |axis: usize| if axis == along { rows[axis].1[number[axis]] } else { rows[axis].0[number[axis]] };
+                let factor = |axis: usize| {
+                    if axis == along {
+                        rows[axis].1[number[axis]]
+                    } else {
+                        rows[axis].0[number[axis]]
+                    }
+                };
                 (0..D).map(factor).product()
             }));
             slope += gradient * beyond;
@@ -251,7 +288,9 @@ fn force_and_moment<const D: usize>(
         let both = stress[(a, a)] * turn[b][a] - stress[(b, b)] * turn[a][b];
         let both = both + stress[(a, b)] * (turn[b][b] - turn[a][a]);
         let others = (0..D).filter(|c| ![a, b].contains(c));
-        others.fold(both, |sum, c| sum + stress[(a, c)] * turn[b][c] - stress[(b, c)] * turn[a][c])
+        others.fold(both, |sum, c| {
+            sum + stress[(a, c)] * turn[b][c] - stress[(b, c)] * turn[a][c]
+        })
     };
     let moment = Vector::<3>::from_fn(|c, _| {
         let [a, b] = [(c + 1) % 3, (c + 2) % 3];
@@ -264,9 +303,15 @@ fn force_and_moment<const D: usize>(
 /// goes with material whose motion is known to that.
 fn onto<const D: usize>(grid: &Grid<D>, place: Vector<D>) -> Vector<D> {
     let nearest = Vector::from_fn(|axis, _| place[axis].clamp(0.0, grid.axes()[axis].length()));
-    let Some(cell) = grid.locate(&nearest) else { return place };
+    let Some(cell) = grid.locate(&nearest) else {
+        return place;
+    };
     let (_, size) = grid.cell_box(&cell);
-    if (0..D).all(|axis| (place[axis] - nearest[axis]).abs() < 0.5 * size[axis]) { nearest } else { place }
+    if (0..D).all(|axis| (place[axis] - nearest[axis]).abs() < 0.5 * size[axis]) {
+        nearest
+    } else {
+        place
+    }
 }
 
 /// A vector in space; one of a plane has nothing along its normal.

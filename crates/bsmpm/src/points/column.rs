@@ -51,7 +51,10 @@ pub struct Rows {
 impl Rows {
     /// None yet.
     pub fn of(width: usize) -> Self {
-        Self { width, numbers: Vec::new() }
+        Self {
+            width,
+            numbers: Vec::new(),
+        }
     }
 
     /// Adds a row of zeros.
@@ -101,7 +104,9 @@ impl Column for Rows {
     }
     fn reorder(&mut self, order: &[u32]) {
         let mut numbers = Vec::with_capacity(order.len() * self.width);
-        order.iter().for_each(|&p| numbers.extend_from_slice(self.of_point(p as usize)));
+        order
+            .iter()
+            .for_each(|&p| numbers.extend_from_slice(self.of_point(p as usize)));
         self.numbers = numbers;
     }
     fn put(&self, p: usize, message: &mut Vec<u8>) {

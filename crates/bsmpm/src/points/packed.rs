@@ -31,7 +31,10 @@ impl Components for Tensor {
     #[inline(always)]
     fn with(places: &[usize], numbers: &[f64]) -> Self {
         let mut whole = Self::zeros();
-        places.iter().zip(numbers).for_each(|(&place, &number)| whole[place] = number);
+        places
+            .iter()
+            .zip(numbers)
+            .for_each(|(&place, &number)| whole[place] = number);
         whole
     }
 }
@@ -48,7 +51,10 @@ impl Components for Symmetric {
     #[inline(always)]
     fn with(places: &[usize], numbers: &[f64]) -> Self {
         let mut whole = Self::default();
-        places.iter().zip(numbers).for_each(|(&place, &number)| whole.0[place] = number);
+        places
+            .iter()
+            .zip(numbers)
+            .for_each(|(&place, &number)| whole.0[place] = number);
         whole
     }
 }
@@ -84,7 +90,11 @@ impl<const D: usize, T: Components> Packed<D, T> {
 
     /// Whether a tensor is zero wherever nothing is held.
     pub fn holds(tensor: &T) -> bool {
-        let mut others = tensor.numbers().iter().enumerate().filter(|(place, _)| !Self::PLACES.contains(place));
+        let mut others = tensor
+            .numbers()
+            .iter()
+            .enumerate()
+            .filter(|(place, _)| !Self::PLACES.contains(place));
         others.all(|(_, &number)| number == 0.0)
     }
 
@@ -109,7 +119,9 @@ impl<const D: usize, T: Components> Packed<D, T> {
     fn keep(numbers: &mut [f64], p: usize, tensor: T) {
         debug_assert!(Self::sends_all(&tensor), "of {:?} not all is held", tensor.numbers());
         let row = &mut numbers[p * Self::STRIDE..][..Self::STRIDE];
-        row.iter_mut().zip(Self::PLACES).for_each(|(number, &place)| *number = tensor.numbers()[place]);
+        row.iter_mut()
+            .zip(Self::PLACES)
+            .for_each(|(number, &place)| *number = tensor.numbers()[place]);
     }
 
     /// Gives point `p` the tensor `tensor`, which must be zero where nothing is held.
@@ -121,14 +133,22 @@ impl<const D: usize, T: Components> Packed<D, T> {
     /// The tensors by chunks of points, each for a thread at a time.
     pub fn apart(&mut self) -> Vec<Mutex<PackedChunk<'_, D, T>>> {
         let chunks = self.numbers.chunks_mut(Self::STRIDE * threads::CHUNK);
-        chunks.map(|numbers| Mutex::new(PackedChunk { numbers, whole: PhantomData })).collect()
+        chunks
+            .map(|numbers| {
+                Mutex::new(PackedChunk {
+                    numbers,
+                    whole: PhantomData,
+                })
+            })
+            .collect()
     }
 
     /// Adds a tensor for a further point, which must be zero where nothing is held.
     #[inline(always)]
     pub fn push(&mut self, tensor: T) {
         debug_assert!(Self::sends_all(&tensor), "of {:?} not all is held", tensor.numbers());
-        self.numbers.extend(Self::PLACES.iter().map(|&place| tensor.numbers()[place]));
+        self.numbers
+            .extend(Self::PLACES.iter().map(|&place| tensor.numbers()[place]));
     }
 
     /// Gives every point the tensor `tensor`, which must be zero where nothing is held.
@@ -167,7 +187,10 @@ impl<const D: usize, T: Components> FromIterator<T> for Packed<D, T> {
     fn from_iter<I: IntoIterator<Item = T>>(tensors: I) -> Self {
         let tensors = tensors.into_iter();
         let numbers = Vec::with_capacity(tensors.size_hint().0 * Self::STRIDE);
-        let mut held = Self { numbers, whole: PhantomData };
+        let mut held = Self {
+            numbers,
+            whole: PhantomData,
+        };
         tensors.for_each(|tensor| held.push(tensor));
         held
     }

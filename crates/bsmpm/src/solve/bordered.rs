@@ -24,7 +24,11 @@ impl<'a, const D: usize> Bordered<'a, D> {
         let (mut columns, blocks) = rigid.coupling(&problem.model.grid, halo);
         for column in &mut columns {
             problem.nodes.reduce(&mut [&mut column[..]], halo);
-            column.iter_mut().zip(&problem.nodes.free).filter(|(_, free)| !**free).for_each(|(c, _)| *c = 0.0);
+            column
+                .iter_mut()
+                .zip(&problem.nodes.free)
+                .filter(|(_, free)| !**free)
+                .for_each(|(c, _)| *c = 0.0);
         }
         let motions: Vec<(usize, usize)> = rigid.free_motions().collect();
         let entry = |row: usize, column: usize| {
@@ -33,7 +37,14 @@ impl<'a, const D: usize> Bordered<'a, D> {
         };
         let resists = DMatrix::from_fn(motions.len(), motions.len(), entry);
         debug_assert!(blocks.iter().all(|block| block.len() == MOTIONS * MOTIONS));
-        Self { solver, halo, columns, resists, solved: Vec::new(), inverse: None }
+        Self {
+            solver,
+            halo,
+            columns,
+            resists,
+            solved: Vec::new(),
+            inverse: None,
+        }
     }
 
     /// C^T of a nodal array.
@@ -76,10 +87,14 @@ impl<const D: usize> LinearSolver for Bordered<'_, D> {
                 self.solver.solve(column, &mut solved)?;
             }
             let seen = self.seen(&solved);
-            seen.iter().enumerate().for_each(|(row, seen)| condensed[(row, number)] -= seen);
+            seen.iter()
+                .enumerate()
+                .for_each(|(row, seen)| condensed[(row, number)] -= seen);
             self.solved.push(solved);
         }
-        self.inverse = condensed.try_inverse().filter(|inverse| inverse.iter().all(|entry| entry.is_finite()));
+        self.inverse = condensed
+            .try_inverse()
+            .filter(|inverse| inverse.iter().all(|entry| entry.is_finite()));
         Ok(())
     }
 
@@ -88,7 +103,10 @@ impl<const D: usize> LinearSolver for Bordered<'_, D> {
         if let Some(inverse) = &self.inverse {
             let motions = inverse * DVector::from_vec(self.seen(solution));
             for (column, motion) in self.solved.iter().zip(motions.iter()) {
-                solution.iter_mut().zip(column).for_each(|(u, column)| *u += motion * column);
+                solution
+                    .iter_mut()
+                    .zip(column)
+                    .for_each(|(u, column)| *u += motion * column);
             }
         }
         Ok(solved)

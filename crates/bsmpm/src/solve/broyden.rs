@@ -36,7 +36,11 @@ impl Broyden {
     /// Direction du from w = K_0^-1 f, `D` components a node. All dots come from one reduction.
     pub fn correct<const D: usize>(&mut self, w: Vec<f64>, halo: &dyn Halo) -> Vec<f64> {
         let du = self.product_form::<D>(w, halo);
-        self.steps.push(Step { s: du.clone(), s_squared: f64::NAN, z: Vec::new() });
+        self.steps.push(Step {
+            s: du.clone(),
+            s_squared: f64::NAN,
+            z: Vec::new(),
+        });
         du
     }
 
@@ -45,7 +49,9 @@ impl Broyden {
         if self.steps.len() == MOST {
             *self = Self::default();
         }
-        let Some(last) = self.steps.len().checked_sub(1) else { return w };
+        let Some(last) = self.steps.len().checked_sub(1) else {
+            return w;
+        };
         self.complete_products::<D>(&w, halo);
         let coefficients = self.coefficients();
         let (a, g) = (self.length, coefficients[last]);

@@ -37,17 +37,47 @@ pub fn find<K: Kinematics<D>, const D: usize>(
 ) -> Result<Found<K, D>, StepError> {
     let (faces, strips) = (model.boundary.has_contact(), model.boundary.has_strip_contact());
     if !faces && !strips && nodes.rigid.is_empty() {
-        return super::find(&Problem { model, shape, nodes, attachments, points, halo }, guess, solver, counts);
+        return super::find(
+            &Problem {
+                model,
+                shape,
+                nodes,
+                attachments,
+                points,
+                halo,
+            },
+            guess,
+            solver,
+            counts,
+        );
     }
     attachments.recall(guess);
-    let Criteria { energy, force, max_iterations } = model.criteria;
-    let criteria = Criteria { energy: energy.max(ROUGH), force: force.max(ROUGH), max_iterations };
-    let rough = Model { criteria, ..model.clone() };
+    let Criteria {
+        energy,
+        force,
+        max_iterations,
+    } = model.criteria;
+    let criteria = Criteria {
+        energy: energy.max(ROUGH),
+        force: force.max(ROUGH),
+        max_iterations,
+    };
+    let rough = Model {
+        criteria,
+        ..model.clone()
+    };
     let (mut u, mut history, mut is_rough, mut first_guess) = (guess.to_vec(), Vec::new(), true, true);
     let most = if nodes.rigid.is_empty() { MOST } else { MOST_AT_BODIES };
     for pass in 0..most {
         let judged = if is_rough { &rough } else { model };
-        let problem = Problem { model: judged, shape, nodes, attachments, points, halo };
+        let problem = Problem {
+            model: judged,
+            shape,
+            nodes,
+            attachments,
+            points,
+            halo,
+        };
         let found = match nodes.rigid.is_coupled() {
             true => super::find(&problem, &u, &mut Bordered::of(&problem, solver), counts),
             false => super::find(&problem, &u, solver, counts),
@@ -67,7 +97,11 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         history.extend(found.history.iter().copied());
         first_guess &= found.first_guess;
         let doubt = (DOUBT * judged.criteria.force * found.scale, model.grid.smallest_edge());
-        let mut corrected = if strips { attachments.correct(&found.u, doubt.0, halo) } else { 0 };
+        let mut corrected = if strips {
+            attachments.correct(&found.u, doubt.0, halo)
+        } else {
+            0
+        };
         corrected += nodes.rigid.correct(&found.u, (doubt.0, pass), halo)?;
         nodes.contacts.first_energy = found.first_energy;
         if faces {
@@ -76,7 +110,11 @@ pub fn find<K: Kinematics<D>, const D: usize>(
             nodes.count(halo);
         }
         if corrected == 0 && !is_rough {
-            return Ok(Found { history, first_guess, ..found });
+            return Ok(Found {
+                history,
+                first_guess,
+                ..found
+            });
         }
         is_rough &= corrected > 0;
         u = found.u;

@@ -40,7 +40,13 @@ impl Convergence {
     pub fn new<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>) -> Self {
         let (criteria, round_off) = (problem.model.criteria, RoundOff::of(problem));
         let first_energy = problem.nodes.contacts.first_energy;
-        Self { criteria, round_off, first_energy, history: Vec::new(), settled: None }
+        Self {
+            criteria,
+            round_off,
+            first_energy,
+            history: Vec::new(),
+            settled: None,
+        }
     }
 
     /// Whether a state is in equilibrium before any direction is known: a guess far below the force tolerance, or
@@ -66,7 +72,10 @@ impl Convergence {
 
     /// The measure of the water, where it flows: what is out of balance over what is stored, flows or leaves.
     pub fn water(&self, balance: &Balance) -> Option<f64> {
-        balance.water.as_ref().map(|water| water.measure(self.round_off.of_water()))
+        balance
+            .water
+            .as_ref()
+            .map(|water| water.measure(self.round_off.of_water()))
     }
 
     /// Norm of what is round-off in the forces, N.
@@ -91,9 +100,17 @@ impl Convergence {
 
     /// Takes the measures of a state `u` and the direction that `method` found there; whether both criteria hold.
     pub fn reaches(&mut self, method: Method, energy: f64, (u, balance): (&[f64], &Balance)) -> bool {
-        let (energy, force) = (energy / self.first_energy.unwrap_or(f64::INFINITY), self.measure(balance));
+        let (energy, force) = (
+            energy / self.first_energy.unwrap_or(f64::INFINITY),
+            self.measure(balance),
+        );
         let water = self.water(balance);
-        self.history.push(Measures { energy, force, water, method });
+        self.history.push(Measures {
+            energy,
+            force,
+            water,
+            method,
+        });
         let far_below = water.is_none_or(|water| water <= SETTLED * self.criteria.water());
         if self.settled.is_none() && force <= SETTLED * self.criteria.force && far_below {
             self.settled = Some(u.to_vec());
@@ -114,7 +131,9 @@ impl Convergence {
 
     /// Whether, at the rate of the last iterations, convergence is out of reach.
     pub fn stalls(&self) -> bool {
-        let Some(before) = self.history.len().checked_sub(WINDOW) else { return false };
+        let Some(before) = self.history.len().checked_sub(WINDOW) else {
+            return false;
+        };
         let excess = |range: std::ops::Range<usize>| {
             self.history[range]
                 .iter()
@@ -128,7 +147,10 @@ impl Convergence {
 
     /// How many of the iterations were Newton's.
     pub fn by_newton(&self) -> usize {
-        self.history.iter().filter(|measures| measures.method == Method::Newton).count()
+        self.history
+            .iter()
+            .filter(|measures| measures.method == Method::Newton)
+            .count()
     }
 
     /// The error of an iteration that ended at `residual`; `unsolved` where no direction was found there.
@@ -177,10 +199,19 @@ pub fn inverted<K: Kinematics<D>, const D: usize>(
     if let Some(water) = residual.balance.water.as_ref().filter(|water| water.closed > 0)
         && residual.balance.inverted == 0
     {
-        return StepError::Closed { count: water.closed, iteration };
+        return StepError::Closed {
+            count: water.closed,
+            iteration,
+        };
     }
-    let first = residual.first_inverted.map(|p| (problem.points.id[p], problem.points.x[p].as_slice().to_vec()));
-    StepError::Inverted { count: residual.balance.inverted, iteration, first }
+    let first = residual
+        .first_inverted
+        .map(|p| (problem.points.id[p], problem.points.x[p].as_slice().to_vec()));
+    StepError::Inverted {
+        count: residual.balance.inverted,
+        iteration,
+        first,
+    }
 }
 
 /// This rank's own nodes whose forces are the least balanced, worst first.
@@ -192,7 +223,11 @@ pub fn worst_nodes<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>
     let worst = |node: usize| {
         let place = grid.node_at(node);
         let x = (0..D).map(|axis| grid.axes()[axis].greville(place[axis])).collect();
-        WorstNode { number: grid.number_of(node) as u64, x, force: force(node) }
+        WorstNode {
+            number: grid.number_of(node) as u64,
+            x,
+            force: force(node),
+        }
     };
     nodes.into_iter().take(WORST).map(worst).collect()
 }

@@ -24,7 +24,13 @@ pub fn solve(
         return Err(SolveError::NotFinite);
     }
     if size == 0.0 {
-        return Ok((vec![0.0; b.len()], Krylov { iterations: 0, residual: 0.0 }));
+        return Ok((
+            vec![0.0; b.len()],
+            Krylov {
+                iterations: 0,
+                residual: 0.0,
+            },
+        ));
     }
     let mut directions: Vec<Vec<f64>> = Vec::new();
     let mut basis = vec![scaled(b, 1.0 / size)];
@@ -54,14 +60,22 @@ pub fn solve(
     }
     let mut x = vec![0.0; b.len()];
     for (direction, part) in directions.iter().zip(least.solution()) {
-        x.iter_mut().zip(direction).for_each(|(x, direction)| *x += part * direction);
+        x.iter_mut()
+            .zip(direction)
+            .for_each(|(x, direction)| *x += part * direction);
     }
     let left: Vec<f64> = b.iter().zip(product(&x)).map(|(b, image)| b - image).collect();
     let residual = norm(&left) / size;
     if !residual.is_finite() {
         return Err(SolveError::NotFinite);
     }
-    Ok((x, Krylov { iterations: directions.len(), residual }))
+    Ok((
+        x,
+        Krylov {
+            iterations: directions.len(),
+            residual,
+        },
+    ))
 }
 
 fn scaled(a: &[f64], factor: f64) -> Vec<f64> {
@@ -77,7 +91,11 @@ struct LeastSquares {
 
 impl LeastSquares {
     fn new(size: f64) -> Self {
-        Self { columns: Vec::new(), rotations: Vec::new(), right: vec![size] }
+        Self {
+            columns: Vec::new(),
+            rotations: Vec::new(),
+            right: vec![size],
+        }
     }
 
     fn residual(&self) -> f64 {
@@ -91,7 +109,11 @@ impl LeastSquares {
         }
         let last = column.len() - 1;
         let length = column[last].hypot(below);
-        let (c, s) = if length > 0.0 { (column[last] / length, below / length) } else { (1.0, 0.0) };
+        let (c, s) = if length > 0.0 {
+            (column[last] / length, below / length)
+        } else {
+            (1.0, 0.0)
+        };
         column[last] = length;
         let right = self.right[last];
         self.right[last] = c * right;
@@ -107,7 +129,10 @@ impl LeastSquares {
             let diagonal = self.columns[k][k];
             y[k] = if diagonal == 0.0 { 0.0 } else { y[k] / diagonal };
             let value = y[k];
-            y[..k].iter_mut().zip(&self.columns[k]).for_each(|(y, entry)| *y -= value * entry);
+            y[..k]
+                .iter_mut()
+                .zip(&self.columns[k])
+                .for_each(|(y, entry)| *y -= value * entry);
         }
         y
     }
@@ -122,7 +147,10 @@ mod tests {
     #[test]
     fn it_solves_an_unsymmetric_system() {
         let count = 40;
-        let (unknowns, halo) = (Unknowns::of::<1>(&vec![true; count], &Alone { nodes: count }), Alone { nodes: count });
+        let (unknowns, halo) = (
+            Unknowns::of::<1>(&vec![true; count], &Alone { nodes: count }),
+            Alone { nodes: count },
+        );
         let diagonal = |i: usize| 2.0 + 10.0 * i as f64;
         let product = |x: &[f64]| -> Vec<f64> {
             let at = |i: usize| {
@@ -142,6 +170,15 @@ mod tests {
         }
         assert!(by_diagonal.1.iterations < alone.1.iterations);
         let none = solve((&unknowns, &halo), product, divided, (&vec![0.0; count], 1e-12)).unwrap();
-        assert_eq!(none, (vec![0.0; count], Krylov { iterations: 0, residual: 0.0 }));
+        assert_eq!(
+            none,
+            (
+                vec![0.0; count],
+                Krylov {
+                    iterations: 0,
+                    residual: 0.0
+                }
+            )
+        );
     }
 }

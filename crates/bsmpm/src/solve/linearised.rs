@@ -63,7 +63,10 @@ impl<G> Pressure<G> {
             volume * works::<K, D>(&tangent.apply(&(K::gradient::<f64>(&unit) * inverse)))
         });
         let by_rate = volume * works::<K, D>(&tangent.apply(&K::dilation()));
-        Self { raised: (by_gradient, by_rate), own: volume * works::<K, D>(tau) }
+        Self {
+            raised: (by_gradient, by_rate),
+            own: volume * works::<K, D>(tau),
+        }
     }
 }
 
@@ -116,10 +119,21 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 }
                 let change = change * inverse.transpose();
                 let flux = K::working(&change) * volume;
-                dilation.push(Dilation { trace: K::working(&inverse.transpose()), flux });
+                dilation.push(Dilation {
+                    trace: K::working(&inverse.transpose()),
+                    flux,
+                });
             }
         }
-        Self { problem, trial, reaction: &residual.balance.reaction, moduli, dilation, adjoint, water: None }
+        Self {
+            problem,
+            trial,
+            reaction: &residual.balance.reaction,
+            moduli,
+            dilation,
+            adjoint,
+            water: None,
+        }
     }
 
     /// The same with the water that flows, where `x` has the nodal excess pressures behind the displacements, Pa.
@@ -134,7 +148,13 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
     /// K v on nodal arrays, `v` zero where it is not free: one exchange with the neighbours, one more under F-bar and
     /// one with water.
     pub fn multiply(&self, v: &[f64], out: &mut [f64]) {
-        let Problem { shape, nodes, points, halo, .. } = *self.problem;
+        let Problem {
+            shape,
+            nodes,
+            points,
+            halo,
+            ..
+        } = *self.problem;
         let ((v, v_p), (out, out_p)) = (v.split_at(nodes.free.len()), out.split_at_mut(nodes.free.len()));
         let mut extended = Cow::Borrowed(v);
         if let Some(extension) = &nodes.extension {
@@ -143,14 +163,21 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         let v = &extended[..];
         let grad = transfer::gradients::<K, D, _>((shape, &points.x), v, |_, grad| grad);
         let rate = self.dilation.as_ref().and_then(|dilation| {
-            let trace: Vec<f64> = dilation.iter().zip(&grad).map(|(at, grad)| at.trace.dot(grad)).collect();
+            let trace: Vec<f64> = dilation
+                .iter()
+                .zip(&grad)
+                .map(|(at, grad)| at.trace.dot(grad))
+                .collect();
             Some((dilation, self.trial.dilation_rate(self.problem, &trace)?))
         });
         let moduli = &self.moduli;
         let pressed = rate.as_ref().and_then(|(dilation, rate)| {
             let (adjoint, at) = self.adjoint.as_ref()?;
             let raised = |p: usize| {
-                let Pressure { raised: (by_gradient, by_rate), own } = &at[p];
+                let Pressure {
+                    raised: (by_gradient, by_rate),
+                    own,
+                } = &at[p];
                 let (_, mean) = self.trial.means(self.problem.model, self.problem.points, p);
                 let grown = own * (rate[p] + dilation[p].trace.dot(&grad[p]));
                 (by_gradient.dot(&grad[p]) + by_rate * rate[p] - grown) / mean
@@ -165,9 +192,15 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         let volume = self.problem.volume();
         let mut force = transfer::divergence::<K, D>((shape, &points.x), |p| {
             let flux = contract::<K, D>(&moduli[p], &grad[p]);
-            let flux = rate.as_ref().map_or(flux, |(dilation, rate)| flux + dilation[p].flux * rate[p]);
-            let flux = pressed.as_ref().map_or(flux, |(dilation, pressed)| flux + dilation[p].trace * pressed[p]);
-            water.as_ref().map_or(flux, |(water, changes)| flux + water.pressed::<K>(p, changes[p].0) * volume[p])
+            let flux = rate
+                .as_ref()
+                .map_or(flux, |(dilation, rate)| flux + dilation[p].flux * rate[p]);
+            let flux = pressed
+                .as_ref()
+                .map_or(flux, |(dilation, pressed)| flux + dilation[p].trace * pressed[p]);
+            water.as_ref().map_or(flux, |(water, changes)| {
+                flux + water.pressed::<K>(p, changes[p].0) * volume[p]
+            })
         });
         if let Some(background) = &nodes.background {
             background.multiply::<D>(shape, v, &mut force);
@@ -180,27 +213,41 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             let (factor, moved) = (inertia.factor(), v);
             let alike = inertia.moving.is_empty();
             let scaled = |(c, v): (usize, &f64)| inertia.factor_of(c) / factor * v;
-            let scaled: Vec<f64> = if alike { Vec::new() } else { v.iter().enumerate().map(scaled).collect() };
+            let scaled: Vec<f64> = if alike {
+                Vec::new()
+            } else {
+                v.iter().enumerate().map(scaled).collect()
+            };
             let v = if alike { v } else { &scaled };
             for (out, momentum) in out.iter_mut().zip(self.problem.mass().times(v)) {
                 *out += factor * momentum;
             }
-            nodes.dashpots.stiffness(inertia).for_each(|(c, stiffness)| out[c] += stiffness * moved[c]);
+            nodes
+                .dashpots
+                .stiffness(inertia)
+                .for_each(|(c, stiffness)| out[c] += stiffness * moved[c]);
         }
         nodes.contacts.add_derivative(self.reaction, v, out);
-        out.iter_mut().zip(&nodes.free).filter(|(_, free)| !**free).for_each(|(out, _)| *out = 0.0);
+        out.iter_mut()
+            .zip(&nodes.free)
+            .filter(|(_, free)| !**free)
+            .for_each(|(out, _)| *out = 0.0);
     }
 
     /// Assembles and factorises the matrix that preconditions the product: all of it, but for F-bar's average where
     /// that reaches farther than the matrix. One exchange with the neighbours where it does not.
     pub fn factorise(&self, solver: &mut dyn LinearSolver) -> Result<(), SolveError> {
         let Problem { model, nodes, halo, .. } = *self.problem;
-        let Some(extension) = &nodes.extension else { return self.factorise_in(solver) };
+        let Some(extension) = &nodes.extension else {
+            return self.factorise_in(solver);
+        };
         self.factorise_in(&mut ReducedSystem::new(solver, extension, &model.grid, halo))
     }
 
     fn factorise_in(&self, solver: &mut dyn LinearSolver) -> Result<(), SolveError> {
-        let Problem { shape, nodes, points, .. } = *self.problem;
+        let Problem {
+            shape, nodes, points, ..
+        } = *self.problem;
         solver.begin(&nodes.free);
         let size = shape.offsets().len();
         let mut slopes = [K::Gradient::NO_SLOPE; MOST];
@@ -223,7 +270,12 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             if let Some(background) = &nodes.background {
                 background.add_to(number, &mut block);
             }
-            add_mass((self.problem.model.mass, nodes), (shape, patch), &self.problem.points.mass, &mut block);
+            add_mass(
+                (self.problem.model.mass, nodes),
+                (shape, patch),
+                &self.problem.points.mass,
+                &mut block,
+            );
             solver.add(patch.first_node, &block);
         }
         if let Some(coupling) = coupling {
@@ -235,20 +287,33 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
     /// Moduli of point `p`, and its flux per unit of d ln(dJ-bar/dJ), of a force that is not the adjoint: that one
     /// reaches twice as far as a matrix.
     fn narrow(&self, p: usize) -> (Moduli<K, D>, K::Gradient) {
-        let flux = self.dilation.as_ref().map_or_else(K::Gradient::zeros, |dilation| dilation[p].flux);
+        let flux = self
+            .dilation
+            .as_ref()
+            .map_or_else(K::Gradient::zeros, |dilation| dilation[p].flux);
         let has = |(adjoint, _): &&(Adjoint, _)| adjoint.has(self.problem.model, self.problem.points, p);
         let (Some((_, at)), Some(dilation)) = (self.adjoint.as_ref().filter(has), &self.dilation) else {
             return (self.moduli[p], flux);
         };
-        let (Dilation { trace, .. }, Pressure { raised: (by_gradient, by_rate), .. }) = (&dilation[p], &at[p]);
+        let (
+            Dilation { trace, .. },
+            Pressure {
+                raised: (by_gradient, by_rate),
+                ..
+            },
+        ) = (&dilation[p], &at[p]);
         let unit = |k: usize, l: usize| self.moduli[p][(k, l)] + *trace * by_gradient[(k, l)];
         (K::Gradient::moduli(unit), flux + *trace * *by_rate)
     }
 
     /// Adds point `p`, whose dilation is averaged: flux_p (S(w dJ tr l)_p / S(w dJ)_p - tr l_p) besides its moduli.
     fn add_coupled(&self, p: usize, slopes: &[Slope<K, D>], (dilations, block): (&mut Dilations, &mut [f64])) {
-        let Problem { model, nodes, points, .. } = *self.problem;
-        let Some(Dilation { trace, .. }) = self.dilation.as_ref().map(|dilation| &dilation[p]) else { return };
+        let Problem {
+            model, nodes, points, ..
+        } = *self.problem;
+        let Some(Dilation { trace, .. }) = self.dilation.as_ref().map(|dilation| &dilation[p]) else {
+            return;
+        };
         let (narrow, flux) = self.narrow(p);
         let moduli = K::Gradient::moduli(|k, l| narrow[(k, l)] - flux * trace[(k, l)]);
         add_point::<K, D>(&moduli, slopes, Pairs::All, block);
@@ -261,7 +326,17 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         }
         let (dilation, force) = (&dilation[..slopes.len()], &force[..slopes.len()]);
         let group = model.groups.of(points.material[p]);
-        dilations.add(nodes, p, &Share { group, weight, bulk: 0.0, dilation, force });
+        dilations.add(
+            nodes,
+            p,
+            &Share {
+                group,
+                weight,
+                bulk: 0.0,
+                dilation,
+                force,
+            },
+        );
     }
 }
 

@@ -38,20 +38,34 @@ struct Last {
 impl Multisecant {
     /// Nothing seen yet.
     pub fn new(unknowns: Unknowns) -> Self {
-        Self { unknowns, secants: Vec::new(), products: Vec::new(), last: None }
+        Self {
+            unknowns,
+            secants: Vec::new(),
+            products: Vec::new(),
+            last: None,
+        }
     }
 
     /// Turns the nodal w = K_0^-1 f into the direction du, and reports du . f: one reduction for everything.
     pub fn correct(&mut self, nodal_w: &mut [f64], f: &[f64], halo: &dyn Halo) -> f64 {
         let (w, f) = (self.unknowns.packed(nodal_w), self.unknowns.packed(f));
         let dw = self.learn(&w, &f);
-        let Products { right, both, mut energy } = self.products((&w, &f), dw.as_deref(), halo);
+        let Products {
+            right,
+            both,
+            mut energy,
+        } = self.products((&w, &f), dw.as_deref(), halo);
         let weights = least_squares(&self.products, &right);
-        weights.iter().zip(both).for_each(|(weight, both)| energy -= weight * both);
+        weights
+            .iter()
+            .zip(both)
+            .for_each(|(weight, both)| energy -= weight * both);
         let mut du = w.clone();
         du.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, du)| {
             for (weight, secant) in weights.iter().zip(&self.secants) {
-                du.iter_mut().zip(&secant.both[chunk * CHUNK..]).for_each(|(du, both)| *du -= weight * both);
+                du.iter_mut()
+                    .zip(&secant.both[chunk * CHUNK..])
+                    .for_each(|(du, both)| *du -= weight * both);
             }
         });
         self.unknowns.unpack(&du, nodal_w);
@@ -100,7 +114,11 @@ impl Multisecant {
         if count > 0 {
             self.products.push(every_third(0));
         }
-        Products { right: every_third(1), both: every_third(2), energy: sums[3 * count] }
+        Products {
+            right: every_third(1),
+            both: every_third(2),
+            energy: sums[3 * count],
+        }
     }
 }
 
@@ -120,23 +138,36 @@ fn least_squares(products: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     }
     let scale: Vec<f64> = (0..size).map(|i| (products[i][i] / unit).abs().sqrt()).collect();
     let inverse = |i: usize| if scale[i] > 0.0 { 1.0 / scale[i] } else { 0.0 };
-    let matrix = DMatrix::from_fn(size, size, |i, j| products[i.max(j)][i.min(j)] / unit * inverse(i) * inverse(j));
+    let matrix = DMatrix::from_fn(size, size, |i, j| {
+        products[i.max(j)][i.min(j)] / unit * inverse(i) * inverse(j)
+    });
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return vec![0.0; size];
     }
-    let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(matrix);
+    let SymmetricEigen {
+        eigenvectors,
+        eigenvalues,
+    } = SymmetricEigen::new(matrix);
     let mut along = eigenvectors.tr_mul(&DVector::from_fn(size, |i, _| right[i] / unit * inverse(i)));
     let least = DEPENDENT * eigenvalues.amax();
     for (component, value) in along.iter_mut().zip(&eigenvalues) {
         *component = if *value > least { *component / value } else { 0.0 };
     }
-    (eigenvectors * along).iter().enumerate().map(|(i, weight)| weight * inverse(i)).collect()
+    (eigenvectors * along)
+        .iter()
+        .enumerate()
+        .map(|(i, weight)| weight * inverse(i))
+        .collect()
 }
 
 /// The power of two (N m) of the largest diagonal product. Square roots round otherwise in other units: without unit,
 /// the same problem has the same bits in all units that differ by powers of two.
 fn unit(products: &[Vec<f64>]) -> f64 {
-    let largest = products.iter().enumerate().map(|(i, row)| row[i].abs()).fold(0.0, f64::max);
+    let largest = products
+        .iter()
+        .enumerate()
+        .map(|(i, row)| row[i].abs())
+        .fold(0.0, f64::max);
     f64::from_bits(largest.to_bits() & f64::INFINITY.to_bits())
 }
 
@@ -148,7 +179,10 @@ mod tests {
     fn other_units_of_energy_change_no_bit_of_the_weights() {
         let products = [vec![4.3], vec![1.1, 3.7], vec![0.3, -0.9, 0.11]];
         let weights = |unit: f64| {
-            let scaled: Vec<Vec<f64>> = products.iter().map(|row| row.iter().map(|p| p * unit).collect()).collect();
+            let scaled: Vec<Vec<f64>> = products
+                .iter()
+                .map(|row| row.iter().map(|p| p * unit).collect())
+                .collect();
             least_squares(&scaled, &[1.3 * unit, 0.7 * unit, -0.2 * unit])
         };
         let reference = weights(1.0);

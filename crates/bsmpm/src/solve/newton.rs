@@ -56,7 +56,14 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         }
         let (du, energy) = match direction(problem, (&u, &residual), solver, counts) {
             Ok(found) => found,
-            Err(unsolved) => return Err(Stopped::without_direction(problem, (u, &residual), convergence, unsolved)),
+            Err(unsolved) => {
+                return Err(Stopped::without_direction(
+                    problem,
+                    (u, &residual),
+                    convergence,
+                    unsolved,
+                ));
+            }
         };
         if !convergence.has_begun() {
             convergence.begin(first_energy(problem, &du[..problem.nodes.free.len()], energy));
@@ -68,11 +75,16 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             break;
         }
         let work = stability::is_decisive(problem, &residual.balance).then_some(energy);
-        let Some((next, found)) = search(problem, &u, &du, &residual, counts) else { break };
+        let Some((next, found)) = search(problem, &u, &du, &residual, counts) else {
+            break;
+        };
         stability::check(problem, convergence, (&du, work), &found.balance)?;
         (u, residual) = (next, found);
     }
-    Err(Stopped { error: Box::new(convergence.failed(problem, &residual, None)), best: Some(u) })
+    Err(Stopped {
+        error: Box::new(convergence.failed(problem, &residual, None)),
+        best: Some(u),
+    })
 }
 
 /// K du = f_oob with the complete K at this state, and du . f_oob; with the pressures behind them where water flows.
@@ -90,7 +102,11 @@ fn direction<K: Kinematics<D>, const D: usize>(
         counts.iterations += 1;
         counts.products += krylov.iterations + 1;
         counts.linear_iterations += krylov.iterations;
-        return if krylov.residual < USELESS { Ok((dx, energy)) } else { Err(SolveError::Residual(krylov.residual)) };
+        return if krylov.residual < USELESS {
+            Ok((dx, energy))
+        } else {
+            Err(SolveError::Residual(krylov.residual))
+        };
     }
     let forcing = |loosest: f64| residual.balance.measure().clamp(FORCING.0, loosest);
     counts.factorisations += 1;
@@ -139,7 +155,12 @@ fn around_stiffness<K: Kinematics<D>, const D: usize>(
         solver.solve(&force, &mut direction)?;
         Ok(unknowns.packed(&direction))
     };
-    let (found, krylov) = fgmres::solve((&unknowns, halo), product, precondition, (&unknowns.packed(f), relative))?;
+    let (found, krylov) = fgmres::solve(
+        (&unknowns, halo),
+        product,
+        precondition,
+        (&unknowns.packed(f), relative),
+    )?;
     let mut du = vec![0.0; f.len()];
     unknowns.unpack(&found, &mut du);
     Ok((du, krylov))
@@ -154,7 +175,11 @@ fn search<K: Kinematics<D>, const D: usize>(
     residual: &Residual<K, D>,
     counts: &mut Counts,
 ) -> Option<(Vec<f64>, Residual<K, D>)> {
-    let scales = problem.nodes.pores.as_ref().map(|_| Scales::of(problem, &residual.balance));
+    let scales = problem
+        .nodes
+        .pores
+        .as_ref()
+        .map(|_| Scales::of(problem, &residual.balance));
     let measure = |of: &Balance| scales.as_ref().map_or(of.norm, |scales| scales.measure(of));
     let before = measure(&residual.balance);
     let mut length = 1.0;

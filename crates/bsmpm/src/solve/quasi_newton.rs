@@ -52,7 +52,9 @@ impl Secants {
     /// The same of the unknowns of a problem, pressures among them where water flows: there by all secants.
     fn of<K, const D: usize>(method: QuasiNewton, problem: &Problem<'_, K, D>) -> Self {
         let (free, halo) = (&problem.nodes.free, problem.halo);
-        let Some(pores) = &problem.nodes.pores else { return Self::new::<D>(method, free, halo) };
+        let Some(pores) = &problem.nodes.pores else {
+            return Self::new::<D>(method, free, halo);
+        };
         let unknowns = Unknowns::of::<D>(free, halo).with_pressures(free.len(), &pores.free, halo);
         Self::Multisecant(Multisecant::new(unknowns))
     }
@@ -133,13 +135,19 @@ impl Stopped {
         if convergence.iterations() == 0 {
             return unsolved.into();
         }
-        Self { error: Box::new(convergence.failed(problem, residual, Some(unsolved))), best: Some(best) }
+        Self {
+            error: Box::new(convergence.failed(problem, residual, Some(unsolved))),
+            best: Some(best),
+        }
     }
 }
 
 impl<E: Into<StepError>> From<E> for Stopped {
     fn from(error: E) -> Self {
-        Self { error: Box::new(error.into()), best: None }
+        Self {
+            error: Box::new(error.into()),
+            best: None,
+        }
     }
 }
 
@@ -164,7 +172,14 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         }
         let mut direction = match secants.towards(problem, &residual.balance, solver) {
             Ok(direction) => direction, // (6), (7)
-            Err(unsolved) => return Err(Stopped::without_direction(problem, (best, &residual), convergence, unsolved)),
+            Err(unsolved) => {
+                return Err(Stopped::without_direction(
+                    problem,
+                    (best, &residual),
+                    convergence,
+                    unsolved,
+                ));
+            }
         };
         counts.iterations += 1;
         counts.linear_iterations += direction.solved.iterations;
@@ -173,7 +188,11 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             let du = &direction.du[..problem.nodes.free.len()];
             convergence.begin(first_energy(problem, du, direction.energy));
         }
-        if convergence.reaches(Method::QuasiNewton(method), direction.energy.abs(), (&u, &residual.balance)) {
+        if convergence.reaches(
+            Method::QuasiNewton(method),
+            direction.energy.abs(),
+            (&u, &residual.balance),
+        ) {
             return Ok(Found::new(u, residual, convergence)); // (9)
         }
         // The direction's own energy is a sum of products with secants, whose round-off is another.
@@ -185,11 +204,21 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         }
         match advance(problem, &mut u, &direction.du, &mut residual, counts) {
             Ok(length) => secants.took(length), // (8), (4), (5)
-            Err(inverted) => return Err(Stopped { error: Box::new(inverted), best: Some(best) }),
+            Err(inverted) => {
+                return Err(Stopped {
+                    error: Box::new(inverted),
+                    best: Some(best),
+                });
+            }
         }
         stability::check(problem, convergence, (&direction.du, work), &residual.balance)?;
         if let Some(pores) = &problem.nodes.pores
-            && follow.up((problem, pores), &u, convergence.water(&residual.balance).unwrap_or(0.0), solver)?
+            && follow.up(
+                (problem, pores),
+                &u,
+                convergence.water(&residual.balance).unwrap_or(0.0),
+                solver,
+            )?
         {
             counts.factorisations += 1;
             secants = Secants::of(method, problem);
@@ -198,7 +227,10 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             (least, best) = (residual.balance.norm, u.clone());
         }
     }
-    Err(Stopped { error: Box::new(convergence.failed(problem, &residual, None)), best: Some(best) })
+    Err(Stopped {
+        error: Box::new(convergence.failed(problem, &residual, None)),
+        best: Some(best),
+    })
 }
 
 /// Step (8): takes the direction, or the first half, quarter, .. of it under which no point inverts.

@@ -36,14 +36,28 @@ impl RoundOff {
                     * inertia.v[c].abs();
             }
         }
-        force.iter_mut().zip(&nodes.free).filter(|(_, free)| !**free).for_each(|(force, _)| *force = 0.0);
+        force
+            .iter_mut()
+            .zip(&nodes.free)
+            .filter(|(_, free)| !**free)
+            .for_each(|(force, _)| *force = 0.0);
         let square = |c: usize| force[c].powi(2);
         let mut sums = vec![over_layers(problem.halo, D, square)];
-        sums.extend(nodes.apart.iter().flat_map(|apart| apart.sums(problem.halo, D, |c| [square(c)])));
+        sums.extend(
+            nodes
+                .apart
+                .iter()
+                .flat_map(|apart| apart.sums(problem.halo, D, |c| [square(c)])),
+        );
         let sums = problem.halo.total(&sums);
         let (norm, apart) = (sums[0].sqrt(), sums[1..].iter().map(|sum| sum.sqrt()).collect());
         let water = nodes.pores.as_ref().map_or(0.0, |pores| pores.round_off);
-        Self { force, norm, apart, water }
+        Self {
+            force,
+            norm,
+            apart,
+            water,
+        }
     }
 
     /// Norm of the round-off of all nodes' forces, N.
@@ -63,7 +77,10 @@ impl RoundOff {
         let apart = parts
             .filter(|(_, ([norm, _], round_off))| norm > round_off)
             .map(|(material, ([norm, scale], _))| (norm / scale, Some(material)));
-        apart.fold((balance.measure(), None), |most, part| if part.0 > most.0 { part } else { most })
+        apart.fold(
+            (balance.measure(), None),
+            |most, part| if part.0 > most.0 { part } else { most },
+        )
     }
 
     /// Whether no node is further out of balance than by round-off. All ranks must ask; they share an exchange only

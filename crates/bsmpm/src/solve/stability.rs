@@ -17,11 +17,17 @@ const NEAR: f64 = 1e-3;
 /// Whether anything follows from the work of a direction that is taken at this state: not far from equilibrium, nor in
 /// dynamics, where inertia decides where an unstable body goes, nor without symmetry.
 pub fn is_decisive<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Balance) -> bool {
-    let has_friction =
-        problem.model.boundary.supports.iter().any(|face| face.contact.is_some_and(|law| law.friction > 0.0));
+    let has_friction = problem
+        .model
+        .boundary
+        .supports
+        .iter()
+        .any(|face| face.contact.is_some_and(|law| law.friction > 0.0));
     let strips = &problem.model.boundary.strips;
-    let has_friction =
-        has_friction || strips.iter().any(|strip| strip.contact.is_some_and(|contact| contact.law.friction > 0.0));
+    let has_friction = has_friction
+        || strips
+            .iter()
+            .any(|strip| strip.contact.is_some_and(|contact| contact.law.friction > 0.0));
     let has_friction = has_friction || problem.nodes.rigid.has_friction();
     let flows = problem.nodes.pores.is_some();
     before.measure() < NEAR && problem.nodes.inertia.is_none() && !has_friction && !flows && is_symmetric(problem.model)
@@ -36,18 +42,26 @@ pub fn check<K: Kinematics<D>, const D: usize>(
     (du, work): (&[f64], Option<f64>),
     after: &Balance,
 ) -> Result<(), StepError> {
-    let Some(before) = work.filter(|_| after.measure() < NEAR) else { return Ok(()) };
+    let Some(before) = work.filter(|_| after.measure() < NEAR) else {
+        return Ok(());
+    };
     let sums = dots(problem.halo, D, &[(du, &after.f_oob), (du, du)]);
     let work = before - sums[0];
     if is_negative(work, sums[1].sqrt(), convergence.round_off() * bulkiness(problem.model)) {
-        return Err(StepError::Unstable { iteration: convergence.iterations(), work });
+        return Err(StepError::Unstable {
+            iteration: convergence.iterations(),
+            work,
+        });
     }
     Ok(())
 }
 
 /// Whether the complete derivative is symmetric.
 fn is_symmetric<K, const D: usize>(model: &Model<K, D>) -> bool {
-    let elastic = model.materials.iter().all(|material| !material.yields() && !material.is_graded());
+    let elastic = model
+        .materials
+        .iter()
+        .all(|material| !material.yields() && !material.is_graded());
     elastic && (model.materials.len() == 1 || model.stabilisation == Stabilisation::None)
 }
 

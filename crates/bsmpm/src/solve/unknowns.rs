@@ -18,7 +18,11 @@ pub struct Unknowns {
 impl Unknowns {
     /// The `free` ones among the components of the window's nodes, `D` a node.
     pub fn of<const D: usize>(free: &[bool], halo: &dyn Halo) -> Self {
-        let places: Vec<u32> = (0..).zip(free).filter(|(_, free)| **free).map(|(place, _)| place).collect();
+        let places: Vec<u32> = (0..)
+            .zip(free)
+            .filter(|(_, free)| **free)
+            .map(|(place, _)| place)
+            .collect();
         let number = |component: usize| places.partition_point(|&place| (place as usize) < component);
         let layers = halo.owned().runs().map(|run| Nodal::<D>::all(&run));
         let layers = layers.map(|layer| number(layer.start)..number(layer.end)).collect();
@@ -29,8 +33,14 @@ impl Unknowns {
     pub fn with_pressures(mut self, components: usize, free: &[bool], halo: &dyn Halo) -> Self {
         let pressures = Self::of::<1>(free, halo);
         let before = self.places.len();
-        self.places.extend(pressures.places.iter().map(|place| place + components as u32));
-        self.layers.extend(pressures.layers.iter().map(|layer| layer.start + before..layer.end + before));
+        self.places
+            .extend(pressures.places.iter().map(|place| place + components as u32));
+        self.layers.extend(
+            pressures
+                .layers
+                .iter()
+                .map(|layer| layer.start + before..layer.end + before),
+        );
         self
     }
 
@@ -41,7 +51,10 @@ impl Unknowns {
 
     /// Puts a packed vector in the place of those components of a nodal array.
     pub fn unpack(&self, packed: &[f64], nodal: &mut [f64]) {
-        self.places.iter().zip(packed).for_each(|(&place, value)| nodal[place as usize] = *value);
+        self.places
+            .iter()
+            .zip(packed)
+            .for_each(|(&place, value)| nodal[place as usize] = *value);
     }
 
     /// Dot products of packed vectors with another one over this rank's own nodes: plainly within a layer, exactly over
@@ -50,7 +63,9 @@ impl Unknowns {
         let mut sums = [Exact::ZERO; M];
         for layer in &self.layers {
             let of_layer = dots(with.map(|b| &b[layer.clone()]), &a[layer.clone()]);
-            sums.iter_mut().zip(of_layer).for_each(|(sum, of_layer)| sum.add(of_layer));
+            sums.iter_mut()
+                .zip(of_layer)
+                .for_each(|(sum, of_layer)| sum.add(of_layer));
         }
         sums
     }

@@ -53,7 +53,9 @@ pub struct Pressures(Option<Vec<Option<f64>>>);
 impl Pressures {
     /// Under a trial; one exchange with the neighbours where anything has the adjoint force.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, trial: &Trial<K, D>) -> Self {
-        let Some(adjoint) = Adjoint::of(problem.model) else { return Self(None) };
+        let Some(adjoint) = Adjoint::of(problem.model) else {
+            return Self(None);
+        };
         let Problem { model, points, .. } = *problem;
         let volume = problem.volume();
         let per_mean = |p: usize| match trial.respond(model, points, p) {
@@ -89,9 +91,22 @@ pub fn transposed<K: Kinematics<D>, const D: usize>(
     trial: &Trial<K, D>,
     value: impl Fn(usize) -> f64 + Sync,
 ) -> Vec<f64> {
-    let Problem { model, shape, nodes, points, halo, .. } = *problem;
+    let Problem {
+        model,
+        shape,
+        nodes,
+        points,
+        halo,
+        ..
+    } = *problem;
     let weights = nodes.dilation_weights(model, points);
-    let per_weight = |p: usize| if adjoint.has(model, points, p) { value(p) / weights[p] } else { 0.0 };
+    let per_weight = |p: usize| {
+        if adjoint.has(model, points, p) {
+            value(p) / weights[p]
+        } else {
+            0.0
+        }
+    };
     let mut sums = nodes.mean_dilation(model, (shape, points), halo, per_weight);
     for (p, sum) in sums.iter_mut().enumerate() {
         *sum *= weights[p] * trial.means(model, points, p).0;

@@ -30,14 +30,19 @@ impl Apart {
         let mut ends = vec![f64::NEG_INFINITY; 2 * nodes];
         for patch in shape.patches() {
             let of = &points.material[patch.points.clone()];
-            let (Some(&least), Some(&most)) = (of.iter().min(), of.iter().max()) else { continue };
+            let (Some(&least), Some(&most)) = (of.iter().min(), of.iter().max()) else {
+                continue;
+            };
             for offset in shape.offsets() {
                 let ends = &mut ends[2 * (patch.first_node + offset)..][..2];
                 (ends[0], ends[1]) = (ends[0].max(f64::from(most)), ends[1].max(-f64::from(least)));
             }
         }
         halo.max(&mut ends, 2);
-        let of = ends.chunks_exact(2).map(|ends| (ends[0] == -ends[1]).then_some(ends[0] as u16)).collect();
+        let of = ends
+            .chunks_exact(2)
+            .map(|ends| (ends[0] == -ends[1]).then_some(ends[0] as u16))
+            .collect();
         Some(Self { materials, of })
     }
 
@@ -50,10 +55,15 @@ impl Apart {
             for node in run {
                 let Some(material) = self.of[node] else { continue };
                 for c in node * width..(node + 1) * width {
-                    plain[usize::from(material)].iter_mut().zip(terms(c)).for_each(|(sum, term)| *sum += term);
+                    plain[usize::from(material)]
+                        .iter_mut()
+                        .zip(terms(c))
+                        .for_each(|(sum, term)| *sum += term);
                 }
             }
-            sums.iter_mut().zip(plain.iter().flatten()).for_each(|(sum, plain)| sum.add(*plain));
+            sums.iter_mut()
+                .zip(plain.iter().flatten())
+                .for_each(|(sum, plain)| sum.add(*plain));
         }
         sums
     }

@@ -63,7 +63,10 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
         };
         let inertial = |c: usize| factor(c) * nodes.weight[Nodal::<D>::node(c)];
         let mut diagonal: Vec<f64> = (0..nodes.free.len()).map(inertial).collect();
-        nodes.dashpots.stiffness(inertia).for_each(|(component, stiffness)| diagonal[component] += stiffness);
+        nodes
+            .dashpots
+            .stiffness(inertia)
+            .for_each(|(component, stiffness)| diagonal[component] += stiffness);
         solver.add_diagonal(&diagonal);
     }
     solver.finish(symmetry)
@@ -76,7 +79,9 @@ pub fn add_mass<const D: usize>(
     mass: &[f64],
     block: &mut [f64],
 ) {
-    let Some(inertia) = nodes.inertia.as_ref().filter(|_| matrix == MassMatrix::Consistent) else { return };
+    let Some(inertia) = nodes.inertia.as_ref().filter(|_| matrix == MassMatrix::Consistent) else {
+        return;
+    };
     let size = shape.offsets().len();
     let mut pairs = vec![0.0; size * size];
     let mut N = [0.0; MOST];
@@ -85,7 +90,9 @@ pub fn add_mass<const D: usize>(
         shape.values_into(p, N);
         let weight = SHARE * inertia.factor() * mass[p];
         for (row, N_a) in pairs.chunks_exact_mut(size).zip(&*N) {
-            row.iter_mut().zip(&*N).for_each(|(pair, N_b)| *pair += weight * N_a * N_b);
+            row.iter_mut()
+                .zip(&*N)
+                .for_each(|(pair, N_b)| *pair += weight * N_a * N_b);
         }
     }
     for (pair, mass) in pairs.iter().enumerate() {

@@ -33,11 +33,23 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
 ) -> Result<(), StepError> {
     let leaves = transfer::to_points::<D, D, _>(shape, u, |p, du| {
         let x = points.x[p] + Vector::from(du);
-        model.grid.locate(&x).is_none().then(|| (p, x, model.boundary.lets_out(&model.grid, &x)))
+        model
+            .grid
+            .locate(&x)
+            .is_none()
+            .then(|| (p, x, model.boundary.lets_out(&model.grid, &x)))
     });
     let anchors = &points.surface.anchors;
-    let acting = anchors.strips.iter().zip(&model.boundary.strips).filter(|(_, strip)| strip.acts());
-    let acting: Vec<&Vec<u64>> = acting.map(|(ids, _)| ids).chain(&anchors.loads).chain(&anchors.water).collect();
+    let acting = anchors
+        .strips
+        .iter()
+        .zip(&model.boundary.strips)
+        .filter(|(_, strip)| strip.acts());
+    let acting: Vec<&Vec<u64>> = acting
+        .map(|(ids, _)| ids)
+        .chain(&anchors.loads)
+        .chain(&anchors.water)
+        .collect();
     let carries = |p: usize| acting.iter().any(|ids| ids.contains(&points.id[p]));
     let wrongly = |(p, _, out): &(usize, Vector<D>, bool)| !out || carries(*p);
     let mut leaves: Vec<_> = leaves.into_iter().flatten().collect();
@@ -46,11 +58,19 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
     counts[1] = leaves.len() as f64;
     halo.reduce(&mut counts);
     if counts[1] > 0.0 {
-        let first = leaves.into_iter().next().map(|(p, x, _)| (points.id[p], x.as_slice().to_vec()));
-        return Err(StepError::Left { count: counts[1] as u64, first });
+        let first = leaves
+            .into_iter()
+            .next()
+            .map(|(p, x, _)| (points.id[p], x.as_slice().to_vec()));
+        return Err(StepError::Left {
+            count: counts[1] as u64,
+            first,
+        });
     }
     if counts[0] == 0.0 {
-        return Err(StepError::Emptied { count: counts[2] as u64 });
+        return Err(StepError::Emptied {
+            count: counts[2] as u64,
+        });
     }
     Ok(())
 }
@@ -138,11 +158,21 @@ pub fn answers<K: Kinematics<D>, const D: usize>(
         }
     };
     let answers: Vec<Answer> = match &mut state {
-        Some(state) => state.par_rows_mut().enumerate().map(|(p, row)| kept(p, Some(row))).collect(),
+        Some(state) => state
+            .par_rows_mut()
+            .enumerate()
+            .map(|(p, row)| kept(p, Some(row)))
+            .collect(),
         None => threads::each(points.len(), |p| kept(p, None)),
     };
-    let failed = |(p, source)| StepError::Material { id: points.id[p], source };
-    let answers = refused.into_inner().expect("no thread panicked").map_or(Ok(answers), |point| Err(failed(point)));
+    let failed = |(p, source)| StepError::Material {
+        id: points.id[p],
+        source,
+    };
+    let answers = refused
+        .into_inner()
+        .expect("no thread panicked")
+        .map_or(Ok(answers), |point| Err(failed(point)));
     Ok((agreed(halo, answers, StepError::OtherRank)?, state))
 }
 
@@ -190,7 +220,9 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     points: &mut Points<D>,
     halo: &dyn Halo,
 ) -> Committed {
-    let Found { u, p: pressures, trial, .. } = found;
+    let Found {
+        u, p: pressures, trial, ..
+    } = found;
     if let Some(inertia) = &nodes.inertia {
         move_with_inertia((shape, model.mass), inertia, &u, points);
     }
@@ -205,7 +237,10 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     threads::change(&mut points.u, 1, |p, u| u[0] += du[p]); // (11b)
     points.state = state;
     keep(model, &trial, &answers, points);
-    let content = nodes.pores.as_ref().map_or(0.0, |pores| saved::save(model, pores, &trial, &pressures, points, halo));
+    let content = nodes
+        .pores
+        .as_ref()
+        .map_or(0.0, |pores| saved::save(model, pores, &trial, &pressures, points, halo));
     let damped = nodes.inertia.is_some() && !model.damping.is_empty();
     let before = (damped && model.stabilisation.smooths()).then(|| points.b_e.clone());
     let smoothed = match model.stabilisation {
@@ -221,7 +256,13 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     };
     points.smoothing = before.map(|before| smooth::change(&before, &points.b_e));
     points.gap = gaps(model, points, &answers);
-    Committed { u, advance: advance[0], smoothed, content, beside_fixed }
+    Committed {
+        u,
+        advance: advance[0],
+        smoothed,
+        content,
+        beside_fixed,
+    }
 }
 
 /// Deformation, stress, elastic and plastic strain of every point.
@@ -246,7 +287,9 @@ fn keep<K: Kinematics<D>, const D: usize>(
         for (k, p) in range.enumerate() {
             let (answer, deformed) = (&answers[p], trial.dF(p) * F.at(k));
             let tau = damped.as_ref().map_or(answer.tau, |damped| damped[p]);
-            let dilation = dilation.as_ref().map_or_else(|| points.dilation_of(p), |dilation| dilation[p]);
+            let dilation = dilation
+                .as_ref()
+                .map_or_else(|| points.dilation_of(p), |dilation| dilation[p]);
             sigma.set(k, tau.scaled(1.0 / (deformed.determinant() * dilation)));
             F.set(k, deformed);
             b_e.set(k, answer.b_e);
@@ -260,9 +303,21 @@ fn keep<K: Kinematics<D>, const D: usize>(
 
 /// Gap of every point after the step, if some material closes its gaps.
 fn gaps<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, answers: &[Answer]) -> Option<Vec<f64>> {
-    let closes: Vec<bool> = model.materials.iter().map(|law| law.separation() == Separation::Closing).collect();
-    let gap = |(answer, material): (&Answer, &u16)| if closes[usize::from(*material)] { answer.gap } else { 0.0 };
-    closes.contains(&true).then(|| answers.iter().zip(&points.material).map(gap).collect())
+    let closes: Vec<bool> = model
+        .materials
+        .iter()
+        .map(|law| law.separation() == Separation::Closing)
+        .collect();
+    let gap = |(answer, material): (&Answer, &u16)| {
+        if closes[usize::from(*material)] {
+            answer.gap
+        } else {
+            0.0
+        }
+    };
+    closes
+        .contains(&true)
+        .then(|| answers.iter().zip(&points.material).map(gap).collect())
 }
 
 /// Steps (10a), (11c), (11d): a_I by Newmark, a_p = sum_I N_Ip a_I, v_p += dt ((1 - gamma) a_p(t) + gamma a_p(t+dt)).

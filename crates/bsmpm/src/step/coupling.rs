@@ -88,17 +88,32 @@ impl<'a, const D: usize> Coupling<'a, D> {
         let (grid, groups) = (&model.grid, model.groups.count());
         let lower = nodes.lowered().filter(|_| grid.beyond() + 1 >= grid.order())?;
         let q = grid.order();
-        let level =
-            |side| FunctionSums::of((grid, groups), side, HEAD + raised.vectors() * usize::pow(side, D as u32) * D);
+        let level = |side| {
+            FunctionSums::of(
+                (grid, groups),
+                side,
+                HEAD + raised.vectors() * usize::pow(side, D as u32) * D,
+            )
+        };
         // A function spans q cells or q pairs of them, and these touch q nodes more.
-        Some(Self { grid, lower, cells: level(2 * q), pairs: lower.merger().map(|_| level(3 * q)), raised })
+        Some(Self {
+            grid,
+            lower,
+            cells: level(2 * q),
+            pairs: lower.merger().map(|_| level(3 * q)),
+            raised,
+        })
     }
 
     /// Zeros for one patch.
     pub fn of_patch(&self) -> Dilations {
         let of_function = HEAD + self.raised.vectors() * self.grid.cell_nodes() * D;
         let of_group = self.lower.offsets().len() * of_function;
-        Dilations { numbers: vec![0.0; self.cells.sums.len() * of_group], of_group, of_function }
+        Dilations {
+            numbers: vec![0.0; self.cells.sums.len() * of_group],
+            of_group,
+            of_function,
+        }
     }
 
     /// Adds what the patch of a number contributes.
@@ -118,7 +133,9 @@ impl<'a, const D: usize> Coupling<'a, D> {
                     self.cells.add(group, (first, *offset, shift), (share, numbers));
                 }
             }
-            let (Some(merged), Some(pairs)) = (lower.merger(), &mut self.pairs) else { continue };
+            let (Some(merged), Some(pairs)) = (lower.merger(), &mut self.pairs) else {
+                continue;
+            };
             for (k, shares) in merged.rows((number, group)) {
                 let offset = merged.offsets(number)[k];
                 let slot = grid.node_at(first + offset);
@@ -139,7 +156,9 @@ impl<'a, const D: usize> Coupling<'a, D> {
             let first = |_: usize, number: usize| Some(number as isize - degree as isize);
             self.assemble_group((sums, self.cells.side), first, halo, solver);
         }
-        let (Some(merged), Some(pairs)) = (self.lower.merger(), &self.pairs) else { return };
+        let (Some(merged), Some(pairs)) = (self.lower.merger(), &self.pairs) else {
+            return;
+        };
         debug_assert!(grid.beyond() + 1 >= 2 * grid.order());
         for sums in &pairs.sums {
             let first = |axis: usize, number: usize| merged.first_cell(axis, number).map(|cell| cell as isize);
@@ -182,7 +201,11 @@ impl<'a, const D: usize> Coupling<'a, D> {
                 if let Some(node) = node_at(grid, node) {
                     nodes.push(node);
                     g.extend_from_slice(along);
-                    f.extend_from_slice(if self.raised == Raised::Own { &force[place * D..][..D] } else { along });
+                    f.extend_from_slice(if self.raised == Raised::Own {
+                        &force[place * D..][..D]
+                    } else {
+                        along
+                    });
                 }
             }
             let factor = if self.raised == Raised::Own { 1.0 } else { bulk / weight };
@@ -202,7 +225,11 @@ impl FunctionSums {
         let along = |node: usize, axis: usize| digit::<D>(node, axis, grid.order() + 1);
         let place = |node| (0..D).fold(0, |place, axis| place * side + along(node, axis));
         let places = (0..grid.cell_nodes()).map(place).collect();
-        Self { sums: (0..groups).map(|_| none()).collect(), side, places }
+        Self {
+            sums: (0..groups).map(|_| none()).collect(),
+            side,
+            places,
+        }
     }
 
     /// Adds a share of the `numbers` of a patch's function to the one that is kept `offset` from the patch's `first`
@@ -215,13 +242,17 @@ impl FunctionSums {
     ) {
         let (width, side) = (self.sums[group].width(), self.side);
         let sums = &mut self.sums[group].patch(first)[offset * width..(offset + 1) * width];
-        sums.iter_mut().zip(&numbers[..HEAD]).for_each(|(sum, number)| *sum += share * number);
+        sums.iter_mut()
+            .zip(&numbers[..HEAD])
+            .for_each(|(sum, number)| *sum += share * number);
         let start = shift.iter().fold(0, |place, along| place * side + along);
         let vectors = numbers[HEAD..].chunks_exact(self.places.len() * D);
         for (sums, vectors) in sums[HEAD..].chunks_exact_mut(side.pow(D as u32) * D).zip(vectors) {
             for (place, vector) in self.places.iter().zip(vectors.chunks_exact(D)) {
                 let sums = &mut sums[(start + place) * D..(start + place + 1) * D];
-                sums.iter_mut().zip(vector).for_each(|(sum, value)| *sum += share * value);
+                sums.iter_mut()
+                    .zip(vector)
+                    .for_each(|(sum, value)| *sum += share * value);
             }
         }
     }

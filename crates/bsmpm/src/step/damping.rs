@@ -33,7 +33,10 @@ impl Damping {
     /// What multiplies the elastic stiffness of a material.
     #[inline(always)]
     pub fn relative(&self, material: u16) -> Option<f64> {
-        self.0.get(usize::from(material)).copied().filter(|&relative| relative > 0.0)
+        self.0
+            .get(usize::from(material))
+            .copied()
+            .filter(|&relative| relative > 0.0)
     }
 
     /// Lamé's moduli of point `p` times β/Δt, Pa; `None` where it has no damping.
@@ -63,10 +66,15 @@ impl Viscous {
         let elastic = Response::elastic(strained, lame)?;
         let mut tau = elastic.tau();
         if let Some(returned) = returned {
-            tau.0.iter_mut().zip(returned.0).for_each(|(tau, taken)| *tau -= taken * share);
+            tau.0
+                .iter_mut()
+                .zip(returned.0)
+                .for_each(|(tau, taken)| *tau -= taken * share);
         }
         if gap > 0.0 {
-            tau.0[..3].iter_mut().for_each(|normal| *normal += (lame.0 + lame.1 * (2.0 / 3.0)) * gap);
+            tau.0[..3]
+                .iter_mut()
+                .for_each(|normal| *normal += (lame.0 + lame.1 * (2.0 / 3.0)) * gap);
         }
         Ok(Self { tau, elastic, share })
     }

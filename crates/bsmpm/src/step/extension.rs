@@ -81,8 +81,9 @@ impl<const D: usize> Extension<D> {
         let full = full_cells::<K, D>(grid, shape, points);
         let is_inner = inner_functions(grid, shape, &full, halo);
         let movable = |node: usize| free[Nodal::<D>::of(node)].contains(&true);
-        let is_outer: Vec<bool> =
-            (0..grid.nodes()).map(|node| active[node] && !is_inner[node] && movable(node)).collect();
+        let is_outer: Vec<bool> = (0..grid.nodes())
+            .map(|node| active[node] && !is_inner[node] && movable(node))
+            .collect();
         let mut outer: Vec<usize> = halo.owned().nodes().filter(|&node| is_outer[node]).collect();
         let mut counts = [outer.len() as f64, 0.0];
         halo.reduce(&mut counts[..1]);
@@ -90,23 +91,33 @@ impl<const D: usize> Extension<D> {
             return None;
         }
         outer.retain(|&node| !at_bodies[node]);
-        let search = HomeSearch { grid, full: &full, homes: Homes::of(grid, model.boundary.contact_faces()) };
+        let search = HomeSearch {
+            grid,
+            full: &full,
+            homes: Homes::of(grid, model.boundary.contact_faces()),
+        };
         let candidate = |node: usize| Candidate {
             number: grid.number_of(node),
             tied: std::array::from_fn(|axis| free[Nodal::<D>::at(node, axis)]),
         };
-        let (own, shared): (Vec<usize>, Vec<usize>) =
-            outer.into_iter().partition(|&node| is_surrounded_by_private_nodes(grid, node, halo));
+        let (own, shared): (Vec<usize>, Vec<usize>) = outer
+            .into_iter()
+            .partition(|&node| is_surrounded_by_private_nodes(grid, node, halo));
         let shared: Vec<Candidate<D>> = shared.into_iter().map(candidate).collect();
         let mut ties: Vec<Tie<D>> = own.into_iter().filter_map(|node| search.tie(candidate(node))).collect();
         ties.extend(search.published_ties(&shared, halo));
         ties.sort_by_key(|tie| tie.number);
-        let mut extension = Self { of_node: vec![0; grid.nodes()], ..Self::default() };
+        let mut extension = Self {
+            of_node: vec![0; grid.nodes()],
+            ..Self::default()
+        };
         extension.published = ties.iter().filter(|tie| tie.is_published).count();
         for (place, tie) in ties.iter().enumerate() {
             let Some(node) = tie.node else { continue };
             extension.of_node[node] = place as u32 + 1;
-            (0..D).filter(|&i| tie.tied[i]).for_each(|i| free[Nodal::<D>::at(node, i)] = false);
+            (0..D)
+                .filter(|&i| tie.tied[i])
+                .for_each(|i| free[Nodal::<D>::at(node, i)] = false);
             counts[1] += f64::from(u8::from(halo.owned().contains(node)));
         }
         halo.reduce(&mut counts[1..]);
@@ -187,7 +198,9 @@ impl<const D: usize> Extension<D> {
             for tie in self.ties.iter().filter(|tie| tie.is_published) {
                 let Some(node) = tie.node.filter(is_ours) else { continue };
                 message.push(tie.number as f64);
-                forces.iter().for_each(|force| message.extend_from_slice(&force[Nodal::<D>::of(node)]));
+                forces
+                    .iter()
+                    .for_each(|force| message.extend_from_slice(&force[Nodal::<D>::of(node)]));
             }
             known = values_by_number::<D>(&halo.gather(&message), width);
         }
@@ -210,7 +223,10 @@ impl<const D: usize> Tie<D> {
     fn value(&self, u: &[f64]) -> [f64; D] {
         let mut value = [0.0; D];
         for (node, weight) in self.inner.iter().filter_map(|inner| Some((inner.node?, inner.weight))) {
-            value.iter_mut().zip(&u[Nodal::<D>::of(node)]).for_each(|(sum, u)| *sum += weight * u);
+            value
+                .iter_mut()
+                .zip(&u[Nodal::<D>::of(node)])
+                .for_each(|(sum, u)| *sum += weight * u);
         }
         value
     }
@@ -218,7 +234,9 @@ impl<const D: usize> Tie<D> {
     /// Sets the tied components, if the node is in the window.
     fn set(&self, value: [f64; D], u: &mut [f64]) {
         let Some(node) = self.node else { return };
-        (0..D).filter(|&i| self.tied[i]).for_each(|i| u[Nodal::<D>::at(node, i)] = value[i]);
+        (0..D)
+            .filter(|&i| self.tied[i])
+            .for_each(|i| u[Nodal::<D>::at(node, i)] = value[i]);
     }
 
     /// Takes the tied components of the function's force away from it, and gives them to the home's functions.
@@ -236,7 +254,10 @@ impl<const D: usize> Tie<D> {
 
 /// `width` numbers of every tie in a message, by the number of its node.
 fn values_by_number<const D: usize>(message: &[f64], width: usize) -> BTreeMap<usize, Vec<f64>> {
-    message.chunks_exact(width + 1).map(|item| (item[0] as usize, item[1..].to_vec())).collect()
+    message
+        .chunks_exact(width + 1)
+        .map(|item| (item[0] as usize, item[1..].to_vec()))
+        .collect()
 }
 
 /// Per cell of the window: whether its points fill it.
@@ -254,7 +275,10 @@ fn full_cells<K: Kinematics<D>, const D: usize>(grid: &Grid<D>, shape: &Shape<D>
 fn inner_functions<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, full: &[bool], halo: &dyn Halo) -> Vec<bool> {
     let mut marks = vec![0.0; grid.nodes()];
     for patch in shape.patches().iter().filter(|patch| full[patch.cell]) {
-        shape.offsets().iter().for_each(|offset| marks[patch.first_node + offset] = 1.0);
+        shape
+            .offsets()
+            .iter()
+            .for_each(|offset| marks[patch.first_node + offset] = 1.0);
     }
     halo.max(&mut marks, 1);
     marks.into_iter().map(|mark| mark > 0.0).collect()
@@ -268,7 +292,10 @@ fn is_surrounded_by_private_nodes<const D: usize>(grid: &Grid<D>, node: usize, h
     let ends: [[usize; 2]; D] = std::array::from_fn(|axis| {
         let room = &grid.room()[axis];
         let last = room.end + grid.order() - 1;
-        [place[axis].saturating_sub(far).max(room.start), (place[axis] + far).min(last)]
+        [
+            place[axis].saturating_sub(far).max(room.start),
+            (place[axis] + far).min(last),
+        ]
     });
     // Private nodes fill a box, so its corners are enough.
     (0..1 << D).all(|corner: usize| {
@@ -317,7 +344,8 @@ impl<const D: usize> HomeSearch<'_, D> {
 
     /// The tie of a function whose surroundings are this rank's alone, if there is a home.
     fn tie(&self, outer: Candidate<D>) -> Option<Tie<D>> {
-        self.nearest(outer.number).map(|nearest| self.tied_to(outer, nearest, false))
+        self.nearest(outer.number)
+            .map(|nearest| self.tied_to(outer, nearest, false))
     }
 
     /// Ties of functions that other ranks see, too: every rank sends its candidates to all, and then the best home
@@ -341,13 +369,25 @@ impl<const D: usize> HomeSearch<'_, D> {
         }
         message.clear();
         for candidate in &all {
-            let Some(nearest) = self.nearest(candidate.number) else { continue };
-            let Nearness { beyond_line, apart, off_centre, cell } = nearest;
+            let Some(nearest) = self.nearest(candidate.number) else {
+                continue;
+            };
+            let Nearness {
+                beyond_line,
+                apart,
+                off_centre,
+                cell,
+            } = nearest;
             message.extend([candidate.number as f64, beyond_line, apart, off_centre, cell]);
         }
         let mut nearest: BTreeMap<usize, Nearness> = BTreeMap::new();
         for item in halo.gather(&message).chunks_exact(5) {
-            let other = Nearness { beyond_line: item[1], apart: item[2], off_centre: item[3], cell: item[4] };
+            let other = Nearness {
+                beyond_line: item[1],
+                apart: item[2],
+                off_centre: item[3],
+                cell: item[4],
+            };
             let known = nearest.entry(item[0] as usize).or_insert(other);
             if other < *known {
                 *known = other;
@@ -359,17 +399,33 @@ impl<const D: usize> HomeSearch<'_, D> {
 
     fn tied_to(&self, outer: Candidate<D>, nearest: Nearness, is_published: bool) -> Tie<D> {
         let grid = self.grid;
-        let (place, home) = (grid.place_of_number(outer.number), self.cell_of_number(nearest.cell as usize));
+        let (place, home) = (
+            grid.place_of_number(outer.number),
+            self.cell_of_number(nearest.cell as usize),
+        );
         let along: [Vec<f64>; D] = std::array::from_fn(|axis| weights(&grid.axes()[axis], place[axis], home[axis]));
         let mut inner = Vec::new();
         for function in grid.functions_of(home) {
             let weight: f64 = (0..D).map(|axis| along[axis][function[axis] - home[axis]]).product();
             if weight != 0.0 {
-                let number = (0..D).fold(0, |number, axis| number * grid.axes()[axis].functions() + function[axis]);
-                inner.push(InnerFunction { number, node: grid.node_index(&function), weight });
+                let number = (0..D).fold(0, |number, axis| {
+                    number * grid.axes()[axis].functions() + function[axis]
+                });
+                inner.push(InnerFunction {
+                    number,
+                    node: grid.node_index(&function),
+                    weight,
+                });
             }
         }
-        Tie { number: outer.number, node: grid.node_index(&place), tied: outer.tied, is_published, home, inner }
+        Tie {
+            number: outer.number,
+            node: grid.node_index(&place),
+            tied: outer.tied,
+            is_published,
+            home,
+            inner,
+        }
     }
 
     /// Cell along each axis by its number in the whole grid.

@@ -43,9 +43,14 @@ impl Inertia {
     #[inline]
     pub fn acceleration(&self, component: usize, u: f64) -> f64 {
         if self.is_moving(component) {
-            return if self.stopped[component] { 0.0 } else { self.gained_by(component, u) / self.dt };
+            return if self.stopped[component] {
+                0.0
+            } else {
+                self.gained_by(component, u) / self.dt
+            };
         }
-        self.newmark.acceleration(self.dt, u, (self.v[component], self.a[component]))
+        self.newmark
+            .acceleration(self.dt, u, (self.v[component], self.a[component]))
     }
 
     /// m/s2  what the mass of a component resists with: times the mass, its inertia in the balance of forces.
@@ -63,22 +68,37 @@ impl Inertia {
         if self.is_moving(component) {
             return u / self.dt;
         }
-        self.v[component] + self.newmark.gained(self.dt, self.a[component], self.acceleration(component, u))
+        self.v[component]
+            + self
+                .newmark
+                .gained(self.dt, self.a[component], self.acceleration(component, u))
     }
 
     /// 1/s2  the factor of a component's mass.
     pub fn factor_of(&self, component: usize) -> f64 {
-        if self.is_moving(component) { 1.0 / (self.dt * self.dt) } else { self.factor() }
+        if self.is_moving(component) {
+            1.0 / (self.dt * self.dt)
+        } else {
+            self.factor()
+        }
     }
 
     /// 1/s  how a component's velocity at the end changes with its displacement.
     pub fn velocity_factor(&self, component: usize) -> f64 {
-        if self.is_moving(component) { 1.0 / self.dt } else { self.newmark.velocity_factor(self.dt) }
+        if self.is_moving(component) {
+            1.0 / self.dt
+        } else {
+            self.newmark.velocity_factor(self.dt)
+        }
     }
 
     /// m/s  what a component gains as a face stops it, of lumped mass: the points gain their part of it at once.
     pub fn blow_of(&self, component: usize, u: f64) -> f64 {
-        if self.stopped.get(component) == Some(&true) { self.gained_by(component, u) } else { 0.0 }
+        if self.stopped.get(component) == Some(&true) {
+            self.gained_by(component, u)
+        } else {
+            0.0
+        }
     }
 
     #[inline]
@@ -101,8 +121,10 @@ pub(super) fn map<const D: usize>(
     (dt, newmark): (f64, Newmark),
 ) -> Inertia {
     let zeros = || vec![0.0; prescribed.len()];
-    let (nowhere, still) =
-        (vec![None; prescribed.len()], prescribed.iter().map(|v| v.map(|_| 0.0)).collect::<Vec<_>>());
+    let (nowhere, still) = (
+        vec![None; prescribed.len()],
+        prescribed.iter().map(|v| v.map(|_| 0.0)).collect::<Vec<_>>(),
+    );
     let mut inertia = Inertia {
         v: zeros(),
         a: zeros(),
@@ -115,7 +137,9 @@ pub(super) fn map<const D: usize>(
     };
     let Some(motion) = &points.motion else { return inertia };
     let momentum = |field: &[Vector<D>]| {
-        mass.halo.sum(&transfer::to_nodes::<D, D>(mass.shape, |p| (field[p] * points.mass[p]).into()))
+        mass.halo.sum(&transfer::to_nodes::<D, D>(mass.shape, |p| {
+            (field[p] * points.mass[p]).into()
+        }))
     };
     let arriving = momentum(&motion.v);
     inertia.a = mass.solve(momentum(&motion.a), &still);
@@ -132,7 +156,11 @@ pub(super) fn map<const D: usize>(
         let jump: Vec<f64> = inertia.v.iter().zip(&free).map(|(held, free)| held - free).collect();
         if moves {
             let given = mass.times(&jump);
-            inertia.struck = prescribed.iter().zip(given).map(|(v, given)| v.map_or(0.0, |v| v * given)).collect();
+            inertia.struck = prescribed
+                .iter()
+                .zip(given)
+                .map(|(v, given)| v.map_or(0.0, |v| v * given))
+                .collect();
         }
         if consistent {
             inertia.blow = jump;

@@ -67,7 +67,11 @@ impl<const D: usize> Mass<'_, D> {
         if self.matrix == MassMatrix::Lumped {
             return x;
         }
-        let mut left: Vec<f64> = momentum.iter().zip(self.times(&x)).map(|(b, product)| b - product).collect();
+        let mut left: Vec<f64> = momentum
+            .iter()
+            .zip(self.times(&x))
+            .map(|(b, product)| b - product)
+            .collect();
         self.clear(&mut left, held);
         let mut towards = self.by_lumped(left.clone());
         let mut error = dots(self.halo, D, &[(&left, &towards)])[0];

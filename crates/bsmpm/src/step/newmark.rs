@@ -10,7 +10,11 @@ pub struct Newmark {
 
 impl Default for Newmark {
     fn default() -> Self {
-        Self { alpha: 0.0, beta: 0.25, gamma: 0.5 }
+        Self {
+            alpha: 0.0,
+            beta: 0.25,
+            gamma: 0.5,
+        }
     }
 }
 
@@ -19,12 +23,20 @@ impl Newmark {
     /// The spectral radius ρ at infinite frequency lies in [0, 1]; 1 is the paper's method to the bit.
     pub fn of_spectral_radius(rho: f64) -> Self {
         let alpha = (rho - 1.0) / (rho + 1.0);
-        Self { alpha, beta: 0.25 * (1.0 - alpha).powi(2), gamma: 0.5 - alpha }
+        Self {
+            alpha,
+            beta: 0.25 * (1.0 - alpha).powi(2),
+            gamma: 0.5 - alpha,
+        }
     }
 
     /// Newmark's own damping, γ in [1/2, 1]: `β = (γ + 1/2)²/4`, α = 0; of first order unless γ = 1/2.
     pub fn of_gamma(gamma: f64) -> Self {
-        Self { alpha: 0.0, beta: 0.25 * (gamma + 0.5).powi(2), gamma }
+        Self {
+            alpha: 0.0,
+            beta: 0.25 * (gamma + 0.5).powi(2),
+            gamma,
+        }
     }
 
     /// β = 1/2, γ = 1: nothing depends on a at the start of the step, and a constant acceleration is exact. For a first
@@ -32,13 +44,21 @@ impl Newmark {
     /// the start instead makes what is stiff swing about its equilibrium in steps that do not resolve it, where this
     /// one damps it.
     pub fn of_the_end() -> Self {
-        Self { alpha: 0.0, beta: 0.5, gamma: 1.0 }
+        Self {
+            alpha: 0.0,
+            beta: 0.5,
+            gamma: 1.0,
+        }
     }
 
     /// β = γ = 1, with a = 0 at the start of the step: of first order, and the end's velocity is that of the step. What
     /// is stopped rests then, where the others throw it back.
     pub fn backward_euler() -> Self {
-        Self { alpha: 0.0, beta: 1.0, gamma: 1.0 }
+        Self {
+            alpha: 0.0,
+            beta: 1.0,
+            gamma: 1.0,
+        }
     }
 
     /// 1/s2  what multiplies u in a': `1/(β dt²)`.

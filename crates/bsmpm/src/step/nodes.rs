@@ -120,14 +120,19 @@ impl<const D: usize> Nodes<D> {
         let weight = scatter_weight(weighting, shape, points, halo);
         let threshold = threshold(&weight, halo);
         let velocities = model.boundary.velocities(&model.grid);
-        let background = model.background.map(|soft| soft.blocks::<K, D>(&model.grid, shape, points, &model.materials));
+        let background = model
+            .background
+            .map(|soft| soft.blocks::<K, D>(&model.grid, shape, points, &model.materials));
         let fitted = (model.quadrature == Quadrature::Fitted)
             .then(|| quadrature::fitted::<K, D>((&model.grid, &model.boundary), shape, points, halo));
         let volume = fitted.as_deref().unwrap_or(&points.volume);
         let (active, stiff) = supported(shape, volume, background.is_some(), nodes, halo);
         let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
-        let mut free: Vec<bool> =
-            velocities.iter().enumerate().map(|(c, v)| v.is_none() && unknown(Nodal::<D>::node(c))).collect();
+        let mut free: Vec<bool> = velocities
+            .iter()
+            .enumerate()
+            .map(|(c, v)| v.is_none() && unknown(Nodal::<D>::node(c)))
+            .collect();
         let pore_pressure = carried::pore_pressure(model, (shape, points), volume, t + dt, halo);
         let rigid = match model.boundary.rigid.is_empty() {
             true => RigidContacts::default(),
@@ -146,7 +151,9 @@ impl<const D: usize> Nodes<D> {
             }
         };
         let mut at_bodies = rigid.touched_nodes(nodes, halo);
-        strip::nodes_at(&model.boundary.strips, &model.grid, t).into_iter().for_each(|node| at_bodies[node] = true);
+        strip::nodes_at(&model.boundary.strips, &model.grid, t)
+            .into_iter()
+            .for_each(|node| at_bodies[node] = true);
         let extension = Extension::of::<K>(model, shape, points, &active, &at_bodies, &mut free, halo);
         let prescribed = velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect();
         let contacts = match model.boundary.has_contact() {
@@ -167,7 +174,14 @@ impl<const D: usize> Nodes<D> {
         };
         let mut starting = velocities;
         contacts.rest(&mut starting);
-        let mass = Mass { matrix: model.mass, shape, of_points: &points.mass, lumped: &weight, threshold, halo };
+        let mass = Mass {
+            matrix: model.mass,
+            shape,
+            of_points: &points.mass,
+            lumped: &weight,
+            threshold,
+            halo,
+        };
         let mut inertia =
             (model.regime == Regime::Dynamic).then(|| inertia::map(&mass, points, &starting, (dt, model.newmark)));
         if let Some(inertia) = &mut inertia {
@@ -175,14 +189,21 @@ impl<const D: usize> Nodes<D> {
         }
         let mut f_ext = external_force((model, shape, points), t + dt, (weighting, &weight), halo);
         if let Some(force) = carried::force(model, (shape, points), volume, t + dt) {
-            f_ext.iter_mut().zip(halo.sum(&force)).for_each(|(all, force)| *all += force);
+            f_ext
+                .iter_mut()
+                .zip(halo.sum(&force))
+                .for_each(|(all, force)| *all += force);
         }
         let window = (&model.grid, &active[..]);
         let surfaces = (&model.surfaces(), &points.surface);
         let followers = load::add_forces(surfaces, points.anchored(), window, t + dt, halo, &mut f_ext)?;
         if let Some(inertia) = inertia.as_mut().filter(|_| !rigid.moving.is_empty()) {
             inertia.moving.resize(rigid.moving.len(), false);
-            inertia.moving.iter_mut().zip(&rigid.moving).for_each(|(moving, by_body)| *moving |= by_body);
+            inertia
+                .moving
+                .iter_mut()
+                .zip(&rigid.moving)
+                .for_each(|(moving, by_body)| *moving |= by_body);
         }
         let pores = Pores::of(model, (shape, points), (t, dt), halo)?;
         let averages = Averages::of(model, (shape, points), threshold, halo);
@@ -224,7 +245,10 @@ impl<const D: usize> Nodes<D> {
     pub fn movable(&self) -> Vec<bool> {
         let mut movable = self.contacts.movable(&self.free);
         if let Some(extension) = &self.extension {
-            movable.iter_mut().enumerate().for_each(|(component, movable)| *movable |= extension.is_tied(component));
+            movable
+                .iter_mut()
+                .enumerate()
+                .for_each(|(component, movable)| *movable |= extension.is_tied(component));
         }
         movable
     }
@@ -268,8 +292,17 @@ impl<const D: usize> Nodes<D> {
     pub fn meet(&mut self) {
         self.contacts.apply(&mut self.free, &mut self.prescribed);
         if let Some(inertia) = &mut self.inertia {
-            inertia.stopped = inertia.moving.iter().zip(&self.free).map(|(moving, free)| *moving && !free).collect();
-            inertia.stopped.iter_mut().zip(&self.rigid.moving).for_each(|(stopped, by_body)| *stopped |= by_body);
+            inertia.stopped = inertia
+                .moving
+                .iter()
+                .zip(&self.free)
+                .map(|(moving, free)| *moving && !free)
+                .collect();
+            inertia
+                .stopped
+                .iter_mut()
+                .zip(&self.rigid.moving)
+                .for_each(|(stopped, by_body)| *stopped |= by_body);
         }
     }
 
@@ -322,7 +355,10 @@ impl<const D: usize> Nodes<D> {
     /// What the points weigh in averages of dilations, m^D (or kg). Where water flows by their volumes now, as in its
     /// balance: so that the averages of ground that keeps its water are 1.
     pub fn dilation_weights<'a, K>(&'a self, model: &Model<K, D>, points: &'a Points<D>) -> &'a [f64] {
-        self.averages.of_points.as_deref().unwrap_or_else(|| weights(model.weighting, points))
+        self.averages
+            .of_points
+            .as_deref()
+            .unwrap_or_else(|| weights(model.weighting, points))
     }
 
     /// With functions `shape` and their weights; zero where these are at most the threshold.
@@ -350,7 +386,14 @@ impl<const D: usize> Nodes<D> {
         halo: &'a dyn Halo,
     ) -> Mass<'a, D> {
         let Self { weight, threshold, .. } = self;
-        Mass { matrix: model.mass, shape, of_points: &points.mass, lumped: weight, threshold: *threshold, halo }
+        Mass {
+            matrix: model.mass,
+            shape,
+            of_points: &points.mass,
+            lumped: weight,
+            threshold: *threshold,
+            halo,
+        }
     }
 
     /// Counts what is reported of the nodes, over all ranks.
@@ -360,12 +403,20 @@ impl<const D: usize> Nodes<D> {
         let mut counts = [
             count(&mut owned.nodes().map(|node| self.active[node])),
             count(&mut owned.places::<D>().map(|place| self.free[place])),
-            count(&mut owned.nodes().map(|node| self.active[node] && self.weight[node] <= self.threshold)),
+            count(
+                &mut owned
+                    .nodes()
+                    .map(|node| self.active[node] && self.weight[node] <= self.threshold),
+            ),
             self.background.as_ref().map_or(0, Blocks::count) as f64,
         ];
         halo.reduce(&mut counts);
-        [self.active_nodes, self.unknowns, self.massless_nodes, self.background_cells] =
-            counts.map(|count| count as usize);
+        [
+            self.active_nodes,
+            self.unknowns,
+            self.massless_nodes,
+            self.background_cells,
+        ] = counts.map(|count| count as usize);
     }
 }
 
@@ -376,19 +427,30 @@ impl<const D: usize> Averages<D> {
         let weight =
             |shape: &Shape<D>, weights: &[f64]| halo.sum(&transfer::to_nodes_grouped(shape, grouped, |p| [weights[p]]));
         let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
-        let of_points: Option<Vec<f64>> = (flows && model.stabilisation.lowers())
-            .then(|| weights.iter().zip(points.F.iter()).map(|(weight, F)| weight * F.determinant()).collect());
+        let of_points: Option<Vec<f64>> = (flows && model.stabilisation.lowers()).then(|| {
+            weights
+                .iter()
+                .zip(points.F.iter())
+                .map(|(weight, F)| weight * F.determinant())
+                .collect()
+        });
         let lowered = || {
             let lower = shape.lowered(&model.grid, points);
             let subgrid = model.stabilisation == Stabilisation::SubgridFBar;
-            let lower = if subgrid { lower.merged(&model.grid, grouped, halo) } else { lower };
+            let lower = if subgrid {
+                lower.merged(&model.grid, grouped, halo)
+            } else {
+                lower
+            };
             let weight = weight(&lower, of_points.as_deref().unwrap_or(weights));
             (lower, weight)
         };
         let own = grouped.count() > 1 || model.weighting != model.inertial_weighting();
         let of_nodes = (model.stabilisation.averages() && own).then(|| weight(shape, weights));
         Self {
-            threshold: of_nodes.as_ref().map_or(threshold, |weight| self::threshold(weight, halo)),
+            threshold: of_nodes
+                .as_ref()
+                .map_or(threshold, |weight| self::threshold(weight, halo)),
             weight: of_nodes,
             lower: model.stabilisation.lowers().then(lowered),
             of_points,
@@ -424,7 +486,10 @@ fn supported<const D: usize>(
 ) -> (Vec<bool>, Vec<bool>) {
     let mut touched = vec![0.0_f64; nodes];
     for patch in shape.patches() {
-        shape.offsets().iter().for_each(|offset| touched[patch.first_node + offset] = 1.0);
+        shape
+            .offsets()
+            .iter()
+            .for_each(|offset| touched[patch.first_node + offset] = 1.0);
     }
     halo.max(&mut touched, 1);
     let touched: Vec<bool> = touched.into_iter().map(|mark| mark > 0.0).collect();

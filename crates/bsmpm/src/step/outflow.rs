@@ -41,6 +41,10 @@ impl Outflow {
         let gone: HashSet<u64> = out.iter().map(|&p| points.id[p]).collect();
         points.remove(|id| gone.contains(&id));
         let stored = [before, Stored::of(model, (points, t), halo)];
-        Some(Self { points: sums[0] as u64, mass: sums[1], stored })
+        Some(Self {
+            points: sums[0] as u64,
+            mass: sums[1],
+            stored,
+        })
     }
 }

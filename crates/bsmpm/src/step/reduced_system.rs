@@ -57,15 +57,27 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
         grid: &'a Grid<D>,
         halo: &'a dyn Halo,
     ) -> Self {
-        Self { solver, extension, grid, halo, offsets: grid.offsets(), kept: Vec::new() }
+        Self {
+            solver,
+            extension,
+            grid,
+            halo,
+            offsets: grid.offsets(),
+            kept: Vec::new(),
+        }
     }
 
     /// Keeps the entries of a dense block that have a tied row or column.
     fn keep(&mut self, nodes: &[usize], block: &[f64]) {
         let ties: Vec<Option<usize>> = nodes.iter().map(|&node| self.extension.place_of(node)).collect();
         let cells = self.grid.node_at(nodes[0])[0];
-        let origins: Vec<BlockOrigin> =
-            nodes.iter().map(|&node| BlockOrigin { other: self.grid.number_of(node), cells }).collect();
+        let origins: Vec<BlockOrigin> = nodes
+            .iter()
+            .map(|&node| BlockOrigin {
+                other: self.grid.number_of(node),
+                cells,
+            })
+            .collect();
         let order = nodes.len() * D;
         for (a, &row) in ties.iter().enumerate() {
             for (b, &column) in ties.iter().enumerate() {
@@ -85,7 +97,12 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
         let tie_at = |number: usize| extension.place_of_number(number).map(|place| &extension.ties()[place]);
         let is_own = |origin: &BlockOrigin| tie_at(origin.other).is_some_and(|tie| !tie.is_published);
         let mut message = Vec::new();
-        for (tie, blocks) in extension.ties().iter().zip(&mut *kept).filter(|(tie, _)| tie.is_published) {
+        for (tie, blocks) in extension
+            .ties()
+            .iter()
+            .zip(&mut *kept)
+            .filter(|(tie, _)| tie.is_published)
+        {
             for (part, blocks) in [&mut blocks.row, &mut blocks.column].into_iter().enumerate() {
                 for (origin, block) in blocks.iter().filter(|(origin, _)| !is_own(origin)) {
                     message.extend([tie.number, part, origin.other, origin.cells].map(|number| number as f64));
@@ -96,8 +113,14 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
         }
         for item in self.halo.gather(&message).chunks_exact(4 + D * D) {
             let [tie, part, other, cells] = [0, 1, 2, 3].map(|at| item[at] as usize);
-            let Some(place) = extension.place_of_number(tie) else { continue };
-            let blocks = if part == 0 { &mut kept[place].row } else { &mut kept[place].column };
+            let Some(place) = extension.place_of_number(tie) else {
+                continue;
+            };
+            let blocks = if part == 0 {
+                &mut kept[place].row
+            } else {
+                &mut kept[place].column
+            };
             *blocks.entry(BlockOrigin { other, cells }).or_insert_with(Square::zeros) +=
                 Square::from_column_slice(&item[4..]);
         }
@@ -151,7 +174,9 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
                 }
                 continue;
             }
-            let ([Some(row), Some(column)], true) = (nodes, self.owns_lowest(*first, *second)) else { continue };
+            let ([Some(row), Some(column)], true) = (nodes, self.owns_lowest(*first, *second)) else {
+                continue;
+            };
             if row == column {
                 self.solver.add_among(&[row], block.transpose().as_slice());
             } else {
@@ -172,7 +197,9 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
     fn owns_lowest(&self, row: usize, column: usize) -> bool {
         let [row, column] = [row, column].map(|number| self.grid.place_of_number(number));
         let lowest = std::array::from_fn(|axis| row[axis].min(column[axis]));
-        self.grid.node_index(&lowest).is_some_and(|node| self.halo.owned().contains(node))
+        self.grid
+            .node_index(&lowest)
+            .is_some_and(|node| self.halo.owned().contains(node))
     }
 
     /// Adds the blocks of two nodes: of the first and the second, and of the second and the first.
@@ -195,7 +222,10 @@ fn add_lumped<const D: usize>(block: &Square<D>, nodes: [Option<usize>; 2], diag
     let lumped = [absolute.column_sum(), absolute.row_sum().transpose()];
     for (node, lumped) in nodes.into_iter().zip(lumped) {
         let Some(node) = node else { continue };
-        diagonal[Nodal::<D>::of(node)].iter_mut().zip(&lumped).for_each(|(sum, part)| *sum += part);
+        diagonal[Nodal::<D>::of(node)]
+            .iter_mut()
+            .zip(&lumped)
+            .for_each(|(sum, part)| *sum += part);
     }
 }
 

@@ -99,7 +99,10 @@ impl StepReport {
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Self {
         let nodes = problem.nodes;
         let resisted = nodes.resisted(&found.u);
-        let soft = nodes.background.as_ref().map(|blocks| blocks.work::<D>(problem.shape, &resisted));
+        let soft = nodes
+            .background
+            .as_ref()
+            .map(|blocks| blocks.work::<D>(problem.shape, &resisted));
         Self {
             dt: 0.0,
             iterations: found.history.len(),
@@ -115,8 +118,13 @@ impl StepReport {
             untied_functions: nodes.extension.as_ref().map_or(0, |extension| extension.untied),
             settled: found.settled,
             first_guess: found.first_guess,
-            reactions: problem.model.boundary.reactions(&problem.model.grid, &found.reaction, problem.halo),
-            contacts: nodes.contacts.report(&problem.model.boundary, &found.u, &found.reaction, problem.halo),
+            reactions: problem
+                .model
+                .boundary
+                .reactions(&problem.model.grid, &found.reaction, problem.halo),
+            contacts: nodes
+                .contacts
+                .report(&problem.model.boundary, &found.u, &found.reaction, problem.halo),
             rigid: Vec::new(),
             strips: Vec::new(),
             background: soft.map(|work| [problem.halo.total(&[work])[0], found.work]),
@@ -141,7 +149,13 @@ pub fn background_share<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     found: &Found<K, D>,
 ) -> Option<f64> {
-    let Problem { model, shape, nodes, halo, .. } = *problem;
+    let Problem {
+        model,
+        shape,
+        nodes,
+        halo,
+        ..
+    } = *problem;
     let blocks = nodes.background.as_ref()?;
     let mut force = Contributions::none(&model.grid, D, Vec::new());
     blocks.multiply::<D>(shape, &nodes.resisted(&found.u), &mut force);

@@ -61,7 +61,14 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
     /// zero): one exchange with the neighbours, one more each for F-bar, its adjoint, strips and water, and one
     /// reduction, with water two.
     pub fn of(problem: &Problem<'_, K, D>, x: &[f64]) -> Self {
-        let Problem { model, shape, nodes, points, halo, .. } = *problem;
+        let Problem {
+            model,
+            shape,
+            nodes,
+            points,
+            halo,
+            ..
+        } = *problem;
         let (u, p) = x.split_at(nodes.free.len());
         let mut extended = Cow::Borrowed(u);
         if let Some(extension) = &nodes.extension {
@@ -73,12 +80,23 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
             [] => WaterBalance::of((problem, pores), &mut trial, &vec![0.0; pores.free.len()]),
             p => WaterBalance::of((problem, pores), &mut trial, p),
         });
-        let InternalForce { mut f_int, inverted, first_inverted } = InternalForce::of(problem, &trial);
+        let InternalForce {
+            mut f_int,
+            inverted,
+            first_inverted,
+        } = InternalForce::of(problem, &trial);
         if let Some(background) = &nodes.background {
             background.multiply::<D>(shape, &nodes.resisted(u), &mut f_int);
         }
-        let balance = Balance { water, ..Balance::of(problem, (u, &|p| trial.dF(p)), halo.sum(&f_int), inverted) };
-        Self { trial, balance, first_inverted }
+        let balance = Balance {
+            water,
+            ..Balance::of(problem, (u, &|p| trial.dF(p)), halo.sum(&f_int), inverted)
+        };
+        Self {
+            trial,
+            balance,
+            first_inverted,
+        }
     }
 }
 
@@ -95,7 +113,9 @@ pub struct InternalForce {
 impl InternalForce {
     /// Under a trial; one exchange with the neighbours where a point has the adjoint force.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, trial: &Trial<K, D>) -> Self {
-        let Problem { model, shape, points, .. } = *problem;
+        let Problem {
+            model, shape, points, ..
+        } = *problem;
         let (inverted, first_inverted) = (AtomicU64::new(0), AtomicUsize::new(usize::MAX));
         let (pressures, volume) = (&Pressures::of(problem, trial), problem.volume());
         let flux = |p: usize| match trial.respond(model, points, p) {
@@ -111,10 +131,23 @@ impl InternalForce {
             }
         };
         let f_int = transfer::divergence_of::<K, D>((shape, &points.x), |range, fluxes| {
-            lanes::run(Fluxes { model, points, trial, pressures, volume, range, flux: &flux, fluxes });
+            lanes::run(Fluxes {
+                model,
+                points,
+                trial,
+                pressures,
+                volume,
+                range,
+                flux: &flux,
+                fluxes,
+            });
         });
         let first_inverted = Some(first_inverted.into_inner()).filter(|&p| p < points.len());
-        Self { f_int, inverted: inverted.into_inner(), first_inverted }
+        Self {
+            f_int,
+            inverted: inverted.into_inner(),
+            first_inverted,
+        }
     }
 }
 
@@ -196,7 +229,9 @@ impl Balance {
             squares(&forces.f_oob),
             over_active(problem, |c| f_ext[c].powi(2)),
             over_active(problem, |c| f_int[c].powi(2)),
-            over_layers(problem.halo, D, |c| forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2))),
+            over_layers(problem.halo, D, |c| {
+                forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2))
+            }),
             over_active(problem, supporting),
             over_active(problem, |c| if soft { (f_int[c] * u[c]).abs() } else { 0.0 }),
         ];
@@ -204,9 +239,19 @@ impl Balance {
         // Out of balance, external, internal, inertial, of supports and strips.
         let terms = |c: usize| {
             let inertial = forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2));
-            [forces.f_oob[c].powi(2), f_ext[c].powi(2), f_int[c].powi(2), inertial, supporting(c)]
+            [
+                forces.f_oob[c].powi(2),
+                f_ext[c].powi(2),
+                f_int[c].powi(2),
+                inertial,
+                supporting(c),
+            ]
         };
-        let apart = problem.nodes.apart.as_ref().map_or_else(Vec::new, |apart| apart.sums(problem.halo, D, terms));
+        let apart = problem
+            .nodes
+            .apart
+            .as_ref()
+            .map_or_else(Vec::new, |apart| apart.sums(problem.halo, D, terms));
         let sums = problem.halo.total(&[&whole[..], &apart].concat());
         let (sums, apart) = sums.split_at(whole.len());
         let norms = |sums: &[f64]| [sums[0], sums[1..].iter().copied().fold(0.0, f64::max)].map(f64::sqrt);
@@ -218,7 +263,10 @@ impl Balance {
             reaction: forces.reaction,
             norm,
             scale,
-            apart: apart.chunks_exact(kinds).map(|sums| if acts(sums) { norms(sums) } else { [0.0; 2] }).collect(),
+            apart: apart
+                .chunks_exact(kinds)
+                .map(|sums| if acts(sums) { norms(sums) } else { [0.0; 2] })
+                .collect(),
             work: sums[kinds + 1],
             inverted: sums[0] as u64,
             water: None,
@@ -233,7 +281,10 @@ impl Balance {
 
     /// No point inverted or without pores, and no number overflowed, on any rank.
     pub fn is_sound(&self) -> bool {
-        let of_water = self.water.as_ref().is_none_or(|water| water.closed == 0 && water.finite);
+        let of_water = self
+            .water
+            .as_ref()
+            .is_none_or(|water| water.closed == 0 && water.finite);
         self.inverted == 0 && self.finite && of_water
     }
 }
@@ -243,20 +294,38 @@ fn external_force<'a, K: Kinematics<D>, const D: usize>(
     problem: &Problem<'a, K, D>,
     moved: (&[f64], &dyn Fn(usize) -> Tensor),
 ) -> Cow<'a, [f64]> {
-    let Problem { model, nodes, points, halo, .. } = *problem;
+    let Problem {
+        model,
+        nodes,
+        points,
+        halo,
+        ..
+    } = *problem;
     let mut f_ext = Cow::Borrowed(&nodes.f_ext[..]);
     if !nodes.followers.is_empty() {
-        let traction = nodes.followers.tractions::<K>((&model.boundary.loads, &model.grid), points, moved, halo);
+        let traction = nodes
+            .followers
+            .tractions::<K>((&model.boundary.loads, &model.grid), points, moved, halo);
         let mut force = nodes.followers.forces(&traction, &model.grid, halo);
         nodes.reduce(&mut [&mut force], halo);
-        f_ext.to_mut().iter_mut().zip(force).for_each(|(all, force)| *all += force);
+        f_ext
+            .to_mut()
+            .iter_mut()
+            .zip(force)
+            .for_each(|(all, force)| *all += force);
     }
     f_ext
 }
 
 /// Sum over the components of this rank's own active nodes.
 fn over_active<K, const D: usize>(problem: &Problem<'_, K, D>, term: impl Fn(usize) -> f64) -> Exact {
-    over_layers(problem.halo, D, |c| if problem.nodes.active[Nodal::<D>::node(c)] { term(c) } else { 0.0 })
+    over_layers(problem.halo, D, |c| {
+        if problem.nodes.active[Nodal::<D>::node(c)] {
+            term(c)
+        } else {
+            0.0
+        }
+    })
 }
 
 /// Step (5b) at the nodes of the window.
@@ -273,9 +342,19 @@ impl Forces {
         (f_ext, f_int, f_strips): (&[f64], &[f64], &[f64]),
     ) -> Self {
         let nodes = problem.nodes;
-        let mut forces = Self { f_oob: vec![0.0; u.len()], reaction: vec![0.0; u.len()], inertial: Vec::new() };
+        let mut forces = Self {
+            f_oob: vec![0.0; u.len()],
+            reaction: vec![0.0; u.len()],
+            inertial: Vec::new(),
+        };
         if let Some(inertia) = &nodes.inertia {
-            let of = |c: usize| if nodes.active[Nodal::<D>::node(c)] { inertia.acting(c, u[c]) } else { 0.0 };
+            let of = |c: usize| {
+                if nodes.active[Nodal::<D>::node(c)] {
+                    inertia.acting(c, u[c])
+                } else {
+                    0.0
+                }
+            };
             let acting: Vec<f64> = (0..u.len()).map(of).collect();
             forces.inertial = problem.mass().times(&acting);
         }
@@ -290,7 +369,9 @@ impl Forces {
             }
         }
         if let Some(inertia) = &nodes.inertia {
-            nodes.dashpots.add_forces(inertia, u, &mut forces.f_oob, &mut forces.reaction);
+            nodes
+                .dashpots
+                .add_forces(inertia, u, &mut forces.f_oob, &mut forces.reaction);
         }
         nodes.contacts.add_friction(u, &mut forces.f_oob, &mut forces.reaction);
         forces

@@ -45,7 +45,9 @@ pub fn change<const D: usize>(before: &Packed<D, Symmetric>, after: &Packed<D, S
         let inverse = factor.l().try_inverse()?;
         Some(Symmetric::of(&(inverse * after.full() * inverse.transpose())))
     };
-    threads::each(before.len(), |p| change(p).unwrap_or(Symmetric::IDENTITY)).into_iter().collect()
+    threads::each(before.len(), |p| change(p).unwrap_or(Symmetric::IDENTITY))
+        .into_iter()
+        .collect()
 }
 
 /// What the filter of consistent F-bar needs of a point's return.
@@ -61,9 +63,15 @@ impl PlasticFlow {
     /// Of one response; `gap` is what gaped before the step, which is in its trial but did not flow in it.
     pub fn of(response: &Response, gap: f64) -> Self {
         let (trial, elastic) = (response.principal_eps_trial(), response.principal_eps_e());
-        let squares: f64 =
-            trial.iter().zip(elastic).map(|(trial, elastic)| (trial - gap / 3.0 - elastic).powi(2)).sum();
-        Self { plastic: (2.0 / 3.0 * squares).sqrt(), dilation: elastic.iter().sum() }
+        let squares: f64 = trial
+            .iter()
+            .zip(elastic)
+            .map(|(trial, elastic)| (trial - gap / 3.0 - elastic).powi(2))
+            .sum();
+        Self {
+            plastic: (2.0 / 3.0 * squares).sqrt(),
+            dilation: elastic.iter().sum(),
+        }
     }
 }
 
@@ -100,7 +108,10 @@ pub fn filter_dilation<K, const D: usize>(
         (b_e.at(p).scaled((2.0 / 3.0 * change).exp()), theta, change)
     };
     let filtered = nodes.average(model, (shape, points), halo, |p| [share[p], flow[p].dilation], filter);
-    let (elastic, dilations) = (points.b_e.apart(), points.dilation.as_mut().map(|all| threads::apart(all, 1)));
+    let (elastic, dilations) = (
+        points.b_e.apart(),
+        points.dilation.as_mut().map(|all| threads::apart(all, 1)),
+    );
     let shares = threads::of_chunks(filtered.len(), |chunk, range| {
         let only = "the chunk's only thread";
         let mut b_e = elastic[chunk].lock().expect(only);

@@ -27,7 +27,9 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     at: Option<&Trial<K, D>>,
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
-    let Some(extension) = &problem.nodes.extension else { return assemble_into(problem, at, solver) };
+    let Some(extension) = &problem.nodes.extension else {
+        return assemble_into(problem, at, solver);
+    };
     let mut reduced = ReducedSystem::new(solver, extension, &problem.model.grid, problem.halo);
     assemble_into(problem, at, &mut reduced)
 }
@@ -37,15 +39,30 @@ fn assemble_into<K: Kinematics<D>, const D: usize>(
     at: Option<&Trial<K, D>>,
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
-    let Problem { model, shape, nodes, points, halo, .. } = *problem;
+    let Problem {
+        model,
+        shape,
+        nodes,
+        points,
+        halo,
+        ..
+    } = *problem;
     let volume = problem.volume();
     solver.begin(&nodes.free);
     let damping = Damping::of(model, nodes);
     let mut coupling = at.and_then(|_| Coupling::of(model, nodes, Raised::Along));
     // Threads work on a column each; what they found is added in the order of the patches.
     for columns in shape.columns().chunks(columns_at_a_time(shape)) {
-        let state =
-            Assembly { model, shape, nodes, points, volume, at, coupling: coupling.as_ref(), damping: &damping };
+        let state = Assembly {
+            model,
+            shape,
+            nodes,
+            points,
+            volume,
+            at,
+            coupling: coupling.as_ref(),
+            damping: &damping,
+        };
         let of_column = |column: &PatchColumn| column.patches.clone().map(|patch| state.part(patch)).collect();
         let parts: Vec<Vec<PatchPart>> = columns.par_iter().with_max_len(1).map(of_column).collect();
         let patches = columns.iter().flat_map(|column| column.patches.clone());
@@ -70,7 +87,11 @@ fn columns_at_a_time<const D: usize>(shape: &Shape<D>) -> usize {
     let threads = rayon::current_num_threads();
     let patches = shape.patches().len().div_ceil(shape.columns().len().max(1));
     let bytes = patches * (shape.offsets().len() * D).pow(2) * size_of::<f64>();
-    if threads == 1 { 1 } else { threads.max(BLOCKS / bytes.max(1)) }
+    if threads == 1 {
+        1
+    } else {
+        threads.max(BLOCKS / bytes.max(1))
+    }
 }
 
 /// What one patch contributes.
@@ -95,10 +116,19 @@ struct Assembly<'a, K: Kinematics<D>, const D: usize> {
 
 impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
     fn part(&self, number: usize) -> PatchPart {
-        let Self { model, shape, points, coupling, .. } = *self;
+        let Self {
+            model,
+            shape,
+            points,
+            coupling,
+            ..
+        } = *self;
         let patch = &shape.patches()[number];
         let size = shape.offsets().len();
-        let mut part = PatchPart { block: vec![0.0; (size * D).pow(2)], dilations: coupling.map(Coupling::of_patch) };
+        let mut part = PatchPart {
+            block: vec![0.0; (size * D).pow(2)],
+            dilations: coupling.map(Coupling::of_patch),
+        };
         let mut slopes = [K::Gradient::NO_SLOPE; MOST];
         // All of them first: responses of neighbours do not wait for each other.
         let yielding: Vec<Option<Stiffness>> = patch.points.clone().map(|p| self.yielding(p)).collect();
@@ -111,7 +141,12 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
             let averaged = 2.0 * mu * K::dilation().norm_squared();
             for p in run {
                 let stiffness = yielding[p - patch.points.start].as_ref();
-                self.add((p, &mut slopes[..size]), (stiffness, lambda + averaged), &mut moments, &mut part);
+                self.add(
+                    (p, &mut slopes[..size]),
+                    (stiffness, lambda + averaged),
+                    &mut moments,
+                    &mut part,
+                );
             }
             let lambda = if coupling.is_some() { -averaged } else { lambda };
             add_elastic::<K, D>(&moments, (lambda, mu), &mut part.block);
@@ -140,7 +175,14 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
         moments: &mut [Moment<K, D>],
         part: &mut PatchPart,
     ) {
-        let Self { model, shape, nodes, points, coupling, .. } = *self;
+        let Self {
+            model,
+            shape,
+            nodes,
+            points,
+            coupling,
+            ..
+        } = *self;
         transfer::slopes_of::<K, D>((shape, &points.x), p, slopes);
         let volume = self.volume[p];
         // What damps a point is its stiffness, too, times a share.
@@ -158,9 +200,22 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
         if let Some(dilations) = &mut part.dilations {
             let mut dilation = [Vector::zeros(); MOST];
             let dilation = &mut dilation[..slopes.len()];
-            dilation.iter_mut().zip(slopes).for_each(|(of_node, slope)| *of_node = K::divergence(slope) * volume);
+            dilation
+                .iter_mut()
+                .zip(slopes)
+                .for_each(|(of_node, slope)| *of_node = K::divergence(slope) * volume);
             let group = model.groups.of(points.material[p]);
-            dilations.add(nodes, p, &Share { group, weight: volume, bulk: raised, dilation, force: &[] });
+            dilations.add(
+                nodes,
+                p,
+                &Share {
+                    group,
+                    weight: volume,
+                    bulk: raised,
+                    dilation,
+                    force: &[],
+                },
+            );
         }
     }
 }
@@ -248,9 +303,21 @@ mod tests {
     /// the part of its dilation, and without what the stress works on it.
     #[test]
     fn moduli_of_a_point_are_those_of_unit_gradients_averaged_or_not() {
-        let law = MohrCoulomb::new(Elastic { young: 1e3, poisson: 0.3 }, 0.4, 0.1, 1.0);
+        let law = MohrCoulomb::new(
+            Elastic {
+                young: 1e3,
+                poisson: 0.3,
+            },
+            0.4,
+            0.1,
+            1.0,
+        );
         let b = Symmetric([1.02, 0.96, 0.99, 0.015, 0.0, 0.0]);
-        let stiffness = Material::MohrCoulomb(law).respond(&b, &[]).unwrap().yielding().expect("it yields");
+        let stiffness = Material::MohrCoulomb(law)
+            .respond(&b, &[])
+            .unwrap()
+            .yielding()
+            .expect("it yields");
         let whole = stiffness.moduli::<Tensor, 3>(|stress| *stress);
         let apply = |l: &Tensor| -> Tensor { (0..9).map(|at| whole[(at / 3, at % 3)] * l[(at / 3, at % 3)]).sum() };
         let (volume, dilation) = (0.7, <PlaneStrain as Kinematics<2>>::dilation());
@@ -269,7 +336,10 @@ mod tests {
                     stress -= Tensor::identity() * stress.dot(&dilation);
                 }
                 let expected = <PlaneStrain as Kinematics<2>>::working(&stress) * volume;
-                assert!((moduli[(k, l)] - expected).amax() <= 1e-10 * 1e3, "{averaged} {k}{l}: {expected}");
+                assert!(
+                    (moduli[(k, l)] - expected).amax() <= 1e-10 * 1e3,
+                    "{averaged} {k}{l}: {expected}"
+                );
             }
         }
     }

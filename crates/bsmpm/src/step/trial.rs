@@ -44,14 +44,26 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     ) -> Self {
         let grad = transfer::gradients::<K, D, _>((shape, &points.x), u, |_, grad| {
             let dJ = K::jacobian::<f64>(&grad);
-            if dJ > 0.0 && dJ.is_finite() { grad } else { K::Gradient::from_element(f64::NAN) }
+            if dJ > 0.0 && dJ.is_finite() {
+                grad
+            } else {
+                K::Gradient::from_element(f64::NAN)
+            }
         });
-        let trial = Self { grad, mean: None, damping: Damping::of(model, nodes), pore: None };
+        let trial = Self {
+            grad,
+            mean: None,
+            damping: Damping::of(model, nodes),
+            pore: None,
+        };
         let own = |p: usize| match trial.own(model, points, p) {
             inverted if inverted.is_nan() => weight(model.stabilisation, points, p), // no other point shall suffer for it
             own => own,
         };
-        let mean = model.stabilisation.averages().then(|| nodes.mean_dilation(model, (shape, points), halo, own));
+        let mean = model
+            .stabilisation
+            .averages()
+            .then(|| nodes.mean_dilation(model, (shape, points), halo, own));
         Self { mean, ..trial }
     }
 
@@ -71,34 +83,57 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     #[inline]
     pub fn ratio(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
         let Some(mean) = &self.mean else { return 1.0 };
-        ratio(mean[p], self.own(model, points, p), kept(model.stabilisation, points, p))
+        ratio(
+            mean[p],
+            self.own(model, points, p),
+            kept(model.stabilisation, points, p),
+        )
     }
 
     /// J-bar/J of point `p` at the end of the step.
     pub(crate) fn dilation(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
-        let before = if model.stabilisation == Stabilisation::FBarZhao { 1.0 } else { points.dilation_of(p) };
+        let before = if model.stabilisation == Stabilisation::FBarZhao {
+            1.0
+        } else {
+            points.dilation_of(p)
+        };
         self.averaged(model, points, p) * before
     }
 
     /// S(w dJ)_p / (w_p dJ_p).
     #[inline]
     fn averaged(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
-        self.mean.as_ref().map_or(1.0, |mean| mean[p] / self.own(model, points, p))
+        self.mean
+            .as_ref()
+            .map_or(1.0, |mean| mean[p] / self.own(model, points, p))
     }
 
     /// w dJ and S(w dJ) of point `p`; 1 for the latter without F-bar.
     pub(crate) fn means(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> (f64, f64) {
-        (self.own(model, points, p), self.mean.as_ref().map_or(1.0, |mean| mean[p]))
+        (
+            self.own(model, points, p),
+            self.mean.as_ref().map_or(1.0, |mean| mean[p]),
+        )
     }
 
     /// Rate of ln ratio_p for a displacement whose spatial gradient has the trace `trace`_p at every point:
     /// S(w dJ tr l)_p / S(w dJ)_p - tr l_p. `None` without F-bar; one exchange with the neighbours.
     pub fn dilation_rate(&self, problem: &Problem<'_, K, D>, trace: &[f64]) -> Option<Vec<f64>> {
         let mean = self.mean.as_ref()?;
-        let Problem { model, shape, nodes, points, halo, .. } = *problem;
+        let Problem {
+            model,
+            shape,
+            nodes,
+            points,
+            halo,
+            ..
+        } = *problem;
         let own = |p: usize| self.own(model, points, p) * trace[p];
         let mut rate = nodes.mean_dilation(model, (shape, points), halo, own);
-        rate.iter_mut().zip(mean).zip(trace).for_each(|((rate, mean), trace)| *rate = *rate / mean - trace);
+        rate.iter_mut()
+            .zip(mean)
+            .zip(trace)
+            .for_each(|((rate, mean), trace)| *rate = *rate / mean - trace);
         Some(rate)
     }
 
@@ -172,7 +207,10 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     /// The viscous stress of point `p` beside that of its law's `response`, if it has any.
     #[inline]
     pub fn viscous(&self, model: &Model<K, D>, points: &Points<D>, p: usize, response: &Response) -> Option<Viscous> {
-        let (lame, share) = (self.damping.lame(model, points, p)?, self.damping.relative(points.material[p])?);
+        let (lame, share) = (
+            self.damping.lame(model, points, p)?,
+            self.damping.relative(points.material[p])?,
+        );
         let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
         let strained = K::push_forward(&dF_bar, &points.smoothing_of(p));
         Viscous::of(&strained, lame, (response.returned(), share), points.gap_of(p)).ok()
@@ -187,7 +225,8 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         (p, response): (usize, &Response),
         tau: Symmetric,
     ) -> Symmetric {
-        self.viscous(model, points, p, response).map_or(tau, |viscous| viscous.beside(tau))
+        self.viscous(model, points, p, response)
+            .map_or(tau, |viscous| viscous.beside(tau))
     }
 
     /// What the viscous stress of point `p` takes in the step per reference volume, J/m3, if it has any.
@@ -204,7 +243,8 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
 
     /// `tau` and that viscous stress, Pa.
     pub(crate) fn damped_at(&self, model: &Model<K, D>, points: &Points<D>, p: usize, tau: Symmetric) -> Symmetric {
-        self.viscous_at(model, points, p).map_or(tau, |viscous| viscous.beside(tau))
+        self.viscous_at(model, points, p)
+            .map_or(tau, |viscous| viscous.beside(tau))
     }
 
     /// `tau` of the skeleton less what the water presses with at point `p`, Pa.
@@ -261,11 +301,19 @@ fn ratio<R: Real>(mean: R, own: R, kept: R) -> R {
 /// J-bar/J at the start of the step where the total J is averaged, else 1.
 #[inline]
 fn kept<const D: usize>(stabilisation: Stabilisation, points: &Points<D>, p: usize) -> f64 {
-    if stabilisation == Stabilisation::FBarZhao { points.dilation_of(p) } else { 1.0 }
+    if stabilisation == Stabilisation::FBarZhao {
+        points.dilation_of(p)
+    } else {
+        1.0
+    }
 }
 
 /// w_p: J at the start of the step where the total J is averaged, else 1.
 #[inline]
 fn weight<const D: usize>(stabilisation: Stabilisation, points: &Points<D>, p: usize) -> f64 {
-    if stabilisation == Stabilisation::FBarZhao { points.F.at(p).determinant() } else { 1.0 }
+    if stabilisation == Stabilisation::FBarZhao {
+        points.F.at(p).determinant()
+    } else {
+        1.0
+    }
 }

@@ -42,12 +42,20 @@ impl Layer {
 
 /// The cells at all faces that hold all components.
 fn layers<K, const D: usize>(model: &Model<K, D>) -> Vec<Layer> {
-    let fixed = model.boundary.supports.iter().filter(|support| support.velocity == [Some(0.0); D]);
+    let fixed = model
+        .boundary
+        .supports
+        .iter()
+        .filter(|support| support.velocity == [Some(0.0); D]);
     let layer = |support: &Support<D>| {
         let axis = &model.grid.axes()[support.axis];
         let cells = axis.cells();
         let [face, end] = if support.upper { [cells, cells - 1] } else { [0, 1] };
-        Layer { axis: support.axis, face: axis.breakpoint(face), end: axis.breakpoint(end) }
+        Layer {
+            axis: support.axis,
+            face: axis.breakpoint(face),
+            end: axis.breakpoint(end),
+        }
     };
     fixed.map(layer).collect()
 }
@@ -59,9 +67,18 @@ pub fn relax<K, const D: usize>(model: &Model<K, D>, points: &mut Points<D>, du:
         return;
     }
     let (layers, degree) = (layers(model), model.grid.order() as i32);
-    let Points { x, motion: Some(motion), .. } = points else { return };
+    let Points {
+        x,
+        motion: Some(motion),
+        ..
+    } = points
+    else {
+        return;
+    };
     threads::change(&mut motion.v, 1, |p, v| {
-        let near = layers.iter().filter_map(|layer| Some((layer.thickness(), layer.depth(&x[p])?)));
+        let near = layers
+            .iter()
+            .filter_map(|layer| Some((layer.thickness(), layer.depth(&x[p])?)));
         let (mut thickness, mut others) = (f64::INFINITY, 1.0);
         for (of_layer, depth) in near {
             thickness = of_layer.min(thickness);

@@ -38,7 +38,9 @@ impl Ambient {
                     return Some((height(places.first()?)?, 0.0));
                 };
                 let low = height(before)?;
-                let Some(after) = places.get(next) else { return Some((low, 0.0)) };
+                let Some(after) = places.get(next) else {
+                    return Some((low, 0.0));
+                };
                 let slope = (height(after)? - low) / (after.x - before.x);
                 Some((low + slope * (x - before.x), slope))
             }
@@ -65,12 +67,16 @@ impl Ambient {
 
     /// Whether it turns sharply in a step.
     pub fn turns(&self, step: (f64, f64)) -> bool {
-        self.levels().iter().any(|rows| turns(rows, rows.first().map_or(0.0, |row| row.1), f64::abs, step))
+        self.levels()
+            .iter()
+            .any(|rows| turns(rows, rows.first().map_or(0.0, |row| row.1), f64::abs, step))
     }
 
     /// Whether it rises or falls.
     pub fn moves(&self) -> bool {
-        self.levels().iter().any(|rows| rows.windows(2).any(|pair| pair[0].1 != pair[1].1))
+        self.levels()
+            .iter()
+            .any(|rows| rows.windows(2).any(|pair| pair[0].1 != pair[1].1))
     }
 }
 
@@ -91,7 +97,17 @@ impl Span {
     pub fn of(at: f64, part: f64, filled: f64) -> Self {
         let row = at / part - 0.5;
         let whole = (row - row.round()).abs() < 1e-6 && (0.5 - 1e-9..=2.0).contains(&filled);
-        if whole { Self { reach: 0.5 * part, filled } } else { Self { reach: 0.5 * part * filled, filled: 1.0 } }
+        if whole {
+            Self {
+                reach: 0.5 * part,
+                filled,
+            }
+        } else {
+            Self {
+                reach: 0.5 * part * filled,
+                filled: 1.0,
+            }
+        }
     }
 
     /// The same under a table of this slope: none if that slopes, as it often is the surface of the ground, which cuts
@@ -127,7 +143,11 @@ pub struct StillWater<'a> {
 impl<'a> StillWater<'a> {
     /// At time `t`, of the `unit_weight` (N/m3) that it has then.
     pub fn new(ambient: &'a Ambient, unit_weight: f64, t: f64) -> Self {
-        Self { ambient, unit_weight, t }
+        Self {
+            ambient,
+            unit_weight,
+            t,
+        }
     }
 
     /// Pa  p_a at the place `x` (m, from the grid's lower corner): unit weight times the depth below the water table
@@ -142,7 +162,9 @@ impl<'a> StillWater<'a> {
     pub fn force<const D: usize>(&self, points: &Points<D>, (p, span): (usize, Span), follows: bool) -> Vector<D> {
         let x = &points.x[p];
         let mut force = Vector::zeros();
-        let Some((height, slope)) = self.ambient.table(x[0], self.t) else { return force };
+        let Some((height, slope)) = self.ambient.table(x[0], self.t) else {
+            return force;
+        };
         let below = span.under(slope).share_below(height - x[D - 1]);
         if below > 0.0 {
             let volume = points.volume[p] * below;
@@ -163,18 +185,38 @@ mod tests {
 
     /// A line of places and heights that stays.
     fn line(places: &[(f64, f64)]) -> Ambient {
-        Ambient::Line(places.iter().map(|&(x, height)| LevelAt { x, rows: vec![(0.0, height)] }).collect())
+        Ambient::Line(
+            places
+                .iter()
+                .map(|&(x, height)| LevelAt {
+                    x,
+                    rows: vec![(0.0, height)],
+                })
+                .collect(),
+        )
     }
 
     #[test]
     fn a_line_moves_from_one_to_another() {
         let moving = Ambient::Line(vec![
-            LevelAt { x: 0.0, rows: vec![(0.0, 1.0), (4.0, 3.0)] },
-            LevelAt { x: 2.0, rows: vec![(2.0, 5.0), (4.0, 1.0)] },
+            LevelAt {
+                x: 0.0,
+                rows: vec![(0.0, 1.0), (4.0, 3.0)],
+            },
+            LevelAt {
+                x: 2.0,
+                rows: vec![(2.0, 5.0), (4.0, 1.0)],
+            },
         ]);
         let at = |x: f64, t: f64| moving.table(x, t).unwrap();
-        assert_eq!([at(0.0, 2.0), at(1.0, 2.0), at(3.0, 2.0)], [(2.0, 1.5), (3.5, 1.5), (5.0, 0.0)]);
-        assert_eq!([at(1.0, 0.0), at(1.0, 3.0), at(1.0, 9.0)], [(3.0, 2.0), (2.75, 0.25), (2.0, -1.0)]);
+        assert_eq!(
+            [at(0.0, 2.0), at(1.0, 2.0), at(3.0, 2.0)],
+            [(2.0, 1.5), (3.5, 1.5), (5.0, 0.0)]
+        );
+        assert_eq!(
+            [at(1.0, 0.0), at(1.0, 3.0), at(1.0, 9.0)],
+            [(3.0, 2.0), (2.75, 0.25), (2.0, -1.0)]
+        );
         assert!(moving.moves() && !line(&[(0.0, 1.0), (2.0, 3.0)]).moves());
     }
 
@@ -185,11 +227,21 @@ mod tests {
         let (beta, phi) = (20.0_f64.to_radians(), 35.0_f64.to_radians());
         let line = line(&[(0.0, 0.0), (100.0, 100.0 * beta.tan())]);
         let (x, v) = (Vector::<2>::new(50.0, 10.0), Vector::<2>::zeros());
-        let seed = Seed { id: 0, material: 0, x, volume: 0.25, mass: 0.25 * 20.0 / 9.81, v };
+        let seed = Seed {
+            id: 0,
+            material: 0,
+            x,
+            volume: 0.25,
+            mass: 0.25 * 20.0 / 9.81,
+            v,
+        };
         let points = Points::<2>::from_seeds([seed], false);
         let weight = Vector::<2>::new(0.0, -9.81) * points.mass[0];
         let acts = weight + StillWater::new(&line, 9.81, 0.0).force(&points, (0, Span::default()), false);
-        let (down, into) = (Vector::<2>::new(-beta.cos(), -beta.sin()), Vector::<2>::new(beta.sin(), -beta.cos()));
+        let (down, into) = (
+            Vector::<2>::new(-beta.cos(), -beta.sin()),
+            Vector::<2>::new(beta.sin(), -beta.cos()),
+        );
         let factor = phi.tan() * acts.dot(&into) / acts.dot(&down);
         assert!((factor - 0.8552).abs() < 5e-5, "{factor}");
         assert!((factor - phi.tan() / beta.tan() * (1.0 - 9.81 / (20.0 * beta.cos().powi(2)))).abs() < 1e-12);
@@ -199,11 +251,20 @@ mod tests {
     fn a_table_is_linear_between_its_rows_and_level_beyond_them() {
         let line = line(&[(1.0, 2.0), (3.0, 6.0), (4.0, 5.0)]);
         let at = |x: f64| line.table(x, 7.0);
-        assert_eq!([at(0.0), at(1.0), at(2.0)], [Some((2.0, 0.0)), Some((2.0, 2.0)), Some((4.0, 2.0))]);
-        assert_eq!([at(3.5), at(4.0), at(9.0)], [Some((5.5, -1.0)), Some((5.0, 0.0)), Some((5.0, 0.0))]);
+        assert_eq!(
+            [at(0.0), at(1.0), at(2.0)],
+            [Some((2.0, 0.0)), Some((2.0, 2.0)), Some((4.0, 2.0))]
+        );
+        assert_eq!(
+            [at(3.5), at(4.0), at(9.0)],
+            [Some((5.5, -1.0)), Some((5.0, 0.0)), Some((5.0, 0.0))]
+        );
         let path = Ambient::Level(vec![(1.0, 8.0), (3.0, 4.0)]);
         let at = |t: f64| path.table(0.0, t);
-        assert_eq!([at(0.0), at(2.0), at(5.0)], [Some((8.0, 0.0)), Some((6.0, 0.0)), Some((4.0, 0.0))]);
+        assert_eq!(
+            [at(0.0), at(2.0), at(5.0)],
+            [Some((8.0, 0.0)), Some((6.0, 0.0)), Some((4.0, 0.0))]
+        );
         assert_eq!(Ambient::None.table(1.0, 1.0), None);
     }
 
@@ -212,6 +273,9 @@ mod tests {
         let line = line(&[(0.0, 2.0), (2.0, 4.0)]);
         let water = StillWater::new(&line, 10.0, 0.0);
         let at = |x: f64, y: f64| water.pressure(&Vector::<2>::new(x, y));
-        assert_eq!([at(1.0, 1.0), at(1.0, 3.0), at(1.0, 3.5), at(5.0, 0.0)], [20.0, 0.0, 0.0, 40.0]);
+        assert_eq!(
+            [at(1.0, 1.0), at(1.0, 3.0), at(1.0, 3.5), at(5.0, 0.0)],
+            [20.0, 0.0, 0.0, 40.0]
+        );
     }
 }

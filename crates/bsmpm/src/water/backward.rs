@@ -22,13 +22,21 @@ pub struct Differences {
 
 impl Differences {
     /// Backward Euler, of first order.
-    pub const EULER: Self = Self { last: 0.0, now: 1.0, before: 0.0 };
+    pub const EULER: Self = Self {
+        last: 0.0,
+        now: 1.0,
+        before: 0.0,
+    };
 
     /// Of second order, for a step of `dt` after one of `before`, s.
     pub fn of_second_order(dt: f64, before: f64) -> Self {
         let ratio = dt / before;
         if ratio <= LONGEST {
-            Self { last: ratio * ratio / (1.0 + 2.0 * ratio), now: (1.0 + ratio) / (1.0 + 2.0 * ratio), before }
+            Self {
+                last: ratio * ratio / (1.0 + 2.0 * ratio),
+                now: (1.0 + ratio) / (1.0 + 2.0 * ratio),
+                before,
+            }
         } else {
             Self::EULER
         }
@@ -93,7 +101,11 @@ mod tests {
         let rate = Course(vec![(1.0, 0.0), (2.0, 3.0), (2.1, -1.0), (4.0, 0.5)]);
         let (mut t, mut before, mut inward) = (0.0, [0.0, 0.0], 0.0);
         for dt in [0.7, 1.0, 0.31, 0.4, 0.6, 1.5, 0.5] {
-            let of = if before[0] > 0.0 { Differences::of_second_order(dt, before[0]) } else { Differences::EULER };
+            let of = if before[0] > 0.0 {
+                Differences::of_second_order(dt, before[0])
+            } else {
+                Differences::EULER
+            };
             let step = of.last * before[1] + of.now * dt * of.of_rate(&rate, (t, dt));
             (t, before, inward) = (t + dt, [dt, step], inward + step);
             assert!((inward - rate.integral((0.0, t))).abs() < 1e-14, "{t} {inward}");

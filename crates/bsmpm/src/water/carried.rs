@@ -77,7 +77,11 @@ pub fn forces_on_faces<K: Kinematics<D>, const D: usize>(
     let with_friction = |support: &&Support<D>| support.contact.is_some_and(|law| law.friction > 0.0);
     for face in model.boundary.supports.iter().filter(with_friction) {
         let axis = face.axis;
-        let place = if face.upper { model.grid.axes()[axis].length() } else { 0.0 };
+        let place = if face.upper {
+            model.grid.axes()[axis].length()
+        } else {
+            0.0
+        };
         for node in model.grid.face_nodes(axis, face.upper) {
             let pressure = pores.of_node(node, axis..axis + 1, &Vector::repeat(place));
             forces[node * D + axis] = (pressure * areas[node * D + axis]).abs();
@@ -99,7 +103,12 @@ fn pressures<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
         let grown = gravity.grown(t);
         return Some(shares.iter().map(|share| grown * share).collect());
     }
-    model.water.as_ref()?.flow.as_ref().filter(|flow| flow.motion == Motion::Held)?;
+    model
+        .water
+        .as_ref()?
+        .flow
+        .as_ref()
+        .filter(|flow| flow.motion == Motion::Held)?;
     excess_pressures(model, points, t)
 }
 
@@ -115,9 +124,18 @@ fn excess_pressures<K: Kinematics<D>, const D: usize>(
     let still = model.still_water(t).filter(|_| flow.retains());
     let of = |p: usize| {
         let x = &points.x[p];
-        let Some(soil) = &flow.soils[usize::from(points.material[p])] else { return 0.0 };
-        let excess = points.pore_pressure.as_ref().map_or_else(|| water.excess_at_start(x), |excess| excess[p]);
-        let whole = if flow.retains() { excess + water.still_pressure(x, t) } else { excess };
+        let Some(soil) = &flow.soils[usize::from(points.material[p])] else {
+            return 0.0;
+        };
+        let excess = points
+            .pore_pressure
+            .as_ref()
+            .map_or_else(|| water.excess_at_start(x), |excess| excess[p]);
+        let whole = if flow.retains() {
+            excess + water.still_pressure(x, t)
+        } else {
+            excess
+        };
         let borne = still.as_ref().map_or(0.0, |still| still.pressure(x));
         soil.retained(whole, water.unit_weight).effective * whole - borne
     };

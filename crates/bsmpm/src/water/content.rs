@@ -14,7 +14,9 @@ impl<const D: usize> Soil<D> {
     /// Under the whole pore pressure `p`, Pa, of water of the unit weight `weight`, N/m3.
     #[inline]
     pub fn retained(&self, p: f64, weight: f64) -> Retained {
-        self.retention.as_ref().map_or(Retained::FULL, |retention| retention.under(p, weight))
+        self.retention
+            .as_ref()
+            .map_or(Retained::FULL, |retention| retention.under(p, weight))
     }
 
     /// What those change by with the whole pore pressure, which was `before`, Pa.
@@ -27,7 +29,9 @@ impl<const D: usize> Soil<D> {
     /// 1/Pa  see [`Retention::chord`](crate::water::retention::Retention::chord); 0 of pores that stay full
     #[inline]
     pub fn chord(&self, before: f64, now: f64, weight: f64) -> f64 {
-        self.retention.as_ref().map_or(0.0, |retention| retention.chord(before, now, weight))
+        self.retention
+            .as_ref()
+            .map_or(0.0, |retention| retention.chord(before, now, weight))
     }
 
     /// Pores per volume of the start; none is left where that is not positive

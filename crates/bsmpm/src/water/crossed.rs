@@ -27,7 +27,12 @@ impl Crossed {
 
     /// What has left the ground through its surface, or what has come in, whichever is more.
     pub fn through(&self) -> f64 {
-        let out = self.drains.iter().chain(&self.faces).copied().chain(self.inflows.iter().map(|inflow| -inflow));
+        let out = self
+            .drains
+            .iter()
+            .chain(&self.faces)
+            .copied()
+            .chain(self.inflows.iter().map(|inflow| -inflow));
         let (mut left, mut come) = (0.0, 0.0);
         out.for_each(|out| if out > 0.0 { left += out } else { come -= out });
         f64::max(left, come)

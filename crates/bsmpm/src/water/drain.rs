@@ -81,7 +81,11 @@ impl Drainage {
         still: impl Fn(&Vector<D>) -> f64,
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
-        let Some((water, flow)) = model.water.as_ref().and_then(|water| Some((water, water.flow.as_ref()?))) else {
+        let Some((water, flow)) = model
+            .water
+            .as_ref()
+            .and_then(|water| Some((water, water.flow.as_ref()?)))
+        else {
             return Ok(Self::default());
         };
         let of = [flow.drains.len(), flow.inflows.len()];
@@ -94,36 +98,63 @@ impl Drainage {
         let mut places = places(flow, points, &anchors, halo).into_iter();
         let (mut outlets, mut torn) = (Vec::new(), vec![0.0; of[0] + of[1]]);
         for ((surface, (starts, _)), acts) in flow.surfaces().enumerate().zip(flow.acting()) {
-            let kept = |place: SurfacePlace<D>| SurfacePlace { x: model.boundary.kept_in(grid, place.x), ..place };
+            let kept = |place: SurfacePlace<D>| SurfacePlace {
+                x: model.boundary.kept_in(grid, place.x),
+                ..place
+            };
             let here: Vec<SurfacePlace<D>> = places.by_ref().take(starts.len()).map(kept).collect();
             if !acts {
                 continue;
             }
             let tight = here.iter().filter(|place| !place.drained).count();
             if tight > 0 {
-                return Err(StepError::Undrained { drain: surface, points: tight });
+                return Err(StepError::Undrained {
+                    drain: surface,
+                    points: tight,
+                });
             }
             torn[surface] = cells_apart(grid, starts, &here);
-            let inflow = surface.checked_sub(flow.drains.len()).map(|number| &flow.inflows[number]);
+            let inflow = surface
+                .checked_sub(flow.drains.len())
+                .map(|number| &flow.inflows[number]);
             let rate = inflow.map_or(0.0, |inflow| differences.of_rate(&inflow.rate, (t, dt)));
             for (place, SurfacePoint { area, .. }) in here.iter().zip(starts) {
                 let attachment = Attachment::lowered_at(grid, &offsets, &counts, &place.x);
                 let Some(attachment) = attachment else { continue };
                 let through = duration * area * place.normal.norm();
-                let none =
-                    WaterCrossing { surface, attachment, conductance: 0.0, given: 0.0, inflow: 0.0, one_way: false };
+                let none = WaterCrossing {
+                    surface,
+                    attachment,
+                    conductance: 0.0,
+                    given: 0.0,
+                    inflow: 0.0,
+                    one_way: false,
+                };
                 let conductance = through * CONDUCTANCE * place.leads(grid) / water.unit_weight;
                 let dry = Given::Seepage.excess(water.unit_weight, &place.x, end, &still);
                 outlets.push(match flow.drains.get(surface) {
                     Some(drain) => {
                         let given = drain.given.excess(water.unit_weight, &place.x, end, &still);
                         let one_way = drain.given == Given::Seepage && still(&place.x) <= 0.0;
-                        WaterCrossing { conductance, given, one_way, ..none }
+                        WaterCrossing {
+                            conductance,
+                            given,
+                            one_way,
+                            ..none
+                        }
                     }
                     None => {
-                        let rain = WaterCrossing { inflow: through * rate, ..none };
+                        let rain = WaterCrossing {
+                            inflow: through * rate,
+                            ..none
+                        };
                         if inflow.is_some_and(|inflow| inflow.runs_off) {
-                            WaterCrossing { conductance, given: dry, one_way: true, ..rain }
+                            WaterCrossing {
+                                conductance,
+                                given: dry,
+                                one_way: true,
+                                ..rain
+                            }
                         } else {
                             rain
                         }
@@ -131,14 +162,21 @@ impl Drainage {
                 });
             }
         }
-        Ok(Self { offsets, of, outlets, torn })
+        Ok(Self {
+            offsets,
+            of,
+            outlets,
+            torn,
+        })
     }
 
     /// Adds what leaves the ground in the step under the excess pressures `p` (Pa, nodal, one number a node) to the
     /// balance of the water, m3, the last of the numbers of every node; other ranks' parts are not yet in it.
     pub fn add_to(&self, p: &[f64], out: &mut Contributions) {
         for outlet in &self.outlets {
-            outlet.attachment.scatter_value(&self.offsets, outlet.out(&self.offsets, p), out);
+            outlet
+                .attachment
+                .scatter_value(&self.offsets, outlet.out(&self.offsets, p), out);
         }
     }
 
@@ -163,8 +201,10 @@ impl Drainage {
         let acts = |outlet: &&WaterCrossing| outlet.conductance > 0.0 && outlet.is_open(&self.offsets, p);
         for outlet in self.outlets.iter().filter(acts) {
             let N = outlet.attachment.N();
-            let block: Vec<f64> =
-                N.iter().flat_map(|row| N.iter().map(move |column| outlet.conductance * row * column)).collect();
+            let block: Vec<f64> = N
+                .iter()
+                .flat_map(|row| N.iter().map(move |column| outlet.conductance * row * column))
+                .collect();
             solver.add(outlet.attachment.first_node(), &block);
         }
     }
@@ -189,7 +229,10 @@ impl Drainage {
             sums[2 * outlet.surface + 1].add(1.0);
         }
         let totals = halo.total(&sums);
-        let mut each = totals.chunks_exact(2).map(|sums| DrainReport { through: sums[0], held: sums[1] as usize });
+        let mut each = totals.chunks_exact(2).map(|sums| DrainReport {
+            through: sums[0],
+            held: sums[1] as usize,
+        });
         self.of.map(|count| each.by_ref().take(count).collect())
     }
 }
@@ -218,12 +261,20 @@ fn cells_apart<const D: usize>(grid: &Grid<D>, starts: &[SurfacePoint<D>], place
     let edge = grid.smallest_edge();
     let meet = |a: &Vector<D>, b: &Vector<D>| (a - b).norm() <= ON * edge;
     let meets = |pair: &[SurfacePoint<D>]| {
-        let ends = pair[0].corners.iter().any(|a| pair[1].corners.iter().any(|b| meet(a, b)));
+        let ends = pair[0]
+            .corners
+            .iter()
+            .any(|a| pair[1].corners.iter().any(|b| meet(a, b)));
         ends || (pair[0].x - pair[1].x).norm() < edge
     };
-    let pairs = starts.windows(2).zip(places.windows(2)).filter(|(starts, _)| meets(starts));
+    let pairs = starts
+        .windows(2)
+        .zip(places.windows(2))
+        .filter(|(starts, _)| meets(starts));
     let apart = |places: &[SurfacePlace<D>]| {
-        let edges = grid.locate(&places[0].x).map_or_else(|| Vector::from_element(edge), |cell| grid.cell_box(&cell).1);
+        let edges = grid
+            .locate(&places[0].x)
+            .map_or_else(|| Vector::from_element(edge), |cell| grid.cell_box(&cell).1);
         (places[1].x - places[0].x).component_div(&edges).norm()
     };
     pairs.map(|(_, places)| apart(places)).fold(0.0, f64::max)
@@ -236,22 +287,40 @@ fn places<const D: usize>(
     anchors: &[Vec<u64>],
     halo: &dyn Halo,
 ) -> Vec<SurfacePlace<D>> {
-    let starts: Vec<(&SurfacePoint<D>, &Vector<D>)> =
-        flow.surfaces().flat_map(|(points, normals)| points.iter().zip(normals)).collect();
+    let starts: Vec<(&SurfacePoint<D>, &Vector<D>)> = flow
+        .surfaces()
+        .flat_map(|(points, normals)| points.iter().zip(normals))
+        .collect();
     let (width, anchored) = (3 * D + 1, points.anchored());
     let mut numbers = vec![0.0; width * starts.len()];
     anchored.visit(anchors.iter().flatten(), |p, at| {
         let ((start, normal), F) = (starts[at], points.F.at(p));
         let permeability = flow.permeability(points.material[p], F.determinant() * points.dilation_of(p));
-        let vectors = [anchored.along(p, &start.x), turned(&F, normal), permeability.unwrap_or_else(Vector::zeros)];
-        let all = vectors.iter().flatten().copied().chain([f64::from(u8::from(permeability.is_some()))]);
-        numbers[width * at..].iter_mut().zip(all).for_each(|(number, value)| *number = value);
+        let vectors = [
+            anchored.along(p, &start.x),
+            turned(&F, normal),
+            permeability.unwrap_or_else(Vector::zeros),
+        ];
+        let all = vectors
+            .iter()
+            .flatten()
+            .copied()
+            .chain([f64::from(u8::from(permeability.is_some()))]);
+        numbers[width * at..]
+            .iter_mut()
+            .zip(all)
+            .for_each(|(number, value)| *number = value);
     });
     // Each number is of one rank alone.
     halo.reduce(&mut numbers);
     let place = |numbers: &[f64]| {
         let vector = |k: usize| Vector::from_column_slice(&numbers[k * D..(k + 1) * D]);
-        SurfacePlace { x: vector(0), normal: vector(1), permeability: vector(2), drained: numbers[3 * D] > 0.0 }
+        SurfacePlace {
+            x: vector(0),
+            normal: vector(1),
+            permeability: vector(2),
+            drained: numbers[3 * D] > 0.0,
+        }
     };
     numbers.chunks_exact(width).map(place).collect()
 }

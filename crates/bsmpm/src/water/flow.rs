@@ -39,7 +39,11 @@ impl<const D: usize> Flow<D> {
     /// Points and normals of all surfaces of bodies that water crosses: those of the drains, then those of the inflows.
     pub fn surfaces(&self) -> impl Iterator<Item = (&[SurfacePoint<D>], &[Vector<D>])> {
         let drains = self.drains.iter().map(|drain| (&drain.points[..], &drain.normals[..]));
-        drains.chain(self.inflows.iter().map(|inflow| (&inflow.points[..], &inflow.normals[..])))
+        drains.chain(
+            self.inflows
+                .iter()
+                .map(|inflow| (&inflow.points[..], &inflow.normals[..])),
+        )
     }
 
     /// Which of those water crosses now.
@@ -83,7 +87,9 @@ impl<const D: usize> Flow<D> {
             return None;
         }
         let soil = self.soils[usize::from(material)].as_ref()?;
-        soil.permeability.as_ref().map(|permeability| permeability.along * permeability.law.relative(soil.porosity, J))
+        soil.permeability
+            .as_ref()
+            .map(|permeability| permeability.along * permeability.law.relative(soil.porosity, J))
     }
 }
 

@@ -31,7 +31,12 @@ impl Follow {
             let p = &x[problem.nodes.free.len()..];
             pores.drainage.open(if p.is_empty() { &pores.guess } else { p })
         });
-        Self { open, changes: 0, first: 0, tamed: false }
+        Self {
+            open,
+            changes: 0,
+            first: 0,
+            tamed: false,
+        }
     }
 
     /// Holds a direction `dx` back where it would fill pores beyond full ones, or empty them to more than twice the
@@ -43,14 +48,20 @@ impl Follow {
         measure: f64,
     ) {
         let Some(water) = &problem.model.water else { return };
-        let Some(flow) = water.flow.as_ref().filter(|flow| flow.retains()) else { return };
+        let Some(flow) = water.flow.as_ref().filter(|flow| flow.retains()) else {
+            return;
+        };
         if self.first >= FIRST || measure <= NEAR {
             return;
         }
         let (entry, start) = (flow.entry() * water.unit_weight, problem.nodes.free.len());
         for (node, still) in pores.still.iter().enumerate().filter(|(node, _)| pores.free[*node]) {
             let (whole, change) = (x[start + node] + still, &mut dx[start + node]);
-            let held = if whole < 0.0 { change.clamp(whole - entry, -whole) } else { change.max(-whole - entry) };
+            let held = if whole < 0.0 {
+                change.clamp(whole - entry, -whole)
+            } else {
+                change.max(-whole - entry)
+            };
             self.tamed |= held != *change;
             *change = held;
         }
@@ -65,7 +76,9 @@ impl Follow {
         measure: f64,
         solver: &mut dyn LinearSolver,
     ) -> Result<bool, SolveError> {
-        let Some(flow) = problem.model.water.as_ref().and_then(|water| water.flow.as_ref()) else { return Ok(false) };
+        let Some(flow) = problem.model.water.as_ref().and_then(|water| water.flow.as_ref()) else {
+            return Ok(false);
+        };
         if !flow.retains() && !flow.is_one_way() {
             return Ok(false);
         }

@@ -77,16 +77,24 @@ impl<'a, const D: usize> LinearisedWater<'a, D> {
         let pores = self.pores;
         let mut sums = scalars::of_scalars(&pores.shape, |p| {
             let none = (0.0, Vector::zeros());
-            let Some((change, wet)) = self.points[p].as_ref().zip(pores.wet[p].as_ref()) else { return [none] };
+            let Some((change, wet)) = self.points[p].as_ref().zip(pores.wet[p].as_ref()) else {
+                return [none];
+            };
             let l = K::gradient::<f64>(&grad[p]) * change.inverse;
-            let Changed { stored, flux } =
-                change.of((&l, averaged.map_or(0.0, |rate| rate[p])), pressures[p], (wet, pores.duration));
+            let Changed { stored, flux } = change.of(
+                (&l, averaged.map_or(0.0, |rate| rate[p])),
+                pressures[p],
+                (wet, pores.duration),
+            );
             [(stored, flux)]
         });
         pores.drainage.add_changes(self.p, v, &mut sums);
         let mut sums = problem.halo.sum(&sums);
         pores.ties.add_to(v, &mut sums, |node| node);
-        sums.iter_mut().zip(&pores.free).filter(|(_, free)| !**free).for_each(|(sum, _)| *sum = 0.0);
+        sums.iter_mut()
+            .zip(&pores.free)
+            .filter(|(_, free)| !**free)
+            .for_each(|(sum, _)| *sum = 0.0);
         sums
     }
 
@@ -97,9 +105,9 @@ impl<'a, const D: usize> LinearisedWater<'a, D> {
 
     /// What the pressure's change at point `p`, Pa, adds to what works on the gradients there, per volume.
     pub fn pressed<K: Kinematics<D>>(&self, p: usize, change: f64) -> K::Gradient {
-        self.points[p]
-            .as_ref()
-            .map_or_else(K::Gradient::zeros, |at| K::working::<f64>(&at.inverse.transpose()) * (-at.presses * change))
+        self.points[p].as_ref().map_or_else(K::Gradient::zeros, |at| {
+            K::working::<f64>(&at.inverse.transpose()) * (-at.presses * change)
+        })
     }
 }
 
@@ -115,13 +123,24 @@ impl<const D: usize> Change<D> {
         let water = model.water.as_ref()?;
         let flow = water.flow.as_ref()?;
         let soil = flow.soils[usize::from(points.material[p])].as_ref()?;
-        let Flowing { J, whole, retained, lumped, .. } = state;
+        let Flowing {
+            J,
+            whole,
+            retained,
+            lumped,
+            ..
+        } = state;
         let change = soil.retained_change(wet.pressure, whole, water.unit_weight);
         let denser = (whole / flow.bulk).exp();
         let content = soil.content(flow.bulk, J, whole);
-        let stored = (denser * retained.saturation * J, content * (retained.saturation / flow.bulk + retained.slope));
-        let by_volume =
-            soil.permeability.as_ref().map_or(0.0, |law| law.law.relative_change(soil.porosity, J * deformed.1));
+        let stored = (
+            denser * retained.saturation * J,
+            content * (retained.saturation / flow.bulk + retained.slope),
+        );
+        let by_volume = soil
+            .permeability
+            .as_ref()
+            .map_or(0.0, |law| law.law.relative_change(soil.porosity, J * deformed.1));
         Some(Self {
             inverse: state.inverse,
             J,
@@ -130,7 +149,10 @@ impl<const D: usize> Change<D> {
             now: state.gradient,
             conducts: state.permeability * (retained.permeability / water.unit_weight),
             relative: (by_volume, change.permeability / retained.permeability),
-            tau: (wet.tau * lumped, wet.tau_of(gradient) * (wet.lumps(soil) * change.chord)),
+            tau: (
+                wet.tau * lumped,
+                wet.tau_of(gradient) * (wet.lumps(soil) * change.chord),
+            ),
             presses: J * (retained.effective + change.effective * whole),
         })
     }
@@ -152,6 +174,9 @@ impl<const D: usize> Change<D> {
         let flux = Vector::from_fn(|i, _| self.J * (0..D).map(|j| self.inverse[(i, j)] * w[j]).sum::<f64>());
         let stored = wet.volume * (self.stored.0 * trace + self.stored.1 * pressure);
         let tau = self.tau.0.component_mul(&gradient) + self.tau.1 * pressure;
-        Changed { stored, flux: tau - flux * (duration * wet.volume) }
+        Changed {
+            stored,
+            flux: tau - flux * (duration * wet.volume),
+        }
     }
 }

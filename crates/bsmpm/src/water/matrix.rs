@@ -17,11 +17,19 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
     let Problem { model, points, .. } = *problem;
-    let Some((water, flow)) = model.water.as_ref().and_then(|water| Some((water, water.flow.as_ref()?))) else {
+    let Some((water, flow)) = model
+        .water
+        .as_ref()
+        .and_then(|water| Some((water, water.flow.as_ref()?)))
+    else {
         return Ok(());
     };
     solver.begin(&pores.free);
-    let pressures = if flow.retains() { scalars::scalars(&pores.shape, p, |_, value, _| value) } else { Vec::new() };
+    let pressures = if flow.retains() {
+        scalars::scalars(&pores.shape, p, |_, value, _| value)
+    } else {
+        Vec::new()
+    };
     let wave = model.grid.smallest_edge().powi(2) / SHORTEST_WAVE;
     let size = pores.shape.offsets().len();
     let mut block = vec![0.0; size * size];
@@ -36,7 +44,9 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
             let [at_rest, in_waves] = [wet.stiffness - wet.inertia, wave * wet.inertia]
                 .map(|part| wet.volume * wet.J.powi(2) * part / wet.stiffness.powi(2));
             let mut gives_way = 1.0;
-            let mut conductivity = flow.permeability(points.material[p], wet.mean_J).unwrap_or_else(Vector::zeros);
+            let mut conductivity = flow
+                .permeability(points.material[p], wet.mean_J)
+                .unwrap_or_else(Vector::zeros);
             let mut stored = wet.volume * wet.content / flow.bulk;
             let mut tau = wet.tau;
             let soil = flow.soils[usize::from(points.material[p])].as_ref();
@@ -55,7 +65,9 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
             let along = (tau + flows).add_scalar(gives_way * in_waves);
             for (row, (A, gradient)) in block.chunks_exact_mut(size).zip(&functions) {
                 let (A, gradient) = (A * stored, gradient.component_mul(&along));
-                row.iter_mut().zip(&functions).for_each(|(entry, (B, other))| *entry += A * B + gradient.dot(other));
+                row.iter_mut()
+                    .zip(&functions)
+                    .for_each(|(entry, (B, other))| *entry += A * B + gradient.dot(other));
             }
         }
         solver.add(patch.first_node, &block);

@@ -31,7 +31,10 @@ impl Scales {
         let stiffest = problem.model.materials.iter().map(material).fold(0.0, f64::max);
         let force = if balance.scale > 0.0 { balance.scale } else { 1.0 };
         let strained = force * problem.model.grid.smallest_edge() / stiffest;
-        Self { force, water: balance.water.as_ref().map_or(0.0, |water| water.scale).max(strained) }
+        Self {
+            force,
+            water: balance.water.as_ref().map_or(0.0, |water| water.scale).max(strained),
+        }
     }
 
     /// Root of the sum of the squares of what is out of balance in both.
@@ -70,7 +73,12 @@ pub fn direction<K: Kinematics<D>, const D: usize>(
         nodal[components..].iter_mut().for_each(|volume| *volume *= by[1]);
     };
     let (divided, back) = ([1.0 / scales.force, 1.0 / scales.water], [scales.force, scales.water]);
-    let mut f: Vec<f64> = balance.f_oob.iter().copied().chain(water.excess.iter().map(|excess| -excess)).collect();
+    let mut f: Vec<f64> = balance
+        .f_oob
+        .iter()
+        .copied()
+        .chain(water.excess.iter().map(|excess| -excess))
+        .collect();
     let first = Split::of(problem, (pores, &f), solver)?;
     weighted(&mut f, divided);
     let (mut nodal, mut image) = (vec![0.0; x.len()], vec![0.0; x.len()]);
@@ -86,7 +94,12 @@ pub fn direction<K: Kinematics<D>, const D: usize>(
         weighted(&mut force, back);
         Ok(unknowns.packed(&Split::of(problem, (pores, &force), solver)?.z))
     };
-    let (found, krylov) = fgmres::solve((&unknowns, halo), product, precondition, (&unknowns.packed(&f), relative))?;
+    let (found, krylov) = fgmres::solve(
+        (&unknowns, halo),
+        product,
+        precondition,
+        (&unknowns.packed(&f), relative),
+    )?;
     let mut dx = vec![0.0; x.len()];
     unknowns.unpack(&found, &mut dx);
     let ((du, dp), (f_u, f_p)) = (dx.split_at(components), first.f.split_at(components));

@@ -102,7 +102,11 @@ impl<const D: usize> Pores<D> {
         (t, dt): (f64, f64),
         halo: &dyn Halo,
     ) -> Result<Option<Self>, StepError> {
-        let Some((water, flow)) = model.water.as_ref().and_then(|water| Some((water, water.flow.as_ref()?))) else {
+        let Some((water, flow)) = model
+            .water
+            .as_ref()
+            .and_then(|water| Some((water, water.flow.as_ref()?)))
+        else {
             return Ok(None);
         };
         if flow.motion == Motion::Held {
@@ -117,8 +121,9 @@ impl<const D: usize> Pores<D> {
         let pressure = points.pore_pressure.as_ref();
         let sums = halo.sum(&scalars::of_scalars(&shape, |p| {
             let volume = wet[p].as_ref().map_or(0.0, |wet| wet.volume);
-            let takes =
-                wet[p].as_ref().map_or(0.0, |wet| wet.takes(model, (water, flow), points.material[p], duration));
+            let takes = wet[p]
+                .as_ref()
+                .map_or(0.0, |wet| wet.takes(model, (water, flow), points.material[p], duration));
             let values = [
                 volume,
                 volume * pressure.map_or_else(|| water.excess_at_start(&points.x[p]), |pressure| pressure[p]),
@@ -133,9 +138,21 @@ impl<const D: usize> Pores<D> {
         if flow.motion == Motion::Flows {
             given(&model.grid, (water, flow), end, &mut prescribed);
         }
-        let free: Vec<bool> = seen.iter().zip(&prescribed).map(|(seen, given)| *seen && given.is_none()).collect();
-        let mean = |node: usize| if seen[node] { sums[SUMS * node + 1] / sums[SUMS * node] } else { 0.0 };
-        let guess = (0..seen.len()).map(|node| prescribed[node].unwrap_or_else(|| mean(node))).collect();
+        let free: Vec<bool> = seen
+            .iter()
+            .zip(&prescribed)
+            .map(|(seen, given)| *seen && given.is_none())
+            .collect();
+        let mean = |node: usize| {
+            if seen[node] {
+                sums[SUMS * node + 1] / sums[SUMS * node]
+            } else {
+                0.0
+            }
+        };
+        let guess = (0..seen.len())
+            .map(|node| prescribed[node].unwrap_or_else(|| mean(node)))
+            .collect();
         let still = |x: &Vector<D>| water.still_pressure(x, end);
         let at_nodes = (0..if flow.retains() { seen.len() } else { 0 }).map(|node| {
             let number = model.grid.node_at(node);
@@ -149,7 +166,13 @@ impl<const D: usize> Pores<D> {
         let drainage = Drainage::at(model, points, ((t, dt), differences), |node| seen[node], still, halo)?;
         let takes: Vec<f64> = sums.chunks_exact(SUMS).map(|of| of[2]).collect();
         let ties = Ties::of(&model.grid, &seen, &takes);
-        let limit = |node: usize| if free[node] { (ROUND_OFF * sums[SUMS * node]).powi(2) } else { 0.0 };
+        let limit = |node: usize| {
+            if free[node] {
+                (ROUND_OFF * sums[SUMS * node]).powi(2)
+            } else {
+                0.0
+            }
+        };
         let round_off = halo.total(&[over_layers(halo, 1, limit)])[0].sqrt();
         let mut unknowns = [halo.owned().nodes().filter(|&node| free[node]).count() as f64];
         halo.reduce(&mut unknowns);
@@ -198,13 +221,27 @@ impl<const D: usize> Wet<D> {
         let inertia = inertia * points.mass[p] / points.volume[p];
         let stiffness = skeleton + inertia;
         let (volume, J, x) = (points.volume[p], points.F.at(p).determinant(), &points.x[p]);
-        let pressure = points.pore_pressure.as_ref().map_or_else(|| water.excess_at_start(x), |pressure| pressure[p]);
-        let edges = model.grid.locate(x).map_or_else(Vector::zeros, |cell| model.grid.cell_box(&cell).1);
+        let pressure = points
+            .pore_pressure
+            .as_ref()
+            .map_or_else(|| water.excess_at_start(x), |pressure| pressure[p]);
+        let edges = model
+            .grid
+            .locate(x)
+            .map_or_else(Vector::zeros, |cell| model.grid.cell_box(&cell).1);
         let still = water.still_gradient(x, end);
         let holds = flow.retains();
-        let whole = if holds { pressure + water.still_pressure(x, t) } else { pressure };
+        let whole = if holds {
+            pressure + water.still_pressure(x, t)
+        } else {
+            pressure
+        };
         let retained = soil.retained(whole, water.unit_weight);
-        let flows = if flow.permeability(points.material[p], J).is_some() { 1.0 } else { 0.0 };
+        let flows = if flow.permeability(points.material[p], J).is_some() {
+            1.0
+        } else {
+            0.0
+        };
         Some(Self {
             volume,
             J,
@@ -213,12 +250,21 @@ impl<const D: usize> Wet<D> {
             goes_on: points.content_change.as_ref().map_or(0.0, |change| last * change[p]),
             pressure: whole,
             ambient: if holds { water.still_pressure(x, end) } else { 0.0 },
-            borne: model.still_water(end).filter(|_| holds).map_or(0.0, |still| still.pressure(x)),
+            borne: model
+                .still_water(end)
+                .filter(|_| holds)
+                .map_or(0.0, |still| still.pressure(x)),
             stiffness,
             inertia,
             tau: edges.component_mul(&edges) * (volume * J * TAU / stiffness),
-            before: points.pressure_gradient.as_ref().map_or_else(|| water.still_gradient(x, t), |before| before[p])
-                + points.gradient_change.as_ref().map_or_else(Vector::zeros, |change| change[p] * last),
+            before: points
+                .pressure_gradient
+                .as_ref()
+                .map_or_else(|| water.still_gradient(x, t), |before| before[p])
+                + points
+                    .gradient_change
+                    .as_ref()
+                    .map_or_else(Vector::zeros, |change| change[p] * last),
             still,
             drive: (still - water.weight(model, end)) * flows,
         })
@@ -259,7 +305,10 @@ fn given<const D: usize>(grid: &Grid<D>, (water, flow): (&Water<D>, &Flow<D>), t
                 continue;
             }
             let x = Vector::from_fn(|axis, _| grid.axes()[axis].lowered_greville(number[axis]));
-            prescribed[node] = Some(face.given.excess(water.unit_weight, &x, t, |x| water.still_pressure(x, t)));
+            prescribed[node] = Some(
+                face.given
+                    .excess(water.unit_weight, &x, t, |x| water.still_pressure(x, t)),
+            );
         }
     }
 }
@@ -267,5 +316,7 @@ fn given<const D: usize>(grid: &Grid<D>, (water, flow): (&Water<D>, &Flow<D>), t
 /// Nodes of the functions of degree q - 1 that are not zero on a face.
 pub fn face_functions<const D: usize>(grid: &Grid<D>, axis: usize, upper: bool) -> Vec<usize> {
     let wanted = if upper { grid.axes()[axis].functions() - 2 } else { 0 };
-    (0..grid.nodes()).filter(|&node| grid.node_at(node)[axis] == wanted).collect()
+    (0..grid.nodes())
+        .filter(|&node| grid.node_at(node)[axis] == wanted)
+        .collect()
 }

@@ -31,7 +31,13 @@ impl<'a, const D: usize> PoreWater<'a, D> {
     pub fn of<K>(model: &'a Model<K, D>, points: &'a Points<D>, t: f64) -> Option<Self> {
         let water = model.water.as_ref()?;
         let grown = model.gravity.as_ref().map_or(0.0, |gravity| gravity.grown(t));
-        Some(Self { water, points, t, weight: water.weight(model, t), grown })
+        Some(Self {
+            water,
+            points,
+            t,
+            weight: water.weight(model, t),
+            grown,
+        })
     }
 
     fn flow(&self, p: usize) -> Option<(&'a Flow<D>, &'a Soil<D>)> {
@@ -52,12 +58,19 @@ impl<'a, const D: usize> PoreWater<'a, D> {
     /// Pa  excess pressure at point `p`; 0 where no water flows
     pub fn excess(&self, p: usize) -> f64 {
         let start = || self.water.excess_at_start(&self.points.x[p]);
-        self.points.pore_pressure.as_ref().map_or_else(start, |pressure| pressure[p])
+        self.points
+            .pore_pressure
+            .as_ref()
+            .map_or_else(start, |pressure| pressure[p])
     }
 
     /// Pa  pore pressure at point `p`, positive in compression
     pub fn pressure(&self, p: usize) -> f64 {
-        let carried = self.points.carried_pressure.as_ref().map_or(0.0, |carried| self.grown * carried[p]);
+        let carried = self
+            .points
+            .carried_pressure
+            .as_ref()
+            .map_or(0.0, |carried| self.grown * carried[p]);
         self.still(p) + self.excess(p) + carried
     }
 
@@ -72,18 +85,26 @@ impl<'a, const D: usize> PoreWater<'a, D> {
             ends = [ends[0].max(-pressure), ends[1].max(pressure)];
         }
         halo.maximum(&mut ends);
-        if sums[1] > 0.0 { [sums[0] / sums[1], -ends[0], ends[1]] } else { [0.0; 3] }
+        if sums[1] > 0.0 {
+            [sums[0] / sums[1], -ends[0], ends[1]]
+        } else {
+            [0.0; 3]
+        }
     }
 
     /// Pa  as much of it as acts in the total stress: chi p
     fn borne(&self, p: usize) -> f64 {
         let pressure = self.pressure(p);
-        self.flow(p).map_or(1.0, |(_, soil)| soil.retained(pressure, self.water.unit_weight).effective) * pressure
+        self.flow(p).map_or(1.0, |(_, soil)| {
+            soil.retained(pressure, self.water.unit_weight).effective
+        }) * pressure
     }
 
     /// -  share of the pores that water fills at point `p`; 1 where none may empty
     pub fn saturation(&self, p: usize) -> f64 {
-        self.flow(p).map_or(1.0, |(_, soil)| soil.retained(self.pressure(p), self.water.unit_weight).saturation)
+        self.flow(p).map_or(1.0, |(_, soil)| {
+            soil.retained(self.pressure(p), self.water.unit_weight).saturation
+        })
     }
 
     /// Pa  Cauchy stress of grains and water together at point `p`
@@ -121,12 +142,17 @@ impl<'a, const D: usize> PoreWater<'a, D> {
     /// m/s  by the pressure's gradient at point `p`
     fn flux(&self, p: usize) -> Vector<D> {
         let J = self.mean_J(p);
-        let conductivity = self.water.flow.as_ref().and_then(|flow| flow.permeability(self.points.material[p], J));
+        let conductivity = self
+            .water
+            .flow
+            .as_ref()
+            .and_then(|flow| flow.permeability(self.points.material[p], J));
         let (Some(conductivity), Some(gradient)) = (conductivity, &self.points.pressure_gradient) else {
             return Vector::zeros();
         };
-        let relative =
-            self.flow(p).map_or(1.0, |(_, soil)| soil.retained(self.pressure(p), self.water.unit_weight).permeability);
+        let relative = self.flow(p).map_or(1.0, |(_, soil)| {
+            soil.retained(self.pressure(p), self.water.unit_weight).permeability
+        });
         -conductivity.component_mul(&(gradient[p] - self.weight)) * relative / self.water.unit_weight
     }
 
@@ -137,12 +163,18 @@ impl<'a, const D: usize> PoreWater<'a, D> {
     pub fn balance(&self, halo: &dyn Halo) -> Option<f64> {
         self.water.flow.as_ref().filter(|flow| flow.motion != Motion::Held)?;
         let pores: Exact = (0..self.points.len())
-            .map(|p| self.flow(p).map_or(0.0, |(_, soil)| self.points.volume[p] * soil.porosity))
+            .map(|p| {
+                self.flow(p)
+                    .map_or(0.0, |(_, soil)| self.points.volume[p] * soil.porosity)
+            })
             .collect();
         let sums = halo.total(&[self.taken().collect(), self.taken().map(f64::abs).collect(), pores]);
         let crossed = &self.points.surface.crossed;
         let out = crossed.out() + crossed.removed;
-        let scale = sums[1].max(crossed.through()).max(crossed.removed.abs()).max(NOTHING * sums[2]);
+        let scale = sums[1]
+            .max(crossed.through())
+            .max(crossed.removed.abs())
+            .max(NOTHING * sums[2]);
         Some(if scale > 0.0 { (sums[0] + out) / scale } else { 0.0 })
     }
 
@@ -152,8 +184,14 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         if self.water.flow.is_none() {
             return 0.0;
         }
-        let own: Exact =
-            self.points.id.iter().zip(self.taken()).filter(|(id, _)| wanted(**id)).map(|of| of.1).collect();
+        let own: Exact = self
+            .points
+            .id
+            .iter()
+            .zip(self.taken())
+            .filter(|(id, _)| wanted(**id))
+            .map(|of| of.1)
+            .collect();
         halo.total(&[own])[0]
     }
 
@@ -188,15 +226,24 @@ fn inside<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, halo: &dyn Halo) -> 
         let along = |axis: usize| {
             let knots = &grid.axes()[axis];
             let cells = number[axis].saturating_sub(grid.order())..=number[axis];
-            cells.filter(|&cell| cell < knots.cells() && knots.has_length(cell)).count() as f64
+            cells
+                .filter(|&cell| cell < knots.cells() && knots.has_length(cell))
+                .count() as f64
         };
         (0..D).map(along).product()
     };
     let counts = halo.sum(&counts);
-    let is_full: Vec<bool> = counts.iter().enumerate().map(|(node, count)| *count >= supports(node)).collect();
+    let is_full: Vec<bool> = counts
+        .iter()
+        .enumerate()
+        .map(|(node, count)| *count >= supports(node))
+        .collect();
     let (width, order) = (shape.width(), grid.order());
     let is_middle =
         |k: usize| (0..D).all(|axis| (order / 2..=order.div_ceil(2)).contains(&(k / width.pow(axis as u32) % width)));
-    let middle: Vec<usize> = (0..shape.offsets().len()).filter(|&k| is_middle(k)).map(|k| shape.offsets()[k]).collect();
+    let middle: Vec<usize> = (0..shape.offsets().len())
+        .filter(|&k| is_middle(k))
+        .map(|k| shape.offsets()[k])
+        .collect();
     move |patch| middle.iter().all(|offset| is_full[patch.first_node + offset])
 }

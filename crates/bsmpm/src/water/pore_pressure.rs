@@ -53,7 +53,9 @@ impl<const D: usize> PorePressure<D> {
 
 /// What a point adds to the moments of a node.
 fn moments_of<const D: usize>(weight: f64, x: &Vector<D>, pressure: f64) -> Vec<f64> {
-    let along = x.iter().flat_map(|x| [weight * x, weight * x * x, weight * pressure * x]);
+    let along = x
+        .iter()
+        .flat_map(|x| [weight * x, weight * x * x, weight * pressure * x]);
     [weight, weight * pressure].into_iter().chain(along).collect()
 }
 
@@ -67,5 +69,9 @@ fn rise([middle, second, mean, product]: [f64; 4], x: f64) -> f64 {
     let variance = second - middle * middle;
     let covariance = product - middle * mean;
     let is_spread = variance > 1e-9 * (middle - x).powi(2);
-    if is_spread { covariance / variance * (x - middle) } else { 0.0 }
+    if is_spread {
+        covariance / variance * (x - middle)
+    } else {
+        0.0
+    }
 }

@@ -47,11 +47,15 @@ impl WaterBalance {
         trial: &mut Trial<K, D>,
         p: &[f64],
     ) -> Self {
-        let Problem { model, points, halo, .. } = *problem;
+        let Problem {
+            model, points, halo, ..
+        } = *problem;
         let pressures = scalars::scalars(&pores.shape, p, |_, value, gradient| (value, gradient));
         let closed = AtomicU64::new(0);
         let mut sums = scalars::of_scalars(&pores.shape, |p| {
-            let Some(wet) = &pores.wet[p] else { return [(0.0, Vector::zeros()); TERMS] };
+            let Some(wet) = &pores.wet[p] else {
+                return [(0.0, Vector::zeros()); TERMS];
+            };
             let (pressure, gradient) = pressures[p];
             let deformed = (&trial.dF(p), trial.dilation(model, points, p));
             let zero = Vector::zeros();
@@ -64,7 +68,12 @@ impl WaterBalance {
             }
             let stored = wet.volume * (state.content - wet.content - wet.goes_on);
             let tau = wet.tau_of(gradient) * state.lumped;
-            [(stored, zero), (0.0, state.flux * -(pores.duration * wet.volume)), (0.0, tau), (0.0, zero)]
+            [
+                (stored, zero),
+                (0.0, state.flux * -(pores.duration * wet.volume)),
+                (0.0, tau),
+                (0.0, zero),
+            ]
         });
         pores.drainage.add_to(p, &mut sums);
         trial.pore = Some(of_points(problem, pores, trial, &pressures));
@@ -107,7 +116,11 @@ impl WaterBalance {
 
     /// |R| over the largest of what is stored, flows and leaves; zero where it is no more than `round_off`, m3.
     pub fn measure(&self, round_off: f64) -> f64 {
-        if self.norm <= round_off { 0.0 } else { self.norm / self.scale }
+        if self.norm <= round_off {
+            0.0
+        } else {
+            self.norm / self.scale
+        }
     }
 }
 
@@ -181,7 +194,9 @@ impl<const D: usize> Flowing<D> {
         let soil = flow.soils[usize::from(points.material[p])].as_ref()?;
         let (inverse, J) = (dF.try_inverse()?, wet.J * dF.determinant());
         let gradient = pushed(&inverse, &excess);
-        let permeability = flow.permeability(points.material[p], J * dilation).unwrap_or_else(Vector::zeros);
+        let permeability = flow
+            .permeability(points.material[p], J * dilation)
+            .unwrap_or_else(Vector::zeros);
         let (whole, weight) = (pressure + wet.ambient, water.unit_weight);
         let retained = soil.retained(whole, weight);
         let w = (gradient + wet.drive).component_mul(&permeability) * (-retained.permeability / weight);
@@ -189,7 +204,19 @@ impl<const D: usize> Flowing<D> {
         let content = soil.content(flow.bulk, J, whole) * retained.saturation;
         let lumped = wet.lumped(soil, soil.chord(wet.pressure, whole, weight));
         let pores = soil.pores(J * dilation);
-        Some(Self { pores, content, flux, w, gradient, lumped, permeability, retained, whole, J, inverse })
+        Some(Self {
+            pores,
+            content,
+            flux,
+            w,
+            gradient,
+            lumped,
+            permeability,
+            retained,
+            whole,
+            J,
+            inverse,
+        })
     }
 }
 
@@ -218,6 +245,10 @@ pub fn pressing<K: Kinematics<D>, const D: usize>(
     let force = crate::grid::transfer::divergence::<K, D>((problem.shape, &problem.points.x), flux);
     let mut force = problem.halo.sum(&force);
     problem.nodes.reduce(&mut [&mut force], problem.halo);
-    force.iter_mut().zip(&problem.nodes.free).filter(|(_, free)| !**free).for_each(|(force, _)| *force = 0.0);
+    force
+        .iter_mut()
+        .zip(&problem.nodes.free)
+        .filter(|(_, free)| !**free)
+        .for_each(|(force, _)| *force = 0.0);
     force
 }

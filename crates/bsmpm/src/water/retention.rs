@@ -79,7 +79,12 @@ pub struct RetainedChange {
 
 impl Retained {
     /// All pores full of water.
-    pub const FULL: Self = Self { saturation: 1.0, slope: 0.0, effective: 1.0, permeability: 1.0 };
+    pub const FULL: Self = Self {
+        saturation: 1.0,
+        slope: 0.0,
+        effective: 1.0,
+        permeability: 1.0,
+    };
 }
 
 impl Curve {
@@ -99,14 +104,22 @@ impl Curve {
     fn bend(&self, s: f64) -> f64 {
         match self {
             Self::VanGenuchten { alpha, .. } => (2.0 * s).max(1.0 / (64.0 * alpha)),
-            Self::Measured(of) => of.rows.iter().map(|row| row[0]).find(|head| *head > s).unwrap_or(f64::INFINITY),
+            Self::Measured(of) => of
+                .rows
+                .iter()
+                .map(|row| row[0])
+                .find(|head| *head > s)
+                .unwrap_or(f64::INFINITY),
         }
     }
 
     /// m  integral of the effective saturation over heads between which it does not change its course: Gauss' rule
     fn between(&self, from: f64, to: f64) -> f64 {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        GAUSS.iter().map(|(at, weight)| half * weight * self.drawn(middle + half * at).effective).sum()
+        GAUSS
+            .iter()
+            .map(|(at, weight)| half * weight * self.drawn(middle + half * at).effective)
+            .sum()
     }
 
     /// Under the suction head `s`, m, above 0.
@@ -128,7 +141,11 @@ impl Curve {
             }
             Self::Measured(of) => {
                 let [[effective, slope], [permeability, _]] = of.at(s);
-                Drawn { effective, by_head: -slope, permeability }
+                Drawn {
+                    effective,
+                    by_head: -slope,
+                    permeability,
+                }
             }
         }
     }
@@ -165,7 +182,11 @@ impl Retention {
             }
             filled.push([to, area + curve.between(from, to)]);
         }
-        Self { curve, residual, filled }
+        Self {
+            curve,
+            residual,
+            filled,
+        }
     }
 
     /// Of van Genuchten's curve: `alpha`, 1/m, `n` and `residual`, -.
@@ -192,13 +213,20 @@ impl Retention {
     pub fn change(&self, before: f64, now: f64, weight: f64) -> RetainedChange {
         let chord = self.chord_change(before, now, weight);
         if now >= 0.0 {
-            return RetainedChange { chord, ..RetainedChange::default() };
+            return RetainedChange {
+                chord,
+                ..RetainedChange::default()
+            };
         }
         let found = self.under(now, weight);
         let conducts = found.permeability > LEAST;
         RetainedChange {
             effective: found.slope / (1.0 - self.residual),
-            permeability: if conducts { self.curve.closes(-now / weight) / weight } else { 0.0 },
+            permeability: if conducts {
+                self.curve.closes(-now / weight) / weight
+            } else {
+                0.0
+            },
             chord,
         }
     }
@@ -257,7 +285,9 @@ mod tests {
 
     /// Van Genuchten's alpha and n.
     fn parameters(soil: &Retention) -> (f64, f64) {
-        let Curve::VanGenuchten { alpha, n } = soil.curve else { panic!("measured") };
+        let Curve::VanGenuchten { alpha, n } = soil.curve else {
+            panic!("measured")
+        };
         (alpha, n)
     }
 
@@ -267,7 +297,10 @@ mod tests {
             let left = 1.9722e-11 * (head * WEIGHT).powf(2.4279);
             [head, 1.0 - left, 1.0 - 2.207 * left.powf(1.0121)]
         };
-        Retention::new(Curve::Measured(Measured::new(heads.into_iter().map(row).collect())), 0.0)
+        Retention::new(
+            Curve::Measured(Measured::new(heads.into_iter().map(row).collect())),
+            0.0,
+        )
     }
 
     #[test]
@@ -295,9 +328,12 @@ mod tests {
     #[test]
     fn what_suction_stores_is_the_integral_of_suction_by_saturation() {
         let rows = measured((0..8).map(|k| 0.1 * f64::from(k)));
-        for (soil, error) in
-            [(loam(), 2e-6), (sand(), 2e-6), (Retention::van_genuchten(0.8, 1.09, 0.07), 1e-4), (rows, 2e-6)]
-        {
+        for (soil, error) in [
+            (loam(), 2e-6),
+            (sand(), 2e-6),
+            (Retention::van_genuchten(0.8, 1.09, 0.07), 1e-4),
+            (rows, 2e-6),
+        ] {
             for head in [0.03, 0.5, 2.0, 30.0] {
                 // By parts in a million parts of the logarithm of the suction.
                 let parts = 1_000_000;
@@ -339,14 +375,19 @@ mod tests {
                 let (found, of) = (soil.change(-WEIGHT, p, WEIGHT), |p: f64| soil.under(p, WEIGHT));
                 let difference = (of(p + step).permeability - of(p - step).permeability) / (2.0 * step);
                 if of(p).permeability > LEAST && alpha * head > ENTERED {
-                    assert!((difference / found.permeability - 1.0).abs() < 1e-6, "{difference} {found:?}");
+                    assert!(
+                        (difference / found.permeability - 1.0).abs() < 1e-6,
+                        "{difference} {found:?}"
+                    );
                 }
             }
             // The factors besides the one that is cut are at most 1.
             let (m, steep) = (1.0 - 1.0 / n, ENTERED.powf((n - 2.0).min(0.0)));
             let most = m * n * alpha / WEIGHT * (0.5 + 2.0 * steep);
             for k in 1..200 {
-                let near = soil.change(-WEIGHT, -WEIGHT * ENTERED / alpha * 0.5_f64.powi(k), WEIGHT).permeability;
+                let near = soil
+                    .change(-WEIGHT, -WEIGHT * ENTERED / alpha * 0.5_f64.powi(k), WEIGHT)
+                    .permeability;
                 assert!((0.0..=most).contains(&near), "{near} {most}");
             }
         }
@@ -366,7 +407,13 @@ mod tests {
         };
         let (coarse, fine) = (error(10), error(20));
         assert!(fine < 2e-5 && coarse / fine > 4.0, "{coarse} {fine}");
-        let steps = vec![[0.0, 1.0, 1.0], [0.1, 1.0, 1.0], [0.2, 0.4, 0.01], [1.0, 0.4, 0.01], [1.1, 0.05, 0.0]];
+        let steps = vec![
+            [0.0, 1.0, 1.0],
+            [0.1, 1.0, 1.0],
+            [0.2, 0.4, 0.01],
+            [1.0, 0.4, 0.01],
+            [1.1, 0.05, 0.0],
+        ];
         let stepped = Retention::new(Curve::Measured(Measured::new(steps)), 0.05);
         for soil in [measured([0.0, 0.2, 0.4, 0.7, 1.0]), measured([0.0, 1.0]), stepped] {
             let at = |s: f64| soil.under(-s * WEIGHT, WEIGHT);
@@ -377,7 +424,10 @@ mod tests {
                 assert!((by(|of| of.saturation) - found.slope).abs() < 1e-6 / WEIGHT, "{s}");
                 assert!(found.slope >= 0.0 && change.permeability >= 0.0 && found.permeability >= LEAST);
                 if found.permeability > LEAST {
-                    assert!((by(|of| of.permeability) - change.permeability).abs() < 1e-6 / WEIGHT, "{s}");
+                    assert!(
+                        (by(|of| of.permeability) - change.permeability).abs() < 1e-6 / WEIGHT,
+                        "{s}"
+                    );
                 }
             }
             let last = at(2.0);

@@ -65,9 +65,15 @@ impl WaterReport {
         let owned = halo.owned();
         let mut counted = vec![false; water.out.len()];
         let of_face = |face: &DrainedFace| -> Exact {
-            let nodes = if face.acts { face_functions(&model.grid, face.axis, face.upper) } else { Vec::new() };
+            let nodes = if face.acts {
+                face_functions(&model.grid, face.axis, face.upper)
+            } else {
+                Vec::new()
+            };
             let mine = nodes.into_iter().filter(|&node| owned.contains(node));
-            mine.filter(|&node| !std::mem::replace(&mut counted[node], true)).map(|node| water.out[node]).collect()
+            mine.filter(|&node| !std::mem::replace(&mut counted[node], true))
+                .map(|node| water.out[node])
+                .collect()
         };
         // The face that is named last decides a pressure of two.
         let sums: Vec<Exact> = flow.faces.iter().rev().map(of_face).collect();
@@ -77,7 +83,12 @@ impl WaterReport {
         let held = drains.iter().chain(&inflows).map(|report| report.held).collect();
         let through =
             |reports: &[crate::water::drain::DrainReport]| reports.iter().map(|report| report.through).collect();
-        let mut crossed = Crossed { drains: through(&drains), faces, inflows: through(&inflows), removed: 0.0 };
+        let mut crossed = Crossed {
+            drains: through(&drains),
+            faces,
+            inflows: through(&inflows),
+            removed: 0.0,
+        };
         let (mut left, last) = (water.left, pores.differences.last);
         if let Some(flowed) = &problem.points.surface.flowed {
             crossed.add(last, &flowed.crossed);
@@ -85,13 +96,24 @@ impl WaterReport {
         }
         let measure = water.measure(pores.round_off);
         let (torn, faces) = (pores.drainage.torn.clone(), at_faces(problem, pores, flow));
-        Some(Self { stored: 0.0, crossed, held, torn, faces, left, measure, unknowns: pores.unknowns })
+        Some(Self {
+            stored: 0.0,
+            crossed,
+            held,
+            torn,
+            faces,
+            left,
+            measure,
+            unknowns: pores.unknowns,
+        })
     }
 }
 
 /// The ground at the drained faces, before the step. One reduction, if there are some.
 fn at_faces<K, const D: usize>(problem: &Problem<'_, K, D>, pores: &Pores<D>, flow: &Flow<D>) -> Vec<FaceReport> {
-    let Problem { model, points, halo, .. } = *problem;
+    let Problem {
+        model, points, halo, ..
+    } = *problem;
     if flow.faces.is_empty() {
         return Vec::new();
     }
@@ -113,12 +135,20 @@ fn at_faces<K, const D: usize>(problem: &Problem<'_, K, D>, pores: &Pores<D>, fl
             off.add(f64::from(u8::from(now - before > OFF * edge)));
         }
         let nodes = face_functions(grid, face.axis, face.upper).into_iter();
-        held.extend(nodes.filter(|&node| owned.contains(node) && pores.seen[node]).map(|_| 1.0));
+        held.extend(
+            nodes
+                .filter(|&node| owned.contains(node) && pores.seen[node])
+                .map(|_| 1.0),
+        );
         [all, off, held]
     };
     let sums: Vec<Exact> = flow.faces.iter().flat_map(of_face).collect();
     let totals = halo.total(&sums);
-    let report = |of: &[f64]| FaceReport { near: of[0] as usize, off: of[1] as usize, held: of[2] as usize };
+    let report = |of: &[f64]| FaceReport {
+        near: of[0] as usize,
+        off: of[1] as usize,
+        held: of[2] as usize,
+    };
     totals.chunks_exact(3).map(report).collect()
 }
 
@@ -144,10 +174,16 @@ pub fn save<K: Kinematics<D>, const D: usize>(
     let mut goes_on = is_smooth(model).then(|| (vec![0.0; states.len()], gradients.clone()));
     let mut stored = Vec::with_capacity(states.len());
     for (p, (state, wet)) in states.iter().zip(&pores.wet).enumerate() {
-        let (Some((pressure, state)), Some(wet)) = (state, wet) else { continue };
+        let (Some((pressure, state)), Some(wet)) = (state, wet) else {
+            continue;
+        };
         // What the whole pressure is now is what counts where it empties pores: the excess is over the place it came
         // to.
-        let moved = if holds { wet.ambient - water.still_pressure(&points.x[p], pores.end) } else { 0.0 };
+        let moved = if holds {
+            wet.ambient - water.still_pressure(&points.x[p], pores.end)
+        } else {
+            0.0
+        };
         pressures[p] = *pressure + moved;
         gradients[p] = state.gradient + water.still_gradient(&points.x[p], pores.end);
         let taken = wet.volume * (state.content - wet.content);

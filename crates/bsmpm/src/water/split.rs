@@ -31,7 +31,9 @@ impl Split {
         let mut z = vec![0.0; f_u.len() + f_p.len()];
         let (z_u, z_p) = z.split_at_mut(f_u.len());
         let of_water = system(solver)?.solve(f_p, z_p)?;
-        f_u.iter_mut().zip(pressing(problem, pores, z_p)).for_each(|(f, pressed)| *f += pressed);
+        f_u.iter_mut()
+            .zip(pressing(problem, pores, z_p))
+            .for_each(|(f, pressed)| *f += pressed);
         let mut solved = solver.solve(f_u, z_u)?;
         solved.iterations += of_water.iterations;
         solved.factorisations += of_water.factorisations;
@@ -41,5 +43,7 @@ impl Split {
 
 /// The system of the pressures.
 pub fn system(solver: &mut dyn LinearSolver) -> Result<&mut dyn LinearSolver, SolveError> {
-    solver.water().ok_or_else(|| SolveError::Failed("there is no system of the pore pressures".into()))
+    solver
+        .water()
+        .ok_or_else(|| SolveError::Failed("there is no system of the pore pressures".into()))
 }

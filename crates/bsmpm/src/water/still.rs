@@ -19,7 +19,9 @@ impl<const D: usize> Water<D> {
     /// Pa  pressure of the still water at the place `x` at time `t`: 0 above its level, or suction where soils hold it
     pub fn still_pressure(&self, x: &Vector<D>, t: f64) -> f64 {
         let least = if self.holds() { f64::NEG_INFINITY } else { 0.0 };
-        self.ambient.table(x[0], t).map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(least))
+        self.ambient
+            .table(x[0], t)
+            .map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(least))
     }
 
     /// Pa  excess pressure at the place `x` before the first step: none, but where the suction above the level has its
@@ -30,7 +32,9 @@ impl<const D: usize> Water<D> {
 
     /// Pa  the same of ground that comes at time `t`
     fn excess_at_rest(&self, x: &Vector<D>, t: f64) -> f64 {
-        let Some(flow) = self.flow.as_ref().filter(|flow| flow.retains()) else { return 0.0 };
+        let Some(flow) = self.flow.as_ref().filter(|flow| flow.retains()) else {
+            return 0.0;
+        };
         (-flow.suction - self.still_pressure(x, t)).max(0.0)
     }
 
@@ -54,7 +58,10 @@ impl<const D: usize> Water<D> {
 
     /// Pa/m  its gradient
     pub fn still_gradient(&self, x: &Vector<D>, t: f64) -> Vector<D> {
-        let Some((_, slope)) = self.ambient.table(x[0], t).filter(|(height, _)| *height > x[D - 1] || self.holds())
+        let Some((_, slope)) = self
+            .ambient
+            .table(x[0], t)
+            .filter(|(height, _)| *height > x[D - 1] || self.holds())
         else {
             return Vector::zeros();
         };
@@ -72,9 +79,15 @@ impl<const D: usize> Water<D> {
             down[D - 1] = -self.unit_weight;
             return down;
         }
-        let Some(gravity) = weighing(model) else { return Vector::zeros() };
+        let Some(gravity) = weighing(model) else {
+            return Vector::zeros();
+        };
         let whole = gravity.acceleration.norm();
-        if whole > 0.0 { gravity.at(t) * (self.unit_weight / whole) } else { Vector::zeros() }
+        if whole > 0.0 {
+            gravity.at(t) * (self.unit_weight / whole)
+        } else {
+            Vector::zeros()
+        }
     }
 
     /// kg/m3
@@ -88,5 +101,7 @@ impl<const D: usize> Water<D> {
 /// pressures as they are.
 fn weighing<K, const D: usize>(model: &Model<K, D>) -> Option<Gravity<D>> {
     let is_static = model.regime == Regime::QuasiStatic;
-    model.gravity.map(|gravity| if is_static { gravity.vertical() } else { gravity })
+    model
+        .gravity
+        .map(|gravity| if is_static { gravity.vertical() } else { gravity })
 }

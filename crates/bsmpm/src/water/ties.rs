@@ -35,7 +35,10 @@ impl Ties {
                 }
                 number[axis] += 1;
                 if let Some(behind) = grid.node_index(&number).filter(|&behind| seen[behind]) {
-                    pairs.push(Tie { nodes: [node, behind], flow: STIFF * (takes[node] + takes[behind]) });
+                    pairs.push(Tie {
+                        nodes: [node, behind],
+                        flow: STIFF * (takes[node] + takes[behind]),
+                    });
                 }
             }
         }
@@ -45,7 +48,11 @@ impl Ties {
     /// Adds what flows from each of a pair to the other under the nodal pressures `p`, Pa: m3, with the sums that a
     /// node has at `at`.
     pub fn add_to(&self, p: &[f64], sums: &mut [f64], at: impl Fn(usize) -> usize) {
-        for Tie { nodes: [before, behind], flow } in &self.pairs {
+        for Tie {
+            nodes: [before, behind],
+            flow,
+        } in &self.pairs
+        {
             let through = flow * (p[*before] - p[*behind]);
             sums[at(*before)] += through;
             sums[at(*behind)] -= through;

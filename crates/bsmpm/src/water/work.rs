@@ -31,9 +31,18 @@ pub struct Work {
 impl Work {
     /// Of what was found, before the points have taken it; `None` where no water flows.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Option<Self> {
-        let Problem { model, nodes, points, halo, .. } = *problem;
+        let Problem {
+            model,
+            nodes,
+            points,
+            halo,
+            ..
+        } = *problem;
         let (pores, balance) = (nodes.pores.as_ref()?, found.water.as_ref()?);
-        let (flow, weight) = model.water.as_ref().and_then(|water| Some((water.flow.as_ref()?, water.unit_weight)))?;
+        let (flow, weight) = model
+            .water
+            .as_ref()
+            .and_then(|water| Some((water.flow.as_ref()?, water.unit_weight)))?;
         let now = pores.differences.now;
         let dt = pores.duration / now;
         let each = scalars::scalars(&pores.shape, &found.p, |p, pressure, gradient| {
@@ -44,7 +53,9 @@ impl Work {
                 return [f64::NAN; 5];
             };
             let soil = flow.soils[usize::from(points.material[p])].as_ref();
-            let held = soil.map_or(0.0, |soil| held(flow, soil, state.pores, (pressure, state.whole), weight));
+            let held = soil.map_or(0.0, |soil| {
+                held(flow, soil, state.pores, (pressure, state.whole), weight)
+            });
             let through = dt * wet.volume;
             let fall = (0..D).map(|i| wet.drive[i] * (0..D).map(|j| dF[(i, j)] * state.flux[j]).sum::<f64>());
             let fall = -through * fall.sum::<f64>();
@@ -73,18 +84,34 @@ impl Work {
             *sum -= &pores.drainage.work(&found.p, times);
             *sum -= &over_layers(halo, 1, |node| times * found.p[node] * balance.out[node]);
         }
-        Some(Self { external, seepage: sum(1), stored, tau: sum(3), held: sum(4) })
+        Some(Self {
+            external,
+            seepage: sum(1),
+            stored,
+            tau: sum(3),
+            held: sum(4),
+        })
     }
 }
 
 /// J  in the water of the points at time `t`, and in the pores that suction has emptied.
 pub fn in_points<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, t: f64) -> Exact {
-    let flow = model.water.as_ref().and_then(|water| Some((water, water.flow.as_ref()?)));
+    let flow = model
+        .water
+        .as_ref()
+        .and_then(|water| Some((water, water.flow.as_ref()?)));
     let Some((water, flow)) = flow else { return Exact::ZERO };
     let of = |p: usize| {
         let x = &points.x[p];
-        let excess = points.pore_pressure.as_ref().map_or_else(|| water.excess_at_start(x), |excess| excess[p]);
-        let still = if flow.retains() { water.still_pressure(x, t) } else { 0.0 };
+        let excess = points
+            .pore_pressure
+            .as_ref()
+            .map_or_else(|| water.excess_at_start(x), |excess| excess[p]);
+        let still = if flow.retains() {
+            water.still_pressure(x, t)
+        } else {
+            0.0
+        };
         let soil = flow.soils[usize::from(points.material[p])].as_ref();
         soil.map_or(0.0, |soil| {
             let pores = soil.pores(points.F.at(p).determinant() * points.dilation_of(p));
@@ -96,6 +123,9 @@ pub fn in_points<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, t: 
 
 /// J/m^D  to the excess pressure from none, in water that is compressed; and to the `whole` one from full pores.
 fn held<const D: usize>(flow: &Flow<D>, soil: &Soil<D>, pores: f64, (excess, whole): (f64, f64), weight: f64) -> f64 {
-    let emptied = soil.retention.as_ref().map_or(0.0, |retention| retention.stored(whole, weight));
+    let emptied = soil
+        .retention
+        .as_ref()
+        .map_or(0.0, |retention| retention.stored(whole, weight));
     pores * (0.5 * excess * excess / flow.bulk + emptied)
 }

@@ -60,7 +60,14 @@ fn allocations(per_axis: usize, method: Stabilisation) -> usize {
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.1), &halo).expect("no loads");
     let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.1));
-    let pieces = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
+    let pieces = Problem {
+        model,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points,
+        halo: &halo,
+    };
     let u: Vec<f64> = (0..model.grid.nodes() * 2).map(|c| 1e-3 * (c as f64).sin()).collect();
     let evaluate = || Residual::of(&pieces, &u).balance.norm;
     assert!(evaluate() > 0.0);
@@ -72,7 +79,10 @@ fn allocations(per_axis: usize, method: Stabilisation) -> usize {
 #[test]
 fn an_iteration_allocates_as_often_whatever_the_number_of_points() {
     // One thread does all of it; what others allocate meanwhile does not count.
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .expect("a thread starts");
     for method in METHODS {
         let counts = pool.install(|| [1, 2, 6].map(|per_axis| allocations(per_axis, method)));
         println!("{method:?}: {counts:?}");

@@ -13,7 +13,10 @@ const HELD: Target = Target::Strain(0.0);
 
 /// Pa: the shear modulus; the bulk modulus follows from the pressure.
 fn law(shear: f64, preconsolidation: f64, ocr: f64) -> CamClay {
-    let elastic = Elastic { young: 2.6 * shear, poisson: 0.3 };
+    let elastic = Elastic {
+        young: 2.6 * shear,
+        poisson: 0.3,
+    };
     CamClay::new(elastic, [KAPPA, LAMBDA, M, preconsolidation, ocr])
 }
 
@@ -55,18 +58,27 @@ fn returns_lie_on_the_ellipse_that_has_grown_and_flow_along_its_normal() {
             assert!(material.excess(tau, &[before]) <= 1e-9 * before && after == before);
             continue;
         }
-        assert!(p > 0.0 && material.excess(tau, &[after]).abs() <= 1e-11 * (p + q), "{p} {q} {after}");
+        assert!(
+            p > 0.0 && material.excess(tau, &[after]).abs() <= 1e-11 * (p + q),
+            "{p} {q} {after}"
+        );
         let (trial, elastic) = (response.principal_eps_trial(), response.principal_eps_e());
         let flow: [f64; 3] = std::array::from_fn(|k| trial[k] - elastic[k]);
         let size = largest(&trial);
         let volume: f64 = flow.iter().sum();
-        assert!((after / before / (-volume / (compression - swelling)).exp() - 1.0).abs() <= 1e-9, "{volume}");
+        assert!(
+            (after / before / (-volume / (compression - swelling)).exp() - 1.0).abs() <= 1e-9,
+            "{volume}"
+        );
         // Along the normal (2P + p_c)/3 I + 3 s/M², s the deviator.
         let normal = tau.map(|tau| (after - 2.0 * p) / 3.0 + 3.0 * (tau + p) / (M * M));
         let along = |a: &[f64; 3], b: &[f64; 3]| -> f64 { (0..3).map(|k| a[k] * b[k]).sum() };
         let multiplier = along(&flow, &normal) / along(&normal, &normal);
         assert!(multiplier >= 0.0);
-        assert!((0..3).all(|k| (flow[k] - multiplier * normal[k]).abs() <= 1e-11 * size), "{flow:?} {normal:?}");
+        assert!(
+            (0..3).all(|k| (flow[k] - multiplier * normal[k]).abs() <= 1e-11 * size),
+            "{flow:?} {normal:?}"
+        );
         if 2.0 * p > after {
             wet += 1
         } else {
@@ -94,8 +106,11 @@ fn tangent_is_the_derivative() {
         let b = turned(&random.rotation(), &stretched(eps));
         let l = Tensor::from_fn(|_, _| random.signed());
         let found = material.respond(&b, &[before]).unwrap();
-        let around = [-2.0, -1.0, 1.0, 2.0]
-            .map(|steps| material.respond(&turned(&(Tensor::identity() + l * (steps * 1e-6)), &b), &[before]).unwrap());
+        let around = [-2.0, -1.0, 1.0, 2.0].map(|steps| {
+            material
+                .respond(&turned(&(Tensor::identity() + l * (steps * 1e-6)), &b), &[before])
+                .unwrap()
+        });
         if around.iter().any(|moved| moved.branch() != found.branch()) {
             continue;
         }
@@ -122,7 +137,10 @@ fn elasticity_keeps_energy_and_has_an_inverse() {
         for k in 0..3 {
             let moved = |step: f64| law.energy(std::array::from_fn(|i| eps[i] + if i == k { step } else { 0.0 }));
             let difference = (moved(-2e-5) - moved(2e-5) + 8.0 * (moved(1e-5) - moved(-1e-5))) / 12e-5;
-            assert!((difference - tau[k]).abs() <= 1e-6 * largest(&tau), "{difference} {tau:?}");
+            assert!(
+                (difference - tau[k]).abs() <= 1e-6 * largest(&tau),
+                "{difference} {tau:?}"
+            );
         }
         let response = Material::CamClay(law.clone()).respond(&stretched(eps), &[1e9]).unwrap();
         assert!((response.elastic_energy() / law.energy(eps) - 1.0).abs() < 1e-10);
@@ -135,7 +153,17 @@ fn point(law: CamClay, sigma: [f64; 3]) -> Element {
 }
 
 fn follow(point: &mut Element, targets: [Target; 4], undrained: bool, steps: u64) {
-    point.follow(&Control { targets, undrained, steps, duration: f64::INFINITY }, |_| ()).expect("a path");
+    point
+        .follow(
+            &Control {
+                targets,
+                undrained,
+                steps,
+                duration: f64::INFINITY,
+            },
+            |_| (),
+        )
+        .expect("a path");
 }
 
 fn of_cauchy(point: &Element) -> (f64, f64) {
@@ -154,13 +182,20 @@ fn isotropic_compression_follows_both_lines() {
         let mut last = 1e5;
         for (pressure, slope) in [(2e5, KAPPA), (8e5, LAMBDA), (1e5, KAPPA), (7e5, KAPPA)] {
             // p_c is Kirchhoff's: where the point yields first its volume has shrunk by κ ln 2.
-            let pressure: f64 =
-                if pressure == 2e5 { 2e5 * (KAPPA * 2_f64.ln() / (1.0 - KAPPA)).exp() } else { pressure };
+            let pressure: f64 = if pressure == 2e5 {
+                2e5 * (KAPPA * 2_f64.ln() / (1.0 - KAPPA)).exp()
+            } else {
+                pressure
+            };
             let all = Target::Stress(-pressure);
             follow(&mut sample, [all, all, all, HELD], false, steps);
             volume -= slope * (pressure / last).ln();
             last = pressure;
-            assert!((sample.volume_strain() - volume).abs() < 1e-9, "{} for {volume}", sample.volume_strain());
+            assert!(
+                (sample.volume_strain() - volume).abs() < 1e-9,
+                "{} for {volume}",
+                sample.volume_strain()
+            );
         }
     }
 }
@@ -197,7 +232,10 @@ fn undrained_triaxial_path_strength_and_strain() {
         errors.push(end.abs());
     }
     println!("{errors:?}");
-    assert!(errors[2] < 1e-3 && errors.windows(2).all(|pair| (1.7..2.3).contains(&(pair[0] / pair[1]))), "{errors:?}");
+    assert!(
+        errors[2] < 1e-3 && errors.windows(2).all(|pair| (1.7..2.3).contains(&(pair[0] / pair[1]))),
+        "{errors:?}"
+    );
     for ocr in [1.0, 1.5, 8.0_f64] {
         let mut sample = point(law(shear, 0.0, ocr), [-p0; 3]);
         let cell = Target::Stress(-p0);
@@ -244,7 +282,10 @@ fn drained_triaxial_volume_and_strain_to_the_critical_state() {
         let pieces = 200_000;
         let mut strain = q * sample.volume_strain().exp() / (3.0 * shear);
         for k in 0..pieces {
-            let (from, to) = (eta * f64::from(k) / f64::from(pieces), eta * f64::from(k + 1) / f64::from(pieces));
+            let (from, to) = (
+                eta * f64::from(k) / f64::from(pieces),
+                eta * f64::from(k + 1) / f64::from(pieces),
+            );
             let middle = 0.5 * (from + to);
             strain += (plastic_volume(from) - plastic_volume(to)) * 2.0 * middle / (M * M - middle * middle);
         }
@@ -252,7 +293,10 @@ fn drained_triaxial_volume_and_strain_to_the_critical_state() {
         errors.push((found - strain).abs());
     }
     println!("{errors:?}");
-    assert!(errors[2] < 1e-3 && errors.windows(2).all(|pair| (1.7..2.3).contains(&(pair[0] / pair[1]))), "{errors:?}");
+    assert!(
+        errors[2] < 1e-3 && errors.windows(2).all(|pair| (1.7..2.3).contains(&(pair[0] / pair[1]))),
+        "{errors:?}"
+    );
     let mut sample = point(law(shear, 0.0, 1.0), [-p0; 3]);
     let cell = Target::Stress(-p0);
     follow(&mut sample, [cell, Target::Strain(-3.0), cell, HELD], false, 400);
@@ -273,7 +317,11 @@ fn oedometer_tends_to_its_stress_ratio_and_slope() {
     let (p, q) = of_cauchy(&sample);
     let slope = -(sample.volume_strain() - start) / (p / before).ln();
     println!("eta {} for {exact}, slope {slope}", q / p);
-    assert!((q / p / exact - 1.0).abs() < 1e-3 && (slope / LAMBDA - 1.0).abs() < 1e-4, "{} {exact} {slope}", q / p);
+    assert!(
+        (q / p / exact - 1.0).abs() < 1e-3 && (slope / LAMBDA - 1.0).abs() < 1e-4,
+        "{} {exact} {slope}",
+        q / p
+    );
 }
 
 #[test]

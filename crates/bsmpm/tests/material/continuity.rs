@@ -19,10 +19,18 @@ fn jump(material: &Material, from: [f64; 3], to: [f64; 3]) -> Option<(Branch, Br
     }
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if at(material, from, to, middle).0 == start { low = middle } else { high = middle }
+        if at(material, from, to, middle).0 == start {
+            low = middle
+        } else {
+            high = middle
+        }
     }
     let ((a, tau), (b, other)) = (at(material, from, to, low), at(material, from, to, high));
-    Some((a, b, largest(&[tau[0] - other[0], tau[1] - other[1], tau[2] - other[2]])))
+    Some((
+        a,
+        b,
+        largest(&[tau[0] - other[0], tau[1] - other[1], tau[2] - other[2]]),
+    ))
 }
 
 /// Bisection between trial states in different regions of the yield surface.

@@ -13,12 +13,19 @@ fn triaxial(material: &Material, lateral: f64, height: f64, steps: u32) -> f64 {
         let trial = |stretch: f64| {
             let [x, y, z, ..] = b_e.0;
             let lateral = stretch * stretch;
-            respond(material, &Symmetric([x * lateral, y * ratio * ratio, z * lateral, 0.0, 0.0, 0.0]))
+            respond(
+                material,
+                &Symmetric([x * lateral, y * ratio * ratio, z * lateral, 0.0, 0.0, 0.0]),
+            )
         };
         let (mut low, mut high) = (0.5, 2.0);
         for _ in 0..80 {
             let middle = 0.5 * (low + high);
-            if trial(middle).tau().0[0] < lateral { low = middle } else { high = middle }
+            if trial(middle).tau().0[0] < lateral {
+                low = middle
+            } else {
+                high = middle
+            }
         }
         let found = trial(low);
         (b_e, axial) = (found.b_e(), found.tau().0[1]);
@@ -38,7 +45,10 @@ fn mohr_circle_uniaxial_and_triaxial_strength() {
             assert!((exact - printed).abs() < 5e-4);
             for steps in [1, 20] {
                 let found = -triaxial(&material, lateral, 0.9, steps);
-                assert!((found - exact).abs() <= 1e-9 * exact, "{found} for {exact} in {steps} steps");
+                assert!(
+                    (found - exact).abs() <= 1e-9 * exact,
+                    "{found} for {exact} in {steps} steps"
+                );
             }
         }
     }
@@ -63,7 +73,10 @@ fn oedometer_hencky() {
         let b = Symmetric([1.0, height * height, 1.0, 0.0, 0.0, 0.0]);
         let sigma = respond(&material, &b).tau().0[1] / height;
         let exact = modulus * height.ln() / height;
-        assert!((sigma - exact).abs() <= 1e-10 * exact.abs(), "{sigma} for {exact} at {height}");
+        assert!(
+            (sigma - exact).abs() <= 1e-10 * exact.abs(),
+            "{sigma} for {exact} at {height}"
+        );
     }
 }
 

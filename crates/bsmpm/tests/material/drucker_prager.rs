@@ -27,7 +27,12 @@ fn returns_lie_on_the_cone_or_its_tip_and_flow_along_the_potential() {
     for _ in 0..30_000 {
         let friction = random.pick(&[0.0, 1e-9, 20.0, 45.0, 80.0]);
         let dilation = friction * random.pick(&[0.0, 0.5, 1.0]);
-        let law = law(random.pick(&[-0.5, 0.0, 0.3, 0.49]), friction, dilation, random.pick(&FITS));
+        let law = law(
+            random.pick(&[-0.5, 0.0, 0.3, 0.49]),
+            friction,
+            dilation,
+            random.pick(&FITS),
+        );
         let (eta, strength) = law.cone();
         let material = Material::DruckerPrager(law);
         let found = respond(&material, &random.trial(-4.0, -0.7));
@@ -51,9 +56,12 @@ fn returns_lie_on_the_cone_or_its_tip_and_flow_along_the_potential() {
             // Volume over shear of the flow is that of the potential: tr εᵖ = η_ψ Δγ, |dev εᵖ| = Δγ/√2.
             let (trial, elastic) = (found.principal_eps_trial(), found.principal_eps_e());
             let (mean, _, norm) = split(std::array::from_fn(|k| trial[k] - elastic[k]));
-            let Material::DruckerPrager(law) = &material else { unreachable!() };
-            let dilating =
-                DruckerPrager::new(law.elastic().clone(), (law.dilation(), 0.0, COHESION), law.fit()).cone().0;
+            let Material::DruckerPrager(law) = &material else {
+                unreachable!()
+            };
+            let dilating = DruckerPrager::new(law.elastic().clone(), (law.dilation(), 0.0, COHESION), law.fit())
+                .cone()
+                .0;
             assert!((3.0 * mean - dilating * 2_f64.sqrt() * norm).abs() <= 1e-11 * largest(&trial));
         }
     }
@@ -69,15 +77,25 @@ fn the_cone_meets_the_pyramid_where_it_is_said_to() {
         let cone = Material::DruckerPrager(law(0.3, friction, 0.0, fit));
         let pyramid = mohr_coulomb(1e3, 0.3, friction, 0.0, COHESION);
         let [a, b] = [cone, pyramid].map(|material| respond(&material, &stretched(eps)).principal_tau());
-        assert!((0..3).all(|k| (a[k] - b[k]).abs() <= 1e-11 * largest(&b)), "{a:?} {b:?}");
+        assert!(
+            (0..3).all(|k| (a[k] - b[k]).abs() <= 1e-11 * largest(&b)),
+            "{a:?} {b:?}"
+        );
     }
-    for (fit, dilation) in [(Match::PlaneStrain, friction), (Match::PlaneStrain, 0.0), (Match::Inner, 10.0)] {
+    for (fit, dilation) in [
+        (Match::PlaneStrain, friction),
+        (Match::PlaneStrain, 0.0),
+        (Match::Inner, 10.0),
+    ] {
         let law = law(0.3, friction, dilation, fit);
         let expected = law.strength_in_plane_strain();
         let (radius, mean) = sheared_in_the_plane(&Material::DruckerPrager(law));
         let (sin, cos) = friction.to_radians().sin_cos();
         let found = radius / (COHESION * cos - mean * sin);
-        assert!((found / expected - 1.0).abs() <= 2e-3, "{fit:?} {dilation}: {found} for {expected}");
+        assert!(
+            (found / expected - 1.0).abs() <= 2e-3,
+            "{fit:?} {dilation}: {found} for {expected}"
+        );
     }
     assert!((law(0.3, 30.0, 30.0, Match::PlaneStrain).strength_in_plane_strain() - 1.0).abs() < 1e-14);
     let weaker = 1.0 / (1.0 + 0.25_f64 / 3.0).sqrt();
@@ -113,8 +131,12 @@ fn tangent_is_the_derivative_on_cone_and_tip() {
     for trial in 0..40_000 {
         let friction = random.pick(&[0.0, 20.0, 45.0]);
         let dilation = friction * random.pick(&[0.0, 0.5, 1.0]);
-        let material =
-            Material::DruckerPrager(law(random.pick(&[0.0, 0.3, 0.49]), friction, dilation, random.pick(&FITS)));
+        let material = Material::DruckerPrager(law(
+            random.pick(&[0.0, 0.3, 0.49]),
+            friction,
+            dilation,
+            random.pick(&FITS),
+        ));
         let eps = random.strains(-2.5, -0.7);
         let eps = if trial % 4 == 0 { [eps[0], eps[0], eps[2]] } else { eps };
         let (rotation, l) = (random.rotation(), Tensor::from_fn(|_, _| random.signed()));

@@ -36,7 +36,10 @@ fn plane_path_is_the_general_path() {
     for _ in 0..20_000 {
         let material = mohr_coulomb(1e3, 0.3, 20.0, 10.0, random.pick(&[1.0, 100.0]));
         let eps = random.strains(-8.0, 0.3);
-        let b = turned(&nalgebra::Rotation3::new([0.0, 0.0, 3.0 * random.unit()].into()).into_inner(), &stretched(eps));
+        let b = turned(
+            &nalgebra::Rotation3::new([0.0, 0.0, 3.0 * random.unit()].into()).into_inner(),
+            &stretched(eps),
+        );
         let [xx, yy, zz, xy, _, _] = b.0;
         let renamed = Symmetric([zz, xx, yy, 0.0, xy, 0.0]);
         let (found, general) = (respond(&material, &b), respond(&material, &renamed));
@@ -72,7 +75,10 @@ fn hencky_holds_from_tiny_to_large_strain() {
         let rounding = 4e-16 / size;
         println!("strain {size:.1e}: along the axes {along:.1e}, turned {turn:.1e}");
         assert!(along <= rounding.max(1e-15) * 1.5, "strain {size:e}: {along:e}");
-        assert!(turn <= 4.0 * rounding.max(1e-15) * (4.0 * size).exp(), "strain {size:e}: {turn:e}");
+        assert!(
+            turn <= 4.0 * rounding.max(1e-15) * (4.0 * size).exp(),
+            "strain {size:e}: {turn:e}"
+        );
     }
 }
 
@@ -127,7 +133,10 @@ fn nearly_equal_eigenvalues_rebuild_b() {
 fn a_hundred_turns_leave_the_stress() {
     const STEPS: u32 = 3_600;
     let mut random = Random::new(44);
-    for (material, yields) in [(hencky(1e3, 0.3), false), (mohr_coulomb(1e3, 0.3, 30.0, 10.0, 0.1), true)] {
+    for (material, yields) in [
+        (hencky(1e3, 0.3), false),
+        (mohr_coulomb(1e3, 0.3, 30.0, 10.0, 0.1), true),
+    ] {
         let mut worst = 0.0_f64;
         for _ in 0..20 {
             let start = turned(&random.rotation(), &stretched(random.strains(-4.0, -2.0)));
@@ -148,7 +157,10 @@ fn a_hundred_turns_leave_the_stress() {
             worst = worst.max(difference(&tau(&still), &tau(&turning)) / largest(&tau(&still).0));
             assert_eq!(yielded > STEPS / 2, yields, "{yielded} of {STEPS} steps yield");
         }
-        println!("a hundred turns, {} {worst:.1e}", if yields { "yielding" } else { "elastic" });
+        println!(
+            "a hundred turns, {} {worst:.1e}",
+            if yields { "yielding" } else { "elastic" }
+        );
         assert!(worst <= 1e-9, "{worst:e}");
     }
 }

@@ -14,7 +14,17 @@ fn point(law: Material, pressure: f64, k0: f64) -> Element {
 }
 
 fn follow(point: &mut Element, targets: [Target; 4], undrained: bool, steps: u64) {
-    point.follow(&Control { targets, undrained, steps, duration: f64::INFINITY }, |_| ()).expect("a path");
+    point
+        .follow(
+            &Control {
+                targets,
+                undrained,
+                steps,
+                duration: f64::INFINITY,
+            },
+            |_| (),
+        )
+        .expect("a path");
 }
 
 /// Mohr's circle at yield of Kirchhoff stress, in any number of steps: `-σ_a J = -σ_r J N + 2 c √N`.
@@ -50,8 +60,15 @@ fn undrained_triaxial_strength_and_pore_pressure() {
     follow(&mut sample, [cell, Target::Strain(-0.05), cell, HELD], true, 25);
     let [x, y, ..] = sample.sigma().0;
     let (p, q) = (-(2.0 * x + y) / 3.0, x - y);
-    assert!((p / 1e5 - 1.0).abs() < 1e-9 && (q / 1.2e5 - 1.0).abs() < 1e-9, "p {p}, q {q}");
-    assert!((sample.pore_pressure() / 4e4 - 1.0).abs() < 1e-9, "{}", sample.pore_pressure());
+    assert!(
+        (p / 1e5 - 1.0).abs() < 1e-9 && (q / 1.2e5 - 1.0).abs() < 1e-9,
+        "p {p}, q {q}"
+    );
+    assert!(
+        (sample.pore_pressure() / 4e4 - 1.0).abs() < 1e-9,
+        "{}",
+        sample.pore_pressure()
+    );
     assert!(sample.volume_strain().abs() < 1e-14);
 }
 
@@ -64,7 +81,10 @@ fn oedometer_follows_the_constrained_modulus_and_its_k0() {
     follow(&mut sample, [HELD, Target::Strain(0.9_f64.ln()), HELD, HELD], false, 3);
     let [x, y, ..] = sample.sigma().0;
     let exact = modulus * 0.9_f64.ln() / 0.9;
-    assert!((y / exact - 1.0).abs() < 1e-12 && (x / y - 3.0 / 7.0).abs() < 1e-12, "{y} for {exact}, {x}");
+    assert!(
+        (y / exact - 1.0).abs() < 1e-12 && (x / y - 3.0 / 7.0).abs() < 1e-12,
+        "{y} for {exact}, {x}"
+    );
     follow(&mut sample, [HELD, Target::Stress(0.0), HELD, HELD], false, 3);
     assert!(sample.strain()[1].abs() < 1e-12);
     follow(&mut sample, [HELD, Target::Stress(exact), HELD, HELD], false, 3);
@@ -103,7 +123,11 @@ fn mixed_control_reaches_its_stress() {
     let grown: Vec<f64> = (0..3).map(|k| found[k] - start[k]).collect();
     for k in 0..3 {
         let strain = ((1.0 + poisson) * grown[k] - poisson * grown.iter().sum::<f64>()) / young;
-        assert!((sample.strain()[k] - strain).abs() < 2e-4, "{k}: {} for {strain}", sample.strain()[k]);
+        assert!(
+            (sample.strain()[k] - strain).abs() < 2e-4,
+            "{k}: {} for {strain}",
+            sample.strain()[k]
+        );
     }
 }
 
@@ -120,7 +144,9 @@ fn a_stress_beyond_strength_ends_the_path_and_one_at_the_start_is_refused() {
     };
     let mut steps = 0;
     let ended = sample.follow(&control, |_| steps += 1);
-    let Err(ElementError::NoEquilibrium { done, reason }) = ended else { panic!("{ended:?}") };
+    let Err(ElementError::NoEquilibrium { done, reason }) = ended else {
+        panic!("{ended:?}")
+    };
     // 3e5 of 1e5 to 4e5 is two thirds of the way.
     assert!(done < 2.0 / 3.0 && done > 0.666 && steps == 20, "{done}, {steps}");
     assert!(reason.contains("stress-yy") && sample.sigma().0[1] > -3e5, "{reason}");

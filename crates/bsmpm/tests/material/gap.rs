@@ -26,7 +26,10 @@ fn sand_resists_again_at_the_volume_at_which_it_came_apart() {
         volume += change;
         state = (found.b_e(), found.gap());
         let closed = volume <= 1e-12;
-        assert!(closed || (found.branch() == Branch::Apex && found.principal_tau() == [0.0; 3]), "step {step}");
+        assert!(
+            closed || (found.branch() == Branch::Apex && found.principal_tau() == [0.0; 3]),
+            "step {step}"
+        );
         worst = worst.max((state.1 - volume.max(0.0)).abs());
         assert!(worst <= 1e-13, "step {step}: {} for {volume}", state.1);
     }

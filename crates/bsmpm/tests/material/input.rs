@@ -11,7 +11,10 @@ fn not_finite() {
             for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e200] {
                 let mut b = Symmetric::IDENTITY;
                 b.0[component] = bad;
-                assert!(matches!(material.respond(&b, &[]), Err(MaterialError::NotFinite(_))), "{bad} as {component}");
+                assert!(
+                    matches!(material.respond(&b, &[]), Err(MaterialError::NotFinite(_))),
+                    "{bad} as {component}"
+                );
             }
         }
     }
@@ -30,6 +33,9 @@ fn not_positive_definite() {
     ];
     for b in indefinite {
         let found = hencky(1.0, 0.3).respond(&Symmetric(b), &[]);
-        assert!(matches!(found, Err(MaterialError::NotPositive(_))), "{b:?} gave {found:?}");
+        assert!(
+            matches!(found, Err(MaterialError::NotPositive(_))),
+            "{b:?} gave {found:?}"
+        );
     }
 }

@@ -35,7 +35,10 @@ impl InLanes for Stresses<'_> {
 
 /// Every law that runs in lanes, with cohesion and without, with friction and without, hardening and not.
 fn laws() -> Vec<Material> {
-    let elastic = Elastic { young: 1e3, poisson: 0.3 };
+    let elastic = Elastic {
+        young: 1e3,
+        poisson: 0.3,
+    };
     let mut laws = vec![hencky(1e3, 0.3), mohr_coulomb(1e3, 0.45, 0.0, 0.0, 3.0)];
     for cohesion in [0.0, 3.0] {
         laws.push(mohr_coulomb(1e3, 0.3, 35.0, 10.0, cohesion));
@@ -59,9 +62,23 @@ fn eight_points_have_the_stresses_of_each() {
 fn eight_points_in_space_have_the_stresses_of_each() {
     compare(true);
     let (material, mut b_trial) = (hencky(1e3, 0.3), [Symmetric([1.0, 1.0, 1.0, 0.1, 0.1, 0.0]); LANES]);
-    assert!(lanes::run(Stresses { material: &material, b_trial: &b_trial, state: [0.0; LANES] }).is_some());
+    assert!(
+        lanes::run(Stresses {
+            material: &material,
+            b_trial: &b_trial,
+            state: [0.0; LANES]
+        })
+        .is_some()
+    );
     b_trial[3] = Symmetric([1.0, 1.0, 1.1, 0.1, 0.0, 0.0]);
-    assert!(lanes::run(Stresses { material: &material, b_trial: &b_trial, state: [0.0; LANES] }).is_none());
+    assert!(
+        lanes::run(Stresses {
+            material: &material,
+            b_trial: &b_trial,
+            state: [0.0; LANES]
+        })
+        .is_none()
+    );
 }
 
 fn compare(in_space: bool) {
@@ -80,13 +97,22 @@ fn compare(in_space: bool) {
                 if !in_space {
                     return plane;
                 }
-                let plane =
-                    if plane == Symmetric::IDENTITY { Symmetric([1.0, 1.0, 1.0, 1e-9, 0.0, 0.0]) } else { plane };
+                let plane = if plane == Symmetric::IDENTITY {
+                    Symmetric([1.0, 1.0, 1.0, 1e-9, 0.0, 0.0])
+                } else {
+                    plane
+                };
                 let mut turns = std::iter::repeat_with(|| turned(&random.rotation(), &plane));
-                turns.find(|b_trial| b_trial.0[4..] != [0.0; 2]).expect("without an end")
+                turns
+                    .find(|b_trial| b_trial.0[4..] != [0.0; 2])
+                    .expect("without an end")
             });
             let state: [f64; LANES] = from_fn(|_| 0.1 * random.unit());
-            for (vectors, found) in lanes::with_each(&Stresses { material: &material, b_trial: &b_trial, state }) {
+            for (vectors, found) in lanes::with_each(&Stresses {
+                material: &material,
+                b_trial: &b_trial,
+                state,
+            }) {
                 let Some(found) = found else { continue };
                 computed += 1;
                 for ((found, b_trial), state) in found.iter().zip(&b_trial).zip(state) {
@@ -99,7 +125,10 @@ fn compare(in_space: bool) {
         }
         assert!(computed > GROUPS / 2, "{material:?}: {computed} groups were strains");
     }
-    assert!(REGIONS.iter().all(|region| seen[&format!("{region:?}")] > 1_000), "{seen:?}");
+    assert!(
+        REGIONS.iter().all(|region| seen[&format!("{region:?}")] > 1_000),
+        "{seen:?}"
+    );
 }
 
 /// What is no strain is left to one point at a time, which says so.
@@ -108,10 +137,22 @@ fn a_lane_that_is_no_strain_is_left() {
     let material = mohr_coulomb(1e3, 0.3, 35.0, 10.0, 3.0);
     for odd in [0.0, -1.0, 1e101, f64::NAN, f64::INFINITY] {
         let mut b_trial = [Symmetric::IDENTITY; LANES];
-        assert!(lanes::run(Stresses { material: &material, b_trial: &b_trial, state: [0.0; LANES] }).is_some());
+        assert!(
+            lanes::run(Stresses {
+                material: &material,
+                b_trial: &b_trial,
+                state: [0.0; LANES]
+            })
+            .is_some()
+        );
         b_trial[5].0[1] = odd;
         assert!(
-            lanes::run(Stresses { material: &material, b_trial: &b_trial, state: [0.0; LANES] }).is_none(),
+            lanes::run(Stresses {
+                material: &material,
+                b_trial: &b_trial,
+                state: [0.0; LANES]
+            })
+            .is_none(),
             "{odd}"
         );
     }

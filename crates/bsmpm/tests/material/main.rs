@@ -24,16 +24,29 @@ use bsmpm::material::{Branch, Elastic, Hencky, Material, MohrCoulomb, Response};
 use bsmpm::tensor::{Symmetric, Tensor};
 
 /// Every region of a response.
-const REGIONS: [Branch; 5] = [Branch::Elastic, Branch::Face, Branch::LeftEdge, Branch::RightEdge, Branch::Apex];
+const REGIONS: [Branch; 5] = [
+    Branch::Elastic,
+    Branch::Face,
+    Branch::LeftEdge,
+    Branch::RightEdge,
+    Branch::Apex,
+];
 
 fn hencky(young: f64, poisson: f64) -> Material {
-    Material::Hencky(Hencky { elastic: Elastic { young, poisson } })
+    Material::Hencky(Hencky {
+        elastic: Elastic { young, poisson },
+    })
 }
 
 /// Angles in degrees.
 fn mohr_coulomb(young: f64, poisson: f64, friction: f64, dilation: f64, cohesion: f64) -> Material {
     let (friction, dilation) = (friction.to_radians(), dilation.to_radians());
-    Material::MohrCoulomb(MohrCoulomb::new(Elastic { young, poisson }, friction, dilation, cohesion))
+    Material::MohrCoulomb(MohrCoulomb::new(
+        Elastic { young, poisson },
+        friction,
+        dilation,
+        cohesion,
+    ))
 }
 
 /// `b = diag(exp(2 ε))`.
@@ -48,7 +61,9 @@ fn turned(q: &Tensor, b: &Symmetric) -> Symmetric {
 }
 
 fn respond(material: &Material, b: &Symmetric) -> Response {
-    material.respond(b, &[]).unwrap_or_else(|error| panic!("{error} for {material:?}"))
+    material
+        .respond(b, &[])
+        .unwrap_or_else(|error| panic!("{error} for {material:?}"))
 }
 
 /// The response of a law with one state variable, and what that is after it.

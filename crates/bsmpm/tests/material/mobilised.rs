@@ -9,14 +9,24 @@ fn mobilised_strength_is_that_of_the_yield_function() {
     for (first, third) in [(-10.0, -20.0), (-5.0, -14.0), (-1.0, -1.1)] {
         let tau = [first, 0.3 * first + 0.7 * third, third];
         // Cohesion alone, friction alone (degrees), both.
-        close(mohr_coulomb(1e3, 0.3, 0.0, 0.0, 8.0).mobilised(tau, &[]), (first - third) / 16.0);
+        close(
+            mohr_coulomb(1e3, 0.3, 0.0, 0.0, 8.0).mobilised(tau, &[]),
+            (first - third) / 16.0,
+        );
         let mobilised = ((first - third) / -(first + third)).asin().tan() / 30.0_f64.to_radians().tan();
         close(mohr_coulomb(1e3, 0.3, 30.0, 0.0, 0.0).mobilised(tau, &[]), mobilised);
         let both = mohr_coulomb(1e3, 0.3, 30.0, 0.0, 4.0);
         let share = both.mobilised(tau, &[]);
         assert!(both.reduced(1.0 / share).excess(tau, &[]).abs() < 1e-5);
     }
-    let mises = Material::VonMises(VonMises::new(Elastic { young: 1e3, poisson: 0.3 }, 20.0, 0.0));
+    let mises = Material::VonMises(VonMises::new(
+        Elastic {
+            young: 1e3,
+            poisson: 0.3,
+        },
+        20.0,
+        0.0,
+    ));
     close(mises.mobilised([5.0, 0.0, 0.0], &[0.0]), 0.25);
     assert!(Material::is_yielding(mises.mobilised([20.0, 0.0, 0.0], &[0.0])) && !Material::is_yielding(0.99));
     // Nothing of pressure alone; what is beyond is reported, to an end.

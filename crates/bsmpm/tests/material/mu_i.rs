@@ -19,7 +19,9 @@ fn returns_have_the_friction_of_their_own_rate() {
     let (mut cones, mut tips, mut fast, mut worst) = (0, 0, 0, 0.0_f64);
     for _ in 0..30_000 {
         let dt = random.pick(&[1e-9, 1e-5, 1e-3, 1.0, 1e6]);
-        let law = law(random.pick(&[-0.5, 0.0, 0.3, 0.49]), NUMBERS).over(dt).expect("it follows the rate");
+        let law = law(random.pick(&[-0.5, 0.0, 0.3, 0.49]), NUMBERS)
+            .over(dt)
+            .expect("it follows the rate");
         let material = Material::MuI(law);
         let found = respond(&material, &random.trial(-6.0, -0.7));
         let (mean, _, norm) = split(found.principal_tau());
@@ -56,11 +58,19 @@ fn returns_have_the_friction_of_their_own_rate() {
 #[test]
 fn without_a_rate_it_is_a_cone() {
     let mut random = Random::new(91);
-    let cone = DruckerPrager::new(Elastic { young: 1e6, poisson: 0.3 }, (0.6, 0.0, 0.0), Match::PlaneStrain);
+    let cone = DruckerPrager::new(
+        Elastic {
+            young: 1e6,
+            poisson: 0.3,
+        },
+        (0.6, 0.0, 0.0),
+        Match::PlaneStrain,
+    );
     let slope = cone.cone().0;
-    for law in
-        [law(0.3, [slope, 0.9, 0.3, 2e-3, 2.5e3]), law(0.3, [slope, slope, 0.3, 2e-3, 2.5e3]).over(1e-4).unwrap()]
-    {
+    for law in [
+        law(0.3, [slope, 0.9, 0.3, 2e-3, 2.5e3]),
+        law(0.3, [slope, slope, 0.3, 2e-3, 2.5e3]).over(1e-4).unwrap(),
+    ] {
         for _ in 0..3_000 {
             let b = random.trial(-6.0, -0.7);
             let [a, b] = [Material::MuI(law.clone()), Material::DruckerPrager(cone.clone())].map(|m| respond(&m, &b));
@@ -109,7 +119,12 @@ fn steady_shear_has_the_friction_of_its_inertial_number() {
         let mut point = Element::new(Material::MuI(law(0.3, NUMBERS)), stress).expect("within its strength");
         let mut targets = [Target::Strain(0.0); 4];
         (targets[1], targets[3]) = (Target::Stress(-pressure), Target::Strain(0.5));
-        let control = Control { targets, steps, duration: 0.5 / rate, undrained: false };
+        let control = Control {
+            targets,
+            steps,
+            duration: 0.5 / rate,
+            undrained: false,
+        };
         point.follow(&control, |_| {}).expect("it flows");
         let [x, y, z, xy, ..] = point.sigma().0;
         let p = -(x + y + z) / 3.0;

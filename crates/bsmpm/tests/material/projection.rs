@@ -18,7 +18,9 @@ fn closest(trial: Vector3<f64>, stiffness: Matrix3<f64>, sin: f64, strength: f64
         .collect();
     let compliance = stiffness.try_inverse().unwrap();
     let admissible = |tau: &Vector3<f64>| {
-        planes.iter().all(|n| n.dot(tau) - strength <= 1e-9 * (strength + tau.amax() + 1e-3 * trial.amax()))
+        planes
+            .iter()
+            .all(|n| n.dot(tau) - strength <= 1e-9 * (strength + tau.amax() + 1e-3 * trial.amax()))
     };
     let mut best = (f64::INFINITY, trial);
     for set in 1_u32..64 {
@@ -76,7 +78,11 @@ fn associated_return_is_the_closest_point() {
         let tau = found.principal_tau();
         let size = trial.amax();
         worst = worst.max(largest(&[tau[0] - exact[0], tau[1] - exact[1], tau[2] - exact[2]]) / size);
-        assert_eq!(found.branch(), region(&exact.into(), size), "{tau:?} for {exact:?} with friction {friction}");
+        assert_eq!(
+            found.branch(),
+            region(&exact.into(), size),
+            "{tau:?} for {exact:?} with friction {friction}"
+        );
     }
     println!("distance to the closest point {worst:.2e}");
     assert!(worst <= 1e-9, "{worst:e}");

@@ -32,7 +32,10 @@ fn method_section_2_table() {
         ([30.0, 0.0, 1.0], [0.01; 3], Branch::Apex, [1.7320508075688776; 3]),
     ];
     for ([friction, dilation, cohesion], eps, region, tau) in rows {
-        let found = respond(&mohr_coulomb(1000.0, 0.3, friction, dilation, cohesion), &stretched(eps));
+        let found = respond(
+            &mohr_coulomb(1000.0, 0.3, friction, dilation, cohesion),
+            &stretched(eps),
+        );
         assert_eq!(found.branch(), region);
         for (a, b) in found.principal_tau().into_iter().zip(tau) {
             assert!((a - b).abs() <= 1e-10 * largest(&tau), "{a} for {b} on {region:?}");
@@ -44,7 +47,10 @@ fn method_section_2_table() {
 #[test]
 fn friction_to_zero_is_tresca() {
     let mut random = Random::new(1);
-    let (tresca, nearly) = (mohr_coulomb(1e3, 0.3, 0.0, 0.0, 1.0), mohr_coulomb(1e3, 0.3, 1e-9, 1e-9, 1.0));
+    let (tresca, nearly) = (
+        mohr_coulomb(1e3, 0.3, 0.0, 0.0, 1.0),
+        mohr_coulomb(1e3, 0.3, 1e-9, 1e-9, 1.0),
+    );
     let mut worst = 0.0_f64;
     for _ in 0..10_000 {
         let b = random.trial(-4.0, -1.0);
@@ -63,7 +69,10 @@ fn results_scale_exactly_with_the_unit_of_stress() {
         let (friction, cohesion) = (random.pick(&[0.0, 20.0, 45.0]), random.pick(&[0.0, 1.0]));
         let b = random.trial(-6.0, -0.5);
         let small = respond(&mohr_coulomb(1e3, 0.3, friction, 0.5 * friction, cohesion), &b);
-        let large = respond(&mohr_coulomb(1e3 * unit, 0.3, friction, 0.5 * friction, cohesion * unit), &b);
+        let large = respond(
+            &mohr_coulomb(1e3 * unit, 0.3, friction, 0.5 * friction, cohesion * unit),
+            &b,
+        );
         assert_eq!(small.tau().scaled(unit), large.tau());
         assert_eq!((small.branch(), small.b_e()), (large.branch(), large.b_e()));
     }
@@ -83,7 +92,10 @@ fn elastic_state_is_the_trial_bit_for_bit() {
 
 #[test]
 fn plastic_increment_is_the_deviatoric_strain_lost() {
-    let found = respond(&mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1.0), &stretched([0.005, 0.0, -0.005]));
+    let found = respond(
+        &mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1.0),
+        &stretched([0.005, 0.0, -0.005]),
+    );
     // tau = (1, 0, -1) is eps_e = 1.3e-3 (1, 0, -1): 3.7e-3 (1, 0, -1) is lost.
     let exact = (2.0_f64 / 3.0).sqrt() * 2.0_f64.sqrt() * 3.7e-3;
     assert!((found.plastic_increment() - exact).abs() <= 1e-14);
@@ -93,17 +105,29 @@ fn plastic_increment_is_the_deviatoric_strain_lost() {
 /// not at all in the second one. Elastic ground works 2 mu |strain|^2, mu = 1000/2.6 Pa.
 #[test]
 fn second_order_work_is_elastic_until_perfect_flow_leaves_none() {
-    let (weak, strong) = (mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1.0), mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1e3));
+    let (weak, strong) = (
+        mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1.0),
+        mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1e3),
+    );
     let sheared = |by: f64| Symmetric([by, 0.0, -by, 0.0, 0.0, 0.0]);
     let elastic = 2000.0 / 2.6 * 2.0 * 0.005_f64.powi(2);
     let is_near = |found: [f64; 2], exact: [f64; 2]| (0..2).all(|k| (found[k] - exact[k]).abs() <= 1e-12);
     let first = respond(&strong, &stretched([0.005, 0.0, -0.005]));
-    assert!(is_near(first.second_order_works(&sheared(0.005).full(), 0.0), [elastic; 2]));
+    assert!(is_near(
+        first.second_order_works(&sheared(0.005).full(), 0.0),
+        [elastic; 2]
+    ));
     let first = respond(&weak, &stretched([0.005, 0.0, -0.005]));
-    assert!(is_near(first.second_order_works(&sheared(0.005).full(), 0.0), [elastic, 0.01]));
+    assert!(is_near(
+        first.second_order_works(&sheared(0.005).full(), 0.0),
+        [elastic, 0.01]
+    ));
     let [x, _, z] = first.principal_eps_e();
     let second = respond(&weak, &stretched([x + 0.005, 0.0, z - 0.005]));
-    assert!(is_near(second.second_order_works(&sheared(0.005).full(), 0.0), [elastic, 0.0]));
+    assert!(is_near(
+        second.second_order_works(&sheared(0.005).full(), 0.0),
+        [elastic, 0.0]
+    ));
 }
 
 #[test]

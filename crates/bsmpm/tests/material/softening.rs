@@ -12,14 +12,26 @@ const DECAYS: [Decay; 2] = [Decay::Linear, Decay::Exponential];
 /// Angles in degrees.
 fn law(poisson: f64, peak: [f64; 3], residual: [f64; 3], strain: f64, decay: Decay) -> SofteningMohrCoulomb {
     let strength = |[phi, psi, c]: [f64; 3]| (phi.to_radians(), psi.to_radians(), c);
-    SofteningMohrCoulomb::new(Elastic { young: 1e3, poisson }, strength(peak), strength(residual), strain, decay)
+    SofteningMohrCoulomb::new(
+        Elastic { young: 1e3, poisson },
+        strength(peak),
+        strength(residual),
+        strain,
+        decay,
+    )
 }
 
 /// Laws that soften and harden, some of them in strength or angles only, with and without dilation.
 fn random_law(random: &mut Random) -> SofteningMohrCoulomb {
     let peak = random.pick(&[[30.0, 10.0, 2.0], [40.0, 40.0, 0.5], [25.0, 0.0, 0.0], [0.0, 0.0, 3.0]]);
     let residual = random.pick(&[[20.0, 0.0, 0.5], [30.0, 10.0, 2.0], [35.0, 0.0, 0.1], [0.0, 0.0, 1.0]]);
-    law(random.pick(&[0.0, 0.3, 0.49]), peak, residual, random.pick(&[0.02, 0.1, 1.0]), random.pick(&DECAYS))
+    law(
+        random.pick(&[0.0, 0.3, 0.49]),
+        peak,
+        residual,
+        random.pick(&[0.02, 0.1, 1.0]),
+        random.pick(&DECAYS),
+    )
 }
 
 /// The stress lies on the surface of the strength that the plastic strain after the return leaves, and κ grows by it.
@@ -28,7 +40,10 @@ fn returns_lie_on_the_surface_of_their_own_plastic_strain() {
     let mut random = Random::new(80);
     let mut seen = BTreeMap::new();
     for _ in 0..40_000 {
-        let (material, before) = (Material::SofteningMohrCoulomb(random_law(&mut random)), 0.1 * random.unit());
+        let (material, before) = (
+            Material::SofteningMohrCoulomb(random_law(&mut random)),
+            0.1 * random.unit(),
+        );
         let (response, after) = answer(&material, &random.trial(-4.0, -0.7), before);
         let tau = response.principal_tau();
         let (size, excess) = (largest(&tau).max(1e-3), material.excess(tau, &[after]));
@@ -38,7 +53,10 @@ fn returns_lie_on_the_surface_of_their_own_plastic_strain() {
             continue;
         }
         let trial = largest(&response.principal_eps_trial());
-        assert!(excess.abs() <= 1e-11 * (size + 1e3 * trial), "{excess:e} of {size:e}, {material:?}");
+        assert!(
+            excess.abs() <= 1e-11 * (size + 1e3 * trial),
+            "{excess:e} of {size:e}, {material:?}"
+        );
         let (growth, increment) = (after - before, response.plastic_increment());
         assert!(
             (increment - growth).abs() <= 1e-11 * (growth + trial),
@@ -60,7 +78,10 @@ fn with_one_strength_it_is_mohr_coulomb() {
         let material = Material::SofteningMohrCoulomb(law(0.3, strength, strength, 0.05, decay));
         for _ in 0..5_000 {
             let b = random.trial(-4.0, -0.7);
-            let (found, exact) = (answer(&material, &b, random.unit()).0, perfect.respond(&b, &[]).unwrap());
+            let (found, exact) = (
+                answer(&material, &b, random.unit()).0,
+                perfect.respond(&b, &[]).unwrap(),
+            );
             assert_eq!(found.branch(), exact.branch());
             assert_eq!(found.principal_tau(), exact.principal_tau());
             let l = Tensor::from_fn(|_, _| random.signed());
@@ -77,10 +98,17 @@ fn tangent_is_the_derivative() {
     let (mut worst, mut seen) = (0.0_f64, BTreeMap::new());
     for _ in 0..40_000 {
         // Also with a rate, in a step so long that whatever flows is above the reference.
-        let rate = Rate { per_decade: 0.1, reference: 1e-13 };
+        let rate = Rate {
+            per_decade: 0.1,
+            reference: 1e-13,
+        };
         let law = random_law(&mut random);
         let rated = random.unit() < 0.5;
-        let law = if !rated { law } else { law.at_rate(rate).over(1.0).expect("a rate") };
+        let law = if !rated {
+            law
+        } else {
+            law.at_rate(rate).over(1.0).expect("a rate")
+        };
         let (strain, before) = (law.parameters()[6], 0.05 * random.unit());
         let material = Material::SofteningMohrCoulomb(law);
         let mut eps = random.strains(-2.5, -0.7);
@@ -109,7 +137,10 @@ fn tangent_is_the_derivative() {
         worst = worst.max(error);
     }
     println!("{seen:?}, error {worst:.1e} of Young's modulus");
-    assert!(seen.len() == 5 && seen.values().all(|&count| count > 1_000) && worst < 1e-6, "{seen:?}, {worst}");
+    assert!(
+        seen.len() == 5 && seen.values().all(|&count| count > 1_000) && worst < 1e-6,
+        "{seen:?}, {worst}"
+    );
 }
 
 /// Steps as they come on a surface that a rate has hardened: trials anywhere between the strength at rest and what it
@@ -128,7 +159,10 @@ fn a_strength_by_the_rate_is_found_whatever_the_plastic_strain() {
         let (response, after) = answer(&material, &stretched([strain, 0.0, -strain]), 0.0);
         let found = 0.5 * (response.principal_tau()[0] - response.principal_tau()[2]);
         let quick = 1.0 + per_decade * (after * 3.0_f64.sqrt() / reference).log10().max(0.0);
-        assert!((found / (peak * quick) - 1.0).abs() < 1e-9, "{found} at {after:e}, {reference:e}");
+        assert!(
+            (found / (peak * quick) - 1.0).abs() < 1e-9,
+            "{found} at {after:e}, {reference:e}"
+        );
         least = if after > 0.0 { least.min(after) } else { least };
     }
     println!("plastic strains from {least:.1e}");
@@ -150,7 +184,11 @@ fn pure_shear_softens_by_its_own_plastic_strain_in_any_number_of_steps() {
         let (mut low, mut high) = (0.0, way);
         for _ in 0..200 {
             let middle = 0.5 * (low + high);
-            if rest(middle) > 0.0 { low = middle } else { high = middle }
+            if rest(middle) > 0.0 {
+                low = middle
+            } else {
+                high = middle
+            }
         }
         let kappa = 2.0 / 3.0_f64.sqrt() * low;
         let material = Material::SofteningMohrCoulomb(law);
@@ -162,7 +200,10 @@ fn pure_shear_softens_by_its_own_plastic_strain_in_any_number_of_steps() {
                 let (response, after) = answer(&material, &Symmetric([x * ratio, y / ratio, z, 0.0, 0.0, 0.0]), state);
                 (b_e, state, tau) = (response.b_e(), after, response.principal_tau()[0]);
             }
-            assert!((state - kappa).abs() <= 1e-12, "{decay:?}, {steps}: {state} for {kappa}");
+            assert!(
+                (state - kappa).abs() <= 1e-12,
+                "{decay:?}, {steps}: {state} for {kappa}"
+            );
             assert!((tau - cohesion(kappa)).abs() <= 1e-11, "{decay:?}, {steps}: {tau}");
         }
     }
@@ -185,7 +226,11 @@ fn a_drained_biaxial_path_ends_at_the_residual_strength() {
         let (mut low, mut high) = (0.9, 1.1);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            if respond(middle).0.tau().0[0] < lateral { low = middle } else { high = middle }
+            if respond(middle).0.tau().0[0] < lateral {
+                low = middle
+            } else {
+                high = middle
+            }
         }
         let (response, after) = respond(low);
         (b_e, state) = (response.b_e(), after);
@@ -194,7 +239,11 @@ fn a_drained_biaxial_path_ends_at_the_residual_strength() {
     }
     println!("{most} of {}, then {last} of {}", passive(peak), passive(residual));
     assert!((last - passive(residual)).abs() <= 1e-9, "{last}");
-    assert!(most > passive(peak) && most < passive(peak) * 0.95, "{most} of {}", passive(peak));
+    assert!(
+        most > passive(peak) && most < passive(peak) * 0.95,
+        "{most} of {}",
+        passive(peak)
+    );
 }
 
 #[test]
@@ -218,7 +267,10 @@ fn shear_at_a_rate_is_einav_and_randolphs() {
         let strain = xi / 3.0_f64.sqrt();
         let (first, last) = ((0.0, 0.0, peak), (0.0, 0.0, peak / sensitivity));
         let law = SofteningMohrCoulomb::new(elastic, first, last, strain, Decay::Exponential);
-        Material::SofteningMohrCoulomb(law.at_rate(Rate { per_decade: rate, reference }))
+        Material::SofteningMohrCoulomb(law.at_rate(Rate {
+            per_decade: rate,
+            reference,
+        }))
     };
     let mut shown = Vec::new();
     for (duration, steps) in [(0.5, 200), (0.5, 800), (1e5, 200), (f64::INFINITY, 200)] {
@@ -227,9 +279,17 @@ fn shear_at_a_rate_is_einav_and_randolphs() {
         let targets = [Target::Strain(way), Target::Strain(-way), volume, volume];
         let mut last = 0.0;
         sample
-            .follow(&Control { targets, undrained: false, steps, duration }, |point| {
-                last = 0.5 * (point.sigma().0[0] - point.sigma().0[1]);
-            })
+            .follow(
+                &Control {
+                    targets,
+                    undrained: false,
+                    steps,
+                    duration,
+                },
+                |point| {
+                    last = 0.5 * (point.sigma().0[0] - point.sigma().0[1]);
+                },
+            )
             .unwrap();
         // γ = 2 way, all plastic but what the falling stress gives back.
         let kappa = sample.state()[0];
@@ -243,5 +303,8 @@ fn shear_at_a_rate_is_einav_and_randolphs() {
     println!("{shown:?}");
     let b = stretched([0.01, 0.0, -0.01]);
     let static_law = clay(0.0).respond(&b, &[0.0]).unwrap().principal_tau();
-    assert_eq!(clay(per_decade).respond(&b, &[0.0]).unwrap().principal_tau(), static_law);
+    assert_eq!(
+        clay(per_decade).respond(&b, &[0.0]).unwrap().principal_tau(),
+        static_law
+    );
 }

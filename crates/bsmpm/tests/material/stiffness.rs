@@ -17,7 +17,9 @@ fn unit_of(of: bool, shear: bool) -> f64 {
 /// All six unit strains.
 fn units() -> Vec<Tensor> {
     let unit = |k: usize, l: usize| Tensor::from_fn(|i, j| unit_of((i, j) == (k, l) || (i, j) == (l, k), k != l));
-    [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)].map(|(k, l)| unit(k, l)).to_vec()
+    [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)]
+        .map(|(k, l)| unit(k, l))
+        .to_vec()
 }
 
 /// The change of stress for a displacement gradient.
@@ -39,8 +41,14 @@ fn it_is_symmetric_and_positive_in_every_region() {
     let (mut seen, mut least) = ([0; 5], f64::INFINITY);
     for _ in 0..20_000 {
         let friction = random.pick(&[0.0, 20.0, 45.0, 60.0, 89.0]);
-        let (dilation, poisson) = (friction * random.pick(&[0.0, 0.5, 1.0]), random.pick(&[-0.5, 0.0, 0.3, 0.499]));
-        let found = respond(&mohr_coulomb(1e3, poisson, friction, dilation, 1.0), &random.trial(-2.5, -0.7));
+        let (dilation, poisson) = (
+            friction * random.pick(&[0.0, 0.5, 1.0]),
+            random.pick(&[-0.5, 0.0, 0.3, 0.499]),
+        );
+        let found = respond(
+            &mohr_coulomb(1e3, poisson, friction, dilation, 1.0),
+            &random.trial(-2.5, -0.7),
+        );
         seen[REGIONS.iter().position(|region| *region == found.branch()).unwrap()] += 1;
         let Some(stiffness) = found.yielding() else {
             assert_eq!(found.branch(), Branch::Elastic);

@@ -33,14 +33,18 @@ fn returns_lie_on_the_surface_that_has_grown_and_flow_along_its_normal() {
         let (trial, elastic) = (response.principal_eps_trial(), response.principal_eps_e());
         let flow: [f64; 3] = std::array::from_fn(|k| trial[k] - elastic[k]);
         let size = largest(&trial);
-        assert!((flow[0] + flow[1] + flow[2]).abs() <= 1e-13 * size, "no change of volume");
+        assert!(
+            (flow[0] + flow[1] + flow[2]).abs() <= 1e-13 * size,
+            "no change of volume"
+        );
         let along = |k: usize| 1.5 * (after - before) * deviator[k] / (STRENGTH + hardening * after);
         assert!((0..3).all(|k| (flow[k] - along(k)).abs() <= 1e-11 * size), "{flow:?}");
         assert!((response.plastic_increment() - (after - before)).abs() <= 1e-11 * size);
         let again = material.respond(&response.b_e(), &[after]).unwrap();
         assert!(
-            largest(&std::array::from_fn::<f64, 3, _>(|k| again.principal_tau()[k] - response.principal_tau()[k]))
-                <= 1e-10 * strength
+            largest(&std::array::from_fn::<f64, 3, _>(
+                |k| again.principal_tau()[k] - response.principal_tau()[k]
+            )) <= 1e-10 * strength
         );
     }
     assert!(plastic > 5_000);
@@ -94,7 +98,10 @@ fn pure_shear_hardens_linearly_in_any_number_of_steps() {
             let (response, after) = answer(&material, &Symmetric([x * ratio, y / ratio, z, 0.0, 0.0, 0.0]), state);
             (b_e, state, tau) = (response.b_e(), after, response.principal_tau()[0]);
         }
-        assert!((state - kappa).abs() <= 1e-12 && (tau - exact).abs() <= 1e-12 * exact, "{steps}: {state} {tau}");
+        assert!(
+            (state - kappa).abs() <= 1e-12 && (tau - exact).abs() <= 1e-12 * exact,
+            "{steps}: {state} {tau}"
+        );
     }
 }
 

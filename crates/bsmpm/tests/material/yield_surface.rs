@@ -25,8 +25,12 @@ fn worst(seed: u64, high: f64, check: impl Fn(&Material, &Response) -> f64) -> f
 }
 
 fn sines(material: &Material) -> (f64, f64, f64) {
-    let Material::MohrCoulomb(law) = material else { panic!("Mohr-Coulomb only") };
-    let [friction, dilation, cohesion] = law.parameters()[..] else { panic!("three parameters") };
+    let Material::MohrCoulomb(law) = material else {
+        panic!("Mohr-Coulomb only")
+    };
+    let [friction, dilation, cohesion] = law.parameters()[..] else {
+        panic!("three parameters")
+    };
     (friction.sin(), dilation.sin(), 2.0 * cohesion * friction.cos())
 }
 
@@ -35,7 +39,12 @@ fn sines(material: &Material) -> (f64, f64, f64) {
 fn yield_is_satisfied_and_order_kept() {
     let violation = worst(10, 0.3, |material, response| {
         let ([first, second, third], (sin, _, strength)) = (response.principal_tau(), sines(material));
-        assert!(first >= second && second >= third, "{:?} in {:?}", response.principal_tau(), response.branch());
+        assert!(
+            first >= second && second >= third,
+            "{:?} in {:?}",
+            response.principal_tau(),
+            response.branch()
+        );
         let f = (first - third) + (first + third) * sin - strength;
         let scale = first.abs() + third.abs() + strength;
         if f <= 0.0 { 0.0 } else { f / scale }
@@ -94,7 +103,10 @@ fn every_region_is_visited() {
             seen[super::REGIONS.iter().position(|r| *r == region).unwrap()] += 1;
         }
         let has_apex = friction >= 20.0;
-        assert!(seen[..4].iter().all(|n| *n > 20) && (seen[4] > 20) == has_apex, "{friction}: {seen:?}");
+        assert!(
+            seen[..4].iter().all(|n| *n > 20) && (seen[4] > 20) == has_apex,
+            "{friction}: {seen:?}"
+        );
     }
 }
 
@@ -108,6 +120,9 @@ fn states_of_large_strain_keep_their_digits() {
         let response = respond(&material, &random.trial(-3.0, 0.0).scaled(volume.exp()));
         let again = respond(&material, &response.b_e());
         let change = difference(&again.tau(), &response.tau());
-        assert!(change <= 1e-12 * largest(&response.tau().0).max(1.0), "{change:e} at {response:?}");
+        assert!(
+            change <= 1e-12 * largest(&response.tau().0).max(1.0),
+            "{change:e} at {response:?}"
+        );
     }
 }

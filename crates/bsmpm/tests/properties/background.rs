@@ -30,14 +30,19 @@ fn background<K: Kinematics<D>, const D: usize>(axes: [KnotVector; D]) -> (Grid<
     let scene = Scene::<K, D>::new(axes, hencky(YOUNG, 0.3), Regime::QuasiStatic).body(cells, 1, 1.0, |x| x * 0.0);
     let (grid, points) = (scene.model.grid.clone(), &scene.points);
     let shape = Shape::at(&grid, points).expect("points inside");
-    let background = Background { coefficient: COEFFICIENT };
+    let background = Background {
+        coefficient: COEFFICIENT,
+    };
     let found = background.blocks::<K, D>(&grid, &shape, points, &scene.model.materials);
     (grid, shape, found)
 }
 
 /// B u of a cell.
 fn product(block: &[f64], u: &[f64]) -> Vec<f64> {
-    block.chunks_exact(u.len()).map(|row| row.iter().zip(u).map(|(b, u)| b * u).sum()).collect()
+    block
+        .chunks_exact(u.len())
+        .map(|row| row.iter().zip(u).map(|(b, u)| b * u).sum())
+        .collect()
 }
 
 /// u . B u of a cell.
@@ -52,7 +57,10 @@ fn affine<const D: usize>(grid: &Grid<D>, cell: usize, field: &Vector<D>) -> Vec
         let node = grid.node_at(node);
         Vector::<D>::from_fn(|axis, _| grid.axes()[axis].greville(node[axis]))
     };
-    grid.offsets().iter().map(|offset| 1.0 + place(first + offset).dot(field)).collect()
+    grid.offsets()
+        .iter()
+        .map(|offset| 1.0 + place(first + offset).dot(field))
+        .collect()
 }
 
 /// Uneven cells, four to one at most.
@@ -63,7 +71,13 @@ fn graded(order: usize) -> KnotVector {
 /// c E int eps : eps dV of an affine motion, and nothing of a translation or a small rotation.
 fn measures_strain<K: Kinematics<D>, const D: usize>(order: usize) {
     let mut random = Random::new(7);
-    let axes = std::array::from_fn(|axis| if axis == 0 { graded(order) } else { self::axis(0.25, 3, order) });
+    let axes = std::array::from_fn(|axis| {
+        if axis == 0 {
+            graded(order)
+        } else {
+            self::axis(0.25, 3, order)
+        }
+    });
     let (grid, blocks) = blocks::<K, D>(axes);
     for (cell, block) in blocks.iter().enumerate() {
         let size = block.len().isqrt();
@@ -80,26 +94,44 @@ fn measures_strain<K: Kinematics<D>, const D: usize>(order: usize) {
         let (_, edges) = grid.cell_box(&grid.cell_at(cell));
         let expected = COEFFICIENT * YOUNG * strain * edges.product();
         let found = energy(block, &motion(&rows));
-        assert!((found / expected - 1.0).abs() <= 1e-11, "order {order}, cell {cell}: {found} for {expected}");
+        assert!(
+            (found / expected - 1.0).abs() <= 1e-11,
+            "order {order}, cell {cell}: {found} for {expected}"
+        );
         let turn = std::array::from_fn(|i| Vector::<D>::from_fn(|j, _| part(i, j, -1.0)));
-        assert!(energy(block, &motion(&turn)).abs() <= 1e-12 * expected, "order {order}, cell {cell}");
+        assert!(
+            energy(block, &motion(&turn)).abs() <= 1e-12 * expected,
+            "order {order}, cell {cell}"
+        );
     }
 }
 
 /// B u of all cells, which in space is made by axes.
 fn multiplies_by_its_blocks<K: Kinematics<D>, const D: usize>(order: usize) {
     let mut random = Random::new(7);
-    let axes = std::array::from_fn(|axis| if axis == 1 { self::axis(0.25, 3, order) } else { graded(order) });
+    let axes = std::array::from_fn(|axis| {
+        if axis == 1 {
+            self::axis(0.25, 3, order)
+        } else {
+            graded(order)
+        }
+    });
     let (grid, shape, found) = background::<K, D>(axes);
     let u: Vec<f64> = (0..grid.nodes() * D).map(|_| random.signed()).collect();
     let (mut expected, mut work) = (vec![0.0; u.len()], 0.0);
     for (number, patch) in shape.patches().iter().enumerate() {
-        let places =
-            || shape.offsets().iter().flat_map(|offset| (0..D).map(move |i| (patch.first_node + offset) * D + i));
+        let places = || {
+            shape
+                .offsets()
+                .iter()
+                .flat_map(|offset| (0..D).map(move |i| (patch.first_node + offset) * D + i))
+        };
         let own: Vec<f64> = places().map(|at| u[at]).collect();
         let mut block = vec![0.0; own.len().pow(2)];
         found.add_to(number, &mut block);
-        places().zip(product(&block, &own)).for_each(|(at, force)| expected[at] += force);
+        places()
+            .zip(product(&block, &own))
+            .for_each(|(at, force)| expected[at] += force);
         work += energy(&block, &own);
     }
     let mut forces = Contributions::none(&grid, D, (0..grid.axes()[0].cells()).collect());
@@ -107,10 +139,16 @@ fn multiplies_by_its_blocks<K: Kinematics<D>, const D: usize>(order: usize) {
     let largest = expected.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
     let forces = forces.alone();
     for (force, expected) in forces.iter().zip(&expected) {
-        assert!((force - expected).abs() < 1e-13 * largest, "order {order}: {force:e} for {expected:e}");
+        assert!(
+            (force - expected).abs() < 1e-13 * largest,
+            "order {order}: {force:e} for {expected:e}"
+        );
     }
     let made = found.work::<D>(&shape, &u).value();
-    assert!((made - work).abs() < 1e-12 * work, "order {order}: {made:e} for {work:e}");
+    assert!(
+        (made - work).abs() < 1e-12 * work,
+        "order {order}: {made:e} for {work:e}"
+    );
 }
 
 #[test]
@@ -137,7 +175,9 @@ fn the_background_is_free_of_scale() {
     }
     let of = |h: f64| blocks::<Solid, 3>([axis(h, 2, 2), axis(h, 3, 2), axis(2.0 * h, 2, 2)]).1;
     let doubled = |rows: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
-        rows.into_iter().map(|row| row.into_iter().map(|entry| 2.0 * entry).collect()).collect()
+        rows.into_iter()
+            .map(|row| row.into_iter().map(|entry| 2.0 * entry).collect())
+            .collect()
     };
     assert_eq!(doubled(of(0.125)), of(0.25), "that of a solid grows with it");
 }

@@ -66,14 +66,18 @@ fn the_dense_update_is_the_secant() {
 
 #[test]
 fn full_steps_agree_with_the_dense_update() {
-    let worst = (0..20).map(|seed| worst_difference(&[1.0; 6], seed)).fold(0.0, f64::max);
+    let worst = (0..20)
+        .map(|seed| worst_difference(&[1.0; 6], seed))
+        .fold(0.0, f64::max);
     println!("worst relative difference {worst:.1e}");
     assert!(worst <= 2e-14); // measured 1.1e-15
 }
 
 #[test]
 fn shortened_steps_agree_with_the_dense_update() {
-    let worst = (0..20).map(|seed| worst_difference(&[1.0, 0.5, 1.0, 0.25, 0.5, 1.0], seed)).fold(0.0, f64::max);
+    let worst = (0..20)
+        .map(|seed| worst_difference(&[1.0, 0.5, 1.0, 0.25, 0.5, 1.0], seed))
+        .fold(0.0, f64::max);
     println!("worst relative difference {worst:.1e}");
     assert!(worst <= 2e-14); // measured 7.8e-16; 0.52 when s was the whole direction
 }

@@ -42,7 +42,14 @@ fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisat
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
     let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
-    let pieces = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
+    let pieces = Problem {
+        model,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points,
+        halo: &halo,
+    };
     let mut random = Random::new(7);
     let u: Vec<f64> = random.array(model.grid.nodes() * D).iter().map(|u| 0.02 * u).collect();
     let du = random.array(u.len());
@@ -59,14 +66,19 @@ fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisat
     let (after, before) = (trial(step), trial(-step));
     let difference = |p: usize| (after.ratio(model, points, p) / before.ratio(model, points, p)).ln() / (2.0 * step);
     let size = rate.iter().fold(0.0_f64, |size, rate| size.max(rate.abs()));
-    (0..points.len()).map(|p| (rate[p] - difference(p)).abs() / size).fold(0.0, f64::max)
+    (0..points.len())
+        .map(|p| (rate[p] - difference(p)).abs() / size)
+        .fold(0.0, f64::max)
 }
 
 #[test]
 fn the_rate_of_the_ratio_is_its_derivative() {
     for method in METHODS.into_iter().filter(|method| method.averages()) {
         for order in 1..=3 {
-            let errors = [rate_error::<PlaneStrain, 2>(order, method), rate_error::<Solid, 3>(order, method)];
+            let errors = [
+                rate_error::<PlaneStrain, 2>(order, method),
+                rate_error::<Solid, 3>(order, method),
+            ];
             println!("{method:?}, order {order}: {errors:?}");
             assert!(errors.iter().all(|&error| error <= 1e-9)); // measured 1.2e-10
         }
@@ -88,7 +100,14 @@ fn lowered_error<const D: usize>(order: usize) -> f64 {
     let extent = Vector::<D>::from_fn(|k, _| if k == 0 { 2.0 } else { 1.2 });
     let seed = |id| {
         let x = extent.map(|length| length * random.unit());
-        Seed { id, material: 0, x, volume: 1.0, mass: 1.0, v: Vector::zeros() }
+        Seed {
+            id,
+            material: 0,
+            x,
+            volume: 1.0,
+            mass: 1.0,
+            v: Vector::zeros(),
+        }
     };
     let mut points = Points::from_seeds((0..200).map(seed), false);
     points.sort_by_cell(&upper);
@@ -99,9 +118,16 @@ fn lowered_error<const D: usize>(order: usize) -> f64 {
         assert_eq!((low.cell, &low.points), (patch.cell, &patch.points));
         let number = |grid: &Grid<D>, first: usize, offset: &usize| grid.node_at(first + offset);
         let numbers = |grid, first, shape: &Shape<D>| -> Vec<_> {
-            shape.offsets().iter().map(|offset| number(grid, first, offset)).collect()
+            shape
+                .offsets()
+                .iter()
+                .map(|offset| number(grid, first, offset))
+                .collect()
         };
-        assert_eq!(numbers(&upper, low.first_node, &lowered), numbers(&own, patch.first_node, &exact));
+        assert_eq!(
+            numbers(&upper, low.first_node, &lowered),
+            numbers(&own, patch.first_node, &exact)
+        );
         for p in low.points.clone() {
             for (N, (exact, _)) in lowered.values_of(p).into_iter().zip(exact.of(p)) {
                 worst = worst.max((N - exact).abs());
@@ -122,7 +148,9 @@ fn the_lowered_splines_are_those_of_the_degree_below_under_the_same_numbers() {
 #[test]
 fn below_linear_splines_a_cell_has_one_function_that_is_1() {
     let scene = deformed::<Solid, 3>(1, Stabilisation::ConsistentFBar);
-    let shape = Shape::at(&scene.model.grid, &scene.points).unwrap().lowered(&scene.model.grid, &scene.points);
+    let shape = Shape::at(&scene.model.grid, &scene.points)
+        .unwrap()
+        .lowered(&scene.model.grid, &scene.points);
     assert_eq!(shape.offsets(), [0]);
     assert!((0..shape.len()).all(|p| shape.values_of(p) == [1.0]));
 }
@@ -130,17 +158,31 @@ fn below_linear_splines_a_cell_has_one_function_that_is_1() {
 /// Points of a row of cells with elastic strains of `spread`; those left of x = 4 flow.
 fn flowing(spread: f64) -> Scene<PlaneStrain, 2> {
     let mut random = Random::new(9);
-    let mut scene =
-        Scene::<PlaneStrain, 2>::new([axis(1.0, 12, 2), axis(1.0, 3, 2)], hencky(1.0, 0.3), Regime::QuasiStatic)
-            .body([0..12, 0..3], 2, 1.0, |_| Vector::zeros())
-            .stabilised(Stabilisation::ConsistentFBar);
-    let soil = MohrCoulomb::new(Elastic { young: 1.0, poisson: 0.3 }, 0.0, 0.0, 0.01);
+    let mut scene = Scene::<PlaneStrain, 2>::new(
+        [axis(1.0, 12, 2), axis(1.0, 3, 2)],
+        hencky(1.0, 0.3),
+        Regime::QuasiStatic,
+    )
+    .body([0..12, 0..3], 2, 1.0, |_| Vector::zeros())
+    .stabilised(Stabilisation::ConsistentFBar);
+    let soil = MohrCoulomb::new(
+        Elastic {
+            young: 1.0,
+            poisson: 0.3,
+        },
+        0.0,
+        0.0,
+        0.01,
+    );
     scene.model.materials = vec![Material::MohrCoulomb(soil)];
     for p in 0..scene.points.len() {
         let volume = spread * random.signed();
         let shear = if scene.points.x[p][0] < 4.0 { 0.05 } else { 1e-4 };
         let b = |eps: f64| (2.0 * eps).exp();
-        scene.points.b_e.set(p, Symmetric([b(volume + shear), b(volume - shear), b(volume), 0.0, 0.0, 0.0]));
+        scene.points.b_e.set(
+            p,
+            Symmetric([b(volume + shear), b(volume - shear), b(volume), 0.0, 0.0, 0.0]),
+        );
     }
     scene
 }
@@ -192,7 +234,9 @@ fn without_flow_the_filter_leaves_every_bit() {
     let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
     let nodes = Nodes::map(&scene.model, &shape, &scene.points, (0.0, 1.0), &halo).expect("no loads");
     let respond = |p: usize| scene.model.respond(&before, p, &before.b_e.at(p)).unwrap();
-    let flow: Vec<_> = (0..before.len()).map(|p| smooth::PlasticFlow::of(&respond(p), 0.0)).collect();
+    let flow: Vec<_> = (0..before.len())
+        .map(|p| smooth::PlasticFlow::of(&respond(p), 0.0))
+        .collect();
     let share = smooth::filter_dilation(&scene.model, (&shape, &nodes), &mut scene.points, &flow, &halo);
     assert_eq!((share, scene.points), (0.0, before));
 }
@@ -211,10 +255,20 @@ fn scattered(axes: [KnotVector; 2], method: Stabilisation, filled: [usize; 2]) -
     let mut scene = Scene::<PlaneStrain, 2>::new(axes, hencky(1.0, 0.3), Regime::QuasiStatic).stabilised(method);
     let (mut random, mut seeds) = (Random::new(4), Vec::new());
     for k in 0..9 * filled[0] * filled[1] {
-        let lattice = Vector::<2>::new((k % (3 * filled[0])) as f64 / 6.0, (k / (3 * filled[0])) as f64 * 0.4 / 3.0);
+        let lattice = Vector::<2>::new(
+            (k % (3 * filled[0])) as f64 / 6.0,
+            (k / (3 * filled[0])) as f64 * 0.4 / 3.0,
+        );
         let x = lattice + Vector::<2>::new(0.06, 0.05) + random.vector::<2>() * 0.04;
         let mass = 1.0 + 0.5 * random.signed();
-        seeds.push(Seed { id: k as u64, material: 0, x, volume: 1.0, mass, v: Vector::zeros() });
+        seeds.push(Seed {
+            id: k as u64,
+            material: 0,
+            x,
+            volume: 1.0,
+            mass,
+            v: Vector::zeros(),
+        });
     }
     scene.points = Points::from_seeds(seeds, false);
     scene.points.sort_by_cell(&scene.model.grid);
@@ -228,10 +282,21 @@ fn over_pairs_of_cells_the_average_is_that_of_the_coarser_grid_inside_and_of_the
         let coarse = [axis(1.0, 4, order), axis(0.8, 3, order)];
         // It fills the grid up to its faces, which cut no cell.
         let value = |scene: &Scene<PlaneStrain, 2>| -> Vec<f64> {
-            scene.points.x.iter().map(|x| (3.0 * x[0]).sin() + (5.0 * x[1]).cos()).collect()
+            scene
+                .points
+                .x
+                .iter()
+                .map(|x| (3.0 * x[0]).sin() + (5.0 * x[1]).cos())
+                .collect()
         };
         let by_id = |scene: &Scene<PlaneStrain, 2>| {
-            let mut means: Vec<_> = scene.points.id.iter().copied().zip(means(scene, &value(scene))).collect();
+            let mut means: Vec<_> = scene
+                .points
+                .id
+                .iter()
+                .copied()
+                .zip(means(scene, &value(scene)))
+                .collect();
             means.sort_by_key(|(id, _)| *id);
             means
         };
@@ -245,14 +310,26 @@ fn over_pairs_of_cells_the_average_is_that_of_the_coarser_grid_inside_and_of_the
         // A row of cells is empty: at that edge the average is the one of the grid.
         let cut =
             [Stabilisation::SubgridFBar, Stabilisation::ConsistentFBar].map(|method| scattered(fine(), method, [8, 5]));
-        let at_edge: Vec<u64> =
-            cut[0].points.id.iter().zip(&cut[0].points.x).filter(|(_, x)| x[1] > 1.6).map(|(id, _)| *id).collect();
+        let at_edge: Vec<u64> = cut[0]
+            .points
+            .id
+            .iter()
+            .zip(&cut[0].points.x)
+            .filter(|(_, x)| x[1] > 1.6)
+            .map(|(id, _)| *id)
+            .collect();
         let found = cut.each_ref().map(by_id);
         let edge = found
             .each_ref()
             .map(|means| -> Vec<(u64, f64)> { means.iter().filter(|(id, _)| at_edge.contains(id)).copied().collect() });
-        assert!(!at_edge.is_empty() && distance(&edge[0], &edge[1]) <= 1e-14, "order {order}");
-        assert!(distance(&found[0], &found[1]) >= 1e-2, "order {order}: inside it is another");
+        assert!(
+            !at_edge.is_empty() && distance(&edge[0], &edge[1]) <= 1e-14,
+            "order {order}"
+        );
+        assert!(
+            distance(&found[0], &found[1]) >= 1e-2,
+            "order {order}: inside it is another"
+        );
     }
 }
 
@@ -269,10 +346,17 @@ fn over_pairs_of_cells_the_average_keeps_constants_and_is_symmetric() {
         let (a, b) = (random.array(ones.len()), random.array(ones.len()));
         let (mean_a, mean_b) = (means(&scene, &a), means(&scene, &b));
         let product = |a: &[f64], b: &[f64]| -> f64 {
-            a.iter().zip(b).zip(&scene.points.mass).map(|((a, b), mass)| a * b * mass).sum()
+            a.iter()
+                .zip(b)
+                .zip(&scene.points.mass)
+                .map(|((a, b), mass)| a * b * mass)
+                .sum()
         };
         let (left, right) = (product(&a, &mean_b), product(&mean_a, &b));
-        assert!((left - right).abs() <= 1e-12 * product(&a, &a), "order {order}: {left} {right}");
+        assert!(
+            (left - right).abs() <= 1e-12 * product(&a, &a),
+            "order {order}: {left} {right}"
+        );
         assert!(product(&a, &mean_a) > 0.0 && product(&mean_a, &mean_a) < product(&a, &mean_a));
     }
 }

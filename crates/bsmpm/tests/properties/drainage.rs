@@ -36,7 +36,11 @@ fn at(x: f64, y: f64) -> Vector<2> {
 }
 
 fn soil(law: PermeabilityLaw) -> Soil<2> {
-    Soil { porosity: 0.4, permeability: Some(Permeability { along: K.into(), law }), retention: None }
+    Soil {
+        porosity: 0.4,
+        permeability: Some(Permeability { along: K.into(), law }),
+        retention: None,
+    }
 }
 
 /// Two columns of 4 cells beside each other, in a grid with two further cells around, of soil with this law; water
@@ -51,7 +55,12 @@ fn scene(order: usize, law: PermeabilityLaw, [from, to]: [Vector<2>; 2], given: 
     let flow = Flow {
         bulk: f64::INFINITY,
         soils: vec![Some(soil(law))],
-        drains: vec![Drain { points: points.clone(), normals: normals.clone(), given, acts: true }],
+        drains: vec![Drain {
+            points: points.clone(),
+            normals: normals.clone(),
+            given,
+            acts: true,
+        }],
         faces: Vec::new(),
         inflows: vec![Inflow {
             points,
@@ -63,7 +72,11 @@ fn scene(order: usize, law: PermeabilityLaw, [from, to]: [Vector<2>; 2], given: 
         suction: 0.0,
         motion: Motion::Flows,
     };
-    scene.model.water = Some(Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) });
+    scene.model.water = Some(Water {
+        unit_weight: WEIGHT,
+        ambient: Ambient::None,
+        flow: Some(flow),
+    });
     scene
 }
 
@@ -97,7 +110,14 @@ fn no_water(_: &Vector<2>) -> f64 {
 }
 
 fn drainage(scene: &Plane) -> Result<Drainage, StepError> {
-    Drainage::at(&scene.model, &scene.points, ((0.0, DT), Differences::EULER), |_| true, no_water, &scene.halo())
+    Drainage::at(
+        &scene.model,
+        &scene.points,
+        ((0.0, DT), Differences::EULER),
+        |_| true,
+        no_water,
+        &scene.halo(),
+    )
 }
 
 /// What leaves the ground in a step at every node, m3.
@@ -116,14 +136,23 @@ fn a_linear_pressure_gives_the_exact_flux_and_its_moment() {
         let field = |x: &Vector<2>| 700.0 - 300.0 * x[0] + 900.0 * x[1];
         let still = |x: &Vector<2>| 200.0 * x[0];
         let (p, places) = linear(grid, field);
-        let drainage =
-            Drainage::at(&scene.model, &scene.points, ((0.0, DT), Differences::EULER), |_| true, still, &scene.halo())
-                .expect("permeable");
+        let drainage = Drainage::at(
+            &scene.model,
+            &scene.points,
+            ((0.0, DT), Differences::EULER),
+            |_| true,
+            still,
+            &scene.halo(),
+        )
+        .expect("permeable");
         // A head of 1.5 m at the end of the step, the still water's pressure taken off; the mean of a rate.
         let [from, to] = slope();
         let (middle, length) = ((from + to) / 2.0, (to - from).norm());
         let excess = |x: &Vector<2>| field(x) - WEIGHT * (1.5 - x[1]) + still(x);
-        let (drained, put_in) = (DT * conductance(slope()) * excess(&middle) * length, DT * 2.5e-7 * length);
+        let (drained, put_in) = (
+            DT * conductance(slope()) * excess(&middle) * length,
+            DT * 2.5e-7 * length,
+        );
         let [drains, inflows] = drainage.report(&p, &scene.halo());
         let near = |value: f64, exact: f64| {
             println!("order {order}: flux off by {:.1e}", value / exact - 1.0);
@@ -138,15 +167,25 @@ fn a_linear_pressure_gives_the_exact_flux_and_its_moment() {
         // Linear functions see where it leaves: the points' moments, which no function of the pressure changes.
         let points = scene.model.surfaces().water[0].iter();
         let of = |point: &SurfacePoint<2>| DT * point.area * (conductance(slope()) * excess(&point.x) - 2.5e-7);
-        let exact = points.map(|point| point.x * of(point)).fold(at(0.0, 0.0), |sum, moment| sum + moment);
-        let moment = out.iter().zip(&places).fold(at(0.0, 0.0), |sum, (out, x)| sum + x * *out);
+        let exact = points
+            .map(|point| point.x * of(point))
+            .fold(at(0.0, 0.0), |sum, moment| sum + moment);
+        let moment = out
+            .iter()
+            .zip(&places)
+            .fold(at(0.0, 0.0), |sum, (out, x)| sum + x * *out);
         assert!((moment - exact).norm() <= 1e-12 * exact.norm(), "{moment:?} {exact:?}");
     }
 }
 
 #[test]
 fn the_matrix_is_the_derivative_of_the_terms() {
-    let scene = scene(2, PermeabilityLaw::Constant, slope(), Given::Pressure(Course(vec![(0.0, 5e3)])));
+    let scene = scene(
+        2,
+        PermeabilityLaw::Constant,
+        slope(),
+        Given::Pressure(Course(vec![(0.0, 5e3)])),
+    );
     let grid = &scene.model.grid;
     let drainage = drainage(&scene).expect("permeable");
     let mut matrix = Dense::of_patches(1, grid.lowered_offsets());
@@ -176,16 +215,21 @@ fn deform(points: &mut Points<2>, F: [[f64; 2]; 2]) {
 
 fn deformed(F: [[f64; 2]; 2], x: &Vector<2>) -> Vector<2> {
     let d = x - at(1.0, 1.0);
-    at(1.0 + F[0][0] * d[0] + F[0][1] * d[1], 1.0 + F[1][0] * d[0] + F[1][1] * d[1])
+    at(
+        1.0 + F[0][0] * d[0] + F[0][1] * d[1],
+        1.0 + F[1][0] * d[0] + F[1][1] * d[1],
+    )
 }
 
 #[test]
 fn surfaces_turn_and_stretch_with_their_material() {
     let turned = [[0.8, -0.6], [0.6, 0.8]];
     let bent = [[0.9, 0.3], [-0.2, 0.7]];
-    for (F, law) in
-        [(turned, PermeabilityLaw::Constant), (bent, PermeabilityLaw::Constant), (bent, PermeabilityLaw::KozenyCarman)]
-    {
+    for (F, law) in [
+        (turned, PermeabilityLaw::Constant),
+        (bent, PermeabilityLaw::Constant),
+        (bent, PermeabilityLaw::KozenyCarman),
+    ] {
         let mut scene = scene(2, law, slope(), Given::Pressure(Course(vec![(0.0, 50.0)])));
         deform(&mut scene.points, F);
         scene.points.sort_by_cell(&scene.model.grid);
@@ -197,9 +241,17 @@ fn surfaces_turn_and_stretch_with_their_material() {
         let J: f64 = F[0][0] * F[1][1] - F[0][1] * F[1][0];
         let n = 1.0 - 0.6 / J;
         let of = |n: f64| n.powi(3) / (1.0 - n).powi(2);
-        let relative = if law == PermeabilityLaw::Constant { 1.0 } else { of(n) / of(0.4) };
+        let relative = if law == PermeabilityLaw::Constant {
+            1.0
+        } else {
+            of(n) / of(0.4)
+        };
         let exact = DT * conductance([from, to]) * relative * length * (field(&((from + to) / 2.0)) - 50.0);
-        assert!((drains[0].through / exact - 1.0).abs() <= 1e-12, "{} {exact}", drains[0].through);
+        assert!(
+            (drains[0].through / exact - 1.0).abs() <= 1e-12,
+            "{} {exact}",
+            drains[0].through
+        );
         assert!((inflows[0].through / (DT * 2.5e-7 * length) - 1.0).abs() <= 1e-12);
     }
 }
@@ -212,16 +264,27 @@ fn the_points_that_a_surface_is_anchored_to_are_carried_and_replaced() {
     };
     let first = anchors(&scene, &Anchors::default());
     assert_eq!(first.water.len(), 2);
-    assert_eq!(first.water[0], first.water[1], "a drain and an inflow at the same places");
+    assert_eq!(
+        first.water[0], first.water[1],
+        "a drain and an inflow at the same places"
+    );
     // Found by where the points were at the start, whatever has become of them.
     deform(&mut scene.points, [[0.0, -1.0], [1.0, 0.0]]);
     assert_eq!(anchors(&scene, &Anchors::default()), first);
-    let carried = Anchors { water: vec![vec![7; 3]], ..Anchors::default() };
+    let carried = Anchors {
+        water: vec![vec![7; 3]],
+        ..Anchors::default()
+    };
     assert_eq!(anchors(&scene, &carried), carried);
     // Where one goes, the nearest of those that stay takes its place, and the others stay.
     let gone = first.water[0][2];
     scene.points.remove(|id| id == gone);
-    let after = first.without(&scene.model.surfaces(), |id| id == gone, scene.points.anchored(), &scene.halo());
+    let after = first.without(
+        &scene.model.surfaces(),
+        |id| id == gone,
+        scene.points.anchored(),
+        &scene.halo(),
+    );
     for (before, after) in first.water.iter().flatten().zip(after.water.iter().flatten()) {
         assert_eq!(*before != gone, before == after);
     }
@@ -229,25 +292,57 @@ fn the_points_that_a_surface_is_anchored_to_are_carried_and_replaced() {
 
 #[test]
 fn water_goes_through_no_surface_without_material_near_nor_one_of_tight_soil() {
-    let mut scene = scene(2, PermeabilityLaw::Constant, slope(), Given::Pressure(Course(vec![(0.0, 50.0)])));
+    let mut scene = scene(
+        2,
+        PermeabilityLaw::Constant,
+        slope(),
+        Given::Pressure(Course(vec![(0.0, 50.0)])),
+    );
     let (p, _) = linear(&scene.model.grid, |_| 1e3);
     // Only the functions left of 1 m count.
     let grid = scene.model.grid.clone();
     let left = |node: usize| grid.node_at(node)[0] <= 4;
-    let some =
-        Drainage::at(&scene.model, &scene.points, ((0.0, DT), Differences::EULER), left, no_water, &scene.halo())
-            .expect("permeable");
+    let some = Drainage::at(
+        &scene.model,
+        &scene.points,
+        ((0.0, DT), Differences::EULER),
+        left,
+        no_water,
+        &scene.halo(),
+    )
+    .expect("permeable");
     let [drains, inflows] = some.report(&p, &scene.halo());
-    let near = scene.model.surfaces().water[0].iter().filter(|point| point.x[0] < 1.0 + 0.75 * CELL).count();
+    let near = scene.model.surfaces().water[0]
+        .iter()
+        .filter(|point| point.x[0] < 1.0 + 0.75 * CELL)
+        .count();
     assert_eq!([drains[0].held, inflows[0].held], [near; 2]);
     let all = out(&grid, &some, &p);
     assert!((0..grid.nodes()).all(|node| left(node) || all[node] == 0.0));
-    let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("water flows");
-    flow.soils.push(Some(Soil { porosity: 0.4, permeability: None, retention: None }));
+    let flow = scene
+        .model
+        .water
+        .as_mut()
+        .and_then(|water| water.flow.as_mut())
+        .expect("water flows");
+    flow.soils.push(Some(Soil {
+        porosity: 0.4,
+        permeability: None,
+        retention: None,
+    }));
     scene = scene.with(hencky(1e6, 0.2), |x| x[0] > 1.2);
     // The columns of points beside 1.2 m are at 1.125 and 1.2083 m: half way begins what is nearest to the tight ones.
-    let tight = scene.model.surfaces().water[0].iter().filter(|point| point.x[0] > 7.0 / 6.0).count();
-    assert_eq!(drainage(&scene).expect_err("tight"), StepError::Undrained { drain: 0, points: tight });
+    let tight = scene.model.surfaces().water[0]
+        .iter()
+        .filter(|point| point.x[0] > 7.0 / 6.0)
+        .count();
+    assert_eq!(
+        drainage(&scene).expect_err("tight"),
+        StepError::Undrained {
+            drain: 0,
+            points: tight
+        }
+    );
 }
 
 /// Ranks that are threads: numbers that all wait for.
@@ -269,7 +364,9 @@ impl Rank<'_> {
         self.meeting.barrier.wait();
         let all = self.meeting.numbers.lock().expect("no panic").clone();
         own.copy_from_slice(&all[0]);
-        all[1..].iter().for_each(|of| own.iter_mut().zip(of).for_each(|(sum, of)| *sum = join(*sum, *of)));
+        all[1..]
+            .iter()
+            .for_each(|of| own.iter_mut().zip(of).for_each(|(sum, of)| *sum = join(*sum, *of)));
         self.meeting.barrier.wait();
     }
 }
@@ -295,7 +392,10 @@ impl Halo for Rank<'_> {
         }
         self.meeting.barrier.wait();
         let words = self.meeting.words.lock().expect("no panic").clone();
-        words.chunks_exact(WORDS).map(|words| Exact::of_words(words).value()).collect()
+        words
+            .chunks_exact(WORDS)
+            .map(|words| Exact::of_words(words).value())
+            .collect()
     }
     fn maximum(&self, numbers: &mut [f64]) {
         self.together(numbers, f64::max);
@@ -306,15 +406,35 @@ impl Halo for Rank<'_> {
 fn part(whole: &Plane, columns: Range<usize>) -> (Model<PlaneStrain, 2>, Points<2>) {
     let grid = whole.model.grid.window(columns.clone());
     let mut points = whole.points.clone();
-    let away = |x: &Vector<2>| whole.model.grid.locate(x).is_none_or(|cell| !columns.contains(&cell[0]));
-    let gone: Vec<u64> = (0..points.len()).filter(|&p| away(&points.x[p])).map(|p| points.id[p]).collect();
+    let away = |x: &Vector<2>| {
+        whole
+            .model
+            .grid
+            .locate(x)
+            .is_none_or(|cell| !columns.contains(&cell[0]))
+    };
+    let gone: Vec<u64> = (0..points.len())
+        .filter(|&p| away(&points.x[p]))
+        .map(|p| points.id[p])
+        .collect();
     points.remove(|id| gone.contains(&id));
-    (Model { grid, ..whole.model.clone() }, points)
+    (
+        Model {
+            grid,
+            ..whole.model.clone()
+        },
+        points,
+    )
 }
 
 #[test]
 fn several_ranks_make_the_same_of_drains_to_the_bit() {
-    let mut whole = scene(2, PermeabilityLaw::KozenyCarman, slope(), Given::Pressure(Course(vec![(0.0, 50.0)])));
+    let mut whole = scene(
+        2,
+        PermeabilityLaw::KozenyCarman,
+        slope(),
+        Given::Pressure(Course(vec![(0.0, 50.0)])),
+    );
     // Turned by a third of a circle, so that anchors and places are on different ranks.
     deform(&mut whole.points, [[-0.5, -0.85], [0.9, -0.5]]);
     whole.points.sort_by_cell(&whole.model.grid);
@@ -334,15 +454,27 @@ fn several_ranks_make_the_same_of_drains_to_the_bit() {
             let (model, points) = part(&whole, columns);
             let (meeting, sums, alone) = (&meeting, &sums, &alone);
             scope.spawn(move || {
-                let halo = Rank { number, nodes: model.grid.nodes(), meeting };
-                let drainage =
-                    Drainage::at(&model, &points, ((0.0, DT), Differences::EULER), |_| true, no_water, &halo)
-                        .expect("permeable");
+                let halo = Rank {
+                    number,
+                    nodes: model.grid.nodes(),
+                    meeting,
+                };
+                let drainage = Drainage::at(
+                    &model,
+                    &points,
+                    ((0.0, DT), Differences::EULER),
+                    |_| true,
+                    no_water,
+                    &halo,
+                )
+                .expect("permeable");
                 let (p, _) = linear(&model.grid, field);
                 assert_eq!(drainage.report(&p, &halo), *alone);
                 let mut sums = sums.lock().expect("no panic");
                 let out = out(&model.grid, &drainage, &p);
-                out.iter().enumerate().for_each(|(node, out)| sums[model.grid.number_of(node)] += out);
+                out.iter()
+                    .enumerate()
+                    .for_each(|(node, out)| sums[model.grid.number_of(node)] += out);
             });
         }
     });
@@ -357,8 +489,14 @@ fn a_surface_that_is_found_beyond_a_face_is_on_it_where_that_holds_the_ground() 
     let mut scene = scene(2, PermeabilityLaw::Constant, slope(), Given::StillWater);
     let top = scene.model.grid.axes()[1].length();
     let above = |beyond: f64| at(1.0, top + beyond);
-    assert_eq!(scene.model.boundary.kept_in(&scene.model.grid, above(0.01)), above(0.01));
+    assert_eq!(
+        scene.model.boundary.kept_in(&scene.model.grid, above(0.01)),
+        above(0.01)
+    );
     scene.model.boundary.supports = vec![Support::roller(1, true), Support::roller(0, false)];
     let kept = |x: Vector<2>| scene.model.boundary.kept_in(&scene.model.grid, x);
-    assert_eq!([above(0.01), above(-0.01), at(-1e-3, 0.5)].map(kept), [above(0.0), above(-0.01), at(0.0, 0.5)]);
+    assert_eq!(
+        [above(0.01), above(-0.01), at(-1e-3, 0.5)].map(kept),
+        [above(0.0), above(-0.01), at(0.0, 0.5)]
+    );
 }

@@ -68,12 +68,20 @@ fn ties_keep_what_they_must<K: Kinematics<D>, const D: usize>(order: usize) {
     let shape = Shape::at(grid, &scene.points).unwrap();
     let nodes = Nodes::map(model, &shape, &scene.points, (0.0, 1.0), &halo).expect("no loads");
     let extension = nodes.extension.as_ref().expect("cut cells");
-    assert!(extension.tied > 0 && extension.untied == 0, "{} and {}", extension.tied, extension.untied);
+    assert!(
+        extension.tied > 0 && extension.untied == 0,
+        "{} and {}",
+        extension.tied,
+        extension.untied
+    );
     let mut random = Random::new(5);
     let (constant, slope) = (random.vector(), std::array::from_fn(|_| random.vector()));
     let expected = affine(grid, &constant, &slope);
     let inner = |u: &[f64]| -> Vec<f64> {
-        u.iter().enumerate().map(|(at, u)| if extension.is_tied(at) { 0.0 } else { *u }).collect()
+        u.iter()
+            .enumerate()
+            .map(|(at, u)| if extension.is_tied(at) { 0.0 } else { *u })
+            .collect()
     };
     let mut u = inner(&expected);
     extension.extend(grid, &mut u, &halo);
@@ -86,7 +94,10 @@ fn ties_keep_what_they_must<K: Kinematics<D>, const D: usize>(order: usize) {
     let work_of = |force: &[f64], v: &[f64]| force.iter().zip(v).map(|(f, v)| f * v).sum::<f64>();
     let work = work_of(&reduced, &v);
     extension.extend(grid, &mut v, &halo);
-    assert!((work_of(&force, &v) / work - 1.0).abs() <= 1e-12, "the work of E^T f on u_I is that of f on E u_I");
+    assert!(
+        (work_of(&force, &v) / work - 1.0).abs() <= 1e-12,
+        "the work of E^T f on u_I is that of f on E u_I"
+    );
     assert!((0..u.len()).all(|at| !extension.is_tied(at) || reduced[at] == 0.0));
 }
 
@@ -105,7 +116,14 @@ fn matrix_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, is_genera
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
     let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
-    let problem = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
+    let problem = Problem {
+        model,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points,
+        halo: &halo,
+    };
     let residual = Residual::of(&problem, &vec![0.0; nodes.free.len()]);
     let derivative = Linearised::at(&problem, &residual);
     let mut matrix = Dense::new(&model.grid);
@@ -115,21 +133,35 @@ fn matrix_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, is_genera
     }
     .expect("a matrix");
     let mut random = Random::new(11);
-    let v: Vec<f64> = nodes.free.iter().map(|&free| if free { random.signed() } else { 0.0 }).collect();
+    let v: Vec<f64> = nodes
+        .free
+        .iter()
+        .map(|&free| if free { random.signed() } else { 0.0 })
+        .collect();
     let mut product = vec![0.0; v.len()];
     derivative.multiply(&v, &mut product);
     let image = matrix.multiply(&v);
     let size = product.iter().fold(0.0_f64, |size, force| size.max(force.abs()));
-    image.iter().zip(&product).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size
+    image
+        .iter()
+        .zip(&product)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+        / size
 }
 
 fn the_matrix_is_the_derivative<K: Kinematics<D>, const D: usize>(order: usize) {
     for method in [Stabilisation::None, Stabilisation::ConsistentFBar] {
-        let mut scene = cut_block::<K, D>(order).stabilised(method).support(Support::fixed(0, false));
+        let mut scene = cut_block::<K, D>(order)
+            .stabilised(method)
+            .support(Support::fixed(0, false));
         scene.model.grid = scene.model.grid.reaching(8); // nothing is too far apart for the pattern
         for is_general in [false, true] {
             let error = matrix_error(&scene, is_general);
-            assert!(error <= 1e-12, "{method:?}, order {order}, general {is_general}: {error:e}");
+            assert!(
+                error <= 1e-12,
+                "{method:?}, order {order}, general {is_general}: {error:e}"
+            );
         }
     }
 }
@@ -149,7 +181,14 @@ fn condition(scene: &Scene<PlaneStrain, 2>) -> f64 {
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
     let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
-    let problem = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
+    let problem = Problem {
+        model,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points,
+        halo: &halo,
+    };
     let mut matrix = Dense::new(&model.grid);
     stiffness::assemble(&problem, None, &mut matrix).expect("a matrix");
     matrix.conditions()[0]

@@ -26,7 +26,12 @@ fn of<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> Option<Defect> {
 }
 
 fn exact(cells: u64, points: f64) -> Defect {
-    Defect { cells, points, rms: 0.0, largest: 0.0 }
+    Defect {
+        cells,
+        points,
+        rms: 0.0,
+        largest: 0.0,
+    }
 }
 
 #[test]
@@ -46,10 +51,18 @@ fn the_defect_is_that_of_the_points_present_volumes() {
     let mut scene = block::<PlaneStrain, 2>(2, 1..5);
     // One of four points of the interior cell (2, 2) has grown to twice its area, one of cell (3, 3) is lost.
     let at = |scene: &Scene<PlaneStrain, 2>, x: [f64; 2]| {
-        scene.points.x.iter().position(|found| (found - Vector::from(x)).norm() < 1e-12).unwrap()
+        scene
+            .points
+            .x
+            .iter()
+            .position(|found| (found - Vector::from(x)).norm() < 1e-12)
+            .unwrap()
     };
     let grown = at(&scene, [1.125, 1.125]);
-    scene.points.F.set(grown, Tensor::from_diagonal(&[2.0, 1.0, 1.0].into()));
+    scene
+        .points
+        .F
+        .set(grown, Tensor::from_diagonal(&[2.0, 1.0, 1.0].into()));
     let lost = at(&scene, [1.875, 1.875]);
     scene.points.volume[lost] = 0.0;
     let found = of(&scene).unwrap();
@@ -62,13 +75,18 @@ fn stirred<K: Kinematics<D>, const D: usize>() -> Scene<K, D> {
     let breakpoints: Vec<f64> = (0..=8).map(|k| 0.5 * f64::from(k) + 0.01 * f64::from(k * k)).collect();
     let axes = std::array::from_fn(|_| KnotVector::graded(&breakpoints, 2).unwrap());
     let mut scene = Scene::<K, D>::new(axes, hencky(1.0, 0.3), Regime::QuasiStatic)
-        .body(std::array::from_fn(|k| if k == 0 { 0..7 } else { 1..7 }), 2, 3.0, |x| x * 0.0)
+        .body(std::array::from_fn(|k| if k == 0 { 0..7 } else { 1..7 }), 2, 3.0, |x| {
+            x * 0.0
+        })
         .support(Support::roller(0, false));
     let mut random = Random::new(17);
     for p in 0..scene.points.len() {
         let moved = scene.points.x[p] + random.vector::<D>() * 0.04;
         scene.points.x[p] = moved.map(|x| x.max(0.0));
-        scene.points.F.set(p, Tensor::from_diagonal(&[1.0 + 0.2 * random.signed(), 1.0, 1.0].into()));
+        scene.points.F.set(
+            p,
+            Tensor::from_diagonal(&[1.0 + 0.2 * random.signed(), 1.0, 1.0].into()),
+        );
     }
     scene.points.sort_by_cell(&scene.model.grid);
     scene
@@ -99,15 +117,26 @@ fn errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, inside: impl Fn
 fn fits_inside_and_only_there<K: Kinematics<D>, const D: usize>() {
     let scene = stirred::<K, D>();
     // At the lower face of axis 0 a support holds the body, which ends there nowhere else.
-    let [own, fitted] = errors(&scene, |axis, cell| if axis == 0 { cell < 6 } else { (2..6).contains(&cell) });
+    let [own, fitted] = errors(
+        &scene,
+        |axis, cell| if axis == 0 { cell < 6 } else { (2..6).contains(&cell) },
+    );
     println!("D = {D}: {own:e} {fitted:e}");
     assert!(own >= 0.05 && fitted <= 0.01 * own, "{own:e} {fitted:e}");
     let (points, weights) = (&scene.points, weights(&scene));
-    let factors = || weights.iter().zip(&points.volume).map(|(weight, volume)| weight / volume);
+    let factors = || {
+        weights
+            .iter()
+            .zip(&points.volume)
+            .map(|(weight, volume)| weight / volume)
+    };
     assert!(factors().all(|factor| (0.1..=10.0).contains(&factor)) && factors().any(|factor| factor != 1.0));
     // Functions of a corner's cell all reach the edge.
     for (p, &weight) in weights.iter().enumerate() {
-        if points.x[p].iter().all(|&x| scene.model.grid.axes()[0].cell_of(x) == Some(6)) {
+        if points.x[p]
+            .iter()
+            .all(|&x| scene.model.grid.axes()[0].cell_of(x) == Some(6))
+        {
             assert_eq!(weight, points.volume[p]);
         }
     }
@@ -127,8 +156,11 @@ fn evenly_spaced_points_keep_their_volumes_to_round_off() {
             let mut scene = block::<PlaneStrain, 2>(order, 1..5);
             scene.points.x.iter_mut().for_each(|x| x.add_scalar_mut(shift));
             scene.points.sort_by_cell(&scene.model.grid);
-            let changed =
-                weights(&scene).iter().zip(&scene.points.volume).map(|(w, v)| (w / v - 1.0).abs()).fold(0.0, f64::max);
+            let changed = weights(&scene)
+                .iter()
+                .zip(&scene.points.volume)
+                .map(|(w, v)| (w / v - 1.0).abs())
+                .fold(0.0, f64::max);
             assert!(changed <= 1e-13, "{order} {shift}: {changed:e}");
         }
     }
@@ -142,7 +174,11 @@ fn faces_of_the_grid_that_hold_nothing_are_surfaces() {
         let mut scene = if held { scene.rollers([0, 1]) } else { scene };
         scene.points.x.iter_mut().for_each(|x| *x *= 0.97);
         let weights = weights(&scene);
-        weights.iter().zip(&scene.points.volume).map(|(w, v)| (w / v - 1.0).abs()).fold(0.0, f64::max)
+        weights
+            .iter()
+            .zip(&scene.points.volume)
+            .map(|(w, v)| (w / v - 1.0).abs())
+            .fold(0.0, f64::max)
     };
     let (held, free) = (block(true), block(false));
     println!("largest change of a volume: {held} held, {free} free");
@@ -158,12 +194,18 @@ fn compression_is_that_of_each_material() {
     for p in 0..scene.points.len() {
         scene.points.material[p] = u16::from(p % 2 == 1);
         let stretch = if p % 2 == 1 { 0.8 } else { 1.0 };
-        scene.points.F.set(p, Tensor::from_diagonal(&[stretch, 1.0, 1.0].into()));
+        scene
+            .points
+            .F
+            .set(p, Tensor::from_diagonal(&[stretch, 1.0, 1.0].into()));
     }
     scene.points.F.set(0, Tensor::from_diagonal(&[2.0, 1.0, 1.0].into()));
     let found = compression(&scene.points, 2, &halo);
     let grown = 1.0 / (scene.points.len() / 2) as f64;
-    assert!((found[0] + grown).abs() <= 1e-15 && (found[1] - 0.2).abs() <= 1e-15, "{found:?}");
+    assert!(
+        (found[0] + grown).abs() <= 1e-15 && (found[1] - 0.2).abs() <= 1e-15,
+        "{found:?}"
+    );
 }
 
 #[test]
@@ -179,10 +221,16 @@ fn the_noise_of_the_pressure_has_no_unit() {
             let place = (scene.points.x[p] / 0.25).map(|x| x as i64);
             let sign = if (place[0] + place[1]) % 2 == 0 { 1.0 } else { -1.0 };
             let [normal, shear] = [-unit * (1.0 + 0.5 * sign); 2];
-            scene.points.sigma.set(p, Symmetric([normal, normal, normal, shear, 0.0, 0.0]));
+            scene
+                .points
+                .sigma
+                .set(p, Symmetric([normal, normal, normal, shear, 0.0, 0.0]));
         }
         let found = noise(&scene);
-        assert!((found.about_plane - 0.5).abs() <= 0.01 && (found.about_average - 0.5).abs() <= 0.05, "{found:?}");
+        assert!(
+            (found.about_plane - 0.5).abs() <= 0.01 && (found.about_average - 0.5).abs() <= 0.05,
+            "{found:?}"
+        );
     }
 }
 
@@ -202,8 +250,13 @@ fn a_pass_of_smoothing_has_the_variance_of_its_formula() {
         let shape = Shape::at(&scene.model.grid, points).unwrap();
         let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 1.0), &halo).unwrap();
         let square = |p: usize| points.x[p][0].powi(2);
-        let spread =
-            nodes.average(&scene.model, (&shape, points), &halo, |p| [square(p)], |p, [mean]| mean - square(p));
+        let spread = nodes.average(
+            &scene.model,
+            (&shape, points),
+            &halo,
+            |p| [square(p)],
+            |p, [mean]| mean - square(p),
+        );
         let inner = (0..points.len()).filter(|&p| (3.0..5.0).contains(&points.x[p][0]));
         let variances: Vec<f64> = inner.map(|p| spread[p]).collect();
         let variance = variances.iter().sum::<f64>() / variances.len() as f64;

@@ -13,7 +13,15 @@ use bsmpm::tensor::Vector;
 
 /// A block of clay in a grid with empty cells above it, into which a smooth strip is pressed along a path.
 fn footing(rows: Vec<(f64, [f64; 2])>) -> Scene<PlaneStrain, 2> {
-    let clay = MohrCoulomb::new(Elastic { young: 1e6, poisson: 0.4 }, 0.0, 0.0, 1e3);
+    let clay = MohrCoulomb::new(
+        Elastic {
+            young: 1e6,
+            poisson: 0.4,
+        },
+        0.0,
+        0.0,
+        1e3,
+    );
     let axes = [axis(0.25, 8, 2), axis(0.25, 6, 2)];
     let scene = Scene::new(axes, Material::MohrCoulomb(clay), Regime::QuasiStatic)
         .body([0..8, 0..4], 2, 0.0, |x| x * 0.0)
@@ -21,7 +29,9 @@ fn footing(rows: Vec<(f64, [f64; 2])>) -> Scene<PlaneStrain, 2> {
         .support(Support::fixed(1, false))
         .extended();
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.0].into(), &[0.5, 1.0].into(), 2);
-    let path = Path { rows: rows.into_iter().map(|(t, u)| (t, u.into())).collect() };
+    let path = Path {
+        rows: rows.into_iter().map(|(t, u)| (t, u.into())).collect(),
+    };
     scene.strip(Strip {
         contact: None,
         points,
@@ -49,7 +59,10 @@ fn a_limit_load_does_not_depend_on_the_coefficient() {
     let [stiff, usual, soft] = [1e-3, 1e-4, 1e-5].map(|coefficient| force(&steps(&path, coefficient)));
     println!("{stiff} {usual} {soft} N");
     // 1.2e-6 and 1.2e-7 were found; of what is dragged 1.3e-3.
-    assert!((stiff / usual - 1.0).abs() < 1e-5 && (soft / usual - 1.0).abs() < 1e-5, "{stiff} {usual} {soft}");
+    assert!(
+        (stiff / usual - 1.0).abs() < 1e-5 && (soft / usual - 1.0).abs() < 1e-5,
+        "{stiff} {usual} {soft}"
+    );
     let mut dragged = footing(path.to_vec()).background(Some(Background { coefficient: 1e-3 }));
     dragged.model.extended_splines = ExtendedSplines::Off;
     let dragged = force(&dragged.solved(0.05, 1.0).1);
@@ -67,7 +80,10 @@ fn shares(steps: &[Accepted]) -> Vec<f64> {
 fn all_of_the_displacement_is_resisted_where_a_motion_begins_and_where_it_turns() {
     let shares = shares(&steps(&[(0.5, [0.0, -0.01]), (1.0, [0.0, -0.015])], 1e-3));
     println!("{shares:?}");
-    let steady = shares[6..10].iter().chain(&shares[15..]).fold(0.0, |most: f64, share| most.max(*share));
+    let steady = shares[6..10]
+        .iter()
+        .chain(&shares[15..])
+        .fold(0.0, |most: f64, share| most.max(*share));
     assert!(shares[0] > 10.0 * steady && shares[10] > 10.0 * steady, "{shares:?}");
 }
 
@@ -97,17 +113,32 @@ fn a_motion_is_steady_whose_velocity_is_that_of_the_last_step_whatever_its_lengt
     for last_dt in [0.1, 0.025] {
         assert!(is_steady(&with(vec![(2.0, [0.0, -0.02])]), last_dt));
         assert!(!is_steady(&with(vec![(1.0, [0.0, -0.02])]), last_dt), "it ends");
-        assert!(!is_steady(&with(vec![(1.0, [0.0, 0.0]), (2.0, [0.0, -0.02])]), last_dt), "it begins");
-        assert!(!is_steady(&with(vec![(1.0, [0.0, -0.02]), (2.0, [0.0, 0.0])]), last_dt), "it turns");
+        assert!(
+            !is_steady(&with(vec![(1.0, [0.0, 0.0]), (2.0, [0.0, -0.02])]), last_dt),
+            "it begins"
+        );
+        assert!(
+            !is_steady(&with(vec![(1.0, [0.0, -0.02]), (2.0, [0.0, 0.0])]), last_dt),
+            "it turns"
+        );
         assert!(!is_steady(&with(vec![(2.0, [0.0, 0.0])]), last_dt), "it rests");
         let nothing = Boundary::default();
         assert!(!is_steady(&nothing, last_dt));
         let face = Support::moving(0, false, [Some(0.01), None]);
-        assert!(is_steady(&Boundary { supports: vec![face], ..Boundary::default() }, last_dt));
+        assert!(is_steady(
+            &Boundary {
+                supports: vec![face],
+                ..Boundary::default()
+            },
+            last_dt
+        ));
         let body = |free: [bool; 3], end: f64| {
             let path = vec![(end, [0.0, -0.1, 0.0].into())];
             let body = RigidBody { free, path, ..disc() };
-            Boundary { rigid: vec![body], ..Boundary::default() }
+            Boundary {
+                rigid: vec![body],
+                ..Boundary::default()
+            }
         };
         assert!(is_steady(&body([false; 3], 2.0), last_dt));
         assert!(!is_steady(&body([false; 3], 1.05), last_dt), "it ends within the step");

@@ -29,7 +29,9 @@ impl<K: Kinematics<D>, const D: usize> InLanes for Stresses<'_, K, D> {
     fn run<S: Simd>(self, simd: S) -> Self::Output {
         let mut found = Vec::new();
         for eight in lanes::eights(self.range) {
-            let Some((dF, tau)) = self.trial.respond_in_lanes(self.model, self.points, simd, eight) else { continue };
+            let Some((dF, tau)) = self.trial.respond_in_lanes(self.model, self.points, simd, eight) else {
+                continue;
+            };
             for (lane, p) in eight.points().enumerate() {
                 let dF = std::array::from_fn(|k| dF[(k % 3, k / 3)].numbers()[lane].to_bits());
                 found.push((p, dF, tau.0.map(|component| component.numbers()[lane].to_bits())));
@@ -42,7 +44,10 @@ impl<K: Kinematics<D>, const D: usize> InLanes for Stresses<'_, K, D> {
 /// Clay that hardens beside sand, deformed at random, one point turned inside out; compares all points that lanes
 /// answer for and returns how many these are.
 fn compared<K: Kinematics<D>, const D: usize>(method: Stabilisation, seed: u64) -> usize {
-    let elastic = Elastic { young: 1e4, poisson: 0.3 };
+    let elastic = Elastic {
+        young: 1e4,
+        poisson: 0.3,
+    };
     let clay = Material::VonMises(VonMises::new(elastic.clone(), 20.0, 300.0));
     let sand = Material::MohrCoulomb(MohrCoulomb::new(elastic, 0.6, 0.1, 1.0));
     let mut random = Random::new(seed);
@@ -58,7 +63,9 @@ fn compared<K: Kinematics<D>, const D: usize>(method: Stabilisation, seed: u64) 
     for p in 0..points.len() {
         points.state.as_mut().expect("of clay").of_point_mut(p)[0] = random.unit();
         let mut b_e = points.b_e.at(p);
-        b_e.0[..4].iter_mut().for_each(|component| *component += 0.01 * random.signed());
+        b_e.0[..4]
+            .iter_mut()
+            .for_each(|component| *component += 0.01 * random.signed());
         points.b_e.set(p, b_e);
     }
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
@@ -70,12 +77,27 @@ fn compared<K: Kinematics<D>, const D: usize>(method: Stabilisation, seed: u64) 
     let mut count = 0;
     for first in [0, 1, 5] {
         for length in [1, 7, LANES, LANES + 1, points.len() - first] {
-            let found = lanes::run(Stresses { model, points, trial: &trial, range: first..first + length });
+            let found = lanes::run(Stresses {
+                model,
+                points,
+                trial: &trial,
+                range: first..first + length,
+            });
             count += found.len();
             for (p, dF, tau) in found {
-                let expected = trial.respond(model, points, p).expect("no lane answers for what is no strain");
-                assert_eq!(dF, std::array::from_fn(|k| trial.dF(p).as_slice()[k].to_bits()), "dF of point {p}");
-                assert_eq!(tau, expected.tau().0.map(f64::to_bits), "{method:?}: stress of point {p}");
+                let expected = trial
+                    .respond(model, points, p)
+                    .expect("no lane answers for what is no strain");
+                assert_eq!(
+                    dF,
+                    std::array::from_fn(|k| trial.dF(p).as_slice()[k].to_bits()),
+                    "dF of point {p}"
+                );
+                assert_eq!(
+                    tau,
+                    expected.tau().0.map(f64::to_bits),
+                    "{method:?}: stress of point {p}"
+                );
             }
         }
     }

@@ -30,13 +30,23 @@ const METHODS: [Stabilisation; 6] = [
 
 /// A body of frictional soil on a fixed base, some of it yielding, in a cut-off grid with a background.
 fn loaded<K: Kinematics<D>, const D: usize>(method: Stabilisation, regime: Regime) -> Scene<K, D> {
-    let soil = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, 0.1, 1.0);
+    let soil = MohrCoulomb::new(
+        Elastic {
+            young: 1000.0,
+            poisson: 0.3,
+        },
+        0.5,
+        0.1,
+        1.0,
+    );
     // Averages over pairs of cells need some inside the body.
     let length = if method == Stabilisation::SubgridFBar { 5 } else { 2 };
     let axes = std::array::from_fn(|k| axis(1.0, if k == 0 { length + 1 } else { 2 }, 2));
     let mut scene = Scene::<K, D>::new(axes, Material::MohrCoulomb(soil), regime).stabilised(method);
     let cells = std::array::from_fn(|k| 0..if k == 0 { length } else { 2 });
-    scene = scene.body(cells, 2, 1.0, |_| Vector::zeros()).support(Support::fixed(D - 1, false));
+    scene = scene
+        .body(cells, 2, 1.0, |_| Vector::zeros())
+        .support(Support::fixed(D - 1, false));
     scene.model.background = Some(Background { coefficient: 1e-3 });
     let mut random = Random::new(3);
     scene = scene.scattered(&mut random);
@@ -49,19 +59,38 @@ fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64,
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
-    let attachments =
-        StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
-    let pieces = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
+    let attachments = StripAttachments::at(
+        &model.boundary.strips,
+        &points.surface,
+        (&model.grid, &nodes.free),
+        (0.0, 0.01),
+    );
+    let pieces = Problem {
+        model,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points,
+        halo: &halo,
+    };
     let mut random = Random::new(11);
     let mut free = |size: f64| -> Vec<f64> {
         let values = random.array(nodes.free.len());
-        values.iter().zip(&nodes.free).map(|(value, &free)| if free { size * value } else { 0.0 }).collect()
+        values
+            .iter()
+            .zip(&nodes.free)
+            .map(|(value, &free)| if free { size * value } else { 0.0 })
+            .collect()
     };
     let (u, v) = (free(0.01), free(1.0));
     let residual = Residual::of(&pieces, &u);
     assert!(residual.balance.is_sound());
-    let yielding = (0..points.len())
-        .filter(|&p| residual.trial.respond(model, points, p).is_ok_and(|response| response.plastic_increment() > 0.0));
+    let yielding = (0..points.len()).filter(|&p| {
+        residual
+            .trial
+            .respond(model, points, p)
+            .is_ok_and(|response| response.plastic_increment() > 0.0)
+    });
     let mut product = vec![0.0; u.len()];
     Linearised::at(&pieces, &residual).multiply(&v, &mut product);
     let step = 1e-7;
@@ -79,7 +108,10 @@ fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64,
 fn the_product_is_the_derivative_of_the_forces() {
     for method in METHODS {
         for regime in [Regime::QuasiStatic, Regime::Dynamic] {
-            let (plane, solid) = (loaded::<PlaneStrain, 2>(method, regime), loaded::<Solid, 3>(method, regime));
+            let (plane, solid) = (
+                loaded::<PlaneStrain, 2>(method, regime),
+                loaded::<Solid, 3>(method, regime),
+            );
             let axisymmetric = loaded::<Axisymmetric, 2>(method, regime);
             let found = [
                 (product_error(&plane), plane.points.len()),
@@ -89,7 +121,10 @@ fn the_product_is_the_derivative_of_the_forces() {
             println!("{method:?}, {regime:?}: {found:?}");
             for ((error, yielding), points) in found {
                 assert!(error <= 1e-6, "{error:e}"); // central differences; measured figures are printed
-                assert!(yielding > 0 && yielding < points, "both responses are seen: {yielding} of {points}");
+                assert!(
+                    yielding > 0 && yielding < points,
+                    "both responses are seen: {yielding} of {points}"
+                );
             }
         }
     }
@@ -98,14 +133,24 @@ fn the_product_is_the_derivative_of_the_forces() {
 /// Damped soil whose elasticity is linear, and some whose is not, after a step that smoothed it.
 #[test]
 fn the_viscous_stress_is_in_the_product() {
-    let clay = CamClay::new(Elastic { young: 1000.0, poisson: 0.3 }, [0.03, 0.15, 1.1, 52.0, 0.0]);
+    let clay = CamClay::new(
+        Elastic {
+            young: 1000.0,
+            poisson: 0.3,
+        },
+        [0.03, 0.15, 1.1, 52.0, 0.0],
+    );
     let pressed = (2.0 / 3.0 * clay.strain([-50.0; 3]).iter().sum::<f64>()).exp();
     for clay in [None, Some(Material::CamClay(clay))] {
         let mut scene = loaded::<PlaneStrain, 2>(Stabilisation::ConsistentFBar, Regime::Dynamic);
         if let Some(clay) = clay {
             scene.model.materials = vec![clay];
             scene.points = scene.points.with_state(1);
-            scene.points.state.iter_mut().for_each(|state| state.par_rows_mut().for_each(|row| row[0] = 52.0));
+            scene
+                .points
+                .state
+                .iter_mut()
+                .for_each(|state| state.par_rows_mut().for_each(|row| row[0] = 52.0));
             scene.points.b_e.fill(Symmetric::IDENTITY.scaled(pressed));
         }
         let smoothed = |p| Symmetric([1.01, 0.99, 1.0, 0.003, 0.0, 0.0]).scaled(1.0 + 1e-3 * f64::from(p));
@@ -113,7 +158,10 @@ fn the_viscous_stress_is_in_the_product() {
         scene.model.damping = vec![0.005];
         let (error, yielding) = product_error(&scene);
         println!("{error:e}, {yielding} of {} yield", scene.points.len());
-        assert!(error <= 1e-6 && yielding > 0 && yielding < scene.points.len(), "{error:e}"); // central differences
+        assert!(
+            error <= 1e-6 && yielding > 0 && yielding < scene.points.len(),
+            "{error:e}"
+        ); // central differences
     }
 }
 
@@ -121,7 +169,15 @@ fn the_viscous_stress_is_in_the_product() {
 #[test]
 fn averages_of_two_materials_are_in_the_product() {
     for method in METHODS {
-        let stiff = MohrCoulomb::new(Elastic { young: 1e5, poisson: 0.2 }, 0.3, 0.0, 50.0);
+        let stiff = MohrCoulomb::new(
+            Elastic {
+                young: 1e5,
+                poisson: 0.2,
+            },
+            0.3,
+            0.0,
+            50.0,
+        );
         let scene = loaded::<PlaneStrain, 2>(method, Regime::Dynamic);
         let scene = scene.with(Material::MohrCoulomb(stiff), |x| x[0] > 0.4 + 0.5 * x[1]);
         let (error, _) = product_error(&scene);
@@ -133,7 +189,15 @@ fn averages_of_two_materials_are_in_the_product() {
 /// Dilatant soil, alone and beside some whose force is not the adjoint of its stress.
 #[test]
 fn adjoint_forces_are_in_the_product() {
-    let dilatant = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, 0.4, 1.0);
+    let dilatant = MohrCoulomb::new(
+        Elastic {
+            young: 1000.0,
+            poisson: 0.3,
+        },
+        0.5,
+        0.4,
+        1.0,
+    );
     for regime in [Regime::QuasiStatic, Regime::Dynamic] {
         let dilatant = Material::MohrCoulomb(dilatant.clone());
         let mut plane = loaded::<PlaneStrain, 2>(Stabilisation::ConsistentFBar, regime);
@@ -150,13 +214,24 @@ fn adjoint_forces_are_in_the_product() {
 /// Volumes that are fitted, also under an adjoint force, whose pressure they weigh.
 #[test]
 fn fitted_volumes_are_in_the_product() {
-    let dilatant = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, 0.4, 1.0);
+    let dilatant = MohrCoulomb::new(
+        Elastic {
+            young: 1000.0,
+            poisson: 0.3,
+        },
+        0.5,
+        0.4,
+        1.0,
+    );
     for method in METHODS {
         // In the corner of held faces there is a function inside the body.
-        let mut plane =
-            loaded::<PlaneStrain, 2>(method, Regime::QuasiStatic).support(Support::roller(0, false)).fitted();
+        let mut plane = loaded::<PlaneStrain, 2>(method, Regime::QuasiStatic)
+            .support(Support::roller(0, false))
+            .fitted();
         let mut solid = loaded::<Solid, 3>(method, Regime::QuasiStatic).fitted();
-        solid = solid.support(Support::roller(0, false)).support(Support::roller(1, false));
+        solid = solid
+            .support(Support::roller(0, false))
+            .support(Support::roller(1, false));
         let mut errors = vec![product_error(&plane).0, product_error(&solid).0];
         plane.model.materials = vec![Material::MohrCoulomb(dilatant.clone())];
         errors.push(product_error(&plane).0);
@@ -171,7 +246,9 @@ fn fitted_volumes_are_in_the_product() {
 fn strips_are_in_the_product() {
     let scene = loaded::<PlaneStrain, 2>(Stabilisation::FBar, Regime::QuasiStatic);
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.2, 1.9].into(), &[1.4, 1.9].into(), 3);
-    let path = Path { rows: vec![(1.0, [0.0, -0.1].into())] };
+    let path = Path {
+        rows: vec![(1.0, [0.0, -0.1].into())],
+    };
     let with = scene.clone().strip(Strip {
         contact: None,
         points,
@@ -187,7 +264,15 @@ fn strips_are_in_the_product() {
 /// Sand with gaps, some of it closing so far that it resists again.
 #[test]
 fn what_opens_is_in_the_product() {
-    let sand = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, 0.0, 0.0);
+    let sand = MohrCoulomb::new(
+        Elastic {
+            young: 1000.0,
+            poisson: 0.3,
+        },
+        0.5,
+        0.0,
+        0.0,
+    );
     for method in METHODS {
         let mut scene = loaded::<PlaneStrain, 2>(method, Regime::Dynamic);
         scene.model.materials = vec![Material::MohrCoulomb(sand.clone().separating(Separation::Closing))];
@@ -196,12 +281,20 @@ fn what_opens_is_in_the_product() {
         let response = |p: usize, b_e: &Symmetric| scene.model.respond(&scene.points, p, b_e).unwrap();
         let opened = |p: usize, gap: f64| response(p, &scene.points.b_e.at(p).scaled((2.0 / 3.0 * gap).exp()));
         let gaps = scene.points.gap.as_ref().unwrap();
-        let open = (0..gaps.len()).filter(|&p| opened(p, gaps[p]).branch() == Branch::Apex).count();
+        let open = (0..gaps.len())
+            .filter(|&p| opened(p, gaps[p]).branch() == Branch::Apex)
+            .count();
         assert!(open > 0 && open < gaps.len(), "{open} of {}", gaps.len());
         let (error, _) = product_error(&scene);
         println!("{method:?}: {error:e}");
         assert!(error <= 1e-6, "{method:?}: {error:e}"); // central differences
-        let forgotten = Scene { model: scene.model.clone(), points: Points { gap: None, ..scene.points.clone() } };
+        let forgotten = Scene {
+            model: scene.model.clone(),
+            points: Points {
+                gap: None,
+                ..scene.points.clone()
+            },
+        };
         assert_ne!(product_error(&forgotten).0, error, "the gap is seen");
     }
 }
@@ -211,24 +304,49 @@ fn what_opens_is_in_the_product() {
 /// many points change their region in it.
 fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     let mut scene = loaded::<PlaneStrain, 2>(Stabilisation::FBar, Regime::QuasiStatic);
-    let law = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, 0.0, cohesion);
+    let law = MohrCoulomb::new(
+        Elastic {
+            young: 1000.0,
+            poisson: 0.3,
+        },
+        0.5,
+        0.0,
+        cohesion,
+    );
     (scene.model.materials, scene.model.background) = (vec![Material::MohrCoulomb(law)], None);
     let mut random = Random::new(7);
     for p in 0..scene.points.len() {
         let [xx, yy, zz, xy] = [6.0, -12.0, -3.0, 0.0].map(|mean| size * (mean + random.signed()));
-        scene.points.b_e.set(p, Symmetric([1.0 + xx, 1.0 + yy, 1.0 + zz, xy, 0.0, 0.0]));
+        scene
+            .points
+            .b_e
+            .set(p, Symmetric([1.0 + xx, 1.0 + yy, 1.0 + zz, xy, 0.0, 0.0]));
     }
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
     let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
-    let pieces = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
-    let mut free =
-        || -> Vec<f64> { nodes.free.iter().map(|&free| if free { size * random.signed() } else { 0.0 }).collect() };
+    let pieces = Problem {
+        model,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points,
+        halo: &halo,
+    };
+    let mut free = || -> Vec<f64> {
+        nodes
+            .free
+            .iter()
+            .map(|&free| if free { size * random.signed() } else { 0.0 })
+            .collect()
+    };
     let (u, v) = (free(), free());
     let at = |s: f64| Residual::of(&pieces, &u.iter().zip(&v).map(|(u, v)| u + s * v).collect::<Vec<_>>());
     let regions = |residual: &Residual<PlaneStrain, 2>| -> Vec<Branch> {
-        (0..points.len()).map(|p| residual.trial.respond(model, points, p).unwrap().branch()).collect()
+        (0..points.len())
+            .map(|p| residual.trial.respond(model, points, p).unwrap().branch())
+            .collect()
     };
     let start = at(0.0);
     let mut product = vec![0.0; u.len()];
@@ -239,7 +357,11 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
         let rest = |c: usize| after[c] - start.balance.f_oob[c] + s * product[c];
         norm(&mut (0..u.len()).map(rest)) / (s * norm(&mut product.iter().copied()))
     });
-    let changed = regions(&start).iter().zip(regions(&at(0.02))).filter(|(before, after)| **before != *after).count();
+    let changed = regions(&start)
+        .iter()
+        .zip(regions(&at(0.02)))
+        .filter(|(before, after)| **before != *after)
+        .count();
     (left, changed)
 }
 

@@ -27,7 +27,13 @@ fn matrix(random: &mut Random, spread: f64) -> DMatrix<f64> {
     let A = DMatrix::from_fn(SIZE, SIZE, |_, _| spread * random.signed());
     let full = &A * A.transpose() / SIZE as f64 + DMatrix::identity(SIZE, SIZE);
     let both = |i: usize, j: usize| free()[i] && free()[j];
-    DMatrix::from_fn(SIZE, SIZE, |i, j| if both(i, j) { full[(i, j)] } else { f64::from(u8::from(i == j)) })
+    DMatrix::from_fn(SIZE, SIZE, |i, j| {
+        if both(i, j) {
+            full[(i, j)]
+        } else {
+            f64::from(u8::from(i == j))
+        }
+    })
 }
 
 #[test]
@@ -42,7 +48,10 @@ fn a_linear_problem_takes_one_direction_more_than_it_has_unknowns_whatever_is_fa
         solver.add(0, K_0.as_slice());
         solver.finish(Symmetry::Definite).unwrap();
         let mut secants = Secants::new::<2>(QuasiNewton::Multisecant, &free(), &halo);
-        let (b, mut u) = (zero_where_held(&DVector::from_vec(random.array(SIZE))), DVector::zeros(SIZE));
+        let (b, mut u) = (
+            zero_where_held(&DVector::from_vec(random.array(SIZE))),
+            DVector::zeros(SIZE),
+        );
         let mut norms = vec![b.norm()];
         for _ in 0..=unknowns {
             let f = zero_where_held(&(&b - &K * &u));
@@ -100,8 +109,16 @@ fn ghosts_do_not_count_twice() {
     let (a, b) = (random.array(SIZE), random.array(SIZE));
     let unknowns = Unknowns::of::<2>(&free(), &Between);
     let own: f64 = (0..4).chain(6..10).filter(|&c| free()[c]).map(|c| a[c] * b[c]).sum();
-    assert_eq!((0..9).filter(|&node| Between.owned().contains(node)).collect::<Vec<_>>(), [0, 1, 3, 4]);
-    assert_eq!(Between.owned().places::<2>().collect::<Vec<_>>(), [0, 1, 2, 3, 6, 7, 8, 9]);
+    assert_eq!(
+        (0..9)
+            .filter(|&node| Between.owned().contains(node))
+            .collect::<Vec<_>>(),
+        [0, 1, 3, 4]
+    );
+    assert_eq!(
+        Between.owned().places::<2>().collect::<Vec<_>>(),
+        [0, 1, 2, 3, 6, 7, 8, 9]
+    );
     let found = unknowns.dots([&unknowns.packed(&a)], &unknowns.packed(&b))[0].value();
     assert!((found - own).abs() <= 1e-14 && own.abs() > 1e-3, "{found} {own}");
 }

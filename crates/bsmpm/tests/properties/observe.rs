@@ -11,12 +11,12 @@ use bsmpm::tensor::{Symmetric, Vector};
 
 /// A block of 4^D cells, one cell off the lower corner.
 fn block<K: Kinematics<D>, const D: usize>(order: usize) -> Scene<K, D> {
-    Scene::new(std::array::from_fn(|_| axis(0.5, 6, order)), hencky(1.0, 0.3), Regime::QuasiStatic).body(
-        std::array::from_fn(|_| 1..5),
-        2,
-        3.0,
-        |x| x * 0.0,
+    Scene::new(
+        std::array::from_fn(|_| axis(0.5, 6, order)),
+        hencky(1.0, 0.3),
+        Regime::QuasiStatic,
     )
+    .body(std::array::from_fn(|_| 1..5), 2, 3.0, |x| x * 0.0)
 }
 
 fn noise_of_a_linear_field<K: Kinematics<D>, const D: usize>() -> (f64, f64) {
@@ -33,7 +33,10 @@ fn noise_of_a_linear_field<K: Kinematics<D>, const D: usize>() -> (f64, f64) {
 
 #[test]
 fn a_linear_stress_has_no_noise_about_planes_and_a_uniform_one_none_at_all() {
-    for (linear, uniform) in [noise_of_a_linear_field::<PlaneStrain, 2>(), noise_of_a_linear_field::<Solid, 3>()] {
+    for (linear, uniform) in [
+        noise_of_a_linear_field::<PlaneStrain, 2>(),
+        noise_of_a_linear_field::<Solid, 3>(),
+    ] {
         println!("linear about planes {linear:.1e}, uniform {uniform:.1e}");
         assert!(linear <= 1e-13 && uniform <= 1e-13); // measured 5.3e-16, 4.7e-15
     }
@@ -44,8 +47,18 @@ fn a_linear_stress_has_no_noise_about_planes_and_a_uniform_one_none_at_all() {
 #[test]
 fn the_projected_pressure_keeps_what_is_uniform_and_damps_what_alternates() {
     let mut scene = block::<PlaneStrain, 2>(2);
-    let signs: Vec<f64> =
-        scene.points.x.iter().map(|x| if (4.0 * x.sum()).round() % 2.0 == 0.0 { 1.0 } else { -1.0 }).collect();
+    let signs: Vec<f64> = scene
+        .points
+        .x
+        .iter()
+        .map(|x| {
+            if (4.0 * x.sum()).round() % 2.0 == 0.0 {
+                1.0
+            } else {
+                -1.0
+            }
+        })
+        .collect();
     let [mut uniform, mut alternating] = [0.0_f64; 2];
     for (p, sign) in signs.iter().enumerate() {
         scene.points.volume[p] *= if *sign > 0.0 { 1.0 } else { 0.5 };
@@ -57,7 +70,10 @@ fn the_projected_pressure_keeps_what_is_uniform_and_damps_what_alternates() {
     assert!(uniform <= 1e-14, "{uniform}");
     for (p, sign) in signs.iter().enumerate() {
         scene.points.volume[p] = 1.0;
-        scene.points.sigma.set(p, Symmetric([*sign, *sign, *sign, 0.0, 0.0, 0.0]));
+        scene
+            .points
+            .sigma
+            .set(p, Symmetric([*sign, *sign, *sign, 0.0, 0.0, 0.0]));
     }
     for pressure in projected_pressure(&scene.model, &scene.points, &scene.halo()).unwrap() {
         alternating = alternating.max(pressure.abs());
@@ -92,7 +108,10 @@ fn totals_are_those_of_a_material_or_of_all() {
     let (points, halo) = (&scene.points, scene.halo());
     let of = |part: &Part| {
         let middle = centre_of_mass(points, part, &halo).unwrap();
-        let (p, spin) = (momentum(points, part, &halo), angular_momentum(points, part, &middle, &halo)[2]);
+        let (p, spin) = (
+            momentum(points, part, &halo),
+            angular_momentum(points, part, &middle, &halo)[2],
+        );
         (mass(points, part, &halo), middle, p, spin)
     };
     // A rectangle of a x b cells of points has m (a^2 + b^2 - 2/n^2)/12 about its middle, its points at theirs.
@@ -105,7 +124,12 @@ fn totals_are_those_of_a_material_or_of_all() {
         // Ids count column by column.
         (Part::Ids(0..32), 6.0, 1.0, 1.0),
         (Part::Ids(32..64), 6.0, 2.0, 1.0),
-        (Part::Within(Box::new(Part::Whole), [[1.5, 0.0, 0.0], [9.0, 9.0, 0.0]]), 6.0, 2.0, 1.0),
+        (
+            Part::Within(Box::new(Part::Whole), [[1.5, 0.0, 0.0], [9.0, 9.0, 0.0]]),
+            6.0,
+            2.0,
+            1.0,
+        ),
     ];
     for (part, m, x, a) in &parts {
         let (m, x, a) = (*m, *x, *a);
@@ -119,7 +143,10 @@ fn totals_are_those_of_a_material_or_of_all() {
         let about = angular_momentum(points, part, &center, &halo)[2];
         close(about, spin + (middle - center).perp(&p));
         // By Koenig, with the rotation of 3 rad/s about the middle.
-        close(kinetic_energy(points, part, &halo), 0.5 * (p.norm_squared() / m + 3.0 * spin));
+        close(
+            kinetic_energy(points, part, &halo),
+            0.5 * (p.norm_squared() / m + 3.0 * spin),
+        );
         // The farthest point is half a spacing within.
         close(farthest(points, part, 0, &halo), x + 0.5 * a - 0.125);
         close(percentile(points, part, (0, 50.0), &halo), x - 0.125);
@@ -135,31 +162,43 @@ fn totals_are_those_of_a_material_or_of_all() {
 #[test]
 fn a_wall_in_contact_has_the_thrust_of_the_edge_that_a_fixed_base_holds() {
     let thrust = |wall: Support<2>| {
-        let (_, steps) =
-            Scene::<PlaneStrain, 2>::new([axis(0.5, 2, 2), axis(0.5, 4, 2)], hencky(1e4, 0.3), Regime::QuasiStatic)
-                .body([0..2, 0..4], 2, 2.0, |x| x * 0.0)
-                .support(Support::roller(0, false))
-                .support(wall)
-                .support(Support::fixed(1, false))
-                .gravity(1.0, 0.0)
-                .solved(1.0, 1.0);
+        let (_, steps) = Scene::<PlaneStrain, 2>::new(
+            [axis(0.5, 2, 2), axis(0.5, 4, 2)],
+            hencky(1e4, 0.3),
+            Regime::QuasiStatic,
+        )
+        .body([0..2, 0..4], 2, 2.0, |x| x * 0.0)
+        .support(Support::roller(0, false))
+        .support(wall)
+        .support(Support::fixed(1, false))
+        .gravity(1.0, 0.0)
+        .solved(1.0, 1.0);
         steps[0].report.reactions[1][0]
     };
-    let contact = Contact { friction: 0.0, lifts: true };
-    let (rolls, touches) = (thrust(Support::roller(0, true)), thrust(Support::contact(0, true, contact)));
+    let contact = Contact {
+        friction: 0.0,
+        lifts: true,
+    };
+    let (rolls, touches) = (
+        thrust(Support::roller(0, true)),
+        thrust(Support::contact(0, true, contact)),
+    );
     println!("{rolls} and {touches}");
     assert!(rolls < 0.0 && (touches / rolls - 1.0).abs() < 1e-6);
 }
 
 #[test]
 fn reactions_sum_to_the_weight_also_where_two_supports_hold_the_same_node() {
-    let (_, steps) =
-        Scene::<PlaneStrain, 2>::new([axis(0.5, 4, 2), axis(0.5, 4, 2)], hencky(100.0, 0.3), Regime::QuasiStatic)
-            .body([0..3, 0..3], 2, 2.0, |x| x * 0.0)
-            .support(Support::fixed(0, false))
-            .support(Support::fixed(1, false))
-            .gravity(1.0, 0.0)
-            .solved(1.0, 1.0);
+    let (_, steps) = Scene::<PlaneStrain, 2>::new(
+        [axis(0.5, 4, 2), axis(0.5, 4, 2)],
+        hencky(100.0, 0.3),
+        Regime::QuasiStatic,
+    )
+    .body([0..3, 0..3], 2, 2.0, |x| x * 0.0)
+    .support(Support::fixed(0, false))
+    .support(Support::fixed(1, false))
+    .gravity(1.0, 0.0)
+    .solved(1.0, 1.0);
     let reactions = &steps[0].report.reactions;
     let (sideways, upwards) = (reactions[0][0] + reactions[1][0], reactions[0][1] + reactions[1][1]);
     println!("reactions {reactions:?}, weight {}", 2.0 * 2.25);

@@ -9,9 +9,13 @@ use bsmpm::tensor::{Tensor, Vector};
 
 /// Cells of 0.5 m, the first four of the base row full, the first two of the next.
 fn step() -> Scene<PlaneStrain, 2> {
-    Scene::new([axis(0.5, 12, 2), axis(0.5, 4, 2)], hencky(1.0, 0.3), Regime::QuasiStatic)
-        .body([0..4, 0..1], 2, 3.0, |x| x * 0.0)
-        .body([0..2, 1..2], 2, 3.0, |x| x * 0.0)
+    Scene::new(
+        [axis(0.5, 12, 2), axis(0.5, 4, 2)],
+        hencky(1.0, 0.3),
+        Regime::QuasiStatic,
+    )
+    .body([0..4, 0..1], 2, 3.0, |x| x * 0.0)
+    .body([0..2, 1..2], 2, 3.0, |x| x * 0.0)
 }
 
 /// The farthest point of a cell that is half full went back by a spacing of points (0.25 m) whenever a column of points
@@ -43,12 +47,16 @@ fn the_front_of_a_body_that_slides_moves_as_the_body_does() {
 #[test]
 fn loose_points_are_no_front_and_less_than_half_a_cell_is_none() {
     let mut scene = step();
-    let farthest =
-        (0..scene.points.len()).max_by(|&a, &b| scene.points.x[a][0].total_cmp(&scene.points.x[b][0])).unwrap();
+    let farthest = (0..scene.points.len())
+        .max_by(|&a, &b| scene.points.x[a][0].total_cmp(&scene.points.x[b][0]))
+        .unwrap();
     scene.points.x[farthest][0] = 5.1;
     // The other point of its column is left, and makes half a cell with those behind it.
     assert_eq!(front(&scene.model, &scene.points, &scene.halo()), 1.875);
-    scene.points.F.fill(Tensor::from_diagonal(&Vector::<3>::from([0.4, 1.0, 1.0])));
+    scene
+        .points
+        .F
+        .fill(Tensor::from_diagonal(&Vector::<3>::from([0.4, 1.0, 1.0])));
     assert_eq!(front(&scene.model, &scene.points, &scene.halo()), 0.0);
 }
 

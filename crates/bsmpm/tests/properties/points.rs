@@ -18,7 +18,9 @@ fn varied<K: Kinematics<D>, const D: usize>(regime: Regime) -> Scene<K, D> {
     let mut random = Random::new(1);
     let axes = std::array::from_fn(|k| if k == 0 { axis(0.5, 6, 2) } else { axis(0.25, 4, 2) });
     let mut scene = Scene::<K, D>::new(axes, hencky(1.0, 0.2), regime);
-    scene = scene.body(std::array::from_fn(|k| if k == 0 { 1..5 } else { 0..3 }), 3, 2.0, |x| x * 0.7);
+    scene = scene.body(std::array::from_fn(|k| if k == 0 { 1..5 } else { 0..3 }), 3, 2.0, |x| {
+        x * 0.7
+    });
     let points = &mut scene.points;
     for p in 0..points.len() {
         points.x[p] += random.vector::<D>() * 0.05;
@@ -28,7 +30,9 @@ fn varied<K: Kinematics<D>, const D: usize>(regime: Regime) -> Scene<K, D> {
         points.volume[p] *= random.unit();
         points.F.set(p, tensor::<D>(&mut random));
         points.b_e.set(p, Symmetric::of(&tensor::<D>(&mut random)));
-        points.sigma.set(p, Symmetric::of(&tensor::<D>(&mut random)).scaled(1e200));
+        points
+            .sigma
+            .set(p, Symmetric::of(&tensor::<D>(&mut random)).scaled(1e200));
         points.eps_p[p] = -0.0;
         if let Some(motion) = &mut points.motion {
             motion.a[p] = random.vector();
@@ -123,11 +127,17 @@ fn bytes_of(numbers: &[f64]) -> Vec<u8> {
 fn rows_are_whole_tensors_and_a_plane_refuses_what_leaves_it() {
     let F = Tensor::new(1.1, 0.2, 0.0, 0.3, 1.4, 0.0, 0.0, 0.0, 1.5);
     let sigma = Symmetric([-1.0, -2.0, -3.0, 0.4, 0.0, 0.0]);
-    let (plane, solid) = (Packed::<2, Tensor>::from_iter([F; 3]), Packed::<3, Tensor>::from_iter([F; 3]));
+    let (plane, solid) = (
+        Packed::<2, Tensor>::from_iter([F; 3]),
+        Packed::<3, Tensor>::from_iter([F; 3]),
+    );
     let (mut of_plane, mut of_solid) = (Vec::new(), Vec::new());
     plane.put(1, &mut of_plane);
     solid.put(1, &mut of_solid);
-    assert_eq!((&of_plane, &of_solid), (&bytes_of(F.as_slice()), &bytes_of(F.as_slice())));
+    assert_eq!(
+        (&of_plane, &of_solid),
+        (&bytes_of(F.as_slice()), &bytes_of(F.as_slice()))
+    );
     let symmetric = Packed::<2, Symmetric>::from_iter([sigma]);
     let mut of_symmetric = Vec::new();
     symmetric.put(0, &mut of_symmetric);
@@ -137,12 +147,20 @@ fn rows_are_whole_tensors_and_a_plane_refuses_what_leaves_it() {
             let mut other = F;
             other[place] = strange;
             let row = bytes_of(other.as_slice());
-            assert_eq!((plane.fits(&row), solid.fits(&row)), (strange == 0.0, true), "{strange} at {place}");
+            assert_eq!(
+                (plane.fits(&row), solid.fits(&row)),
+                (strange == 0.0, true),
+                "{strange} at {place}"
+            );
         }
         for place in [4, 5] {
             let mut other = sigma;
             other.0[place] = strange;
-            assert_eq!(symmetric.fits(&bytes_of(&other.0)), strange == 0.0, "{strange} at {place}");
+            assert_eq!(
+                symmetric.fits(&bytes_of(&other.0)),
+                strange == 0.0,
+                "{strange} at {place}"
+            );
         }
     }
     assert!(plane.fits(&of_plane) && symmetric.fits(&of_symmetric));

@@ -33,9 +33,18 @@ fn flight<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisation,
             change = change.max((v - last[id]).amax());
             last[id] = *v;
         }
-        stress = points.sigma.iter().flat_map(|sigma| sigma.0).fold(stress, |most, s| most.max(s.abs() / SOFT));
+        stress = points
+            .sigma
+            .iter()
+            .flat_map(|sigma| sigma.0)
+            .fold(stress, |most, s| most.max(s.abs() / SOFT));
     });
-    let travelled = scene.points.u.iter().map(|u| (u - velocity * 0.4).amax()).fold(0.0, f64::max);
+    let travelled = scene
+        .points
+        .u
+        .iter()
+        .map(|u| (u - velocity * 0.4).amax())
+        .fold(0.0, f64::max);
     println!("travelled to {travelled:.1e} m");
     assert!(travelled <= 2e-13); // measured 4.7e-15, solid 2.7e-14
     (change, stress)
@@ -70,7 +79,10 @@ fn free_block(v: Vector<2>) -> Scene<PlaneStrain, 2> {
 fn the_guess_is_scaled_to_the_step_so_that_free_flight_needs_no_iteration_after_the_first() {
     let mut scene = free_block(Vector::from([1.0, -0.5]));
     let (halo, schedule) = (scene.halo(), Schedule::new(0.005, 0.02, [0.012, 0.013]));
-    let (mut solver, mut stepper) = (Skyline::new(&scene.model.grid), Stepper::new(scene.model.grid.nodes() * 2));
+    let (mut solver, mut stepper) = (
+        Skyline::new(&scene.model.grid),
+        Stepper::new(scene.model.grid.nodes() * 2),
+    );
     let mut iterations = Vec::new();
     while let Some(step) = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
         iterations.push(step.unwrap().report.iterations);
@@ -97,10 +109,13 @@ fn free_fall_gains_g_dt_a_step_from_the_first_one_on() {
 
 #[test]
 fn a_rigidly_rotating_field_turns_the_stress_of_every_point() {
-    let mut scene =
-        Scene::<PlaneStrain, 2>::new([axis(0.5, 4, 2), axis(0.5, 4, 2)], hencky(100.0, 0.3), Regime::QuasiStatic)
-            .body([1..3, 1..3], 3, 1.0, |_| Vector::zeros())
-            .stabilised(Stabilisation::SubgridFBar); // reaches farthest
+    let mut scene = Scene::<PlaneStrain, 2>::new(
+        [axis(0.5, 4, 2), axis(0.5, 4, 2)],
+        hencky(100.0, 0.3),
+        Regime::QuasiStatic,
+    )
+    .body([1..3, 1..3], 3, 1.0, |_| Vector::zeros())
+    .stabilised(Stabilisation::SubgridFBar); // reaches farthest
     let b_e = Symmetric([1.2, 0.9, 1.05, 0.1, 0.0, 0.0]);
     scene.points.b_e.fill(b_e);
     let R = *Rotation2::new(0.8).matrix();
@@ -134,5 +149,7 @@ fn field(scene: &Scene<PlaneStrain, 2>, H: &Square<2>) -> Vec<f64> {
         let [i, j] = grid.node_at(node);
         Vector::<2>::new(along(0, i), along(1, j))
     };
-    (0..grid.nodes()).flat_map(|node| <[f64; 2]>::from(H * at(node))).collect()
+    (0..grid.nodes())
+        .flat_map(|node| <[f64; 2]>::from(H * at(node)))
+        .collect()
 }

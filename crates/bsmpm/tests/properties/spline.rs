@@ -9,13 +9,20 @@ fn axes(order: usize) -> Vec<KnotVector> {
     let uniform = [(1.0, 1), (0.1, 7), (1.0 / 3.0, 40)];
     let uniform = uniform.map(|(cell, cells)| KnotVector::uniform(cell, cells, order).unwrap());
     let repeated = (1..=order).map(|copies| KnotVector::graded(&repeated(copies), order).unwrap());
-    uniform.into_iter().chain(graded.map(|knots| KnotVector::graded(knots, order).unwrap())).chain(repeated).collect()
+    uniform
+        .into_iter()
+        .chain(graded.map(|knots| KnotVector::graded(knots, order).unwrap()))
+        .chain(repeated)
+        .collect()
 }
 
 /// Breakpoints of which two neighbours and a later one stand so many times.
 fn repeated(copies: usize) -> Vec<f64> {
     let times = |x: f64| if [0.3, 0.4, 1.0].contains(&x) { copies } else { 1 };
-    [0.0, 0.3, 0.4, 0.7, 1.0, 1.6].into_iter().flat_map(|x| vec![x; times(x)]).collect()
+    [0.0, 0.3, 0.4, 0.7, 1.0, 1.6]
+        .into_iter()
+        .flat_map(|x| vec![x; times(x)])
+        .collect()
 }
 
 #[test]
@@ -24,7 +31,11 @@ fn a_breakpoint_of_multiplicity_m_leaves_q_less_m_derivatives_continuous() {
     let jumps = |axis: &KnotVector, x: f64| {
         let (before, after) = (all(axis, x.next_down()), all(axis, x));
         let largest = |of: fn(&(f64, f64)) -> f64| {
-            before.iter().zip(&after).map(|(a, b)| (of(a) - of(b)).abs()).fold(0.0, f64::max)
+            before
+                .iter()
+                .zip(&after)
+                .map(|(a, b)| (of(a) - of(b)).abs())
+                .fold(0.0, f64::max)
         };
         (largest(|f| f.0), largest(|f| f.1))
     };
@@ -36,7 +47,11 @@ fn a_breakpoint_of_multiplicity_m_leaves_q_less_m_derivatives_continuous() {
             for x in [0.3, 0.4, 1.0] {
                 let (value, slope) = jumps(&axis, x);
                 assert!(value < 1e-13, "order {order}, {copies} copies at {x}: {value:e}");
-                assert_eq!(slope > 1.0, copies == order, "order {order}, {copies} copies at {x}: {slope:e}");
+                assert_eq!(
+                    slope > 1.0,
+                    copies == order,
+                    "order {order}, {copies} copies at {x}: {slope:e}"
+                );
                 // With q copies one function alone is left on the line, as at the ends of an open knot vector.
                 let on_line = all(&axis, x).iter().filter(|f| f.0 > 1e-12).count();
                 assert_eq!(on_line == 1, copies == order);
@@ -54,7 +69,10 @@ fn samples(axis: &KnotVector, seed: u64) -> Vec<f64> {
     let inside = (0..200).map(|_| random.unit() * axis.length());
     let knots = (0..=axis.cells()).map(|i| axis.breakpoint(i));
     let near = knots.flat_map(|x| [x.next_down(), x, x.next_up()]);
-    inside.chain(near).filter(|x| (0.0..=axis.length()).contains(x)).collect()
+    inside
+        .chain(near)
+        .filter(|x| (0.0..=axis.length()).contains(x))
+        .collect()
 }
 
 /// All functions of the axis at `x` with their derivatives, zero outside the span.
@@ -62,7 +80,10 @@ fn all(axis: &KnotVector, x: f64) -> Vec<(f64, f64)> {
     let cell = axis.cell_of(x).expect("inside");
     let mut found = vec![(0.0, 0.0); axis.functions()];
     let mut write = |N: &[f64], dN: &[f64]| {
-        N.iter().zip(dN).enumerate().for_each(|(a, (N, dN))| found[cell + a] = (*N, *dN));
+        N.iter()
+            .zip(dN)
+            .enumerate()
+            .for_each(|(a, (N, dN))| found[cell + a] = (*N, *dN));
     };
     match axis.order() {
         1 => write(&axis.basis::<2>(x, cell).0, &axis.basis::<2>(x, cell).1),
@@ -81,8 +102,15 @@ fn cox_de_boor(axis: &KnotVector, i: usize, degree: usize, x: f64) -> f64 {
     }
     let part = |numerator: f64, width: f64, N: f64| if width > 0.0 { numerator / width * N } else { 0.0 };
     let (left, right) = (axis.knot(i), axis.knot(i + degree + 1));
-    part(x - left, axis.knot(i + degree) - left, cox_de_boor(axis, i, degree - 1, x))
-        + part(right - x, right - axis.knot(i + 1), cox_de_boor(axis, i + 1, degree - 1, x))
+    part(
+        x - left,
+        axis.knot(i + degree) - left,
+        cox_de_boor(axis, i, degree - 1, x),
+    ) + part(
+        right - x,
+        right - axis.knot(i + 1),
+        cox_de_boor(axis, i + 1, degree - 1, x),
+    )
 }
 
 /// Eq. 6 on the same recursion.
@@ -90,7 +118,10 @@ fn derivative(axis: &KnotVector, i: usize, x: f64) -> f64 {
     let q = axis.order();
     let part = |width: f64, N: f64| if width > 0.0 { q as f64 / width * N } else { 0.0 };
     part(axis.knot(i + q) - axis.knot(i), cox_de_boor(axis, i, q - 1, x))
-        - part(axis.knot(i + q + 1) - axis.knot(i + 1), cox_de_boor(axis, i + 1, q - 1, x))
+        - part(
+            axis.knot(i + q + 1) - axis.knot(i + 1),
+            cox_de_boor(axis, i + 1, q - 1, x),
+        )
 }
 
 /// Worst of `error` over all orders, axes and samples.
@@ -120,7 +151,10 @@ fn functions_sum_to_one_and_their_derivatives_to_zero() {
 
 #[test]
 fn functions_are_never_negative() {
-    assert_eq!(worst(|axis, x| all(axis, x).iter().map(|f| -f.0).fold(0.0, f64::max)), 0.0);
+    assert_eq!(
+        worst(|axis, x| all(axis, x).iter().map(|f| -f.0).fold(0.0, f64::max)),
+        0.0
+    );
 }
 
 #[test]
@@ -150,7 +184,10 @@ fn derivatives_agree_with_central_differences_inside_a_span() {
             let (before, after) = (all(&axis, x - step), all(&axis, x + step));
             for (i, (_, dN)) in all(&axis, x).into_iter().enumerate() {
                 let difference = (after[i].0 - before[i].0) / (2.0 * step);
-                assert!((dN - difference).abs() <= 1e-8, "order {order}, function {i} at {x}: {dN} {difference}");
+                assert!(
+                    (dN - difference).abs() <= 1e-8,
+                    "order {order}, function {i} at {x}: {dN} {difference}"
+                );
             }
         }
     }
@@ -161,11 +198,19 @@ fn greville_abscissae_reproduce_the_coordinate() {
     let greville =
         |axis: &KnotVector, i: usize| (1..=axis.order()).map(|k| axis.knot(i + k)).sum::<f64>() / axis.order() as f64;
     let error = worst(|axis, x| {
-        let sum: f64 = all(axis, x).iter().enumerate().map(|(i, f)| f.0 * greville(axis, i)).sum();
+        let sum: f64 = all(axis, x)
+            .iter()
+            .enumerate()
+            .map(|(i, f)| f.0 * greville(axis, i))
+            .sum();
         (sum - x).abs() / axis.length()
     });
     let slope = worst(|axis, x| {
-        let sum: f64 = all(axis, x).iter().enumerate().map(|(i, f)| f.1 * greville(axis, i)).sum();
+        let sum: f64 = all(axis, x)
+            .iter()
+            .enumerate()
+            .map(|(i, f)| f.1 * greville(axis, i))
+            .sum();
         (sum - 1.0).abs() * axis.smallest_cell() / axis.length()
     });
     println!("sum N x = x to {error:.1e}, its slope to {slope:.1e}");
@@ -213,7 +258,10 @@ fn breakpoints_count_from_the_first_so_that_the_origin_does_not_matter() {
     for origin in [1e3, 1e6, 1e8, -1e6] {
         let shifted = breakpoints.map(|x| x + origin);
         for order in 1..=3 {
-            assert_eq!(KnotVector::graded(&shifted, order), KnotVector::graded(&breakpoints, order));
+            assert_eq!(
+                KnotVector::graded(&shifted, order),
+                KnotVector::graded(&breakpoints, order)
+            );
         }
     }
 }
@@ -224,11 +272,17 @@ fn what_is_no_axis_is_refused() {
         assert!(KnotVector::uniform(1.0, 3, order).is_err());
     }
     let bad: [&[f64]; 5] = [&[], &[1.0], &[0.0, 0.0], &[0.0, 2.0, 1.0], &[0.0, f64::NAN]];
-    assert!(bad.iter().all(|breakpoints| KnotVector::graded(breakpoints, 2).is_err()));
+    assert!(
+        bad.iter()
+            .all(|breakpoints| KnotVector::graded(breakpoints, 2).is_err())
+    );
     assert!(KnotVector::uniform(-1.0, 3, 2).is_err() && KnotVector::uniform(f64::NAN, 3, 2).is_err());
     assert!(KnotVector::uniform(1.0, 0, 2).is_err());
     // Increasing, but not when counted from the first; cells and axes whose volumes f64 cannot hold.
     let lost: [&[f64]; 4] = [&[-1e17, 1.0, 1.5], &[0.0, 5e-324], &[0.0, 1e-101], &[-1e308, 1e308]];
-    assert!(lost.iter().all(|breakpoints| KnotVector::graded(breakpoints, 2).is_err()));
+    assert!(
+        lost.iter()
+            .all(|breakpoints| KnotVector::graded(breakpoints, 2).is_err())
+    );
     assert!(KnotVector::uniform(1e-101, 3, 2).is_err() && KnotVector::uniform(1e100, 2, 2).is_err());
 }

@@ -27,7 +27,10 @@ fn block(regime: Regime) -> Scene<PlaneStrain, 2> {
 }
 
 fn run(scene: &mut Scene<PlaneStrain, 2>, schedule: &Schedule, refusals: usize) -> Result<Vec<Accepted>, Failure> {
-    let mut solver = Reluctant { solver: Skyline::new(&scene.model.grid), refusals };
+    let mut solver = Reluctant {
+        solver: Skyline::new(&scene.model.grid),
+        refusals,
+    };
     let halo = scene.halo();
     let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     let mut steps = Vec::new();
@@ -56,7 +59,10 @@ fn whatever_is_cut_every_wanted_time_is_hit_exactly() {
         let steps = run(&mut block(Regime::QuasiStatic), &schedule, refusals).unwrap();
         let times: Vec<f64> = steps.iter().map(|step| step.t).collect();
         assert!(times.is_sorted_by(|a, b| a < b));
-        assert!(wanted.iter().chain(&[3.0]).all(|t| times.contains(t)), "{refusals}: {times:?}");
+        assert!(
+            wanted.iter().chain(&[3.0]).all(|t| times.contains(t)),
+            "{refusals}: {times:?}"
+        );
         assert!((steps.iter().map(|step| step.dt).sum::<f64>() - 3.0).abs() <= 1e-14);
     }
 }
@@ -70,8 +76,17 @@ fn nominal_ends_of_a_schedule_ascend_and_are_a_function_of_time_alone() {
         let schedule = Schedule::new(dt, end, wanted.clone());
         let stations: Vec<f64> = std::iter::successors(schedule.next(0.0), |&t| schedule.next(t)).collect();
         assert_eq!(stations.last(), Some(&end));
-        assert!(stations.windows(2).all(|pair| pair[0] < pair[1] && pair[1] - pair[0] <= dt * (1.0 + 2e-6)));
-        assert!(wanted.iter().filter(|&&t| t < end - 1e-6 * dt).all(|t| stations.contains(t)));
+        assert!(
+            stations
+                .windows(2)
+                .all(|pair| pair[0] < pair[1] && pair[1] - pair[0] <= dt * (1.0 + 2e-6))
+        );
+        assert!(
+            wanted
+                .iter()
+                .filter(|&&t| t < end - 1e-6 * dt)
+                .all(|t| stations.contains(t))
+        );
         let restarted = schedule.next(stations[stations.len() / 2]);
         assert_eq!(restarted, stations.get(stations.len() / 2 + 1).copied());
     }
@@ -97,7 +112,12 @@ fn too_few_iterations_are_a_failure_and_not_an_answer() {
     scene.model.nonlinear = Nonlinear::QuasiNewton(QuasiNewton::Broyden);
     let before = scene.points.clone();
     let failure = run(&mut scene, &Schedule::new(1.0, 1.0, []), 0).unwrap_err();
-    assert!(failure.attempts.iter().all(|error| matches!(error, StepError::NotConverged { iterations: 1, .. })));
+    assert!(
+        failure
+            .attempts
+            .iter()
+            .all(|error| matches!(error, StepError::NotConverged { iterations: 1, .. }))
+    );
     assert_eq!(scene.points, before);
 }
 
@@ -106,12 +126,25 @@ fn a_point_that_leaves_the_grid_whatever_the_step_ends_the_run_with_the_points_u
     let mut scene = block(Regime::Dynamic);
     scene.model.gravity = None;
     scene.model.boundary.supports.clear();
-    scene.points.motion.as_mut().unwrap().v.iter_mut().for_each(|v| *v = [-1.0, 0.0].into());
+    scene
+        .points
+        .motion
+        .as_mut()
+        .unwrap()
+        .v
+        .iter_mut()
+        .for_each(|v| *v = [-1.0, 0.0].into());
     let before = scene.points.clone();
     // Even the smallest step takes the first column of points, 0.125 m from the face, beyond it.
     let failure = run(&mut scene, &Schedule::new(1024.0, 1024.0, []), 0).unwrap_err();
     assert_eq!((failure.t, failure.dt, failure.attempts.len()), (0.0, 1.0, 11));
-    assert!(failure.attempts.iter().all(|error| matches!(error, StepError::Left { count: 16, first: Some((0, _)) })));
+    assert!(failure.attempts.iter().all(|error| matches!(
+        error,
+        StepError::Left {
+            count: 16,
+            first: Some((0, _))
+        }
+    )));
     assert_eq!(scene.points, before);
 }
 
@@ -121,10 +154,25 @@ fn a_step_that_throws_points_out_of_the_grid_is_cut_and_ends_where_they_are_abou
     let mut scene = block(Regime::Dynamic);
     scene.model.gravity = None;
     scene.model.boundary.supports.clear();
-    scene.points.motion.as_mut().unwrap().v.iter_mut().for_each(|v| *v = [-1.0, 0.0].into());
+    scene
+        .points
+        .motion
+        .as_mut()
+        .unwrap()
+        .v
+        .iter_mut()
+        .for_each(|v| *v = [-1.0, 0.0].into());
     let failure = run(&mut scene, &Schedule::new(1.0, 1.0, []), 0).unwrap_err();
-    assert!((0.125 - 2.0 / 1024.0..=0.125).contains(&failure.t) && failure.dt == 1.0 / 1024.0, "{failure:?}");
-    assert!(failure.attempts.iter().all(|error| matches!(error, StepError::Left { .. })));
+    assert!(
+        (0.125 - 2.0 / 1024.0..=0.125).contains(&failure.t) && failure.dt == 1.0 / 1024.0,
+        "{failure:?}"
+    );
+    assert!(
+        failure
+            .attempts
+            .iter()
+            .all(|error| matches!(error, StepError::Left { .. }))
+    );
     assert!(scene.points.x.iter().all(|x| x[0] >= 0.0) && scene.points.x[0][0] < 2.0 / 1024.0);
 }
 
@@ -135,12 +183,23 @@ fn a_grid_that_empties_through_its_outlets_ends_the_run_and_says_so() {
     scene.model.gravity = None;
     scene.model.boundary.supports.clear();
     scene.model.boundary.outlets = vec![(0, false)];
-    scene.points.motion.as_mut().unwrap().v.iter_mut().for_each(|v| *v = [-1.0, 0.0].into());
+    scene
+        .points
+        .motion
+        .as_mut()
+        .unwrap()
+        .v
+        .iter_mut()
+        .for_each(|v| *v = [-1.0, 0.0].into());
     let failure = run(&mut scene, &Schedule::new(1.0 / 64.0, 2.0, []), 0).unwrap_err();
     let last = failure.attempts.last().expect("an attempt");
     assert!(matches!(last, StepError::Emptied { count: 4 }), "{failure:?}");
     assert!(last.to_string().contains("no material is left"), "{last}");
-    assert!((failure.t - 0.875).abs() < 1e-3 && scene.points.len() == 4, "{}", failure.t);
+    assert!(
+        (failure.t - 0.875).abs() < 1e-3 && scene.points.len() == 4,
+        "{}",
+        failure.t
+    );
 }
 
 #[test]
@@ -195,20 +254,32 @@ impl Halo for Impatient {
 }
 
 fn impatient(scene: &Scene<PlaneStrain, 2>, interrupted_in: usize) -> Impatient {
-    Impatient { halo: scene.halo(), reductions: Cell::new(0), interrupted_in, convinced: Cell::new(true) }
+    Impatient {
+        halo: scene.halo(),
+        reductions: Cell::new(0),
+        interrupted_in,
+        convinced: Cell::new(true),
+    }
 }
 
 /// Whenever it is given up: the points are those before it, and the steps after it those of a run without.
 #[test]
 fn a_step_that_is_given_up_on_request_has_never_been() {
-    for nonlinear in [Nonlinear::Auto, Nonlinear::QuasiNewton(QuasiNewton::Broyden), Nonlinear::Newton] {
+    for nonlinear in [
+        Nonlinear::Auto,
+        Nonlinear::QuasiNewton(QuasiNewton::Broyden),
+        Nonlinear::Newton,
+    ] {
         let (schedule, mut whole) = (Schedule::new(1.0, 2.0, []), block(Regime::Dynamic));
         whole.model.nonlinear = nonlinear;
         let mut given_up = 0;
         for interrupted_in in 1..40 {
             let mut scene = whole.clone();
             let halo = impatient(&scene, interrupted_in);
-            let mut solver = Reluctant { solver: Skyline::new(&scene.model.grid), refusals: 1 };
+            let mut solver = Reluctant {
+                solver: Skyline::new(&scene.model.grid),
+                refusals: 1,
+            };
             let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
             let mut lengths = Vec::new();
             loop {
@@ -239,22 +310,35 @@ fn a_step_that_is_given_up_on_request_has_never_been() {
 /// Steps of all methods, each given up once when it has converged.
 #[test]
 fn a_converged_step_that_is_rejected_has_never_been() {
-    for nonlinear in [Nonlinear::Auto, Nonlinear::QuasiNewton(QuasiNewton::Broyden), Nonlinear::Newton] {
+    for nonlinear in [
+        Nonlinear::Auto,
+        Nonlinear::QuasiNewton(QuasiNewton::Broyden),
+        Nonlinear::Newton,
+    ] {
         let (schedule, mut scene) = (Schedule::new(1.0, 4.0, []), block(Regime::Dynamic));
         scene.model.nonlinear = nonlinear;
         let mut expected = scene.clone();
         let halo = impatient(&scene, usize::MAX);
-        let mut solver = Reluctant { solver: Skyline::new(&scene.model.grid), refusals: 0 };
+        let mut solver = Reluctant {
+            solver: Skyline::new(&scene.model.grid),
+            refusals: 0,
+        };
         let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
         loop {
             halo.convinced.set(false);
             let before = scene.points.clone();
             match stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
                 None => break,
-                found => assert!(found.unwrap().is_err_and(|failure| failure.is_interruption()), "rejected"),
+                found => assert!(
+                    found.unwrap().is_err_and(|failure| failure.is_interruption()),
+                    "rejected"
+                ),
             }
             assert_eq!(scene.points, before);
-            stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver).unwrap().unwrap();
+            stepper
+                .advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver)
+                .unwrap()
+                .unwrap();
             scene.points.sort_by_cell(&scene.model.grid);
         }
         assert_eq!(run(&mut expected, &schedule, 0).unwrap().len(), 4);

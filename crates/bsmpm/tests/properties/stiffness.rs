@@ -24,7 +24,12 @@ fn body<K: Kinematics<D>, const D: usize>(order: usize, cohesion: f64, regime: R
 
 /// The same, averaged over pairs of cells where none is cut: at one end, as it fills the grid's height.
 fn paired<K: Kinematics<D>, const D: usize>(order: usize, cohesion: f64, regime: Regime) -> Scene<K, D> {
-    averaged(Stabilisation::SubgridFBar, (if D == 2 { 10 } else { 7 }, 2), (order, cohesion), regime)
+    averaged(
+        Stabilisation::SubgridFBar,
+        (if D == 2 { 10 } else { 7 }, 2),
+        (order, cohesion),
+        regime,
+    )
 }
 
 /// In a grid of so many cells along the first axis, all but one of which it fills, and along the others, of which it
@@ -35,14 +40,28 @@ fn averaged<K: Kinematics<D>, const D: usize>(
     (order, cohesion): (usize, f64),
     regime: Regime,
 ) -> Scene<K, D> {
-    let soil = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.49 }, 0.5, 0.1, cohesion);
+    let soil = MohrCoulomb::new(
+        Elastic {
+            young: 1000.0,
+            poisson: 0.49,
+        },
+        0.5,
+        0.1,
+        cohesion,
+    );
     let axes = std::array::from_fn(|k| axis(1.0, if k == 0 { length } else { width }, order));
     let scene = Scene::<K, D>::new(axes, Material::MohrCoulomb(soil), regime);
     let cells = std::array::from_fn(|k| 0..if k == 0 { length - 1 } else { 2 });
-    let mut scene =
-        scene.stabilised(method).body(cells, 3, 1.0, |_| Vector::zeros()).support(Support::fixed(D - 1, false));
+    let mut scene = scene
+        .stabilised(method)
+        .body(cells, 3, 1.0, |_| Vector::zeros())
+        .support(Support::fixed(D - 1, false));
     let mut random = Random::new(3);
-    scene.points.x.iter_mut().for_each(|x| *x += random.vector::<D>() * 0.02);
+    scene
+        .points
+        .x
+        .iter_mut()
+        .for_each(|x| *x += random.vector::<D>() * 0.02);
     scene.points.sort_by_cell(&scene.model.grid);
     scene
 }
@@ -66,10 +85,21 @@ fn products<K: Kinematics<D>, const D: usize>(
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
     let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
-    let pieces = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
+    let pieces = Problem {
+        model,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points,
+        halo: &halo,
+    };
     let mut random = Random::new(11);
     let mut free = |size: f64| -> Vec<f64> {
-        nodes.free.iter().map(|&free| if free { size * random.signed() } else { 0.0 }).collect()
+        nodes
+            .free
+            .iter()
+            .map(|&free| if free { size * random.signed() } else { 0.0 })
+            .collect()
     };
     let (u, v) = (free(size), free(1.0));
     let residual = Residual::of(&pieces, &u);
@@ -89,16 +119,27 @@ fn products<K: Kinematics<D>, const D: usize>(
 fn error(image: &[f64], product: &[f64]) -> f64 {
     let size = product.iter().fold(0.0_f64, |size, force| size.max(force.abs()));
     assert!(size > 0.0);
-    image.iter().zip(product).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size
+    image
+        .iter()
+        .zip(product)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+        / size
 }
 
 /// F-bar's average included, which reaches over q cells.
 fn is_the_derivative_of_elastic_material<K: Kinematics<D>, const D: usize>(order: usize) {
-    for scene in [body::<K, D>(order, 1e6, Regime::Dynamic), paired(order, 1e6, Regime::Dynamic)] {
+    for scene in [
+        body::<K, D>(order, 1e6, Regime::Dynamic),
+        paired(order, 1e6, Regime::Dynamic),
+    ] {
         for kind in [Kind::Factorised, Kind::General] {
             let (_, image, product) = products(&scene, 0.0, kind);
             let error = error(&image, &product);
-            println!("{:?}, {D} dimensions, order {order}: {error:e}", scene.model.stabilisation);
+            println!(
+                "{:?}, {D} dimensions, order {order}: {error:e}",
+                scene.model.stabilisation
+            );
             assert!(error <= 1e-12, "order {order}: {error:e}"); // measured 1e-15
         }
     }
@@ -116,7 +157,15 @@ fn the_factorised_stiffness_is_the_derivative_of_elastic_material() {
 /// Each averaged by itself: no function sees a mean of two stiffnesses.
 #[test]
 fn it_is_the_derivative_of_two_elastic_materials_that_meet_inside_cells() {
-    let stiff = MohrCoulomb::new(Elastic { young: 1e5, poisson: 0.3 }, 0.5, 0.1, 1e8);
+    let stiff = MohrCoulomb::new(
+        Elastic {
+            young: 1e5,
+            poisson: 0.3,
+        },
+        0.5,
+        0.1,
+        1e8,
+    );
     for order in [1, 2, 3] {
         let scene = body::<PlaneStrain, 2>(order, 1e6, Regime::Dynamic)
             .with(Material::MohrCoulomb(stiff.clone()), |x| x[0] > 0.4 + 0.5 * x[1]);
@@ -137,13 +186,19 @@ fn it_is_positive_where_everything_yields() {
         let order = 2 * scene.model.grid.nodes();
         let skew = |k: usize| matrix.entry(k / order, k % order) - matrix.entry(k % order, k / order);
         let largest = (0..order).map(|c| matrix.entry(c, c)).fold(0.0, f64::max);
-        assert!((0..order * order).all(|k| skew(k).abs() <= 1e-12 * largest), "symmetric");
+        assert!(
+            (0..order * order).all(|k| skew(k).abs() <= 1e-12 * largest),
+            "symmetric"
+        );
         matrix.conditions()[0]
     };
     let [elastic, yielding] = [1e6, 1e-6].map(condition);
     println!("condition: elastic {elastic:.1e}, yielding {yielding:.1e}");
     // A tenth of the elastic stiffness is left everywhere, so the condition is ten times the elastic one at most.
-    assert!(elastic < yielding && yielding <= 10.0 * elastic, "{elastic:e} {yielding:e}");
+    assert!(
+        elastic < yielding && yielding <= 10.0 * elastic,
+        "{elastic:e} {yielding:e}"
+    );
 }
 
 /// The general matrix of Newton's method, which yields, is deformed and is averaged: it is the product.

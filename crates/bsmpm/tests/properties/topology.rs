@@ -27,8 +27,16 @@ fn table<const D: usize>(grid: &Grid<D>, shape: &Shape<D>) -> Vec<Vec<([usize; D
     let mut rows = Vec::new();
     for patch in shape.patches() {
         for p in patch.points.clone() {
-            let nodes = shape.offsets().iter().map(|offset| grid.node_at(patch.first_node + offset));
-            rows.push(nodes.zip(shape.of(p)).map(|(node, (N, grad))| (node, N, grad)).collect());
+            let nodes = shape
+                .offsets()
+                .iter()
+                .map(|offset| grid.node_at(patch.first_node + offset));
+            rows.push(
+                nodes
+                    .zip(shape.of(p))
+                    .map(|(node, (N, grad))| (node, N, grad))
+                    .collect(),
+            );
         }
     }
     rows
@@ -40,7 +48,13 @@ fn fig_1_point_to_node_connectivity() {
     let points = points_at(&grid, &[Vector::from([1.5, 1.5]), Vector::from([3.5, 2.5])]);
     let shape = Shape::at(&grid, &points).unwrap();
     let found: Vec<Vec<usize>> = (shape.patches().iter())
-        .map(|patch| shape.offsets().iter().map(|offset| patch.first_node + offset + 1).collect())
+        .map(|patch| {
+            shape
+                .offsets()
+                .iter()
+                .map(|offset| patch.first_node + offset + 1)
+                .collect()
+        })
         .collect();
     assert_eq!(found[0], [7, 8, 9, 12, 13, 14, 17, 18, 19]);
     assert_eq!(found[1], [18, 19, 20, 23, 24, 25, 28, 29, 30]);
@@ -56,9 +70,14 @@ fn partition_of_unity<const D: usize>(axes: [KnotVector; D]) -> (f64, f64) {
     let sums = (0..shape.len()).map(|p| {
         let of = shape.of(p);
         let gradient = of.iter().fold(Vector::<D>::zeros(), |sum, (_, grad)| sum + grad);
-        ((of.iter().map(|(N, _)| N).sum::<f64>() - 1.0).abs(), gradient.amax() * grid.smallest_edge())
+        (
+            (of.iter().map(|(N, _)| N).sum::<f64>() - 1.0).abs(),
+            gradient.amax() * grid.smallest_edge(),
+        )
     });
-    sums.fold((0.0, 0.0), |worst, (unity, gradient)| (unity.max(worst.0), gradient.max(worst.1)))
+    sums.fold((0.0, 0.0), |worst, (unity, gradient)| {
+        (unity.max(worst.0), gradient.max(worst.1))
+    })
 }
 
 #[test]
@@ -79,8 +98,9 @@ fn functions_sum_to_one_and_gradients_to_zero_in_one_two_and_three_dimensions() 
 fn windows_agree_with_the_whole<const D: usize>(axes: [KnotVector; D]) {
     let whole = Grid::new(axes).unwrap();
     let mut random = Random::new(7);
-    let mut places: Vec<Vector<D>> =
-        (0..300).map(|_| Vector::from_fn(|k, _| random.unit() * whole.axes()[k].length())).collect();
+    let mut places: Vec<Vector<D>> = (0..300)
+        .map(|_| Vector::from_fn(|k, _| random.unit() * whole.axes()[k].length()))
+        .collect();
     places.push(Vector::from_fn(|k, _| whole.axes()[k].length()));
     places.push(Vector::from_fn(|k, _| whole.axes()[k].breakpoint(1)));
     let cells = whole.axes()[0].cells();
@@ -99,7 +119,12 @@ fn windows_agree_with_the_whole<const D: usize>(axes: [KnotVector; D]) {
         let global = Shape::at(&whole, &in_whole).unwrap();
         assert_eq!(table(&window, &local), table(&whole, &global)); // bit by bit
         let last = local.offsets()[local.offsets().len() - 1];
-        assert!(local.patches().iter().all(|patch| patch.first_node + last < window.nodes()));
+        assert!(
+            local
+                .patches()
+                .iter()
+                .all(|patch| patch.first_node + last < window.nodes())
+        );
     }
 }
 
@@ -123,11 +148,18 @@ fn cell_and_node_numbers_are_inverse_to_each_other() {
     assert_eq!(whole.window(2..4).layers(), 2..6);
     let part = whole.window_of([2..4, 1..2, 0..2]);
     let layers = part.nodes_within(&[3..5, 1..4]);
-    assert_eq!((layers.len(), layers[0].clone()), (1, 12..36), "whole layers are one range");
+    assert_eq!(
+        (layers.len(), layers[0].clone()),
+        (1, 12..36),
+        "whole layers are one range"
+    );
     assert_eq!(part.nodes_within(&[2..4, 2..3]), [4..8, 16..20]);
     assert!(part.nodes_within(&[3..3, 1..2]).is_empty() && part.is_parted() && !whole.window(2..4).is_parted());
     let reaching = whole.clone().reaching(1);
-    assert_eq!([2..4, 3..5].map(|columns| reaching.window(columns).layers()), [2..7, 3..7]);
+    assert_eq!(
+        [2..4, 3..5].map(|columns| reaching.window(columns).layers()),
+        [2..7, 3..7]
+    );
 }
 
 #[test]
@@ -144,5 +176,8 @@ fn a_point_outside_the_grid_or_the_window_is_an_error_that_names_it() {
 
 #[test]
 fn axes_of_different_order_are_refused() {
-    assert_eq!(Grid::new([axis(1.0, 4, 2), axis(1.0, 4, 1)]).err(), Some(GridError::MixedOrders));
+    assert_eq!(
+        Grid::new([axis(1.0, 4, 2), axis(1.0, 4, 1)]).err(),
+        Some(GridError::MixedOrders)
+    );
 }

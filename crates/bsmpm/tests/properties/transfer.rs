@@ -33,7 +33,9 @@ fn dot(a: &[f64], b: &[f64]) -> (f64, f64) {
 
 /// The elements of a gradient, row by row.
 fn elements<K: Kinematics<D>, const D: usize>(gradient: &K::Gradient) -> Vec<f64> {
-    (0..D).flat_map(|i| (0..K::Gradient::SLOPES).map(move |j| gradient[(i, j)])).collect()
+    (0..D)
+        .flat_map(|i| (0..K::Gradient::SLOPES).map(move |j| gradient[(i, j)]))
+        .collect()
 }
 
 /// Largest |<B u, P> - <u, B^T P>| relative to the sum of the terms' sizes: gradients, then values.
@@ -93,9 +95,13 @@ fn linear_fields_are_exact<K: Kinematics<D>, const D: usize>(order: usize) {
     let (H, shift) = (random.square::<D>(), random.vector::<D>());
     let u = linear_field(&scene, &H, &shift);
     let largest = |errors: Vec<f64>| errors.into_iter().fold(0.0, f64::max);
-    let gradient = largest(transfer::gradients::<K, D, _>((&shape, &scene.points.x), &u, |p, found| {
-        (K::gradient::<f64>(&found) - K::gradient::<f64>(&of_linear::<K, D>(&H, &shift, &scene.points.x[p]))).amax()
-    }));
+    let gradient = largest(transfer::gradients::<K, D, _>(
+        (&shape, &scene.points.x),
+        &u,
+        |p, found| {
+            (K::gradient::<f64>(&found) - K::gradient::<f64>(&of_linear::<K, D>(&H, &shift, &scene.points.x[p]))).amax()
+        },
+    ));
     let value = largest(transfer::to_points::<D, D, _>(&shape, &u, |p, found| {
         let exact = H * scene.points.x[p] + shift;
         (Vector::from(found) - exact).amax()
@@ -112,7 +118,9 @@ fn linear_field<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, H: &Squar
         (1..=knots.order()).map(|j| knots.knot(i + j)).sum::<f64>() / knots.order() as f64
     };
     let at = |node: usize| Vector::<D>::from_fn(|k, _| greville(k, grid.node_at(node)[k]));
-    (0..grid.nodes()).flat_map(|node| <[f64; D]>::from(H * at(node) + shift)).collect()
+    (0..grid.nodes())
+        .flat_map(|node| <[f64; D]>::from(H * at(node) + shift))
+        .collect()
 }
 
 #[test]
@@ -126,7 +134,11 @@ fn a_linear_displacement_field_has_its_exact_gradient_at_every_point() {
 
 fn the_mapping_conserves<K: Kinematics<D>, const D: usize>(order: usize) {
     let mut scene = scattered::<K, D>(order);
-    scene.model.gravity = Some(Gravity { acceleration: Vector::repeat(-9.81), ramp: 0.0, starts_vertical: false });
+    scene.model.gravity = Some(Gravity {
+        acceleration: Vector::repeat(-9.81),
+        ramp: 0.0,
+        starts_vertical: false,
+    });
     let (points, halo) = (&scene.points, scene.halo());
     let shape = Shape::at(&scene.model.grid, points).unwrap();
     let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 0.1), &halo).expect("no loads");
@@ -136,7 +148,12 @@ fn the_mapping_conserves<K: Kinematics<D>, const D: usize>(order: usize) {
     let v = &nodes.inertia.as_ref().unwrap().v;
     for c in 0..D {
         let at_points: f64 = (0..points.len()).map(|p| points.mass[p] * motion.v[p][c]).sum();
-        let at_nodes: f64 = nodes.weight.iter().zip(v[c..].iter().step_by(D)).map(|(m, v)| m * v).sum();
+        let at_nodes: f64 = nodes
+            .weight
+            .iter()
+            .zip(v[c..].iter().step_by(D))
+            .map(|(m, v)| m * v)
+            .sum();
         worst[1] = worst[1].max((at_nodes - at_points).abs() / (4.0 * mass)); // speeds are up to 4 m/s
         let weight: f64 = nodes.f_ext[c..].iter().step_by(D).sum();
         worst[2] = worst[2].max((weight / (-9.81 * mass) - 1.0).abs());
@@ -166,7 +183,12 @@ fn squared_gradients_are_the_trace_of_the_moment() {
             }
         }
     }
-    assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 1e-13 * b.abs()));
+    assert!(
+        found
+            .iter()
+            .zip(&expected)
+            .all(|(a, b)| (a - b).abs() <= 1e-13 * b.abs())
+    );
 }
 
 /// Sums of the windows of any cut, each layer adding its columns in their order, are those of the whole grid to the
@@ -182,11 +204,17 @@ fn sums_of_windows<K: Kinematics<D>, const D: usize>(order: usize) {
         let window = grid.window(columns.clone());
         let mut points = scene.points.clone();
         let column = |p: usize| grid.locate(&scene.points.x[p]).expect("inside")[0];
-        let inside: Vec<u32> = (0..points.len()).filter(|&p| columns.contains(&column(p))).map(|p| p as u32).collect();
+        let inside: Vec<u32> = (0..points.len())
+            .filter(|&p| columns.contains(&column(p)))
+            .map(|p| p as u32)
+            .collect();
         points.columns().into_iter().for_each(|array| array.reorder(&inside));
         points.sort_by_cell(&window);
         let shape = Shape::at(&window, &points).unwrap();
-        (columns.start, transfer::divergence::<K, D>((&shape, &points.x), |p| force(p, &points)))
+        (
+            columns.start,
+            transfer::divergence::<K, D>((&shape, &points.x), |p| force(p, &points)),
+        )
     };
     let (_, whole) = of_window(all.clone());
     let whole = whole.alone();
@@ -198,10 +226,16 @@ fn sums_of_windows<K: Kinematics<D>, const D: usize>(order: usize) {
             for (first, part) in &parts {
                 for column in 0..all.end - first {
                     let found = (number >= *first).then(|| part.of(column, number - first)).flatten();
-                    sum.iter_mut().zip(found.unwrap_or(&[])).for_each(|(sum, value)| *sum += value);
+                    sum.iter_mut()
+                        .zip(found.unwrap_or(&[]))
+                        .for_each(|(sum, value)| *sum += value);
                 }
             }
-            assert_eq!(sum, whole[number * layer..(number + 1) * layer], "layer {number}, cut {cut}, order {order}");
+            assert_eq!(
+                sum,
+                whole[number * layer..(number + 1) * layer],
+                "layer {number}, cut {cut}, order {order}"
+            );
         }
     }
 }
@@ -219,7 +253,10 @@ fn nodal_sums_do_not_depend_on_the_number_of_threads() {
     let scene = scattered::<PlaneStrain, 2>(2);
     let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
     let sums = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("threads start");
         pool.install(|| {
             let nodal = transfer::to_nodes(&shape, |p| [scene.points.mass[p]]).alone();
             (transfer::to_points::<2, 1, _>(&shape, &nodal, |_, [mean]| mean), nodal)

@@ -50,7 +50,9 @@ pub fn axis(cell: f64, cells: usize, order: usize) -> KnotVector {
 
 /// Hencky elasticity.
 pub fn hencky(young: f64, poisson: f64) -> Material {
-    Material::Hencky(Hencky { elastic: Elastic { young, poisson } })
+    Material::Hencky(Hencky {
+        elastic: Elastic { young, poisson },
+    })
 }
 
 impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
@@ -72,14 +74,21 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             quadrature: Quadrature::Points,
             extended_splines: ExtendedSplines::Off,
             background: None,
-            criteria: Criteria { energy: 1e-14, force: 1e-10, max_iterations: 200 },
+            criteria: Criteria {
+                energy: 1e-14,
+                force: 1e-10,
+                max_iterations: 200,
+            },
             damping: Vec::new(),
             nonlinear: Nonlinear::default(),
             water: None,
             balances_energy: false,
             kinematics: PhantomData,
         };
-        Self { model, points: Points::from_seeds([], regime == Regime::Dynamic) }
+        Self {
+            model,
+            points: Points::from_seeds([], regime == Regime::Dynamic),
+        }
     }
 
     /// Fills the cells of a box with `per_axis`^D points each, of `density` and with velocity `v(x)`.
@@ -100,7 +109,9 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
                     let farther = K::spread(axis, [lower, upper], per_axis) - 1.0;
                     (middle + (middle - 0.5 * (lower + upper)) * farther, length)
                 };
-                (cells[axis].start * per_axis..cells[axis].end * per_axis).map(place).collect()
+                (cells[axis].start * per_axis..cells[axis].end * per_axis)
+                    .map(place)
+                    .collect()
             })
             .collect();
         let held = self.points.len() as u64;
@@ -115,7 +126,14 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
                 volume *= length;
             }
             let volume = volume * K::weight(&x);
-            Seed { id, material: 0, x, volume, mass: density * volume, v: v(&x) }
+            Seed {
+                id,
+                material: 0,
+                x,
+                volume,
+                mass: density * volume,
+                v: v(&x),
+            }
         };
         let mut added = Points::from_seeds((0..total).map(seed), self.points.motion.is_some());
         append(&mut self.points, &mut added);
@@ -137,8 +155,14 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
 
     /// Keeps the points that `wanted` names by their place.
     pub fn cut(mut self, wanted: impl Fn(&Vector<D>) -> bool) -> Self {
-        let kept: Vec<u32> = (0..self.points.len()).filter(|&p| wanted(&self.points.x[p])).map(|p| p as u32).collect();
-        self.points.columns().into_iter().for_each(|column| column.reorder(&kept));
+        let kept: Vec<u32> = (0..self.points.len())
+            .filter(|&p| wanted(&self.points.x[p]))
+            .map(|p| p as u32)
+            .collect();
+        self.points
+            .columns()
+            .into_iter()
+            .for_each(|column| column.reorder(&kept));
         self
     }
 
@@ -177,8 +201,11 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
 
     /// Rollers at both ends of the axes.
     pub fn rollers(self, axes: impl IntoIterator<Item = usize>) -> Self {
-        axes.into_iter()
-            .fold(self, |scene, axis| scene.support(Support::roller(axis, false)).support(Support::roller(axis, true)))
+        axes.into_iter().fold(self, |scene, axis| {
+            scene
+                .support(Support::roller(axis, false))
+                .support(Support::roller(axis, true))
+        })
     }
 
     /// Points out of their lattice by up to 2e-2 m, each with an elastic strain of its own, about 1e-2.
@@ -187,7 +214,10 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             self.points.x[p] += random.vector::<D>() * 0.02;
             let strain: Vec<f64> = random.array(6).iter().map(|r| 0.01 * r).collect();
             let strain = Symmetric(std::array::from_fn(|c| if D == 2 && c > 3 { 0.0 } else { strain[c] }));
-            self.points.b_e.set(p, Symmetric::of(&(Tensor::from_diagonal_element(0.995) + strain.full())));
+            self.points.b_e.set(
+                p,
+                Symmetric::of(&(Tensor::from_diagonal_element(0.995) + strain.full())),
+            );
         }
         self
     }
@@ -196,7 +226,11 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     pub fn gravity(mut self, g: f64, ramp: f64) -> Self {
         let mut acceleration = Vector::zeros();
         acceleration[D - 1] = -g;
-        self.model.gravity = Some(Gravity { acceleration, ramp, starts_vertical: false });
+        self.model.gravity = Some(Gravity {
+            acceleration,
+            ramp,
+            starts_vertical: false,
+        });
         self
     }
 
@@ -229,7 +263,9 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
 
     /// The halo of one rank.
     pub fn halo(&self) -> Alone {
-        Alone { nodes: self.model.grid.nodes() }
+        Alone {
+            nodes: self.model.grid.nodes(),
+        }
     }
 
     /// Steps to `end` with nominal steps `dt`; `watch` sees the state after every accepted one. Panics on a failure.

@@ -21,12 +21,22 @@ impl Skyline {
     /// For the systems of `grid`, of the displacements and beside it of pore pressures.
     pub fn new<const D: usize>(grid: &Grid<D>) -> Self {
         let water = Some(Box::new(Self::of_patches(1, grid.lowered_offsets())));
-        Self { water, ..Self::of_patches(D, grid.offsets()) }
+        Self {
+            water,
+            ..Self::of_patches(D, grid.offsets())
+        }
     }
 
     /// For patches whose nodes stand at `offsets` from their first one, with `components` unknowns a node.
     pub fn of_patches(components: usize, offsets: Vec<usize>) -> Self {
-        Self { components, offsets, number: Vec::new(), first: Vec::new(), entries: Vec::new(), water: None }
+        Self {
+            components,
+            offsets,
+            number: Vec::new(),
+            first: Vec::new(),
+            entries: Vec::new(),
+            water: None,
+        }
     }
 
     fn size(&self) -> usize {
@@ -124,12 +134,18 @@ impl LinearSolver for Skyline {
         }
         for i in (0..n).rev() {
             let (row, value) = (&self.entries[i * n + self.first[i]..i * n + i], x[i]);
-            x[self.first[i]..i].iter_mut().zip(row).for_each(|(x, l)| *x -= l * value);
+            x[self.first[i]..i]
+                .iter_mut()
+                .zip(row)
+                .for_each(|(x, l)| *x -= l * value);
         }
         for (number, value) in self.number.iter().zip(solution) {
             *value = number.map_or(0.0, |i| x[i]);
         }
-        Ok(Solved { iterations: 1, ..Solved::default() })
+        Ok(Solved {
+            iterations: 1,
+            ..Solved::default()
+        })
     }
 
     fn water(&mut self) -> Option<&mut dyn LinearSolver> {
@@ -151,13 +167,21 @@ impl LinearSolver for Skyline {
             unit[c] = 1.0;
             product(&unit, &mut image);
             unit[c] = 0.0;
-            free.iter().enumerate().for_each(|(row, &c)| matrix[(row, column)] = image[c]);
+            free.iter()
+                .enumerate()
+                .for_each(|(row, &c)| matrix[(row, column)] = image[c]);
         }
         let right = DVector::from_iterator(free.len(), free.iter().map(|&c| rhs[c]));
-        let x = matrix.lu().solve(&right).ok_or_else(|| SolveError::Failed("singular".into()))?;
+        let x = matrix
+            .lu()
+            .solve(&right)
+            .ok_or_else(|| SolveError::Failed("singular".into()))?;
         solution.fill(0.0);
         free.iter().zip(x.iter()).for_each(|(&c, x)| solution[c] = *x);
-        Ok(Krylov { iterations: free.len(), residual: 0.0 })
+        Ok(Krylov {
+            iterations: free.len(),
+            residual: 0.0,
+        })
     }
 }
 
@@ -221,17 +245,29 @@ impl Dense {
 
     /// For patches whose nodes stand at `offsets` from their first one, with `components` unknowns a node.
     pub fn of_patches(components: usize, offsets: Vec<usize>) -> Self {
-        Self { components, offsets, number: Vec::new(), matrix: DMatrix::zeros(0, 0) }
+        Self {
+            components,
+            offsets,
+            number: Vec::new(),
+            matrix: DMatrix::zeros(0, 0),
+        }
     }
 
     /// For the systems of pore pressures of `grid`.
     pub fn of_pressures<const D: usize>(grid: &Grid<D>) -> Self {
-        Self { components: 1, offsets: grid.lowered_offsets(), number: Vec::new(), matrix: DMatrix::zeros(0, 0) }
+        Self {
+            components: 1,
+            offsets: grid.lowered_offsets(),
+            number: Vec::new(),
+            matrix: DMatrix::zeros(0, 0),
+        }
     }
 
     /// Entry of two nodal components; zero where one of them is no unknown.
     pub fn entry(&self, row: usize, column: usize) -> f64 {
-        self.number[row].zip(self.number[column]).map_or(0.0, |at| self.matrix[at])
+        self.number[row]
+            .zip(self.number[column])
+            .map_or(0.0, |at| self.matrix[at])
     }
 
     /// Product with a nodal array, zero where it is not free.
@@ -239,17 +275,26 @@ impl Dense {
         let free = |(number, x): (&Option<usize>, &f64)| number.map(|_| *x);
         let x = DVector::from_iterator(self.matrix.nrows(), self.number.iter().zip(x).filter_map(free));
         let image = &self.matrix * x;
-        self.number.iter().map(|number| number.map_or(0.0, |row| image[row])).collect()
+        self.number
+            .iter()
+            .map(|number| number.map_or(0.0, |row| image[row]))
+            .collect()
     }
 
     /// Largest over smallest eigenvalue of the symmetric matrix: as it is, and scaled to a unit diagonal. Infinite if
     /// it is not positive definite to rounding.
     pub fn conditions(&self) -> [f64; 2] {
         let diagonal = self.matrix.diagonal();
-        let scaled = self.matrix.map_with_location(|i, j, value| value / (diagonal[i] * diagonal[j]).sqrt());
+        let scaled = self
+            .matrix
+            .map_with_location(|i, j, value| value / (diagonal[i] * diagonal[j]).sqrt());
         [self.matrix.clone(), scaled].map(|matrix| {
             let values = matrix.symmetric_eigenvalues();
-            if values.min() > 0.0 { values.max() / values.min() } else { f64::INFINITY }
+            if values.min() > 0.0 {
+                values.max() / values.min()
+            } else {
+                f64::INFINITY
+            }
         })
     }
 }

@@ -33,7 +33,11 @@ fn pulsed<K: Kinematics<2>>(n: usize, along: usize, kind: usize) -> Scene<K, 2> 
     let pulse = |x: &Vector<2>| {
         let off = (x[along] - 10.0) / 4.0;
         let mut v = Vector::zeros();
-        v[moves] = if off.abs() < 1.0 { 1e-4 * (0.5 * PI * off).cos().powi(2) } else { 0.0 };
+        v[moves] = if off.abs() < 1.0 {
+            1e-4 * (0.5 * PI * off).cos().powi(2)
+        } else {
+            0.0
+        };
         v
     };
     let held = std::array::from_fn(|component| (component != moves).then_some(0.0));
@@ -60,7 +64,10 @@ fn left<K: Kinematics<2>>(mut scene: Scene<K, 2>, (n, kind): (usize, usize)) -> 
         books.flows += accepted.report.energy.expect("it is balanced");
         now = Stored::of(&model, (points, 0.0), &halo);
     });
-    ((now.kinetic + now.elastic) / start.kinetic, books.closure(now) / start.kinetic)
+    (
+        (now.kinetic + now.elastic) / start.kinetic,
+        books.closure(now) / start.kinetic,
+    )
 }
 
 /// Lysmer and Kuhlemeyer (1969): viscous boundaries absorb plane waves of normal incidence completely.
@@ -69,7 +76,10 @@ fn plane_waves_of_either_kind_leave_through_any_face() {
     for (along, kind) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
         let [(coarse, _), (fine, closure)] = [40, 80].map(|n| left(pulsed::<PlaneStrain>(n, along, kind), (n, kind)));
         // 9.7e-4 and 1.7e-5; of 20 cells 4.3e-2.
-        assert!(coarse < 1.1e-3 && fine < 2e-5, "axis {along}, kind {kind}: {coarse:e}, {fine:e}");
+        assert!(
+            coarse < 1.1e-3 && fine < 2e-5,
+            "axis {along}, kind {kind}: {coarse:e}, {fine:e}"
+        );
         assert!(closure.abs() < 1e-9, "{closure:e}");
     }
     let mut newton = pulsed::<PlaneStrain>(40, 0, 0);
@@ -108,11 +118,15 @@ fn a_round_side_has_the_impedance_of_its_radius() {
 /// A column of 10 m of ground at rest on a base that absorbs, between rollers.
 fn column(n: usize) -> Scene<PlaneStrain, 2> {
     let h = 10.0 / n as f64;
-    let mut scene = Scene::new([axis(h, 2, 2), axis(h, n + 2, 2)], hencky(YOUNG, POISSON), Regime::Dynamic)
-        .body([0..2, 0..n], 3, RHO, |_| Vector::zeros())
-        .rollers([0])
-        .support(Support::absorbing(1, false))
-        .gravity(10.0, 0.0);
+    let mut scene = Scene::new(
+        [axis(h, 2, 2), axis(h, n + 2, 2)],
+        hencky(YOUNG, POISSON),
+        Regime::Dynamic,
+    )
+    .body([0..2, 0..n], 3, RHO, |_| Vector::zeros())
+    .rollers([0])
+    .support(Support::absorbing(1, false))
+    .gravity(10.0, 0.0);
     scene.model.criteria.force = 1e-9;
     let vertical = |x: &Vector<2>| -RHO * 10.0 * (10.0 - x[1]);
     let stress = |x: &Vector<2>| Symmetric([vertical(x) / 3.0, vertical(x), vertical(x) / 3.0, 0.0, 0.0, 0.0]);
@@ -122,7 +136,10 @@ fn column(n: usize) -> Scene<PlaneStrain, 2> {
     initial::hold(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an equilibrium");
     let weight: f64 = scene.points.mass.iter().sum::<f64>() * 10.0;
     let held: f64 = scene.points.surface.held.iter().flatten().map(|force| force[1]).sum();
-    assert!((held / weight - 1.0).abs() < 1e-9, "the base holds {held} of {weight} N");
+    assert!(
+        (held / weight - 1.0).abs() < 1e-9,
+        "the base holds {held} of {weight} N"
+    );
     scene
 }
 
@@ -132,7 +149,10 @@ fn ground_at_rest_stays_at_rest_on_a_base_that_absorbs() {
     let mut scene = column(20);
     scene.march(0.01, 1.0, |_, _| {});
     let most = |of: &[Vector<2>]| of.iter().map(Vector::norm).fold(0.0, f64::max);
-    let (moved, fast) = (most(&scene.points.u), most(&scene.points.motion.as_ref().expect("dynamic").v));
+    let (moved, fast) = (
+        most(&scene.points.u),
+        most(&scene.points.motion.as_ref().expect("dynamic").v),
+    );
     // 1.16e-6 m and 1.3e-8 m/s; held by the reaction of the stress that is given, it sinks by 5.4e-4 m/s.
     assert!(moved < 1.3e-6 && fast < 2e-8, "{moved:e} m, {fast:e} m/s");
 }
@@ -153,14 +173,22 @@ fn late(n: usize) -> f64 {
             .support(Support::absorbing(1, false));
     scene.model.criteria.force = 1e-9;
     let during = |t: f64| (0.0..DURATION).contains(&t);
-    let velocity = |t: f64| if during(t) { 0.5 * FASTEST * (1.0 - (OMEGA * t).cos()) } else { 0.0 };
+    let velocity = |t: f64| {
+        if during(t) {
+            0.5 * FASTEST * (1.0 - (OMEGA * t).cos())
+        } else {
+            0.0
+        }
+    };
     let acceleration = |t: f64| 0.5 * FASTEST * OMEGA * (OMEGA * t).sin();
     let times = (1..=400).map(|k| f64::from(k) * DURATION / 400.0);
     let rows = times.map(|t| (t, [acceleration(t), 0.0].into())).collect();
     scene.model.shaking = Some(Shaking { rows });
     let (mut worst, lag) = (0.0_f64, 10.0 / speed(1));
     scene.march(0.0025 * h, 0.4, |points, accepted| {
-        let top = (0..points.len()).max_by(|&a, &b| points.x[a][1].total_cmp(&points.x[b][1])).expect("points");
+        let top = (0..points.len())
+            .max_by(|&a, &b| points.x[a][1].total_cmp(&points.x[b][1]))
+            .expect("points");
         let v = points.motion.as_ref().expect("dynamic").v[top][0] + velocity(accepted.t);
         worst = worst.max((v - velocity(accepted.t - lag)).abs());
     });
@@ -173,7 +201,10 @@ fn late(n: usize) -> f64 {
 fn a_base_that_absorbs_lets_the_motion_of_the_outcrop_in() {
     let [coarse, fine] = [10, 20].map(late);
     // 0.024 and 0.0094; 0.0037 in 40 cells.
-    assert!(coarse < 0.026 && fine < 0.0102 && coarse > 2.2 * fine, "{coarse}, {fine}");
+    assert!(
+        coarse < 0.026 && fine < 0.0102 && coarse > 2.2 * fine,
+        "{coarse}, {fine}"
+    );
 }
 
 /// Velocities at `places`, m from the middle, step after step, of a square of `cells` of 1 m in whose middle a force
@@ -185,11 +216,18 @@ fn shot<K: Kinematics<2>>(cells: usize, absorbs: bool, places: &[[f64; 2]]) -> V
     let middle = Vector::from([across as f64 - 0.5 * cells as f64, 0.5 * cells as f64]);
     let mut pulse = Load::dead(vec![SurfacePoint::at(middle, 1.0)], [0.0, -1e3].into(), 0.0);
     pulse.amplitude = vec![(0.02, 0.3), (0.04, 1.0), (0.06, 0.3), (0.08, 0.0)];
-    let mut scene =
-        Scene::<K, 2>::new([axis(1.0, across, 2), axis(1.0, cells, 2)], hencky(YOUNG, POISSON), Regime::Dynamic)
-            .body([0..across, 0..cells], 2, RHO, |_| Vector::zeros())
-            .load(pulse)
-            .support(if is_round { Support::roller(0, false) } else { face(0, false) });
+    let mut scene = Scene::<K, 2>::new(
+        [axis(1.0, across, 2), axis(1.0, cells, 2)],
+        hencky(YOUNG, POISSON),
+        Regime::Dynamic,
+    )
+    .body([0..across, 0..cells], 2, RHO, |_| Vector::zeros())
+    .load(pulse)
+    .support(if is_round {
+        Support::roller(0, false)
+    } else {
+        face(0, false)
+    });
     for (axis, upper) in [(0, true), (1, false), (1, true)] {
         scene = scene.support(face(axis, upper));
     }
@@ -200,7 +238,9 @@ fn shot<K: Kinematics<2>>(cells: usize, absorbs: bool, places: &[[f64; 2]]) -> V
         let v = &points.motion.as_ref().expect("dynamic").v;
         let nearest = |at: &[f64; 2]| {
             let off = |p: &usize| (start(*p) - Vector::from(*at)).norm();
-            v[(0..points.len()).min_by(|a, b| off(a).total_cmp(&off(b))).expect("points")]
+            v[(0..points.len())
+                .min_by(|a, b| off(a).total_cmp(&off(b)))
+                .expect("points")]
         };
         seen.push(places.iter().map(nearest).collect());
     });
@@ -216,7 +256,12 @@ fn most_leaves<K: Kinematics<2>>(bounds: [f64; 4], least: f64) {
     for ((k, at), bound) in places.iter().enumerate().zip(bounds) {
         let largest = right.iter().map(|v| v[k].norm()).fold(0.0, f64::max);
         let off = |found: &[Vec<Vector<2>>]| {
-            found.iter().zip(&right).map(|(found, right)| (found[k] - right[k]).norm()).fold(0.0, f64::max) / largest
+            found
+                .iter()
+                .zip(&right)
+                .map(|(found, right)| (found[k] - right[k]).norm())
+                .fold(0.0, f64::max)
+                / largest
         };
         let [absorbed, fixed] = [off(&absorbed), off(&fixed)];
         assert!(absorbed < bound && fixed > least, "{at:?}: {absorbed}, fixed {fixed}");

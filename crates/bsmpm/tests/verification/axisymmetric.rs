@@ -24,13 +24,17 @@ fn uniform_strain_is_exact_in_one_step_with_every_method() {
             face.velocity[axis] = Some(stretch - 1.0);
             face
         };
-        let mut scene = Round::new([axis(0.25, 4, 1), axis(0.25, 4, 1)], hencky(1000.0, 0.3), Regime::QuasiStatic)
-            .body([0..4, 0..4], 2, 1.0, |x| x * 0.0)
-            .support(Support::roller(0, false))
-            .support(Support::roller(1, false))
-            .support(moving(0, radial))
-            .support(moving(1, axial))
-            .stabilised(method);
+        let mut scene = Round::new(
+            [axis(0.25, 4, 1), axis(0.25, 4, 1)],
+            hencky(1000.0, 0.3),
+            Regime::QuasiStatic,
+        )
+        .body([0..4, 0..4], 2, 1.0, |x| x * 0.0)
+        .support(Support::roller(0, false))
+        .support(Support::roller(1, false))
+        .support(moving(0, radial))
+        .support(moving(1, axial))
+        .stabilised(method);
         scene.model.criteria.force = 1e-12;
         let (scene, steps) = scene.solved(1.0, 1.0);
         let (lambda, mu) = scene.model.materials[0].elastic().lame();
@@ -39,7 +43,9 @@ fn uniform_strain_is_exact_in_one_step_with_every_method() {
         let expected = [stress(radial), stress(axial), stress(radial)];
         let error = |p: usize| {
             let sigma = scene.points.sigma.at(p).0;
-            (0..3).map(|k| (sigma[k] - expected[k]).abs()).fold(sigma[3].abs(), f64::max)
+            (0..3)
+                .map(|k| (sigma[k] - expected[k]).abs())
+                .fold(sigma[3].abs(), f64::max)
         };
         let worst = (0..scene.points.len()).map(error).fold(0.0, f64::max) / expected[1].abs();
         println!("{method:?}: {worst:.1e}");
@@ -56,7 +62,13 @@ fn cylinder(cells: usize, method: Stabilisation) -> f64 {
     // Lame (1852) in plane strain: u = A r + B/r.
     let factor = (1.0 + poisson) * pressure * inner * inner / (outer * outer - inner * inner);
     let exact = |r: f64| factor * ((1.0 - 2.0 * poisson) * r + outer * outer / r);
-    let start: Vec<f64> = scene.points.x.iter().zip(&scene.points.u).map(|(x, u)| x[0] - u[0]).collect();
+    let start: Vec<f64> = scene
+        .points
+        .x
+        .iter()
+        .zip(&scene.points.u)
+        .map(|(x, u)| x[0] - u[0])
+        .collect();
     rms(&scene.points, |p| scene.points.u[p][0] - exact(start[p])) / rms(&scene.points, |p| exact(start[p]))
 }
 
@@ -65,14 +77,24 @@ fn wall(cells: usize, method: Stabilisation) -> (f64, Round) {
     let (inner, outer, pressure, poisson) = (1.0, 2.0, 1e-7, 0.3);
     let h = (outer - inner) / cells as f64;
     let columns = 3 * cells;
-    let mut scene = Round::new([axis(h, columns, 2), axis(h, 2, 2)], hencky(1.0, poisson), Regime::QuasiStatic)
-        .body([cells..2 * cells, 0..2], 3, 0.0, |x| x * 0.0)
-        .rollers(1..2)
-        .stabilised(method);
+    let mut scene = Round::new(
+        [axis(h, columns, 2), axis(h, 2, 2)],
+        hencky(1.0, poisson),
+        Regime::QuasiStatic,
+    )
+    .body([cells..2 * cells, 0..2], 3, 0.0, |x| x * 0.0)
+    .rollers(1..2)
+    .stabilised(method);
     scene.model.weighting = Weighting::Volume;
     let (from, to) = ([inner, 0.0].into(), [inner, 2.0 * h].into());
     let points = surface::along::<Axisymmetric, 2>(&scene.model.grid, &from, &to, 3);
-    (h, scene.load(Load::dead(points, [pressure, 0.0].into(), 1.0)).solved(1.0, 1.0).0)
+    (
+        h,
+        scene
+            .load(Load::dead(points, [pressure, 0.0].into(), 1.0))
+            .solved(1.0, 1.0)
+            .0,
+    )
 }
 
 /// Lamé (1852): displacement of a thick-walled elastic cylinder.
@@ -82,7 +104,10 @@ fn a_thick_cylinder_under_pressure_converges_to_lame() {
         let errors = [4, 8, 16].map(|cells| cylinder(cells, method));
         let orders: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
         println!("{method:?}: {errors:?}, orders {orders:?}"); // measured 7.5e-5 at the finest, orders 1.97 to 1.99
-        assert!(errors[2] <= 1e-4 && orders.iter().all(|&order| order >= 1.9), "{method:?}: {errors:?}");
+        assert!(
+            errors[2] <= 1e-4 && orders.iter().all(|&order| order >= 1.9),
+            "{method:?}: {errors:?}"
+        );
     }
 }
 
@@ -90,17 +115,32 @@ fn a_thick_cylinder_under_pressure_converges_to_lame() {
 /// moved at the end or in the last state that was found, with the pressure there.
 fn inflated(cells: usize, pressure: f64) -> (f64, f64) {
     let h = 1.0 / cells as f64;
-    let mut scene = Round::new([axis(h, 3 * cells, 2), axis(h, 2, 2)], hencky(1.0, 0.3), Regime::QuasiStatic)
-        .body([cells..2 * cells, 0..2], 3, 0.0, |x| x * 0.0)
-        .rollers(1..2);
+    let mut scene = Round::new(
+        [axis(h, 3 * cells, 2), axis(h, 2, 2)],
+        hencky(1.0, 0.3),
+        Regime::QuasiStatic,
+    )
+    .body([cells..2 * cells, 0..2], 3, 0.0, |x| x * 0.0)
+    .rollers(1..2);
     let points = surface::along::<Axisymmetric, 2>(&scene.model.grid, &[1.0, 0.0].into(), &[1.0, 2.0 * h].into(), 3);
-    scene = scene.load(Load { follows: true, ..Load::dead(points, [pressure, 0.0].into(), 1.0) });
+    scene = scene.load(Load {
+        follows: true,
+        ..Load::dead(points, [pressure, 0.0].into(), 1.0)
+    });
     let (schedule, halo) = (Schedule::new(0.1, 1.0, []), scene.halo());
-    let (mut solver, mut stepper) = (Skyline::new(&scene.model.grid), Stepper::new(scene.model.grid.nodes() * 2));
+    let (mut solver, mut stepper) = (
+        Skyline::new(&scene.model.grid),
+        Stepper::new(scene.model.grid.nodes() * 2),
+    );
     while let Some(Ok(_)) = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
         scene.points.sort_by_cell(&scene.model.grid);
     }
-    let outer = scene.points.u.iter().zip(&scene.points.x).max_by(|a, b| a.1[0].total_cmp(&b.1[0]));
+    let outer = scene
+        .points
+        .u
+        .iter()
+        .zip(&scene.points.x)
+        .max_by(|a, b| a.1[0].total_cmp(&b.1[0]));
     (outer.expect("points").0[0], pressure * stepper.time())
 }
 
@@ -137,7 +177,11 @@ fn points_at_the_axis_are_spread_and_those_far_from_it_even() {
             assert!(error(part, 1).abs() <= 1e-15);
         }
         let even = -0.25 / (n * n) as f64; // of r^2 in the cell at the axis
-        assert!((error([0.0, 0.5], 2) - even / 8.0).abs() <= 1e-15, "{n}: {}", error([0.0, 0.5], 2));
+        assert!(
+            (error([0.0, 0.5], 2) - even / 8.0).abs() <= 1e-15,
+            "{n}: {}",
+            error([0.0, 0.5], 2)
+        );
         assert_eq!(Axisymmetric::spread(0, [2.0, 2.5], n), 1.0);
         assert_eq!(Axisymmetric::spread(1, [0.0, 0.5], n), 1.0);
     }
@@ -148,18 +192,28 @@ fn points_at_the_axis_are_spread_and_those_far_from_it_even() {
 /// radius.
 fn disc(cells: usize, per_axis: usize) -> f64 {
     let (h, pressure) = (1.0 / cells as f64, 1e-6);
-    let mut scene = Round::new([axis(h, cells + 1, 2), axis(h, 3, 2)], hencky(1.0, 0.3), Regime::QuasiStatic)
-        .body([0..cells, 0..2], per_axis, 0.0, |x| x * 0.0)
-        .support(Support::roller(0, false))
-        .support(Support::roller(1, false));
+    let mut scene = Round::new(
+        [axis(h, cells + 1, 2), axis(h, 3, 2)],
+        hencky(1.0, 0.3),
+        Regime::QuasiStatic,
+    )
+    .body([0..cells, 0..2], per_axis, 0.0, |x| x * 0.0)
+    .support(Support::roller(0, false))
+    .support(Support::roller(1, false));
     scene.model.weighting = Weighting::Volume;
     let (from, to) = ([1.0, 0.0].into(), [1.0, 2.0 * h].into());
     let points = surface::along::<Axisymmetric, 2>(&scene.model.grid, &from, &to, per_axis);
-    let (scene, _) = scene.load(Load::dead(points, [-pressure, 0.0].into(), 1.0)).solved(1.0, 1.0);
+    let (scene, _) = scene
+        .load(Load::dead(points, [-pressure, 0.0].into(), 1.0))
+        .solved(1.0, 1.0);
     let near = |p: &usize| scene.points.x[*p][0] < 0.25;
     let error = |p: usize| {
         let [radial, axial, around, ..] = scene.points.sigma.at(p).0;
-        (radial + pressure).abs().max(axial.abs()).max((around + pressure).abs()) / pressure
+        (radial + pressure)
+            .abs()
+            .max(axial.abs())
+            .max((around + pressure).abs())
+            / pressure
     };
     (0..scene.points.len()).filter(near).map(error).fold(0.0, f64::max)
 }
@@ -182,9 +236,17 @@ fn volumes_of_cells_and_functions_are_those_of_the_sector() {
         let radial = KnotVector::graded(&[0.0, 0.3, 0.5, 0.5, 1.2], order).unwrap_or_else(|_| axis(0.3, 4, order));
         let grid = Grid::new([radial, axis(0.5, 3, order)]).unwrap();
         let whole = 0.5 * grid.axes()[0].length().powi(2) * 1.5;
-        let cells: f64 = (0..grid.cells()).map(|cell| grid.cell_volume::<Axisymmetric>(&grid.cell_at(cell))).sum();
-        let functions: f64 = (0..grid.nodes()).map(|node| grid.lowered_volume::<Axisymmetric>(node)).sum();
-        println!("order {order}: {:.1e}, {:.1e}", cells / whole - 1.0, functions / whole - 1.0);
+        let cells: f64 = (0..grid.cells())
+            .map(|cell| grid.cell_volume::<Axisymmetric>(&grid.cell_at(cell)))
+            .sum();
+        let functions: f64 = (0..grid.nodes())
+            .map(|node| grid.lowered_volume::<Axisymmetric>(node))
+            .sum();
+        println!(
+            "order {order}: {:.1e}, {:.1e}",
+            cells / whole - 1.0,
+            functions / whole - 1.0
+        );
         assert!((cells / whole - 1.0).abs() <= 1e-14 && (functions / whole - 1.0).abs() <= 1e-14);
         assert_eq!(Axisymmetric::weight(&[0.7, 0.2].into()), 0.7);
         if order == 1 {
@@ -192,9 +254,14 @@ fn volumes_of_cells_and_functions_are_those_of_the_sector() {
         }
         // sum_I r_I int N_I = int r dV, r_I the Greville places: the moment shows a wrong mean of a function.
         let r = |node: usize| grid.axes()[0].lowered_greville(grid.node_at(node)[0]);
-        let moment: f64 = (0..grid.nodes()).map(|node| r(node) * grid.lowered_volume::<Axisymmetric>(node)).sum();
+        let moment: f64 = (0..grid.nodes())
+            .map(|node| r(node) * grid.lowered_volume::<Axisymmetric>(node))
+            .sum();
         let exact = grid.axes()[0].length().powi(3) / 3.0 * 1.5;
-        assert!((moment / exact - 1.0).abs() <= 1e-14, "order {order}: {moment} for {exact}");
+        assert!(
+            (moment / exact - 1.0).abs() <= 1e-14,
+            "order {order}: {moment} for {exact}"
+        );
     }
 }
 
@@ -206,13 +273,17 @@ fn section_forces_are_those_of_a_column_and_of_a_clamped_plate() {
     let heavy = |cells: [usize; 2], held: Support<2>| {
         let columns = if held.axis == 0 { cells[0] } else { cells[0] + 4 };
         let above = if held.axis == 0 { 4 } else { 0 };
-        Round::new([axis(h, columns, 2), axis(h, above + cells[1] + 4, 2)], hencky(1e11, poisson), Regime::QuasiStatic)
-            .body([0..cells[0], above..above + cells[1]], 3, DENSITY, |x| x * 0.0)
-            .support(Support::roller(0, false))
-            .support(held)
-            .gravity(G, 0.0)
-            .solved(1.0, 1.0)
-            .0
+        Round::new(
+            [axis(h, columns, 2), axis(h, above + cells[1] + 4, 2)],
+            hencky(1e11, poisson),
+            Regime::QuasiStatic,
+        )
+        .body([0..cells[0], above..above + cells[1]], 3, DENSITY, |x| x * 0.0)
+        .support(Support::roller(0, false))
+        .support(held)
+        .gravity(G, 0.0)
+        .solved(1.0, 1.0)
+        .0
     };
     let column = heavy([4, 12], Support::fixed(1, false));
     for z in [0.0, 0.1, 1.1, 1.5, 2.9] {
@@ -231,9 +302,15 @@ fn section_forces_are_those_of_a_column_and_of_a_clamped_plate() {
         let found = cut(&plate, [[[r, 0.9], [r, 2.1]]]);
         // Timoshenko and Woinowsky-Krieger (1959), per length of the circle; the upper side is in tension at the rim.
         let moment = weight / 16.0 * (r * r * (3.0 + poisson) - radius * radius * (1.0 + poisson));
-        let off = [found.normal / (clamped * r), found.shear[0] / (0.5 * weight * r * r) - 1.0];
+        let off = [
+            found.normal / (clamped * r),
+            found.shear[0] / (0.5 * weight * r * r) - 1.0,
+        ];
         let bent = (found.bending[0] / r - moment) / clamped;
-        println!("plate r {r}: N {:.1e}, Q {:.1e}, M {bent:.1e} of that at the rim", off[0], off[1]);
+        println!(
+            "plate r {r}: N {:.1e}, Q {:.1e}, M {bent:.1e} of that at the rim",
+            off[0], off[1]
+        );
         // A cut is spread over a cell, and so is the weight within it: 0.17 (h/r)^2 at lines of cells, 0.41 at 2.6 m.
         assert!(off[0].abs() < 1e-4 && off[1].abs() < 0.5 * (h / r).powi(2) + 2e-4 && bent.abs() < 4e-3);
     }

@@ -15,7 +15,15 @@ const COHESION: f64 = 1.0;
 
 /// Clay, whose nu is 0.495, into which a smooth strip is pushed by half its half width, 1 m.
 fn pressed(method: Stabilisation) -> Points<2> {
-    let clay = MohrCoulomb::new(Elastic { young: 100.0, poisson: 0.495 }, 0.0, 0.0, COHESION);
+    let clay = MohrCoulomb::new(
+        Elastic {
+            young: 100.0,
+            poisson: 0.495,
+        },
+        0.0,
+        0.0,
+        COHESION,
+    );
     let axes = [axis(0.5, 8, 2), axis(0.5, 10, 2)];
     let mut scene = Scene::<PlaneStrain, 2>::new(axes, Material::MohrCoulomb(clay), Regime::QuasiStatic)
         .stabilised(method)
@@ -23,11 +31,17 @@ fn pressed(method: Stabilisation) -> Points<2> {
         .rollers([0])
         .support(Support::fixed(1, false));
     scene.model.weighting = Weighting::Volume;
-    scene.model.criteria = Criteria { energy: 1e-6, force: 1e-4, max_iterations: 1000 };
+    scene.model.criteria = Criteria {
+        energy: 1e-6,
+        force: 1e-4,
+        max_iterations: 1000,
+    };
     let soft = Background { coefficient: 1e-3 };
     scene = scene.background(Some(soft));
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 3.0].into(), &[1.0, 3.0].into(), 4);
-    let path = Path { rows: vec![(1.0, [0.0, -0.5].into())] };
+    let path = Path {
+        rows: vec![(1.0, [0.0, -0.5].into())],
+    };
     let strip = Strip {
         contact: None,
         points,

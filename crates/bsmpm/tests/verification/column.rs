@@ -25,7 +25,10 @@ fn column<K: Kinematics<D>, const D: usize>(order: usize, cells: usize, S: f64, 
 impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     /// Without the support at the upper end of the last axis.
     fn free_top(mut self) -> Self {
-        self.model.boundary.supports.retain(|support| !(support.axis == D - 1 && support.upper));
+        self.model
+            .boundary
+            .supports
+            .retain(|support| !(support.axis == D - 1 && support.upper));
         self
     }
 
@@ -35,7 +38,10 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         let exact = |p: usize| -S * (1.0 - (points.x[p][D - 1] - points.u[p][D - 1]));
         let error = |p: usize| points.sigma.at(p).0[D - 1] - exact(p);
         let mean: f64 = (0..points.len()).map(|p| points.volume[p] * error(p).abs()).sum();
-        [mean / points.volume.iter().sum::<f64>() / S, rms(points, error) / rms(points, exact)]
+        [
+            mean / points.volume.iter().sum::<f64>() / S,
+            rms(points, error) / rms(points, exact),
+        ]
     }
 
     /// y of the top point + half its spacing x its stretch.
@@ -65,7 +71,10 @@ fn orders(q: usize) -> ([f64; 2], [f64; 2]) {
         errors
     });
     let orders = [0, 1].map(|k| (coarse[k] / fine[k]).log2() / 3.0);
-    println!("q = {q}: order {:.3} of the mean, {:.3} of the RMS", orders[0], orders[1]);
+    println!(
+        "q = {q}: order {:.3} of the mean, {:.3} of the RMS",
+        orders[0], orders[1]
+    );
     (orders, fine)
 }
 
@@ -97,7 +106,10 @@ fn small_strain_stress_of_cubic_splines_is_only_of_first_order_as_documented() {
 
 #[test]
 fn the_same_column_in_three_dimensions_has_the_same_error() {
-    let (plane, solid) = (small_strain_error::<PlaneStrain, 2>(2, 8), small_strain_error::<Solid, 3>(2, 8));
+    let (plane, solid) = (
+        small_strain_error::<PlaneStrain, 2>(2, 8),
+        small_strain_error::<Solid, 3>(2, 8),
+    );
     println!("stress error {plane:?} {solid:?}");
     assert!((plane[0] / solid[0] - 1.0).abs() <= 1e-9); // measured 5e-15
 }
@@ -123,11 +135,20 @@ fn large_strain_stress_stalls_with_linear_splines_ten_times_above_quadratic_ones
 fn heights_of_the_hencky_column_agree_with_lamberts_function() {
     // Height / l0 as in reference/hencky_column.csv; 20 cells, gravity in 10 steps.
     // The last number bounds the error: a few times the measured 1.5e-6, 2.3e-4, 2.4e-4.
-    for (S, exact, bound) in [(0.04, 0.9807598284, 1e-5), (0.4, 0.8533052167, 5e-4), (1.0, 0.7279690463, 5e-4)] {
+    for (S, exact, bound) in [
+        (0.04, 0.9807598284, 1e-5),
+        (0.4, 0.8533052167, 5e-4),
+        (1.0, 0.7279690463, 5e-4),
+    ] {
         for method in [Stabilisation::None, Stabilisation::FBar, Stabilisation::ModifiedFBar] {
-            let (scene, steps) = column::<PlaneStrain, 2>(2, 20, S, 10).stabilised(method).solved(1.0, 10.0);
+            let (scene, steps) = column::<PlaneStrain, 2>(2, 20, S, 10)
+                .stabilised(method)
+                .solved(1.0, 10.0);
             let height = scene.height(1.0 / 60.0);
-            println!("S = {S}, {method:?}: {height:.6}, exact {exact:.6}, {} steps", steps.len());
+            println!(
+                "S = {S}, {method:?}: {height:.6}, exact {exact:.6}, {} steps",
+                steps.len()
+            );
             assert!((height - exact).abs() <= bound);
         }
     }
@@ -147,12 +168,15 @@ fn the_base_carries_the_columns_weight_at_any_strain_and_any_time_of_the_ramp() 
 /// stress.
 fn compressed(cells: usize, points: usize, fitted: bool) -> f64 {
     let h = 1.0 / cells as f64;
-    let mut scene =
-        Scene::<PlaneStrain, 2>::new([axis(h, 1, 2), axis(h, cells, 2)], hencky(1.0, 0.0), Regime::QuasiStatic)
-            .body([0..1, 0..cells], points, 1.0, |x| x * 0.0)
-            .rollers(0..2)
-            .gravity(4.0, 40.0)
-            .free_top();
+    let mut scene = Scene::<PlaneStrain, 2>::new(
+        [axis(h, 1, 2), axis(h, cells, 2)],
+        hencky(1.0, 0.0),
+        Regime::QuasiStatic,
+    )
+    .body([0..1, 0..cells], points, 1.0, |x| x * 0.0)
+    .rollers(0..2)
+    .gravity(4.0, 40.0)
+    .free_top();
     scene.model.criteria.energy = 1e-10;
     scene.model.criteria.force = 1e-7;
     let scene = if fitted { scene.fitted() } else { scene };

@@ -56,13 +56,19 @@ fn of(accepted: &Accepted) -> ContactReport {
 
 /// Friction over normal force of a step, each summed over the face.
 fn used(accepted: &Accepted) -> f64 {
-    let [along, normal] = accepted.report.reactions[0][..] else { panic!("of the plane") };
+    let [along, normal] = accepted.report.reactions[0][..] else {
+        panic!("of the plane")
+    };
     along.abs() / normal.max(f64::MIN_POSITIVE)
 }
 
 /// Whether a scene reaches `end`.
 fn arrives(mut scene: Scene<PlaneStrain, 2>, dt: f64, end: f64) -> bool {
-    let (halo, schedule, mut solver) = (scene.halo(), Schedule::new(dt, end, []), Skyline::new(&scene.model.grid));
+    let (halo, schedule, mut solver) = (
+        scene.halo(),
+        Schedule::new(dt, end, []),
+        Skyline::new(&scene.model.grid),
+    );
     let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     let mut step = || stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver);
     std::iter::from_fn(&mut step).all(|found| found.is_ok())
@@ -78,18 +84,36 @@ fn slid(n: usize, dt: f64, friction: f64, method: Nonlinear) -> (f64, f64, usize
     let mut books = Books::open(Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo()));
     let (mut iterations, mut dissipated) = (0, 0.0);
     scene.march(dt, END, |_, accepted| {
-        assert!(used(accepted) <= friction * (1.0 + 1e-12) && accepted.rejected.is_empty(), "{:?}", accepted.rejected);
+        assert!(
+            used(accepted) <= friction * (1.0 + 1e-12) && accepted.rejected.is_empty(),
+            "{:?}",
+            accepted.rejected
+        );
         books.flows += accepted.report.energy.expect("it is balanced");
         dissipated += of(accepted).dissipated;
         iterations = iterations.max(accepted.report.iterations);
     });
     let way = mean(&scene.points, |p| scene.points.u[p][0]);
     let now = Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo());
-    assert!(books.closure(now).abs() < 1e-6 * now.kinetic, "the books close: {:.1e}", books.closure(now));
+    assert!(
+        books.closure(now).abs() < 1e-6 * now.kinetic,
+        "the books close: {:.1e}",
+        books.closure(now)
+    );
     let friction_work = friction * theta.cos() * weight(&scene) * way;
-    assert!((dissipated / friction_work - 1.0).abs() < 0.01, "{dissipated} of {friction_work} J");
-    let rigid = [0.5 * (END - RAMP).powi(2) + 0.5 * RAMP * (END - RAMP) + RAMP * RAMP / 6.0, END - 0.5 * RAMP];
-    (way / (a * rigid[0]) - 1.0, velocity(&scene.points) / (a * rigid[1]) - 1.0, iterations)
+    assert!(
+        (dissipated / friction_work - 1.0).abs() < 0.01,
+        "{dissipated} of {friction_work} J"
+    );
+    let rigid = [
+        0.5 * (END - RAMP).powi(2) + 0.5 * RAMP * (END - RAMP) + RAMP * RAMP / 6.0,
+        END - 0.5 * RAMP,
+    ];
+    (
+        way / (a * rigid[0]) - 1.0,
+        velocity(&scene.points) / (a * rigid[1]) - 1.0,
+        iterations,
+    )
 }
 
 /// Of first order in the step, as the face's nodes go by backward Euler; what is left is the block's own elasticity.
@@ -101,20 +125,36 @@ fn a_block_slides_down_as_coulomb_says() {
     println!("way {coarse:?} {middle:?} {fine:?}, order {order:.2}; cells half as large {cells:?}");
     // measured 0.00690, 0.00360, 0.00220, order 1.24; velocity 5e-5; cells half as large 0.00202
     assert!(coarse.0 < 0.01 && (0.9..1.6).contains(&order) && fine.0 < 0.003 && cells.0 < 0.003);
-    assert!([coarse, middle, fine, cells].iter().all(|(_, velocity, _)| velocity.abs() < 2e-3));
+    assert!(
+        [coarse, middle, fine, cells]
+            .iter()
+            .all(|(_, velocity, _)| velocity.abs() < 2e-3)
+    );
 }
 
 /// With the derivative of friction each step takes few iterations, also where the normal force changes with the slip.
 #[test]
 fn newtons_method_knows_friction() {
-    let (secants, newton) = (slid(4, 0.01, 0.3, Nonlinear::Auto), slid(4, 0.01, 0.3, Nonlinear::Newton));
-    assert!((secants.0 - newton.0).abs() < 1e-5 && newton.2 <= 8, "{secants:?} {newton:?}");
+    let (secants, newton) = (
+        slid(4, 0.01, 0.3, Nonlinear::Auto),
+        slid(4, 0.01, 0.3, Nonlinear::Newton),
+    );
+    assert!(
+        (secants.0 - newton.0).abs() < 1e-5 && newton.2 <= 8,
+        "{secants:?} {newton:?}"
+    );
 }
 
 /// Closed form: Coulomb friction on an incline.
 #[test]
 fn a_block_sticks_where_friction_is_larger_than_the_slope() {
-    for law in [rough(0.6), Contact { lifts: false, ..rough(0.6) }] {
+    for law in [
+        rough(0.6),
+        Contact {
+            lifts: false,
+            ..rough(0.6)
+        },
+    ] {
         let mut scene = block(4, 0.5, law, Regime::Dynamic);
         scene.march(0.01, 0.5, |_, accepted| assert!(used(accepted) < 0.6));
         let way = mean(&scene.points, |p| scene.points.u[p][0]);
@@ -135,8 +175,16 @@ fn at_rest_a_block_lies_below_the_angle_of_friction_and_not_above() {
     });
     let theta = 0.3_f64.atan();
     let expected = [-theta.sin(), theta.cos()].map(|part| part * weight(&scene));
-    assert!(force.iter().zip(expected).all(|(force, expected)| (force - expected).abs() < 1e-5 * weight(&scene)));
-    assert!((0.5..1.0).contains(&sliding), "most of its base slides a little before it does: {sliding}");
+    assert!(
+        force
+            .iter()
+            .zip(expected)
+            .all(|(force, expected)| (force - expected).abs() < 1e-5 * weight(&scene))
+    );
+    assert!(
+        (0.5..1.0).contains(&sliding),
+        "most of its base slides a little before it does: {sliding}"
+    );
 }
 
 /// The direction of slip is that of the motion in space, too.
@@ -146,17 +194,33 @@ fn in_space_a_block_slides_along_the_fall_line() {
     let mut scene = Scene::<Solid, 3>::new(axes, hencky(1e7, 0.3), Regime::Dynamic)
         .body([1..3, 1..3, 0..1], 2, 1000.0, |_| Vector::zeros())
         .support(Support::contact(2, false, rough(0.2)));
-    scene.model.gravity = Some(Gravity { acceleration: [3.0, 4.0, -10.0].into(), ramp: RAMP, starts_vertical: false });
+    scene.model.gravity = Some(Gravity {
+        acceleration: [3.0, 4.0, -10.0].into(),
+        ramp: RAMP,
+        starts_vertical: false,
+    });
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
     let mut force = Vec::new();
     scene.march(0.02, 0.4, |_, accepted| force.clone_from(&accepted.report.reactions[0]));
     let mass: f64 = scene.points.mass.iter().sum();
     let v = |c: usize| {
         let motion = scene.points.motion.as_ref().expect("dynamic");
-        motion.v.iter().zip(&scene.points.mass).map(|(v, m)| v[c] * m).sum::<f64>() / mass
+        motion
+            .v
+            .iter()
+            .zip(&scene.points.mass)
+            .map(|(v, m)| v[c] * m)
+            .sum::<f64>()
+            / mass
     };
     let speed = (5.0 - 0.2 * 10.0) * (0.4 - 0.5 * RAMP);
-    println!("{:.4} {:.4} of {:.4} {:.4}, {force:?}", v(0), v(1), 0.6 * speed, 0.8 * speed);
+    println!(
+        "{:.4} {:.4} of {:.4} {:.4}, {force:?}",
+        v(0),
+        v(1),
+        0.6 * speed,
+        0.8 * speed
+    );
     assert!((v(0) / (0.6 * speed) - 1.0).abs() < 0.01 && (v(1) / (0.8 * speed) - 1.0).abs() < 0.01);
     assert!((force[0].hypot(force[1]) / force[2] - 0.2).abs() < 1e-3);
 }
@@ -172,9 +236,15 @@ fn the_faces_are_alike() {
     upper.points.sort_by_cell(&upper.model.grid);
     let ways = [lower, upper].map(|scene| {
         let scene = scene.solved(0.01, 0.2).0;
-        [mean(&scene.points, |p| scene.points.u[p][0]), mean(&scene.points, |p| scene.points.u[p][1])]
+        [
+            mean(&scene.points, |p| scene.points.u[p][0]),
+            mean(&scene.points, |p| scene.points.u[p][1]),
+        ]
     });
-    assert!((ways[0][0] - ways[1][0]).abs() < 1e-7 && (ways[0][1] + ways[1][1]).abs() < 1e-7, "{ways:?}");
+    assert!(
+        (ways[0][0] - ways[1][0]).abs() < 1e-7 && (ways[0][1] + ways[1][1]).abs() < 1e-7,
+        "{ways:?}"
+    );
 }
 
 /// A bar of 1 m, of cells of 1/`n` m, meets a wall from 0.2 m with 1 m/s. Its impulse over the exact one; its time at
@@ -187,7 +257,10 @@ fn bounced(n: usize, mass: MassMatrix) -> [f64; 3] {
         .support(Support::contact(0, false, rough(0.0)))
         .with_mass(mass);
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-10, 1e-6);
-    let (start, body) = (Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo()), weight(&scene) / G);
+    let (start, body) = (
+        Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo()),
+        weight(&scene) / G,
+    );
     let (mut impulse, mut from, mut to) = (0.0, f64::INFINITY, 0.0_f64);
     scene.march(0.5 * h / c, 0.3, |_, accepted| {
         let push = accepted.report.reactions[2][0];
@@ -201,7 +274,10 @@ fn bounced(n: usize, mass: MassMatrix) -> [f64; 3] {
     let end = Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo());
     // A consistent mass also takes away what the points bring along to nodes that rest, in every step.
     let taken = velocity(&scene.points) + 1.0 - impulse / body;
-    assert!(taken.abs() < if mass == MassMatrix::Lumped { 1e-6 } else { 0.02 }, "momentum is the impulse: {taken}");
+    assert!(
+        taken.abs() < if mass == MassMatrix::Lumped { 1e-6 } else { 0.02 },
+        "momentum is the impulse: {taken}"
+    );
     let energy = (end.kinetic + end.elastic) / start.kinetic;
     assert!(energy < 1.0 + 1e-6);
     [impulse / (2.0 * body), (to - from) * c / 2.0, energy]
@@ -210,7 +286,10 @@ fn bounced(n: usize, mass: MassMatrix) -> [f64; 3] {
 /// The nodes of the face lose their velocity in the blow: a part of the mass that goes with the cells.
 #[test]
 fn a_bar_bounces() {
-    for (mass, [coarse, fine]) in [(MassMatrix::Lumped, [0.07, 0.042]), (MassMatrix::Consistent, [0.032, 0.022])] {
+    for (mass, [coarse, fine]) in [
+        (MassMatrix::Lumped, [0.07, 0.042]),
+        (MassMatrix::Consistent, [0.032, 0.022]),
+    ] {
         let [a, b] = [10, 20].map(|n| bounced(n, mass));
         println!("{mass:?}: {a:.4?} {b:.4?}");
         // measured: lumped 0.930, 0.958 (n = 40: 0.974), energy 0.874, 0.929; consistent 0.969, 0.978, 0.918, 0.955
@@ -242,18 +321,31 @@ fn a_block_that_is_lifted_leaves_the_face_and_comes_down_on_it_again() {
     let weight = weight(&scene);
     let mut lay = 0.0;
     scene.march(0.05, 1.5, |_, accepted| {
-        let (push, held, found) = (accepted.report.reactions[0][1], accepted.report.strips[0].force[1], of(accepted));
+        let (push, held, found) = (
+            accepted.report.reactions[0][1],
+            accepted.report.strips[0].force[1],
+            of(accepted),
+        );
         let full = (accepted.t / RAMP).min(1.0) * weight;
-        assert!((push + held - full).abs() < 1e-4 * weight && push >= 0.0, "{push} + {held} of {full}");
+        assert!(
+            (push + held - full).abs() < 1e-4 * weight && push >= 0.0,
+            "{push} + {held} of {full}"
+        );
         match accepted.t {
             t if t < 0.51 => lay = push,
             t if t < 1.46 => {
                 assert!(push == 0.0 && found.closed == 0.0);
                 // As high as the strip, but for what the block stretches by as it hangs: 2.5e-4 of its height.
                 let risen = 2e-3 * (1.0 - (t - 1.0).abs() / 0.5);
-                assert!((found.gap[0] - risen).abs() < 2.5e-4 && found.gap[1] - found.gap[0] < 2e-5, "{found:?}");
+                assert!(
+                    (found.gap[0] - risen).abs() < 2.5e-4 && found.gap[1] - found.gap[0] < 2e-5,
+                    "{found:?}"
+                );
             }
-            _ => assert!((push / lay - 1.0).abs() < 0.1 && found.gap == [0.0; 2], "{push} of {lay}, {found:?}"),
+            _ => assert!(
+                (push / lay - 1.0).abs() < 0.1 && found.gap == [0.0; 2],
+                "{push} of {lay}, {found:?}"
+            ),
         }
     });
 }
@@ -261,16 +353,34 @@ fn a_block_that_is_lifted_leaves_the_face_and_comes_down_on_it_again() {
 #[test]
 fn a_face_that_does_not_let_go_pulls() {
     let rows = [(0.0, [0.0; 2]), (0.5, [0.0; 2]), (1.0, [0.0, 2e-3])];
-    let (_, steps) = gripped(Contact { lifts: false, ..rough(0.5) }, None, &rows).solved(0.1, 1.0);
+    let (_, steps) = gripped(
+        Contact {
+            lifts: false,
+            ..rough(0.5)
+        },
+        None,
+        &rows,
+    )
+    .solved(0.1, 1.0);
     let last = &steps.last().expect("steps").report;
-    assert!(last.reactions[0][1] < -4e4 && last.reactions[0][0].abs() < 1e-6, "{:?}", last.reactions);
+    assert!(
+        last.reactions[0][1] < -4e4 && last.reactions[0][0].abs() < 1e-6,
+        "{:?}",
+        last.reactions
+    );
     assert!(last.contacts[0].closed == 1.0 && last.contacts[0].gap == [0.0; 2]);
 }
 
 /// Pushed at its top to both sides, a block lifts its heel and sets it down again.
 #[test]
 fn a_block_that_rocks_comes_to_lie_on_all_of_its_base() {
-    let rows = [(0.0, [0.0; 2]), (0.2, [0.0; 2]), (0.5, [1e-3, 0.0]), (1.0, [-1e-3, 0.0]), (1.25, [0.0; 2])];
+    let rows = [
+        (0.0, [0.0; 2]),
+        (0.2, [0.0; 2]),
+        (0.5, [1e-3, 0.0]),
+        (1.0, [-1e-3, 0.0]),
+        (1.25, [0.0; 2]),
+    ];
     let mut scene = gripped(rough(1.0), Some([1.0, 0.0].into()), &rows);
     let weight = weight(&scene);
     let mut closed = Vec::new();
@@ -279,6 +389,9 @@ fn a_block_that_rocks_comes_to_lie_on_all_of_its_base() {
         let full = (accepted.t / RAMP).min(1.0) * weight;
         assert!((accepted.report.reactions[0][1] - full).abs() < 1e-4 * weight);
     });
-    assert!(closed[19] < 0.8 && closed[39] < 0.8 && closed[29] == 1.0 && closed[49] == 1.0, "{closed:?}");
+    assert!(
+        closed[19] < 0.8 && closed[39] < 0.8 && closed[29] == 1.0 && closed[49] == 1.0,
+        "{closed:?}"
+    );
     assert!(mean(&scene.points, |p| scene.points.u[p][1]).abs() < 2e-5);
 }

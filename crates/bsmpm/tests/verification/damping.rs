@@ -51,15 +51,33 @@ impl Scheme {
         let (alpha, beta, gamma) = self.parameters();
         let end = Matrix3::new(1.0, -beta, 0.0, 0.0, -gamma, 1.0, turn * turn, 1.0 - alpha, 0.0);
         // Columns of `end`: d', a', v'.
-        let start = Matrix3::new(1.0, kept, (0.5 - beta) * kept, 0.0, 1.0, 1.0 - gamma, 0.0, 0.0, -alpha * kept);
+        let start = Matrix3::new(
+            1.0,
+            kept,
+            (0.5 - beta) * kept,
+            0.0,
+            1.0,
+            1.0 - gamma,
+            0.0,
+            0.0,
+            -alpha * kept,
+        );
         let found = end.try_inverse().expect("regular") * start;
-        Matrix3::from_rows(&[found.row(0).into_owned(), found.row(2).into_owned(), found.row(1).into_owned()])
+        Matrix3::from_rows(&[
+            found.row(0).into_owned(),
+            found.row(2).into_owned(),
+            found.row(1).into_owned(),
+        ])
     }
 
     /// Spectral radius, and angle of the largest pair of eigenvalues.
     fn spectrum(self, turn: f64, kept: f64) -> (f64, f64) {
         let eigenvalues = self.amplification(turn, kept).complex_eigenvalues();
-        let largest = eigenvalues.iter().copied().max_by(|a, b| a.norm_sqr().total_cmp(&b.norm_sqr())).expect("three");
+        let largest = eigenvalues
+            .iter()
+            .copied()
+            .max_by(|a, b| a.norm_sqr().total_cmp(&b.norm_sqr()))
+            .expect("three");
         (largest.norm(), largest.arg().abs())
     }
 }
@@ -74,7 +92,9 @@ fn oscillator(scheme: Scheme) -> Scene<PlaneStrain, 2> {
         |_| [SPEED, 0.0].into(),
     );
     let points = (0..scene.points.len()).map(|p| SurfacePoint::at(scene.points.x[p], scene.points.volume[p]));
-    let still = Path { rows: vec![(1e9, Vector::zeros())] };
+    let still = Path {
+        rows: vec![(1e9, Vector::zeros())],
+    };
     scene.model.newmark = scheme.newmark();
     scene.model.criteria.force = 1e-12;
     let strip = Strip {
@@ -97,7 +117,11 @@ fn state(points: &Points<2>) -> (f64, f64, f64) {
 /// Closed form: amplification matrix of the method of Wood, Bossak and Zienkiewicz (1980).
 #[test]
 fn one_degree_of_freedom_follows_the_amplification_matrix() {
-    for scheme in [0.0, 0.5, 0.8, 1.0].map(Scheme::Bossak).into_iter().chain([0.6, 1.0].map(Scheme::Gamma)) {
+    for scheme in [0.0, 0.5, 0.8, 1.0]
+        .map(Scheme::Bossak)
+        .into_iter()
+        .chain([0.6, 1.0].map(Scheme::Gamma))
+    {
         for steps in [20.0, 2.0] {
             let dt = 1.0 / steps;
             let amplification = scheme.amplification(OMEGA * dt, 1.0);
@@ -124,9 +148,14 @@ fn the_spectral_radius_at_infinite_frequency_is_the_one_that_is_asked_for() {
         assert!((radius - rho).abs() <= 1e-3, "{rho}: {radius}");
     }
     let greatest = |scheme: Scheme| {
-        (0..200).map(|k| scheme.spectrum(10.0_f64.powf(-3.0 + 0.04 * f64::from(k)), 1.0).0).fold(0.0, f64::max)
+        (0..200)
+            .map(|k| scheme.spectrum(10.0_f64.powf(-3.0 + 0.04 * f64::from(k)), 1.0).0)
+            .fold(0.0, f64::max)
     };
-    let stable = [0.0, 0.5, 0.9].map(Scheme::Bossak).into_iter().chain([0.5, 0.6, 1.0].map(Scheme::Gamma));
+    let stable = [0.0, 0.5, 0.9]
+        .map(Scheme::Bossak)
+        .into_iter()
+        .chain([0.5, 0.6, 1.0].map(Scheme::Gamma));
     stable.for_each(|scheme| assert!(greatest(scheme) <= 1.0 + 1e-9, "{scheme:?} is stable for every step"));
 }
 
@@ -138,9 +167,12 @@ fn bossak_is_of_second_order_and_newmark_with_gamma_above_a_half_of_first() {
         scene.march(1.0 / steps, 1.1, |_, _| {});
         (state(&scene.points).0 - SPEED / OMEGA * (OMEGA * 1.1).sin()).abs() / (SPEED / OMEGA)
     };
-    for (scheme, order) in
-        [(Scheme::Bossak(0.0), 2.0), (Scheme::Bossak(0.8), 2.0), (Scheme::Bossak(1.0), 2.0), (Scheme::Gamma(0.6), 1.0)]
-    {
+    for (scheme, order) in [
+        (Scheme::Bossak(0.0), 2.0),
+        (Scheme::Bossak(0.8), 2.0),
+        (Scheme::Bossak(1.0), 2.0),
+        (Scheme::Gamma(0.6), 1.0),
+    ] {
         let errors = [160.0, 320.0, 640.0].map(|steps| error(scheme, steps));
         let found = (errors[1] / errors[2]).log2();
         println!("{scheme:?}: errors {errors:?}, order {found:.3}");
@@ -175,7 +207,9 @@ fn mode(scheme: Scheme, steps: usize) -> (f64, f64, f64) {
 fn swing(mut scene: Scene<PlaneStrain, 2>, steps: usize) -> (f64, f64, f64) {
     let mut course: Vec<f64> = vec![0.0];
     scene.march(PERIOD / steps as f64, 5.0 * PERIOD, |points, _| {
-        let tip = (0..points.len()).max_by(|&a, &b| points.x[a][0].total_cmp(&points.x[b][0])).expect("points");
+        let tip = (0..points.len())
+            .max_by(|&a, &b| points.x[a][0].total_cmp(&points.x[b][0]))
+            .expect("points");
         course.push(points.u[tip][0]);
     });
     let mut turns: Vec<(f64, f64)> = Vec::new();
@@ -201,7 +235,12 @@ fn a_mode_of_the_bar_decays_and_slows_down_as_the_theory_says() {
     for steps in [20, 40] {
         let spectrum = |scheme: Scheme| scheme.spectrum(2.0 * PI / steps as f64, kept);
         let plain = (mode(Scheme::Bossak(1.0), steps), spectrum(Scheme::Bossak(1.0)));
-        for scheme in [Scheme::Bossak(1.0), Scheme::Bossak(0.0), Scheme::Bossak(0.5), Scheme::Gamma(0.6)] {
+        for scheme in [
+            Scheme::Bossak(1.0),
+            Scheme::Bossak(0.0),
+            Scheme::Bossak(0.5),
+            Scheme::Gamma(0.6),
+        ] {
             let (left, passed, period) = mode(scheme, steps);
             let (radius, angle) = spectrum(scheme);
             let decay = (left.ln() / passed, radius.ln());
@@ -226,11 +265,18 @@ fn a_damped_mode_decays_by_its_ratio_to_second_order_and_is_late_by_half_a_step(
         let (left, passed, period) = swing(damped, steps);
         let dt = PERIOD / steps as f64;
         let decay = -(left.ln() / passed - plain.0.ln() / plain.1) / (omega * dt);
-        (decay / ratio - 1.0, (plain.2 / period - 1.0) + 0.5 * ratio * ratio, 0.5 * ratio * omega * dt)
+        (
+            decay / ratio - 1.0,
+            (plain.2 / period - 1.0) + 0.5 * ratio * ratio,
+            0.5 * ratio * omega * dt,
+        )
     };
     for method in [Stabilisation::None, Stabilisation::FBar, Stabilisation::ConsistentFBar] {
         let [coarse, fine] = [40, 80].map(|steps| error(method, steps));
-        println!("{method:?}: decay {:.1e} {:.1e}, frequency {:.2e} for {:.2e}", coarse.0, fine.0, fine.1, fine.2);
+        println!(
+            "{method:?}: decay {:.1e} {:.1e}, frequency {:.2e} for {:.2e}",
+            coarse.0, fine.0, fine.1, fine.2
+        );
         assert!(coarse.0.abs() <= 0.02 && fine.0.abs() <= 0.006, "{coarse:?} {fine:?}");
         assert!((fine.1 / fine.2 - 1.0).abs() <= 0.2, "{fine:?}");
     }
@@ -240,7 +286,15 @@ fn a_damped_mode_decays_by_its_ratio_to_second_order_and_is_late_by_half_a_step(
 #[test]
 fn newtons_tangent_knows_the_viscous_stress() {
     let run = |nonlinear: Nonlinear, time: f64, method: Stabilisation| {
-        let sand = MohrCoulomb::new(Elastic { young: 100.0, poisson: 0.3 }, 0.3, 0.0, 0.2);
+        let sand = MohrCoulomb::new(
+            Elastic {
+                young: 100.0,
+                poisson: 0.3,
+            },
+            0.3,
+            0.0,
+            0.2,
+        );
         let law = Material::MohrCoulomb(sand);
         let thrown = |x: &Vector<2>| [1.0 - 2.0 * x[1], 2.0 * x[0] - 3.0].into();
         let mut scene = Scene::<PlaneStrain, 2>::new([axis(0.5, 8, 2), axis(0.5, 6, 2)], law, Regime::Dynamic)
@@ -256,10 +310,19 @@ fn newtons_tangent_knows_the_viscous_stress() {
         let (plain, _) = run(Nonlinear::Auto, 0.0, method);
         let [(auto, _), (newton, steps)] = [Nonlinear::Auto, Nonlinear::Newton].map(|how| run(how, 0.05, method));
         let far = |a: &Scene<PlaneStrain, 2>, b: &Scene<PlaneStrain, 2>| {
-            a.points.x.iter().zip(&b.points.x).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+            a.points
+                .x
+                .iter()
+                .zip(&b.points.x)
+                .map(|(a, b)| (a - b).norm())
+                .fold(0.0, f64::max)
         };
         let most = steps.iter().map(|step| step.report.iterations).max().expect("steps");
-        println!("{method:?}: {:.1e}, undamped {:.1e}, {most} iterations", far(&auto, &newton), far(&auto, &plain));
+        println!(
+            "{method:?}: {:.1e}, undamped {:.1e}, {most} iterations",
+            far(&auto, &newton),
+            far(&auto, &plain)
+        );
         assert!(far(&auto, &newton) <= 1e-7 && far(&auto, &plain) > 1e-3 && most <= 9);
     }
 }
@@ -268,7 +331,10 @@ fn newtons_tangent_knows_the_viscous_stress() {
 #[test]
 fn what_flows_is_not_damped() {
     let shear = |time: f64| {
-        let elastic = Elastic { young: 100.0, poisson: 0.3 };
+        let elastic = Elastic {
+            young: 100.0,
+            poisson: 0.3,
+        };
         let law = Material::MohrCoulomb(MohrCoulomb::new(elastic, 0.0, 0.0, 0.2));
         let mut scene = Scene::<PlaneStrain, 2>::new([axis(0.5, 8, 2), axis(0.5, 2, 2)], law, Regime::Dynamic)
             .body([2..5, 0..2], 3, 1.0, |x| [x[1], 0.0].into())
@@ -276,7 +342,11 @@ fn what_flows_is_not_damped() {
             .support(Support::moving(1, true, [Some(1.0), Some(0.0)]));
         scene.model.damping = if time > 0.0 { vec![time] } else { Vec::new() };
         let (scene, _) = scene.solved(0.02, 0.2);
-        let stress = |k: usize| (0..scene.points.len()).map(|p| scene.points.sigma.at(p).0[k]).sum::<f64>();
+        let stress = |k: usize| {
+            (0..scene.points.len())
+                .map(|p| scene.points.sigma.at(p).0[k])
+                .sum::<f64>()
+        };
         [stress(3), stress(0) + stress(1) + stress(2)].map(|sum| sum / scene.points.len() as f64)
     };
     // 38.5 x 0.05 x 1 Pa of viscous stress by the rate of all strain, ten times the strength.
@@ -293,9 +363,16 @@ fn what_flows_is_not_damped() {
 fn what_smoothing_takes_is_not_damped() {
     const TIME: f64 = 0.05; // s
     const DT: f64 = 0.05; // s
-    let elastic = Elastic { young: 100.0, poisson: 0.3 };
+    let elastic = Elastic {
+        young: 100.0,
+        poisson: 0.3,
+    };
     let bulk = elastic.young / (3.0 * (1.0 - 2.0 * elastic.poisson));
-    for method in [Stabilisation::FBar, Stabilisation::ModifiedFBar, Stabilisation::ConsistentFBar] {
+    for method in [
+        Stabilisation::FBar,
+        Stabilisation::ModifiedFBar,
+        Stabilisation::ConsistentFBar,
+    ] {
         let law = Material::MohrCoulomb(MohrCoulomb::new(elastic.clone(), 0.3, 0.1, 0.2));
         let thrown = |x: &Vector<2>| [1.0 - 2.0 * x[1], 2.0 * x[0] - 3.0].into();
         let mut scene = Scene::<PlaneStrain, 2>::new([axis(0.5, 8, 2), axis(0.5, 6, 2)], law, Regime::Dynamic)
@@ -332,7 +409,10 @@ fn a_rotation_is_not_damped() {
             scene.model.damping = vec![time];
             scene.march(0.01, 0.5, |_, _| {});
             let v = &scene.points.motion.as_ref().expect("dynamic").v;
-            v.iter().zip(&scene.points.mass).map(|(v, m)| 0.5 * m * v.norm_squared()).sum::<f64>()
+            v.iter()
+                .zip(&scene.points.mass)
+                .map(|(v, m)| 0.5 * m * v.norm_squared())
+                .sum::<f64>()
         };
     let (plain, damped) = (spin(0.0), spin(0.05));
     println!("{plain} {damped}");

@@ -25,7 +25,11 @@ fn collision<K: Kinematics<D>, const D: usize>(method: Stabilisation, steps: usi
     let (mut drift, mut stress) = (0.0_f64, 0.0_f64);
     scene.march(1.0 / steps as f64, 1.0, |points, _| {
         drift = drift.max((observe::momentum(points, &Part::Whole, &halo) - start).norm() / scale);
-        stress = points.sigma.iter().flat_map(|s| s.0).fold(stress, |most, s| most.max(s.abs() / 100.0));
+        stress = points
+            .sigma
+            .iter()
+            .flat_map(|s| s.0)
+            .fold(stress, |most, s| most.max(s.abs() / 100.0));
     });
     (drift, stress)
 }
@@ -87,7 +91,9 @@ fn a_quasi_static_scene_without_load_needs_no_iteration_and_stays_as_it_is() {
 /// Ground that moves as a sin(omega t) along x, in rows `dt` apart.
 fn sine(a: f64, omega: f64, dt: f64, end: f64) -> Shaking<2> {
     let row = |k: usize| (k as f64 * dt, Vector::from([a * (omega * k as f64 * dt).sin(), 0.0]));
-    Shaking { rows: (1..=(end / dt).round() as usize).map(row).collect() }
+    Shaking {
+        rows: (1..=(end / dt).round() as usize).map(row).collect(),
+    }
 }
 
 #[test]
@@ -111,7 +117,11 @@ fn a_body_that_nothing_holds_stays_behind_the_ground() {
         let kinetic = 0.5 * points.mass.iter().sum::<f64>() * ground * ground;
         assert!((work - kinetic).abs() <= 1e-12, "{work} for {kinetic}");
         for v in &points.motion.as_ref().unwrap().v {
-            assert!((v[0] + ground).abs() <= 1e-12 && v[1].abs() <= 1e-12, "{v:?} at {}: {ground}", accepted.t);
+            assert!(
+                (v[0] + ground).abs() <= 1e-12 && v[1].abs() <= 1e-12,
+                "{v:?} at {}: {ground}",
+                accepted.t
+            );
         }
     });
     assert!(ground > 1.0);
@@ -136,7 +146,10 @@ fn a_layer_on_moving_ground_sways_as_the_sum_of_its_modes() {
     let error = |cells: usize| {
         let (h, dt) = (1.0 / cells as f64, 0.25 / cells as f64);
         // Shear modulus and density 1; what would move up and down is held, as in a layer without end.
-        let rigid = |upper| Support { velocity: [None, Some(0.0)], ..Support::roller(0, upper) };
+        let rigid = |upper| Support {
+            velocity: [None, Some(0.0)],
+            ..Support::roller(0, upper)
+        };
         let mut scene = Scene::<PlaneStrain, 2>::new(
             [axis(h, 2, 2), axis(h, cells + 1, 2)],
             hencky(2.0 * 1.25, 0.25),
@@ -150,7 +163,13 @@ fn a_layer_on_moving_ground_sways_as_the_sum_of_its_modes() {
         scene.model.shaking = Some(sine(1e-6, omega, dt, end));
         let mut worst = 0.0_f64;
         scene.march(dt, end, |points, accepted| {
-            let top = points.x.iter().enumerate().max_by(|a, b| a.1[1].total_cmp(&b.1[1])).map(|(p, _)| p).unwrap();
+            let top = points
+                .x
+                .iter()
+                .enumerate()
+                .max_by(|a, b| a.1[1].total_cmp(&b.1[1]))
+                .map(|(p, _)| p)
+                .unwrap();
             worst = worst.max((points.u[top][0] * 1e6 - shear_layer(omega, accepted.t)).abs());
         });
         worst

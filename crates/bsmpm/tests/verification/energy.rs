@@ -40,7 +40,12 @@ fn kept<K: Kinematics<D>, const D: usize>(mut scene: Scene<K, D>, dt: f64, end: 
     scene.model.balances_energy = true;
     let (model, halo) = (scene.model.clone(), scene.halo());
     let stored = Stored::of(&model, (&scene.points, 0.0), &halo);
-    let mut course = Course { books: Books::open(stored), stored, largest: 0.0, closure: 0.0 };
+    let mut course = Course {
+        books: Books::open(stored),
+        stored,
+        largest: 0.0,
+        closure: 0.0,
+    };
     scene.march(dt, end, |points, accepted| {
         let step = accepted.report.energy.expect("the model balances energy");
         assert!(step.plastic >= 0.0, "plastic flow dissipates: {step:?}");
@@ -49,7 +54,12 @@ fn kept<K: Kinematics<D>, const D: usize>(mut scene: Scene<K, D>, dt: f64, end: 
         assert_eq!((turnover.external, turnover.plastic), (step.external, step.plastic));
         course.stored = Stored::of(&model, (points, accepted.t), &halo);
         let Course { books, stored, .. } = course;
-        let energies = [stored.kinetic, stored.elastic, books.flows.plastic, books.flows.external.abs()];
+        let energies = [
+            stored.kinetic,
+            stored.elastic,
+            books.flows.plastic,
+            books.flows.external.abs(),
+        ];
         course.largest = energies.into_iter().fold(course.largest, f64::max);
         course.closure = course.closure.max(books.closure(stored).abs());
     });
@@ -83,7 +93,10 @@ fn the_books_tell_what_damping_takes() {
         let taken = course.books.flows.plastic / course.books.start;
         let expected = 1.0 - (-2.0 * ratio * omega * 2.0 * PERIOD).exp();
         println!("damping took {taken:.6}, less 1: {:.1e}", taken / expected - 1.0);
-        assert!(course.relative() <= 1e-9 && (taken / expected - 1.0).abs() <= 5e-3, "{taken} for {expected}");
+        assert!(
+            course.relative() <= 1e-9 && (taken / expected - 1.0).abs() <= 5e-3,
+            "{taken} for {expected}"
+        );
     }
 }
 
@@ -95,7 +108,10 @@ fn the_bars_books_close_and_say_where_its_energy_went() {
         let (flows, start) = (course.books.flows, course.books.start);
         let left = (course.stored.kinetic + course.stored.elastic) / start;
         assert!(course.relative() <= 1e-10); // measured 1.1e-11
-        assert_eq!((flows.external, flows.plastic, flows.background, flows.penalty), (0.0, 0.0, 0.0, 0.0));
+        assert_eq!(
+            (flows.external, flows.plastic, flows.background, flows.penalty),
+            (0.0, 0.0, 0.0, 0.0)
+        );
         assert!((left + flows.numerical() / start - 1.0).abs() <= 1e-10);
         match method {
             // 0.549 of the energy is left (T3.5), and smoothing has taken it.
@@ -123,7 +139,11 @@ fn numerical_damping_is_a_loss_of_the_integration() {
     };
     // Amplitudes decay by these logarithms a step (`damping`), energies by twice them, in 40 steps.
     let decays = [2.9e-5, 3.674e-3, 4.833e-3];
-    let schemes = [Newmark::default(), Newmark::of_spectral_radius(0.0), Newmark::of_gamma(0.6)];
+    let schemes = [
+        Newmark::default(),
+        Newmark::of_spectral_radius(0.0),
+        Newmark::of_gamma(0.6),
+    ];
     for (newmark, decay) in schemes.into_iter().zip(decays) {
         let (found, expected) = (lost(newmark), 1.0 - f64::exp(-80.0 * decay));
         println!("{newmark:?}: lost {found:.4}, by the decay {expected:.4}");
@@ -134,13 +154,26 @@ fn numerical_damping_is_a_loss_of_the_integration() {
 
 /// A column of dry soil, 2 x 1 m of 0.25 m cells, that collapses on a rough base beside a smooth wall.
 fn collapse(method: Stabilisation, separation: Separation) -> Scene<PlaneStrain, 2> {
-    let soil = MohrCoulomb::new(Elastic { young: 1e5, poisson: 0.3 }, 0.4, 0.0, 0.0).separating(separation);
-    Scene::new([axis(0.25, 16, 2), axis(0.25, 6, 2)], Material::MohrCoulomb(soil), Regime::Dynamic)
-        .body([0..4, 0..4], 2, 2000.0, |x| x * 0.0)
-        .support(Support::roller(0, false))
-        .support(Support::fixed(1, false))
-        .gravity(10.0, 0.1)
-        .stabilised(method)
+    let soil = MohrCoulomb::new(
+        Elastic {
+            young: 1e5,
+            poisson: 0.3,
+        },
+        0.4,
+        0.0,
+        0.0,
+    )
+    .separating(separation);
+    Scene::new(
+        [axis(0.25, 16, 2), axis(0.25, 6, 2)],
+        Material::MohrCoulomb(soil),
+        Regime::Dynamic,
+    )
+    .body([0..4, 0..4], 2, 2000.0, |x| x * 0.0)
+    .support(Support::roller(0, false))
+    .support(Support::fixed(1, false))
+    .gravity(10.0, 0.1)
+    .stabilised(method)
 }
 
 #[test]
@@ -166,7 +199,15 @@ fn a_collapse_with_friction_closes() {
 #[test]
 fn a_method_that_makes_energy_exceeds_the_budget_and_no_other() {
     let soil = |friction: f64, dilation: f64| {
-        Material::MohrCoulomb(MohrCoulomb::new(Elastic { young: 5e7, poisson: 0.3 }, friction, dilation, 0.0))
+        Material::MohrCoulomb(MohrCoulomb::new(
+            Elastic {
+                young: 5e7,
+                poisson: 0.3,
+            },
+            friction,
+            dilation,
+            0.0,
+        ))
     };
     for (method, material, makes) in [
         (Stabilisation::None, soil(0.4, 0.0), false),
@@ -181,9 +222,16 @@ fn a_method_that_makes_energy_exceeds_the_budget_and_no_other() {
     ] {
         let mut scene = collapse(method, Separation::Forgotten);
         scene.model.materials = vec![material];
-        scene.model.gravity = Some(Gravity { acceleration: [0.0, -10.0].into(), ramp: 0.0, starts_vertical: false });
+        scene.model.gravity = Some(Gravity {
+            acceleration: [0.0, -10.0].into(),
+            ramp: 0.0,
+            starts_vertical: false,
+        });
         let (schedule, halo) = (Schedule::new(2e-3, 0.14, []), scene.halo());
-        let (mut solver, mut stepper) = (Skyline::new(&scene.model.grid), Stepper::new(scene.model.grid.nodes() * 2));
+        let (mut solver, mut stepper) = (
+            Skyline::new(&scene.model.grid),
+            Stepper::new(scene.model.grid.nodes() * 2),
+        );
         let ended = loop {
             match stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
                 Some(Ok(_)) => scene.points.sort_by_cell(&scene.model.grid),
@@ -191,7 +239,12 @@ fn a_method_that_makes_energy_exceeds_the_budget_and_no_other() {
                 None => break None,
             }
         };
-        println!("{method:?}: {:?} at {}, {:?}", ended, stepper.time(), stepper.progress().budget);
+        println!(
+            "{method:?}: {:?} at {}, {:?}",
+            ended,
+            stepper.time(),
+            stepper.progress().budget
+        );
         assert_eq!(matches!(ended, Some(StepError::EnergyMade { .. })), makes);
         assert!(makes || ended.is_none());
     }
@@ -200,9 +253,17 @@ fn a_method_that_makes_energy_exceeds_the_budget_and_no_other() {
 #[test]
 fn the_books_close_with_consistent_mass() {
     // Without supports the points gain what the nodes gain or less, whatever they do.
-    let bar = kept(bar(Stabilisation::None).with_mass(MassMatrix::Consistent), PERIOD / 80.0, PERIOD);
+    let bar = kept(
+        bar(Stabilisation::None).with_mass(MassMatrix::Consistent),
+        PERIOD / 80.0,
+        PERIOD,
+    );
     let mut sand = collapse(Stabilisation::ConsistentFBar, Separation::Forgotten).with_mass(MassMatrix::Consistent);
-    sand.model.gravity = Some(Gravity { acceleration: [0.0, -10.0].into(), ramp: 0.0, starts_vertical: false });
+    sand.model.gravity = Some(Gravity {
+        acceleration: [0.0, -10.0].into(),
+        ramp: 0.0,
+        starts_vertical: false,
+    });
     let sand = kept(sand, 2e-3, 0.2);
     for (name, course) in [("bar", &bar), ("sand", &sand)] {
         tell(name, course);
@@ -213,16 +274,30 @@ fn the_books_close_with_consistent_mass() {
 
 /// A block of Tresca soil, 0.25 m cells, into which a smooth strip is pressed.
 fn footing(method: Stabilisation) -> Scene<PlaneStrain, 2> {
-    let clay = MohrCoulomb::new(Elastic { young: 1e5, poisson: 0.4 }, 0.0, 0.0, 1e3);
-    let mut scene = Scene::new([axis(0.25, 6, 2), axis(0.25, 6, 2)], Material::MohrCoulomb(clay), Regime::QuasiStatic)
-        .body([0..6, 0..4], 2, 0.0, |x| x * 0.0)
-        .rollers([0])
-        .support(Support::fixed(1, false))
-        .stabilised(method);
+    let clay = MohrCoulomb::new(
+        Elastic {
+            young: 1e5,
+            poisson: 0.4,
+        },
+        0.0,
+        0.0,
+        1e3,
+    );
+    let mut scene = Scene::new(
+        [axis(0.25, 6, 2), axis(0.25, 6, 2)],
+        Material::MohrCoulomb(clay),
+        Regime::QuasiStatic,
+    )
+    .body([0..6, 0..4], 2, 0.0, |x| x * 0.0)
+    .rollers([0])
+    .support(Support::fixed(1, false))
+    .stabilised(method);
     scene.model.weighting = Weighting::Volume;
     scene.model.background = Some(Background { coefficient: 1e-3 });
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.0].into(), &[0.5, 1.0].into(), 2);
-    let path = Path { rows: vec![(1.0, [0.0, -0.05].into())] };
+    let path = Path {
+        rows: vec![(1.0, [0.0, -0.05].into())],
+    };
     scene.strip(Strip {
         contact: None,
         points,
@@ -250,12 +325,18 @@ fn a_quasi_static_footing_closes() {
 
 /// An elastic block under a traction or gravity.
 fn block(ramp: f64) -> Scene<PlaneStrain, 2> {
-    let scene = Scene::new([axis(0.5, 2, 2), axis(0.5, 3, 2)], hencky(1e6, 0.3), Regime::QuasiStatic)
-        .body([0..2, 0..2], 3, 1.0, |x| x * 0.0)
-        .rollers([0])
-        .support(Support::roller(1, false));
+    let scene = Scene::new(
+        [axis(0.5, 2, 2), axis(0.5, 3, 2)],
+        hencky(1e6, 0.3),
+        Regime::QuasiStatic,
+    )
+    .body([0..2, 0..2], 3, 1.0, |x| x * 0.0)
+    .rollers([0])
+    .support(Support::roller(1, false));
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.0].into(), &[1.0, 1.0].into(), 3);
-    scene.gravity(5.0, ramp).load(Load::dead(points, [0.0, -100.0].into(), ramp))
+    scene
+        .gravity(5.0, ramp)
+        .load(Load::dead(points, [0.0, -100.0].into(), ramp))
 }
 
 #[test]
@@ -266,7 +347,11 @@ fn a_load_that_grows_stores_its_work_and_one_at_once_twice_as_much_as_is_stored(
     tell("at once", &at_once);
     let M = hencky(1e6, 0.3).elastic().oedometric();
     let exact = 0.5 * 100.0 * 100.0 / M; // of the traction alone, small strain
-    assert!((grown.stored.elastic / exact - 1.0).abs() <= 0.06, "{} {exact}", grown.stored.elastic);
+    assert!(
+        (grown.stored.elastic / exact - 1.0).abs() <= 0.06,
+        "{} {exact}",
+        grown.stored.elastic
+    );
     assert!((grown.books.flows.external / grown.stored.elastic - 1.0).abs() <= 1e-3);
     assert!((at_once.books.flows.external / at_once.stored.elastic - 2.0).abs() <= 1e-3);
     assert!(grown.relative() <= 1e-9 && at_once.relative() <= 1e-9); // measured 1.7e-10, 3.4e-12
@@ -279,11 +364,15 @@ fn a_face_that_moves_does_the_work_of_its_reaction() {
     fn pressed<K: Kinematics<D>, const D: usize>() -> (f64, f64) {
         let mut pushed = Support::roller(D - 1, true);
         pushed.velocity[D - 1] = Some(-0.1);
-        let scene = Scene::<K, D>::new(std::array::from_fn(|_| axis(0.5, 2, 2)), hencky(1e3, 0.3), Regime::QuasiStatic)
-            .body(std::array::from_fn(|_| 0..2), 2, 1.0, |x: &Vector<D>| x * 0.0)
-            .rollers(0..D - 1)
-            .support(Support::roller(D - 1, false))
-            .support(pushed);
+        let scene = Scene::<K, D>::new(
+            std::array::from_fn(|_| axis(0.5, 2, 2)),
+            hencky(1e3, 0.3),
+            Regime::QuasiStatic,
+        )
+        .body(std::array::from_fn(|_| 0..2), 2, 1.0, |x: &Vector<D>| x * 0.0)
+        .rollers(0..D - 1)
+        .support(Support::roller(D - 1, false))
+        .support(pushed);
         let course = kept(scene, 1.0, 1.0);
         tell("pressed", &course);
         assert!(course.relative() <= 1e-12); // measured 4.7e-14

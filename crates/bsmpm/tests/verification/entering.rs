@@ -28,7 +28,10 @@ fn block(shift: f64, background: Option<Background>, regime: Regime) -> (Scene<P
         .background(background);
     let inside = |x: &Vector<2>| (x[0] - 1.5).abs() < 0.5 && (x[1] - 0.5).abs() < 0.25;
     let points = &mut scene.points;
-    let inner = (0..points.len()).filter(|&p| inside(&points.x[p])).map(|p| points.id[p]).collect();
+    let inner = (0..points.len())
+        .filter(|&p| inside(&points.x[p]))
+        .map(|p| points.id[p])
+        .collect();
     points.x.iter_mut().for_each(|x| x[0] += shift);
     points.sort_by_cell(&scene.model.grid);
     (scene, inner)
@@ -40,7 +43,11 @@ fn inner_stress(shift: f64, background: Option<Background>) -> Vec<f64> {
     let (scene, steps) = scene.solved(1.0, 1.0);
     assert!(steps.iter().all(|step| step.rejected.is_empty()));
     let points = &scene.points;
-    by_id(points).into_iter().filter(|&p| inner.contains(&points.id[p])).map(|p| points.sigma.at(p).0[1]).collect()
+    by_id(points)
+        .into_iter()
+        .filter(|&p| inner.contains(&points.id[p]))
+        .map(|p| points.sigma.at(p).0[1])
+        .collect()
 }
 
 /// Largest change of the inner stress over the largest stress: translated across a cell, and just entering one.
@@ -49,11 +56,19 @@ fn changes(background: Option<Background>) -> [f64; 2] {
     let largest = reference.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
     let change = |shift| {
         let found = inner_stress(shift, background);
-        found.iter().zip(&reference).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
+        found
+            .iter()
+            .zip(&reference)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max)
+            / largest
     };
     let across = (1..20).map(|i| f64::from(i) * 0.05 * H);
     let entering = (2..15).map(|k| EDGE + H * 10.0_f64.powi(-k));
-    [across.map(change).fold(0.0, f64::max), entering.map(change).fold(0.0, f64::max)]
+    [
+        across.map(change).fold(0.0, f64::max),
+        entering.map(change).fold(0.0, f64::max),
+    ]
 }
 
 /// Reference: the same body whose edge coincides with a grid line.
@@ -79,7 +94,14 @@ fn condition(shift: f64, background: Option<Background>) -> [f64; 2] {
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), halo).expect("loads on material");
     let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
     let mut stiffness = Dense::new(&model.grid);
-    let scene = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo };
+    let scene = Problem {
+        model,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points,
+        halo,
+    };
     stiffness::assemble(&scene, None, &mut stiffness).expect("a matrix");
     stiffness.conditions()
 }
@@ -94,8 +116,11 @@ fn a_background_bounds_the_condition_however_little_enters_a_cell() {
         let none = condition(shift, None);
         let coefficients = [1e-4, 1e-3, 1e-2];
         let found = coefficients.map(|coefficient| condition(shift, Some(Background { coefficient })));
-        let row: Vec<String> =
-            [none].iter().chain(&found).map(|[plain, scaled]| format!("{plain:.1e} {scaled:.1e}")).collect();
+        let row: Vec<String> = [none]
+            .iter()
+            .chain(&found)
+            .map(|[plain, scaled]| format!("{plain:.1e} {scaled:.1e}"))
+            .collect();
         println!("1e-{k:<6} {}", row.join(", "));
         // Edges on knots 2.8e2; measured 190 / c, whatever delta is, scaled at most 86. Without a background it grows
         // with 1e3 h^2 / delta^2, to 1.9e15 at 1e-6.

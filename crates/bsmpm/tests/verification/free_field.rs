@@ -20,14 +20,25 @@ const POISSON: f64 = 0.25;
 /// along x, and of a part of it `along_y`, shakes at a base that is to be held; nothing at its sides yet.
 fn ground((wide, h): (usize, f64), fastest: f64, along_y: f64) -> Scene<PlaneStrain, 2> {
     let high = (10.0 / h).round() as usize;
-    let mut scene =
-        Scene::<PlaneStrain, 2>::new([axis(h, wide, 2), axis(h, high + 1, 2)], hencky(SOFT, POISSON), Regime::Dynamic)
-            .body([0..wide, 0..high], 3, RHO, |_| Vector::zeros())
-            .with(hencky(STIFF, POISSON), |x| x[1] < 4.0)
-            .stabilised(Stabilisation::ConsistentFBar);
+    let mut scene = Scene::<PlaneStrain, 2>::new(
+        [axis(h, wide, 2), axis(h, high + 1, 2)],
+        hencky(SOFT, POISSON),
+        Regime::Dynamic,
+    )
+    .body([0..wide, 0..high], 3, RHO, |_| Vector::zeros())
+    .with(hencky(STIFF, POISSON), |x| x[1] < 4.0)
+    .stabilised(Stabilisation::ConsistentFBar);
     (scene.model.criteria.force, scene.model.criteria.energy) = (1e-12, 1e-16);
-    let pulse = |t: f64| if t < 0.15 { fastest * (2.0 * PI * t / 0.15).sin() } else { 0.0 };
-    let rows = (1..=60).map(|k| 0.0025 * f64::from(k)).map(|t| (t, [pulse(t), along_y * pulse(t)].into()));
+    let pulse = |t: f64| {
+        if t < 0.15 {
+            fastest * (2.0 * PI * t / 0.15).sin()
+        } else {
+            0.0
+        }
+    };
+    let rows = (1..=60)
+        .map(|k| 0.0025 * f64::from(k))
+        .map(|t| (t, [pulse(t), along_y * pulse(t)].into()));
     scene.model.shaking = Some(Shaking { rows: rows.collect() });
     scene
 }
@@ -35,14 +46,19 @@ fn ground((wide, h): (usize, f64), fastest: f64, along_y: f64) -> Scene<PlaneStr
 type Side = fn(usize, bool) -> Support<2>;
 
 fn between(scene: Scene<PlaneStrain, 2>, side: Side) -> Scene<PlaneStrain, 2> {
-    scene.support(side(0, false)).support(side(0, true)).support(Support::fixed(1, false))
+    scene
+        .support(side(0, false))
+        .support(side(0, true))
+        .support(Support::fixed(1, false))
 }
 
 /// Largest distance of a point of `all` from the point of the `column` at its height, and the largest displacement.
 fn off(all: &Points<2>, column: &Points<2>) -> [f64; 2] {
     let mut most = [0.0_f64; 2];
     for p in 0..all.len() {
-        let alike = (0..column.len()).find(|&q| (column.height(q) - all.height(p)).abs() < 1e-9).expect("its height");
+        let alike = (0..column.len())
+            .find(|&q| (column.height(q) - all.height(p)).abs() < 1e-9)
+            .expect("its height");
         most[0] = most[0].max((all.u[p] - column.u[alike]).norm());
         most[1] = most[1].max(all.u[p].norm());
     }
@@ -67,7 +83,11 @@ fn level_ground_moves_as_its_column_everywhere() {
     });
     let closure = books.closure(Stored::of(&model, (&follows.points, 0.0), &halo)) / books.flows.external;
     // 5.2e-7 and 2.9e-10.
-    assert!(worst < 1e-6 * largest && closure.abs() < 1e-8, "{:e}, {closure:e}", worst / largest);
+    assert!(
+        worst < 1e-6 * largest && closure.abs() < 1e-8,
+        "{:e}, {closure:e}",
+        worst / largest
+    );
     for side in [Support::roller as Side, Support::absorbing] {
         let (mut scene, mut k, mut worst) = (between(ground((6, 1.0), 1e-3, 0.5), side), 0, 0.0_f64);
         scene.march(0.005, 0.3, |points, _| {
@@ -87,7 +107,9 @@ fn amplification(beta: f64, omega: f64) -> f64 {
     let [soft, stiff] = [SOFT, STIFF].map(wave);
     let (upper, lower) = (Complex::from(6.0 * omega) / soft, Complex::from(4.0 * omega) / stiff);
     // Of unit motion at the surface.
-    (upper.cos() * lower.cos() - soft / stiff * upper.sin() * lower.sin()).norm().recip()
+    (upper.cos() * lower.cos() - soft / stiff * upper.sin() * lower.sin())
+        .norm()
+        .recip()
 }
 
 /// Of a pulse, by the Fourier integrals of the surface's and the ground's acceleration until all is at rest: how far it
@@ -101,7 +123,9 @@ fn off_amplification(h: f64) -> [f64; 3] {
     let frequencies = [10.0, 17.8, 30.0];
     let mut sums = [[Complex::from(0.0); 2]; 3];
     scene.march(0.005 * h, 2.0, |points, accepted| {
-        let top = (0..points.len()).max_by(|&p, &q| points.x[p][1].total_cmp(&points.x[q][1])).expect("points");
+        let top = (0..points.len())
+            .max_by(|&p, &q| points.x[p][1].total_cmp(&points.x[q][1]))
+            .expect("points");
         let ground = shaking.at(accepted.t)[0];
         let surface = points.motion.as_ref().expect("dynamic").a[top][0] + ground;
         for (sums, omega) in sums.iter_mut().zip(frequencies) {
@@ -119,7 +143,10 @@ fn layers_amplify_as_waves_in_them_do() {
     let [coarse, fine] = [1.0, 0.5].map(off_amplification);
     for (k, [of_coarse, of_fine]) in [[0.002, 0.007], [0.025, 0.014], [0.05, 0.018]].into_iter().enumerate() {
         // 0.0013 and 0.0061, -0.0218 and -0.0122, 0.0444 and 0.0155.
-        assert!(coarse[k].abs() < of_coarse && fine[k].abs() < of_fine, "{k}: {coarse:?}, {fine:?}");
+        assert!(
+            coarse[k].abs() < of_coarse && fine[k].abs() < of_fine,
+            "{k}: {coarse:?}, {fine:?}"
+        );
     }
 }
 
@@ -139,7 +166,11 @@ fn scattered(wide: usize, side: Side) -> Vec<Vec<Vector<2>>> {
         let at_top = |p: &usize| points.height(*p) > 9.7 && (points.x[*p][0] - points.u[*p][0] - middle).abs() < 5.0;
         let mut top: Vec<usize> = (0..points.len()).filter(at_top).collect();
         top.sort_by(|&p, &q| points.x[p][0].total_cmp(&points.x[q][0]));
-        seen.push(top.iter().map(|&p| points.motion.as_ref().expect("dynamic").v[p]).collect());
+        seen.push(
+            top.iter()
+                .map(|&p| points.motion.as_ref().expect("dynamic").v[p])
+                .collect(),
+        );
     });
     seen
 }
@@ -153,7 +184,11 @@ fn what_a_block_scatters_leaves_through_the_sides() {
     let wrong = sides.map(|side| {
         let found = scattered(12, side);
         let off = |(found, right): (&Vec<Vector<2>>, &Vec<Vector<2>>)| {
-            found.iter().zip(right).map(|(found, right)| (found - right).norm()).fold(0.0, f64::max)
+            found
+                .iter()
+                .zip(right)
+                .map(|(found, right)| (found - right).norm())
+                .fold(0.0, f64::max)
         };
         found.iter().zip(&right).map(off).fold(0.0, f64::max) / largest
     });

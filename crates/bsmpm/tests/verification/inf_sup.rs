@@ -62,8 +62,15 @@ fn constant(method: Stabilisation, grid: (usize, usize)) -> (f64, usize) {
     let values = (&both + both.transpose()).scale(0.5).symmetric_eigenvalues();
     // Squares of constants down to 0.003; what round-off leaves of 0 is below 1e-13.
     let pressures = values.iter().copied().filter(|value| *value > 1e-5);
-    let (least, count) = pressures.fold((f64::INFINITY, 0), |(least, count), value| (value.min(least), count + 1));
-    println!("{method:?}, order {}, {} cells: beta = {:.4} of {count}", grid.0, grid.1, least.sqrt());
+    let (least, count) = pressures.fold((f64::INFINITY, 0), |(least, count), value| {
+        (value.min(least), count + 1)
+    });
+    println!(
+        "{method:?}, order {}, {} cells: beta = {:.4} of {count}",
+        grid.0,
+        grid.1,
+        least.sqrt()
+    );
     (least.sqrt(), count)
 }
 

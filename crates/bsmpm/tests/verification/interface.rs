@@ -67,7 +67,11 @@ fn the_stiffness_beside_an_interface_does_not_matter() {
 fn a_jump_of_density_is_smeared_by_volume() {
     for method in METHODS.into_iter().filter(|method| method.averages()) {
         // Over pairs of cells it is smeared farther: measured 0.076, 0.659.
-        let bounds = if method == Stabilisation::SubgridFBar { [0.08, 0.7] } else { [0.07, 0.6] };
+        let bounds = if method == Stabilisation::SubgridFBar {
+            [0.08, 0.7]
+        } else {
+            [0.07, 0.6]
+        };
         for (lighter, bound) in [2.0, 10.0].into_iter().zip(bounds) {
             let [above, below] = beside(method, 6.0, 1.0, lighter);
             println!("{method:?}, 1:{lighter}: above {above:.3?}, below {below:.3?}");

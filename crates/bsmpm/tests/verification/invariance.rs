@@ -48,7 +48,11 @@ fn a_mirrored_scene_has_the_mirrored_result() {
         let mut worst = 0.0_f64;
         for (x, sigma) in right.x.iter().zip(right.sigma.iter()) {
             let partner = (0..left.len())
-                .min_by(|&a, &b| (mirrored(x) - left.x[a]).norm().total_cmp(&(mirrored(x) - left.x[b]).norm()))
+                .min_by(|&a, &b| {
+                    (mirrored(x) - left.x[a])
+                        .norm()
+                        .total_cmp(&(mirrored(x) - left.x[b]).norm())
+                })
                 .unwrap();
             worst = worst.max((mirrored(x) - left.x[partner]).amax());
             for (k, sign) in [1.0, 1.0, 1.0, -1.0].iter().enumerate() {
@@ -79,14 +83,22 @@ fn exchanged_axes_give_the_exchanged_result() {
             .support(Support::roller(other, false))
             .support(Support::fixed(1 - other, false))
             .stabilised(method);
-        scene.model.gravity = Some(Gravity { acceleration: swap([0.0, -2.0]), ramp: 0.0, starts_vertical: false });
+        scene.model.gravity = Some(Gravity {
+            acceleration: swap([0.0, -2.0]),
+            ramp: 0.0,
+            starts_vertical: false,
+        });
         scene.solved(0.01, 0.5).0.points
     };
     for method in METHODS {
         let (upright, lying) = (scene(false, method), scene(true, method));
         let worst = upright.x.iter().map(|x| {
             let exchanged = Vector::<2>::new(x[1], x[0]);
-            lying.x.iter().map(|y| (y - exchanged).amax()).fold(f64::INFINITY, f64::min)
+            lying
+                .x
+                .iter()
+                .map(|y| (y - exchanged).amax())
+                .fold(f64::INFINITY, f64::min)
         });
         let worst = worst.fold(0.0, f64::max);
         println!("{method:?}: worst difference {worst:.1e} m");
@@ -133,14 +145,21 @@ fn in_units(
         material(stress),
         Regime::Dynamic,
     )
-    .body([2..5, 0..3], 2, mass / (length * length * length), |x| [-0.8 * speed, 0.1 * speed + 0.0 * x[0]].into())
+    .body([2..5, 0..3], 2, mass / (length * length * length), |x| {
+        [-0.8 * speed, 0.1 * speed + 0.0 * x[0]].into()
+    })
     .support(Support::roller(0, false))
     .support(Support::fixed(1, false))
     .gravity(2.0 * length / (time * time), 0.0)
     .stabilised(method);
     scene.march(0.01 * time, 0.5 * time, |_, _| ());
-    let scales = [length, length, speed, speed, stress, stress, stress, stress, stress, stress];
-    rows(&scene.points).iter().map(|row| row.iter().zip(scales).map(|(value, scale)| value / scale).collect()).collect()
+    let scales = [
+        length, length, speed, speed, stress, stress, stress, stress, stress, stress,
+    ];
+    rows(&scene.points)
+        .iter()
+        .map(|row| row.iter().zip(scales).map(|(value, scale)| value / scale).collect())
+        .collect()
 }
 
 /// Invariance: scaling by powers of two is exact in floating point.
@@ -148,7 +167,15 @@ fn in_units(
 fn powers_of_two_as_units_change_no_bit() {
     let rubber = |stress: f64| hencky(100.0 * stress, 0.3);
     let sand = |stress: f64| {
-        let sand = MohrCoulomb::new(Elastic { young: 1e4 * stress, poisson: 0.3 }, 0.5, 0.0, 0.0);
+        let sand = MohrCoulomb::new(
+            Elastic {
+                young: 1e4 * stress,
+                poisson: 0.3,
+            },
+            0.5,
+            0.0,
+            0.0,
+        );
         Material::MohrCoulomb(sand.separating(Separation::Closing))
     };
     let check = |method, material: &dyn Fn(f64) -> Material| {
@@ -167,20 +194,29 @@ fn powers_of_two_as_units_change_no_bit() {
 #[test]
 fn the_soft_background_changes_a_filled_elastic_block_by_the_order_of_its_coefficient() {
     let settled = |background| {
-        let scene =
-            Scene::<PlaneStrain, 2>::new([axis(0.5, 6, 2), axis(0.5, 4, 2)], hencky(100.0, 0.3), Regime::QuasiStatic)
-                .body([0..4, 0..4], 3, 1.0, |x| x * 0.0)
-                .support(Support::roller(0, false))
-                .support(Support::fixed(1, false))
-                .gravity(1.0, 0.0)
-                .background(background);
+        let scene = Scene::<PlaneStrain, 2>::new(
+            [axis(0.5, 6, 2), axis(0.5, 4, 2)],
+            hencky(100.0, 0.3),
+            Regime::QuasiStatic,
+        )
+        .body([0..4, 0..4], 3, 1.0, |x| x * 0.0)
+        .support(Support::roller(0, false))
+        .support(Support::fixed(1, false))
+        .gravity(1.0, 0.0)
+        .background(background);
         scene.solved(1.0, 1.0).0.points
     };
     let plain = settled(None);
     let scale = plain.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
     for coefficient in [1e-5, 1e-3, 1e-2] {
         let soft = settled(Some(Background { coefficient }));
-        let change = soft.u.iter().zip(&plain.u).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / scale;
+        let change = soft
+            .u
+            .iter()
+            .zip(&plain.u)
+            .map(|(a, b)| (a - b).norm())
+            .fold(0.0, f64::max)
+            / scale;
         println!("coefficient {coefficient:.0e}: displacement changes by {change:.1e}");
         assert!((0.7..1.3).contains(&(change / coefficient))); // measured 0.98 to 0.99
     }

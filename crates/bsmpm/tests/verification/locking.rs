@@ -18,14 +18,21 @@ fn pressed(method: Stabilisation) -> (f64, f64) {
 }
 
 fn pressed_by(quasi_newton: QuasiNewton, method: Stabilisation) -> (f64, f64, usize) {
-    let mut scene =
-        Scene::<PlaneStrain, 2>::new([axis(1.0, 8, 2), axis(1.0, 6, 2)], hencky(1000.0, 0.49), Regime::QuasiStatic)
-            .body([0..6, 0..6], 3, 1.0, |x| x * 0.0)
-            .support(Support::roller(0, false))
-            .support(Support::fixed(1, false))
-            .gravity(5.0, 4.0)
-            .stabilised(method);
-    scene.model.criteria = Criteria { energy: 1e-8, force: 1e-4, max_iterations: 200 };
+    let mut scene = Scene::<PlaneStrain, 2>::new(
+        [axis(1.0, 8, 2), axis(1.0, 6, 2)],
+        hencky(1000.0, 0.49),
+        Regime::QuasiStatic,
+    )
+    .body([0..6, 0..6], 3, 1.0, |x| x * 0.0)
+    .support(Support::roller(0, false))
+    .support(Support::fixed(1, false))
+    .gravity(5.0, 4.0)
+    .stabilised(method);
+    scene.model.criteria = Criteria {
+        energy: 1e-8,
+        force: 1e-4,
+        max_iterations: 200,
+    };
     scene.model.nonlinear = Nonlinear::QuasiNewton(quasi_newton);
     let (scene, steps) = scene.solved(1.0, 4.0);
     let halo = scene.halo();

@@ -34,7 +34,9 @@ fn errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, l: f64) -> f64 
     let (vertical, lateral) = (elastic.oedometric() * l.ln() / l, lambda * l.ln() / l);
     let of = |p: usize| {
         let sigma = scene.points.sigma.at(p).0;
-        (0..3).map(|k| (sigma[k] - if k == D - 1 { vertical } else { lateral }).abs()).fold(0.0, f64::max)
+        (0..3)
+            .map(|k| (sigma[k] - if k == D - 1 { vertical } else { lateral }).abs())
+            .fold(0.0, f64::max)
     };
     (0..scene.points.len()).map(of).fold(0.0, f64::max) / vertical.abs()
 }
@@ -57,7 +59,11 @@ fn one_step_of_a_prescribed_face_gives_the_exact_stress_in_two_and_three_dimensi
 fn one_step_over_many_cells_too() {
     for method in METHODS {
         let (scene, steps) = compressed::<PlaneStrain, 2>(6, 0.95, method);
-        println!("{method:?}: {:.1e}, {} iterations", errors(&scene, 0.95), steps[0].report.iterations);
+        println!(
+            "{method:?}: {:.1e}, {} iterations",
+            errors(&scene, 0.95),
+            steps[0].report.iterations
+        );
         assert_eq!(steps.len(), 1);
         assert!(errors(&scene, 0.95) <= 1e-10); // measured 1.8e-12 at most
     }
@@ -71,7 +77,13 @@ fn a_uniformly_stressed_block_between_fixed_faces_stays_without_iteration() {
         scene.points.b_e.fill(Symmetric([0.9, 0.64, 1.0, 0.0, 0.0, 0.0]));
         let before = scene.points.clone();
         let (scene, steps) = scene.solved(1.0, 3.0);
-        let moved = scene.points.x.iter().zip(&before.x).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        let moved = scene
+            .points
+            .x
+            .iter()
+            .zip(&before.x)
+            .map(|(a, b)| (a - b).norm())
+            .fold(0.0, f64::max);
         let iterations: Vec<usize> = steps.iter().map(|step| step.report.iterations).collect();
         println!("{method:?}: {iterations:?} iterations, moved {moved:.1e} m");
         assert!(iterations.iter().all(|&count| count == 0) && moved <= 1e-15);

@@ -16,7 +16,10 @@ const CELL: f64 = 0.5;
 /// Mean pressure under a strip of 1 m that has been pushed 0.4 m into half of a block of clay, 3 m x 2 m, with E/c =
 /// 100.
 fn pressure(factor: f64) -> f64 {
-    let elastic = Elastic { young: YOUNG, poisson: 0.495 };
+    let elastic = Elastic {
+        young: YOUNG,
+        poisson: 0.495,
+    };
     let clay = Material::MohrCoulomb(MohrCoulomb::new(elastic, 0.0, 0.0, 1.0));
     let mut scene = Scene::<PlaneStrain, 2>::new([axis(CELL, 6, 2), axis(CELL, 6, 2)], clay, Regime::QuasiStatic)
         .body([0..6, 0..4], 3, 0.0, |x| x * 0.0)
@@ -24,11 +27,17 @@ fn pressure(factor: f64) -> f64 {
         .support(Support::fixed(1, false))
         .stabilised(Stabilisation::FBar);
     scene.model.weighting = Weighting::Volume;
-    scene.model.criteria = Criteria { energy: 1e-10, force: 1e-6, max_iterations: 1000 };
+    scene.model.criteria = Criteria {
+        energy: 1e-10,
+        force: 1e-6,
+        max_iterations: 1000,
+    };
     scene.model.background = Some(Background { coefficient: 1e-3 });
     let at = |x: f64, y: f64| Vector::<2>::new(x, y);
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &at(0.0, 2.0), &at(1.0, 2.0), 4);
-    let path = Path { rows: vec![(1.0, at(0.0, -0.4))] };
+    let path = Path {
+        rows: vec![(1.0, at(0.0, -0.4))],
+    };
     let mut scene = scene.strip(Strip {
         contact: None,
         points,
@@ -38,7 +47,9 @@ fn pressure(factor: f64) -> f64 {
         penalty: factor * YOUNG / CELL,
     });
     let mut last = 0.0;
-    scene.march(1.0 / 16.0, 1.0, |_, accepted| last = -accepted.report.strips[0].force[1]);
+    scene.march(1.0 / 16.0, 1.0, |_, accepted| {
+        last = -accepted.report.strips[0].force[1]
+    });
     last.abs()
 }
 

@@ -34,13 +34,24 @@ fn of(outline: Outline, center: [f64; 2]) -> RigidBody {
 fn slab([left, bottom]: [f64; 2], [right, top]: [f64; 2]) -> RigidBody {
     let center = [0.5 * (left + right), 0.5 * (bottom + top)];
     let corners = [[left, bottom], [right, bottom], [right, top], [left, top]];
-    of(Outline::Polygon(corners.map(|corner| Vector::from(corner) - Vector::from(center)).to_vec()), center)
+    of(
+        Outline::Polygon(
+            corners
+                .map(|corner| Vector::from(corner) - Vector::from(center))
+                .to_vec(),
+        ),
+        center,
+    )
 }
 
 /// A rectangle that moves freely.
 fn free(lower: [f64; 2], upper: [f64; 2], mass: f64) -> RigidBody {
     let polar = mass * ((upper[0] - lower[0]).powi(2) + (upper[1] - lower[1]).powi(2)) / 12.0;
-    RigidBody { free: [true; 3], mass: [mass, mass, polar].into(), ..slab(lower, upper) }
+    RigidBody {
+        free: [true; 3],
+        mass: [mass, mass, polar].into(),
+        ..slab(lower, upper)
+    }
 }
 
 fn path(rows: &[(f64, [f64; 3])]) -> Vec<(f64, Vector<3>)> {
@@ -59,7 +70,11 @@ fn velocity(points: &Points<2>) -> f64 {
 /// Gravity that grows over a ramp, inclined by `slope` = tan(theta).
 fn inclined(slope: f64) -> Gravity<2> {
     let theta = slope.atan();
-    Gravity { acceleration: Vector::from([G * theta.sin(), -G * theta.cos()]), ramp: RAMP, starts_vertical: false }
+    Gravity {
+        acceleration: Vector::from([G * theta.sin(), -G * theta.cos()]),
+        ramp: RAMP,
+        starts_vertical: false,
+    }
 }
 
 /// Elastic ground of `cells` of `h` m, held at its sides and bottom.
@@ -76,7 +91,10 @@ fn ground(h: f64, cells: [usize; 2], above: usize, regime: Regime) -> Scene<Plan
 /// A block of 1 x 0.5 m, of cells of 1/`n` m, on a rigid plate that is inclined by `slope`.
 fn block(n: usize, slope: f64, friction: f64, regime: Regime) -> Scene<PlaneStrain, 2> {
     let h = 1.0 / n as f64;
-    let plate = RigidBody { friction, ..slab([-1.0, -0.5], [5.0, 0.5]) };
+    let plate = RigidBody {
+        friction,
+        ..slab([-1.0, -0.5], [5.0, 0.5])
+    };
     let mut scene = Scene::<PlaneStrain, 2>::new([axis(h, 3 * n, 2), axis(h, 2 * n, 2)], hencky(1e7, 0.3), regime)
         .body([n / 2..n / 2 + n, n / 2..n], 2, 1000.0, |_| Vector::zeros())
         .rigid(plate);
@@ -107,7 +125,11 @@ fn slid(n: usize, dt: f64, method: Nonlinear) -> (f64, usize) {
         assert!(accepted.rejected.is_empty() && force[0] <= FRICTION * -force[1] * (1.0 + 1e-12));
     });
     let now = Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo());
-    assert!(books.closure(now).abs() < 1e-6 * now.kinetic, "the books close: {:.1e}", books.closure(now));
+    assert!(
+        books.closure(now).abs() < 1e-6 * now.kinetic,
+        "the books close: {:.1e}",
+        books.closure(now)
+    );
     let exact = G * (theta.sin() - FRICTION * theta.cos()) * (END - 0.5 * RAMP);
     (velocity(&scene.points) / exact - 1.0, iterations)
 }
@@ -130,7 +152,10 @@ fn a_block_sticks_where_friction_is_larger_than_the_slope_and_else_does_not() {
     let mut scene = block(4, 0.5, 0.6, Regime::Dynamic);
     last(&mut scene, 0.01, 0.5);
     let way = mean(&scene.points, |p| scene.points.u[p][0]);
-    assert!((0.0..5e-4).contains(&way) && velocity(&scene.points).abs() < 5e-3, "{way} m");
+    assert!(
+        (0.0..5e-4).contains(&way) && velocity(&scene.points).abs() < 5e-3,
+        "{way} m"
+    );
     let mut scene = block(4, 0.3, 0.31, Regime::QuasiStatic);
     let force = last(&mut scene, 0.05, RAMP).force;
     let (theta, weight) = (0.3_f64.atan(), 500.0 * G);
@@ -169,7 +194,10 @@ fn a_bar_hits_a_wall_and_leaves_it() {
         let (coarse, fine) = (bar(20, gap), bar(40, gap));
         println!("{gap}: {coarse:.3?} {fine:.3?}");
         for (of, bounds) in [(coarse, [0.06, 0.12, 0.15]), (fine, [0.03, 0.07, 0.09])] {
-            assert!((of[0] - 1.0).abs() < bounds[0] && (1.0 - bounds[1]..1.0).contains(&of[1]), "{of:?}");
+            assert!(
+                (of[0] - 1.0).abs() < bounds[0] && (1.0 - bounds[1]..1.0).contains(&of[1]),
+                "{of:?}"
+            );
             assert!((1.0 - bounds[2]..1.0).contains(&of[2]), "{of:?}");
         }
     }
@@ -179,8 +207,10 @@ fn a_bar_hits_a_wall_and_leaves_it() {
 /// the width of the contact, by the points that are touched, is 2 a up to the spacing of points.
 fn hertz(h: f64) -> (Vec<f64>, f64) {
     let (radius, depth, side) = (2.0, 4.0, (4.0 / h) as usize);
-    let cylinder =
-        RigidBody { path: path(&[(1.0, [0.0, -0.02, 0.0])]), ..of(Outline::Circle(radius), [0.0, depth + radius]) };
+    let cylinder = RigidBody {
+        path: path(&[(1.0, [0.0, -0.02, 0.0])]),
+        ..of(Outline::Circle(radius), [0.0, depth + radius])
+    };
     let mut scene = ground(h, [side; 2], 2, Regime::QuasiStatic).rigid(cylinder);
     let found = last(&mut scene, 0.25, 1.0);
     let load = 2.0 * found.force[1];
@@ -193,7 +223,10 @@ fn hertz(h: f64) -> (Vec<f64>, f64) {
         let exact = 2.0 * load / (PI * a) / (1.0 + ((depth - points.x[p][1]) / a).powi(2)).sqrt();
         -points.sigma.at(p).0[1] / exact
     };
-    ([0.2, 0.3, 0.4, 0.5, 0.8].map(below).to_vec(), (found.touched as f64 * 0.5 * h - a) / (0.5 * h))
+    (
+        [0.2, 0.3, 0.4, 0.5, 0.8].map(below).to_vec(),
+        (found.touched as f64 * 0.5 * h - a) / (0.5 * h),
+    )
 }
 
 /// Hertz (1882): contact stress of a cylinder on an elastic half-plane.
@@ -223,7 +256,11 @@ fn a_step_begins_with_the_force_that_the_last_one_ended_with() {
         let shape = Shape::at(&scene.model.grid, &scene.points).expect("inside");
         let nodes = Nodes::after(&scene.model, (&shape, &scene.points), &still, (1.0, 0.1), &halo).expect("no loads");
         let begins = nodes.rigid.conclude(&still, &halo).0[0].force;
-        println!("friction {friction}: {:.2e} N of {:.2e}", (begins - ended).norm(), ended.norm());
+        println!(
+            "friction {friction}: {:.2e} N of {:.2e}",
+            (begins - ended).norm(),
+            ended.norm()
+        );
         assert!((begins - ended).norm() < 0.05 * ended.norm(), "{begins} for {ended}");
     }
 }
@@ -235,7 +272,11 @@ fn a_flat_punch_is_a_strip() {
         let n = (1.0 / h) as usize;
         [0.0, 1.0].map(|friction| {
             let moves = [0.0, -0.01, 0.0];
-            let punch = RigidBody { friction, path: path(&[(1.0, moves)]), ..slab([-1.0, 2.0], [1.0, 2.5]) };
+            let punch = RigidBody {
+                friction,
+                path: path(&[(1.0, moves)]),
+                ..slab([-1.0, 2.0], [1.0, 2.5])
+            };
             let scene = || ground(h, [3 * n, 2 * n], n, Regime::QuasiStatic);
             let by_body = last(&mut scene().rigid(punch), 0.5, 1.0).force[1];
             let (from, to) = (Vector::from([0.0, 2.0]), Vector::from([1.0, 2.0]));
@@ -243,12 +284,16 @@ fn a_flat_punch_is_a_strip() {
                 points: surface::along::<PlaneStrain, 2>(&scene().model.grid, &from, &to, 4),
                 normal: (friction == 0.0).then(|| Vector::from([0.0, 1.0])),
                 transitions: Default::default(),
-                path: Path { rows: vec![(1.0, Vector::from([0.0, -0.01]))] },
+                path: Path {
+                    rows: vec![(1.0, Vector::from([0.0, -0.01]))],
+                },
                 penalty: 1e10 / h,
                 contact: None,
             };
             let mut by_strip = 0.0;
-            scene().strip(strip).march(0.5, 1.0, |_, accepted| by_strip = -accepted.report.strips[0].force[1]);
+            scene()
+                .strip(strip)
+                .march(0.5, 1.0, |_, accepted| by_strip = -accepted.report.strips[0].force[1]);
             by_body / by_strip
         })
     });
@@ -261,7 +306,11 @@ fn a_flat_punch_is_a_strip() {
 #[test]
 fn nothing_is_pulled_and_what_was_pressed_comes_back() {
     let moves = path(&[(1.0, [0.0, -0.01, 0.0]), (3.0, [0.0, 0.01, 0.0])]);
-    let plate = RigidBody { friction: 0.5, path: moves, ..slab([-1.0, 1.0], [2.0, 1.5]) };
+    let plate = RigidBody {
+        friction: 0.5,
+        path: moves,
+        ..slab([-1.0, 1.0], [2.0, 1.5])
+    };
     let mut scene = ground(0.25, [4, 4], 4, Regime::QuasiStatic).rigid(plate);
     let (mut most, oedometer) = (0.0_f64, 1e6 * 0.7 / (1.3 * 0.4));
     scene.march(0.25, 3.0, |_, accepted| {
@@ -270,12 +319,17 @@ fn nothing_is_pulled_and_what_was_pressed_comes_back() {
         assert!(now.force[1] >= 0.0);
         if accepted.t > 2.1 {
             let left = now.gap - (accepted.t - 2.0) * 0.01;
-            assert!(now.touched == 0 && now.force.norm() == 0.0 && left.abs() < 1e-6, "{now:?}");
+            assert!(
+                now.touched == 0 && now.force.norm() == 0.0 && left.abs() < 1e-6,
+                "{now:?}"
+            );
         }
     });
     // Of small strains; Hencky's are 0.5 % off at 1 %.
     assert!((most / (oedometer * 0.01) - 1.0).abs() < 0.02, "{most}");
-    let left = (0..scene.points.len()).map(|p| scene.points.sigma.at(p).0[1].abs()).fold(0.0, f64::max);
+    let left = (0..scene.points.len())
+        .map(|p| scene.points.sigma.at(p).0[1].abs())
+        .fold(0.0, f64::max);
     assert!(left < 2e-3 * most, "{left} Pa of {most}");
 }
 
@@ -300,22 +354,34 @@ fn the_work_of_a_lid_is_the_energy_of_what_it_presses() {
     let found = [4, 16, 64].map(pressed);
     println!("{found:.5?}");
     // measured 0.0018, 2e-4, 4e-5; by the force at the end alone it would be the n-th part of n steps more
-    assert!(found.iter().zip([3e-3, 4e-4, 1e-4]).all(|(off, most)| off.abs() < most), "{found:?}");
+    assert!(
+        found.iter().zip([3e-3, 4e-4, 1e-4]).all(|(off, most)| off.abs() < most),
+        "{found:?}"
+    );
 }
 
 /// A footing that moves freely under a load beside its middle: what acts on it is what it gives on, and where the load
 /// is beyond a sixth of its width it lifts.
 #[test]
 fn a_free_footing_lifts_under_an_eccentric_load() {
-    let footing = RigidBody { friction: 0.5, ..free([1.5, 1.0], [2.5, 1.25], 0.0) };
+    let footing = RigidBody {
+        friction: 0.5,
+        ..free([1.5, 1.0], [2.5, 1.25], 0.0)
+    };
     let turned = [0.05, 0.1, 0.3].map(|eccentricity| {
         let load = vec![(1.0, Vector::<3>::new(0.0, -1e4, -1e4 * eccentricity))];
-        let body = RigidBody { load, ..footing.clone() };
+        let body = RigidBody {
+            load,
+            ..footing.clone()
+        };
         let mut scene = ground(0.125, [32, 8], 4, Regime::QuasiStatic).rigid(body);
         let found = last(&mut scene, 0.25, 1.0);
         println!("{eccentricity}: {found:?}");
         let off = found.force - Vector::<3>::new(0.0, 1e4, 1e4 * eccentricity);
-        assert!(off.norm() < 1e-6 * 1e4 && found.moved[2] < 0.0 && found.moved[1] < 0.0, "{found:?}");
+        assert!(
+            off.norm() < 1e-6 * 1e4 && found.moved[2] < 0.0 && found.moved[1] < 0.0,
+            "{found:?}"
+        );
         found.moved[2]
     });
     println!("{turned:?}");
@@ -362,16 +428,26 @@ fn a_free_block_falls_and_bounces() {
 #[test]
 fn a_rigid_block_slides_on_soil() {
     let (theta, mass) = (0.5_f64.atan(), 200.0);
-    let body = RigidBody { friction: 0.3, ..free([0.5, 1.0], [1.5, 1.25], mass) };
+    let body = RigidBody {
+        friction: 0.3,
+        ..free([0.5, 1.0], [1.5, 1.25], mass)
+    };
     let mut scene = ground(0.25, [16, 4], 2, Regime::Dynamic).rigid(body);
     scene.model.gravity = Some(inclined(0.5));
     let (mut before, mut velocity, mut cuts) = ([Vector::<2>::zeros(); 2], 0.0, 0);
     scene.march(0.01, 0.5, |_, accepted| {
         let now = accepted.report.rigid[0];
         let weight = Vector::<2>::new(theta.sin(), -theta.cos()) * (mass * G * (accepted.t / RAMP).min(1.0));
-        let (moves, acts) = (now.velocity.fixed_rows::<2>(0).into_owned(), now.force.fixed_rows::<2>(0) + weight);
+        let (moves, acts) = (
+            now.velocity.fixed_rows::<2>(0).into_owned(),
+            now.force.fixed_rows::<2>(0) + weight,
+        );
         for k in 0..2 {
-            let off = beyond(moves[k] - before[0][k], accepted.dt, [before[1][k] / mass, acts[k] / mass]);
+            let off = beyond(
+                moves[k] - before[0][k],
+                accepted.dt,
+                [before[1][k] / mass, acts[k] / mass],
+            );
             assert!(off < 1e-10, "{off}");
         }
         before = [moves, acts];

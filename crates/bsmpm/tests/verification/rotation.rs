@@ -30,11 +30,21 @@ fn lost(mass: MassMatrix, cells: usize, steps: usize) -> [f64; 3] {
         let stored = Stored::of(&model, (points, 0.0), &halo);
         stored.kinetic + stored.elastic
     };
-    let start = [observe::angular_momentum(&scene.points, &Part::Whole, &centre, &halo)[2], energy(&scene.points)];
+    let start = [
+        observe::angular_momentum(&scene.points, &Part::Whole, &centre, &halo)[2],
+        energy(&scene.points),
+    ];
     let end = 0.25 * TAU;
     scene.march(end / steps as f64, end, |_, _| ());
-    let now = [observe::angular_momentum(&scene.points, &Part::Whole, &centre, &halo)[2], energy(&scene.points)];
-    [1.0 - now[0] / start[0], 1.0 - now[1] / start[1], observe::momentum(&scene.points, &Part::Whole, &halo).norm()]
+    let now = [
+        observe::angular_momentum(&scene.points, &Part::Whole, &centre, &halo)[2],
+        energy(&scene.points),
+    ];
+    [
+        1.0 - now[0] / start[0],
+        1.0 - now[1] / start[1],
+        observe::momentum(&scene.points, &Part::Whole, &halo).norm(),
+    ]
 }
 
 /// Closed form: the angular momentum of a free body is constant.
@@ -63,8 +73,12 @@ fn beside_a_base(mass: MassMatrix) -> [f64; 2] {
     scene.march(dt, 20.0 * dt, |points, _| {
         let v = &points.motion.as_ref().expect("dynamic").v;
         let says = v.iter().map(Vector::norm_squared).sum::<f64>();
-        let moves: f64 =
-            points.u.iter().zip(&before).map(|(u, before): (_, &Vector<2>)| (u - before).norm_squared()).sum();
+        let moves: f64 = points
+            .u
+            .iter()
+            .zip(&before)
+            .map(|(u, before): (_, &Vector<2>)| (u - before).norm_squared())
+            .sum();
         (before, found) = (points.u.clone(), [says, moves / (dt * dt)]);
     });
     found

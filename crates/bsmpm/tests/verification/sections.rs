@@ -39,7 +39,10 @@ pub(super) fn cut<K: Kinematics<D>, const D: usize, const N: usize>(
     lines: [[[f64; D]; 2]; N],
 ) -> SectionForces {
     let at = |place: [f64; D]| moved(&scene.points, &Vector::from(place), &scene.halo()).unwrap();
-    let section = Section { lines: lines.map(|line| line.map(at)).into(), round: false };
+    let section = Section {
+        lines: lines.map(|line| line.map(at)).into(),
+        round: false,
+    };
     section_forces::<K, D>(&scene.model.grid, &scene.points, &section, &scene.halo())
 }
 
@@ -51,7 +54,10 @@ fn the_normal_force_of_a_column_is_the_weight_above() {
         let found = cut(&scene, [[[1.2, y], [-0.2, y]]]);
         let weight = DENSITY * G * (3.0 - y);
         let (shear, moment) = (found.shear[0], found.bending[0]);
-        println!("y {y}: N {:.6} of the weight, Q {shear:.1e}, M {moment:.1e}", found.normal / weight);
+        println!(
+            "y {y}: N {:.6} of the weight, Q {shear:.1e}, M {moment:.1e}",
+            found.normal / weight
+        );
         assert!((found.normal / -weight - 1.0).abs() < 2e-4 && shear.abs() < 1e-4 * weight);
         // Half of the line in the body: half of the force, with its arm about the middle of the line.
         let half = cut(&scene, [[[0.5, y], [-0.5, y]]]);
@@ -80,8 +86,15 @@ fn shear_and_moment_of_a_beam_are_those_of_statics() {
             // Upward is the line, n to the right: the part beyond hangs on this one by its weight.
             let (shear, moment) = (weight * beyond, 0.5 * weight * beyond * beyond);
             let clamped = 18.0 * weight;
-            let off = [found.normal / shear, found.shear[0] / -shear - 1.0, (found.bending[0] - moment) / clamped];
-            println!("h {h} x {x}: N/Q {:.1e}, Q {:.1e}, M {:.1e} of that at the clamp", off[0], off[1], off[2]);
+            let off = [
+                found.normal / shear,
+                found.shear[0] / -shear - 1.0,
+                (found.bending[0] - moment) / clamped,
+            ];
+            println!(
+                "h {h} x {x}: N/Q {:.1e}, Q {:.1e}, M {:.1e} of that at the clamp",
+                off[0], off[1], off[2]
+            );
             largest = off.iter().fold(largest, |largest, off| largest.max(off.abs()));
         }
         assert!(largest < tolerance, "{largest}");
@@ -95,16 +108,25 @@ fn the_normal_force_of_a_column_in_space_is_the_weight_above() {
     let scene = weighed::<Solid, 3>(0.25, [2, 2, 12], 2, Support::fixed(2, false));
     let area = 0.25;
     for z in [1.0, 1.1, 1.5, 2.17] {
-        let found = cut(&scene, [[[-0.2, 0.25, z], [0.7, 0.25, z]], [[0.25, -0.1, z], [0.25, 0.6, z]]]);
+        let found = cut(
+            &scene,
+            [[[-0.2, 0.25, z], [0.7, 0.25, z]], [[0.25, -0.1, z], [0.25, 0.6, z]]],
+        );
         let weight = DENSITY * G * area * (3.0 - z);
         println!("z {z}: N {:.6} of the weight", found.normal / weight);
         assert!((found.normal / -weight - 1.0).abs() < 2e-4);
         let others = [found.shear, found.bending].concat().into_iter().chain([found.torsion]);
         assert!(others.into_iter().all(|other| other.abs() < 1e-4 * weight), "{found:?}");
         // Half of the rectangle in the body: half of the force, with its arm of 0.125 m about the middle of the face.
-        let half = cut(&scene, [[[-0.25, 0.25, z], [0.25, 0.25, z]], [[0.0, -0.5, z], [0.0, 1.0, z]]]);
+        let half = cut(
+            &scene,
+            [[[-0.25, 0.25, z], [0.25, 0.25, z]], [[0.0, -0.5, z], [0.0, 1.0, z]]],
+        );
         assert!((half.normal / -weight - 0.5).abs() < 2e-3, "{half:?}");
-        assert!((half.bending[0] / -weight - 0.0625).abs() < 2e-3 && half.bending[1].abs() < 1e-3 * weight, "{half:?}");
+        assert!(
+            (half.bending[0] / -weight - 0.0625).abs() < 2e-3 && half.bending[1].abs() < 1e-3 * weight,
+            "{half:?}"
+        );
     }
     // The normal (1, 1, sqrt 2) / 2: the vector sum balances what is cut off, that above the middle on the average.
     let (middle, root) = (Vector::<3>::new(0.25, 0.25, 1.3), 0.5_f64.sqrt());
@@ -123,12 +145,22 @@ fn shear_and_moment_of_a_beam_in_space_are_those_of_statics_and_of_the_plane() {
     let scene = weighed::<Solid, 3>(0.5, [12, 2, 2], 2, Support::fixed(0, false));
     let plane = weighed::<PlaneStrain, 2>(0.5, [12, 2], 2, Support::fixed(0, false));
     for x in [1.0, 2.1, 4.5] {
-        let found = cut(&scene, [[[x, -0.2, 1.5], [x, 1.2, 1.5]], [[x, 0.5, 0.7], [x, 0.5, 2.3]]]);
+        let found = cut(
+            &scene,
+            [[[x, -0.2, 1.5], [x, 1.2, 1.5]], [[x, 0.5, 0.7], [x, 0.5, 2.3]]],
+        );
         let flat = cut(&plane, [[[x, 0.7], [x, 2.3]]]);
         let (beyond, weight) = (6.0 - x, DENSITY * G);
         let (shear, moment, clamped) = (weight * beyond, 0.5 * weight * beyond * beyond, 18.0 * weight);
-        let off = [found.normal / shear, found.shear[1] / -shear - 1.0, (found.bending[1] - moment) / clamped];
-        let apart = [(found.shear[1] - flat.shear[0]) / shear, (found.bending[1] - flat.bending[0]) / clamped];
+        let off = [
+            found.normal / shear,
+            found.shear[1] / -shear - 1.0,
+            (found.bending[1] - moment) / clamped,
+        ];
+        let apart = [
+            (found.shear[1] - flat.shear[0]) / shear,
+            (found.bending[1] - flat.bending[0]) / clamped,
+        ];
         println!("x {x}: N/Q, Q, M off by {off:?}; of the plane's Q, M by {apart:?}");
         assert!(off.iter().all(|off| off.abs() < 5e-3) && apart.iter().all(|off| off.abs() < 1e-6));
         let others = [found.shear[0], found.torsion, found.bending[0]];
@@ -163,15 +195,33 @@ fn the_six_forces_of_a_plane_are_the_integrals_of_the_stress_and_of_a_disc_those
             [-half, half].map(|end| Vector::from_fn(|k, _| if k == axis { middle + end } else { middle }))
         };
         let across = |halves: [f64; 2], round: bool| {
-            let section = Section { lines: vec![line(first, halves[0]), line(second, halves[1])], round };
+            let section = Section {
+                lines: vec![line(first, halves[0]), line(second, halves[1])],
+                round,
+            };
             section_forces::<Solid, 3>(&scene.model.grid, &scene.points, &section, &scene.halo())
         };
         let found = across([0.5, 0.75], false);
         let (area, square) = (1.5, |width: f64| (width * width - spacing * spacing) / 12.0 * 1.5);
         let (square1, square2) = (square(1.0), square(1.5));
-        let expected = [a * area, d * area, f * area, e * (square1 + square2), b * square1, c * square2];
-        let numbers =
-            |of: SectionForces| [of.normal, of.shear[0], of.shear[1], of.torsion, of.bending[0], of.bending[1]];
+        let expected = [
+            a * area,
+            d * area,
+            f * area,
+            e * (square1 + square2),
+            b * square1,
+            c * square2,
+        ];
+        let numbers = |of: SectionForces| {
+            [
+                of.normal,
+                of.shear[0],
+                of.shear[1],
+                of.torsion,
+                of.bending[0],
+                of.bending[1],
+            ]
+        };
         for (found, expected) in numbers(found).into_iter().zip(expected) {
             println!("across axis {n}: {found} for {expected}");
             assert!((found - expected).abs() < 1e-10);

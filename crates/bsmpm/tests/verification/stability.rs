@@ -24,13 +24,21 @@ type Plane = Scene<PlaneStrain, 2>;
 /// pressure at its base, grows to 0.4 in the time 10.
 fn column(poisson: f64, per_axis: usize) -> Plane {
     let young = (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson);
-    let mut scene = Plane::new([axis(0.05, 1, 2), axis(0.05, 20, 2)], hencky(young, poisson), Regime::QuasiStatic)
-        .body([0..1, 0..20], per_axis, 1.0, |x| x * 0.0)
-        .rollers([0])
-        .support(Support::roller(1, false))
-        .gravity(0.4, 10.0)
-        .stabilised(Stabilisation::FBar);
-    scene.model.criteria = Criteria { energy: 1e-8, force: 1e-5, max_iterations: 1000 };
+    let mut scene = Plane::new(
+        [axis(0.05, 1, 2), axis(0.05, 20, 2)],
+        hencky(young, poisson),
+        Regime::QuasiStatic,
+    )
+    .body([0..1, 0..20], per_axis, 1.0, |x| x * 0.0)
+    .rollers([0])
+    .support(Support::roller(1, false))
+    .gravity(0.4, 10.0)
+    .stabilised(Stabilisation::FBar);
+    scene.model.criteria = Criteria {
+        energy: 1e-8,
+        force: 1e-5,
+        max_iterations: 1000,
+    };
     scene
 }
 
@@ -42,7 +50,10 @@ fn pressure(poisson: f64, t: f64) -> f64 {
 /// Steps to the end, or to a failure; `watch` sees the scene before each step, the step and its displacement.
 fn march(scene: &mut Plane, dt: f64, mut watch: impl FnMut(&Plane, &Accepted, &[f64]) -> bool) -> Option<Failure> {
     let (halo, schedule) = (scene.halo(), Schedule::new(dt, 10.0, []));
-    let (mut solver, mut stepper) = (Skyline::new(&scene.model.grid), Stepper::new(scene.model.grid.nodes() * 2));
+    let (mut solver, mut stepper) = (
+        Skyline::new(&scene.model.grid),
+        Stepper::new(scene.model.grid.nodes() * 2),
+    );
     loop {
         let before = scene.clone();
         match stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver)? {
@@ -59,8 +70,20 @@ fn lowest(before: &Plane, step: &Accepted, u: &[f64]) -> f64 {
     let time = (step.t - step.dt, step.dt);
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
     let nodes = Nodes::map(model, &shape, points, time, &halo).expect("a mapping");
-    let attachments = StripAttachments::at(&model.boundary.strips, &points.surface, (&model.grid, &nodes.free), time);
-    let scene = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
+    let attachments = StripAttachments::at(
+        &model.boundary.strips,
+        &points.surface,
+        (&model.grid, &nodes.free),
+        time,
+    );
+    let scene = Problem {
+        model,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points,
+        halo: &halo,
+    };
     let residual = Residual::of(&scene, u);
     let linearised = Linearised::at(&scene, &residual);
     let free: Vec<usize> = (0..u.len()).filter(|&c| nodes.free[c]).collect();
@@ -70,7 +93,9 @@ fn lowest(before: &Plane, step: &Accepted, u: &[f64]) -> f64 {
         unit[c] = 1.0;
         linearised.multiply(&unit, &mut image);
         unit[c] = 0.0;
-        free.iter().enumerate().for_each(|(row, &c)| matrix[(row, column)] = image[c]);
+        free.iter()
+            .enumerate()
+            .for_each(|(row, &c)| matrix[(row, column)] = image[c]);
     }
     (&matrix + matrix.transpose()).symmetric_eigenvalues().min() / 2.0
 }
@@ -86,7 +111,10 @@ fn pressure_of_several_shear_moduli_is_unstable_with_few_points_a_cell() {
             lowest(before, step, u) > 0.0
         });
         println!("{per_axis} points a cell and axis: p/G = {critical:.1}");
-        assert!(failure.is_none() && expected.contains(&critical), "{per_axis}: {critical}");
+        assert!(
+            failure.is_none() && expected.contains(&critical),
+            "{per_axis}: {critical}"
+        );
     }
 }
 
@@ -96,8 +124,15 @@ fn an_unstable_equilibrium_is_refused_with_long_steps_and_short_ones() {
         let mut scene = column(0.499, 3);
         let failure = march(&mut scene, dt, |_, _, _| true).expect("it must not come to its end");
         let last = failure.attempts.last().expect("attempts");
-        println!("steps of {dt}: t = {}, p/G = {:.1}: {last}", failure.t, pressure(0.499, failure.t));
-        assert!(matches!(last, StepError::Unstable { work, .. } if *work < 0.0), "{last}");
+        println!(
+            "steps of {dt}: t = {}, p/G = {:.1}: {last}",
+            failure.t,
+            pressure(0.499, failure.t)
+        );
+        assert!(
+            matches!(last, StepError::Unstable { work, .. } if *work < 0.0),
+            "{last}"
+        );
         assert!(pressure(0.499, failure.t) >= 8.0, "t = {}", failure.t); // stable up to there
     }
 }
@@ -108,7 +143,9 @@ fn a_column_that_bears_its_pressure_is_not_refused() {
     let failure = march(&mut scene, 1.0, |_, step, _| step.rejected.is_empty());
     assert!(failure.is_none());
     let points = &scene.points;
-    let top = (0..points.len()).max_by(|&a, &b| points.x[a][1].total_cmp(&points.x[b][1])).expect("points");
+    let top = (0..points.len())
+        .max_by(|&a, &b| points.x[a][1].total_cmp(&points.x[b][1]))
+        .expect("points");
     let height = points.x[top][1] + 0.05 / 6.0 * points.F.at(top)[(1, 1)];
     assert!((height - 0.853_305_216_7).abs() <= 2e-3, "{height}"); // measured 9.4e-4
 }

@@ -10,17 +10,25 @@ use bsmpm::tensor::Vector;
 
 const YOUNG: f64 = 1e7;
 const CELL: f64 = 0.25;
-const FRICTIONAL: Contact = Contact { friction: 0.4, lifts: true };
+const FRICTIONAL: Contact = Contact {
+    friction: 0.4,
+    lifts: true,
+};
 
 /// A quasi-static block of 1 m, its base held, at whose top from `from` to `to` a strip moves by these rows (m).
 fn pressed(law: Contact, (from, to): (f64, f64), rows: &[(f64, [f64; 2])]) -> Scene<PlaneStrain, 2> {
     let axes = [axis(CELL, 8, 2), axis(CELL, 6, 2)];
     let scene = Scene::new(axes, hencky(YOUNG, 0.2), Regime::QuasiStatic);
-    let scene = scene.body([2..6, 0..4], 2, 1e3, |_| Vector::zeros()).support(Support::fixed(1, false));
+    let scene = scene
+        .body([2..6, 0..4], 2, 1e3, |_| Vector::zeros())
+        .support(Support::fixed(1, false));
     let [from, to] = [[from, 1.0], [to, 1.0]].map(Vector::from);
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &from, &to, 4);
     let rows = rows.iter().map(|(t, u)| (*t, Vector::from(*u))).collect();
-    let contact = Some(StripContact { law, inward: [0.0, -1.0].into() });
+    let contact = Some(StripContact {
+        law,
+        inward: [0.0, -1.0].into(),
+    });
     let strip = Strip {
         points,
         normal: None,
@@ -67,8 +75,15 @@ fn a_strip_that_lifts_leaves_the_block_and_meets_it_where_it_left_it() {
             match accepted.t {
                 t if !(0.21..=0.99).contains(&t) => pushed.push(strip.force[1]),
                 t => {
-                    assert!(strip.force == [0.0; 2] && strip.moment == 0.0 && found.closed == 0.0, "{strip:?}");
-                    let high = if t < 0.5 { 0.67 * (t - 0.2) - 1e-3 } else { 0.2 - 0.402 * (t - 0.5) };
+                    assert!(
+                        strip.force == [0.0; 2] && strip.moment == 0.0 && found.closed == 0.0,
+                        "{strip:?}"
+                    );
+                    let high = if t < 0.5 {
+                        0.67 * (t - 0.2) - 1e-3
+                    } else {
+                        0.2 - 0.402 * (t - 0.5)
+                    };
                     assert!((found.gap[0] - high).abs() < 2e-6, "t = {t}: {:?}, {high}", found.gap);
                 }
             }
@@ -82,9 +97,20 @@ fn a_strip_that_lifts_leaves_the_block_and_meets_it_where_it_left_it() {
 #[test]
 fn a_strip_that_does_not_let_go_pulls() {
     let rows = [(0.2, [0.0, -1e-3]), (1.0, [0.0, 1e-3])];
-    let (_, steps) = pressed(Contact { lifts: false, ..FRICTIONAL }, (0.75, 1.25), &rows).solved(0.1, 1.0);
+    let (_, steps) = pressed(
+        Contact {
+            lifts: false,
+            ..FRICTIONAL
+        },
+        (0.75, 1.25),
+        &rows,
+    )
+    .solved(0.1, 1.0);
     let (strip, found) = of(steps.last().expect("steps"));
-    assert!(strip.force[1] > 8e3 && found.closed == 1.0 && found.gap == [0.0; 2], "{strip:?}");
+    assert!(
+        strip.force[1] > 8e3 && found.closed == 1.0 && found.gap == [0.0; 2],
+        "{strip:?}"
+    );
 }
 
 fn of(accepted: &Accepted) -> (&StripReport, ContactReport) {

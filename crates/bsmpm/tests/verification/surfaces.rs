@@ -26,14 +26,20 @@ fn block(cells: [usize; 2], order: usize) -> Plane {
     scene.model.weighting = Weighting::Volume;
     scene.model.criteria.force = 1e-12;
     scene.model.background = Some(Background { coefficient: 1e-3 });
-    scene.model.boundary.supports.retain(|support| !(support.axis == 1 && support.upper));
+    scene
+        .model
+        .boundary
+        .supports
+        .retain(|support| !(support.axis == 1 && support.upper));
     scene
 }
 
 /// A strip on top of a 1 m x 1 m block that presses it down by `depth` until t = 1; `rough`: holds x too.
 fn pressed(scene: Plane, depth: f64, rough: bool, penalty: f64) -> Plane {
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &at(0.0, 1.0), &at(1.0, 1.0), 3);
-    let path = Path { rows: vec![(1.0, at(0.0, -depth))] };
+    let path = Path {
+        rows: vec![(1.0, at(0.0, -depth))],
+    };
     scene.strip(Strip {
         contact: None,
         points,
@@ -53,9 +59,16 @@ fn surface_points_share_the_length_of_their_segment_cell_by_cell() {
     let length = (to - from).norm();
     assert_eq!(points.len(), 12, "the grid's lines cut the segment into four parts");
     assert!((sum(&|_| 1.0) - length).abs() <= 1e-14);
-    assert!((sum(&|x| x[0] - 2.0 * x[1]) - length * (0.5 - 2.0 * 0.5)).abs() <= 1e-14, "linear fields are exact");
+    assert!(
+        (sum(&|x| x[0] - 2.0 * x[1]) - length * (0.5 - 2.0 * 0.5)).abs() <= 1e-14,
+        "linear fields are exact"
+    );
     let cell = |point: &SurfacePoint<2>| grid.locate(&point.x);
-    assert!(points.chunks(3).all(|part| part.iter().all(|point| cell(point) == cell(&part[0]))));
+    assert!(
+        points
+            .chunks(3)
+            .all(|part| part.iter().all(|point| cell(point) == cell(&part[0])))
+    );
 }
 
 /// Closed form: confined compression of a Hencky material, M ln(l)/l.
@@ -64,9 +77,10 @@ fn a_platens_force_follows_the_exact_curve_across_cells_and_the_points_stress_le
     // sigma = M ln(l)/l at l = 0.6: the platen crosses from one row of cells to the next, which a moving face cannot.
     // F-bar averages over what little material a nearly empty row of cells holds: its force is off most where the
     // platen has just left one. Bounds of force and of a point's stress, 1.3 times what was measured.
-    for (method, rough, [whole, local]) in
-        [(Stabilisation::None, false, [0.004, 0.14]), (Stabilisation::FBar, true, [0.095, 0.3])]
-    {
+    for (method, rough, [whole, local]) in [
+        (Stabilisation::None, false, [0.004, 0.14]),
+        (Stabilisation::FBar, true, [0.095, 0.3]),
+    ] {
         let mut scene = pressed(block([4, 4], 2), 0.4, rough, 1e7).stabilised(method);
         let M = scene.model.materials[0].elastic().oedometric();
         let mut worst = 0.0_f64;
@@ -74,7 +88,11 @@ fn a_platens_force_follows_the_exact_curve_across_cells_and_the_points_stress_le
         scene.march(0.05, 1.0, |points, accepted| {
             let l = 1.0 - 0.4 * accepted.t;
             let exact = M * l.ln() / l;
-            let error = points.sigma.iter().map(|sigma| (sigma.0[1] / exact - 1.0).abs()).fold(0.0, f64::max);
+            let error = points
+                .sigma
+                .iter()
+                .map(|sigma| (sigma.0[1] / exact - 1.0).abs())
+                .fold(0.0, f64::max);
             worst = worst.max(error);
             let report = &accepted.report.strips[0];
             slip += report.slip;
@@ -111,7 +129,10 @@ fn a_cut_step_follows_the_same_path() {
         let mut scene = pressed(block([4, 4], 2), 0.2, true, 1e7);
         let mut reports: Vec<Accepted> = Vec::new();
         scene.march(dt, 1.0, |_, accepted| reports.push(accepted.clone()));
-        reports.last().map(|accepted| accepted.report.strips[0].force[1]).expect("a step")
+        reports
+            .last()
+            .map(|accepted| accepted.report.strips[0].force[1])
+            .expect("a step")
     };
     let (coarse, fine) = (solved(0.25), solved(0.25 / 16.0));
     println!("force with 4 steps {coarse:.6}, with 64 {fine:.6}");
@@ -129,7 +150,11 @@ fn a_uniform_traction_gives_uniform_stress_before_the_body_has_moved_and_follows
     let (mut first, mut last) = (f64::INFINITY, 0.0);
     scene.march(0.125, 1.0, |points, accepted| {
         let exact = -100.0 * accepted.t;
-        let error = points.sigma.iter().map(|sigma| (sigma.0[1] / exact - 1.0).abs()).fold(0.0, f64::max);
+        let error = points
+            .sigma
+            .iter()
+            .map(|sigma| (sigma.0[1] / exact - 1.0).abs())
+            .fold(0.0, f64::max);
         first = f64::min(first, error);
         last = error;
         let reaction = accepted.report.reactions[2][1];
@@ -157,7 +182,10 @@ fn a_load_stays_on_the_surface_of_a_column_that_is_compressed_by_a_third() {
     scene.march(1.0 / 64.0, 1.0, |_, _| {});
     let heights = scene.points.surface.position[0].iter().map(|x| x[1]);
     let (lowest, highest) = heights.fold((f64::INFINITY, 0.0), |(a, b), y| (f64::min(a, y), f64::max(b, y)));
-    println!("the load lies between {lowest:.5} and {highest:.5}, exact {:.5}", 4.0 / 3.0);
+    println!(
+        "the load lies between {lowest:.5} and {highest:.5}, exact {:.5}",
+        4.0 / 3.0
+    );
     let top = scene.points.x.iter().map(|x| x[1]).fold(0.0, f64::max);
     assert!(lowest > top, "a load below the top row of points, {top}");
     assert!((lowest * 0.75 - 1.0).abs() <= 6e-3 && (highest * 0.75 - 1.0).abs() <= 6e-3); // measured 3.6e-3, 4.0e-3
@@ -182,15 +210,22 @@ fn a_point_load_is_carried_by_the_supports_and_its_work_is_positive() {
 #[test]
 fn a_point_load_beside_a_plane_of_symmetry_an_axis_or_a_corner_stays_there() {
     fn settle<K: Kinematics<D>, const D: usize>(from: f64) {
-        let mut scene = Scene::<K, D>::new([0; D].map(|_| axis(0.25, 4, 2)), hencky(1000.0, 0.3), Regime::QuasiStatic)
-            .body([0; D].map(|_| 0..2), 2, 1.0, |x| x * 0.0);
+        let mut scene = Scene::<K, D>::new(
+            [0; D].map(|_| axis(0.25, 4, 2)),
+            hencky(1000.0, 0.3),
+            Regime::QuasiStatic,
+        )
+        .body([0; D].map(|_| 0..2), 2, 1.0, |x| x * 0.0);
         scene = (0..D).fold(scene, |scene, axis| scene.support(Support::roller(axis, false)));
         let (mut start, mut push) = (Vector::<D>::from_element(from), Vector::<D>::zeros());
         (start[D - 1], push[D - 1]) = (0.5, -2.0);
         scene = scene.load(Load::dead(vec![SurfacePoint::at(start, 1.0)], push, 1.0));
         scene.march(0.25, 1.0, |points, _| {
             let at = points.surface.position[0][0];
-            assert!((0..D - 1).all(|axis| (0.0..=2.0 * from).contains(&at[axis])) && at[D - 1] < 0.5, "{at}");
+            assert!(
+                (0..D - 1).all(|axis| (0.0..=2.0 * from).contains(&at[axis])) && at[D - 1] < 0.5,
+                "{at}"
+            );
         });
     }
     for from in [0.0, 1e-6] {
@@ -204,13 +239,20 @@ fn a_point_load_beside_a_plane_of_symmetry_an_axis_or_a_corner_stays_there() {
 fn a_load_follows_its_amplitude() {
     let points = vec![SurfacePoint::at(at(0.5, 1.0), 1.0)];
     let amplitude = vec![(0.2, 1.0), (0.6, -1.0)];
-    let mut scene = block([4, 4], 2).load(Load { amplitude, ..Load::dead(points, at(0.0, -20.0), 0.0) });
+    let mut scene = block([4, 4], 2).load(Load {
+        amplitude,
+        ..Load::dead(points, at(0.0, -20.0), 0.0)
+    });
     let mut held = Vec::new();
     scene.march(0.1, 0.8, |_, accepted| {
         held.push(accepted.report.reactions.iter().map(|force| force[1]).sum::<f64>() / 20.0);
     });
     let shares = [0.5, 1.0, 0.5, 0.0, -0.5, -1.0, -1.0, -1.0];
-    let worst = held.iter().zip(shares).map(|(held, share)| (held - share).abs()).fold(0.0, f64::max);
+    let worst = held
+        .iter()
+        .zip(shares)
+        .map(|(held, share)| (held - share).abs())
+        .fold(0.0, f64::max);
     println!("reactions off by {worst:.1e} of the load");
     assert!(worst <= 1e-8, "{held:?} for {shares:?}");
 }
@@ -224,7 +266,10 @@ fn a_load_without_material_is_an_error() {
     let mut stepper = bsmpm::control::Stepper::new(scene.model.grid.nodes() * 2);
     let found = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver);
     let attempts = found.and_then(Result::err).expect("a failure").attempts;
-    assert!(matches!(attempts[..], [StepError::Unloaded { load: 0, points: 1 }]), "{attempts:?}");
+    assert!(
+        matches!(attempts[..], [StepError::Unloaded { load: 0, points: 1 }]),
+        "{attempts:?}"
+    );
 }
 
 #[test]
@@ -250,10 +295,17 @@ fn the_reach_beyond_occupied_cells_is_that_of_the_documentation() {
 
 #[test]
 fn a_path_is_linear_between_its_rows_and_stays_after_the_last() {
-    let path = Path { rows: vec![(1.0, at(0.0, -2.0)), (2.0, at(1.0, -2.0))] };
-    for (t, x, y) in
-        [(0.0, 0.0, 0.0), (0.25, 0.0, -0.5), (1.0, 0.0, -2.0), (1.5, 0.5, -2.0), (2.0, 1.0, -2.0), (9.0, 1.0, -2.0)]
-    {
+    let path = Path {
+        rows: vec![(1.0, at(0.0, -2.0)), (2.0, at(1.0, -2.0))],
+    };
+    for (t, x, y) in [
+        (0.0, 0.0, 0.0),
+        (0.25, 0.0, -0.5),
+        (1.0, 0.0, -2.0),
+        (1.5, 0.5, -2.0),
+        (2.0, 1.0, -2.0),
+        (9.0, 1.0, -2.0),
+    ] {
         assert!((path.at(t) - at(x, y)).norm() <= 1e-15, "at {t}");
     }
 }
@@ -265,36 +317,55 @@ fn a_pressure_turns_with_the_surface() {
     let push = 20.0;
     let spun = |follows: bool, dt: f64| {
         let spin = |x: &Vector<2>| at(1.5 - x[1], x[0] - 1.5);
-        let mut scene = Plane::new([axis(0.25, 12, 2), axis(0.25, 12, 2)], hencky(1e3, 0.3), Regime::Dynamic).body(
-            [4..8, 4..8],
-            3,
-            1.0,
-            spin,
-        );
-        for (from, to) in
-            [([1.0, 1.0], [2.0, 1.0]), ([2.0, 1.0], [2.0, 2.0]), ([2.0, 2.0], [1.0, 2.0]), ([1.0, 2.0], [1.0, 1.0])]
-        {
+        let mut scene = Plane::new(
+            [axis(0.25, 12, 2), axis(0.25, 12, 2)],
+            hencky(1e3, 0.3),
+            Regime::Dynamic,
+        )
+        .body([4..8, 4..8], 3, 1.0, spin);
+        for (from, to) in [
+            ([1.0, 1.0], [2.0, 1.0]),
+            ([2.0, 1.0], [2.0, 2.0]),
+            ([2.0, 2.0], [1.0, 2.0]),
+            ([1.0, 2.0], [1.0, 1.0]),
+        ] {
             let (from, to) = (Vector::from(from), Vector::from(to));
             let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &from, &to, 3);
             let inward: Vector<2> = at(from[1] - to[1], to[0] - from[0]);
-            scene = scene.load(Load { follows, ..Load::dead(points, inward * push, 0.5) });
+            scene = scene.load(Load {
+                follows,
+                ..Load::dead(points, inward * push, 0.5)
+            });
         }
         let turn = |scene: &Plane| {
             let v = &scene.points.motion.as_ref().expect("dynamic").v;
             let arm = |p: usize| scene.points.x[p] - at(1.5, 1.5);
-            (0..v.len()).map(|p| scene.points.mass[p] * (arm(p)[0] * v[p][1] - arm(p)[1] * v[p][0])).sum::<f64>()
+            (0..v.len())
+                .map(|p| scene.points.mass[p] * (arm(p)[0] * v[p][1] - arm(p)[1] * v[p][0]))
+                .sum::<f64>()
         };
         let before = turn(&scene);
         scene.march(dt, std::f64::consts::FRAC_PI_2, |_, _| {});
-        let pressures = scene.points.sigma.iter().zip(&scene.points.volume).map(|(s, V)| -0.5 * V * (s.0[0] + s.0[1]));
+        let pressures = scene
+            .points
+            .sigma
+            .iter()
+            .zip(&scene.points.volume)
+            .map(|(s, V)| -0.5 * V * (s.0[0] + s.0[1]));
         (pressures.sum::<f64>() / push, turn(&scene) / before)
     };
     // The moment that would have changed the spin so, over push times the block's area.
     let moment = |kept: f64| (kept - 1.0) / 6.0 / std::f64::consts::FRAC_PI_2 / push;
     for dt in [0.02, 0.01, 0.005] {
         let [(mean, kept), (dead, _)] = [true, false].map(|follows| spun(follows, dt));
-        println!("dt {dt}: pressure {mean:.4}, moment {:.1e}; of a dead load {dead:.4}", moment(kept));
-        assert!((mean - 1.0).abs() <= 0.004 && moment(kept).abs() <= 0.003, "{mean} {kept}"); // measured 0.0017, 0.0011
+        println!(
+            "dt {dt}: pressure {mean:.4}, moment {:.1e}; of a dead load {dead:.4}",
+            moment(kept)
+        );
+        assert!(
+            (mean - 1.0).abs() <= 0.004 && moment(kept).abs() <= 0.003,
+            "{mean} {kept}"
+        ); // measured 0.0017, 0.0011
         assert!(dead < 0.0, "{dead}");
     }
 }

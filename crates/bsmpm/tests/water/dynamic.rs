@@ -29,25 +29,45 @@ fn water_damps_the_waves_of_a_column_as_the_telegraph_equation_says() {
         scene.points.mass = scene.points.volume.iter().map(|volume| volume * M).collect();
         scene.model.mass = MassMatrix::Consistent; // lumped: off by 0.029
         let rest = vec![Vector::<2>::zeros(); scene.points.len()];
-        scene.points.motion = Some(Motion { v: rest.clone(), a: rest });
-        let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
-        let along = &mut flow.soils[0].as_mut().and_then(|soil| soil.permeability.as_mut()).expect("a soil").along;
+        scene.points.motion = Some(Motion {
+            v: rest.clone(),
+            a: rest,
+        });
+        let flow = scene
+            .model
+            .water
+            .as_mut()
+            .and_then(|water| water.flow.as_mut())
+            .expect("it flows");
+        let along = &mut flow.soils[0]
+            .as_mut()
+            .and_then(|soil| soil.permeability.as_mut())
+            .expect("a soil")
+            .along;
         *along *= 1.0 / (damping * along[1] * M / super::WEIGHT);
         scene.model.balances_energy = true;
         let (mut found, mut iterations) = (Vec::new(), 0);
         let (mut books, mut budget) = (Books::open(Stored::default()), Budget::open(Stored::default()));
         let mut now = Stored::default();
-        run(&mut scene, (1..=1000).map(|k| 0.01 * f64::from(k)), |t, points, report| {
-            iterations += report.iterations;
-            let turnover = report.turnover.expect("dynamic");
-            budget.enter(&turnover);
-            books.flows += report.energy.expect("books are kept");
-            now = turnover.stored;
-            if TIMES.iter().any(|of| (of - t).abs() < 1e-9) {
-                found.push(settlement(points) * M / load);
-            }
-        });
-        let off = found.iter().zip(expected).map(|(found, expected)| (found - expected).abs()).fold(0.0, f64::max);
+        run(
+            &mut scene,
+            (1..=1000).map(|k| 0.01 * f64::from(k)),
+            |t, points, report| {
+                iterations += report.iterations;
+                let turnover = report.turnover.expect("dynamic");
+                budget.enter(&turnover);
+                books.flows += report.energy.expect("books are kept");
+                now = turnover.stored;
+                if TIMES.iter().any(|of| (of - t).abs() < 1e-9) {
+                    found.push(settlement(points) * M / load);
+                }
+            },
+        );
+        let off = found
+            .iter()
+            .zip(expected)
+            .map(|(found, expected)| (found - expected).abs())
+            .fold(0.0, f64::max);
         println!("b = {damping}: {found:.5?} ({expected:?}), off by {off:.4}, {iterations} iterations in 1000 steps");
         assert!(off < 0.02);
         let (given, closure, growth) = (books.flows.external, books.closure(now), budget.growth);

@@ -15,7 +15,12 @@ use bsmpm::water::flow::PermeabilityLaw;
 fn water_that_yields_takes_its_share_of_the_load() {
     let load = 1e-5 * M;
     let mut scene = column(4, 1.0, load, PermeabilityLaw::Constant);
-    let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
+    let flow = scene
+        .model
+        .water
+        .as_mut()
+        .and_then(|water| water.flow.as_mut())
+        .expect("it flows");
     (flow.bulk, flow.faces) = (22.0 * M, Vec::new());
     let soil = flow.soils[0].as_mut().expect("a soil");
     (soil.porosity, soil.permeability) = (0.4, None);
@@ -33,17 +38,39 @@ fn water_that_yields_takes_its_share_of_the_load() {
 fn undrained_strength_follows_from_the_effective_stress() {
     for method in [Stabilisation::FBar, Stabilisation::ConsistentFBar] {
         let confining = 1e5;
-        let law = MohrCoulomb::new(Elastic { young: 1e8, poisson: 0.3 }, 30_f64.to_radians(), 0.0, 0.0);
-        let mut scene = Plane::new([axis(0.5, 3, 2), axis(0.5, 2, 2)], Material::MohrCoulomb(law), Regime::QuasiStatic)
-            .body([0..2, 0..2], 3, 1.0, |x| x * 0.0)
-            .support(Support::roller(0, false))
-            .support(Support::roller(1, false));
+        let law = MohrCoulomb::new(
+            Elastic {
+                young: 1e8,
+                poisson: 0.3,
+            },
+            30_f64.to_radians(),
+            0.0,
+            0.0,
+        );
+        let mut scene = Plane::new(
+            [axis(0.5, 3, 2), axis(0.5, 2, 2)],
+            Material::MohrCoulomb(law),
+            Regime::QuasiStatic,
+        )
+        .body([0..2, 0..2], 3, 1.0, |x| x * 0.0)
+        .support(Support::roller(0, false))
+        .support(Support::roller(1, false));
         let mut plate = Support::roller(1, true);
         plate.velocity[1] = Some(-1e-3);
-        let side = LOAD_PARTS.iter().map(|y| SurfacePoint::at(at(1.0, *y), 1.0 / LOAD_PARTS.len() as f64));
-        scene = scene.support(plate).load(Load::dead(side.collect(), at(-confining, 0.0), 0.0)).stabilised(method);
+        let side = LOAD_PARTS
+            .iter()
+            .map(|y| SurfacePoint::at(at(1.0, *y), 1.0 / LOAD_PARTS.len() as f64));
+        scene = scene
+            .support(plate)
+            .load(Load::dead(side.collect(), at(-confining, 0.0), 0.0))
+            .stabilised(method);
         let mut water = flowing(PermeabilityLaw::Constant);
-        water.flow.as_mut().and_then(|flow| flow.soils[0].as_mut()).expect("a soil").permeability = None;
+        water
+            .flow
+            .as_mut()
+            .and_then(|flow| flow.soils[0].as_mut())
+            .expect("a soil")
+            .permeability = None;
         scene.model.water = Some(water);
         let isotropic = Symmetric([-confining, -confining, -confining, 0.0, 0.0, 0.0]);
         initial::set_stress(&scene.model, &mut scene.points, |_, _| isotropic);

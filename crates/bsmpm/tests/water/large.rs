@@ -56,7 +56,9 @@ fn surface(points: &Points<2>) -> f64 {
 }
 
 fn base(points: &Points<2>) -> f64 {
-    let lowest = (0..points.len()).min_by(|a, b| points.x[*a][1].total_cmp(&points.x[*b][1])).expect("points");
+    let lowest = (0..points.len())
+        .min_by(|a, b| points.x[*a][1].total_cmp(&points.x[*b][1]))
+        .expect("points");
     points.pore_pressure.as_ref().expect("water flows")[lowest] / M
 }
 
@@ -111,7 +113,11 @@ fn weight_of_half_the_stiffness_settles_as_the_solution_by_lines() {
     let water = scene.model.water.as_mut().expect("water");
     water.unit_weight = LIGHT;
     let flow = water.flow.as_mut().expect("it flows");
-    flow.soils[0].as_mut().and_then(|soil| soil.permeability.as_mut()).expect("a soil").along *= LIGHT / WEIGHT;
+    flow.soils[0]
+        .as_mut()
+        .and_then(|soil| soil.permeability.as_mut())
+        .expect("a soil")
+        .along *= LIGHT / WEIGHT;
     flow.drains[0].given = Given::Head(Course(vec![(0.0, 1.0)]));
     let expected = [
         [0.01, 0.41587],
@@ -164,17 +170,31 @@ fn of_terzaghis_volume(load: f64) -> Vec<[f64; 2]> {
     let own: Vec<u16> = (0..scene.points.len()).map(|p| height(p, &scene) as u16).collect();
     scene.points.material = own;
     scene.model.materials = vec![scene.model.materials[0].clone(); rows];
-    let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
+    let flow = scene
+        .model
+        .water
+        .as_mut()
+        .and_then(|water| water.flow.as_mut())
+        .expect("it flows");
     flow.soils[0].as_mut().expect("a soil").porosity = 0.9; // it has no part in the exact solution
     flow.soils = vec![flow.soils[0].clone(); rows];
-    let first = flow.soils[0].as_ref().and_then(|soil| soil.permeability.as_ref()).expect("a soil").along;
+    let first = flow.soils[0]
+        .as_ref()
+        .and_then(|soil| soil.permeability.as_ref())
+        .expect("a soil")
+        .along;
     let mut times = geometric(1e-4, 2.0, 250);
     times.extend(T);
     times.sort_by(f64::total_cmp);
     times.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
     let (mut found, mut t) = (Vec::new(), 0.0);
     for next in times {
-        let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
+        let flow = scene
+            .model
+            .water
+            .as_mut()
+            .and_then(|water| water.flow.as_mut())
+            .expect("it flows");
         for p in 0..scene.points.len() {
             let J = scene.points.F.at(p).determinant();
             let soil = flow.soils[usize::from(scene.points.material[p])].as_mut();
@@ -200,7 +220,11 @@ fn what_flows_through_a_compressed_column_is_what_leaves_by_its_drain() {
         let (mut low, mut high) = (0.4, 1.0_f64);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            if middle.ln() / middle < pressure - load { low = middle } else { high = middle }
+            if middle.ln() / middle < pressure - load {
+                low = middle
+            } else {
+                high = middle
+            }
         }
         low
     };
@@ -210,9 +234,19 @@ fn what_flows_through_a_compressed_column_is_what_leaves_by_its_drain() {
     let expected = WEIGHT / M * base * M / (WEIGHT * height);
 
     let mut scene = settling(20, load * M, PermeabilityLaw::Constant);
-    let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
+    let flow = scene
+        .model
+        .water
+        .as_mut()
+        .and_then(|water| water.flow.as_mut())
+        .expect("it flows");
     let given = Given::Pressure(Course(vec![(0.0, base * M)]));
-    flow.faces.push(DrainedFace { axis: 1, upper: false, given, acts: true });
+    flow.faces.push(DrainedFace {
+        axis: 1,
+        upper: false,
+        given,
+        acts: true,
+    });
     let (mut out, mut t) = (0.0, 0.0);
     run(&mut scene, geometric(5e-3, 4.0, 120), |now, _, report| {
         let crossed = &report.water.as_ref().expect("water flows").crossed;
@@ -221,7 +255,9 @@ fn what_flows_through_a_compressed_column_is_what_leaves_by_its_drain() {
     let edge = 1.0 / (20.0 - 1.0 + 0.999);
     let width = ACROSS as f64 * edge;
     let water = PoreWater::of(&scene.model, &scene.points, t).expect("water");
-    let fluxes = water.fluxes::<PlaneStrain>(&scene.model.grid, &scene.halo()).expect("all inside");
+    let fluxes = water
+        .fluxes::<PlaneStrain>(&scene.model.grid, &scene.halo())
+        .expect("all inside");
     let settled = surface(&scene.points);
     let off = |value: f64| value / expected - 1.0;
     let (mut worst, mut count) = (0.0_f64, 0);

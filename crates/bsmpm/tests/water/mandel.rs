@@ -45,9 +45,17 @@ fn block(cells: usize, nu: f64) -> Plane {
         .support(Support::roller(1, true));
     let mut water = flowing(PermeabilityLaw::Constant);
     let flow = water.flow.as_mut().expect("it flows");
-    flow.faces.push(DrainedFace { axis: 0, upper: true, given: Given::StillWater, acts: true });
-    flow.soils[0].as_mut().and_then(|soil| soil.permeability.as_mut()).expect("a soil").along =
-        at(1.0, 1.0) * (WEIGHT / modulus(nu));
+    flow.faces.push(DrainedFace {
+        axis: 0,
+        upper: true,
+        given: Given::StillWater,
+        acts: true,
+    });
+    flow.soils[0]
+        .as_mut()
+        .and_then(|soil| soil.permeability.as_mut())
+        .expect("a soil")
+        .along = at(1.0, 1.0) * (WEIGHT / modulus(nu));
     scene.model.water = Some(water);
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-10, 1e-8);
     scene
@@ -70,7 +78,9 @@ fn the_pressure_in_the_middle_rises_before_it_falls_and_the_plate_sinks() {
             let [middle, _] = run_one(&mut scene, (t, next), velocity);
             sunk += velocity * (next - t);
             t = next;
-            let Some(row) = TIMES.iter().position(|time| (time - next).abs() < 1e-9) else { continue };
+            let Some(row) = TIMES.iter().position(|time| (time - next).abs() < 1e-9) else {
+                continue;
+            };
             // The height is four cells.
             let found = [middle / (0.5 * LOAD), sunk * modulus(nu) / LOAD * cells as f64 / 4.0];
             println!(
@@ -99,7 +109,10 @@ fn run_one(scene: &mut Plane, (from, to): (f64, f64), velocity: f64) -> [f64; 2]
     super::run_from(scene, from, [to], |_, points, report| {
         let middle = |a: &usize, b: &usize| points.x[*a].norm().total_cmp(&points.x[*b].norm());
         let p = (0..points.len()).min_by(middle).expect("points");
-        found = [points.pore_pressure.as_ref().expect("water flows")[p], -report.reactions[2][1]];
+        found = [
+            points.pore_pressure.as_ref().expect("water flows")[p],
+            -report.reactions[2][1],
+        ];
     });
     found
 }
@@ -107,7 +120,10 @@ fn run_one(scene: &mut Plane, (from, to): (f64, f64), velocity: f64) -> [f64; 2]
 #[test]
 fn threads_change_no_bit() {
     let of = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("threads");
         pool.install(|| {
             let mut scene = block(6, 0.2);
             for k in 0..3 {

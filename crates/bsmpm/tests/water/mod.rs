@@ -44,8 +44,15 @@ fn at(x: f64, y: f64) -> Vector<2> {
 /// Water that flows through one soil of porosity 0.6, at the rate that makes the coefficient of consolidation 1 m2/s in
 /// a skeleton of the stiffness M; incompressible.
 pub fn flowing(law: PermeabilityLaw) -> Water<2> {
-    let permeability = Permeability { along: at(WEIGHT / M, WEIGHT / M), law };
-    let soil = Soil { porosity: 0.6, permeability: Some(permeability), retention: None };
+    let permeability = Permeability {
+        along: at(WEIGHT / M, WEIGHT / M),
+        law,
+    };
+    let soil = Soil {
+        porosity: 0.6,
+        permeability: Some(permeability),
+        retention: None,
+    };
     through(soil)
 }
 
@@ -60,7 +67,11 @@ pub fn through(soil: Soil<2>) -> Water<2> {
         suction: 0.0,
         motion: Motion::Flows,
     };
-    Water { unit_weight: WEIGHT, ambient: Ambient::None, flow: Some(flow) }
+    Water {
+        unit_weight: WEIGHT,
+        ambient: Ambient::None,
+        flow: Some(flow),
+    }
 }
 
 /// A column of the height 1 m, `cells` of them in it, one across; its top in the middle of the cell above by the share
@@ -74,15 +85,28 @@ pub fn column_of([across, cells]: [usize; 2], cut: f64, load: f64, law: Permeabi
     let h = 1.0 / (cells as f64 - 1.0 + cut);
     let is_cut = cut < 1.0;
     let rows = if is_cut { cells + 1 } else { cells };
-    let mut scene = Plane::new([axis(h, across, 2), axis(h, rows, 2)], hencky(M, 0.0), Regime::QuasiStatic);
-    scene = scene.body([0..across, 0..cells], 3, DENSITY, |x| x * 0.0).rollers([0]).support(Support::roller(1, false));
-    let surface: Vec<SurfacePoint<2>> =
-        (0..3 * across).map(|k| SurfacePoint::at(at(h * (k as f64 + 0.5) / 3.0, 1.0), h / 3.0)).collect();
+    let mut scene = Plane::new(
+        [axis(h, across, 2), axis(h, rows, 2)],
+        hencky(M, 0.0),
+        Regime::QuasiStatic,
+    );
+    scene = scene
+        .body([0..across, 0..cells], 3, DENSITY, |x| x * 0.0)
+        .rollers([0])
+        .support(Support::roller(1, false));
+    let surface: Vec<SurfacePoint<2>> = (0..3 * across)
+        .map(|k| SurfacePoint::at(at(h * (k as f64 + 0.5) / 3.0, 1.0), h / 3.0))
+        .collect();
     let mut water = flowing(law);
     let flow = water.flow.as_mut().expect("it flows");
     if is_cut {
         let normals = vec![at(0.0, 1.0); 3 * across];
-        flow.drains.push(Drain { points: surface.clone(), normals, given: Given::StillWater, acts: true });
+        flow.drains.push(Drain {
+            points: surface.clone(),
+            normals,
+            given: Given::StillWater,
+            acts: true,
+        });
         let top = cells as f64 - 1.0;
         // Rows of points that follow the surface: those of the cut cell fill its height.
         let (mut x, mut volume) = (scene.points.x.clone(), scene.points.volume.clone());
@@ -94,7 +118,12 @@ pub fn column_of([across, cells]: [usize; 2], cut: f64, load: f64, law: Permeabi
         }
         (scene.points.x, scene.points.volume) = (x, volume);
     } else {
-        flow.faces.push(DrainedFace { axis: 1, upper: true, given: Given::StillWater, acts: true });
+        flow.faces.push(DrainedFace {
+            axis: 1,
+            upper: true,
+            given: Given::StillWater,
+            acts: true,
+        });
     }
     scene.model.water = Some(water);
     if load > 0.0 {
@@ -143,12 +172,16 @@ pub fn run_from(
 
 /// Times of `count` steps that grow geometrically from `first` to `end`.
 pub fn geometric(first: f64, end: f64, count: usize) -> Vec<f64> {
-    (0..count).map(|k| first * (end / first).powf(k as f64 / (count - 1) as f64)).collect()
+    (0..count)
+        .map(|k| first * (end / first).powf(k as f64 / (count - 1) as f64))
+        .collect()
 }
 
 /// Settlement of the top of a column, m: its topmost point's, and the strain there over what is above.
 pub fn settlement(points: &Points<2>) -> f64 {
-    let top = (0..points.len()).max_by(|a, b| points.x[*a][1].total_cmp(&points.x[*b][1])).expect("points");
+    let top = (0..points.len())
+        .max_by(|a, b| points.x[*a][1].total_cmp(&points.x[*b][1]))
+        .expect("points");
     let above = 1.0 - points.height(top);
     -points.u[top][1] + above * (1.0 - points.F.at(top)[(1, 1)])
 }

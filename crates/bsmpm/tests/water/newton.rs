@@ -36,10 +36,20 @@ fn wet<K: Kinematics<D>, const D: usize>(
     dilation: f64,
     retention: Option<Retention>,
 ) -> Scene<K, D> {
-    let soil = MohrCoulomb::new(Elastic { young: 1000.0, poisson: 0.3 }, 0.5, dilation, 1.0);
+    let soil = MohrCoulomb::new(
+        Elastic {
+            young: 1000.0,
+            poisson: 0.3,
+        },
+        0.5,
+        dilation,
+        1.0,
+    );
     let axes = std::array::from_fn(|k| axis(1.0, if k == 0 { 3 } else { 2 }, 2));
     let mut scene = Scene::<K, D>::new(axes, Material::MohrCoulomb(soil), regime).stabilised(method);
-    scene = scene.body([const { 0..2 }; D], 3, 1.0, |_| Vector::zeros()).support(Support::fixed(D - 1, false));
+    scene = scene
+        .body([const { 0..2 }; D], 3, 1.0, |_| Vector::zeros())
+        .support(Support::fixed(D - 1, false));
     scene = scene.gravity(10.0, 0.0);
     scene.model.background = Some(Background { coefficient: 1e-3 });
     // None of these points is so near to saturation that its permeability has a bounded slope in the derivative.
@@ -53,16 +63,37 @@ fn wet<K: Kinematics<D>, const D: usize>(
         vec![SurfacePoint::at(x, 0.5)]
     };
     let normals = vec![Vector::<D>::from_fn(|k, _| f64::from(u8::from(k == 0)))];
-    let permeability =
-        Permeability { along: Vector::from_fn(|k, _| 0.02 * (k + 1) as f64), law: PermeabilityLaw::KozenyCarman };
-    let soil = Soil { porosity: 0.4, permeability: Some(permeability), retention };
-    let drain = |height: f64, given: Given| Drain { points: side(height), normals: normals.clone(), given, acts: true };
+    let permeability = Permeability {
+        along: Vector::from_fn(|k, _| 0.02 * (k + 1) as f64),
+        law: PermeabilityLaw::KozenyCarman,
+    };
+    let soil = Soil {
+        porosity: 0.4,
+        permeability: Some(permeability),
+        retention,
+    };
+    let drain = |height: f64, given: Given| Drain {
+        points: side(height),
+        normals: normals.clone(),
+        given,
+        acts: true,
+    };
     let rate = Course(vec![(0.0, 0.3)]);
-    let inflow = Inflow { points: side(1.3), normals: normals.clone(), rate, runs_off: true, acts: true };
+    let inflow = Inflow {
+        points: side(1.3),
+        normals: normals.clone(),
+        rate,
+        runs_off: true,
+        acts: true,
+    };
     let flow = Flow {
         bulk: 3000.0,
         soils: vec![Some(soil)],
-        drains: vec![drain(0.3, Given::StillWater), drain(0.8, Given::Seepage), drain(1.8, Given::Seepage)],
+        drains: vec![
+            drain(0.3, Given::StillWater),
+            drain(0.8, Given::Seepage),
+            drain(1.8, Given::Seepage),
+        ],
         faces: vec![DrainedFace {
             axis: 0,
             upper: false,
@@ -73,7 +104,11 @@ fn wet<K: Kinematics<D>, const D: usize>(
         suction: 0.0,
         motion: Motion::Flows,
     };
-    scene.model.water = Some(Water { unit_weight: 10.0, ambient: Ambient::Level(vec![(0.0, 0.9)]), flow: Some(flow) });
+    scene.model.water = Some(Water {
+        unit_weight: 10.0,
+        ambient: Ambient::Level(vec![(0.0, 0.9)]),
+        flow: Some(flow),
+    });
     scene
 }
 
@@ -85,12 +120,24 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 0.1), &halo).expect("no loads");
     let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.1));
-    let pieces = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
+    let pieces = Problem {
+        model,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points,
+        halo: &halo,
+    };
     let pores = nodes.pores.as_ref().expect("water flows");
     let mut random = Random::new(11);
     let mut free = |(length, pressure): (f64, f64)| -> Vec<f64> {
-        let all = nodes.free.iter().map(|free| (free, length)).chain(pores.free.iter().map(|free| (free, pressure)));
-        all.map(|(free, size)| if *free { size * random.signed() } else { 0.0 }).collect()
+        let all = nodes
+            .free
+            .iter()
+            .map(|free| (free, length))
+            .chain(pores.free.iter().map(|free| (free, pressure)));
+        all.map(|(free, size)| if *free { size * random.signed() } else { 0.0 })
+            .collect()
     };
     let (mut x, v) = (free((0.01, 10.0)), free((1.0, 1e3)));
     for (x, free) in x[nodes.free.len()..].iter_mut().zip(&pores.free) {
@@ -100,13 +147,22 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
         x[nodes.free.len() + at] += given.unwrap_or(0.0);
     }
     let open = pores.drainage.open(&x[nodes.free.len()..]);
-    assert!(!open.is_empty() && open.iter().all(|open| *open == (mean > 0.0)), "{open:?} under {mean} Pa");
+    assert!(
+        !open.is_empty() && open.iter().all(|open| *open == (mean > 0.0)),
+        "{open:?} under {mean} Pa"
+    );
     let residual = Residual::of(&pieces, &x);
     assert!(residual.balance.is_sound());
-    let yielding = (0..points.len())
-        .filter(|&p| residual.trial.respond(model, points, p).is_ok_and(|response| response.plastic_increment() > 0.0));
+    let yielding = (0..points.len()).filter(|&p| {
+        residual
+            .trial
+            .respond(model, points, p)
+            .is_ok_and(|response| response.plastic_increment() > 0.0)
+    });
     let mut product = vec![0.0; x.len()];
-    Linearised::at(&pieces, &residual).with_water(&x).multiply(&v, &mut product);
+    Linearised::at(&pieces, &residual)
+        .with_water(&x)
+        .multiply(&v, &mut product);
     let step = 1e-7;
     let lacking = |by: f64| -> Vec<f64> {
         let x: Vec<f64> = x.iter().zip(&v).map(|(x, v)| x + by * v).collect();
@@ -120,9 +176,13 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
     };
     let (after, before) = (lacking(step), lacking(-step));
     let errors = [0..nodes.free.len(), nodes.free.len()..x.len()].map(|range| {
-        let size = product[range.clone()].iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+        let size = product[range.clone()]
+            .iter()
+            .fold(0.0_f64, |size, value| size.max(value.abs()));
         assert!(size > 0.0);
-        range.map(|c| (product[c] + (after[c] - before[c]) / (2.0 * step)).abs() / size).fold(0.0, f64::max)
+        range
+            .map(|c| (product[c] + (after[c] - before[c]) / (2.0 * step)).abs() / size)
+            .fold(0.0, f64::max)
     });
     (errors, [yielding.count(), points.len()])
 }
@@ -136,15 +196,24 @@ fn the_product_is_the_derivative_of_both_balances() {
             for (dilation, retention) in [(0.0, None), (0.3, None), (0.1, Some(&loam))] {
                 let found = [-30.0, 30.0].map(|mean| {
                     [
-                        product_errors(&wet::<PlaneStrain, 2>((method, regime), dilation, retention.cloned()), mean),
-                        product_errors(&wet::<Axisymmetric, 2>((method, regime), dilation, retention.cloned()), mean),
+                        product_errors(
+                            &wet::<PlaneStrain, 2>((method, regime), dilation, retention.cloned()),
+                            mean,
+                        ),
+                        product_errors(
+                            &wet::<Axisymmetric, 2>((method, regime), dilation, retention.cloned()),
+                            mean,
+                        ),
                         product_errors(&wet::<Solid, 3>((method, regime), dilation, retention.cloned()), mean),
                     ]
                 });
                 println!("{method:?}, {regime:?}, {dilation}, {}: {found:?}", retention.is_some());
                 for (errors, [yielding, points]) in found.into_iter().flatten() {
                     assert!(errors.iter().all(|error| *error < 1e-6), "{errors:?}"); // central differences
-                    assert!(yielding > 0 && yielding < points, "both responses are seen: {yielding} of {points}");
+                    assert!(
+                        yielding > 0 && yielding < points,
+                        "both responses are seen: {yielding} of {points}"
+                    );
                 }
             }
         }
@@ -153,19 +222,44 @@ fn the_product_is_the_derivative_of_both_balances() {
 
 /// Clay under a load on the left half of its surface that grows to `load`, Pa, in 1 s; drained on top.
 fn loaded(nonlinear: Nonlinear, method: Stabilisation, load: f64, law: PermeabilityLaw) -> Plane {
-    let clay = MohrCoulomb::new(Elastic { young: 1e6, poisson: 0.3 }, 25_f64.to_radians(), 0.0, 2e3);
-    let mut scene = Plane::new([axis(0.5, 6, 2), axis(0.5, 4, 2)], Material::MohrCoulomb(clay), Regime::QuasiStatic)
-        .body([0..6, 0..4], 3, DENSITY, |x| x * 0.0)
-        .rollers(0..1)
-        .support(Support::fixed(1, false))
-        .stabilised(method);
+    let clay = MohrCoulomb::new(
+        Elastic {
+            young: 1e6,
+            poisson: 0.3,
+        },
+        25_f64.to_radians(),
+        0.0,
+        2e3,
+    );
+    let mut scene = Plane::new(
+        [axis(0.5, 6, 2), axis(0.5, 4, 2)],
+        Material::MohrCoulomb(clay),
+        Regime::QuasiStatic,
+    )
+    .body([0..6, 0..4], 3, DENSITY, |x| x * 0.0)
+    .rollers(0..1)
+    .support(Support::fixed(1, false))
+    .stabilised(method);
     let mut water = flowing(law);
     let flow = water.flow.as_mut().expect("it flows");
-    flow.faces.push(DrainedFace { axis: 1, upper: true, given: Given::StillWater, acts: true });
-    flow.soils[0].as_mut().and_then(|soil| soil.permeability.as_mut()).expect("a soil").along *= 0.1;
+    flow.faces.push(DrainedFace {
+        axis: 1,
+        upper: true,
+        given: Given::StillWater,
+        acts: true,
+    });
+    flow.soils[0]
+        .as_mut()
+        .and_then(|soil| soil.permeability.as_mut())
+        .expect("a soil")
+        .along *= 0.1;
     scene.model.water = Some(water);
     scene.model.nonlinear = nonlinear;
-    scene.model.criteria = Criteria { energy: 1e-16, force: 1e-9, max_iterations: 400 };
+    scene.model.criteria = Criteria {
+        energy: 1e-16,
+        force: 1e-9,
+        max_iterations: 400,
+    };
     let surface = (0..9).map(|k| SurfacePoint::at(at((f64::from(k) + 0.5) / 6.0, 2.0), 1.0 / 6.0));
     scene.load(Load::dead(surface.collect(), at(0.0, -load), 1.0))
 }
@@ -191,7 +285,11 @@ fn steps(scene: &mut Plane, times: &[f64]) -> Result<(f64, Vec<StepReport>, usiz
         t = *next;
         scene.points.sort_by_cell(&scene.model.grid);
     }
-    Ok((largest_displacement(&scene.points, &Part::Whole, &halo), reports, products))
+    Ok((
+        largest_displacement(&scene.points, &Part::Whole, &halo),
+        reports,
+        products,
+    ))
 }
 
 /// Theory: quadratic convergence of Newton's method.
@@ -203,23 +301,42 @@ fn forces_and_water_fall_with_their_squares() {
             for nonlinear in [Nonlinear::Newton, Nonlinear::Auto] {
                 let mut scene = loaded(nonlinear, method, 9e3, law);
                 let (u, reports, products) = steps(&mut scene, &[0.25, 0.5, 0.75, 1.0]).expect("it converges");
-                found.push((u, reports.iter().map(|report| report.iterations).sum::<usize>(), products));
+                found.push((
+                    u,
+                    reports.iter().map(|report| report.iterations).sum::<usize>(),
+                    products,
+                ));
                 let last = reports.last().expect("steps");
-                let measures: Vec<(f64, f64)> =
-                    last.history.iter().map(|m| (m.force, m.water.expect("flows"))).collect();
+                let measures: Vec<(f64, f64)> = last
+                    .history
+                    .iter()
+                    .map(|m| (m.force, m.water.expect("flows")))
+                    .collect();
                 if nonlinear == Nonlinear::Auto {
                     continue;
                 }
                 println!("{method:?}, {law:?}: {measures:?}");
                 assert!(last.history.iter().all(|measures| measures.method == Method::Newton) && measures.len() <= 5);
                 // Once the plastic set no longer changes; measured C, of the larger of both: 3.1 to 3.8.
-                let [.., before, after] = measures[..] else { panic!("too few iterations") };
-                assert!(after.0.max(after.1) <= 10.0 * before.0.max(before.1).powi(2), "{measures:?}");
+                let [.., before, after] = measures[..] else {
+                    panic!("too few iterations")
+                };
+                assert!(
+                    after.0.max(after.1) <= 10.0 * before.0.max(before.1).powi(2),
+                    "{measures:?}"
+                );
             }
             println!("displacement, iterations, products: {found:?}");
             let ([newton, auto], [quick, slow]) = ([found[0].0, found[1].0], [found[0].1, found[1].1]);
-            assert!((newton / auto - 1.0).abs() < 1e-6 && quick < slow, "the same state in fewer iterations");
-            assert!(found[0].2 < 10 * quick, "the split is near the derivative: {} products", found[0].2);
+            assert!(
+                (newton / auto - 1.0).abs() < 1e-6 && quick < slow,
+                "the same state in fewer iterations"
+            );
+            assert!(
+                found[0].2 < 10 * quick,
+                "the split is near the derivative: {} products",
+                found[0].2
+            );
         }
     }
 }
@@ -230,13 +347,21 @@ fn it_does_a_step_that_secants_do_not() {
     let attempt = |nonlinear: Nonlinear| {
         let law = PermeabilityLaw::KozenyCarman;
         let mut scene = loaded(nonlinear, Stabilisation::ConsistentFBar, 1.014e4, law);
-        scene.model.criteria = Criteria { energy: 1e-8, force: 1e-4, max_iterations: 40 };
+        scene.model.criteria = Criteria {
+            energy: 1e-8,
+            force: 1e-4,
+            max_iterations: 40,
+        };
         let found =
             steps(&mut scene, &[1.0]).map(|(_, reports, _)| (reports[0].iterations, reports[0].newton_iterations));
         println!("{nonlinear:?}: {:?}", found.as_ref().map_err(|error| error.to_string()));
         found.ok()
     };
-    assert_eq!(attempt(Nonlinear::QuasiNewton(QuasiNewton::Multisecant)), None, "secants alone do not");
+    assert_eq!(
+        attempt(Nonlinear::QuasiNewton(QuasiNewton::Multisecant)),
+        None,
+        "secants alone do not"
+    );
     let (iterations, newton) = attempt(Nonlinear::Auto).expect("a step");
     assert!(newton == iterations && newton <= 15, "from the same guess");
     assert_eq!(attempt(Nonlinear::Newton), Some((iterations, newton)));

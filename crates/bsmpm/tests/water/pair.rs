@@ -22,10 +22,14 @@ use nalgebra::DMatrix;
 /// A unit square of `cells` x `cells` on rollers but for its top, whose last row of cells is filled by the share `cut`.
 fn square(cells: usize, cut: f64) -> Plane {
     let h = 1.0 / cells as f64;
-    let mut scene = Plane::new([axis(h, cells, 2), axis(h, cells + 1, 2)], hencky(1.0, 0.0), Regime::QuasiStatic)
-        .body([0..cells, 0..cells], 3, 1.0, |x| x * 0.0)
-        .rollers([0])
-        .support(Support::roller(1, false));
+    let mut scene = Plane::new(
+        [axis(h, cells, 2), axis(h, cells + 1, 2)],
+        hencky(1.0, 0.0),
+        Regime::QuasiStatic,
+    )
+    .body([0..cells, 0..cells], 3, 1.0, |x| x * 0.0)
+    .rollers([0])
+    .support(Support::roller(1, false));
     let top = 1.0 - h;
     for (x, volume) in scene.points.x.iter_mut().zip(&mut scene.points.volume) {
         if x[1] > top {
@@ -41,7 +45,11 @@ fn square(cells: usize, cut: f64) -> Plane {
 /// 1 m / `cells`.
 fn afloat(cells: usize, off: Vector<2>, is_round: bool) -> Plane {
     let h = 1.0 / cells as f64;
-    let scene = Plane::new([axis(h, cells + 2, 2), axis(h, cells + 2, 2)], hencky(1.0, 0.0), Regime::QuasiStatic);
+    let scene = Plane::new(
+        [axis(h, cells + 2, 2), axis(h, cells + 2, 2)],
+        hencky(1.0, 0.0),
+        Regime::QuasiStatic,
+    );
     let (centre, off) = (at(0.5 + h, 0.5 + h), off * h);
     let mut scene = if is_round {
         let body = scene.body([0..cells + 2, 0..cells + 2], 3, 1.0, |x| x * 0.0);
@@ -60,11 +68,14 @@ fn afloat(cells: usize, off: Vector<2>, is_round: bool) -> Plane {
 fn whitening(form: &DMatrix<f64>) -> DMatrix<f64> {
     const NONE: f64 = 1e-11;
     let scale = form.diagonal().map(|own| 1.0 / own.sqrt());
-    let scaled =
-        DMatrix::from_fn(form.nrows(), form.ncols(), |row, column| form[(row, column)] * scale[row] * scale[column]);
+    let scaled = DMatrix::from_fn(form.nrows(), form.ncols(), |row, column| {
+        form[(row, column)] * scale[row] * scale[column]
+    });
     let eigen = scaled.symmetric_eigen();
     let largest = eigen.eigenvalues.max();
-    let kept: Vec<usize> = (0..eigen.eigenvalues.len()).filter(|&k| eigen.eigenvalues[k] > NONE * largest).collect();
+    let kept: Vec<usize> = (0..eigen.eigenvalues.len())
+        .filter(|&k| eigen.eigenvalues[k] > NONE * largest)
+        .collect();
     DMatrix::from_fn(form.nrows(), kept.len(), |row, k| {
         scale[row] * eigen.eigenvectors[(row, kept[k])] / eigen.eigenvalues[kept[k]].sqrt()
     })
@@ -73,13 +84,25 @@ fn whitening(form: &DMatrix<f64>) -> DMatrix<f64> {
 /// beta: the square root of the smallest eigenvalue of Q^T K^-1 Q + C against the mass of the pressures, K = grad u :
 /// grad u, where nothing flows; without C, which is the tau term, and with it.
 fn constants(mut scene: Plane) -> [f64; 2] {
-    let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
+    let flow = scene
+        .model
+        .water
+        .as_mut()
+        .and_then(|water| water.flow.as_mut())
+        .expect("it flows");
     flow.soils[0].as_mut().expect("a soil").permeability = None;
     let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
     let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
-    let problem = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
+    let problem = Problem {
+        model,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points,
+        halo: &halo,
+    };
     let pores = nodes.pores.as_ref().expect("it flows");
     let free: Vec<usize> = (0..nodes.free.len()).filter(|&c| nodes.free[c]).collect();
     let pressures: Vec<usize> = (0..pores.free.len()).filter(|&c| pores.free[c]).collect();
@@ -90,12 +113,16 @@ fn constants(mut scene: Plane) -> [f64; 2] {
         let grad = transfer::gradients::<PlaneStrain, 2, _>((&shape, &points.x), &unit, |_, grad| grad);
         unit[component] = 0.0;
         let force = transfer::divergence::<PlaneStrain, 2>((&shape, &points.x), |p| grad[p] * points.volume[p]).alone();
-        free.iter().enumerate().for_each(|(row, &c)| stiffness[(row, column)] = force[c]);
+        free.iter()
+            .enumerate()
+            .for_each(|(row, &c)| stiffness[(row, column)] = force[c]);
     }
     let mut stand_in = Dense::of_pressures(&model.grid);
     matrix::assemble(&problem, pores, &pores.guess, &mut stand_in).expect("assembled");
-    let (mut q, mut mass) =
-        (DMatrix::zeros(free.len(), pressures.len()), DMatrix::zeros(pressures.len(), pressures.len()));
+    let (mut q, mut mass) = (
+        DMatrix::zeros(free.len(), pressures.len()),
+        DMatrix::zeros(pressures.len(), pressures.len()),
+    );
     let mut unit = vec![0.0; pores.free.len()];
     for (column, &function) in pressures.iter().enumerate() {
         unit[function] = 1.0;
@@ -103,8 +130,13 @@ fn constants(mut scene: Plane) -> [f64; 2] {
         let value = scalars::scalars(&pores.shape, &unit, |_, value, _| value);
         let spread = scalars::of_scalars(&pores.shape, |p| [(points.volume[p] * value[p], Vector::zeros())]).alone();
         unit[function] = 0.0;
-        free.iter().enumerate().for_each(|(row, &c)| q[(row, column)] = force[c]);
-        pressures.iter().enumerate().for_each(|(row, &c)| mass[(row, column)] = spread[c]);
+        free.iter()
+            .enumerate()
+            .for_each(|(row, &c)| q[(row, column)] = force[c]);
+        pressures
+            .iter()
+            .enumerate()
+            .for_each(|(row, &c)| mass[(row, column)] = spread[c]);
     }
     let stored = DMatrix::from_fn(pressures.len(), pressures.len(), |row, column| {
         stand_in.entry(pressures[row], pressures[column]) - mass[(row, column)] // M = 1
@@ -114,7 +146,12 @@ fn constants(mut scene: Plane) -> [f64; 2] {
     let white = whitening(&mass);
     [bare.clone(), bare + stored].map(|form| {
         let form = white.transpose() * form * &white;
-        (&form + form.transpose()).scale(0.5).symmetric_eigenvalues().min().max(0.0).sqrt()
+        (&form + form.transpose())
+            .scale(0.5)
+            .symmetric_eigenvalues()
+            .min()
+            .max(0.0)
+            .sqrt()
     })
 }
 
@@ -134,17 +171,27 @@ fn the_pair_is_stable_on_any_grid_whole_and_cut() {
 /// pressure that no force feels. With it the place changes it by less than 2 %, and it stays above 1.
 #[test]
 fn the_tau_term_keeps_the_pair_stable_wherever_a_body_cuts_its_cells() {
-    let places: Vec<Vector<2>> = (0..20).map(|k| at(f64::from(k), f64::from(7 * k % 20)) / 20.0).collect();
+    let places: Vec<Vector<2>> = (0..20)
+        .map(|k| at(f64::from(k), f64::from(7 * k % 20)) / 20.0)
+        .collect();
     for is_round in [false, true] {
         let found = [4, 8, 12].map(|cells| {
             let all = places.iter().map(|&place| constants(afloat(cells, place, is_round)));
             let range = |[low, high]: [f64; 2], beta: f64| [low.min(beta), high.max(beta)];
             let none = [f64::INFINITY, 0.0];
-            all.fold([none; 2], |[bare, with], beta| [range(bare, beta[0]), range(with, beta[1])])
+            all.fold([none; 2], |[bare, with], beta| {
+                [range(bare, beta[0]), range(with, beta[1])]
+            })
         });
         println!("round: {is_round}; 4, 8, 12 cells, beta without and with the tau term: {found:.3?}");
-        assert!(found.iter().all(|[_, with]| with[0] > 1.0 && with[1] < 1.02 * with[0]), "{found:?}");
-        assert!(found[2][0][1] < 0.5 && found[2][0][1] < 0.75 * found[0][0][1], "{found:?}");
+        assert!(
+            found.iter().all(|[_, with]| with[0] > 1.0 && with[1] < 1.02 * with[0]),
+            "{found:?}"
+        );
+        assert!(
+            found[2][0][1] < 0.5 && found[2][0][1] < 0.75 * found[0][0][1],
+            "{found:?}"
+        );
     }
 }
 
@@ -156,22 +203,42 @@ fn a_rotation_changes_neither_the_flow_nor_the_content_and_turns_the_forces() {
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
     let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
-    let problem = Problem { model, shape: &shape, nodes: &nodes, attachments: &attachments, points, halo: &halo };
+    let problem = Problem {
+        model,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points,
+        halo: &halo,
+    };
     let number = |node: usize| model.grid.node_at(node);
     let place = |node: usize| {
-        at(model.grid.axes()[0].greville(number(node)[0]), model.grid.axes()[1].greville(number(node)[1]))
+        at(
+            model.grid.axes()[0].greville(number(node)[0]),
+            model.grid.axes()[1].greville(number(node)[1]),
+        )
     };
-    let pressure: Vec<f64> = (0..model.grid.nodes()).map(|node| 0.01 * ((7 * node % 11) as f64 - 4.0)).collect();
+    let pressure: Vec<f64> = (0..model.grid.nodes())
+        .map(|node| 0.01 * ((7 * node % 11) as f64 - 4.0))
+        .collect();
     let (sin, cos) = 0.7_f64.sin_cos();
     let turned = |v: Vector<2>| at(cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]);
     let state = |u: &dyn Fn(usize) -> Vector<2>| {
         let u = (0..model.grid.nodes()).flat_map(|node| [u(node)[0], u(node)[1]]);
         Residual::of(&problem, &u.chain(pressure.iter().copied()).collect::<Vec<_>>()).balance
     };
-    let (still, moved) = (state(&|_| at(0.0, 0.0)), state(&|node| turned(place(node)) - place(node)));
+    let (still, moved) = (
+        state(&|_| at(0.0, 0.0)),
+        state(&|node| turned(place(node)) - place(node)),
+    );
     let excess = |balance: &bsmpm::step::residual::Balance| balance.water.as_ref().expect("it flows").excess.clone();
     let scale = excess(&still).iter().map(|value| value.abs()).fold(0.0, f64::max);
-    let off = excess(&still).iter().zip(excess(&moved)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale;
+    let off = excess(&still)
+        .iter()
+        .zip(excess(&moved))
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+        / scale;
     let largest = still.f_oob.iter().map(|value| value.abs()).fold(0.0, f64::max);
     let force = |balance: &bsmpm::step::residual::Balance, node: usize| {
         at(balance.f_oob[2 * node], balance.f_oob[2 * node + 1])

@@ -25,10 +25,21 @@ fn loam() -> Retention {
 fn ground([columns, rows]: [usize; 2], h: f64, retention: Retention) -> Plane {
     let axes = [axis(h, columns + 1, 2), axis(h, rows + 1, 2)];
     let mut scene: Plane = Scene::new(axes, hencky(RIGID, 0.0), Regime::QuasiStatic);
-    scene = scene.body([0..columns, 0..rows], 3, 2000.0, |x| x * 0.0).gravity(10.0, 0.0);
-    scene = scene.support(Support::roller(0, false)).support(Support::roller(1, false));
-    let permeability = Some(Permeability { along: at(K, K), law: PermeabilityLaw::Constant });
-    let soil = Soil { porosity: POROSITY, permeability, retention: Some(retention) };
+    scene = scene
+        .body([0..columns, 0..rows], 3, 2000.0, |x| x * 0.0)
+        .gravity(10.0, 0.0);
+    scene = scene
+        .support(Support::roller(0, false))
+        .support(Support::roller(1, false));
+    let permeability = Some(Permeability {
+        along: at(K, K),
+        law: PermeabilityLaw::Constant,
+    });
+    let soil = Soil {
+        porosity: POROSITY,
+        permeability,
+        retention: Some(retention),
+    };
     scene.model.water = Some(through(soil));
     scene.model.criteria.energy = 1e-10;
     scene.model.criteria.force = 1e-6;
@@ -36,13 +47,20 @@ fn ground([columns, rows]: [usize; 2], h: f64, retention: Retention) -> Plane {
 }
 
 fn flow(scene: &mut Plane) -> &mut Flow<2> {
-    scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("water flows")
+    scene
+        .model
+        .water
+        .as_mut()
+        .and_then(|water| water.flow.as_mut())
+        .expect("water flows")
 }
 
 /// Three points a cell of the length h of an edge of so many cells, from a corner on along a direction.
 fn edge(corner: Vector<2>, along: Vector<2>, cells: usize, h: f64) -> Vec<SurfacePoint<2>> {
     let area = h / 3.0;
-    (0..3 * cells).map(|k| SurfacePoint::at(corner + along * ((k as f64 + 0.5) * area), area)).collect()
+    (0..3 * cells)
+        .map(|k| SurfacePoint::at(corner + along * ((k as f64 + 0.5) * area), area))
+        .collect()
 }
 
 /// Kg of all points.
@@ -84,7 +102,13 @@ fn column(cells: usize, rate: f64, runs_off: bool) -> Plane {
         given: Given::Pressure(Course(vec![(0.0, 0.0)])),
         acts: true,
     });
-    flow.inflows.push(Inflow { points, normals, rate: Course(vec![(0.0, rate)]), runs_off, acts: true });
+    flow.inflows.push(Inflow {
+        points,
+        normals,
+        rate: Course(vec![(0.0, rate)]),
+        runs_off,
+        acts: true,
+    });
     // Hydrostatic suction to begin with.
     scene.points.pore_pressure = Some(scene.points.x.iter().map(|x| -WEIGHT * x[1]).collect());
     scene
@@ -102,14 +126,22 @@ fn off(points: &Points<2>, q: f64) -> f64 {
     let heights: Vec<f64> = order.iter().map(|&p| points.x[p][1]).collect();
     let found = points.pore_pressure.as_ref().expect("water flows");
     let exact = richards(&loam(), q, &heights);
-    order.iter().zip(&exact).map(|(&p, psi)| (found[p] / WEIGHT - psi).abs()).fold(0.0, f64::max)
+    order
+        .iter()
+        .zip(&exact)
+        .map(|(&p, psi)| (found[p] / WEIGHT - psi).abs())
+        .fold(0.0, f64::max)
 }
 
 /// Richards (1931): steady infiltration and evaporation of a column.
 #[test]
 fn steady_columns_follow_the_equation_of_richards() {
     // Rain of half of what the saturated ground lets through, evaporation, rest; bounds: 1.3 times what was measured.
-    for (rate, bounds) in [(0.5 * K, [1.5e-3, 3.9e-4]), (-0.002 * K, [7.6e-4, 2.2e-4]), (0.0, [2e-7, 5e-8])] {
+    for (rate, bounds) in [
+        (0.5 * K, [1.5e-3, 3.9e-4]),
+        (-0.002 * K, [7.6e-4, 2.2e-4]),
+        (0.0, [2e-7, 5e-8]),
+    ] {
         for (cells, bound) in [10, 20].into_iter().zip(bounds) {
             let mut scene = column(cells, rate, false);
             let start = mass(&scene.points);
@@ -125,8 +157,15 @@ fn steady_columns_follow_the_equation_of_richards() {
             println!(
                 "{cells} cells, {rate:e} m/s: psi off by {error:.2e} m, {iterations} iterations, balance {left:.1e}"
             );
-            assert!(error < bound && left < 1e-14 * POROSITY, "the steady state, and what came in and went out");
-            assert!((gained + out).abs() < 1e-4 * gained.abs() + 1e-12, "{gained:e} of {:e}", -out);
+            assert!(
+                error < bound && left < 1e-14 * POROSITY,
+                "the steady state, and what came in and went out"
+            );
+            assert!(
+                (gained + out).abs() < 1e-4 * gained.abs() + 1e-12,
+                "{gained:e} of {:e}",
+                -out
+            );
         }
     }
 }
@@ -138,7 +177,12 @@ fn the_books_of_rain_close_with_what_suction_stores() {
     // that rises fills pores from below.
     let stays = vec![(0.0, 0.0)];
     let rises = vec![(0.0, 0.0), (10e3, 0.6)];
-    let courses = [(50.0, None, 0.5), (25.0, None, 0.5), (25.0, Some(stays), 0.5), (50.0, Some(rises.clone()), 0.0)];
+    let courses = [
+        (50.0, None, 0.5),
+        (25.0, None, 0.5),
+        (25.0, Some(stays), 0.5),
+        (50.0, Some(rises.clone()), 0.0),
+    ];
     let lost = courses.into_iter().chain([(25.0, Some(rises), 0.0)]).map(|(dt, table, rain)| {
         let mut scene = column(10, rain * K, false);
         let reported = format!("{dt} s, {table:?}");
@@ -175,7 +219,12 @@ fn rain_that_the_ground_does_not_take_runs_off() {
     let mut taken = Vec::new();
     run(&mut scene, doubling(100.0, 14), |_, points, report| {
         taken.push(report.water.as_ref().expect("water flows").crossed.inflows[0] / (report.dt * 0.1 * K));
-        let top = points.pore_pressure.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
+        let top = points
+            .pore_pressure
+            .iter()
+            .flatten()
+            .copied()
+            .fold(f64::NEG_INFINITY, f64::max);
         assert!(top < 0.01 * WEIGHT, "no more than a film of water stands on the ground");
     });
     println!("taken over K: {taken:.4?}");
@@ -192,19 +241,33 @@ fn a_front_of_rain_goes_down_without_oscillations() {
     flow(&mut scene).faces.clear();
     let start = mass(&scene.points);
     let (mut iterations, mut worst) = (0, [0.0_f64; 2]);
-    run(&mut scene, (1..=60).map(|k| 400.0 * f64::from(k)), |t, points, report| {
-        iterations += report.iterations;
-        let pressures = points.pore_pressure.as_ref().expect("water flows");
-        let rows: std::collections::BTreeMap<u64, f64> =
-            points.x.iter().zip(pressures).map(|(x, p)| ((x[1] * 1e6) as u64, *p)).collect();
-        let rows: Vec<f64> = rows.into_values().collect();
-        let falls = rows.windows(2).map(|pair| pair[0] - pair[1]).fold(0.0, f64::max);
-        let least = rows.iter().copied().fold(0.0, f64::min);
-        let gained = (mass(points) - start) / (WEIGHT / 10.0);
-        worst = [worst[0].max(falls / WEIGHT), worst[1].max(least / dry - 1.0)];
-        assert!((gained / (0.05 * 0.5 * K * t) - 1.0).abs() < 2e-4, "all of the rain is in the ground");
-    });
-    println!("{iterations} iterations in 60 steps, falls {:.3} m, beyond the start {:.1e}", worst[0], worst[1]);
+    run(
+        &mut scene,
+        (1..=60).map(|k| 400.0 * f64::from(k)),
+        |t, points, report| {
+            iterations += report.iterations;
+            let pressures = points.pore_pressure.as_ref().expect("water flows");
+            let rows: std::collections::BTreeMap<u64, f64> = points
+                .x
+                .iter()
+                .zip(pressures)
+                .map(|(x, p)| ((x[1] * 1e6) as u64, *p))
+                .collect();
+            let rows: Vec<f64> = rows.into_values().collect();
+            let falls = rows.windows(2).map(|pair| pair[0] - pair[1]).fold(0.0, f64::max);
+            let least = rows.iter().copied().fold(0.0, f64::min);
+            let gained = (mass(points) - start) / (WEIGHT / 10.0);
+            worst = [worst[0].max(falls / WEIGHT), worst[1].max(least / dry - 1.0)];
+            assert!(
+                (gained / (0.05 * 0.5 * K * t) - 1.0).abs() < 2e-4,
+                "all of the rain is in the ground"
+            );
+        },
+    );
+    println!(
+        "{iterations} iterations in 60 steps, falls {:.3} m, beyond the start {:.1e}",
+        worst[0], worst[1]
+    );
     // A front of one cell between heads of 20 m and 0.1 m: ripples of two thousandths before it. Bounds: 1.3 times
     // them.
     assert!(worst[0] < 0.1 && worst[1] < 3.0e-3);
@@ -222,20 +285,35 @@ fn suction_presses_the_skeleton_as_bishop_says() {
     scene.points.pore_pressure = Some(scene.points.x.iter().map(|_| start).collect());
     let flow = flow(&mut scene);
     (flow.faces, flow.inflows) = (Vec::new(), Vec::new());
-    run(&mut scene, [1.0], |_, _, report| println!("{} iterations", report.iterations));
+    run(&mut scene, [1.0], |_, _, report| {
+        println!("{} iterations", report.iterations)
+    });
     let held = |J: f64, p: f64| (J - 1.0 + POROSITY) * loam().under(p, WEIGHT).saturation;
     let (mut low, mut high) = (start, 0.0);
     let of = |p: f64| {
         // J by the fixed point of that, which contracts.
-        (0..60).fold(1.0, |J: f64, _| (2.0 * J * loam().under(p, WEIGHT).effective * p / young).exp())
+        (0..60).fold(1.0, |J: f64, _| {
+            (2.0 * J * loam().under(p, WEIGHT).effective * p / young).exp()
+        })
     };
     for _ in 0..80 {
         let p = 0.5 * (low + high);
-        if held(of(p), p) < held(1.0, start) { low = p } else { high = p }
+        if held(of(p), p) < held(1.0, start) {
+            low = p
+        } else {
+            high = p
+        }
     }
     let (J, p) = (of(low), low);
     let mut worst = 0.0_f64;
-    for (point, found) in scene.points.pore_pressure.as_ref().expect("water flows").iter().enumerate() {
+    for (point, found) in scene
+        .points
+        .pore_pressure
+        .as_ref()
+        .expect("water flows")
+        .iter()
+        .enumerate()
+    {
         let (found, F) = (found / p, scene.points.F.at(point).determinant());
         worst = worst.max((found - 1.0).abs()).max(((F - 1.0) / (J - 1.0) - 1.0).abs());
         assert!(worst < 1e-6, "{found} {F} {J}");
@@ -247,7 +325,10 @@ fn suction_presses_the_skeleton_as_bishop_says() {
 fn conducted(soil: &Retention, psi: f64) -> f64 {
     let (parts, lowest) = (4000, -3.0);
     let step = (psi.min(0.0) - lowest) / f64::from(parts);
-    let k = |i: i32| soil.under((lowest + (f64::from(i) + 0.5) * step) * WEIGHT, WEIGHT).permeability;
+    let k = |i: i32| {
+        soil.under((lowest + (f64::from(i) + 0.5) * step) * WEIGHT, WEIGHT)
+            .permeability
+    };
     (0..parts).map(k).sum::<f64>() * step + psi.max(0.0)
 }
 
@@ -265,7 +346,12 @@ fn a_dam_lets_through_what_dupuit_says() {
         let below = cells / 4;
         let drain = |x: f64, y: f64, cells: usize, given: Given| {
             let points = edge(at(x, y), at(0.0, 1.0), cells, h);
-            Drain { normals: vec![at(1.0, 0.0); points.len()], points, given, acts: true }
+            Drain {
+                normals: vec![at(1.0, 0.0); points.len()],
+                points,
+                given,
+                acts: true,
+            }
         };
         let head = |height: f64| Given::Head(Course(vec![(0.0, height)]));
         flow(&mut scene).drains = vec![
@@ -284,11 +370,16 @@ fn a_dam_lets_through_what_dupuit_says() {
         // Charny's proof (1951), with the flow above the phreatic line: d/dx of the integral over the height of what
         // is conducted up to the pressure there is -Q/K. At the exit from the points next to it.
         let points = &scene.points;
-        let (pressures, gradients) =
-            (points.pore_pressure.as_ref().unwrap(), points.pressure_gradient.as_ref().unwrap());
+        let (pressures, gradients) = (
+            points.pore_pressure.as_ref().unwrap(),
+            points.pressure_gradient.as_ref().unwrap(),
+        );
         let last = |p: &usize| points.x[*p][0] > length - h / 3.0;
         let at_exit = |p: usize| pressures[p] + gradients[p][0] * (length - points.x[p][0]);
-        let exit: f64 = (0..points.len()).filter(last).map(|p| h / 3.0 * conducted(&soil, at_exit(p) / WEIGHT)).sum();
+        let exit: f64 = (0..points.len())
+            .filter(last)
+            .map(|p| h / 3.0 * conducted(&soil, at_exit(p) / WEIGHT))
+            .sum();
         let entry = h1 * h1 / 2.0 + conducted(&soil, 0.0) * h1;
         let exact = (entry - exit) / length;
         println!("{cells} cells: {out:.4?} K, Charny {exact:.4}, Dupuit {dupuit:.4}; up to {most} iterations a step");

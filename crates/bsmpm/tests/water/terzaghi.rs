@@ -36,11 +36,15 @@ fn settlement_and_pressures_follow_the_closed_form() {
         steps += 1;
         let water = report.water.as_ref().expect("water flows");
         left = left.max((water.stored + water.crossed.out() - water.left).abs() / water.crossed.out());
-        let Some((_, U, p)) = TABLE.iter().find(|row| row.0 == t) else { return };
+        let Some((_, U, p)) = TABLE.iter().find(|row| row.0 == t) else {
+            return;
+        };
         let pressures = points.pore_pressure.as_ref().expect("water flows");
         let of = |depth: f64| {
             let nearest = |a: &usize, b: &usize| {
-                (points.x[*a][1] - 1.0 + depth).abs().total_cmp(&(points.x[*b][1] - 1.0 + depth).abs())
+                (points.x[*a][1] - 1.0 + depth)
+                    .abs()
+                    .total_cmp(&(points.x[*b][1] - 1.0 + depth).abs())
             };
             let p = (0..points.len()).min_by(nearest).expect("points");
             let gradient = points.pressure_gradient.as_ref().expect("water flows")[p][1];
@@ -49,7 +53,11 @@ fn settlement_and_pressures_follow_the_closed_form() {
         let found = [0.25, 0.5, 1.0].map(of);
         println!("T {t}: U {:.5} ({U:.5}), p {found:.5?} ({p:?})", degree(points));
         worst[0] = worst[0].max((degree(points) - U).abs());
-        worst[1] = found.iter().zip(p).map(|(found, p)| (found - p).abs()).fold(worst[1], f64::max);
+        worst[1] = found
+            .iter()
+            .zip(p)
+            .map(|(found, p)| (found - p).abs())
+            .fold(worst[1], f64::max);
     });
     println!("errors {worst:.5?}, {iterations} iterations in {steps} steps, balance {left:.1e}");
     assert!(worst[0] < 0.002 && worst[1] < 0.003 && left < 1e-12);
@@ -67,7 +75,11 @@ fn pressures_do_not_oscillate_in_the_shortest_step() {
         let mut most = 0.0;
         run(&mut scene, [1e-6 / 400.0], |_, points, report| {
             most = largest(points);
-            println!("cut {cut}: largest p/p0 - 1 {:.1e}, {} iterations", most - 1.0, report.iterations);
+            println!(
+                "cut {cut}: largest p/p0 - 1 {:.1e}, {} iterations",
+                most - 1.0,
+                report.iterations
+            );
         });
         assert!(most - 1.0 < 0.01);
     }
@@ -79,9 +91,11 @@ fn consolidation_is_of_second_order_in_time() {
     let settled = [10, 20, 40, 640].map(|count| {
         let mut scene = column(20, 1.0, LOAD, PermeabilityLaw::Constant);
         let mut last = 0.0;
-        run(&mut scene, (1..=count).map(|k| 0.2 * f64::from(k) / f64::from(count)), |_, points, _| {
-            last = degree(points)
-        });
+        run(
+            &mut scene,
+            (1..=count).map(|k| 0.2 * f64::from(k) / f64::from(count)),
+            |_, points, _| last = degree(points),
+        );
         last
     });
     let errors = [0, 1, 2].map(|k: usize| (settled[k] - settled[3]).abs());
@@ -125,10 +139,18 @@ fn a_line_across_which_strains_may_jump_does_not_tear_the_pressure() {
         }
         let mut last = Vec::new();
         run(&mut scene, geometric(1e-4, 0.2, 100), |_, points, report| {
-            let mut by_height: Vec<(f64, f64)> =
-                points.x.iter().map(|x| x[1]).zip(points.pore_pressure.iter().flatten().copied()).collect();
+            let mut by_height: Vec<(f64, f64)> = points
+                .x
+                .iter()
+                .map(|x| x[1])
+                .zip(points.pore_pressure.iter().flatten().copied())
+                .collect();
             by_height.sort_by(|a, b| a.0.total_cmp(&b.0));
-            last = by_height.iter().map(|(_, p)| p / LOAD).chain([degree(points)]).collect();
+            last = by_height
+                .iter()
+                .map(|(_, p)| p / LOAD)
+                .chain([degree(points)])
+                .collect();
             let water = report.water.as_ref().expect("water flows");
             assert!((water.stored + water.crossed.out() - water.left).abs() < 1e-12 * water.crossed.out());
         });
@@ -145,8 +167,16 @@ fn a_line_across_which_strains_may_jump_does_not_tear_the_pressure() {
 fn books_hold_where_soil_that_lets_nothing_through_touches_soil_that_does() {
     let mut scene = column(8, 1.0, LOAD, PermeabilityLaw::Constant);
     scene.model.materials.push(scene.model.materials[0].clone());
-    let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
-    let tight = flow.soils[0].clone().map(|soil| Soil { permeability: None, ..soil });
+    let flow = scene
+        .model
+        .water
+        .as_mut()
+        .and_then(|water| water.flow.as_mut())
+        .expect("it flows");
+    let tight = flow.soils[0].clone().map(|soil| Soil {
+        permeability: None,
+        ..soil
+    });
     flow.soils.push(tight);
     for p in 0..scene.points.len() {
         scene.points.material[p] = u16::from(scene.points.x[p][1] < 0.45);
@@ -166,15 +196,31 @@ fn books_hold_where_soil_that_lets_nothing_through_touches_soil_that_does() {
 fn steady_seepage_takes_what_drives_it() {
     let mut scene = column(8, 1.0, 0.0, PermeabilityLaw::Constant);
     scene.model.balances_energy = true;
-    let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
+    let flow = scene
+        .model
+        .water
+        .as_mut()
+        .and_then(|water| water.flow.as_mut())
+        .expect("it flows");
     let given = Given::Pressure(Course(vec![(0.0, LOAD)]));
-    flow.faces.push(DrainedFace { axis: 1, upper: false, given, acts: true });
+    flow.faces.push(DrainedFace {
+        axis: 1,
+        upper: false,
+        given,
+        acts: true,
+    });
     let mut last = [0.0; 3];
     run(&mut scene, geometric(1e-3, 8.0, 60), |_, _, report| {
-        let (energy, water) = (report.energy.expect("books are kept"), report.water.as_ref().expect("water flows"));
+        let (energy, water) = (
+            report.energy.expect("books are kept"),
+            report.water.as_ref().expect("water flows"),
+        );
         last = [-LOAD * water.crossed.faces[1], energy.external, energy.plastic];
     });
-    println!("pressure times what came in {:.6e} J, external {:.6e}, seepage {:.6e}", last[0], last[1], last[2]);
+    println!(
+        "pressure times what came in {:.6e} J, external {:.6e}, seepage {:.6e}",
+        last[0], last[1], last[2]
+    );
     assert!(last[0] > 0.0 && last.iter().all(|work| (work / last[0] - 1.0).abs() < 1e-5));
 }
 
@@ -184,25 +230,44 @@ fn steady_seepage_takes_what_drives_it() {
 fn books_of_ground_that_a_part_is_taken_from_are_off_by_what_the_iterations_left() {
     let mut scene = column(8, 1.0, 0.0, PermeabilityLaw::Constant);
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-6, 1e-3);
-    let flow = scene.model.water.as_mut().and_then(|water| water.flow.as_mut()).expect("it flows");
+    let flow = scene
+        .model
+        .water
+        .as_mut()
+        .and_then(|water| water.flow.as_mut())
+        .expect("it flows");
     let given = Given::Pressure(Course(vec![(0.0, 1e-2 * M)]));
-    flow.faces.push(DrainedFace { axis: 1, upper: false, given, acts: true });
+    flow.faces.push(DrainedFace {
+        axis: 1,
+        upper: false,
+        given,
+        acts: true,
+    });
     let (mut out, mut left) = (0.0, 0.0);
     let mut enter = |report: &StepReport| {
         let water = report.water.as_ref().expect("water flows");
         (out, left) = (out + water.crossed.out(), left + water.left);
     };
     run(&mut scene, geometric(1e-3, 0.2, 20), |_, _, report| enter(report));
-    let gone: Vec<u64> =
-        (0..scene.points.len()).filter(|p| scene.points.height(*p) > 0.75).map(|p| scene.points.id[p]).collect();
+    let gone: Vec<u64> = (0..scene.points.len())
+        .filter(|p| scene.points.height(*p) > 0.75)
+        .map(|p| scene.points.id[p])
+        .collect();
     let halo = scene.halo();
     let taken = |scene: &Plane, t: f64, wanted: &dyn Fn(u64) -> bool| {
-        PoreWater::of(&scene.model, &scene.points, t).expect("water").taken_by(wanted, &halo)
+        PoreWater::of(&scene.model, &scene.points, t)
+            .expect("water")
+            .taken_by(wanted, &halo)
     };
     let removed = taken(&scene, 0.2, &|id| gone.contains(&id));
     scene.points.remove(|id| gone.contains(&id));
     scene.points.forget_flow();
-    run_from(&mut scene, 0.2, (1..=10).map(|k| 0.2 + 0.02 * f64::from(k)), |_, _, report| enter(report));
+    run_from(
+        &mut scene,
+        0.2,
+        (1..=10).map(|k| 0.2 + 0.02 * f64::from(k)),
+        |_, _, report| enter(report),
+    );
     let held = taken(&scene, 0.4, &|_| true);
     let off = held + removed + out;
     println!("held {held:.3e}, removed {removed:.3e}, out {out:.3e} m3: off by {off:.3e}, left {left:.3e}");

@@ -29,36 +29,71 @@ pub(crate) struct Array {
 impl Array {
     /// Writes the rows from `start` on; all ranks together, also those without a row.
     pub(crate) fn write(&self, (start, count, width): (u64, u64, u64), rows: &[u8]) -> Result<()> {
-        assert_eq!(rows.len() as u64, count * width * self.number.bytes() as u64, "rows of another size");
+        assert_eq!(
+            rows.len() as u64,
+            count * width * self.number.bytes() as u64,
+            "rows of another size"
+        );
         let action = "write an array";
-        let (memory, place) =
-            (selection(&self.id, (0, count, width), true)?, selection(&self.id, (start, count, width), false)?);
+        let (memory, place) = (
+            selection(&self.id, (0, count, width), true)?,
+            selection(&self.id, (start, count, width), false)?,
+        );
         // SAFETY: valid identifiers; the buffer has the bytes that the selection names, as asserted.
         unsafe {
             let transfer = Id::new(action, H5Pcreate(*H5P_CLS_DATASET_XFER))?;
-            check(action, H5Pset_dxpl_mpio(transfer.0, H5FD_mpio_xfer_t::H5FD_MPIO_COLLECTIVE))?;
-            check(action, H5Dwrite(self.id.0, kind(self.number), memory.0, place.0, transfer.0, rows.as_ptr().cast()))
+            check(
+                action,
+                H5Pset_dxpl_mpio(transfer.0, H5FD_mpio_xfer_t::H5FD_MPIO_COLLECTIVE),
+            )?;
+            check(
+                action,
+                H5Dwrite(
+                    self.id.0,
+                    kind(self.number),
+                    memory.0,
+                    place.0,
+                    transfer.0,
+                    rows.as_ptr().cast(),
+                ),
+            )
         }
     }
 
     /// Reads the rows from `start` on into a buffer of their size; each rank for itself.
     pub(crate) fn read(&self, (start, count, width): (u64, u64, u64), rows: &mut [u8]) -> Result<()> {
-        assert_eq!(rows.len() as u64, count * width * self.number.bytes() as u64, "rows of another size");
+        assert_eq!(
+            rows.len() as u64,
+            count * width * self.number.bytes() as u64,
+            "rows of another size"
+        );
         if count == 0 {
             return Ok(());
         }
-        let (memory, place) =
-            (selection(&self.id, (0, count, width), true)?, selection(&self.id, (start, count, width), false)?);
+        let (memory, place) = (
+            selection(&self.id, (0, count, width), true)?,
+            selection(&self.id, (start, count, width), false)?,
+        );
         // SAFETY: valid identifiers; the buffer has the bytes that the selection names, as asserted.
-        let read =
-            unsafe { H5Dread(self.id.0, kind(self.number), memory.0, place.0, H5P_DEFAULT, rows.as_mut_ptr().cast()) };
+        let read = unsafe {
+            H5Dread(
+                self.id.0,
+                kind(self.number),
+                memory.0,
+                place.0,
+                H5P_DEFAULT,
+                rows.as_mut_ptr().cast(),
+            )
+        };
         check("read an array", read)
     }
 }
 
 pub(super) fn space(dims: [hsize_t; 2]) -> Result<Id> {
     // SAFETY: two dimensions, which HDF5 copies; null stands for the same as the largest.
-    Id::new("make a data space", unsafe { H5Screate_simple(2, dims.as_ptr(), ptr::null()) })
+    Id::new("make a data space", unsafe {
+        H5Screate_simple(2, dims.as_ptr(), ptr::null())
+    })
 }
 
 /// The rows from `start` on, in memory or in the file; nothing where there are none.
@@ -66,13 +101,20 @@ fn selection(array: &Id, (start, count, width): (u64, u64, u64), in_memory: bool
     let action = "select rows";
     // SAFETY: an open array or a new space, and arrays of two numbers.
     unsafe {
-        let chosen = if in_memory { space([count.max(1), width])? } else { Id::new(action, H5Dget_space(array.0))? };
+        let chosen = if in_memory {
+            space([count.max(1), width])?
+        } else {
+            Id::new(action, H5Dget_space(array.0))?
+        };
         if count == 0 {
             check(action, H5Sselect_none(chosen.0))?;
         } else {
             let (from, size): ([hsize_t; 2], [hsize_t; 2]) = ([start, 0], [count, width]);
             let (set, each) = (H5S_seloper_t::H5S_SELECT_SET, ptr::null());
-            check(action, H5Sselect_hyperslab(chosen.0, set, from.as_ptr(), each, size.as_ptr(), each))?;
+            check(
+                action,
+                H5Sselect_hyperslab(chosen.0, set, from.as_ptr(), each, size.as_ptr(), each),
+            )?;
         }
         Ok(chosen)
     }
@@ -88,7 +130,10 @@ pub(super) fn extent(array: &Id) -> Result<Option<[u64; 2]>> {
         if H5Sget_simple_extent_ndims(space.0) != 2 {
             return Ok(None);
         }
-        check(action, H5Sget_simple_extent_dims(space.0, dims.as_mut_ptr(), ptr::null_mut()))?;
+        check(
+            action,
+            H5Sget_simple_extent_dims(space.0, dims.as_mut_ptr(), ptr::null_mut()),
+        )?;
     }
     Ok(Some(dims))
 }
@@ -97,7 +142,9 @@ pub(super) fn number(array: &Id) -> Result<Option<Number>> {
     // SAFETY: an open array, and types that live as long as the library.
     unsafe {
         let found = Id::new("read an array's type", H5Dget_type(array.0))?;
-        Ok(Number::ALL.into_iter().find(|&number| H5Tequal(found.0, kind(number)) > 0))
+        Ok(Number::ALL
+            .into_iter()
+            .find(|&number| H5Tequal(found.0, kind(number)) > 0))
     }
 }
 
@@ -110,7 +157,11 @@ pub(super) fn strange_storage(array: &Id, rows: u64) -> Result<Option<&'static s
         if H5Pget_external_count(list.0) > 0 {
             return Ok(Some("lies in other files"));
         }
-        let wanted = if rows == 0 { H5D_layout_t::H5D_CONTIGUOUS } else { H5D_layout_t::H5D_CHUNKED };
+        let wanted = if rows == 0 {
+            H5D_layout_t::H5D_CONTIGUOUS
+        } else {
+            H5D_layout_t::H5D_CHUNKED
+        };
         if H5Pget_layout(list.0) != wanted {
             return Ok(Some("is stored in another way than ours"));
         }
@@ -119,8 +170,16 @@ pub(super) fn strange_storage(array: &Id, rows: u64) -> Result<Option<&'static s
         }
         let (mut flags, mut values, null) = (0, 0, ptr::null_mut());
         if rows > 0
-            && H5Pget_filter2(list.0, 0, &raw mut flags, &raw mut values, null, 0, ptr::null_mut(), ptr::null_mut())
-                != H5Z_FILTER_FLETCHER32
+            && H5Pget_filter2(
+                list.0,
+                0,
+                &raw mut flags,
+                &raw mut values,
+                null,
+                0,
+                ptr::null_mut(),
+                ptr::null_mut(),
+            ) != H5Z_FILTER_FLETCHER32
         {
             return Ok(Some("has another filter than a checksum"));
         }

@@ -11,7 +11,10 @@ impl Ksp<'_> {
     /// type, preconditioner and options stay, what was built is forgotten. Collective.
     pub fn set_shell_operator(&mut self, local_rows: usize) -> Result<()> {
         let shell = Shell::new(self.petsc, local_rows)?;
-        let (b, x) = (Vector::new(self.petsc, local_rows)?, Vector::new(self.petsc, local_rows)?);
+        let (b, x) = (
+            Vector::new(self.petsc, local_rows)?,
+            Vector::new(self.petsc, local_rows)?,
+        );
         // SAFETY: the handle is valid; it refers to no older operator any more.
         check(unsafe { ffi::KSPReset(self.raw) })?;
         // SAFETY: both handles are valid; PETSc takes references of its own.
@@ -19,7 +22,11 @@ impl Ksp<'_> {
         self.pc_slot.iter().for_each(|slot| slot.set_rows(local_rows));
         (self.local_rows, self.shell, self.is_ready) = (Some(local_rows), Some((shell, b, x)), false);
         // KSPReset forgets the viewers that options have asked for, and nothing else of what they say.
-        if self.reads_options && self.petsc.views() { self.set_from_options() } else { Ok(()) }
+        if self.reads_options && self.petsc.views() {
+            self.set_from_options()
+        } else {
+            Ok(())
+        }
     }
 
     /// The shell operator is another one from now on: the preconditioner is built again. Collective.
@@ -33,7 +40,9 @@ impl Ksp<'_> {
     pub fn set_pc_shell(&mut self, name: &str) -> Result<()> {
         self.set_pc_type("shell")?;
         let (name, pc) = (c_string(name)?, self.pc()?);
-        let slot = self.pc_slot.get_or_insert_with(|| Slot::new(self.local_rows.unwrap_or(0)));
+        let slot = self
+            .pc_slot
+            .get_or_insert_with(|| Slot::new(self.local_rows.unwrap_or(0)));
         let place = std::ptr::from_ref::<Slot<dyn ShellPc>>(slot).cast_mut().cast();
         // SAFETY: the handle is valid; the slot lives as long as this solver, and the callbacks only share it.
         check(unsafe { ffi::PCShellSetContext(pc, place) })?;
@@ -115,10 +124,14 @@ impl Ksp<'_> {
     }
 
     fn shell(&self) -> Result<&(Shell<'_>, Vector<'_>, Vector<'_>)> {
-        self.shell.as_ref().ok_or(Error::Unsupported("a shell operator before set_shell_operator"))
+        self.shell
+            .as_ref()
+            .ok_or(Error::Unsupported("a shell operator before set_shell_operator"))
     }
 
     fn lent_pc(&self) -> Result<&Slot<dyn ShellPc>> {
-        self.pc_slot.as_deref().ok_or(Error::Unsupported("a shell preconditioner before set_pc_shell"))
+        self.pc_slot
+            .as_deref()
+            .ok_or(Error::Unsupported("a shell preconditioner before set_pc_shell"))
     }
 }

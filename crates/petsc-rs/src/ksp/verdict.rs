@@ -38,7 +38,11 @@ impl Ksp<'_> {
             // The error that led here says more than one of the cleaning up would.
             let _ = self.forget_factor();
         }
-        if worst > 0 { outcome.and(Err(Error::OtherRank)) } else { outcome }
+        if worst > 0 {
+            outcome.and(Err(Error::OtherRank))
+        } else {
+            outcome
+        }
     }
 
     /// Why the last solve ended, KSPConvergedReason and its name.
@@ -65,7 +69,11 @@ impl Ksp<'_> {
                 iterations,
             };
         }
-        Error::Diverged { reason, name: self.reason_name().unwrap_or_default(), iterations }
+        Error::Diverged {
+            reason,
+            name: self.reason_name().unwrap_or_default(),
+            iterations,
+        }
     }
 
     /// Why the preconditioner or factor cannot be used, if it cannot.

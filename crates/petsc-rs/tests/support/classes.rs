@@ -18,7 +18,11 @@ enum End {
 }
 use End::{Diverged, OtherRank, Solved, Untrue};
 
-const SOLVERS: [[&str; 3]; 3] = [["cg", "jacobi", ""], ["gmres", "bjacobi", ""], ["preonly", "cholesky", "mumps"]];
+const SOLVERS: [[&str; 3]; 3] = [
+    ["cg", "jacobi", ""],
+    ["gmres", "bjacobi", ""],
+    ["preonly", "cholesky", "mumps"],
+];
 
 /// What is done to the entry of a row and a column.
 type Fault = fn(usize, usize, f64) -> f64;
@@ -43,10 +47,16 @@ pub fn classes(petsc: &Petsc) -> Result<(), String> {
         for (names, expected) in SOLVERS.into_iter().zip(expected) {
             let mut matrix = poisson(petsc)?;
             let (rows, columns, values) = entries(petsc, 1.0);
-            let spoilt: Vec<f64> = (0..values.len()).map(|k| fault(rows[k], columns[k], values[k])).collect();
+            let spoilt: Vec<f64> = (0..values.len())
+                .map(|k| fault(rows[k], columns[k], values[k]))
+                .collect();
             matrix.set_values(&spoilt).map_err(text)?;
             let mut ksp = solver(petsc, &matrix, names)?;
-            let tolerances = Tolerances { relative: 1e-10, absolute: 0.0, max_iterations: most };
+            let tolerances = Tolerances {
+                relative: 1e-10,
+                absolute: 0.0,
+                max_iterations: most,
+            };
             ksp.set_tolerances(tolerances).map_err(text)?;
             let found = end(petsc, &mut ksp, &matrix)?;
             // On several ranks other blocks are factorised, and which class comes first may differ; none is a success

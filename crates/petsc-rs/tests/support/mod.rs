@@ -20,7 +20,11 @@ unsafe extern "C" {
 pub fn prepare_environment() {
     let mut variables = vec![("PETSC_OPTIONS", "-from_environment")];
     if env::var_os("OMPI_COMM_WORLD_SIZE").is_none() {
-        variables.extend([("OMPI_MCA_ess_singleton_isolated", "1"), ("OMPI_MCA_pml", "ob1"), ("OMPI_MCA_btl", "self")]);
+        variables.extend([
+            ("OMPI_MCA_ess_singleton_isolated", "1"),
+            ("OMPI_MCA_pml", "ob1"),
+            ("OMPI_MCA_btl", "self"),
+        ]);
     }
     for (name, value) in variables {
         // SAFETY: the first act of the program, which has one thread.

@@ -18,7 +18,14 @@ impl<'p> Inner<'p> {
     fn new(petsc: &'p Petsc, matrix: &Matrix<'p>) -> Result<Self, String> {
         let ksp = crate::solver(petsc, matrix, ["preonly", "cholesky", "mumps"])?;
         let (b, x) = (wavy(petsc)?, wavy(petsc)?);
-        Ok(Self { ksp, b, x, calls: [0; 2], failures: [None; 2], panics: [false; 2] })
+        Ok(Self {
+            ksp,
+            b,
+            x,
+            calls: [0; 2],
+            failures: [None; 2],
+            panics: [false; 2],
+        })
     }
 
     fn called(&mut self, which: usize) -> Result<(), PcFailure> {
@@ -50,7 +57,11 @@ fn outer<'p>(petsc: &'p Petsc, method: &str) -> Result<Ksp<'p>, String> {
         ksp.set_pc_shell("inner")?;
         ksp.set_from_options()?;
         ksp.set_shell_operator(LOCAL)?;
-        ksp.set_tolerances(Tolerances { relative: 1e-11, absolute: 0.0, max_iterations: 50 })?;
+        ksp.set_tolerances(Tolerances {
+            relative: 1e-11,
+            absolute: 0.0,
+            max_iterations: 50,
+        })?;
         Ok(ksp)
     };
     set().map_err(text)
@@ -90,8 +101,14 @@ pub fn shell_pc(petsc: &Petsc) -> Result<(), String> {
     let (matrix, b, mut x) = (poisson(petsc)?, wavy(petsc)?, wavy(petsc)?);
     for (method, wanted, products) in [("preonly", "CONVERGED_ITS", 0), ("cg", "CONVERGED_RTOL", 1)] {
         let (mut inner, mut ksp, mut count) = (Inner::new(petsc, &matrix)?, outer(petsc, method)?, 0);
-        expect(ksp.type_name().map_err(text)?.as_deref() == Some(method), "the method's name")?;
-        expect(ksp.pc_type_name().map_err(text)?.as_deref() == Some("shell"), "the preconditioner's name")?;
+        expect(
+            ksp.type_name().map_err(text)?.as_deref() == Some(method),
+            "the method's name",
+        )?;
+        expect(
+            ksp.pc_type_name().map_err(text)?.as_deref() == Some("shell"),
+            "the preconditioner's name",
+        )?;
         let mut product = times(petsc, &matrix, &mut count);
         for (set_ups, solves) in [(1, 1), (1, 2), (2, 3)] {
             if set_ups == 2 {
@@ -101,14 +118,23 @@ pub fn shell_pc(petsc: &Petsc) -> Result<(), String> {
             let info = solve(&mut ksp, (&mut product, &mut inner), &b, &mut x).map_err(text)?;
             expect(info.iterations == 1, &format!("{method}: {info:?}"))?;
             let (reason, name) = ksp.converged_reason().map_err(text)?;
-            expect(reason == info.reason && name == wanted, &format!("{method}: {name} {info:?}"))?;
+            expect(
+                reason == info.reason && name == wanted,
+                &format!("{method}: {name} {info:?}"),
+            )?;
             let left = relative_residual(petsc, &matrix, &b, &x)?;
             expect(left < 1e-10, &format!("{method} leaves {left:e}"))?;
             let calls = inner.calls;
-            expect(calls[0] == set_ups && calls[1] >= solves, &format!("{method}: {calls:?} calls"))?;
+            expect(
+                calls[0] == set_ups && calls[1] >= solves,
+                &format!("{method}: {calls:?} calls"),
+            )?;
         }
         drop(product);
-        expect(count >= 3 * products && (products > 0 || count == 0), &format!("{method}: {count} products"))?;
+        expect(
+            count >= 3 * products && (products > 0 || count == 0),
+            &format!("{method}: {count} products"),
+        )?;
     }
     Ok(())
 }
@@ -148,7 +174,10 @@ pub fn shell_failures(petsc: &Petsc) -> Result<(), String> {
             Err(Error::OtherRank) => !last,
             _ => false,
         };
-        expect(right && inner.calls == [1, 0], &format!("{method}, one rank: {verdict:?} {:?}", inner.calls))?;
+        expect(
+            right && inner.calls == [1, 0],
+            &format!("{method}, one rank: {verdict:?} {:?}", inner.calls),
+        )?;
     }
     Ok(())
 }
@@ -163,12 +192,21 @@ pub fn panics(petsc: &Petsc) -> Result<(), String> {
         let mut product = times(petsc, &matrix, &mut count);
         let attempt = || solve(&mut ksp, (&mut product, &mut inner), &b, &mut x).map(|_| ());
         let end = catch_unwind(AssertUnwindSafe(attempt));
-        ends.push(end.err().and_then(|panic| panic.downcast_ref::<&str>().map(|text| (*text).to_owned())));
+        ends.push(
+            end.err()
+                .and_then(|panic| panic.downcast_ref::<&str>().map(|text| (*text).to_owned())),
+        );
     }
     let _ = std::panic::take_hook();
-    expect(ends.iter().all(|end| end.as_deref() == Some("wanted")), &format!("{ends:?}"))?;
+    expect(
+        ends.iter().all(|end| end.as_deref() == Some("wanted")),
+        &format!("{ends:?}"),
+    )?;
     // Without what is lent, PETSc receives of an error instead of calling nothing.
     let mut ksp = outer(petsc, "preonly")?;
     let verdict = ksp.solve(&b, &mut x);
-    expect(matches!(verdict, Err(Error::Petsc { .. })), &format!("nothing is lent: {verdict:?}"))
+    expect(
+        matches!(verdict, Err(Error::Petsc { .. })),
+        &format!("nothing is lent: {verdict:?}"),
+    )
 }

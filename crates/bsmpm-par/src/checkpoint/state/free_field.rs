@@ -25,7 +25,10 @@ impl FreeFieldState {
             (0..column.rows()).for_each(|p| column.show(p, &mut numbers));
             (name.to_owned(), numbers)
         });
-        Self { arrays: arrays.collect(), held: rows(&points.surface.held) }
+        Self {
+            arrays: arrays.collect(),
+            held: rows(&points.surface.held),
+        }
     }
 
     /// The points, whose laws have so many numbers of state; `None` if they are not whole.
@@ -35,9 +38,15 @@ impl FreeFieldState {
         let mut columns = points.named_columns();
         let rows = self.arrays.get("id")?.len();
         for (name, column) in &mut columns {
-            let numbers = self.arrays.get(*name).filter(|numbers| numbers.len() == rows * column.width())?;
+            let numbers = self
+                .arrays
+                .get(*name)
+                .filter(|numbers| numbers.len() == rows * column.width())?;
             for row in numbers.chunks_exact(column.width().max(1)) {
-                let bytes = row.iter().flat_map(|&value| bytes(column.number(), value)).collect::<Vec<u8>>();
+                let bytes = row
+                    .iter()
+                    .flat_map(|&value| bytes(column.number(), value))
+                    .collect::<Vec<u8>>();
                 if !column.fits(&bytes) {
                     return None;
                 }

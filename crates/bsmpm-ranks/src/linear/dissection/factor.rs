@@ -107,7 +107,10 @@ fn resized<T: Scalar>(numbers: &mut Vec<T>, entries: usize) -> &mut [T] {
 
 /// Numbers that are kept of `columns` of a front of order `rows`.
 pub fn entries(rows: usize, columns: usize) -> usize {
-    (0..columns).step_by(GROUP).map(|start| (rows - start) * GROUP.min(columns - start)).sum()
+    (0..columns)
+        .step_by(GROUP)
+        .map(|start| (rows - start) * GROUP.min(columns - start))
+        .sum()
 }
 
 /// A number of a factor.
@@ -143,7 +146,9 @@ fn keep<T: Scalar>(columns: &[f64], rows: usize, numbers: &mut [T]) {
     for (group, columns) in columns.chunks(GROUP * rows.max(1)).enumerate() {
         for row in GROUP * group..rows {
             let values = columns[row..].iter().step_by(rows);
-            values.zip(&mut numbers).for_each(|(&value, number)| *number = T::of(value));
+            values
+                .zip(&mut numbers)
+                .for_each(|(&value, number)| *number = T::of(value));
         }
     }
 }

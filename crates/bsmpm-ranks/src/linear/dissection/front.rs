@@ -68,7 +68,10 @@ fn subtract_columns(columns: &[f64], rows: usize, first: usize, target: &mut [f6
     } else {
         for (column, values) in columns.chunks_exact(rows).enumerate() {
             let factor = by(column);
-            target.iter_mut().zip(&values[first..]).for_each(|(value, l)| *value -= factor * l);
+            target
+                .iter_mut()
+                .zip(&values[first..])
+                .for_each(|(value, l)| *value -= factor * l);
         }
     }
 }

@@ -74,8 +74,17 @@ impl Plan {
         inner: &[Range<usize>; D],
         free: &[bool],
     ) -> Self {
-        let plan = Plan { number: vec![NONE; free.len()], ..Plan::default() };
-        let mut cutter = Cutter::<D, C> { counts, order, free, plan, boxes: Vec::new() };
+        let plan = Plan {
+            number: vec![NONE; free.len()],
+            ..Plan::default()
+        };
+        let mut cutter = Cutter::<D, C> {
+            counts,
+            order,
+            free,
+            plan,
+            boxes: Vec::new(),
+        };
         let children = usize::from(cutter.cut(inner.clone()));
         let mut shared = Vec::new();
         each_node(&counts.map(|count| 0..count), |node| {
@@ -90,7 +99,14 @@ impl Plan {
         let start = plan.parts.last().map_or(0, Supernode::end);
         let rim = (eliminated as u32..plan.order.len() as u32).collect();
         let above = Vec::new();
-        plan.parts.push(Supernode { own: eliminated..eliminated, rim, children, first: 0, above, start });
+        plan.parts.push(Supernode {
+            own: eliminated..eliminated,
+            rim,
+            children,
+            first: 0,
+            above,
+            start,
+        });
         plan.hang();
         plan
     }
@@ -108,7 +124,10 @@ impl Plan {
                     if own.contains(&(number as usize)) {
                         return number as usize - own.start;
                     }
-                    at += rim[at..].iter().position(|&other| other == number).expect("a rim lies in the front above");
+                    at += rim[at..]
+                        .iter()
+                        .position(|&other| other == number)
+                        .expect("a rim lies in the front above");
                     own.len() + at
                 };
                 self.parts[child].above = self.parts[child].rim.iter().map(place).collect();
@@ -160,9 +179,15 @@ impl Plan {
 impl<const D: usize, const C: usize> Cutter<'_, D, C> {
     /// Eliminates the unknowns of a box; `false` if it has none.
     fn cut(&mut self, region: [Range<usize>; D]) -> bool {
-        let Some((region, unknowns)) = self.tight(&region) else { return false };
-        let (axis, length) =
-            region.iter().map(|range| range.len()).enumerate().max_by_key(|(_, length)| *length).unwrap();
+        let Some((region, unknowns)) = self.tight(&region) else {
+            return false;
+        };
+        let (axis, length) = region
+            .iter()
+            .map(|range| range.len())
+            .enumerate()
+            .max_by_key(|(_, length)| *length)
+            .unwrap();
         if unknowns <= LEAF || length < self.order + 2 {
             let all = self.components(&region);
             self.part(all, region, 0);
@@ -200,7 +225,9 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
     fn middle(&self, region: &[Range<usize>; D], axis: usize) -> usize {
         let start = region[axis].start;
         let mut layers = vec![0; region[axis].len()];
-        each_node(region, |node| layers[node[axis] - start] += self.unknowns(self.index(&node)).count());
+        each_node(region, |node| {
+            layers[node[axis] - start] += self.unknowns(self.index(&node)).count()
+        });
         let (mut before, mut behind) = (layers[0], layers[1 + self.order..].iter().sum::<usize>());
         let mut at = 1;
         while at + self.order + 1 < layers.len() && before < behind {
@@ -229,7 +256,11 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
     fn part(&mut self, components: Vec<usize>, region: [Range<usize>; D], children: usize) {
         let start = self.plan.order.len();
         self.number(components);
-        self.plan.parts.push(Supernode { own: start..self.plan.order.len(), children, ..Supernode::default() });
+        self.plan.parts.push(Supernode {
+            own: start..self.plan.order.len(),
+            children,
+            ..Supernode::default()
+        });
         self.boxes.push(region);
     }
 
@@ -253,7 +284,10 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
             let mut rim = Vec::new();
             each_node(&around, |node| {
                 if !(0..D).all(|axis| region[axis].contains(&node[axis])) {
-                    rim.extend(self.unknowns(self.index(&node)).map(|component| self.plan.number[component]));
+                    rim.extend(
+                        self.unknowns(self.index(&node))
+                            .map(|component| self.plan.number[component]),
+                    );
                 }
             });
             rim.sort_unstable();

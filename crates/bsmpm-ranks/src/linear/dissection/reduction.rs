@@ -37,10 +37,18 @@ pub fn role(ranks: usize, rank: usize) -> Role {
         let middle = holder(&group);
         if rank == middle {
             let from = [holder(&(group.start..middle)), holder(&(middle..group.end))];
-            role.join = Some(Join { from, group: group.clone(), joined_by: role.joined_by });
+            role.join = Some(Join {
+                from,
+                group: group.clone(),
+                joined_by: role.joined_by,
+            });
         }
         role.joined_by = Some(middle);
-        group = if rank < middle { group.start..middle } else { middle..group.end };
+        group = if rank < middle {
+            group.start..middle
+        } else {
+            middle..group.end
+        };
     }
     role
 }
@@ -71,7 +79,11 @@ impl TreeReduction {
         shared: &[usize],
         touching: impl Fn(usize) -> Range<usize>,
     ) -> Self {
-        let mut reduction = Self { rank, joined_by: role.joined_by, joint: None };
+        let mut reduction = Self {
+            rank,
+            joined_by: role.joined_by,
+            joint: None,
+        };
         let slab: Vec<f64> = shared.iter().map(|&component| component as f64).collect();
         let slab = reduction.hand(link, reduction.joined_by, slab);
         if let Some(join) = role.join {
@@ -88,7 +100,9 @@ impl TreeReduction {
     /// Factorises, given what this rank's slab leaves, packed. `false` where a pivot was not positive. Collective.
     pub fn factorise(&mut self, link: &dyn Link, precision: Precision, packed: Vec<f64>) -> bool {
         let packed = self.hand(link, self.joined_by, packed);
-        let Some(mut joint) = self.joint.take() else { return true };
+        let Some(mut joint) = self.joint.take() else {
+            return true;
+        };
         let (good, left) = joint.factorise(precision, self.hear(link, joint.join.from, packed));
         self.hand(link, joint.join.joined_by, left);
         self.joint = Some(joint);
@@ -130,7 +144,13 @@ impl TreeReduction {
 
     /// What two ranks have sent, one of which may be this one, with `own`.
     fn hear(&self, link: &dyn Link, from: [usize; 2], mut own: Option<Vec<f64>>) -> [Vec<f64>; 2] {
-        from.map(|of| if of == self.rank { own.take().unwrap_or_default() } else { link.receive(of) })
+        from.map(|of| {
+            if of == self.rank {
+                own.take().unwrap_or_default()
+            } else {
+                link.receive(of)
+            }
+        })
     }
 }
 
@@ -151,7 +171,16 @@ impl Joint {
         };
         let places = [0, 1].map(|group: usize| groups[group].iter().map(place).collect());
         let left = all[own..].iter().map(|(_, component)| *component).collect();
-        (Self { rows: all.len(), own, places, factor: Factor::default(), join }, left)
+        (
+            Self {
+                rows: all.len(),
+                own,
+                places,
+                factor: Factor::default(),
+                join,
+            },
+            left,
+        )
     }
 
     /// Factorises the front of what the groups leave, packed; whether all pivots were positive, and what is left,
@@ -164,7 +193,9 @@ impl Joint {
         }
         let good = front::factorise(&mut columns, self.rows);
         front::subtract_from_rest(&columns, self.rows, &mut rest);
-        self.factor.restart(precision, factor::entries(self.rows, self.own)).keep(0, &columns, self.rows);
+        self.factor
+            .restart(precision, factor::entries(self.rows, self.own))
+            .keep(0, &columns, self.rows);
         (good, pack(&rest, order))
     }
 
@@ -172,7 +203,10 @@ impl Joint {
     fn forward(&self, groups: &[Vec<f64>; 2]) -> Vec<f64> {
         let mut all = vec![0.0; self.rows];
         for (places, values) in self.places.iter().zip(groups) {
-            places.iter().zip(values).for_each(|(&place, value)| all[place] += value);
+            places
+                .iter()
+                .zip(values)
+                .for_each(|(&place, value)| all[place] += value);
         }
         self.factor.forward(0, (self.rows, self.own), &mut all);
         all

@@ -20,16 +20,23 @@ fn a_front_is_factorised_and_solved_as_a_dense_matrix() {
         assert!(front::factorise(columns.as_mut_slice(), rows));
         let lower = |m: &DMatrix<f64>| m.lower_triangle();
         let close = |a: &DMatrix<f64>, b: &DMatrix<f64>| (a - b).amax() < 1e-11 * matrix.amax();
-        assert!(close(&lower(&columns), &lower(&whole.columns(0, own).clone_owned())), "{rows} {own}");
+        assert!(
+            close(&lower(&columns), &lower(&whole.columns(0, own).clone_owned())),
+            "{rows} {own}"
+        );
         let mut rest = matrix.view((own, own), (rows - own, rows - own)).clone_owned();
         front::subtract_from_rest(columns.as_slice(), rows, rest.as_mut_slice());
         let corner = whole.view((own, own), (rows - own, rows - own));
-        assert!(rows == own || close(&lower(&rest), &lower(&(corner * corner.transpose()))), "{rows} {own}");
+        assert!(
+            rows == own || close(&lower(&rest), &lower(&(corner * corner.transpose()))),
+            "{rows} {own}"
+        );
         // With the rest eliminated too, the two solves give the solution of the whole.
         let b = DVector::from_fn(rows, |i, _| noise(i) - 0.3);
         let mut x = b.clone();
         let mut kept = Factor::default();
-        kept.restart(Precision::Double, factor::entries(rows, own)).keep(0, columns.as_slice(), rows);
+        kept.restart(Precision::Double, factor::entries(rows, own))
+            .keep(0, columns.as_slice(), rows);
         kept.forward(0, (rows, own), x.as_mut_slice());
         let mut below = x.rows_mut(own, rows - own);
         if own < rows {
@@ -75,7 +82,11 @@ fn every_unknown_is_eliminated_once_and_before_what_receives_it() {
             (0..D).all(|axis| inner[axis].contains(&node[axis]))
         };
         assert!(plan.shared().iter().all(|&component| !is_inner(component)));
-        assert!(plan.order[..plan.eliminated()].iter().all(|&component| is_inner(component)));
+        assert!(
+            plan.order[..plan.eliminated()]
+                .iter()
+                .all(|&component| is_inner(component))
+        );
         let (mut next, mut stack): (usize, Vec<&Supernode>) = (0, Vec::new());
         for part in &plan.parts {
             assert_eq!(part.own.start, next);
@@ -113,7 +124,11 @@ fn every_shared_node_is_eliminated_once_where_all_that_touch_it_have_met() {
         let (ranks, columns) = (bounds.len() - 1, bounds[bounds.len() - 1]);
         Slabs::new(bounds, ranks, 0..columns).unwrap()
     };
-    let unequal = [(vec![0, 5], 2), (vec![0, 1, 2, 3, 4], 3), (vec![0, 9, 10, 11, 30, 31], 2)];
+    let unequal = [
+        (vec![0, 5], 2),
+        (vec![0, 1, 2, 3, 4], 3),
+        (vec![0, 9, 10, 11, 30, 31], 2),
+    ];
     let mut cuts: Vec<(Slabs, usize)> = unequal.map(|(bounds, q)| (of(bounds), q)).to_vec();
     cuts.extend((1..18).map(|ranks| (of((0..=ranks).collect()), 2)));
     let parts = vec![vec![0, 2, 4, 6], vec![0, 1, 2, 6], vec![0, 4, 5, 6]];
@@ -121,16 +136,27 @@ fn every_shared_node_is_eliminated_once_where_all_that_touch_it_have_met() {
     for (slabs, q) in cuts {
         let ranks = slabs.ranks();
         let roles: Vec<_> = (0..ranks).map(|rank| role(ranks, rank)).collect();
-        let met: Vec<usize> = roles.iter().filter_map(|role| role.join.as_ref()).flat_map(|join| join.from).collect();
+        let met: Vec<usize> = roles
+            .iter()
+            .filter_map(|role| role.join.as_ref())
+            .flat_map(|join| join.from)
+            .collect();
         // What a rank hands over is met where it goes to: its slab, and what it has joined.
         for (rank, role) in roles.iter().enumerate() {
             let joined = role.join.as_ref().and_then(|join| join.joined_by);
             for by in role.joined_by.into_iter().chain(joined) {
-                assert!(roles[by].join.as_ref().is_some_and(|join| join.from.contains(&rank)), "{rank} {slabs:?}");
+                assert!(
+                    roles[by].join.as_ref().is_some_and(|join| join.from.contains(&rank)),
+                    "{rank} {slabs:?}"
+                );
             }
         }
         assert_eq!(met.len(), 2 * (ranks - 1), "{slabs:?}");
-        assert_eq!(roles.iter().filter(|role| role.join.is_some()).count(), ranks - 1, "no rank has two fronts");
+        assert_eq!(
+            roles.iter().filter(|role| role.join.is_some()).count(),
+            ranks - 1,
+            "no rank has two fronts"
+        );
         let columns = slabs.bounds()[slabs.slabs()];
         for node in (0..columns + q).flat_map(|layer| (0..6 + q).map(move |row| [layer, row])) {
             let touched: Vec<usize> = (0..ranks)
@@ -184,11 +210,21 @@ fn parts_of_slabs_find_the_solution_of_the_dense_matrix() {
     type Parts<'a> = &'a [&'a [usize]];
     let cases: [([usize; 2], usize, &[usize], Parts<'_>); 6] = [
         ([12, 7], 2, &[0, 6, 12], &[&[0, 4, 7], &[0, 2, 7]]),
-        ([12, 9], 2, &[0, 4, 5, 12], &[&[0, 3, 6, 9], &[0, 1, 2, 9], &[0, 5, 8, 9]]),
+        (
+            [12, 9],
+            2,
+            &[0, 4, 5, 12],
+            &[&[0, 3, 6, 9], &[0, 1, 2, 9], &[0, 5, 8, 9]],
+        ),
         ([8, 4], 3, &[0, 3, 8], &[&[0, 1, 2, 3, 4], &[0, 1, 2, 3, 4]]),
         ([9, 6], 1, &[0, 9], &[&[0, 2, 6]]),
         ([9, 6], 1, &[0, 9], &[&[0, 1, 3, 6]]),
-        ([10, 6], 2, &[0, 2, 4, 6, 10], &[&[0, 3, 6], &[0, 1, 6], &[0, 5, 6], &[0, 2, 6]]),
+        (
+            [10, 6],
+            2,
+            &[0, 2, 4, 6, 10],
+            &[&[0, 3, 6], &[0, 1, 6], &[0, 5, 6], &[0, 2, 6]],
+        ),
     ];
     for (cells, order, bounds, parts) in cases {
         System::<1>::parted(cells, order, bounds, parts).is_solved();
@@ -204,8 +240,15 @@ fn bodies_apart_find_the_solution_of_the_dense_matrix() {
     let mut parted = 0;
     for (side, other) in (6..10).flat_map(|side| (side - 1..side + 5).map(move |other| (side, other))) {
         let columns = side + 6 + other;
-        for bounds in [vec![0, columns], vec![0, columns - 2, columns], vec![0, side + 1, side + 3, columns]] {
-            let system = System { gap: side..side + 6, ..System::<2>::new([columns, 7], 2, &bounds) };
+        for bounds in [
+            vec![0, columns],
+            vec![0, columns - 2, columns],
+            vec![0, side + 1, side + 3, columns],
+        ] {
+            let system = System {
+                gap: side..side + 6,
+                ..System::<2>::new([columns, 7], 2, &bounds)
+            };
             let counts = std::array::from_fn(|axis| system.grid.axes()[axis].functions());
             let plan = Plan::new::<2, 2>(counts, 2, &counts.map(|count| 0..count), &system.free());
             let (_, parts) = plan.parts.split_last().unwrap();
@@ -241,7 +284,9 @@ fn threads_find_the_solution_of_one_thread_to_the_bit() {
     let system = System::<2>::new([60, 40], 2, &[0, 60]);
     let counts = std::array::from_fn(|axis| system.grid.axes()[axis].functions());
     let plan = Plan::new::<2, 2>(counts, 2, &counts.map(|count| 0..count), &system.free());
-    let shared = (0..plan.parts.len()).filter(|&root| plan.columns_to(root).len() >= super::tree::WORTH).count();
+    let shared = (0..plan.parts.len())
+        .filter(|&root| plan.columns_to(root).len() >= super::tree::WORTH)
+        .count();
     assert!(shared > 8, "only {shared} of {} subtrees are shared", plan.parts.len());
     let one = system.on_threads(1);
     assert!([2, 5].iter().all(|&threads| system.on_threads(threads) == one));

@@ -39,7 +39,10 @@ struct Left {
 
 impl Left {
     fn nothing() -> Self {
-        Self { packed: Vec::new(), good: true }
+        Self {
+            packed: Vec::new(),
+            good: true,
+        }
     }
 }
 
@@ -89,11 +92,17 @@ impl<const D: usize, const C: usize> Elimination<'_, D, C> {
         let start = self.plan.parts[parts.start].start;
         let thread = rayon::current_thread_index().unwrap_or(0) % self.desks.len();
         let mut desk = self.desks[thread].lock().expect("no thread panicked");
-        let Desk { columns, matrix, places } = &mut *desk;
+        let Desk {
+            columns,
+            matrix,
+            places,
+        } = &mut *desk;
         places.resize(self.plan.order.len(), 0);
         for index in parts {
             let part = &self.plan.parts[index];
-            (0..).zip(self.plan.front(part)).for_each(|(place, number)| places[number] = place);
+            (0..)
+                .zip(self.plan.front(part))
+                .for_each(|(place, number)| places[number] = place);
             let order = part.rim.len();
             columns.clear();
             columns.resize(part.own.len() * part.rows(), 0.0);
@@ -114,16 +123,25 @@ impl<const D: usize, const C: usize> Elimination<'_, D, C> {
     /// Adds the matrix's own entries of a part: its rows against what is eliminated later; of the last part, what it
     /// shares.
     fn take(&self, index: usize, places: &[usize], columns: &mut [f64], matrix: &mut [f64]) {
-        let Self { plan, stencil, scale, .. } = *self;
+        let Self {
+            plan, stencil, scale, ..
+        } = *self;
         let part = &plan.parts[index];
         let (rows, order) = (part.rows(), part.rim.len());
         // Between two bodies a separator may be without unknowns, too.
         let last = index + 1 == plan.parts.len();
-        let numbers = if last { plan.eliminated()..plan.order.len() } else { part.own.clone() };
+        let numbers = if last {
+            plan.eliminated()..plan.order.len()
+        } else {
+            part.own.clone()
+        };
         for number in numbers {
             let place = places[number];
-            let target =
-                if last { &mut matrix[place * order..][..order] } else { &mut columns[place * rows..][..rows] };
+            let target = if last {
+                &mut matrix[place * order..][..order]
+            } else {
+                &mut columns[place * rows..][..rows]
+            };
             for (component, values) in stencil.row(plan.order[number] as usize) {
                 for (value, &other) in values.iter().zip(&plan.number[component..component + C]) {
                     if other != NONE && other as usize >= number {
@@ -154,7 +172,10 @@ impl Triangles<'_> {
     pub fn forward(&self, work: &mut [f64], scratch: &mut Scratch) {
         let (eliminated, others) = work.split_at_mut(self.plan.eliminated());
         self.forward_to(self.plan.parts.len() - 1, eliminated, scratch);
-        others.iter_mut().zip(&scratch.rims).for_each(|(value, taken)| *value += taken);
+        others
+            .iter_mut()
+            .zip(&scratch.rims)
+            .for_each(|(value, taken)| *value += taken);
         scratch.rims.clear();
     }
 
@@ -197,7 +218,10 @@ impl Triangles<'_> {
             for child in self.plan.children(index) {
                 let above = &self.plan.parts[child].above;
                 let start = rims.len() - above.len();
-                above.iter().zip(&rims[start..]).for_each(|(&place, taken)| x[place] += taken);
+                above
+                    .iter()
+                    .zip(&rims[start..])
+                    .for_each(|(&place, taken)| x[place] += taken);
                 rims.truncate(start);
             }
             self.factor.forward(part.start, part.shape(), x);
@@ -219,8 +243,14 @@ impl Triangles<'_> {
         let (high, own) = rest.split_at_mut(self.plan.numbers_to(last).len());
         self.backward_in_order(root..root + 1, own, scratch);
         let start = scratch.rims.len() - self.plan.parts[last].rim.len();
-        let mut other = Scratch { rims: scratch.rims.split_off(start), ..Scratch::default() };
-        rayon::join(|| self.backward_to(first, low, scratch), || self.backward_to(last, high, &mut other));
+        let mut other = Scratch {
+            rims: scratch.rims.split_off(start),
+            ..Scratch::default()
+        };
+        rayon::join(
+            || self.backward_to(first, low, scratch),
+            || self.backward_to(last, high, &mut other),
+        );
     }
 
     fn backward_in_order(&self, parts: Range<usize>, work: &mut [f64], Scratch { x, rims }: &mut Scratch) {

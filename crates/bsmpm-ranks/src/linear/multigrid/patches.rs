@@ -21,7 +21,11 @@ impl Patches {
         along: [usize; D],
         (side, apart): (usize, usize),
     ) -> Option<Self> {
-        let mut patches = Self { members: Vec::new(), counts: Vec::new(), factors: Vec::new() };
+        let mut patches = Self {
+            members: Vec::new(),
+            counts: Vec::new(),
+            factors: Vec::new(),
+        };
         let mut places = vec![u32::MAX; along.iter().product::<usize>() * C];
         // Another box begins where the last one does not reach the end.
         let boxes = along.map(|nodes| nodes.saturating_sub(side).div_ceil(apart) + 1);
@@ -53,14 +57,20 @@ impl Patches {
                 rest /= width(axis);
             }
             let node = (0..D).fold(0, |node, axis| node * along[axis] + at[axis]);
-            self.members.extend((node * C..(node + 1) * C).filter(|&component| free[component]).map(|c| c as u32));
+            self.members.extend(
+                (node * C..(node + 1) * C)
+                    .filter(|&component| free[component])
+                    .map(|c| c as u32),
+            );
         }
         let members = &self.members[first..];
         let order = members.len();
         if order == 0 {
             return Some(());
         }
-        (0..).zip(members).for_each(|(place, &member)| places[member as usize] = place);
+        (0..)
+            .zip(members)
+            .for_each(|(place, &member)| places[member as usize] = place);
         let mut columns = vec![0.0; order * order];
         for (column, &member) in columns.chunks_exact_mut(order).zip(members) {
             for (component, values) in stencil.row(member as usize) {
@@ -99,7 +109,9 @@ impl Patches {
             x.clear();
             x.extend(own.iter().map(|&member| (r[member as usize] / scale) as f32));
             solve(factor, &mut x);
-            own.iter().zip(&x).for_each(|(&member, x)| z[member as usize] += f64::from(*x) * scale);
+            own.iter()
+                .zip(&x)
+                .for_each(|(&member, x)| z[member as usize] += f64::from(*x) * scale);
         }
     }
 }
@@ -127,9 +139,16 @@ fn solve(factor: &[f32], x: &mut [f32]) {
 fn product(a: &[f32], b: &[f32]) -> f32 {
     let mut sums = [0.0; LANES];
     let (blocks, others) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
-    let rest: f32 = blocks.remainder().iter().zip(others.remainder()).map(|(a, b)| a * b).sum();
+    let rest: f32 = blocks
+        .remainder()
+        .iter()
+        .zip(others.remainder())
+        .map(|(a, b)| a * b)
+        .sum();
     for (a, b) in blocks.zip(others) {
-        sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
+        sums.iter_mut()
+            .zip(a.iter().zip(b))
+            .for_each(|(sum, (a, b))| *sum += a * b);
     }
     sums.iter().sum::<f32>() + rest
 }

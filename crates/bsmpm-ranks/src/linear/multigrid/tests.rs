@@ -7,7 +7,10 @@ use bsmpm::grid::KnotVector;
 fn ball(cells: usize, poisson: f64) -> (Grid<3>, Stencil<3, 3>, Vec<bool>) {
     let axis = || KnotVector::uniform(1.0, cells, 2).unwrap();
     let grid = Grid::new([axis(), axis(), axis()]).unwrap();
-    let (lambda, mu) = (poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), 0.5 / (1.0 + poisson));
+    let (lambda, mu) = (
+        poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),
+        0.5 / (1.0 + poisson),
+    );
     let (mut blocks, mut free) = (Vec::new(), vec![false; grid.nodes() * 3]);
     let middle = 0.5 * cells as f64;
     for number in 0..grid.cells() {
@@ -23,7 +26,9 @@ fn ball(cells: usize, poisson: f64) -> (Grid<3>, Stencil<3, 3>, Vec<bool>) {
             let gradient = |a: usize| -> [f64; 3] {
                 let at = [a / 9, a / 3 % 3, a % 3];
                 std::array::from_fn(|along| {
-                    (0..3).map(|k| if k == along { rows[k].1[at[k]] } else { rows[k].0[at[k]] }).product()
+                    (0..3)
+                        .map(|k| if k == along { rows[k].1[at[k]] } else { rows[k].0[at[k]] })
+                        .product()
                 })
             };
             for (a, b) in (0..27 * 27).map(|pair| (pair / 27, pair % 27)) {
@@ -56,7 +61,10 @@ fn ball(cells: usize, poisson: f64) -> (Grid<3>, Stencil<3, 3>, Vec<bool>) {
 
 fn noise(free: &[bool], seed: usize) -> Vec<f64> {
     let value = |k: usize| ((k * 7919 + seed * 104_729) % 1009) as f64 / 1009.0 - 0.5;
-    free.iter().enumerate().map(|(k, free)| if *free { value(k) } else { 0.0 }).collect()
+    free.iter()
+        .enumerate()
+        .map(|(k, free)| if *free { value(k) } else { 0.0 })
+        .collect()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -109,8 +117,15 @@ fn cycles_are_symmetric_and_linear() {
     let (bx, by) = (image(&x), image(&y));
     assert!((dot(&bx, &y) - dot(&x, &by)).abs() <= 1e-5 * dot(&bx, &x), "symmetric");
     let sum: Vec<f64> = x.iter().zip(&y).map(|(x, y)| 3.0 * x - y).collect();
-    let off = image(&sum).iter().zip(bx.iter().zip(&by)).map(|(s, (x, y))| (s - 3.0 * x + y).abs()).fold(0.0, f64::max);
-    assert!(off <= 1e-5 * bx.iter().fold(0.0, |largest, x| x.abs().max(largest)), "linear: {off:e}");
+    let off = image(&sum)
+        .iter()
+        .zip(bx.iter().zip(&by))
+        .map(|(s, (x, y))| (s - 3.0 * x + y).abs())
+        .fold(0.0, f64::max);
+    assert!(
+        off <= 1e-5 * bx.iter().fold(0.0, |largest, x| x.abs().max(largest)),
+        "linear: {off:e}"
+    );
 }
 
 /// Coarse coefficients of x at its Greville places become those of the fine splines, whatever the cells and knots are.
@@ -135,6 +150,9 @@ fn coarse_splines_are_splines_of_the_grid() {
             assert!((found - linear(&grid, node)).abs() <= 1e-12, "{order} {node}");
         }
         let fine: Vec<f64> = (0..grid.nodes()).map(|node| (node % 7) as f64).collect();
-        assert!((dot(&fine, &found) - dot(&transfer.restrict::<1>(&fine), &values)).abs() <= 1e-9, "the transpose");
+        assert!(
+            (dot(&fine, &found) - dot(&transfer.restrict::<1>(&fine), &values)).abs() <= 1e-9,
+            "the transpose"
+        );
     }
 }

@@ -22,16 +22,24 @@ impl<const D: usize> Transfer<D> {
         }
         let mut parents: [Vec<Vec<(usize, f64)>>; D] = std::array::from_fn(|axis| {
             let start = grid.cells_along()[axis].start;
-            (start..start + grid.nodes_along(axis)).map(|fine| weights(&grid.axes()[axis], &axes[axis], fine)).collect()
+            (start..start + grid.nodes_along(axis))
+                .map(|fine| weights(&grid.axes()[axis], &axes[axis], fine))
+                .collect()
         });
         let room = std::array::from_fn(|axis| {
             let numbers = parents[axis].iter().flatten().map(|(number, _)| *number);
             let (first, last) = numbers.fold((usize::MAX, 0), |(first, last), at| (first.min(at), last.max(at)));
             let start = first.min(axes[axis].cells() - 1);
-            start..(last + 1).saturating_sub(grid.order()).clamp(start + 1, axes[axis].cells())
+            start
+                ..(last + 1)
+                    .saturating_sub(grid.order())
+                    .clamp(start + 1, axes[axis].cells())
         });
         for (axis, room) in room.iter().enumerate() {
-            parents[axis].iter_mut().flatten().for_each(|(number, _)| *number -= room.start);
+            parents[axis]
+                .iter_mut()
+                .flatten()
+                .for_each(|(number, _)| *number -= room.start);
         }
         let coarse = Grid::new(axes).ok()?.reaching(grid.beyond()).within(room);
         let nodes = std::array::from_fn(|axis| coarse.nodes_along(axis));
@@ -45,7 +53,9 @@ impl<const D: usize> Transfer<D> {
 
     /// The transpose.
     pub fn restrict<const C: usize>(&self, fine: &[f64]) -> Vec<f64> {
-        (0..D).rev().fold(fine.to_vec(), |values, axis| self.along::<C>(axis, &values, true))
+        (0..D)
+            .rev()
+            .fold(fine.to_vec(), |values, axis| self.along::<C>(axis, &values, true))
     }
 
     /// Along one axis: those before it are fine, those after it coarse.
@@ -60,7 +70,9 @@ impl<const D: usize> Transfer<D> {
                     let (at, into) = if back { (child, *parent) } else { (*parent, child) };
                     let values = &from[at * inner..][..inner];
                     let sums = &mut to[into * inner..][..inner];
-                    sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+                    sums.iter_mut()
+                        .zip(values)
+                        .for_each(|(sum, value)| *sum += weight * value);
                 }
             }
         }
@@ -82,15 +94,19 @@ impl<const D: usize> Transfer<D> {
         made.keep(|node| reached[node]);
         let mut sums = Vec::new();
         for node in 0..nodes {
-            let around: Vec<([usize; D], usize, &[f64])> =
-                stencil.blocks(node).map(|(other, block)| (self.split(other), other, block)).collect();
+            let around: Vec<([usize; D], usize, &[f64])> = stencil
+                .blocks(node)
+                .map(|(other, block)| (self.split(other), other, block))
+                .collect();
             if around.is_empty() {
                 continue;
             }
             // The box of coarse nodes that the neighbours are made of.
             let ends: [(usize, usize); D] = std::array::from_fn(|axis| {
                 let parents = around.iter().flat_map(|(at, ..)| &self.parents[axis][at[axis]]);
-                parents.fold((usize::MAX, 0), |(first, last), (at, _)| (first.min(*at), last.max(*at)))
+                parents.fold((usize::MAX, 0), |(first, last), (at, _)| {
+                    (first.min(*at), last.max(*at))
+                })
             });
             let width = |axis: usize| ends[axis].1 - ends[axis].0 + 1;
             sums.clear();
@@ -98,13 +114,19 @@ impl<const D: usize> Transfer<D> {
             for (at, other, block) in around {
                 let mut known = [[0.0; C]; C];
                 for (i, j) in (0..C * C).map(|k| (k / C, k % C)) {
-                    known[i][j] = if free[node * C + i] && free[other * C + j] { block[i * C + j] } else { 0.0 };
+                    known[i][j] = if free[node * C + i] && free[other * C + j] {
+                        block[i * C + j]
+                    } else {
+                        0.0
+                    };
                 }
                 let known = known.as_flattened();
                 self.parents_of(at, |_, place, weight| {
                     let local = (0..D).fold(0, |local, axis| local * width(axis) + place[axis] - ends[axis].0);
                     let sums = &mut sums[local * C * C..][..C * C];
-                    sums.iter_mut().zip(known).for_each(|(sum, value)| *sum += weight * value);
+                    sums.iter_mut()
+                        .zip(known)
+                        .for_each(|(sum, value)| *sum += weight * value);
                 });
             }
             self.parents_of(self.split(node), |parent, _, weight| {
@@ -120,7 +142,9 @@ impl<const D: usize> Transfer<D> {
             });
         }
         let least = made.largest_diagonal() * f64::EPSILON;
-        let free = (0..coarse.nodes() * C).map(|component| made.on_diagonal(component) > least).collect();
+        let free = (0..coarse.nodes() * C)
+            .map(|component| made.on_diagonal(component) > least)
+            .collect();
         (made, free)
     }
 
@@ -163,7 +187,10 @@ fn coarser(axis: &KnotVector) -> KnotVector {
     if last < FEWEST {
         return axis.clone();
     }
-    let kept = runs.iter().enumerate().filter(|(number, _)| number % 2 == 0 || *number == last);
+    let kept = runs
+        .iter()
+        .enumerate()
+        .filter(|(number, _)| number % 2 == 0 || *number == last);
     let kept: Vec<f64> = kept.flat_map(|(_, run)| run.to_vec()).collect();
     KnotVector::graded(&kept, axis.order()).unwrap_or_else(|_| axis.clone())
 }
@@ -173,7 +200,10 @@ fn coarser(axis: &KnotVector) -> KnotVector {
 fn weights(fine: &KnotVector, coarse: &KnotVector, number: usize) -> Vec<(usize, f64)> {
     let (q, knot) = (fine.order(), |j: usize| coarse.knot(j));
     // The last coarse cell with a length that begins at or before the function does.
-    let begins = (q..coarse.functions()).rev().find(|&j| knot(j) <= fine.knot(number)).unwrap_or(q);
+    let begins = (q..coarse.functions())
+        .rev()
+        .find(|&j| knot(j) <= fine.knot(number))
+        .unwrap_or(q);
     let mut found = vec![1.0];
     for degree in 1..=q {
         let x = fine.knot(number + degree);
@@ -182,8 +212,21 @@ fn weights(fine: &KnotVector, coarse: &KnotVector, number: usize) -> Vec<(usize,
             let length = knot(j + degree) - knot(j);
             if length > 0.0 { (x - knot(j)) / length } else { 0.0 }
         };
-        let old = |j: usize| if j > first && j <= begins { found[j - first - 1] } else { 0.0 };
-        found = (first..=begins).map(|j| part(j) * old(j) + (1.0 - part(j + 1)) * old(j + 1)).collect();
+        let old = |j: usize| {
+            if j > first && j <= begins {
+                found[j - first - 1]
+            } else {
+                0.0
+            }
+        };
+        found = (first..=begins)
+            .map(|j| part(j) * old(j) + (1.0 - part(j + 1)) * old(j + 1))
+            .collect();
     }
-    found.into_iter().enumerate().map(|(k, weight)| (begins - q + k, weight)).filter(|(_, w)| *w != 0.0).collect()
+    found
+        .into_iter()
+        .enumerate()
+        .map(|(k, weight)| (begins - q + k, weight))
+        .filter(|(_, w)| *w != 0.0)
+        .collect()
 }

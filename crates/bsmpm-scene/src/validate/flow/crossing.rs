@@ -50,9 +50,14 @@ pub(super) fn check(case: &Case, flow: &Flow, root: &Record, report: &mut Report
 /// Ground of the start that its water cannot leave: permeable bodies that touch each other, with no drain on any. Those
 /// whose rectangles touch are taken to.
 fn closed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
-    let flows =
-        |body: usize| flow.soils[case.bodies[body].material].as_ref().is_some_and(|of| of.permeability.is_some());
-    let mut left: Vec<usize> = (0..case.bodies.len()).filter(|&body| flows(body) && case.is_there(body, 0.0)).collect();
+    let flows = |body: usize| {
+        flow.soils[case.bodies[body].material]
+            .as_ref()
+            .is_some_and(|of| of.permeability.is_some())
+    };
+    let mut left: Vec<usize> = (0..case.bodies.len())
+        .filter(|&body| flows(body) && case.is_there(body, 0.0))
+        .collect();
     let near = 0.5 * case.grid.shortest();
     let touch = |one: usize, other: usize| {
         let [a, b] = [one, other].map(|body| case.bodies[body].region.corners());
@@ -113,7 +118,11 @@ fn parts(site: &DrainSite, case: &Case) -> Vec<SurfacePart> {
             });
             match case.grid.dims() {
                 2 => vec![SurfacePart::Line([lower, upper].map(|[x, y, _]| [x, y]))],
-                _ => vec![SurfacePart::Plate(Plate { lower, upper, round: false })],
+                _ => vec![SurfacePart::Plate(Plate {
+                    lower,
+                    upper,
+                    round: false,
+                })],
             }
         }
     }
@@ -140,8 +149,14 @@ fn contradiction(one: &Crossing<'_>, other: &Crossing<'_>) -> Option<String> {
 fn meet(case: &Case, one: &Crossing<'_>, other: &Crossing<'_>) -> bool {
     let mut times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
     let cell = case.grid.shortest();
-    times.any(|t| [one.what, other.what].into_iter().all(|what| case.acts_since(what, t).is_some()))
-        && one.parts.iter().any(|a| other.parts.iter().any(|b| overlap(case, *a, *b, cell)))
+    times.any(|t| {
+        [one.what, other.what]
+            .into_iter()
+            .all(|what| case.acts_since(what, t).is_some())
+    }) && one
+        .parts
+        .iter()
+        .any(|a| other.parts.iter().any(|b| overlap(case, *a, *b, cell)))
 }
 
 fn overlap(case: &Case, a: SurfacePart, b: SurfacePart, cell: f64) -> bool {
@@ -168,7 +183,10 @@ fn overlap(case: &Case, a: SurfacePart, b: SurfacePart, cell: f64) -> bool {
 fn shared(a: [[f64; 2]; 2], b: [[f64; 2]; 2], aside: f64) -> f64 {
     let along = [a[1][0] - a[0][0], a[1][1] - a[0][1]];
     let length = along[0].hypot(along[1]);
-    let [e, n] = [[along[0] / length, along[1] / length], [-along[1] / length, along[0] / length]];
+    let [e, n] = [
+        [along[0] / length, along[1] / length],
+        [-along[1] / length, along[0] / length],
+    ];
     let from = |at: [f64; 2], axis: [f64; 2]| (at[0] - a[0][0]) * axis[0] + (at[1] - a[0][1]) * axis[1];
     if b.iter().any(|end| from(*end, n).abs() > aside) {
         return 0.0;
@@ -190,11 +208,15 @@ fn lifted(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         }
         let normal = normal_of(inflow.site);
         let across = |soil: &Soil<3>| {
-            soil.permeability.as_ref().map(|k| (0..3).map(|axis| normal[axis].powi(2) * k.along[axis]).sum::<f64>())
+            soil.permeability
+                .as_ref()
+                .map(|k| (0..3).map(|axis| normal[axis].powi(2) * k.along[axis]).sum::<f64>())
         };
         let places = site::places(inflow.site, &case.grid);
         let is_there = |body: &crate::case::Body| {
-            places.iter().any(|at| place::is_at(std::slice::from_ref(body), &case.grid, *at))
+            places
+                .iter()
+                .any(|at| place::is_at(std::slice::from_ref(body), &case.grid, *at))
         };
         let under = case.bodies.iter().filter(|body| is_there(body));
         let least = under

@@ -35,7 +35,9 @@ pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         for edge in body.region.edges(&case.grid).0 {
             let is_on_line = lines::line_of(case, &edge).is_some();
             for (at, (a, b)) in lines::beside(case, &edge) {
-                let Some((one, other)) = flow.soils[a].as_ref().zip(flow.soils[b].as_ref()) else { continue };
+                let Some((one, other)) = flow.soils[a].as_ref().zip(flow.soils[b].as_ref()) else {
+                    continue;
+                };
                 let ratio = ratio(one, other);
                 if ratio.is_infinite() || (!is_on_line && ratio >= UNLIKE) {
                     leaks.entry((a.min(b), a.max(b))).or_insert((ratio, at));
@@ -45,7 +47,11 @@ pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     }
     for ((a, b), (ratio, at)) in leaks {
         let has_flow = |soil: &Soil<3>| soil.permeability.is_some();
-        let (wet, dry) = if flow.soils[a].as_ref().is_some_and(has_flow) { (a, b) } else { (b, a) };
+        let (wet, dry) = if flow.soils[a].as_ref().is_some_and(has_flow) {
+            (a, b)
+        } else {
+            (b, a)
+        };
         let [a, b, wet, dry] = [a, b, wet, dry].map(|material| &case.materials[material].name);
         report.warn(match ratio.is_infinite() {
             true => format!(
@@ -67,7 +73,14 @@ fn at_surfaces(case: &Case, report: &mut Report<'_>) {
     let is_bare =
         |place: [f64; 3]| is_beyond(grid, place).is_none() && !case.bodies.iter().any(|body| is_in(body, grid, place));
     for history in &case.histories {
-        let Quantity::Pore { what: Measurement::Flux, at, .. } = history.quantity else { continue };
+        let Quantity::Pore {
+            what: Measurement::Flux,
+            at,
+            ..
+        } = history.quantity
+        else {
+            continue;
+        };
         // Of the cell of the place, which lies in the ground if it lies at its edge.
         let edge = |axis: &GridAxis, x: f64| {
             let cell = axis.first_cell(|cell| axis.breakpoint(cell + 1) > x - axis.lower());
@@ -75,7 +88,13 @@ fn at_surfaces(case: &Case, report: &mut Report<'_>) {
         };
         let cell: Vec<f64> = grid.axes.iter().zip(at).map(|(axis, x)| edge(axis, x)).collect();
         let around = (0..3_i32.pow(grid.dims() as u32)).map(|n| [n % 3, n / 3 % 3, n / 9].map(|k| f64::from(k) - 1.0));
-        let aside = |off: [f64; 3], axis: usize| if axis < grid.dims() { cell[axis] * off[axis] } else { 0.0 };
+        let aside = |off: [f64; 3], axis: usize| {
+            if axis < grid.dims() {
+                cell[axis] * off[axis]
+            } else {
+                0.0
+            }
+        };
         let mut places = around.map(|off| std::array::from_fn(|axis| at[axis] + aside(off, axis)));
         if places.any(is_bare) {
             report.warn(format!(
@@ -91,14 +110,24 @@ fn at_surfaces(case: &Case, report: &mut Report<'_>) {
 /// Warns of walls and gaps between bodies in which water flows that are so thin that it goes through them.
 fn thin(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let cell = case.grid.shortest();
-    let flows = |body: &Body| flow.soils[body.material].as_ref().is_some_and(|soil| soil.permeability.is_some());
+    let flows = |body: &Body| {
+        flow.soils[body.material]
+            .as_ref()
+            .is_some_and(|soil| soil.permeability.is_some())
+    };
     let mut walls: BTreeMap<Option<usize>, (f64, [f64; 2])> = BTreeMap::new();
     for t in std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at)) {
-        let there: Vec<&Body> =
-            (0..case.bodies.len()).filter(|k| case.is_there(*k, t)).map(|k| &case.bodies[k]).collect();
+        let there: Vec<&Body> = (0..case.bodies.len())
+            .filter(|k| case.is_there(*k, t))
+            .map(|k| &case.bodies[k])
+            .collect();
         let at = |place: [f64; 2]| there.iter().filter(move |body| body.region.contains(place));
         let flows_at = |place: [f64; 2]| at(place).any(|body| flows(body));
-        for edge in there.iter().filter(|body| flows(body)).flat_map(|body| body.region.edges(&case.grid).0) {
+        for edge in there
+            .iter()
+            .filter(|body| flows(body))
+            .flat_map(|body| body.region.edges(&case.grid).0)
+        {
             let (start, across) = (places_along(case, &edge), normal(edge.a, edge.b));
             for (start, side) in start.flat_map(|at| [(at, 1.0), (at, -1.0)]) {
                 let away = |far: f64| [0, 1].map(|axis| start[axis] + side * far * cell * across[axis]);
@@ -107,7 +136,9 @@ fn thin(case: &Case, flow: &Flow, report: &mut Report<'_>) {
                     continue;
                 }
                 let mut far = (1..(REACH * LOOKS as f64) as usize).map(|k| k as f64 / LOOKS as f64);
-                let met = far.find(|far| flows_at(away(*far))).filter(|far| beyond(&case.grid, away(*far)).is_none());
+                let met = far
+                    .find(|far| flows_at(away(*far)))
+                    .filter(|far| beyond(&case.grid, away(*far)).is_none());
                 if let Some(far) = met {
                     let wall = at(beside).next().map(|body| body.material);
                     let least = walls.entry(wall).or_insert((far, start));
@@ -136,7 +167,11 @@ fn places_along(case: &Case, edge: &Edge) -> impl Iterator<Item = [f64; 2]> + us
     (0..LOOKS).map(move |k| {
         let part = (k as f64 + 0.5) / LOOKS as f64;
         let x = edge.a[0] + part * (edge.b[0] - edge.a[0]);
-        let y = if edge.is_along(1) { edge.a[1] + part * (edge.b[1] - edge.a[1]) } else { edge.y(x) };
+        let y = if edge.is_along(1) {
+            edge.a[1] + part * (edge.b[1] - edge.a[1])
+        } else {
+            edge.y(x)
+        };
         [lower[0] + x, lower[1] + y]
     })
 }

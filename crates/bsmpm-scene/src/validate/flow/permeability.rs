@@ -30,6 +30,11 @@ pub(super) fn permeability(record: &Record, report: &mut Report<'_>) -> Option<P
             record.path_of("permeability")
         ));
     }
-    let law = record.word_if_given("permeability_law")?.unwrap_or(PermeabilityLaw::Constant);
-    Some(Permeability { along: along.into(), law })
+    let law = record
+        .word_if_given("permeability_law")?
+        .unwrap_or(PermeabilityLaw::Constant);
+    Some(Permeability {
+        along: along.into(),
+        law,
+    })
 }

@@ -85,7 +85,12 @@ fn narrow(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let cell = case.grid.shortest();
     for (named, soil) in case.materials.iter().zip(&flow.soils) {
         let retention = soil.as_ref().and_then(|soil| soil.retention.as_ref());
-        let Some(entry) = retention.map(|of| of.curve.entry()).filter(|entry| NARROW * *entry < cell) else { continue };
+        let Some(entry) = retention
+            .map(|of| of.curve.entry())
+            .filter(|entry| NARROW * *entry < cell)
+        else {
+            continue;
+        };
         report.warn(format!(
             "W0540: material.{}.retention: the air-entry suction head, {entry:.2e} m, is 1/{:.0} of a cell (limit \
              1/{NARROW}), so steps may fail. Use smaller cells, or an air-entry head near 0.1 cells.",
@@ -98,11 +103,24 @@ fn narrow(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 /// Loads that take much of the height of the soil that they consolidate: its surface leaves the cells behind, and may
 /// go sideways.
 fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
-    let consolidates = |number: usize| flow.soils[number].as_ref().is_some_and(|soil| soil.permeability.is_some());
-    let soils = case.bodies.iter().map(|body| body.material).filter(|number| consolidates(*number));
+    let consolidates = |number: usize| {
+        flow.soils[number]
+            .as_ref()
+            .is_some_and(|soil| soil.permeability.is_some())
+    };
+    let soils = case
+        .bodies
+        .iter()
+        .map(|body| body.material)
+        .filter(|number| consolidates(*number));
     let stiffness = |number: usize| case.materials[number].material.elastic().oedometric();
     let softest = soils.map(stiffness).fold(f64::INFINITY, f64::min);
-    let load = case.tractions.iter().map(|traction| traction.largest()).fold(0.0, f64::max) / softest;
+    let load = case
+        .tractions
+        .iter()
+        .map(|traction| traction.largest())
+        .fold(0.0, f64::max)
+        / softest;
     let is_loose = case.solver.extended_splines == ExtendedSplines::Off;
     let soft = case.solver.background < 0.5 * ENOUGH && case.analysis.regime == Regime::QuasiStatic;
     if is_loose && soft && load >= LARGE {
@@ -113,7 +131,14 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         ));
     }
     let averages = case.stabilisation != Stabilisation::None;
-    if averages && load > SHOWN_NARROW && case.grid.axes.iter().take(case.grid.dims() - 1).any(|axis| axis.cells() == 1)
+    if averages
+        && load > SHOWN_NARROW
+        && case
+            .grid
+            .axes
+            .iter()
+            .take(case.grid.dims() - 1)
+            .any(|axis| axis.cells() == 1)
     {
         report.warn(format!(
             "W0542: grid: the soil is one cell wide and may move sideways, because the load is {load:.2} times its \
@@ -147,19 +172,33 @@ fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
     }
     let Some(solver) = root.record("solver") else { return };
     if case.solver.nonlinear == crate::Nonlinear::Broyden {
-        solver.error("nonlinear", not_available("nonlinear = \"broyden\"", "Use \"auto\"."), report);
+        solver.error(
+            "nonlinear",
+            not_available("nonlinear = \"broyden\"", "Use \"auto\"."),
+            report,
+        );
     }
     if case.solver.quadrature == Quadrature::Fitted {
-        solver.error("quadrature", not_available("quadrature = \"fitted\"", "Use \"points\"."), report);
+        solver.error(
+            "quadrature",
+            not_available("quadrature = \"fitted\"", "Use \"points\"."),
+            report,
+        );
     }
 }
 
 /// Laws of effective stress, and soils side by side.
 fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
     let made = |number: usize| case.bodies.iter().any(|body| body.material == number);
-    let named = root.named("material").iter().enumerate().filter(|(number, _)| made(*number));
+    let named = root
+        .named("material")
+        .iter()
+        .enumerate()
+        .filter(|(number, _)| made(*number));
     for (number, (name, record)) in named {
-        let Some(law) = record.word::<LawName>("model") else { continue };
+        let Some(law) = record.word::<LawName>("model") else {
+            continue;
+        };
         if flow.soils[number].is_none() && !drains_where_they_meet(case, flow, number) {
             report.warn(format!(
                 "W0543: material.{name}: this \"hydrostatic\" soil touches soil with pore-water flow, but no water \
@@ -174,7 +213,11 @@ fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
     }
     for (_, record) in root.named("material") {
         if record.word::<bsmpm::material::Separation>("separation") == Some(bsmpm::material::Separation::Closing) {
-            record.error("separation", not_available("separation = \"gap\"", "Remove `separation`."), report);
+            record.error(
+                "separation",
+                not_available("separation = \"gap\"", "Remove `separation`."),
+                report,
+            );
         }
     }
 }
@@ -187,20 +230,30 @@ fn not_available(what: &str, instead: &str) -> String {
 /// What a stage changes.
 fn of_stage(case: &Case, (number, record): (usize, &Record), report: &mut Report<'_>) {
     if record.gives("remove") && case.analysis.regime != Regime::QuasiStatic {
-        let message =
-            not_available("removal of bodies in a dynamic analysis", "Use analysis.type = \"consolidation\".");
+        let message = not_available(
+            "removal of bodies in a dynamic analysis",
+            "Use analysis.type = \"consolidation\".",
+        );
         record.error("remove", message, report);
-    } else if case.stages.get(number).is_some_and(|stage| !stage.remove.is_empty() && !drains_what_is_bare(case, stage))
+    } else if case
+        .stages
+        .get(number)
+        .is_some_and(|stage| !stage.remove.is_empty() && !drains_what_is_bare(case, stage))
     {
         report.warn(format!(
             "W0544: stage.{number}.remove: the surface exposed by the excavation has no drain, so it is impermeable. \
              Add a [[drain]] along this surface, and list the drain in `activate` of this stage."
         ));
     }
-    case.stages.get(number).into_iter().for_each(|stage| goes(case, (number, stage), report));
+    case.stages
+        .get(number)
+        .into_iter()
+        .for_each(|stage| goes(case, (number, stage), report));
     if record.gives("add") && case.analysis.regime != Regime::QuasiStatic {
-        let message =
-            not_available("placement of bodies in a dynamic analysis", "Use analysis.type = \"consolidation\".");
+        let message = not_available(
+            "placement of bodies in a dynamic analysis",
+            "Use analysis.type = \"consolidation\".",
+        );
         record.error("add", message, report);
     } else if let Some(stage) = case.stages.get(number) {
         placed(case, (number, stage), report);
@@ -232,9 +285,16 @@ fn placed(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>
     let Some(flow) = &case.flow else { return };
     let soil = |body: &usize| flow.soils[case.bodies[*body].material].as_ref();
     let acts = |drain: usize, t: f64| case.acts_since(Acting::Drain(drain), t).is_some();
-    for body in stage.add.iter().filter(|body| soil(body).is_some_and(|soil| soil.permeability.is_some())) {
+    for body in stage
+        .add
+        .iter()
+        .filter(|body| soil(body).is_some_and(|soil| soil.permeability.is_some()))
+    {
         let drains = |(drain, of): (usize, &Drain)| {
-            acts(drain, stage.at) && places(of, case).iter().any(|at| is_beside(case, at, |other| other == *body))
+            acts(drain, stage.at)
+                && places(of, case)
+                    .iter()
+                    .any(|at| is_beside(case, at, |other| other == *body))
         };
         if !flow.drains.iter().enumerate().any(drains) {
             report.warn(format!(
@@ -249,7 +309,9 @@ fn placed(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>
         is_beside(case, at, comes) && is_beside(case, at, was)
     };
     for (drain, of) in flow.drains.iter().enumerate() {
-        let stays = [case.just_before(stage.at), stage.at].into_iter().all(|t| acts(drain, t));
+        let stays = [case.just_before(stage.at), stage.at]
+            .into_iter()
+            .all(|t| acts(drain, t));
         if stays && places(of, case).iter().any(covers) {
             report.warn(format!(
                 "W0545: stage.{number}.add: drain.{drain} keeps draining below the added soil, like a drainage \
@@ -263,7 +325,9 @@ fn placed(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>
 fn goes(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>) {
     let before = case.just_before(stage.at);
     for (drain, of) in case.flow.iter().flat_map(|flow| flow.drains.iter().enumerate()) {
-        let acts = [before, stage.at].into_iter().all(|t| case.acts_since(Acting::Drain(drain), t).is_some());
+        let acts = [before, stage.at]
+            .into_iter()
+            .all(|t| case.acts_since(Acting::Drain(drain), t).is_some());
         let is_gone = |at: &[f64; 3]| {
             let beside = |t: f64| is_beside(case, at, |body| case.is_there(body, t));
             beside(before) && !beside(stage.at)
@@ -282,14 +346,22 @@ fn goes(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>) 
 fn drains_what_is_bare(case: &Case, stage: &Stage) -> bool {
     let is_gone = |number: usize| stage.remove.contains(&number);
     let beside = |at: &[f64; 3], gone: bool| is_beside(case, at, |number| is_gone(number) == gone);
-    let between = |drain: &Drain| places(drain, case).iter().all(|at| beside(at, true) && beside(at, false));
+    let between = |drain: &Drain| {
+        places(drain, case)
+            .iter()
+            .all(|at| beside(at, true) && beside(at, false))
+    };
     case.flow.iter().flat_map(|flow| &flow.drains).any(between)
 }
 
 /// Whether a drain lies between bodies of a material and others through which water flows.
 fn drains_where_they_meet(case: &Case, flow: &Flow, material: usize) -> bool {
     let of = |number: usize| case.bodies[number].material;
-    let flows = |number: usize| flow.soils[of(number)].as_ref().is_some_and(|soil| soil.permeability.is_some());
+    let flows = |number: usize| {
+        flow.soils[of(number)]
+            .as_ref()
+            .is_some_and(|soil| soil.permeability.is_some())
+    };
     let between = |at: &[f64; 3]| is_beside(case, at, |number| of(number) == material) && is_beside(case, at, flows);
     flow.drains.iter().any(|drain| places(drain, case).iter().any(between))
 }
@@ -300,21 +372,30 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
         let message = not_available("a rigid body", "Use a [footing] or a [[prescribed]] displacement.");
         report.error(rigid.origin, &rigid.path, message);
     }
-    for (side, support) in Side::of(case.geometry).iter().flatten().zip(case.boundary.into_iter().flatten()) {
+    for (side, support) in Side::of(case.geometry)
+        .iter()
+        .flatten()
+        .zip(case.boundary.into_iter().flatten())
+    {
         let side = side.word();
         if let Some(boundary) = root.record("boundary") {
             match support {
                 Support::Fixed | Support::Roller | Support::Free => {}
                 Support::Contact | Support::Absorbing | Support::FreeField | Support::Outflow => {
-                    let message =
-                        not_available(&format!("the boundary condition \"{support}\""), "Use \"roller\" or \"fixed\".");
+                    let message = not_available(
+                        &format!("the boundary condition \"{support}\""),
+                        "Use \"roller\" or \"fixed\".",
+                    );
                     boundary.error(side, message, report);
                 }
             }
         }
     }
-    let have_contact =
-        case.footing.iter().map(|of| of.contact.is_some()).chain(case.prescribed.iter().map(|of| of.contact.is_some()));
+    let have_contact = case
+        .footing
+        .iter()
+        .map(|of| of.contact.is_some())
+        .chain(case.prescribed.iter().map(|of| of.contact.is_some()));
     let strips = root.records("footing").iter().chain(root.records("prescribed"));
     for (_, record) in have_contact.zip(strips).filter(|(has_contact, _)| *has_contact) {
         let message = not_available(
@@ -323,8 +404,14 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
         );
         report.error(record.origin, &record.path, message);
     }
-    root.records("stage").iter().enumerate().for_each(|stage| of_stage(case, stage, report));
-    if let Some(record) = root.record("gravity").filter(|record| record.number("ramp").is_some_and(|ramp| ramp > 0.0)) {
+    root.records("stage")
+        .iter()
+        .enumerate()
+        .for_each(|stage| of_stage(case, stage, report));
+    if let Some(record) = root
+        .record("gravity")
+        .filter(|record| record.number("ramp").is_some_and(|ramp| ramp > 0.0))
+    {
         let message = not_available("gravity that increases over a ramp", "Remove `ramp`.");
         record.error("ramp", message, report);
     }
@@ -337,15 +424,19 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
         }
     }
     if let Some(shaking) = root.record("shaking") {
-        let message =
-            not_available("[shaking]", "Remove it, or use drainage = \"hydrostatic\" with undrained strengths.");
+        let message = not_available(
+            "[shaking]",
+            "Remove it, or use drainage = \"hydrostatic\" with undrained strengths.",
+        );
         report.error(shaking.origin, &shaking.path, message);
     }
 }
 
 /// Strength that is divided.
 fn divided(flow: &Flow, root: &Record, report: &mut Report<'_>) {
-    let Some(reduction) = root.record("strength_reduction") else { return };
+    let Some(reduction) = root.record("strength_reduction") else {
+        return;
+    };
     let unloaded = reduction.flag("unloaded") == Some(true);
     if reduction.gives("stage") && flow.at_rest == Motion::Held && !unloaded {
         report.warn(HELD_WATER);
@@ -387,9 +478,18 @@ fn weighed(case: &Case, report: &mut Report<'_>) {
 fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let Some(water) = &case.water else { return };
     let times: Vec<f64> = water.table.levels().into_iter().flatten().map(|row| row.0).collect();
-    let cell = case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
+    let cell = case
+        .grid
+        .axes
+        .iter()
+        .map(GridAxis::shortest)
+        .fold(f64::INFINITY, f64::min);
     // Without a table all of the ground is above it: what is let in sinks, if it has weight.
-    let none = if case.gravity.is_some() { f64::NEG_INFINITY } else { f64::INFINITY };
+    let none = if case.gravity.is_some() {
+        f64::NEG_INFINITY
+    } else {
+        f64::INFINITY
+    };
     let dry = |at: &[f64; 3]| {
         let table = |t: f64| water.table.table(at[0], t).map_or(none, |(height, _)| height);
         at[case.grid.dims() - 1] > times.iter().map(|t| table(*t)).fold(f64::INFINITY, f64::min) + 0.5 * cell
@@ -397,11 +497,23 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let permeability = |soil: &Soil<3>| soil.permeability.as_ref().map_or(0.0, |k| k.along.max());
     let most = flow.soils.iter().flatten().map(permeability).fold(0.0, f64::max);
     let end = case.analysis.end;
-    let dt = case.analysis.growth.map_or(case.analysis.dt, |(_, longest)| longest.min(end));
+    let dt = case
+        .analysis
+        .growth
+        .map_or(case.analysis.dt, |(_, longest)| longest.min(end));
     // What has suction loses it in however many steps.
-    let (time, period) = if flow.retains() { (end, "during the analysis") } else { (dt, "in one step") };
+    let (time, period) = if flow.retains() {
+        (end, "during the analysis")
+    } else {
+        (dt, "in one step")
+    };
     let height = most * time / cell;
-    for (number, drain) in flow.drains.iter().enumerate().filter(|(_, drain)| drain.given == Given::StillWater) {
+    for (number, drain) in flow
+        .drains
+        .iter()
+        .enumerate()
+        .filter(|(_, drain)| drain.given == Given::StillWater)
+    {
         if height > FILM && places(drain, case).iter().any(dry) {
             report.warn(format!(
                 "W0552: drain.{number}: above the water table soil suction draws water from this drain, a layer up to \
@@ -413,7 +525,9 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 
 /// Ground above the water table whose pores stay full all the same: the water in them hangs on its skeleton.
 fn hanging(case: &Case, flow: &Flow, report: &mut Report<'_>) {
-    let Some(water) = case.water.as_ref().filter(|_| case.grid.dims() == 2) else { return };
+    let Some(water) = case.water.as_ref().filter(|_| case.grid.dims() == 2) else {
+        return;
+    };
     let (lower, cell) = (case.grid.lower(), case.grid.shortest());
     let times: Vec<f64> = water.table.levels().into_iter().flatten().map(|row| row.0).collect();
     for (number, named) in case.materials.iter().enumerate() {
@@ -422,7 +536,9 @@ fn hanging(case: &Case, flow: &Flow, report: &mut Report<'_>) {
             continue;
         }
         let made = case.bodies.iter().filter(|body| body.material == number);
-        let corners = made.flat_map(|body| body.region.edges(&case.grid).0).flat_map(|edge| [edge.a, edge.b]);
+        let corners = made
+            .flat_map(|body| body.region.edges(&case.grid).0)
+            .flat_map(|edge| [edge.a, edge.b]);
         let above = corners.flat_map(|[x, y]| {
             let heights = times.iter().filter_map(move |t| water.table.table(lower[0] + x, *t));
             heights.map(move |(height, _)| lower[1] + y - height)
@@ -441,18 +557,34 @@ fn hanging(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 
 /// Heads above a body's surface, where water would stand on it and press; but for what still water presses.
 fn weightless(case: &Case, flow: &Flow, report: &mut Report<'_>) {
-    let (up, cell) =
-        (case.grid.dims() - 1, case.grid.axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min));
+    let (up, cell) = (
+        case.grid.dims() - 1,
+        case.grid
+            .axes
+            .iter()
+            .map(GridAxis::shortest)
+            .fold(f64::INFINITY, f64::min),
+    );
     let still = |x: f64| {
         let water = case.water.iter().flat_map(|water| {
-            water.table.levels().into_iter().flatten().filter_map(move |row| water.table.table(x, row.0))
+            water
+                .table
+                .levels()
+                .into_iter()
+                .flatten()
+                .filter_map(move |row| water.table.table(x, row.0))
         });
         water.map(|(height, _)| height).fold(f64::NEG_INFINITY, f64::max)
     };
     for (number, drain) in flow.drains.iter().enumerate() {
-        let Given::Head(Course(rows)) = &drain.given else { continue };
+        let Given::Head(Course(rows)) = &drain.given else {
+            continue;
+        };
         let lines = drain.site.lines();
-        if !lines.iter().any(|line| side(line, &case.grid, case.bodies.iter()).is_some()) {
+        if !lines
+            .iter()
+            .any(|line| side(line, &case.grid, case.bodies.iter()).is_some())
+        {
             continue; // a face of the grid, or a well inside the ground
         }
         let highest = rows.iter().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);

@@ -65,7 +65,11 @@ pub(super) fn face(record: &Record, root: &Record, report: &mut Report<'_>) -> O
 
 /// Whether a place follows the surface of the ground; `None` after an error.
 pub(super) fn at_surface(record: &Record) -> Option<bool> {
-    if record.gives("surface") { record.flag("surface") } else { Some(false) }
+    if record.gives("surface") {
+        record.flag("surface")
+    } else {
+        Some(false)
+    }
 }
 
 /// The x of a height, if it has one; the outer option is `None` after an error.

@@ -30,7 +30,8 @@ impl Segment<'_> {
     /// How far it goes, m.
     fn goes(&self) -> f64 {
         let rows = self.path.iter().flat_map(|path| &path.rows);
-        rows.map(|(_, moved)| moved[0].hypot(moved[1]).hypot(moved[2])).fold(0.0, f64::max)
+        rows.map(|(_, moved)| moved[0].hypot(moved[1]).hypot(moved[2]))
+            .fold(0.0, f64::max)
     }
 }
 
@@ -52,7 +53,12 @@ impl FaceEnd {
             let length = upper[along] - lower[along];
             [(lower[along], -length), (upper[along], length)].map(|(at, outward)| {
                 let edge = [lower, upper].map(|corner| replaced(corner, along, at));
-                Self { normal, along, edge, outward }
+                Self {
+                    normal,
+                    along,
+                    edge,
+                    outward,
+                }
             })
         })
     }
@@ -83,7 +89,12 @@ fn flat([x, y]: [f64; 2]) -> [f64; 3] {
 fn all_segments(case: &Case) -> Vec<Segment<'_>> {
     let footing = case.footing.iter().filter_map(|footing| {
         let (table, path) = (("footing", 0), Some(&footing.path));
-        footing.site.ends().map(|ends| Segment { name: "footing".into(), table, ends: ends.map(flat), path })
+        footing.site.ends().map(|ends| Segment {
+            name: "footing".into(),
+            table,
+            ends: ends.map(flat),
+            path,
+        })
     });
     let prescribed = case.prescribed.iter().enumerate().filter_map(|(number, prescribed)| {
         let (table, path) = (("prescribed", number), Some(&prescribed.path));
@@ -96,7 +107,12 @@ fn all_segments(case: &Case) -> Vec<Segment<'_>> {
     });
     let tractions = case.tractions.iter().enumerate().filter_map(|(number, traction)| {
         let ends = traction.ends()?.map(flat);
-        Some(Segment { name: format!("traction.{number}"), table: ("traction", number), ends, path: None })
+        Some(Segment {
+            name: format!("traction.{number}"),
+            table: ("traction", number),
+            ends,
+            path: None,
+        })
     });
     footing.chain(prescribed).chain(tractions).collect()
 }
@@ -104,24 +120,40 @@ fn all_segments(case: &Case) -> Vec<Segment<'_>> {
 /// Edges of rectangular plates and loads of a solid beyond which the surface goes on; of a disc there is
 /// a warning.
 pub(super) fn plates(case: &Case, found: &mut FoundLine) {
-    let footing = case.footing.iter().map(|footing| (("footing", 0), footing.site, Some(&footing.path)));
+    let footing = case
+        .footing
+        .iter()
+        .map(|footing| (("footing", 0), footing.site, Some(&footing.path)));
     let prescribed = case.prescribed.iter().enumerate();
     let prescribed = prescribed.map(|(number, of)| (("prescribed", number), of.site, Some(&of.path)));
     let strips = footing.chain(prescribed).filter_map(|(table, site, path)| match site {
         Site::Plate(plate) => Some((table, plate, path)),
         Site::Segment { .. } | Site::Face(_) => None,
     });
-    let tractions = case.tractions.iter().enumerate().filter_map(|(number, traction)| match traction.line {
-        LoadedLine::Plate(plate) => Some((("traction", number), plate, None)),
-        LoadedLine::Segment { .. } | LoadedLine::Circle { .. } | LoadedLine::Triangles(_) => None,
-    });
+    let tractions = case
+        .tractions
+        .iter()
+        .enumerate()
+        .filter_map(|(number, traction)| match traction.line {
+            LoadedLine::Plate(plate) => Some((("traction", number), plate, None)),
+            LoadedLine::Segment { .. } | LoadedLine::Circle { .. } | LoadedLine::Triangles(_) => None,
+        });
     for (table, plate, path) in strips.chain(tractions) {
-        let name = if table.0 == "footing" { "footing".into() } else { format!("{}.{}", table.0, table.1) };
+        let name = if table.0 == "footing" {
+            "footing".into()
+        } else {
+            format!("{}.{}", table.0, table.1)
+        };
         if plate.round {
             path.into_iter().for_each(|_| doubt_rim(&format!("`{name}`"), found));
             continue;
         }
-        let segment = Segment { name, table, ends: [plate.lower, plate.upper], path };
+        let segment = Segment {
+            name,
+            table,
+            ends: [plate.lower, plate.upper],
+            path,
+        };
         for of in FaceEnd::of_face(plate.normal(), plate.lower, plate.upper) {
             end(case, &segment, (of.along, of.normal), (of.middle(), of.outward), found);
         }
@@ -140,12 +172,20 @@ fn doubt_rim(name: &str, found: &mut FoundLine) {
 /// Ends of strips and loaded segments beyond which the surface goes on, and walls with material on both sides.
 pub(super) fn segments(case: &Case, found: &mut FoundLine) {
     for segment in all_segments(case) {
-        let Some(along) = [0, 1].into_iter().find(|&axis| segment.ends[0][1 - axis] == segment.ends[1][1 - axis])
+        let Some(along) = [0, 1]
+            .into_iter()
+            .find(|&axis| segment.ends[0][1 - axis] == segment.ends[1][1 - axis])
         else {
             continue;
         };
         for (at, other) in [(segment.ends[0], segment.ends[1]), (segment.ends[1], segment.ends[0])] {
-            end(case, &segment, (along, 1 - along), (at, at[along] - other[along]), found);
+            end(
+                case,
+                &segment,
+                (along, 1 - along),
+                (at, at[along] - other[along]),
+                found,
+            );
         }
         wall(case, &segment, 1 - along, found);
     }
@@ -154,7 +194,11 @@ pub(super) fn segments(case: &Case, found: &mut FoundLine) {
 /// Edges (in a plane, corners) of faces of rigid bodies that touch soil, where soil continues beyond the edge and the
 /// body stays at the grid line there.
 pub(super) fn corners(case: &Case, found: &mut FoundLine) {
-    for rigid in case.rigid.iter().filter(|rigid| rigid.rotation.is_empty() && !rigid.free[2]) {
+    for rigid in case
+        .rigid
+        .iter()
+        .filter(|rigid| rigid.rotation.is_empty() && !rigid.free[2])
+    {
         match &rigid.shape {
             RigidShape::Polygon(corners) => polygon(case, rigid, corners, found),
             RigidShape::InSpace(RigidSolid::Box { lower, upper }) => cuboid(case, rigid, *lower, *upper, found),
@@ -177,14 +221,19 @@ fn pushes(rigid: &Rigid, axis: usize) -> bool {
 /// Corners at the ends of edges along an axis, and the widest ones of what pushes soil.
 fn polygon(case: &Case, rigid: &Rigid, corners: &[[f64; 2]], found: &mut FoundLine) {
     for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
-        let Some(along) = [0, 1].into_iter().find(|axis| from[1 - axis] == to[1 - axis]) else { continue };
+        let Some(along) = [0, 1].into_iter().find(|axis| from[1 - axis] == to[1 - axis]) else {
+            continue;
+        };
         let middle = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
         if !moves(case, rigid, along) && has_material(case, flat(middle), 1 - along) {
             corner(case, rigid, &in_plane(along, *from, from[along] - to[along]), found);
             corner(case, rigid, &in_plane(along, *to, to[along] - from[along]), found);
         }
     }
-    for along in [0, 1].into_iter().filter(|along| !moves(case, rigid, *along) && pushes(rigid, 1 - along)) {
+    for along in [0, 1]
+        .into_iter()
+        .filter(|along| !moves(case, rigid, *along) && pushes(rigid, 1 - along))
+    {
         for outward in [-1.0, 1.0] {
             widest(case, rigid, (corners, along, outward), found);
         }
@@ -193,7 +242,12 @@ fn polygon(case: &Case, rigid: &Rigid, corners: &[[f64; 2]], found: &mut FoundLi
 
 /// A corner of a plane at which a face along an axis ends.
 fn in_plane(along: usize, at: [f64; 2], outward: f64) -> FaceEnd {
-    FaceEnd { normal: 1 - along, along, edge: [flat(at); 2], outward }
+    FaceEnd {
+        normal: 1 - along,
+        along,
+        edge: [flat(at); 2],
+        outward,
+    }
 }
 
 /// The lines through the corners that are outermost along an axis, of edges that lead there and that soil lies at.
@@ -290,7 +344,10 @@ fn end(
         return;
     }
     let reason = format!("strains are singular at the end of `{name}`");
-    let cell = axis.cell(axis.first_cell(|i| axis.breakpoint(i + 1) >= at[along] - axis.lower()).min(axis.cells() - 1));
+    let cell = axis.cell(
+        axis.first_cell(|i| axis.breakpoint(i + 1) >= at[along] - axis.lower())
+            .min(axis.cells() - 1),
+    );
     match grid_line(case, along, at[along] - axis.lower()) {
         Some(line) if line == 0 || line == axis.cells() => {}
         Some(line) if segment.stays(case, along) => {

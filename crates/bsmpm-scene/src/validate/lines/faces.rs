@@ -46,14 +46,19 @@ pub(super) fn interfaces(case: &Case, found: &mut FoundLine) {
 fn note(case: &Case, bodies: [&Body; 2], meeting: &Meeting, found: &mut FoundLine) {
     let Meeting { axis, at, flat } = *meeting;
     let height = at[2] - case.grid.lower()[2];
-    let Some(ratios) = differ(case, (bodies[0].material, bodies[1].material), Some(height)) else { return };
+    let Some(ratios) = differ(case, (bodies[0].material, bodies[1].material), Some(height)) else {
+        return;
+    };
     let [a, b] = bodies.map(|body| &case.materials[body.material]);
     let line = grid_line(case, axis, at[axis] - case.grid.axes[axis].lower()).filter(|_| flat);
     if let Some(line) = line {
         found.lines.entry((axis, line)).or_insert_with(|| interface_of(a, b));
     }
     if let Some(doubt) = doubt([a, b], (line.is_some(), case.stabilisation.averages()), (&at, ratios)) {
-        found.doubts.entry(format!("{} {} {}", a.name, b.name, line.is_some())).or_insert(doubt);
+        found
+            .doubts
+            .entry(format!("{} {} {}", a.name, b.name, line.is_some()))
+            .or_insert(doubt);
     }
 }
 
@@ -84,7 +89,9 @@ fn meetings(case: &Case, bodies: [&Body; 2], [lower, upper]: [[f64; 3]; 2]) -> V
             at[others[1]] = part(others[1], ray % rays[1], rays[1]);
             let place = |x: f64| std::array::from_fn(|k| if k == axis { x } else { at[k] });
             let ends: Vec<f64> = (0..steps).map(|k| part(axis, k, steps)).collect();
-            let found = ends.windows(2).filter_map(|pair| pass([pair[0], pair[1]], shortest, |x| inside(place(x))));
+            let found = ends
+                .windows(2)
+                .filter_map(|pair| pass([pair[0], pair[1]], shortest, |x| inside(place(x))));
             all.extend(found.filter_map(|x| meeting(axis, place(x), shortest, inside)));
         }
     }
@@ -133,7 +140,11 @@ fn pass([from, to]: [f64; 2], shortest: f64, inside: impl Fn(f64) -> Option<usiz
         if middle <= before || middle >= after {
             break;
         }
-        if inside(middle) == Some(first) { before = middle } else { after = middle }
+        if inside(middle) == Some(first) {
+            before = middle
+        } else {
+            after = middle
+        }
     }
     (inside(after + BESIDE * shortest) == Some(second)).then_some(0.5 * (before + after))
 }

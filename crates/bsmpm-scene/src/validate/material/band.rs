@@ -17,7 +17,10 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
     };
     let named = root.named("material").iter().enumerate();
     for (_, (_, record)) in named.filter(|(number, (_, of))| softens(*number, of)) {
-        let settings: Vec<String> = unverified_settings(case).into_iter().chain(unlike_a_band(case)).collect();
+        let settings: Vec<String> = unverified_settings(case)
+            .into_iter()
+            .chain(unlike_a_band(case))
+            .collect();
         if !settings.is_empty() {
             report.warn(format!(
                 "W0304: {}: the scaling of softening by `band_width` is not verified {}, so the soil may soften too \
@@ -37,7 +40,9 @@ fn falls(material: &Material) -> bool {
         let place = law.parameter_names().iter().position(|parameter| parameter.name == key);
         place.map_or(0.0, |place| numbers[place])
     };
-    ["friction_angle", "cohesion"].into_iter().any(|key| of(key) > of(&format!("residual_{key}")))
+    ["friction_angle", "cohesion"]
+        .into_iter()
+        .any(|key| of(key) > of(&format!("residual_{key}")))
 }
 
 /// Geometry, stabilisation and splines with which the width is not verified, with the error of the dissipated energy
@@ -62,15 +67,23 @@ fn unverified_settings(case: &Case) -> Vec<String> {
 
 /// A footing or rigid body that pushes into the ground, below which the soil yields in a wider zone than one band.
 fn unlike_a_band(case: &Case) -> Option<String> {
-    let mut strips = case.footing.iter().map(|of| of.site).chain(case.prescribed.iter().map(|of| of.site));
+    let mut strips = case
+        .footing
+        .iter()
+        .map(|of| of.site)
+        .chain(case.prescribed.iter().map(|of| of.site));
     let is_narrow = |site: Site| {
         if matches!(site, Site::Face(_)) {
             return false;
         }
         let [from, to] = corners(site, &case.grid);
         let beyond = |part: f64| [0, 1, 2].map(|axis| from[axis] + part * (to[axis] - from[axis]));
-        [-0.25, 1.25].into_iter().any(|part| is_at(&case.bodies, &case.grid, beyond(part)))
-            && places(site, &case.grid).into_iter().any(|at| is_at(&case.bodies, &case.grid, at))
+        [-0.25, 1.25]
+            .into_iter()
+            .any(|part| is_at(&case.bodies, &case.grid, beyond(part)))
+            && places(site, &case.grid)
+                .into_iter()
+                .any(|at| is_at(&case.bodies, &case.grid, at))
     };
     let is_driven = |body: &Rigid| body.is_moved() || body.free.contains(&true) || body.force != [0.0; 3];
     let pushes = strips.any(is_narrow) || case.rigid.iter().any(is_driven);

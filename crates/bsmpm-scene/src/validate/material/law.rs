@@ -18,7 +18,10 @@ pub(super) struct Parameters {
 impl Parameters {
     /// What is left of them where no strength limits the stress.
     pub(super) fn elastic() -> Self {
-        Self { model: LawName::Hencky, values: Vec::new() }
+        Self {
+            model: LawName::Hencky,
+            values: Vec::new(),
+        }
     }
 
     fn is_graded(&self) -> bool {
@@ -38,27 +41,47 @@ impl Parameters {
         (young, poisson): (Profile, f64),
         (layer, factor): (Option<&Layer>, f64),
     ) -> Option<Material> {
-        let law = self.model.chosen(record, Elastic { young: young.value, poisson });
-        let ordered = law.parameter_names().iter().map(|parameter| in_si(parameter.name, self.of(parameter.name)));
+        let law = self.model.chosen(
+            record,
+            Elastic {
+                young: young.value,
+                poisson,
+            },
+        );
+        let ordered = law
+            .parameter_names()
+            .iter()
+            .map(|parameter| in_si(parameter.name, self.of(parameter.name)));
         let parameters: Vec<Profile> = ordered.collect();
         if young.per_metre == 0.0 && !self.is_graded() {
             let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
             return Some(law.with(law.elastic().clone(), &values).reduced(factor));
         }
         let layer = layer?;
-        let relative = |profile: Profile| Profile { at: profile.at - layer.base, ..profile };
+        let relative = |profile: Profile| Profile {
+            at: profile.at - layer.base,
+            ..profile
+        };
         let heights = layer.heights.start - layer.base..layer.heights.end - layer.base;
         let parameters = parameters.into_iter().map(relative).collect();
-        Some(Material::Graded(Graded::new(&law, relative(young), parameters, heights, factor)))
+        Some(Material::Graded(Graded::new(
+            &law,
+            relative(young),
+            parameters,
+            heights,
+            factor,
+        )))
     }
 }
 
 /// A parameter as laws take it: angles in rad.
 fn in_si(key: &str, profile: Profile) -> Profile {
     match MATERIAL.key(key).map(|key| &key.kind) {
-        Some(Kind::Profile(Dimension::Angle, ..)) => {
-            Profile { value: profile.value.to_radians(), per_metre: profile.per_metre.to_radians(), ..profile }
-        }
+        Some(Kind::Profile(Dimension::Angle, ..)) => Profile {
+            value: profile.value.to_radians(),
+            per_metre: profile.per_metre.to_radians(),
+            ..profile
+        },
         _ => profile,
     }
 }
@@ -136,7 +159,9 @@ pub(super) fn law(
 /// Cohesion that falls faster than shear stress does where material unloads: the point has no path, it drops at once.
 /// How fast friction falls depends on the pressure, and is not looked at.
 fn warn_of_collapse(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut Report<'_>) {
-    let (Some(young), Some(poisson)) = (profile(record, "young"), record.number("poisson")) else { return };
+    let (Some(young), Some(poisson)) = (profile(record, "young"), record.number("poisson")) else {
+        return;
+    };
     // An exponential decay begins three times as fast as it goes on the whole.
     let steepest = if (record.word("softening") == Some(Decay::Exponential)) | (law.model == LawName::SensitiveClay) {
         3.0
@@ -163,13 +188,20 @@ fn warn_of_collapse(record: &Record, law: &Parameters, layer: Option<&Layer>, re
 /// largest shear is √3 times the plastic strain that the law has. `None` after an error.
 fn remould(record: &Record, law: &mut Parameters, report: &mut Report<'_>) -> Option<()> {
     let (cohesion, sensitivity) = (law.of("cohesion"), law.of("sensitivity").value);
-    let remoulded =
-        Profile { value: cohesion.value / sensitivity, per_metre: cohesion.per_metre / sensitivity, ..cohesion };
+    let remoulded = Profile {
+        value: cohesion.value / sensitivity,
+        per_metre: cohesion.per_metre / sensitivity,
+        ..cohesion
+    };
     law.values.push(("residual_cohesion", remoulded));
     let (_, strain) = law.values.iter_mut().find(|(key, _)| *key == "softening_strain")?;
     strain.value /= 3.0_f64.sqrt();
     if record.gives("rate_parameter") != record.gives("reference_rate") {
-        let missing = if record.gives("rate_parameter") { "reference_rate" } else { "rate_parameter" };
+        let missing = if record.gives("rate_parameter") {
+            "reference_rate"
+        } else {
+            "rate_parameter"
+        };
         let message = format!(
             "E0305: a rate-dependent strength needs both `rate_parameter` and `reference_rate`. Add `{missing}`."
         );
@@ -201,7 +233,11 @@ fn star(record: &Record, values: &mut Vec<(&'static str, Profile)>, report: &mut
         }
         if record.gives(slope) {
             let value = record.number(slope)? / (1.0 + record.number("void_ratio")?);
-            report.note(record.path_of(starred), value.to_string(), format!("{slope} / (1 + void_ratio)"));
+            report.note(
+                record.path_of(starred),
+                value.to_string(),
+                format!("{slope} / (1 + void_ratio)"),
+            );
             values.push((starred, Profile::constant(value)));
         }
     }
@@ -227,7 +263,13 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
         return None;
     }
     let (young, poisson) = (profile(record, "young")?, record.number("poisson")?);
-    let clay = CamClay::new(Elastic { young: young.value, poisson }, [kappa, lambda, 1.0, 0.0, 1.0]);
+    let clay = CamClay::new(
+        Elastic {
+            young: young.value,
+            poisson,
+        },
+        [kappa, lambda, 1.0, 0.0, 1.0],
+    );
     let at = clay.reference_pressure();
     report.note(
         &record.path,
@@ -258,7 +300,11 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
     let falls = ["friction_angle", "cohesion"].map(|key| (law.of(key), law.of(&format!("residual_{key}"))));
     let falls = falls.into_iter().any(|(first, last)| first.value > last.value);
     if !falls {
-        report.note(&record.path, "hardens", "no residual strength is below its peak, so shear bands do not form");
+        report.note(
+            &record.path,
+            "hardens",
+            "no residual strength is below its peak, so shear bands do not form",
+        );
     }
     let Some(width) = record.number("band_width") else {
         if !falls {
@@ -286,7 +332,11 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
     }
     // What happens in a band is smeared over two cells: its strain, and how fast it grows.
     let smeared = CELLS_OF_BAND * longest;
-    for (key, number) in law.values.iter_mut().filter(|(key, _)| ["softening_strain", "reference_rate"].contains(key)) {
+    for (key, number) in law
+        .values
+        .iter_mut()
+        .filter(|(key, _)| ["softening_strain", "reference_rate"].contains(key))
+    {
         let of_band = number.value;
         number.value *= width / smeared;
         if of_band > 0.0 {
@@ -354,7 +404,11 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
         ));
     }
     if !matches!(law.model, LawName::Tresca | LawName::SensitiveClay) && !record.gives("dilation_angle") {
-        report.note(record.path_of("dilation_angle"), "0.0", "default: plastic flow without volume change");
+        report.note(
+            record.path_of("dilation_angle"),
+            "0.0",
+            "default: plastic flow without volume change",
+        );
     }
     // Only where an apex is free of stress can what opens there be a gap: with cohesion it would pull with c cot phi
     // until it has closed, and without friction there is no apex.
@@ -370,9 +424,18 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
 /// is matched there by default.
 fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, report: &mut Report<'_>) {
     let elastic = (Profile::constant(1.0), 0.0);
-    let uniform = law.values.iter().map(|(key, profile)| (*key, Profile::constant(profile.value))).collect();
-    let uniform = Parameters { model: law.model, values: uniform };
-    let Some(Material::DruckerPrager(cone)) = uniform.material(record, elastic, (None, 1.0)) else { return };
+    let uniform = law
+        .values
+        .iter()
+        .map(|(key, profile)| (*key, Profile::constant(profile.value)))
+        .collect();
+    let uniform = Parameters {
+        model: law.model,
+        values: uniform,
+    };
+    let Some(Material::DruckerPrager(cone)) = uniform.material(record, elastic, (None, 1.0)) else {
+        return;
+    };
     if geometry.is_some_and(|geometry| geometry != Geometry::PlaneStrain) {
         if !record.gives("fit") {
             report.warn(format!(

@@ -16,7 +16,10 @@ pub(super) fn gravity(case: &Case, report: &mut Report<'_>) {
     if size == 0.0 || vertical < -LEVEL * size || rests(case, acceleration) {
         return;
     }
-    let (points, name) = (if vertical > LEVEL * size { "upwards" } else { "sideways" }, ["x", "y", "z"][dims - 1]);
+    let (points, name) = (
+        if vertical > LEVEL * size { "upwards" } else { "sideways" },
+        ["x", "y", "z"][dims - 1],
+    );
     let down = if dims == 3 { "[0, 0, -9.81]" } else { "[0, -9.81]" };
     report.warn(format!(
         "W0104: gravity.acceleration: gravity of {:?} m/s2 points {points}, away from the supports ({name} is \
@@ -29,7 +32,9 @@ pub(super) fn gravity(case: &Case, report: &mut Report<'_>) {
 /// it no side is supported in another way than the one opposite.
 fn rests(case: &Case, acceleration: [f64; 3]) -> bool {
     let dims = case.grid.dims();
-    let main = (0..dims).max_by(|a, b| acceleration[*a].abs().total_cmp(&acceleration[*b].abs())).unwrap_or(dims - 1);
+    let main = (0..dims)
+        .max_by(|a, b| acceleration[*a].abs().total_cmp(&acceleration[*b].abs()))
+        .unwrap_or(dims - 1);
     let side = usize::from(acceleration[main] > 0.0);
     let supports = case.boundary[main];
     let is_supported = !matches!(supports[side], Support::Free | Support::Outflow);

@@ -20,7 +20,9 @@ pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
     let materials = root.named("material");
     for (body, record) in case.bodies.iter().zip(root.records("body")) {
         let (name, material) = &materials[body.material];
-        let Some(friction) = material.number("friction_angle").filter(|_| material.number("cohesion") == Some(0.0))
+        let Some(friction) = material
+            .number("friction_angle")
+            .filter(|_| material.number("cohesion") == Some(0.0))
         else {
             continue;
         };

@@ -17,10 +17,14 @@ pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
         return;
     }
     let mut known: Vec<usize> = Vec::new();
-    let later = case.stages.iter().filter(|stage| !stage.add.is_empty() || !stage.remove.is_empty());
+    let later = case
+        .stages
+        .iter()
+        .filter(|stage| !stage.add.is_empty() || !stage.remove.is_empty());
     for stage in std::iter::once(None).chain(later.map(Some)) {
-        let there: Vec<usize> =
-            (0..case.bodies.len()).filter(|&body| case.is_there(body, stage.map_or(0.0, |stage| stage.at))).collect();
+        let there: Vec<usize> = (0..case.bodies.len())
+            .filter(|&body| case.is_there(body, stage.map_or(0.0, |stage| stage.at)))
+            .collect();
         let pieces = pieces(case, &there);
         if pieces.len() < 2 || pieces.len() > MOST {
             continue;
@@ -29,8 +33,10 @@ pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
         for piece in pieces {
             alone.bodies = piece.iter().map(|&body| case.bodies[body].clone()).collect();
             let is_held = |axis: &usize| holds_at_rest(&alone, *axis, None);
-            let free: Vec<&str> =
-                (0..case.grid.dims()).filter(|axis| !is_held(axis)).map(|axis| ["x", "y", "z"][axis]).collect();
+            let free: Vec<&str> = (0..case.grid.dims())
+                .filter(|axis| !is_held(axis))
+                .map(|axis| ["x", "y", "z"][axis])
+                .collect();
             if free.is_empty() || piece.iter().any(|body| known.contains(body)) {
                 continue;
             }
@@ -43,7 +49,9 @@ pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
 fn warn(root: &Record, piece: &[usize], free: &[&str], stage: Option<&Stage>, report: &mut Report<'_>) {
     let named = |body: &usize| {
         let record = &root.records("body")[*body];
-        record.text("name").map_or_else(|| record.path.clone(), |name| format!("{} `{name}`", record.path))
+        record
+            .text("name")
+            .map_or_else(|| record.path.clone(), |name| format!("{} `{name}`", record.path))
     };
     let names: Vec<String> = piece.iter().map(named).collect();
     let since = stage.map_or(String::new(), |stage| format!(" from t = {} on", stage.at));
@@ -66,8 +74,13 @@ fn pieces(case: &Case, there: &[usize]) -> Vec<Vec<usize>> {
     let mut work = 0;
     let mut act =
         |one: usize, other: usize| is_near(one, other) && !are_apart(case, [there[one], there[other]], &mut work);
-    let pairs: Vec<[usize; 2]> =
-        near_pairs(&bounds, reach).filter(|&(one, other)| act(one, other)).map(|(one, other)| [one, other]).collect();
+    let pairs: Vec<[usize; 2]> = near_pairs(&bounds, reach)
+        .filter(|&(one, other)| act(one, other))
+        .map(|(one, other)| [one, other])
+        .collect();
     let pieces = pieces_of_pairs(there.len(), pairs.into_iter());
-    pieces.into_iter().map(|piece| piece.into_iter().map(|number| there[number]).collect()).collect()
+    pieces
+        .into_iter()
+        .map(|piece| piece.into_iter().map(|number| there[number]).collect())
+        .collect()
 }

@@ -48,7 +48,9 @@ pub(super) fn material(record: &Record, scale: &Scale, report: &mut Report<'_>) 
         ));
     }
     for key in ["cohesion", "yield_stress", "residual_cohesion"] {
-        let Some(strength) = bare(record, key).filter(|strength| is_weak(*strength, record, scale)) else { continue };
+        let Some(strength) = bare(record, key).filter(|strength| is_weak(*strength, record, scale)) else {
+            continue;
+        };
         report.warn(format!(
             "W0102: {}: a strength of {strength} Pa ({} kPa) is negligible against the stress in this case{}. If kPa \
              are meant, write \"{strength} kPa\"; otherwise write \"{strength} Pa\".",
@@ -63,7 +65,9 @@ pub(super) fn material(record: &Record, scale: &Scale, report: &mut Report<'_>) 
         ("dilation_angle", BARELY),
         ("residual_dilation_angle", BARELY),
     ] {
-        let Some(angle) = bare(record, key).filter(|angle| angle.abs() < least) else { continue };
+        let Some(angle) = bare(record, key).filter(|angle| angle.abs() < least) else {
+            continue;
+        };
         report.warn(format!(
             "W0103: {}: an angle of {angle} degrees is so small that radians may be meant ({:.3} degrees). Without a \
              unit, angles are in degrees. Write \"{angle} rad\" or \"{angle} deg\".",
@@ -82,7 +86,9 @@ fn is_soft(young: f64, scale: &Scale) -> bool {
 /// Whether a strength (Pa) is nothing beside the stress of the case or, where that is not known, beside the modulus.
 fn is_weak(strength: f64, record: &Record, scale: &Scale) -> bool {
     let young = super::super::material::profile(record, "young").map_or(0.0, |young| young.value);
-    let is_nothing = scale.stress.map_or(young > RIGID * strength, |stress| strength < NOTHING * stress);
+    let is_nothing = scale
+        .stress
+        .map_or(young > RIGID * strength, |stress| strength < NOTHING * stress);
     strength < STRONG && is_nothing
 }
 
@@ -90,7 +96,9 @@ fn is_weak(strength: f64, record: &Record, scale: &Scale) -> bool {
 pub(super) fn loads(root: &Record, scale: &Scale, report: &mut Report<'_>) {
     let Some(stress) = scale.stress else { return };
     for record in root.records("traction") {
-        let pressure = bare(record, "pressure").map(f64::abs).or_else(|| bare_list(record, "stress"));
+        let pressure = bare(record, "pressure")
+            .map(f64::abs)
+            .or_else(|| bare_list(record, "stress"));
         let key = if record.gives("pressure") { "pressure" } else { "stress" };
         if let Some(load) = pressure.filter(|load| *load < LOAD && *load < NO_LOAD * stress) {
             report.warn(format!(
@@ -120,6 +128,11 @@ fn bare_list(record: &Record, key: &str) -> Option<f64> {
     if !record.gives(key) || record.has_unit(key) {
         return None;
     }
-    let size = record.numbers(key)?.iter().map(|along| along * along).sum::<f64>().sqrt();
+    let size = record
+        .numbers(key)?
+        .iter()
+        .map(|along| along * along)
+        .sum::<f64>()
+        .sqrt();
     (size > 0.0).then_some(size)
 }

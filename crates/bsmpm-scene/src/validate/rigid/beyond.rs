@@ -39,15 +39,18 @@ pub(super) fn check(case: &Case, rigid: &Rigid, record: &Record, report: &mut Re
 fn stays_outside(case: &Case, rigid: &Rigid) -> bool {
     let (reference, outline) = match &rigid.shape {
         RigidShape::InSpace(solid) => (solid.reference(), solid.outline()),
-        RigidShape::Polygon(_) | RigidShape::Circle { .. } => {
-            ([rigid.about[0], rigid.about[1], 0.0], surfaces::outline(&rigid.shape, rigid.about))
-        }
+        RigidShape::Polygon(_) | RigidShape::Circle { .. } => (
+            [rigid.about[0], rigid.about[1], 0.0],
+            surfaces::outline(&rigid.shape, rigid.about),
+        ),
     };
     if matches!(outline, Outline::Terrain(_)) {
         return false;
     }
     let (lower, upper, reach) = (case.grid.lower(), case.grid.upper(), outline.radius());
-    let rows: Vec<[f64; 3]> = std::iter::once([0.0; 3]).chain(rigid.path.rows.iter().map(|row| row.1)).collect();
+    let rows: Vec<[f64; 3]> = std::iter::once([0.0; 3])
+        .chain(rigid.path.rows.iter().map(|row| row.1))
+        .collect();
     let misses = |axis: usize, from: f64, to: f64| {
         let is_free = case.grid.dims() == 2 && rigid.free[axis];
         let (from, to) = (reference[axis] + from, reference[axis] + to);
@@ -63,7 +66,11 @@ fn cut(case: &Case, rigid: &Rigid) -> Option<Face> {
     let slack = OVERLAP * case.grid.shortest();
     let mut faces = (0..2).flat_map(|axis| [false, true].map(|upper| Face { axis, upper }));
     faces.find(|face| {
-        let bound = if face.upper { case.grid.upper() } else { case.grid.lower() };
+        let bound = if face.upper {
+            case.grid.upper()
+        } else {
+            case.grid.lower()
+        };
         let [least, most] = extent(rigid, face.axis);
         let is_axis = case.geometry == Geometry::Axisymmetric && face.axis == 0;
         let rolls = case.boundary[face.axis][usize::from(face.upper)] == Support::Roller;
@@ -77,7 +84,9 @@ fn touched(case: &Case, rigid: &Rigid) -> Option<(Face, f64)> {
     if matches!(rigid.shape, RigidShape::InSpace(_)) {
         return None;
     }
-    let mut faces = (0..2).filter(|&axis| rigid.free[axis]).flat_map(|axis| [false, true].map(|upper| (axis, upper)));
+    let mut faces = (0..2)
+        .filter(|&axis| rigid.free[axis])
+        .flat_map(|axis| [false, true].map(|upper| (axis, upper)));
     faces.find_map(|(axis, upper)| {
         let [least, most] = extent(rigid, axis);
         let (distance, sign) = match upper {
@@ -86,8 +95,15 @@ fn touched(case: &Case, rigid: &Rigid) -> Option<(Face, f64)> {
         };
         let along = &case.grid.axes[axis];
         let cell = along.cell(if upper { along.cells() - 1 } else { 0 });
-        let weight = case.gravity.as_ref().map_or(0.0, |gravity| rigid.mass[0] * gravity.acceleration[axis]);
-        let drive = if rigid.velocity[axis] != 0.0 { rigid.velocity[axis] } else { rigid.force[axis] + weight };
+        let weight = case
+            .gravity
+            .as_ref()
+            .map_or(0.0, |gravity| rigid.mass[0] * gravity.acceleration[axis]);
+        let drive = if rigid.velocity[axis] != 0.0 {
+            rigid.velocity[axis]
+        } else {
+            rigid.force[axis] + weight
+        };
         let slack = OVERLAP * case.grid.shortest();
         ((-slack..TOUCHING * cell).contains(&distance) && sign * drive > 0.0)
             .then_some((Face { axis, upper }, distance.max(0.0)))
@@ -100,7 +116,10 @@ fn extent(rigid: &Rigid, axis: usize) -> [f64; 2] {
         RigidShape::Circle { center, radius } => [center[axis] - radius, center[axis] + radius],
         RigidShape::Polygon(corners) => {
             let along = || corners.iter().map(|corner| corner[axis]);
-            [along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max)]
+            [
+                along().fold(f64::INFINITY, f64::min),
+                along().fold(f64::NEG_INFINITY, f64::max),
+            ]
         }
         RigidShape::InSpace(_) => [0.0; 2],
     }

@@ -69,7 +69,10 @@ pub(super) fn read(
 
 fn shape(record: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
     if let Some(shape) = record.record("sphere").filter(|_| record.gives("sphere")) {
-        return Some(RigidSolid::Sphere { center: shape.vector("centre")?, radius: shape.number("radius")? });
+        return Some(RigidSolid::Sphere {
+            center: shape.vector("centre")?,
+            radius: shape.number("radius")?,
+        });
     }
     if let Some(shape) = record.record("revolve").filter(|_| record.gives("revolve")) {
         return revolved(shape, report);
@@ -114,7 +117,10 @@ fn revolved(shape: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
         let mirrored: Vec<[f64; 2]> = corners[1..count - 1].iter().rev().map(|[r, z]| [-r, *z]).collect();
         corners.extend(mirrored);
     }
-    Some(RigidSolid::Revolved { about: shape.pair("about")?, corners })
+    Some(RigidSolid::Revolved {
+        about: shape.pair("about")?,
+        corners,
+    })
 }
 
 /// What of a rigid body in space the cells and steps must resolve.
@@ -129,7 +135,11 @@ pub(super) fn solidity(solid: &RigidSolid) -> Solidity {
         RigidSolid::Revolved { corners, .. } => super::thickness(corners),
         RigidSolid::Terrain(_) => f64::INFINITY,
     };
-    Solidity { outline, thickness, corner: [solid.reference()[0], solid.reference()[2]] }
+    Solidity {
+        outline,
+        thickness,
+        corner: [solid.reference()[0], solid.reference()[2]],
+    }
 }
 
 /// No body is in it when that comes, and its outline lies within the heights that are given.
@@ -140,12 +150,22 @@ pub(super) fn check(
     report: &mut Report<'_>,
 ) {
     let cell = case.grid.shortest();
-    let key = ["box", "sphere", "revolve", "terrain"].into_iter().find(|key| record.gives(key)).unwrap_or("box");
+    let key = ["box", "sphere", "revolve", "terrain"]
+        .into_iter()
+        .find(|key| record.gives(key))
+        .unwrap_or("box");
     let body = crate::surfaces::rigid_body::<3>(rigid, [0.0; 3], case.geometry);
     for (number, of) in case.bodies.iter().enumerate() {
-        let Some(stage) = super::together(case, place, number) else { continue };
+        let Some(stage) = super::together(case, place, number) else {
+            continue;
+        };
         let moved = body.on_path(stage.map_or(0.0, |stage| stage.at));
-        let depth = |at: [f64; 3]| -body.outline.nearest(&body.pose(&moved).seen(&Vector::from(at))).distance;
+        let depth = |at: [f64; 3]| {
+            -body
+                .outline
+                .nearest(&body.pose(&moved).seen(&Vector::from(at)))
+                .distance
+        };
         let is_in = |at: &[f64; 3]| of.region.contains_in_space(*at) && depth(*at) > OVERLAP * cell;
         if let Some([x, y, z]) = places(solid, &moved, of.region.corners(), cell).into_iter().find(is_in) {
             let message = super::inside(case, (place, number), &format!("{x:.4}, {y:.4}, {z:.4}"));
@@ -155,8 +175,10 @@ pub(super) fn check(
     let RigidSolid::Terrain(terrain) = solid else { return };
     let far = |axis: usize| terrain.lower[axis] + (terrain.count[axis] - 1) as f64 * terrain.spacing[axis];
     let outside = |axis: usize| {
-        let (lower, upper) =
-            (case.grid.axes[axis].lower(), case.grid.axes[axis].lower() + case.grid.axes[axis].length());
+        let (lower, upper) = (
+            case.grid.axes[axis].lower(),
+            case.grid.axes[axis].lower() + case.grid.axes[axis].length(),
+        );
         terrain.lower[axis] > lower + 0.5 * cell || far(axis) < upper - 0.5 * cell
     };
     if (0..2).any(outside) {
@@ -178,7 +200,11 @@ fn places(solid: &RigidSolid, moved: &Vector<3>, of: [[f64; 3]; 2], cell: f64) -
         let k = [n / PLACES / PLACES, n / PLACES % PLACES, n % PLACES];
         std::array::from_fn(|axis| lower[axis] + (k[axis] as f64 + 0.5) / PLACES as f64 * edges[axis])
     };
-    let count = if edges.iter().all(|edge| *edge > 0.0) { PLACES.pow(3) } else { 0 };
+    let count = if edges.iter().all(|edge| *edge > 0.0) {
+        PLACES.pow(3)
+    } else {
+        0
+    };
     let mut places: Vec<[f64; 3]> = (0..count).map(place).collect();
     if let RigidSolid::Terrain(terrain) = solid {
         places.extend(terrain.heights.iter().enumerate().map(|(n, height)| {

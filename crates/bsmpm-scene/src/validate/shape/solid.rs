@@ -21,7 +21,11 @@ pub(super) fn region(
     report: &mut Report<'_>,
 ) -> Option<Region> {
     let whole = read(body, report);
-    let cut: Option<Vec<SolidShape>> = body.records("subtract").iter().map(|record| read(record, report)).collect();
+    let cut: Option<Vec<SolidShape>> = body
+        .records("subtract")
+        .iter()
+        .map(|record| read(record, report))
+        .collect();
     let (mut whole, mut cut, grid, key) = (whole?, cut?, grid?, key(body));
     if body.gives("subtract") && cut.len() != body.records("subtract").len() {
         return None;
@@ -34,7 +38,9 @@ pub(super) fn region(
         }
         beyond.note(body, Geometry::Solid, report);
     }
-    let outside = solid_bounds(&whole, &cut).into_iter().find_map(|corner| place::beyond(grid, corner));
+    let outside = solid_bounds(&whole, &cut)
+        .into_iter()
+        .find_map(|corner| place::beyond(grid, corner));
     if let Some(outside) = outside {
         body.error(key, reach(&whole).unwrap_or_else(|| outside.into()), report);
         return None;
@@ -63,7 +69,9 @@ pub(super) fn region(
 
 /// Of a surface beyond the grid how far it reaches: files of it often have another unit.
 fn reach(shape: &SolidShape) -> Option<String> {
-    let SolidShape::Surface(surface) = shape else { return None };
+    let SolidShape::Surface(surface) = shape else {
+        return None;
+    };
     let [[x, y, z], [to_x, to_y, to_z]] = surface.bounds();
     Some(format!(
         "E0202: the surface reaches from [{x:.3}, {y:.3}, {z:.3}] to [{to_x:.3}, {to_y:.3}, {to_z:.3}] m, beyond the \
@@ -84,14 +92,19 @@ fn is_turned(rows: &[ListRow]) -> bool {
 
 /// The key that gives a body's or a cut's shape.
 pub(in super::super) fn key(record: &Record) -> &'static str {
-    let keys = ["extrude", "sphere", "revolve", "terrain", "surface", "polygon", "circle"];
+    let keys = [
+        "extrude", "sphere", "revolve", "terrain", "surface", "polygon", "circle",
+    ];
     keys.into_iter().find(|key| record.gives(key)).unwrap_or("box")
 }
 
 /// A shape in the case's coordinates.
 fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
     if let Some(sphere) = record.record("sphere").filter(|_| record.gives("sphere")) {
-        return Some(SolidShape::Sphere { center: sphere.vector("centre")?, radius: sphere.number("radius")? });
+        return Some(SolidShape::Sphere {
+            center: sphere.vector("centre")?,
+            radius: sphere.number("radius")?,
+        });
     }
     if let Some(shape) = record.record("extrude").filter(|_| record.gives("extrude")) {
         let outline = section(shape, report)?;
@@ -105,7 +118,11 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
             return None;
         }
         let along = [Axis::X, Axis::Y, Axis::Z].iter().position(|axis| *axis == along)?;
-        return Some(SolidShape::Prism { outline, along, ends: [from, to] });
+        return Some(SolidShape::Prism {
+            outline,
+            along,
+            ends: [from, to],
+        });
     }
     if let Some(shape) = record.record("revolve").filter(|_| record.gives("revolve")) {
         let outline = section(shape, report)?;
@@ -115,10 +132,17 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
                  so that all radii are at least 0.",
                 outline.bounds[0][0]
             );
-            shape.error(if shape.gives("circle") { "circle" } else { "polygon" }, message, report);
+            shape.error(
+                if shape.gives("circle") { "circle" } else { "polygon" },
+                message,
+                report,
+            );
             return None;
         }
-        return Some(SolidShape::Revolved { outline, about: shape.pair("about")? });
+        return Some(SolidShape::Revolved {
+            outline,
+            about: shape.pair("about")?,
+        });
     }
     if let Some(shape) = record.record("terrain").filter(|_| record.gives("terrain")) {
         return terrain(shape, report);
@@ -153,7 +177,9 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
         );
         return None;
     }
-    Some(SolidShape::Box { corners: cuboid(record, report)? })
+    Some(SolidShape::Box {
+        corners: cuboid(record, report)?,
+    })
 }
 
 /// Lower and upper corner of a record's box.
@@ -170,14 +196,24 @@ pub(in super::super) fn cuboid(record: &Record, report: &mut Report<'_>) -> Opti
 /// Heights that a key of terrain gives, on a level.
 pub(in super::super) fn raster(shape: &Record, key: &str, level: f64) -> Option<Result<Raster, String>> {
     let rows = shape.rows(key)?.iter();
-    let heights: Vec<[f64; 3]> = rows.map(|row| [row.numbers[0], row.numbers[1], row.numbers[2]]).collect();
+    let heights: Vec<[f64; 3]> = rows
+        .map(|row| [row.numbers[0], row.numbers[1], row.numbers[2]])
+        .collect();
     Some(Raster::new(&heights, level))
 }
 
 /// Heights on others, or on a level.
 fn terrain(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
-    let level = if shape.gives("level") { shape.number("level")? } else { f64::NEG_INFINITY };
-    let base = if shape.gives("base") { Some(raster(shape, "base", f64::NEG_INFINITY)?) } else { None };
+    let level = if shape.gives("level") {
+        shape.number("level")?
+    } else {
+        f64::NEG_INFINITY
+    };
+    let base = if shape.gives("base") {
+        Some(raster(shape, "base", f64::NEG_INFINITY)?)
+    } else {
+        None
+    };
     let top = raster(shape, "top", level)?;
     let whole = match (top, base) {
         (Err(message), _) => Err(("top", message)),

@@ -27,7 +27,10 @@ fn trials_that_are_there_are_kept_until_something_changes() {
     let whole = fs::read_to_string(&manifest).unwrap();
     fs::write(&manifest, whole.replace("\"exit_code\": 0", "\"exit_code\": null")).unwrap();
     assert_eq!((made(&[]), made(&[]), made(&["--force"])), (1, 0, all));
-    bench.write("slope.toml", &SLOPE.replace("cohesion       = \"10 kPa\"", "cohesion       = \"11 kPa\""));
+    bench.write(
+        "slope.toml",
+        &SLOPE.replace("cohesion       = \"10 kPa\"", "cohesion       = \"11 kPa\""),
+    );
     assert_eq!((made(&[]), made(&["--set", "stabilisation.method=none"])), (all, all));
 }
 

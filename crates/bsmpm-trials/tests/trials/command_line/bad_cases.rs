@@ -32,7 +32,11 @@ fn what_is_no_text_of_a_case_ends_with_65() {
 
 #[test]
 fn all_errors_of_a_case_and_its_overrides_are_reported_in_one_go() {
-    let text = changed(&changed(COLUMN, "poisson = 0.3", "poisson = 0.6"), "steps = 5", "steps = 1.5");
+    let text = changed(
+        &changed(COLUMN, "poisson = 0.3", "poisson = 0.6"),
+        "steps = 5",
+        "steps = 1.5",
+    );
     let scratch = Scratch::with_case(&changed(&text, "type  = ", "typ = "));
     let output = scratch.mpirun(2, &["case.toml", "--set", "grid.cell=-1"]).expect(65);
     for key in [

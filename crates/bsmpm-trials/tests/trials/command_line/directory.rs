@@ -32,10 +32,15 @@ fn force_deletes_what_the_older_run_wrote_and_nothing_else() {
     let scratch = Scratch::with_case(COLUMN);
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
     let old = manifest(&scratch.path("case.out")).outputs;
-    assert!(old.iter().any(|output| output.path == "frames/step_000000004.vtu"), "{old:?}");
+    assert!(
+        old.iter().any(|output| output.path == "frames/step_000000004.vtu"),
+        "{old:?}"
+    );
     scratch.write("case.out/notes.txt", "mine");
     scratch.write("case.out/frames/view.pvsm", "mine");
-    scratch.mpirun(2, &["case.toml", "-q", "--force", "--set", "output.every=1.0"]).expect(0);
+    scratch
+        .mpirun(2, &["case.toml", "-q", "--force", "--set", "output.every=1.0"])
+        .expect(0);
     assert_eq!(
         crate::support::entries(&scratch.path("case.out/frames")),
         ["step_000000000.vtu", "step_000000005.vtu", "view.pvsm"]
@@ -43,7 +48,10 @@ fn force_deletes_what_the_older_run_wrote_and_nothing_else() {
     assert_eq!(std::fs::read(scratch.path("case.out/notes.txt")).unwrap(), b"mine");
     // A frame that no run.json names is somebody's: it stays, and the run is refused.
     scratch.write("case.out/frames/step_000000009.vtu", "mine");
-    scratch.mpirun(2, &["case.toml", "-q", "--force"]).expect(73).says_once("step_000000009.vtu");
+    scratch
+        .mpirun(2, &["case.toml", "-q", "--force"])
+        .expect(73)
+        .says_once("step_000000009.vtu");
     assert!(scratch.path("case.out/frames/step_000000005.vtu").is_file());
 }
 
@@ -51,7 +59,12 @@ fn force_deletes_what_the_older_run_wrote_and_nothing_else() {
 fn an_output_path_that_is_no_directory_or_cannot_be_made_is_refused_once_with_73() {
     let scratch = Scratch::with_case(COLUMN);
     scratch.write("file", "mine");
-    for (directory, flag) in [("file", "-q"), ("file", "--force"), ("file/below", "-q"), ("/proc/below", "-q")] {
+    for (directory, flag) in [
+        ("file", "-q"),
+        ("file", "--force"),
+        ("file/below", "-q"),
+        ("/proc/below", "-q"),
+    ] {
         let output = scratch.mpirun(2, &["case.toml", "-o", directory, flag]).expect(73);
         assert_eq!(output.count("bsmpm-par:"), 1, "{output:#?}");
         assert!(output.stderr.contains(directory), "{output:#?}");
@@ -63,9 +76,17 @@ fn an_output_path_that_is_no_directory_or_cannot_be_made_is_refused_once_with_73
 fn of_a_wrong_case_and_an_occupied_directory_force_deletes_nothing() {
     let scratch = Scratch::with_case(COLUMN);
     scratch.mpirun(1, &["case.toml", "-q"]).expect(0);
-    for arguments in [&["--set", "grid.cell=-1"][..], &["--check"], &["--max-memory", "1kB"], &["--", "-nonsense"]] {
+    for arguments in [
+        &["--set", "grid.cell=-1"][..],
+        &["--check"],
+        &["--max-memory", "1kB"],
+        &["--", "-nonsense"],
+    ] {
         let output = scratch.mpirun(2, &[&["case.toml", "--force"], arguments].concat());
         assert!(matches!(output.code, Some(0 | 2 | 65 | 71)), "{output:#?}");
-        assert!(scratch.path("case.out/frames/step_000000005.vtu").is_file(), "{arguments:?}");
+        assert!(
+            scratch.path("case.out/frames/step_000000005.vtu").is_file(),
+            "{arguments:?}"
+        );
     }
 }

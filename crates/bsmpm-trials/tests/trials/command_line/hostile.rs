@@ -47,9 +47,14 @@ const HOSTILE: [&[u8]; 30] = [
 fn i19_a_run_is_not_both_continued_and_replaced() {
     let scratch = Scratch::with_case(COLUMN);
     for restart in ["auto", "step.h5"] {
-        let output = scratch.mpirun(2, &["case.toml", "--force", "--restart", restart]).expect(2);
+        let output = scratch
+            .mpirun(2, &["case.toml", "--force", "--restart", restart])
+            .expect(2);
         assert_eq!(output.count("error:"), 1, "{output:#?}");
-        assert!(output.stderr.contains("--force") && output.stderr.contains("--restart"), "{output:#?}");
+        assert!(
+            output.stderr.contains("--force") && output.stderr.contains("--restart"),
+            "{output:#?}"
+        );
     }
     assert_eq!(scratch.entries(), ["case.toml"]);
 }
@@ -57,26 +62,65 @@ fn i19_a_run_is_not_both_continued_and_replaced() {
 #[test]
 fn i20_hostile_sizes_are_refused_at_once_in_little_memory() {
     let rows = [
-        (&["grid.cell=[4e-6, 5e-6]"][..], "grid.cell: ", "2000008000008 unknowns (at most 2147483647"),
-        (&["grid.upper=[9223372036854775807, 5]"], "grid.upper: ", "error E0010: "),
-        (&["grid.upper=[9223372036854775808, 5]"], "grid.upper: ", "error E0010: "),
-        (&["grid.cell=1e-4"], "grid.cell: ", "2000000000 cells and 4000360008 unknowns"),
-        (&["grid.cell=5e-4", "body.0.points_per_cell=100"], "body: ", "640000000000 material points (at most"),
-        (&["body.0.points_per_cell=9223372036854775807"], "body.0.points_per_cell: ", "error E0010: "),
+        (
+            &["grid.cell=[4e-6, 5e-6]"][..],
+            "grid.cell: ",
+            "2000008000008 unknowns (at most 2147483647",
+        ),
+        (
+            &["grid.upper=[9223372036854775807, 5]"],
+            "grid.upper: ",
+            "error E0010: ",
+        ),
+        (
+            &["grid.upper=[9223372036854775808, 5]"],
+            "grid.upper: ",
+            "error E0010: ",
+        ),
+        (
+            &["grid.cell=1e-4"],
+            "grid.cell: ",
+            "2000000000 cells and 4000360008 unknowns",
+        ),
+        (
+            &["grid.cell=5e-4", "body.0.points_per_cell=100"],
+            "body: ",
+            "640000000000 material points (at most",
+        ),
+        (
+            &["body.0.points_per_cell=9223372036854775807"],
+            "body.0.points_per_cell: ",
+            "error E0010: ",
+        ),
         (&["analysis.steps=1000000000000"], "analysis.steps: ", "error E0010: "),
     ];
     for (set, key, says) in rows {
         let scratch = Scratch::with_case(COLUMN);
-        let arguments: Vec<&str> = ["case.toml"].into_iter().chain(set.iter().flat_map(|set| ["--set", set])).collect();
-        let output = scratch.job(Some(2), &arguments).limited(REFUSAL).within(30).run().expect(65);
+        let arguments: Vec<&str> = ["case.toml"]
+            .into_iter()
+            .chain(set.iter().flat_map(|set| ["--set", set]))
+            .collect();
+        let output = scratch
+            .job(Some(2), &arguments)
+            .limited(REFUSAL)
+            .within(30)
+            .run()
+            .expect(65);
         let reported: Vec<&str> = output.stderr.lines().filter(|line| line.contains(says)).collect();
-        assert!(reported.len() == 1 && reported[0].contains(key), "{key}, {says}: {output:#?}");
+        assert!(
+            reported.len() == 1 && reported[0].contains(key),
+            "{key}, {says}: {output:#?}"
+        );
         output.says_once("nothing was run or written");
         assert_eq!(scratch.entries(), ["case.toml"]);
     }
     // The limit is one: with a fortieth of it not even the libraries start.
     let scratch = Scratch::with_case(COLUMN);
-    let output = scratch.job(None, &["case.toml", "--check"]).limited("-s 1024 && ulimit -d 1000").within(30).run();
+    let output = scratch
+        .job(None, &["case.toml", "--check"])
+        .limited("-s 1024 && ulimit -d 1000")
+        .within(30)
+        .run();
     assert_ne!(output.code, Some(0), "{output:#?}");
 }
 
@@ -87,13 +131,19 @@ const VAST: [&str; 4] = ["--set", "grid.cell=\"0.2 mm\"", "--set", "body.0.point
 fn i20_what_does_not_fit_into_the_memory_of_the_host_is_refused_once_with_71() {
     let scratch = Scratch::with_case(COLUMN);
     let run = |more: &[&str]| {
-        scratch.job(Some(2), &[&["case.toml"], &VAST[..], more].concat()).limited(REFUSAL).within(30).run()
+        scratch
+            .job(Some(2), &[&["case.toml"], &VAST[..], more].concat())
+            .limited(REFUSAL)
+            .within(30)
+            .run()
     };
     let output = run(&[]).expect(71);
     output.says_once("error E0702: the case needs too much memory: about ");
     output.says_once(" GiB on this computer (2 rank(s)), where ");
     output.says_once("Increase `grid.cell`, reduce `body.points_per_cell`, or use more computers.");
-    run(&["--max-memory", "16GiB"]).expect(71).says_once("and --max-memory allows 16.0 GiB");
+    run(&["--max-memory", "16GiB"])
+        .expect(71)
+        .says_once("and --max-memory allows 16.0 GiB");
     // It may be meant for another host.
     let output = run(&["--check"]).expect(0);
     output.says_once("warning W0724: the case needs too much memory: about ");
@@ -106,9 +156,18 @@ fn i20_what_does_not_fit_into_the_memory_of_the_host_is_refused_once_with_71() {
 #[test]
 fn f37_what_does_not_fit_into_the_limits_of_a_process_is_refused_once_with_71() {
     let scratch = Scratch::with_case(COLUMN);
-    let large = ["case.toml", "--set", "grid.cell=\"20 mm\"", "--set", "body.0.points_per_cell=2"];
-    let rows: [(&[&str], &str); 3] =
-        [(&large, "-v 600000"), (&["case.toml"], "-d 100000"), (&["case.toml", "--max-memory", "1GiB"], "-d 100000")];
+    let large = [
+        "case.toml",
+        "--set",
+        "grid.cell=\"20 mm\"",
+        "--set",
+        "body.0.points_per_cell=2",
+    ];
+    let rows: [(&[&str], &str); 3] = [
+        (&large, "-v 600000"),
+        (&["case.toml"], "-d 100000"),
+        (&["case.toml", "--max-memory", "1GiB"], "-d 100000"),
+    ];
     for (arguments, limit) in rows {
         for ranks in [None, Some(2)] {
             let output = scratch.job(ranks, arguments).limited(limit).within(30).run().expect(71);
@@ -121,14 +180,24 @@ fn f37_what_does_not_fit_into_the_limits_of_a_process_is_refused_once_with_71() 
 #[test]
 fn i22_a_case_that_is_no_file_is_refused_once_with_66_and_not_waited_for() {
     let scratch = Scratch::new();
-    let made = std::process::Command::new("mkfifo").arg(scratch.path("fifo.toml")).status().unwrap();
+    let made = std::process::Command::new("mkfifo")
+        .arg(scratch.path("fifo.toml"))
+        .status()
+        .unwrap();
     assert!(made.success());
     std::os::unix::fs::symlink("loop.toml", scratch.path("loop.toml")).unwrap();
     std::os::unix::fs::symlink("nowhere", scratch.path("dangling.toml")).unwrap();
     std::fs::create_dir(scratch.path("folder.toml")).unwrap();
     let before = scratch.entries();
-    for name in ["fifo.toml", "loop.toml", "dangling.toml", "folder.toml", "/dev/stdin", "/dev/null", "../no/such.toml"]
-    {
+    for name in [
+        "fifo.toml",
+        "loop.toml",
+        "dangling.toml",
+        "folder.toml",
+        "/dev/stdin",
+        "/dev/null",
+        "../no/such.toml",
+    ] {
         let output = scratch.job(Some(2), &[name]).within(30).run().expect(66);
         output.says_once(name);
     }
@@ -150,13 +219,18 @@ fn s1_hostile_names_of_files_are_names_like_any_other() {
         let file = |ending: &[u8]| OsStr::from_bytes(&[name, ending].concat()).to_owned();
         std::fs::write(scratch.path("").join(file(b".toml")), COLUMN).unwrap();
         let path = [b"./", name, b".toml"].concat();
-        let job = scratch.job(None, &["-q", "--max-steps", "1"]).argument(&path).within(30);
+        let job = scratch
+            .job(None, &["-q", "--max-steps", "1"])
+            .argument(&path)
+            .within(30);
         // Every other one names the output itself.
         let given = number % 2 == 1;
         let output = [b"-o./", name, b".mine"].concat();
         let output = if given { job.argument(&output) } else { job }.run();
         assert_eq!(output.code, Some(75), "{name:?}: {output:#?}");
-        let entries = std::fs::read_dir(scratch.path("")).unwrap().map(|entry| entry.unwrap().file_name());
+        let entries = std::fs::read_dir(scratch.path(""))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name());
         let mut entries: Vec<Vec<u8>> = entries.map(|entry| entry.into_vec()).collect();
         entries.sort();
         let ending: &[u8] = if given { b".mine" } else { b".out" };
@@ -211,7 +285,15 @@ fn s1_a_link_in_the_place_of_a_folder_of_the_run_is_refused_with_73() {
 #[test]
 fn s2_the_solver_starts_no_process() {
     let crates = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-    let names = ["bsmpm", "bsmpm-scene", "bsmpm-io", "bsmpm-ranks", "bsmpm-par", "petsc-rs", "hdf5-collective"];
+    let names = [
+        "bsmpm",
+        "bsmpm-scene",
+        "bsmpm-io",
+        "bsmpm-ranks",
+        "bsmpm-par",
+        "petsc-rs",
+        "hdf5-collective",
+    ];
     let mut folders: Vec<_> = names.map(|name| crates.join(name).join("src")).into();
     let mut seen = 0;
     while let Some(folder) = folders.pop() {
@@ -223,7 +305,13 @@ fn s2_the_solver_starts_no_process() {
             }
             let text = std::fs::read_to_string(&path).unwrap();
             let text = text.split("#[cfg(test)]").next().unwrap();
-            let starts = ["process::Command", "Command::new", "libc::system", "execv", "posix_spawn"];
+            let starts = [
+                "process::Command",
+                "Command::new",
+                "libc::system",
+                "execv",
+                "posix_spawn",
+            ];
             assert!(!starts.iter().any(|start| text.contains(start)), "{}", path.display());
             seen += 1;
         }
@@ -254,9 +342,17 @@ fn s3_what_libraries_read_by_themselves_has_no_effect() {
     ];
     for ranks in [None, Some(2)] {
         let job = scratch.job(ranks, &["case.toml", "-q", "--force"]).within(60);
-        let output = variables.iter().fold(job, |job, (name, value)| job.variable(name, value)).run().expect(0);
+        let output = variables
+            .iter()
+            .fold(job, |job, (name, value)| job.variable(name, value))
+            .run()
+            .expect(0);
         assert_eq!(output.said(), "");
     }
-    let after: Vec<String> = scratch.entries().into_iter().filter(|name| name != "case.out").collect();
+    let after: Vec<String> = scratch
+        .entries()
+        .into_iter()
+        .filter(|name| name != "case.out")
+        .collect();
     assert_eq!(after, before);
 }

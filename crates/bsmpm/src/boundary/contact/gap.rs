@@ -24,8 +24,13 @@ pub(super) fn gaps<const D: usize>(
 ) -> Vec<f64> {
     let width = grid.order() + 1;
     let on_face = |k: usize| k / width.pow((D - 1 - axis) as u32) % width == if upper { width - 1 } else { 0 };
-    let offsets: Vec<usize> =
-        shape.offsets().iter().enumerate().filter(|(k, _)| on_face(*k)).map(|(_, o)| *o).collect();
+    let offsets: Vec<usize> = shape
+        .offsets()
+        .iter()
+        .enumerate()
+        .filter(|(k, _)| on_face(*k))
+        .map(|(_, o)| *o)
+        .collect();
     let knots = &grid.axes()[axis];
     let last = if upper { knots.cells() - 1 } else { 0 };
     let mut near = vec![f64::NEG_INFINITY; grid.nodes()];
@@ -35,11 +40,19 @@ pub(super) fn gaps<const D: usize>(
             continue;
         }
         let clear = |p: usize| {
-            let from_face = if upper { knots.length() - points.x[p][axis] } else { points.x[p][axis] };
+            let from_face = if upper {
+                knots.length() - points.x[p][axis]
+            } else {
+                points.x[p][axis]
+            };
             from_face - boundary.reach_along(grid, points, p, axis)
         };
         let least = patch.points.clone().map(clear).fold(f64::INFINITY, f64::min).max(0.0);
-        let least = if least < ROUNDING * face_cell(grid, axis, upper) { 0.0 } else { least };
+        let least = if least < ROUNDING * face_cell(grid, axis, upper) {
+            0.0
+        } else {
+            least
+        };
         for offset in &offsets {
             let node = &mut near[patch.first_node + offset];
             *node = node.max(-least);

@@ -12,7 +12,9 @@ impl<const D: usize> Contacts<D> {
     /// or have done so for longer; how many over all ranks. None where some node sticks already. A
     /// reduction, and an exchange with the neighbours where all that has friction slides.
     pub fn hold_neutral(&mut self, grid: &Grid<D>, u: &[f64], halo: &dyn Halo) -> usize {
-        let mut sticking = [f64::from(u8::from(self.nodes.iter().any(|at| at.status == Status::Stick)))];
+        let mut sticking = [f64::from(u8::from(
+            self.nodes.iter().any(|at| at.status == Status::Stick),
+        ))];
         halo.maximum(&mut sticking);
         if sticking[0] > 0.0 {
             return 0;
@@ -24,7 +26,11 @@ impl<const D: usize> Contacts<D> {
         halo.max(&mut marks, 1);
         let owned = halo.owned();
         let mut held = [0.0];
-        for at in self.nodes.iter_mut().filter(|at| marks[at.node] > 0.0 && has_friction(at.status)) {
+        for at in self
+            .nodes
+            .iter_mut()
+            .filter(|at| marks[at.node] > 0.0 && has_friction(at.status))
+        {
             (at.status, at.is_neutral) = (Status::Stick, true);
             held[0] += f64::from(u8::from(owned.contains(at.node)));
         }
@@ -34,7 +40,11 @@ impl<const D: usize> Contacts<D> {
 
     /// Numbers of nodes that slide less than a neighbour which slides in the opposite direction.
     fn neutral(&self, grid: &Grid<D>, u: &[f64]) -> Vec<usize> {
-        let numbered = self.nodes.iter().enumerate().map(|(number, at)| ((at.support, at.node), number));
+        let numbered = self
+            .nodes
+            .iter()
+            .enumerate()
+            .map(|(number, at)| ((at.support, at.node), number));
         let numbers: BTreeMap<(usize, usize), usize> = numbered.collect();
         let direction = |number: usize, axis: usize| match self.nodes[number].status {
             Status::Slip(direction) => direction[axis],
@@ -47,7 +57,9 @@ impl<const D: usize> Contacts<D> {
             for axis in (0..D).filter(|axis| *axis != at.axis) {
                 let mut beyond = grid.node_at(at.node);
                 beyond[axis] += 1;
-                let next = grid.node_index(&beyond).and_then(|node| numbers.get(&(at.support, node)));
+                let next = grid
+                    .node_index(&beyond)
+                    .and_then(|node| numbers.get(&(at.support, node)));
                 let Some(&next) = next.filter(|next| direction(number, axis) * direction(**next, axis) < 0.0) else {
                     continue;
                 };

@@ -67,7 +67,11 @@ impl<const D: usize> ContactNode<D> {
             self.gap = 0.0;
         }
         let slip = Vector::from_fn(|component, _| if self.along[component] { of(component) } else { 0.0 });
-        self.status = if self.law.lifts && normal > -self.gap { Status::Open } else { self.met(&slip) };
+        self.status = if self.law.lifts && normal > -self.gap {
+            Status::Open
+        } else {
+            self.met(&slip)
+        };
         (self.transverse_stiffness, self.slip_length) = (0.0, slip.norm());
         let has_friction = self.law.friction > 0.0;
         self.rested = std::array::from_fn(|component| {
@@ -102,7 +106,11 @@ impl<const D: usize> ContactNode<D> {
     /// N  normal force of the face on the body, positive where it pushes.
     pub fn pushed(&self, reaction: &[f64]) -> f64 {
         let normal = reaction[Nodal::<D>::at(self.node, self.axis)];
-        if self.status == Status::Open { 0.0 } else { self.inward * normal }
+        if self.status == Status::Open {
+            0.0
+        } else {
+            self.inward * normal
+        }
     }
 
     /// N  most that friction can be, by Coulomb's law for the effective normal force.
@@ -113,7 +121,13 @@ impl<const D: usize> ContactNode<D> {
     /// N  force of the face along itself on the body.
     pub fn friction(&self, reaction: &[f64]) -> Vector<D> {
         let on = |component: usize| self.along[component] && self.status != Status::Open;
-        Vector::from_fn(|c, _| if on(c) { reaction[Nodal::<D>::at(self.node, c)] } else { 0.0 })
+        Vector::from_fn(|c, _| {
+            if on(c) {
+                reaction[Nodal::<D>::at(self.node, c)]
+            } else {
+                0.0
+            }
+        })
     }
 
     /// m  displacement along the face.
@@ -148,7 +162,9 @@ impl<const D: usize> ContactNode<D> {
 
     /// Row-major square of what resists a slip beside the direction of friction, N/m; none where nothing does.
     pub fn resists(&self) -> Option<Vec<f64>> {
-        let Status::Slip(direction) = self.status else { return None };
+        let Status::Slip(direction) = self.status else {
+            return None;
+        };
         let on = |component: usize| f64::from(u8::from(self.along[component]));
         let of = |k: usize| {
             let (i, j) = (k / D, k % D);
@@ -161,17 +177,39 @@ impl<const D: usize> ContactNode<D> {
     fn linearised(&self, status: Status<D>, slip_length: f64, reaction: &[f64]) -> Asked<D> {
         let slips = D > 2 && self.law.friction > 0.0 && matches!(status, Status::Slip(_));
         let transverse_stiffness = if slips { self.limit(reaction) / slip_length } else { 0.0 };
-        Asked { status, transverse_stiffness, slip_length }
+        Asked {
+            status,
+            transverse_stiffness,
+            slip_length,
+        }
     }
 
     /// What displacement and reaction ask for.
     pub fn corrected(&self, u: &[f64], reaction: &[f64], (force, length): (f64, f64)) -> Asked<D> {
-        let Self { status, transverse_stiffness, slip_length, .. } = *self;
-        let (least, kept) = (LEAST * length, Asked { status, transverse_stiffness, slip_length });
+        let Self {
+            status,
+            transverse_stiffness,
+            slip_length,
+            ..
+        } = *self;
+        let (least, kept) = (
+            LEAST * length,
+            Asked {
+                status,
+                transverse_stiffness,
+                slip_length,
+            },
+        );
         let of = |status: Status<D>| self.linearised(status, least, reaction);
         if self.status == Status::Open {
             let beyond = -self.gap - self.inward * u[Nodal::<D>::at(self.node, self.axis)];
-            let slip = Vector::from_fn(|c, _| if self.along[c] { u[Nodal::<D>::at(self.node, c)] } else { 0.0 });
+            let slip = Vector::from_fn(|c, _| {
+                if self.along[c] {
+                    u[Nodal::<D>::at(self.node, c)]
+                } else {
+                    0.0
+                }
+            });
             return if beyond > length { of(self.met(&slip)) } else { kept };
         }
         if self.law.lifts && self.pushed(reaction) < -force {
@@ -182,7 +220,11 @@ impl<const D: usize> ContactNode<D> {
                 let held = self.friction(reaction);
                 let doubt = if self.is_neutral { TURNED * force } else { force };
                 let slips = held.norm() > self.limit(reaction) + doubt;
-                if slips { of(Status::Slip(-held.normalize())) } else { kept }
+                if slips {
+                    of(Status::Slip(-held.normalize()))
+                } else {
+                    kept
+                }
             }
             Status::Slip(direction) if self.law.friction > 0.0 => {
                 let slip = self.slip(u);

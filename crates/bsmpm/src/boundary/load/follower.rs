@@ -31,7 +31,10 @@ impl<const D: usize> LoadCorners<D> {
         let mut corners = Self::default();
         for load in loads.iter().filter(|load| load.follows) {
             let pieces = || load.points.iter().map(|point| point.corners);
-            let near = SAME * pieces().map(|piece| (piece[2] - piece[0]).amax()).fold(f64::MIN_POSITIVE, f64::max);
+            let near = SAME
+                * pieces()
+                    .map(|piece| (piece[2] - piece[0]).amax())
+                    .fold(f64::MIN_POSITIVE, f64::max);
             let mut known = BTreeMap::new();
             for piece in pieces() {
                 corners.of_piece.push(piece.map(|x| {
@@ -44,7 +47,11 @@ impl<const D: usize> LoadCorners<D> {
                 }));
             }
         }
-        corners.of_piece.iter().flatten().for_each(|&corner| corners.pieces[corner] += 1);
+        corners
+            .of_piece
+            .iter()
+            .flatten()
+            .for_each(|&corner| corners.pieces[corner] += 1);
         corners
     }
 
@@ -133,7 +140,11 @@ impl<const D: usize> FollowerLoads<D> {
         if !loads.iter().any(|load| load.follows) {
             return Self::default();
         }
-        Self { corners: LoadCorners::of(loads), carriers: carriers(loads, (grid, anchors), points), pushed }
+        Self {
+            corners: LoadCorners::of(loads),
+            carriers: carriers(loads, (grid, anchors), points),
+            pushed,
+        }
     }
 
     /// Of every load how many of its pieces this rank carries; empty where none follows the surface.
@@ -170,9 +181,13 @@ impl<const D: usize> FollowerLoads<D> {
         let offsets = grid.offsets();
         let material = |carrier: &Carrier<D>| {
             let p = carrier.point;
-            (points.x[p] + carrier.seen.displacement::<D>(&offsets, u), dF(p) * points.F.at(p))
+            (
+                points.x[p] + carrier.seen.displacement::<D>(&offsets, u),
+                dF(p) * points.F.at(p),
+            )
         };
-        self.corners.tractions::<K>(loads, &self.corners.carried(&self.carriers, material, halo))
+        self.corners
+            .tractions::<K>(loads, &self.corners.carried(&self.carriers, material, halo))
     }
 
     /// Nodal forces of these tractions, N. One exchange with the neighbours.
@@ -209,10 +224,21 @@ fn carriers<const D: usize>(
     points: Anchored<'_, D>,
 ) -> Vec<Carrier<D>> {
     let (offsets, mut carriers) = (grid.offsets(), Vec::new());
-    let following = || loads.iter().zip(&anchors.loads).filter(|(load, _)| load.follows).flat_map(|(_, ids)| ids);
+    let following = || {
+        loads
+            .iter()
+            .zip(&anchors.loads)
+            .filter(|(load, _)| load.follows)
+            .flat_map(|(_, ids)| ids)
+    };
     points.visit(following(), |point, piece| {
         if let Some(seen) = Attachment::at(grid, &offsets, |_| true, &points.x[point]) {
-            carriers.push(Carrier { point, start: points.x[point] - points.u[point], piece, seen });
+            carriers.push(Carrier {
+                point,
+                start: points.x[point] - points.u[point],
+                piece,
+                seen,
+            });
         }
     });
     carriers

@@ -60,7 +60,10 @@ pub struct Pose<const D: usize> {
 impl<const D: usize> RigidBody<D> {
     /// Its state at the start.
     pub fn at_rest(&self) -> RigidState {
-        RigidState { velocity: self.pick(&self.velocity, &Vector::zeros()), ..RigidState::default() }
+        RigidState {
+            velocity: self.pick(&self.velocity, &Vector::zeros()),
+            ..RigidState::default()
+        }
     }
 
     /// On the path at time `t`.
@@ -100,13 +103,19 @@ impl<const D: usize> RigidBody<D> {
     pub fn extent(&self, moved: &Vector<3>, axis: usize) -> Option<[f64; 2]> {
         let pose = self.pose(moved);
         let along = self.outline.places().into_iter().map(|x| pose.place(&x)[axis]);
-        along.fold(None, |extent, x| Some(extent.map_or([x; 2], |[least, most]: [f64; 2]| [least.min(x), most.max(x)])))
+        along.fold(None, |extent, x| {
+            Some(extent.map_or([x; 2], |[least, most]: [f64; 2]| [least.min(x), most.max(x)]))
+        })
     }
 
     /// Where it is once it has `moved`.
     pub fn pose(&self, moved: &Vector<3>) -> Pose<D> {
         let (sin, cos) = if D == 2 { moved[2].sin_cos() } else { (0.0, 1.0) };
-        Pose { center: self.center + Vector::<D>::from_fn(|k, _| moved[k]), cos, sin }
+        Pose {
+            center: self.center + Vector::<D>::from_fn(|k, _| moved[k]),
+            cos,
+            sin,
+        }
     }
 }
 

@@ -31,12 +31,25 @@ impl<const D: usize> RigidContacts<D> {
         let motions = self.found(u, halo);
         let held = |near: &RigidPoint<D>| {
             let gap = near.gap_after(&self.moved(near, u, &motions));
-            Held { point: near.point, body: near.body, gap, touches: near.status != ContactStatus::Open }
+            Held {
+                point: near.point,
+                body: near.body,
+                gap,
+                touches: near.status != ContactStatus::Open,
+            }
         };
         let mut all: Vec<Held> = self.points.iter().map(held).collect();
-        all.sort_by(|a, b| a.point.cmp(&b.point).then(b.touches.cmp(&a.touches)).then(a.gap.total_cmp(&b.gap)));
+        all.sort_by(|a, b| {
+            a.point
+                .cmp(&b.point)
+                .then(b.touches.cmp(&a.touches))
+                .then(a.gap.total_cmp(&b.gap))
+        });
         let of_a_point = all.chunk_by(|a, b| a.point == b.point);
-        of_a_point.filter(|near| near.iter().filter(|held| held.touches).count() < 2).map(|near| near[0]).collect()
+        of_a_point
+            .filter(|near| near.iter().filter(|held| held.touches).count() < 2)
+            .map(|near| near[0])
+            .collect()
     }
 
     /// Part of what every point of this rank reaches that it has from the end of the step on, with the bodies'
@@ -46,9 +59,16 @@ impl<const D: usize> RigidContacts<D> {
         if self.is_empty() {
             return None;
         }
-        let mut extents = after.points.extent.clone().unwrap_or_else(|| vec![1.0; after.points.len()]);
+        let mut extents = after
+            .points
+            .extent
+            .clone()
+            .unwrap_or_else(|| vec![1.0; after.points.len()]);
         for Held { point, body, gap, .. } in held.iter().copied() {
-            let (pose, outline) = (self.bodies[body].body.pose(&states[body].moved), &self.bodies[body].body.outline);
+            let (pose, outline) = (
+                self.bodies[body].body.pose(&states[body].moved),
+                &self.bodies[body].body.outline,
+            );
             let near = outline.nearest(&pose.seen(&after.points.x[point]));
             let (whole, _) = reach(after, point, &pose.turned(&near.normal));
             let extent = &mut extents[point];
@@ -101,10 +121,13 @@ fn is_beside_a_side<const D: usize>(
     (normal, distance): (&Vector<D>, f64),
 ) -> bool {
     let foot = x - normal * distance;
-    tangents(normal)[..D - 1].iter().flat_map(|along| [*along, -along]).all(|along| {
-        let aside = along * (ASIDE * distance);
-        let near = body.outline.nearest(&pose.seen(&(x + aside)));
-        let moved = x + aside - pose.turned(&near.normal) * near.distance - foot;
-        moved.dot(&along) > 0.25 * ASIDE * distance
-    })
+    tangents(normal)[..D - 1]
+        .iter()
+        .flat_map(|along| [*along, -along])
+        .all(|along| {
+            let aside = along * (ASIDE * distance);
+            let near = body.outline.nearest(&pose.seen(&(x + aside)));
+            let moved = x + aside - pose.turned(&near.normal) * near.distance - foot;
+            moved.dot(&along) > 0.25 * ASIDE * distance
+        })
 }

@@ -37,8 +37,15 @@ impl<const D: usize> BodyInStep<D> {
         let [before, after] = [t, t + dt].map(|t| body.pick(&state.moved, &body.on_path(t)));
         let zero = Vector::zeros();
         let still = Self {
-            body: RigidBody { free: [false; MOTIONS], friction: 0.0, ..body.clone() },
-            before: RigidState { moved: before, ..*state },
+            body: RigidBody {
+                free: [false; MOTIONS],
+                friction: 0.0,
+                ..body.clone()
+            },
+            before: RigidState {
+                moved: before,
+                ..*state
+            },
             predicted: after,
             external: zero,
             unbalanced: zero,
@@ -54,7 +61,11 @@ impl<const D: usize> BodyInStep<D> {
             return still;
         }
         let external = body.acting(t + dt, &around.body_force);
-        let mut at = Self { body: body.clone(), external, ..still };
+        let mut at = Self {
+            body: body.clone(),
+            external,
+            ..still
+        };
         let Some(newmark) = around.newmark else {
             // Without inertia it goes on as it did: soil is expected to.
             at.predicted = body.pick(&(before + state.velocity * dt), &after);
@@ -70,7 +81,9 @@ impl<const D: usize> BodyInStep<D> {
 
     /// m, m, rad  of the step, of motions that the soil does not hinder.
     fn unhindered(&self, dt: f64) -> Vector<3> {
-        let Some(newmark) = self.newmark else { return Vector::zeros() };
+        let Some(newmark) = self.newmark else {
+            return Vector::zeros();
+        };
         Vector::from_fn(|k, _| {
             let (v, a) = (self.before.velocity[k], self.acceleration[k]);
             let resists = newmark.acting(a, newmark.acceleration(dt, 0.0, (v, a)));
@@ -121,7 +134,9 @@ impl<const D: usize> BodyInStep<D> {
         if let Some(end) = self.flight {
             return (end, Some(free(self.external.component_div(&self.body.mass))));
         }
-        let Some(newmark) = self.newmark else { return (step / length, None) };
+        let Some(newmark) = self.newmark else {
+            return (step / length, None);
+        };
         let (v, a) = (&self.before.velocity, &self.acceleration);
         let end = Vector::<3>::from_fn(|k, _| newmark.acceleration(length, step[k], (v[k], a[k])));
         let velocity = Vector::from_fn(|k, _| v[k] + newmark.gained(length, a[k], end[k]));

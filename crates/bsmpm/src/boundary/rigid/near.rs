@@ -44,7 +44,14 @@ impl<const D: usize> RigidContacts<D> {
             edge: around.reaching.grid.smallest_edge(),
             moving: Vec::new(),
         };
-        let mut moving = vec![0.0; if around.newmark.is_some() { around.reaching.grid.nodes() } else { 0 }];
+        let mut moving = vec![
+            0.0;
+            if around.newmark.is_some() {
+                around.reaching.grid.nodes()
+            } else {
+                0
+            }
+        ];
         let mut near = vec![0.0; 2 * bodies.len()];
         for (number, (body, state)) in bodies.iter().zip(states).enumerate() {
             let mut at = BodyInStep::of(body, state, t, dt, around);
@@ -88,7 +95,11 @@ impl<const D: usize> RigidContacts<D> {
             (if is_met { point.met(&moved) } else { ContactStatus::Open }, moved)
         };
         let statuses: Vec<(ContactStatus, Vector<D>)> = contacts.points.iter().map(status).collect();
-        contacts.points.iter_mut().zip(&statuses).for_each(|(point, (status, moved))| point.take(*status, moved));
+        contacts
+            .points
+            .iter_mut()
+            .zip(&statuses)
+            .for_each(|(point, (status, moved))| point.take(*status, moved));
         let moved: Vec<Vector<D>> = statuses.iter().map(|(_, moved)| *moved).collect();
         contacts.hold_neutral(&moved, &vec![false; moved.len()], halo);
         contacts.strike(halo);
@@ -135,10 +146,13 @@ impl<const D: usize> RigidContacts<D> {
                 let step = after.place(&seen) - place;
                 let N = values(shape, p, &(place - x));
                 let pores = around.pore_pressure.filter(|_| body.friction > 0.0);
-                let water =
-                    pores.map_or(0.0, |pores| pressing(pores, around, (patch.first_node, p), (&normal, &place)));
-                let carried =
-                    points.tangential_force.as_ref().map_or([0.0; 2], |carried| along(&tangents, &carried[p]));
+                let water = pores.map_or(0.0, |pores| {
+                    pressing(pores, around, (patch.first_node, p), (&normal, &place))
+                });
+                let carried = points
+                    .tangential_force
+                    .as_ref()
+                    .map_or([0.0; 2], |carried| along(&tangents, &carried[p]));
                 self.points.push(RigidPoint {
                     body: number,
                     point: p,
@@ -165,7 +179,12 @@ impl<const D: usize> RigidContacts<D> {
 
 /// How far a point and the body at it come in a step as they start it, m.
 fn comes<const D: usize>(point: &RigidPoint<D>, at: &BodyInStep<D>, around: &Surroundings<'_, D>, dt: f64) -> f64 {
-    let v = around.reaching.points.motion.as_ref().map_or_else(Vector::zeros, |motion| motion.v[point.point]);
+    let v = around
+        .reaching
+        .points
+        .motion
+        .as_ref()
+        .map_or_else(Vector::zeros, |motion| motion.v[point.point]);
     let step = at.predicted - at.before.moved;
     dt * v.norm() + point.carried_by(&step).norm()
 }
@@ -173,7 +192,9 @@ fn comes<const D: usize>(point: &RigidPoint<D>, at: &BodyInStep<D>, around: &Sur
 /// m  longest edge of the cells along an axis.
 pub(super) fn longest_edge<const D: usize>(grid: &Grid<D>, axis: usize) -> f64 {
     let knots = &grid.axes()[axis];
-    (0..knots.cells()).map(|cell| knots.breakpoint(cell + 1) - knots.breakpoint(cell)).fold(0.0, f64::max)
+    (0..knots.cells())
+        .map(|cell| knots.breakpoint(cell + 1) - knots.breakpoint(cell))
+        .fold(0.0, f64::max)
 }
 
 /// m  how far a point reaches along a normal, by the ellipse in its box in the lattice of the cell that it was in at
@@ -207,15 +228,27 @@ fn column<const D: usize>(around: &Reaching<'_, D>, p: usize, normal: &Vector<D>
 /// m  how far each half edge of a point's box, deformed by its F, goes along a normal; those half edges; and an edge of
 /// the point's cell at the start.
 fn half_edges<const D: usize>(around: &Reaching<'_, D>, p: usize, normal: &Vector<D>) -> (Vector<D>, Vector<D>, f64) {
-    let Reaching { grid, points, reach, weight } = around;
+    let Reaching {
+        grid,
+        points,
+        reach,
+        weight,
+    } = around;
     let placed = points.x[p] - points.u[p];
-    let placed = if grid.locate(&placed).is_some() { placed } else { points.x[p] };
+    let placed = if grid.locate(&placed).is_some() {
+        placed
+    } else {
+        points.x[p]
+    };
     let start = grid.locate(&placed);
     let size = start.map_or_else(|| Vector::repeat(grid.smallest_edge()), |cell| grid.cell_box(&cell).1);
     let share = reach.get(usize::from(points.material[p])).copied().unwrap_or(0.5);
     let box_volume: f64 = size.iter().map(|edge| 2.0 * share * edge).product();
     // A box that was cut holds less.
-    let share = share * (points.volume[p] / weight(&placed) / box_volume).min(1.0).powf(1.0 / D as f64);
+    let share = share
+        * (points.volume[p] / weight(&placed) / box_volume)
+            .min(1.0)
+            .powf(1.0 / D as f64);
     let F = points.F.at(p);
     let along = |j: usize| (0..D).map(|i| F[(i, j)] * normal[i]).sum::<f64>() * share * size[j];
     (Vector::from_fn(|j, _| along(j)), size * share, size.min())

@@ -34,14 +34,22 @@ impl<const D: usize> RigidContacts<D> {
             if loose.iter().all(Option::is_none) {
                 break;
             }
-            let sliding: Vec<Option<Sliding>> =
-                self.points.iter().zip(moved).map(|(p, m)| sliding(p, m, &loose)).collect();
+            let sliding: Vec<Option<Sliding>> = self
+                .points
+                .iter()
+                .zip(moved)
+                .map(|(p, m)| sliding(p, m, &loose))
+                .collect();
             let mut extremes = vec![f64::NEG_INFINITY; 3 * self.bodies.len()]; // towards, against, - least slip
             for ((point, sliding), released) in self.points.iter().zip(&sliding).zip(released) {
-                let Some(Sliding { towards, slip }) = *sliding else { continue };
+                let Some(Sliding { towards, slip }) = *sliding else {
+                    continue;
+                };
                 let least = if *released { f64::NEG_INFINITY } else { -slip };
                 let of_body = extremes[3 * point.body..].iter_mut();
-                of_body.zip([towards, -towards, least]).for_each(|(most, value)| *most = most.max(value));
+                of_body
+                    .zip([towards, -towards, least])
+                    .for_each(|(most, value)| *most = most.max(value));
             }
             halo.maximum(&mut extremes);
             let mut count = [0.0];
@@ -64,7 +72,10 @@ impl<const D: usize> RigidContacts<D> {
 
     /// Of every body the motion that resists least, if it is loose.
     fn loose_motions(&self, halo: &dyn Halo) -> Vec<Option<Vector<3>>> {
-        let (stuck, now) = (self.stiffness_by(RigidPoint::rate_if_stuck, halo), self.stiffness(false, halo));
+        let (stuck, now) = (
+            self.stiffness_by(RigidPoint::rate_if_stuck, halo),
+            self.stiffness(false, halo),
+        );
         let of = |((at, stuck), now): ((&BodyInStep<D>, &Matrix3<f64>), &Matrix3<f64>)| loosest(at, stuck, now);
         self.bodies.iter().zip(&stuck).zip(&now).map(of).collect()
     }
@@ -88,10 +99,15 @@ fn loosest<const D: usize>(at: &BodyInStep<D>, stuck: &Matrix3<f64>, now: &Matri
 /// Of a point that slides along the loose motion of its body.
 fn sliding<const D: usize>(point: &RigidPoint<D>, moved: &Vector<D>, loose: &[Option<Vector<3>>]) -> Option<Sliding> {
     let motion = loose[point.body]?;
-    let ContactStatus::Slip(towards) = point.status else { return None };
+    let ContactStatus::Slip(towards) = point.status else {
+        return None;
+    };
     let along = point.along_motion(&motion);
     let friction = towards[0] * along[0] + towards[1] * along[1];
     let size = along[0].hypot(along[1]);
     let weighed = if friction < 0.0 { 1.0 + AGAINST } else { 1.0 };
-    (friction != 0.0).then(|| Sliding { towards: friction.signum(), slip: weighed * point.slipped(moved) / size })
+    (friction != 0.0).then(|| Sliding {
+        towards: friction.signum(),
+        slip: weighed * point.slipped(moved) / size,
+    })
 }

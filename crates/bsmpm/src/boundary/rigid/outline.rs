@@ -53,11 +53,17 @@ impl Outline {
             Self::Circle(radius) => {
                 let up = Vector::from_fn(|k, _| if k + 1 == D { 1.0 } else { 0.0 });
                 let normal = x.try_normalize(ON * radius).unwrap_or(up);
-                Nearest { distance: x.norm() - radius, normal }
+                Nearest {
+                    distance: x.norm() - radius,
+                    normal,
+                }
             }
             Self::Polygon(corners) => {
                 let Nearest { distance, normal } = nearest_of(corners, &Vector::<2>::new(x[0], x[1]));
-                Nearest { distance, normal: Vector::from_fn(|k, _| if k < 2 { normal[k] } else { 0.0 }) }
+                Nearest {
+                    distance,
+                    normal: Vector::from_fn(|k, _| if k < 2 { normal[k] } else { 0.0 }),
+                }
             }
             Self::Box(half) => nearest_of_box(half, x),
             Self::Revolved(corners) => {
@@ -65,7 +71,10 @@ impl Outline {
                 let Nearest { distance, normal } = nearest_of(corners, &Vector::<2>::new(r, x[D - 1]));
                 let out = if r > 0.0 { [x[0] / r, x[1] / r] } else { [1.0, 0.0] };
                 let of = |k: usize| if k + 1 == D { normal[1] } else { normal[0] * out[k] };
-                Nearest { distance, normal: Vector::from_fn(|k, _| of(k)) }
+                Nearest {
+                    distance,
+                    normal: Vector::from_fn(|k, _| of(k)),
+                }
             }
             Self::Terrain(terrain) => {
                 let (distance, normal) = terrain.nearest(x);
@@ -91,7 +100,10 @@ impl Outline {
             Self::Box(_) | Self::Revolved(_) | Self::Terrain(_) => Vec::new(),
             Self::Circle(radius) => {
                 let place = |k: usize| (k as f64 / PLACES as f64 * 2.0 * PI).sin_cos();
-                (0..PLACES).map(place).map(|(sin, cos)| Vector::<2>::new(cos, sin) * *radius).collect()
+                (0..PLACES)
+                    .map(place)
+                    .map(|(sin, cos)| Vector::<2>::new(cos, sin) * *radius)
+                    .collect()
             }
             Self::Polygon(corners) => {
                 let along = |(a, b): (&Vector<2>, &Vector<2>)| {
@@ -101,7 +113,10 @@ impl Outline {
                 edges(corners).flat_map(along).collect()
             }
         };
-        places.into_iter().map(|place| Vector::from_fn(|k, _| place[k])).collect()
+        places
+            .into_iter()
+            .map(|place| Vector::from_fn(|k, _| place[k]))
+            .collect()
     }
 
     /// m3 per radian  that it sweeps about the axis x = `axis`, m from the reference point, beyond which its part is
@@ -136,9 +151,11 @@ impl Outline {
     /// Area, centroid and polar moment, of a plane; nothing of what has no mass of its own.
     pub fn sizes(&self) -> Sizes {
         match self {
-            Self::Circle(radius) => {
-                Sizes { area: PI * radius.powi(2), centroid: Vector::zeros(), polar: 0.5 * PI * radius.powi(4) }
-            }
+            Self::Circle(radius) => Sizes {
+                area: PI * radius.powi(2),
+                centroid: Vector::zeros(),
+                polar: 0.5 * PI * radius.powi(4),
+            },
             Self::Polygon(corners) => {
                 let (mut area, mut first, mut second) = (0.0, Vector::<2>::zeros(), 0.0);
                 for (a, b) in edges(corners) {
@@ -148,11 +165,17 @@ impl Outline {
                     second += cross * (a.dot(a) + a.dot(b) + b.dot(b)) / 12.0;
                 }
                 let centroid = first / area;
-                Sizes { area, centroid, polar: second - area * centroid.norm_squared() }
+                Sizes {
+                    area,
+                    centroid,
+                    polar: second - area * centroid.norm_squared(),
+                }
             }
-            Self::Box(_) | Self::Revolved(_) | Self::Terrain(_) => {
-                Sizes { area: 0.0, centroid: Vector::zeros(), polar: 0.0 }
-            }
+            Self::Box(_) | Self::Revolved(_) | Self::Terrain(_) => Sizes {
+                area: 0.0,
+                centroid: Vector::zeros(),
+                polar: 0.0,
+            },
         }
     }
 }
@@ -162,10 +185,16 @@ fn nearest_of_box<const D: usize>(half: &[f64; 3], x: &Vector<D>) -> Nearest<D> 
     let outside = beyond.map(|part| part.max(0.0));
     let sign = |k: usize| if x[k] < 0.0 { -1.0 } else { 1.0 };
     if let Some(normal) = outside.try_normalize(0.0) {
-        return Nearest { distance: outside.norm(), normal: Vector::from_fn(|k, _| sign(k) * normal[k]) };
+        return Nearest {
+            distance: outside.norm(),
+            normal: Vector::from_fn(|k, _| sign(k) * normal[k]),
+        };
     }
     let face = beyond.imax();
-    Nearest { distance: beyond[face], normal: Vector::from_fn(|k, _| if k == face { sign(k) } else { 0.0 }) }
+    Nearest {
+        distance: beyond[face],
+        normal: Vector::from_fn(|k, _| if k == face { sign(k) } else { 0.0 }),
+    }
 }
 
 /// Edges of a closed polygon, from corner to corner.
@@ -197,8 +226,13 @@ fn nearest_of(corners: &[Vector<2>], x: &Vector<2>) -> Nearest {
     let side = if inside { -1.0 } else { 1.0 };
     let off = (x - foot) * side;
     // Counter-clockwise, the body is on the left of its edges.
-    let normal = off.try_normalize(ON * size).unwrap_or_else(|| Vector::<2>::new(edge[1], -edge[0]).normalize());
-    Nearest { distance: side * least.sqrt(), normal }
+    let normal = off
+        .try_normalize(ON * size)
+        .unwrap_or_else(|| Vector::<2>::new(edge[1], -edge[0]).normalize());
+    Nearest {
+        distance: side * least.sqrt(),
+        normal,
+    }
 }
 
 #[cfg(test)]
@@ -206,24 +240,61 @@ mod tests {
     use super::*;
 
     fn square() -> Outline {
-        Outline::Polygon([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]].map(Vector::from).to_vec())
+        Outline::Polygon(
+            [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]
+                .map(Vector::from)
+                .to_vec(),
+        )
     }
 
     #[test]
     fn distance_and_normal_are_those_of_the_nearest_edge_or_corner() {
         let of = |x: [f64; 2]| square().nearest(&Vector::from(x));
-        assert_eq!(of([1.0, 1.5]), Nearest { distance: 0.5, normal: Vector::<2>::new(0.0, 1.0) });
-        assert_eq!(of([1.0, 0.75]), Nearest { distance: -0.25, normal: Vector::<2>::new(0.0, 1.0) });
-        assert_eq!(of([0.5, 0.0]), Nearest { distance: 0.0, normal: Vector::<2>::new(0.0, -1.0) });
+        assert_eq!(
+            of([1.0, 1.5]),
+            Nearest {
+                distance: 0.5,
+                normal: Vector::<2>::new(0.0, 1.0)
+            }
+        );
+        assert_eq!(
+            of([1.0, 0.75]),
+            Nearest {
+                distance: -0.25,
+                normal: Vector::<2>::new(0.0, 1.0)
+            }
+        );
+        assert_eq!(
+            of([0.5, 0.0]),
+            Nearest {
+                distance: 0.0,
+                normal: Vector::<2>::new(0.0, -1.0)
+            }
+        );
         let corner = of([2.3, 1.4]);
         assert!((corner.distance - 0.5).abs() < 1e-15 && (corner.normal - Vector::<2>::new(0.6, 0.8)).norm() < 1e-15);
         let circle = Outline::Circle(2.0).nearest(&Vector::<2>::new(0.0, -3.0));
-        assert_eq!(circle, Nearest { distance: 1.0, normal: Vector::<2>::new(0.0, -1.0) });
+        assert_eq!(
+            circle,
+            Nearest {
+                distance: 1.0,
+                normal: Vector::<2>::new(0.0, -1.0)
+            }
+        );
     }
 
     #[test]
     fn a_notch_is_outside() {
-        let corners = [[0.0, 0.0], [3.0, 0.0], [3.0, 2.0], [2.0, 2.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+        let corners = [
+            [0.0, 0.0],
+            [3.0, 0.0],
+            [3.0, 2.0],
+            [2.0, 2.0],
+            [2.0, 1.0],
+            [1.0, 1.0],
+            [1.0, 2.0],
+            [0.0, 2.0],
+        ];
         let notched = Outline::Polygon(corners.map(Vector::from).to_vec());
         assert_eq!(notched.nearest(&Vector::<2>::new(1.5, 1.5)).distance, 0.5);
         assert_eq!(notched.nearest(&Vector::<2>::new(0.5, 1.5)).distance, -0.5);

@@ -22,7 +22,11 @@ fn size(along: Along) -> f64 {
 }
 
 fn product(a: Along, b: Along) -> f64 {
-    if b[1] == 0.0 { a[0] * b[0] } else { a[0] * b[0] + a[1] * b[1] }
+    if b[1] == 0.0 {
+        a[0] * b[0]
+    } else {
+        a[0] * b[0] + a[1] * b[1]
+    }
 }
 
 /// Part of the friction by which it may be off Coulomb's law for what would hold the point, in space.
@@ -73,7 +77,9 @@ pub(super) fn tangents<const D: usize>(normal: &Vector<D>) -> [Vector<D>; 2] {
         return tangents;
     }
     // The axis that is least along the normal, without its part along it; and what is across both.
-    let least = (0..D).min_by(|a, b| normal[*a].abs().total_cmp(&normal[*b].abs())).unwrap_or(0);
+    let least = (0..D)
+        .min_by(|a, b| normal[*a].abs().total_cmp(&normal[*b].abs()))
+        .unwrap_or(0);
     let mut axis = Vector::<D>::zeros();
     axis[least] = 1.0;
     let first = (axis - normal * normal[least]).normalize();
@@ -91,7 +97,11 @@ impl<const D: usize> RigidPoint<D> {
     /// The vector of components along the outline.
     pub fn vector(&self, along: Along) -> Vector<D> {
         let [first, second] = tangents(&self.normal);
-        if D == 2 { first * along[0] } else { first * along[0] + second * along[1] }
+        if D == 2 {
+            first * along[0]
+        } else {
+            first * along[0] + second * along[1]
+        }
     }
 
     fn components(&self, v: &Vector<D>) -> Along {
@@ -167,7 +177,11 @@ impl<const D: usize> RigidPoint<D> {
 
     /// N  the most that friction can be, by Coulomb's law for the effective normal force.
     fn limit(&self, normal: f64) -> f64 {
-        let effective = if self.water > 0.0 { (normal - self.water).max(0.0) } else { normal };
+        let effective = if self.water > 0.0 {
+            (normal - self.water).max(0.0)
+        } else {
+            normal
+        };
         self.friction * effective
     }
 
@@ -183,7 +197,10 @@ impl<const D: usize> RigidPoint<D> {
 
     /// Takes a status that what has `moved` asks for.
     pub fn take(&mut self, status: ContactStatus, moved: &Vector<D>) {
-        let (held, limit) = (size(self.held(moved)), self.limit(-self.stiffness * self.gap_after(moved)));
+        let (held, limit) = (
+            size(self.held(moved)),
+            self.limit(-self.stiffness * self.gap_after(moved)),
+        );
         let turns = D > 2 && matches!(status, ContactStatus::Slip(_)) && held > 0.0;
         self.status = status;
         self.transverse_share = if turns { (limit.max(0.0) / held).min(1.0) } else { 0.0 };
@@ -204,7 +221,11 @@ impl<const D: usize> RigidPoint<D> {
     /// N  force on the material as a step without inertia begins.
     fn before(&self) -> Vector<D> {
         let depth = -self.gap_before();
-        if depth > 0.0 { self.normal * (self.stiffness * depth) + self.vector(self.carried) } else { Vector::zeros() }
+        if depth > 0.0 {
+            self.normal * (self.stiffness * depth) + self.vector(self.carried)
+        } else {
+            Vector::zeros()
+        }
     }
 
     /// N  mean of the forces as the step begins and ends, which counts for work; and what the one at its end is more.
@@ -279,9 +300,10 @@ impl<const D: usize> RigidPoint<D> {
         let limit = self.limit(normal.max(0.0));
         match self.status {
             _ if normal < -force => (ContactStatus::Open, -normal),
-            ContactStatus::Stick if size(along) > limit + force => {
-                (ContactStatus::Slip(along.map(|part| part / size(along))), size(along) - limit)
-            }
+            ContactStatus::Stick if size(along) > limit + force => (
+                ContactStatus::Slip(along.map(|part| part / size(along))),
+                size(along) - limit,
+            ),
             ContactStatus::Slip(towards) if towards != [0.0; 2] => self.slip_on(towards, moved, limit, force),
             status => (status, 0.0),
         }
@@ -291,7 +313,11 @@ impl<const D: usize> RigidPoint<D> {
     fn slip_on(&self, towards: Along, moved: &Vector<D>, limit: f64, force: f64) -> (ContactStatus, f64) {
         let (soil, held) = (1.0 / super::PENALTY, self.held(moved));
         let against = product(towards, held);
-        let sticks = if D == 2 { against < limit - force } else { size(held) < limit - force || against <= 0.0 };
+        let sticks = if D == 2 {
+            against < limit - force
+        } else {
+            size(held) < limit - force || against <= 0.0
+        };
         if sticks {
             return (ContactStatus::Stick, soil * (limit - against));
         }
@@ -302,7 +328,11 @@ impl<const D: usize> RigidPoint<D> {
         let now = held.map(|part| part / size(held));
         let (_, friction_force) = self.pushed(moved);
         let off = (friction_force[0] - limit * now[0]).hypot(friction_force[1] - limit * now[1]);
-        if off > TURNED * limit + force { (ContactStatus::Slip(now), off) } else { (self.status, 0.0) }
+        if off > TURNED * limit + force {
+            (ContactStatus::Slip(now), off)
+        } else {
+            (self.status, 0.0)
+        }
     }
 
     /// Row-major square of the symmetric part of its stiffness, D unknowns for each node of the cell.

@@ -31,7 +31,11 @@ pub(super) struct ContactState<const D: usize> {
 impl<const D: usize> StripContact<D> {
     /// Pa  the traction on the body of what is `carried` from step to step.
     pub fn acting(&self, carried: &Vector<D>) -> Vector<D> {
-        if self.is_open(carried) { Vector::zeros() } else { *carried }
+        if self.is_open(carried) {
+            Vector::zeros()
+        } else {
+            *carried
+        }
     }
 
     /// Whether what is carried is a gap and no traction.
@@ -44,7 +48,11 @@ impl<const D: usize> ContactState<D> {
     /// At the start of a step, as far as what is `carried` reports.
     pub fn of(contact: StripContact<D>, carried: &Vector<D>) -> Self {
         let open_before = contact.is_open(carried);
-        let closed = if contact.law.friction == 0.0 { Status::Slip(Vector::zeros()) } else { Status::Stick };
+        let closed = if contact.law.friction == 0.0 {
+            Status::Slip(Vector::zeros())
+        } else {
+            Status::Stick
+        };
         Self {
             contact,
             status: if open_before { Status::Open } else { closed },
@@ -61,7 +69,11 @@ impl<const D: usize> ContactState<D> {
 
     /// What the elastic law goes on from, Pa: material that comes back has no friction yet.
     pub fn start(&self, carried: &Vector<D>) -> Vector<D> {
-        if self.open_before { self.normal(carried) } else { *carried }
+        if self.open_before {
+            self.normal(carried)
+        } else {
+            *carried
+        }
     }
 
     /// Pa  on the body, of an elastic law's `trial`.
@@ -84,7 +96,11 @@ impl<const D: usize> ContactState<D> {
 
     /// Pa  the most that friction can be at a pressure, by Coulomb's law for the effective one.
     fn limit(&self, pressure: f64) -> f64 {
-        let effective = if self.water > 0.0 { (pressure - self.water).max(0.0) } else { pressure };
+        let effective = if self.water > 0.0 {
+            (pressure - self.water).max(0.0)
+        } else {
+            pressure
+        };
         self.contact.law.friction * effective
     }
 
@@ -107,8 +123,16 @@ impl<const D: usize> ContactState<D> {
     /// Pa  what the next step goes on from. Of a point that is off the material the penalty times what the strip is
     /// ahead of it: against the normal the gap, along it what it has moved on since it came off.
     pub fn carry(&self, trial: &Vector<D>, carried: &Vector<D>) -> Vector<D> {
-        let offset = if self.open_before { carried - self.normal(carried) } else { Vector::zeros() };
-        if self.status == Status::Open { trial + offset } else { self.traction(trial) }
+        let offset = if self.open_before {
+            carried - self.normal(carried)
+        } else {
+            Vector::zeros()
+        };
+        if self.status == Status::Open {
+            trial + offset
+        } else {
+            self.traction(trial)
+        }
     }
 
     /// Part of the step in which the point is on the material, if it comes off it or meets it; 1 if it does not.
@@ -123,23 +147,39 @@ impl<const D: usize> ContactState<D> {
 
     /// m  the gap that a step starts with.
     pub fn gap_before(&self, carried: &Vector<D>, penalty: f64) -> f64 {
-        if self.open_before { -self.contact.inward.dot(carried) / penalty } else { 0.0 }
+        if self.open_before {
+            -self.contact.inward.dot(carried) / penalty
+        } else {
+            0.0
+        }
     }
 
     /// m  the gap under a `trial`.
     pub fn gap(&self, trial: &Vector<D>, penalty: f64) -> f64 {
-        if self.status == Status::Open { (-self.contact.inward.dot(trial) / penalty).max(0.0) } else { 0.0 }
+        if self.status == Status::Open {
+            (-self.contact.inward.dot(trial) / penalty).max(0.0)
+        } else {
+            0.0
+        }
     }
 
     /// m  how far a point that has come back has moved along itself while it was off.
     pub fn moved_on(&self, carried: &Vector<D>, penalty: f64) -> f64 {
         let came_back = self.open_before && self.status != Status::Open;
-        if came_back { (carried - self.normal(carried)).norm() / penalty } else { 0.0 }
+        if came_back {
+            (carried - self.normal(carried)).norm() / penalty
+        } else {
+            0.0
+        }
     }
 
     /// Pa  normal traction, positive where the strip pushes.
     pub fn pressure(&self, trial: &Vector<D>) -> f64 {
-        if self.status == Status::Open { 0.0 } else { self.contact.inward.dot(trial) }
+        if self.status == Status::Open {
+            0.0
+        } else {
+            self.contact.inward.dot(trial)
+        }
     }
 
     /// m  the part of a slip that friction takes: of the `trial`, what the return to Coulomb's cone took off.

@@ -38,7 +38,13 @@ pub(super) struct StripPoint<const D: usize> {
 impl<const D: usize> StripPoint<D> {
     /// The components that the strip and no support holds.
     pub(super) fn own(&self, vector: Vector<D>) -> Vector<D> {
-        Vector::from_fn(|component, _| if self.attachment[component].is_some() { vector[component] } else { 0.0 })
+        Vector::from_fn(|component, _| {
+            if self.attachment[component].is_some() {
+                vector[component]
+            } else {
+                0.0
+            }
+        })
     }
 
     /// The part of a vector that is held.
@@ -97,17 +103,31 @@ impl<const D: usize> StripPoint<D> {
     pub(super) fn lengths(&self, offsets: &[usize], u: &[f64], edge: f64, sums: &mut StripSums) -> [f64; LENGTHS] {
         let (motion, after) = (self.part(self.motion).norm(), self.traction(offsets, u));
         let (slip, accumulated) = (self.slip(offsets, u).norm(), after.norm() / self.penalty);
-        let Some(state) = &self.state else { return [slip, accumulated, motion, 0.0, 0.0] };
+        let Some(state) = &self.state else {
+            return [slip, accumulated, motion, 0.0, 0.0];
+        };
         let trial = self.trial(state, offsets, u);
-        let (slid, gap) = (self.own(state.slid(&trial, self.penalty)), state.gap(&trial, self.penalty));
+        let (slid, gap) = (
+            self.own(state.slid(&trial, self.penalty)),
+            state.gap(&trial, self.penalty),
+        );
         let pushed = state.pressure(&trial).max(0.0) * self.area;
         let flag = |is: bool| f64::from(u8::from(is));
         let far = state.moved_on(&self.carried, self.penalty) > FAR * edge;
         let friction_work = self.mean(offsets, u).dot(&slid);
         let sliding = if slid.norm() > 0.0 { pushed } else { 0.0 };
-        let each =
-            [flag(state.status != Status::Open), pushed, sliding, pushed * slid.norm(), friction_work, flag(far)];
-        sums.contact.iter_mut().zip(each).for_each(|(sum, value)| sum.add(value));
+        let each = [
+            flag(state.status != Status::Open),
+            pushed,
+            sliding,
+            pushed * slid.norm(),
+            friction_work,
+            flag(far),
+        ];
+        sums.contact
+            .iter_mut()
+            .zip(each)
+            .for_each(|(sum, value)| sum.add(value));
         [slip, accumulated, motion, -gap, gap]
     }
 
@@ -134,7 +154,11 @@ impl<const D: usize> StripPoint<D> {
             self.part(unit)
         };
         let directions: [Vector<D>; D] = std::array::from_fn(direction);
-        let N = |row: usize| self.attachment[row % D].as_ref().map_or(0.0, |attachment| attachment.N()[row / D]);
+        let N = |row: usize| {
+            self.attachment[row % D]
+                .as_ref()
+                .map_or(0.0, |attachment| attachment.N()[row / D])
+        };
         let order = size * D;
         let entry = |at: usize| N(at / order) * N(at % order) * directions[at % order % D][at / order % D];
         Some((first, (0..order * order).map(entry).collect()))
@@ -160,6 +184,10 @@ pub(super) fn contact_report(strip: usize, totals: &[f64], lengths: &[f64]) -> C
         sliding: share(sliding, pushed),
         slip: share(slid, pushed),
         dissipated,
-        gap: if held > 0.0 { [-lengths[3], lengths[4]] } else { [0.0; 2] },
+        gap: if held > 0.0 {
+            [-lengths[3], lengths[4]]
+        } else {
+            [0.0; 2]
+        },
     }
 }

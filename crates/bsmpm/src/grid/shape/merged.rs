@@ -39,7 +39,10 @@ impl<const D: usize> Shape<D> {
 impl<const D: usize> Merged<D> {
     /// Of the splines `lower` of degree q - 1 in a grid that reaches 2q - 1 layers; two exchanges with the neighbours.
     pub(crate) fn of(grid: &Grid<D>, lower: &Shape<D>, grouped: Grouped<'_>, halo: &dyn Halo) -> Self {
-        debug_assert!(grid.beyond() + 1 >= 2 * grid.order(), "functions on pairs are kept beyond their cells");
+        debug_assert!(
+            grid.beyond() + 1 >= 2 * grid.order(),
+            "functions on pairs are kept beyond their cells"
+        );
         let axes = grid.axes().each_ref().map(Paired::of);
         let (width, n, groups) = (lower.width(), lower.offsets().len(), grouped.count());
         let (mut offsets, mut shares) = (Vec::new(), Vec::new());
@@ -55,7 +58,14 @@ impl<const D: usize> Merged<D> {
                 |axis: usize, (k, h): (usize, usize)| axes[axis].share(cell[axis], (digit(k, axis), digit(h, axis)));
             shares.extend((0..n * n).map(|at| (0..D).map(|axis| share(axis, (at / n, at % n))).product::<f64>()));
         }
-        let mut merged = Self { axes, functions: n, groups, offsets, shares, inside: Vec::new() };
+        let mut merged = Self {
+            axes,
+            functions: n,
+            groups,
+            offsets,
+            shares,
+            inside: Vec::new(),
+        };
         merged.inside = merged.inside(grid, lower, grouped, halo);
         merged
     }
@@ -68,7 +78,9 @@ impl<const D: usize> Merged<D> {
         for (number, patch) in lower.patches().iter().enumerate() {
             let sums = counts.patch(patch.first_node);
             for group in (0..self.groups).filter(|group| deep[number * self.groups + group]) {
-                self.offsets(number).iter().for_each(|offset| sums[offset * self.groups + group] += 1.0);
+                self.offsets(number)
+                    .iter()
+                    .for_each(|offset| sums[offset * self.groups + group] += 1.0);
             }
         }
         let counts = halo.sum(&counts);
@@ -78,8 +90,11 @@ impl<const D: usize> Merged<D> {
                 inside.extend(self.offsets(number).iter().map(|offset| {
                     let node = patch.first_node + offset;
                     let at = grid.node_at(node);
-                    let cells =
-                        |axis: usize| self.axes[axis].at_slot(at[axis]).map_or(0, |k| self.axes[axis].cells_of(k));
+                    let cells = |axis: usize| {
+                        self.axes[axis]
+                            .at_slot(at[axis])
+                            .map_or(0, |k| self.axes[axis].cells_of(k))
+                    };
                     counts[node * self.groups + group] == (0..D).map(cells).product::<usize>() as f64
                 }));
             }
@@ -97,19 +112,27 @@ impl<const D: usize> Merged<D> {
         let n = self.functions;
         let inside = &self.inside[(patch * self.groups + group) * n..][..n];
         let rows = self.shares[patch * n * n..(patch + 1) * n * n].chunks_exact(n);
-        rows.enumerate().zip(inside).filter(|(_, inside)| **inside).map(|(row, _)| row)
+        rows.enumerate()
+            .zip(inside)
+            .filter(|(_, inside)| **inside)
+            .map(|(row, _)| row)
     }
 
     /// rho of function `h` on the cells: what functions on pairs that do not take part would have of it.
     pub(crate) fn rest(&self, (patch, group): (usize, usize), h: usize) -> f64 {
         let n = self.functions;
         let inside = &self.inside[(patch * self.groups + group) * n..][..n];
-        (0..n).filter(|&k| !inside[k]).map(|k| self.shares[(patch * n + k) * n + h]).sum()
+        (0..n)
+            .filter(|&k| !inside[k])
+            .map(|k| self.shares[(patch * n + k) * n + h])
+            .sum()
     }
 
     /// First cell along an axis of the function on pairs that is kept under the number of a node, if there is one.
     pub(crate) fn first_cell(&self, axis: usize, slot: usize) -> Option<usize> {
-        self.axes[axis].at_slot(slot).map(|function| self.axes[axis].support(function).start)
+        self.axes[axis]
+            .at_slot(slot)
+            .map(|function| self.axes[axis].support(function).start)
     }
 
     /// Numbers of a patch's functions on the cells, as those of all functions that are merged: of cells, and of pairs.
@@ -172,7 +195,9 @@ fn inner_cells<const D: usize>(grid: &Grid<D>, lower: &Shape<D>, grouped: Groupe
     let mut inner = Vec::with_capacity(lower.patches().len() * groups);
     for patch in lower.patches() {
         let cell = grid.cell_at(patch.cell);
-        let all = (0..3_usize.pow(D as u32)).filter(|&k| neighbour(grid, &cell, k)).count() as f64;
+        let all = (0..3_usize.pow(D as u32))
+            .filter(|&k| neighbour(grid, &cell, k))
+            .count() as f64;
         let counts = &around[(patch.first_node + own) * groups..][..groups];
         inner.extend((0..groups).map(|group| counts[group] == all && holds(patch, group)));
     }

@@ -33,7 +33,9 @@ where
     fn run<S: Simd>(self, _simd: S) {
         let size = 2 * D * W;
         for p in self.points {
-            let support = PointSupport::<D, W> { rows: &self.rows[p * size..(p + 1) * size] };
+            let support = PointSupport::<D, W> {
+                rows: &self.rows[p * size..(p + 1) * size],
+            };
             let mut gradient = K::Gradient::zeros();
             for (k, at_node) in self.block[..const { W.pow(D as u32) }].iter().enumerate() {
                 let slope = K::slope::<f64>(|| support.value(k), support.gradient(k), &self.x[p]);

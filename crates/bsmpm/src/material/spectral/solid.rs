@@ -31,7 +31,11 @@ pub(super) fn solid<R: Real>(b: [R; 6]) -> ([(R, R); 3], Rows<R>) {
     let gain = tan * uv;
     let turn = Turn::by(tan);
     let ((ux, vx), (uy, vy), (uz, vz)) = (turn.apply(u[0], v[0]), turn.apply(u[1], v[1]), turn.apply(u[2], v[2]));
-    let sums = [(start, mean + dot(n, of_n)), (start, mean + (uu + gain)), (start, mean + (vv - gain))];
+    let sums = [
+        (start, mean + dot(n, of_n)),
+        (start, mean + (uu + gain)),
+        (start, mean + (vv - gain)),
+    ];
     (sums, [n, [ux, uy, uz], [vx, vy, vz]])
 }
 
@@ -53,7 +57,11 @@ fn distinct<R: Real>([xx, yy, zz, xy, yz, xz]: [R; 6]) -> [R; 3] {
         [q * s - p * z, x * z - s * s, p * s - x * q],
         [p * q - y * s, p * s - x * q, x * y - p * p],
     ];
-    let lengths = [dot(products[0], products[0]), dot(products[1], products[1]), dot(products[2], products[2])];
+    let lengths = [
+        dot(products[0], products[0]),
+        dot(products[1], products[1]),
+        dot(products[2], products[2]),
+    ];
     let second = lengths[0].below(lengths[1]);
     let length = R::choose(second, lengths[1], lengths[0]);
     let third = length.below(lengths[2]);
@@ -80,7 +88,10 @@ fn beside<R: Real>([x, y, z]: [R; 3]) -> ([R; 3], [R; 3]) {
     let sign = z.like(1.0).signed(z);
     let a = z.like(-1.0) / (sign + z);
     let b = x * y * a;
-    ([sign * x * x * a + 1.0, sign * b, -(sign * x)], [b, y * y * a + sign, -y])
+    (
+        [sign * x * x * a + 1.0, sign * b, -(sign * x)],
+        [b, y * y * a + sign, -y],
+    )
 }
 
 #[inline(always)]

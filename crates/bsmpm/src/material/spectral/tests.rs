@@ -49,8 +49,19 @@ fn the_strain_is_that_of_jacobi_rotations() {
     for exponent in 0..=12 {
         let size = 10.0_f64.powi(-exponent);
         for gap in [1.0, 0.3, 1e-3, 1e-8, 1e-15, 0.0] {
-            for values in [[1.0, 0.2, -0.4], [0.5, 0.5 - gap, -0.2], [0.3, -0.4 * gap, 0.0], [0.1, 0.1 - gap, 0.1]] {
-                for turn in [[0.3, -0.8, 1.1], [1e-9, 0.4, 2e-5], [2.0, 1.0, -3.0], [1e-3, 0.0, 0.0], [0.0, 1.5, 0.0]] {
+            for values in [
+                [1.0, 0.2, -0.4],
+                [0.5, 0.5 - gap, -0.2],
+                [0.3, -0.4 * gap, 0.0],
+                [0.1, 0.1 - gap, 0.1],
+            ] {
+                for turn in [
+                    [0.3, -0.8, 1.1],
+                    [1e-9, 0.4, 2e-5],
+                    [2.0, 1.0, -3.0],
+                    [1e-3, 0.0, 0.0],
+                    [0.0, 1.5, 0.0],
+                ] {
                     let b = turned(values.map(|value| size * value), turn);
                     let spectrum = Spectrum::of(&b).expect("positive definite");
                     let (found, exact) = (spectrum.assemble(spectrum.eps), jacobi(&b));
@@ -67,10 +78,20 @@ fn the_strain_is_that_of_jacobi_rotations() {
 fn axes_are_orthonormal_and_values_descend() {
     for k in 0..200 {
         let angle = f64::from(k);
-        let b = turned([0.3 * angle.sin(), 1e-7 * angle.cos(), 0.2], [angle, 1.0 - 0.1 * angle, 2.0]);
+        let b = turned(
+            [0.3 * angle.sin(), 1e-7 * angle.cos(), 0.2],
+            [angle, 1.0 - 0.1 * angle, 2.0],
+        );
         let found = Spectrum::of(&b).expect("positive definite");
         let axes = Matrix3::from_fn(|i, j| found.axis()[i][j]);
-        assert!(largest((axes * axes.transpose() - Matrix3::identity()).iter().copied()) <= 2e-15, "{axes}");
-        assert!(found.eps[0] >= found.eps[1] && found.eps[1] >= found.eps[2], "{:?}", found.eps);
+        assert!(
+            largest((axes * axes.transpose() - Matrix3::identity()).iter().copied()) <= 2e-15,
+            "{axes}"
+        );
+        assert!(
+            found.eps[0] >= found.eps[1] && found.eps[1] >= found.eps[2],
+            "{:?}",
+            found.eps
+        );
     }
 }

@@ -12,7 +12,9 @@ pub struct Measured {
 impl Measured {
     /// Of rows whose heads rise from 0, and whose others fall from 1, or stay, without going below 0; at least two.
     pub fn new(rows: Vec<[f64; 3]>) -> Self {
-        let slopes = (0..rows.len()).map(|k| [1, 2].map(|of| slope_at(&rows, k, of))).collect();
+        let slopes = (0..rows.len())
+            .map(|k| [1, 2].map(|of| slope_at(&rows, k, of)))
+            .collect();
         Self { rows, slopes }
     }
 
@@ -29,7 +31,10 @@ impl Measured {
             let (a, b) = (from[of + 1], to[of + 1]);
             let (da, db) = (self.slopes[above - 1][of] * length, self.slopes[above][of] * length);
             let (square, cube) = (3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db);
-            [a + t * (da + t * (square + t * cube)), (da + t * (2.0 * square + 3.0 * t * cube)) / length]
+            [
+                a + t * (da + t * (square + t * cube)),
+                (da + t * (2.0 * square + 3.0 * t * cube)) / length,
+            ]
         })
     }
 }

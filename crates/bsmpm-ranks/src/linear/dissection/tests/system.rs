@@ -27,7 +27,9 @@ struct Wire {
 
 impl Link for Wire {
     fn send(&self, to: usize, numbers: &[f64]) {
-        std::thread::sleep(Duration::from_micros((noise(self.delay + to + numbers.len()) * 2000.0) as u64));
+        std::thread::sleep(Duration::from_micros(
+            (noise(self.delay + to + numbers.len()) * 2000.0) as u64,
+        ));
         self.to[to].send(numbers.to_vec()).unwrap();
     }
 
@@ -37,8 +39,13 @@ impl Link for Wire {
 }
 
 fn wires(ranks: usize, delay: usize) -> Vec<Wire> {
-    let mut wires: Vec<Wire> =
-        (0..ranks).map(|rank| Wire { to: Vec::new(), from: Vec::new(), delay: delay * (rank + 1) }).collect();
+    let mut wires: Vec<Wire> = (0..ranks)
+        .map(|rank| Wire {
+            to: Vec::new(),
+            from: Vec::new(),
+            delay: delay * (rank + 1),
+        })
+        .collect();
     for from in 0..ranks {
         for to in 0..ranks {
             let (sender, receiver) = sync_channel(0); // as large messages do, a send waits until it is received
@@ -60,7 +67,11 @@ impl<const C: usize> System<C> {
     pub fn new([columns, rows]: [usize; 2], order: usize, bounds: &[usize]) -> Self {
         let axis = |cells| KnotVector::uniform(1.0, cells, order).unwrap();
         let slabs = Slabs::new(bounds.to_vec(), bounds.len() - 1, 0..columns).unwrap();
-        Self { grid: Grid::new([axis(columns), axis(rows)]).unwrap(), slabs, gap: 0..0 }
+        Self {
+            grid: Grid::new([axis(columns), axis(rows)]).unwrap(),
+            slabs,
+            gap: 0..0,
+        }
     }
 
     /// The same, with every slab cut into parts.
@@ -73,7 +84,9 @@ impl<const C: usize> System<C> {
 
     /// Numbers in the whole grid of the nodal components of a window.
     fn components(&self, window: &Grid<2>) -> Vec<usize> {
-        (0..window.nodes()).flat_map(|node| Nodal::<C>::of(window.number_of(node))).collect()
+        (0..window.nodes())
+            .flat_map(|node| Nodal::<C>::of(window.number_of(node)))
+            .collect()
     }
 
     /// The window of a rank.
@@ -107,25 +120,42 @@ impl<const C: usize> System<C> {
     }
 
     fn rhs(&self) -> Vec<f64> {
-        (0..self.grid.nodes() * C).map(|component| noise(component) - 0.5).collect()
+        (0..self.grid.nodes() * C)
+            .map(|component| noise(component) - 0.5)
+            .collect()
     }
 
     fn dense_solution(&self) -> Vec<f64> {
         let free = self.free();
         let size = free.len();
         let mut matrix = DMatrix::identity(size, size);
-        free.iter().enumerate().filter(|(_, free)| **free).for_each(|(c, _)| matrix[(c, c)] = 0.0);
+        free.iter()
+            .enumerate()
+            .filter(|(_, free)| **free)
+            .for_each(|(c, _)| matrix[(c, c)] = 0.0);
         for (cell, block) in (0..self.grid.cells()).filter_map(|cell| Some((cell, self.block(cell)?))) {
-            let components: Vec<usize> =
-                self.nodes(cell).into_iter().flat_map(|node| C * node..C * (node + 1)).collect();
+            let components: Vec<usize> = self
+                .nodes(cell)
+                .into_iter()
+                .flat_map(|node| C * node..C * (node + 1))
+                .collect();
             for (i, &row) in components.iter().enumerate().filter(|(_, row)| free[**row]) {
                 for (j, &column) in components.iter().enumerate().filter(|(_, column)| free[**column]) {
                     matrix[(row, column)] += block[(i, j)];
                 }
             }
         }
-        let rhs = self.rhs().into_iter().zip(&free).map(|(value, &free)| if free { value } else { 0.0 });
-        matrix.cholesky().unwrap().solve(&DVector::from_iterator(size, rhs)).as_slice().to_vec()
+        let rhs = self
+            .rhs()
+            .into_iter()
+            .zip(&free)
+            .map(|(value, &free)| if free { value } else { 0.0 });
+        matrix
+            .cholesky()
+            .unwrap()
+            .solve(&DVector::from_iterator(size, rhs))
+            .as_slice()
+            .to_vec()
     }
 
     /// What the only rank finds with so many threads.
@@ -145,7 +175,11 @@ impl<const C: usize> System<C> {
         direct.plan::<2, C>(wire, (&self.slabs, rank), &grid, &free);
         let mut stencil = Stencil::<2, C>::new(&grid);
         stencil.keep(|_| true);
-        let other = if precision == Precision::Double { Precision::Single } else { Precision::Double };
+        let other = if precision == Precision::Double {
+            Precision::Single
+        } else {
+            Precision::Double
+        };
         for (scale, precision) in [(3.0, other), (1.0, precision)] {
             stencil.clear();
             for cell in 0..grid.cells() {
@@ -170,12 +204,23 @@ impl<const C: usize> System<C> {
         for (precision, least, most) in [(Precision::Double, 0.0, 1e-9), (Precision::Single, 1e-9, 1e-3)] {
             let mut largest = 0.0_f64;
             for (rank, found) in self.solutions(precision, 0).into_iter().enumerate() {
-                let expected = self.components(&self.window(rank)).into_iter().map(|component| dense[component]);
+                let expected = self
+                    .components(&self.window(rank))
+                    .into_iter()
+                    .map(|component| dense[component]);
                 assert!(found.iter().all(|x| x.is_finite()));
-                largest = found.iter().zip(expected).fold(largest, |most, (a, b)| most.max((a - b).abs()));
+                largest = found
+                    .iter()
+                    .zip(expected)
+                    .fold(largest, |most, (a, b)| most.max((a - b).abs()));
             }
             let range = least * scale..most * scale;
-            assert!(range.contains(&largest), "{:?} {:?}: {largest:e} of {scale:e}", self.grid, self.slabs);
+            assert!(
+                range.contains(&largest),
+                "{:?} {:?}: {largest:e} of {scale:e}",
+                self.grid,
+                self.slabs
+            );
         }
     }
 
