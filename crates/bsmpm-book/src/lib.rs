@@ -204,11 +204,13 @@ pub fn normalised(path: &Path) -> PathBuf {
 /// If the summary, or a chapter that it names, cannot be read.
 pub fn chapters() -> io::Result<Vec<Chapter>> {
     let summary = fs::read_to_string(source().join("SUMMARY.md"))?;
-    let read = |file: String| match fs::read_to_string(source().join(&file)) {
-        Ok(text) => Ok(Chapter { file, text }),
-        Err(error) => Err(io::Error::new(error.kind(), format!("{file} of SUMMARY.md: {error}"))),
-    };
-    files_of_summary(&summary).into_iter().map(read).collect()
+    let mut chapters = Vec::new();
+    for file in files_of_summary(&summary) {
+        let text = fs::read_to_string(source().join(&file))
+            .map_err(|error| io::Error::new(error.kind(), format!("{file} of SUMMARY.md: {error}")))?;
+        chapters.push(Chapter { file, text });
+    }
+    Ok(chapters)
 }
 
 /// The files that a `SUMMARY.md` lists, at any depth. Headings of parts, and chapters without a file, are left out.
@@ -395,9 +397,9 @@ pub fn cited_equations(text: &str) -> Vec<String> {
 
 /// Whether this is two numbers with a full stop between them.
 fn is_equation_number(text: &str) -> bool {
-    let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
-    text.split_once('.')
-        .is_some_and(|(chapter, equation)| is_number(chapter) && is_number(equation))
+    let parts: Vec<&str> = text.split('.').collect();
+    let mut bytes = parts.iter().flat_map(|part| part.bytes());
+    parts.len() == 2 && !parts.contains(&"") && bytes.all(|byte| byte.is_ascii_digit())
 }
 
 /// Anchor of a heading, given its line in the Markdown.

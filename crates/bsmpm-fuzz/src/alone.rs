@@ -6,8 +6,10 @@ use bsmpm::error::{SolveError, StepError};
 use bsmpm::initial;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Model;
+use bsmpm::parallel::Backend;
 use bsmpm::parallel::{Alone, Krylov, LinearSolver, Solved, Symmetry};
 use bsmpm::points::Points;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::step::{Counts, StepReport, step};
 use bsmpm_scene::{Case, Initial, model};
 
@@ -20,7 +22,7 @@ pub struct SerialRun {
     /// m  nodal displacement that the next step starts from
     pub guess: Vec<f64>,
     halo: Alone,
-    solver: Trusted,
+    solver: TrustedSolver,
 }
 
 impl SerialRun {
@@ -28,7 +30,8 @@ impl SerialRun {
     pub fn new(model: Model<PlaneStrain, 2>, mut points: Points<2>) -> Self {
         points.sort_by_cell(&model.grid);
         points.surface = model.boundary.surface();
-        let (nodes, solver) = (model.grid.nodes(), Trusted(Skyline::new(&model.grid)));
+        let nodes = model.grid.nodes();
+        let solver = TrustedSolver(Skyline::new(&model.grid));
         Self {
             model,
             points,
@@ -43,19 +46,25 @@ impl SerialRun {
         match &case.initial {
             None => return Ok(()),
             Some(Initial::Elastic) => {
-                initial::set_elastic(&self.model, &mut self.points, (&self.halo, &mut self.solver))?;
+                initial::set_elastic(&self.model, &mut self.points, &self.halo, &mut self.solver)?;
             }
             Some(Initial::AtRest(k0)) if case.settles => {
-                let k0 = |material: u16| k0[usize::from(material)];
-                initial::set_spread(&self.model, &mut self.points, k0, (&self.halo, &mut self.solver))?;
+                initial::set_spread(
+                    &self.model,
+                    &mut self.points,
+                    |material| k0[usize::from(material)],
+                    &self.halo,
+                    &mut self.solver,
+                )?;
             }
             Some(Initial::AtRest(k0)) => {
-                let stress = |material, x: &_| model::at_rest(case, k0, material, x);
-                initial::set_stress(&self.model, &mut self.points, stress);
+                initial::set_stress(&self.model, &mut self.points, |material, x| {
+                    model::at_rest(case, k0, material, x)
+                });
             }
         }
         if case.settles {
-            initial::settle(&self.model, &mut self.points, (&self.halo, &mut self.solver))?;
+            initial::settle(&self.model, &mut self.points, &self.halo, &mut self.solver)?;
         }
         initial::balance(&self.model, &self.points, &self.halo).map(|_| ())
     }
@@ -67,18 +76,21 @@ impl SerialRun {
             &self.model,
             &mut self.points,
             &mut self.guess,
-            (t, dt),
+            TimeInterval { start: t, dt },
             Resisted::Displacement,
-            (&self.halo, &mut self.solver),
+            &mut Backend {
+                halo: &self.halo,
+                solver: &mut self.solver,
+            },
             &mut counts,
         )
     }
 }
 
 /// The direct solver with what the trait demands of it: solutions are finite.
-struct Trusted(Skyline);
+struct TrustedSolver(Skyline);
 
-impl LinearSolver for Trusted {
+impl LinearSolver for TrustedSolver {
     fn begin(&mut self, free: &[bool]) {
         self.0.begin(free);
     }

@@ -74,7 +74,8 @@ fn refused(errors: &[Error]) {
     assert!(!errors.is_empty());
     for error in errors {
         assert!(!error.message.is_empty());
-        let (line, page) = (error.to_string(), format!("{error:#}"));
+        let line = error.to_string();
+        let page = format!("{error:#}");
         assert!(!line.chars().any(char::is_control), "{line:?}");
         assert!(!page.chars().any(|c| c.is_control() && c != '\n'), "{page:?}");
     }

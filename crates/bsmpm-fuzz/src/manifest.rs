@@ -15,11 +15,12 @@ pub fn target(data: &[u8]) {
 }
 
 fn try_file(folder: &Path, data: &[u8]) {
-    let write = |bytes: &[u8]| fs::write(folder.join(MANIFEST), bytes).expect("room for a file");
-    write(data);
+    let file = folder.join(MANIFEST);
+    fs::write(&file, data).expect("room for a file");
     match Manifest::read(folder) {
         Ok(manifest) => {
-            write(&serde_json::to_vec_pretty(&manifest).expect("a manifest is JSON"));
+            let text = serde_json::to_vec_pretty(&manifest).expect("a manifest is JSON");
+            fs::write(&file, text).expect("room for a file");
             assert_eq!(Manifest::read(folder).expect("what was read once"), manifest);
         }
         Err(error) => assert!(!error.to_string().is_empty()),

@@ -2,6 +2,7 @@
 
 use crate::draw;
 use arbitrary::{Result, Unstructured};
+use bsmpm::material::Strength;
 use bsmpm::material::{
     CamClay, Decay, DruckerPrager, Elastic, Graded, Hencky, Law, Match, Material, MohrCoulomb, MuI, Profile, Response,
     Separation, SofteningMohrCoulomb, VonMises,
@@ -66,39 +67,26 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
         0 => Material::Hencky(Hencky { elastic }),
         1 | 2 => {
             let fit = *u.choose(&[Match::PlaneStrain, Match::Inner, Match::Outer])?;
-            Material::DruckerPrager(DruckerPrager::new(elastic, (friction, dilation, cohesion), fit))
+            Material::DruckerPrager(DruckerPrager::new(elastic, friction, dilation, cohesion, fit))
         }
         3 | 4 => Material::VonMises(VonMises::new(elastic, cohesion.max(1e-12), friction * cohesion)),
         5 => {
-            let (decay, part) = (*u.choose(&[Decay::Linear, Decay::Exponential])?, draw::fraction(u)?);
-            let residual = (friction * part, dilation * part, cohesion * draw::fraction(u)?);
-            let (peak, strain) = ((friction, dilation, cohesion), draw::size(u, -6.0, 3.0)?);
-            let (first, last) = if u.arbitrary()? {
-                (peak, residual)
-            } else {
-                (residual, peak)
+            let peak = Strength {
+                friction_angle: friction,
+                dilation_angle: dilation,
+                cohesion,
             };
-            Material::SofteningMohrCoulomb(SofteningMohrCoulomb::new(elastic, first, last, strain, decay))
+            softening(u, elastic, peak)?
         }
         6 => {
             let lambda = draw::between(u, 1e-4, 0.9)?;
-            let (kappa, ratio) = (lambda * draw::between(u, 0.01, 0.99)?, draw::between(u, 0.01, 2.99)?);
-            let (given, ocr) = (
-                if u.arbitrary()? { 0.0 } else { draw::size(u, -3.0, 9.0)? },
-                draw::size(u, 0.0, 3.0)?,
-            );
+            let kappa = lambda * draw::between(u, 0.01, 0.99)?;
+            let ratio = draw::between(u, 0.01, 2.99)?;
+            let given = if u.arbitrary()? { 0.0 } else { draw::size(u, -3.0, 9.0)? };
+            let ocr = draw::size(u, 0.0, 3.0)?;
             Material::CamClay(CamClay::new(elastic, [kappa, lambda, ratio, given, ocr]))
         }
-        7 => {
-            let [fast, i_0] = [friction * draw::between(u, 1.0, 2.0)?, draw::size(u, -6.0, 3.0)?];
-            let [diameter, density] = [draw::size(u, -9.0, 3.0)?, draw::size(u, -3.0, 6.0)?];
-            let law = MuI::new(elastic, [friction, fast, i_0, diameter, density]);
-            Material::MuI(
-                law.over(draw::size(u, -12.0, 6.0)?)
-                    .filter(|_| u.ratio(3, 4).unwrap_or(true))
-                    .unwrap_or(law),
-            )
-        }
+        7 => mu_i(u, elastic, friction)?,
         _ => Material::MohrCoulomb(MohrCoulomb::new(elastic, friction, dilation, cohesion).separating(separation)),
     };
     if u.ratio(7, 8)? {
@@ -107,6 +95,37 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
     let young = Profile::constant(law.elastic().young);
     let parameters = law.parameters().into_iter().map(Profile::constant).collect();
     Ok(Graded::new(&law, young, parameters, 0.0..1.0, reduction).at(draw::fraction(u)?))
+}
+
+/// A strength that falls from its peak, or rises to it.
+fn softening(u: &mut Unstructured<'_>, elastic: Elastic, peak: Strength) -> Result<Material> {
+    let decay = *u.choose(&[Decay::Linear, Decay::Exponential])?;
+    let part = draw::fraction(u)?;
+    let residual = Strength {
+        friction_angle: peak.friction_angle * part,
+        dilation_angle: peak.dilation_angle * part,
+        cohesion: peak.cohesion * draw::fraction(u)?,
+    };
+    let strain = draw::size(u, -6.0, 3.0)?;
+    let (first, last) = if u.arbitrary()? {
+        (peak, residual)
+    } else {
+        (residual, peak)
+    };
+    Ok(Material::SofteningMohrCoulomb(SofteningMohrCoulomb::new(
+        elastic, first, last, strain, decay,
+    )))
+}
+
+fn mu_i(u: &mut Unstructured<'_>, elastic: Elastic, friction: f64) -> Result<Material> {
+    let [fast, i_0] = [friction * draw::between(u, 1.0, 2.0)?, draw::size(u, -6.0, 3.0)?];
+    let [diameter, density] = [draw::size(u, -9.0, 3.0)?, draw::size(u, -3.0, 6.0)?];
+    let law = MuI::new(elastic, [friction, fast, i_0, diameter, density]);
+    Ok(Material::MuI(
+        law.over(draw::size(u, -12.0, 6.0)?)
+            .filter(|_| u.ratio(3, 4).unwrap_or(true))
+            .unwrap_or(law),
+    ))
 }
 
 /// Anywhere between -1 and ½, or near an end.
@@ -125,19 +144,24 @@ fn trial(u: &mut Unstructured<'_>) -> Result<Symmetric> {
         1 => Symmetric([(); 6].map(|()| draw::signed(u, -12.0, 12.0).unwrap_or(0.0))),
         kind => {
             let size = draw::size(u, -12.0, 1.5)?;
-            let mut stretch = || Ok((2.0 * size * draw::between(u, -1.0, 1.0)?).exp());
-            let stretches = Vector3::new(stretch()?, stretch()?, stretch()?);
-            let turn = |u: &mut Unstructured<'_>| draw::between(u, -3.2, 3.2);
+            let mut stretches = Vector3::zeros();
+            for stretch in &mut stretches {
+                *stretch = (2.0 * size * draw::between(u, -1.0, 1.0)?).exp();
+            }
             let plane = kind < 5;
-            let [x, y] = if plane { [0.0; 2] } else { [turn(u)?, turn(u)?] };
-            let q = Rotation3::new(Vector3::new(x, y, turn(u)?)).into_inner();
+            let mut turn = Vector3::zeros();
+            for angle in turn.iter_mut().skip(if plane { 2 } else { 0 }) {
+                *angle = draw::between(u, -3.2, 3.2)?;
+            }
+            let q = Rotation3::new(turn).into_inner();
             Symmetric::of(&(q * Tensor::from_diagonal(&stretches) * q.transpose()))
         }
     })
 }
 
 fn check(material: &Material, trial: &Symmetric, response: &Response, state: &[f64]) {
-    let (tau, b_e) = (response.tau(), response.b_e());
+    let tau = response.tau();
+    let b_e = response.b_e();
     let context = || format!("{material:?} at {trial:?}: {response:?}");
     let principal = response.principal_tau();
     let increments = [response.gap(), response.plastic_increment(), response.dissipation()];
@@ -227,7 +251,8 @@ fn second_return(material: &Material, response: &Response, scale: f64, state: &[
     let bulk = material.elastic().young / (3.0 - 6.0 * material.elastic().poisson);
     let elasticity = (lambda.abs() / mu).max(mu / bulk);
     let rounding = 32.0 * f64::EPSILON * (condition * stiffness + elasticity * scale);
-    let (before, after) = (response.principal_tau(), again.principal_tau());
+    let before = response.principal_tau();
+    let after = again.principal_tau();
     let change = (0..3).map(|k| (before[k] - after[k]).abs()).fold(0.0, f64::max);
     assert!(
         change <= SAME * scale + rounding,

@@ -39,22 +39,6 @@ fn signed(body: &[u8]) -> Vec<u8> {
 
 /// A record that is right about its file in size and hash, most times.
 fn record(u: &mut Unstructured<'_>) -> Result<CheckpointRecord> {
-    let array = |u: &mut Unstructured<'_>| {
-        let numbers = [ArrayNumber::U8, ArrayNumber::U16, ArrayNumber::U64, ArrayNumber::F64];
-        let count = |u: &mut Unstructured<'_>| {
-            if u.ratio(1, 8)? {
-                u.arbitrary()
-            } else {
-                u.int_in_range(0..=2)
-            }
-        };
-        Ok(RecordedArray {
-            name: u.arbitrary()?,
-            number: *u.choose(&numbers)?,
-            rows: count(u)?,
-            width: count(u)?,
-        })
-    };
     Ok(CheckpointRecord {
         schema: if u.ratio(1, 16)? { u.arbitrary()? } else { SCHEMA },
         version: u.arbitrary()?,
@@ -72,6 +56,25 @@ fn record(u: &mut Unstructured<'_>) -> Result<CheckpointRecord> {
             .to_string(),
         arrays: (0..u.int_in_range(0..=3)?).map(|_| array(u)).collect::<Result<_>>()?,
     })
+}
+
+fn array(u: &mut Unstructured<'_>) -> Result<RecordedArray> {
+    let numbers = [ArrayNumber::U8, ArrayNumber::U16, ArrayNumber::U64, ArrayNumber::F64];
+    Ok(RecordedArray {
+        name: u.arbitrary()?,
+        number: *u.choose(&numbers)?,
+        rows: count(u)?,
+        width: count(u)?,
+    })
+}
+
+/// A small number of rows or columns, or any.
+fn count(u: &mut Unstructured<'_>) -> Result<u64> {
+    if u.ratio(1, 8)? {
+        u.arbitrary()
+    } else {
+        u.int_in_range(0..=2)
+    }
 }
 
 /// What is found by name is what is found as the newest, and true.

@@ -70,7 +70,8 @@ fn check<const W: usize>(axis: &KnotVector, x: f64) {
         return;
     };
     let last = cell + 1 == axis.cells();
-    let (from, to) = (axis.breakpoint(cell), axis.breakpoint(cell + 1));
+    let from = axis.breakpoint(cell);
+    let to = axis.breakpoint(cell + 1);
     assert!(
         from <= x && (x < to || (last && x == to)),
         "{x} in cell {cell} of {axis:?}"
@@ -84,10 +85,8 @@ fn check<const W: usize>(axis: &KnotVector, x: f64) {
         sum - 1.0
     );
     let slopes = dN.map(|slope| slope * (to - from));
-    let (sum, size) = (
-        slopes.iter().sum::<f64>(),
-        slopes.iter().map(|slope| slope.abs()).sum::<f64>(),
-    );
+    let sum = slopes.iter().sum::<f64>();
+    let size = slopes.iter().map(|slope| slope.abs()).sum::<f64>();
     assert!(dN.iter().all(|slope| slope.is_finite()), "{dN:?} at {x} of {axis:?}");
     assert!(
         size.is_finite() && sum.abs() <= UNITY * size,

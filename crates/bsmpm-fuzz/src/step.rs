@@ -29,14 +29,14 @@ pub fn target(data: &[u8]) {
 }
 
 fn try_steps(case: &Case) {
-    let context = || format!("in\n{}", case.text);
-    let scene = model::model::<PlaneStrain, 2>(case).unwrap_or_else(|error| panic!("{error} {}", context()));
+    let text = &*case.text;
+    let scene = model::model::<PlaneStrain, 2>(case).unwrap_or_else(|error| panic!("{error} in\n{text}"));
     let points = model::points::<PlaneStrain, 2>(case, 0..case.grid.spans(0), |_| true);
     let mut run = SerialRun::new(scene, points);
     if run.start(case).is_err() {
         return;
     }
-    check(&run.points, &run.model.grid, &context);
+    check(&run.points, &run.model.grid, text);
     let schedule = model::schedule(case);
     let mut t = 0.0;
     for _ in 0..STEPS {
@@ -46,10 +46,9 @@ fn try_steps(case: &Case) {
             Ok(report) => {
                 assert!(
                     report.force.is_finite() && run.guess.iter().all(|u| u.is_finite()),
-                    "{report:?} {}",
-                    context()
+                    "{report:?} in\n{text}"
                 );
-                check(&run.points, &run.model.grid, &context);
+                check(&run.points, &run.model.grid, text);
                 assert_eq!((&run.points.id, &run.points.mass), (&before.0.id, &before.0.mass));
                 run.points.sort_by_cell(&run.model.grid);
             }
@@ -57,8 +56,7 @@ fn try_steps(case: &Case) {
                 assert!(!error.to_string().is_empty());
                 assert!(
                     (&run.points, &run.guess) == (&before.0, &before.1),
-                    "{error} left traces {}",
-                    context()
+                    "{error} left traces in\n{text}"
                 );
                 return;
             }
@@ -68,7 +66,7 @@ fn try_steps(case: &Case) {
 }
 
 /// All numbers finite, no point outside the grid or inside out.
-fn check(points: &Points<2>, grid: &Grid<2>, context: &dyn Fn() -> String) {
+fn check(points: &Points<2>, grid: &Grid<2>, text: &str) {
     let mut points = points.clone();
     for (name, column) in points.named_columns() {
         if column.number() == bsmpm::points::Number::F64 {
@@ -79,24 +77,14 @@ fn check(points: &Points<2>, grid: &Grid<2>, context: &dyn Fn() -> String) {
                 .map(|bytes| f64::from_le_bytes(bytes.try_into().expect("eight")));
             assert!(
                 numbers.into_iter().all(f64::is_finite),
-                "{name} is not finite {}",
-                context()
+                "{name} is not finite in\n{text}"
             );
         }
     }
-    assert!(
-        points.x.iter().all(|x| grid.locate(x).is_some()),
-        "outside {}",
-        context()
-    );
-    assert!(
-        points.F.iter().all(|F| F.determinant() > 0.0),
-        "inside out {}",
-        context()
-    );
+    assert!(points.x.iter().all(|x| grid.locate(x).is_some()), "outside in\n{text}");
+    assert!(points.F.iter().all(|F| F.determinant() > 0.0), "inside out in\n{text}");
     assert!(
         points.eps_p.iter().all(|eps_p| *eps_p >= 0.0),
-        "negative plastic strain {}",
-        context()
+        "negative plastic strain in\n{text}"
     );
 }

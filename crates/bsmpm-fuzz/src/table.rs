@@ -35,33 +35,28 @@ fn check(columns: &Columns) {
         assert_eq!(columns.get(&heading.name), Some(&columns.values[first][..]));
         assert_eq!(columns.unit(&heading.name), Some(&*columns.headings[first].unit));
     }
-    let join = |cells: Vec<String>| cells.join(",") + "\n";
-    let names = join(columns.headings.iter().map(|heading| heading.name.clone()).collect());
+    let names = line(columns.headings.iter().map(|heading| heading.name.clone()).collect());
     if names.starts_with('#') {
         return; // a name that was indented: at the beginning of a line it is a comment
     }
-    let units = join(columns.headings.iter().map(|heading| heading.unit.clone()).collect());
-    let row = |row: usize| {
-        join(
-            columns
-                .values
-                .iter()
-                .map(|column| format!("{:?}", column[row]))
-                .collect(),
-        )
-    };
-    let text = format!("{names}#{units}{}", (0..rows).map(row).collect::<String>());
+    let units = line(columns.headings.iter().map(|heading| heading.unit.clone()).collect());
+    let mut text = format!("{names}#{units}");
+    for row in 0..rows {
+        let cells = columns.values.iter().map(|column| format!("{:?}", column[row]));
+        text += &line(cells.collect());
+    }
     let again = parse(&text).expect("what was read once");
     assert_eq!(&again, columns);
-    let bits = |columns: &Columns| {
-        columns
-            .values
-            .iter()
-            .flatten()
-            .map(|value| value.to_bits())
-            .collect::<Vec<_>>()
-    };
     assert_eq!(bits(&again), bits(columns));
+}
+
+fn line(cells: Vec<String>) -> String {
+    cells.join(",") + "\n"
+}
+
+fn bits(columns: &Columns) -> Vec<u64> {
+    let values = columns.values.iter().flatten();
+    values.map(|value| value.to_bits()).collect()
 }
 
 /// A motion lies between the rows around it and meets each.
@@ -72,15 +67,17 @@ fn motion(columns: &Columns) {
         .zip(x.iter().zip(y))
         .map(|(t, (x, y))| (*t, Vector::from([*x, *y])))
         .collect();
-    let admitted = |rows: &[(f64, Vector<2>)]| rows.windows(2).all(|pair| pair[0].0 < pair[1].0) && rows[0].0 > 0.0;
-    if rows.is_empty() || !admitted(&rows) || rows.iter().any(|(_, moved)| moved.amax() > 1e300) {
+    let begins_after_0 = rows.first().is_some_and(|first| first.0 > 0.0);
+    let increases = rows.windows(2).all(|pair| pair[0].0 < pair[1].0);
+    if !begins_after_0 || !increases || rows.iter().any(|(_, moved)| moved.amax() > 1e300) {
         return; // those of a case begin after 0 and increase
     }
     let path = Path { rows };
     let mut before = (0.0, Vector::<2>::zeros());
     assert_eq!(path.at(0.0), before.1);
     for row in &path.rows {
-        let (lower, upper) = (before.1.inf(&row.1), before.1.sup(&row.1));
+        let lower = before.1.inf(&row.1);
+        let upper = before.1.sup(&row.1);
         let slack = (upper - lower) * (4.0 * f64::EPSILON);
         for part in [0.0, 0.25, 0.5, 1.0] {
             let t = before.0 + (row.0 - before.0) * part;

@@ -17,19 +17,19 @@ const TEMPORARY: &str = ".tmp";
 /// # Errors
 /// [`Error::File`] with the system's error; the temporary file is removed and an older `path` stays as it was.
 pub fn replace(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<(), Error> {
-    Filled::new(path, fill)?.give_name()?;
+    FilledFile::new(path, fill)?.give_name()?;
     sync_folder(path).map_err(Error::file("write", path))
 }
 
 /// A file that is whole under a temporary name, and removed if it is not given its own.
 #[derive(Debug)]
-pub(crate) struct Filled {
+pub(crate) struct FilledFile {
     file: File,
     temporary: PathBuf,
     path: PathBuf,
 }
 
-impl Filled {
+impl FilledFile {
     /// Fills the file.
     pub fn new(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<Self, Error> {
         let temporary = temporary(path);
@@ -58,7 +58,7 @@ impl Filled {
     }
 }
 
-impl Drop for Filled {
+impl Drop for FilledFile {
     fn drop(&mut self) {
         // What has its name is there no longer.
         let _ = fs::remove_file(&self.temporary);

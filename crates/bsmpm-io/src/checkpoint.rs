@@ -7,7 +7,7 @@ mod store;
 
 pub use find::{FoundCheckpoint, named, newest};
 pub use record::{ArrayNumber, CheckpointRecord, RecordedArray, SCHEMA};
-pub use store::{Facts, Pending, Phase, Store, forget_beyond};
+pub use store::{Facts, PendingCheckpoint, Phase, Store, forget_beyond};
 
 use std::path::{Path, PathBuf};
 

@@ -47,17 +47,12 @@ impl OutputDirectory {
     /// [`Error::Locked`] by a run that goes on, see [`Lock::take`]. [`Error::NotDirectory`], [`Error::Directory`] if
     /// the path is a file or cannot be made or written to, or if a link stands where one of the run's folders belongs.
     pub fn hold(path: &Path, unseen: Unseen) -> Result<Self, Error> {
-        let refused = |action| {
-            move |source| Error::Directory {
-                action,
-                path: path.to_owned(),
-                source,
-            }
-        };
         let idle = match fs::metadata(path) {
             Ok(found) if !found.is_dir() => return Err(Error::NotDirectory { path: path.to_owned() }),
             Ok(_) => false,
-            Err(_) => fs::create_dir_all(path).map(|()| true).map_err(refused("create"))?,
+            Err(_) => fs::create_dir_all(path)
+                .map(|()| true)
+                .map_err(Error::directory("create", path))?,
         };
         let lock = Some(Lock::take(path, unseen)?);
         // A link there would lead what is written out of the directory.
@@ -83,14 +78,7 @@ impl OutputDirectory {
     /// deleted then. [`Error::Directory`] if it cannot be written to.
     pub fn claim(mut self, existing: Existing, first: &Manifest) -> Result<Self, Error> {
         let path = &self.path;
-        let refused = |action| {
-            move |source| Error::Directory {
-                action,
-                path: path.clone(),
-                source,
-            }
-        };
-        let held = run_files(path).map_err(refused("read"))?;
+        let held = run_files(path).map_err(Error::directory("read", path))?;
         match (held.first(), existing) {
             (None, _) => {}
             (Some(found), Existing::Refuse) => {
@@ -99,15 +87,10 @@ impl OutputDirectory {
             }
             (Some(_), Existing::Delete) => delete_run(path, &held)?,
         }
-        let refused = |error| match error {
-            Error::File { source, .. } => Error::Directory {
-                action: "write to",
-                path: path.clone(),
-                source,
-            },
+        first.write(path).map_err(|error| match error {
+            Error::File { source, .. } => Error::directory("write to", path)(source),
             other => other,
-        };
-        first.write(path).map_err(refused)?;
+        })?;
         self.idle = false;
         Ok(self)
     }
@@ -129,12 +112,9 @@ impl OutputDirectory {
     /// # Errors
     /// As [`OutputDirectory::claim`].
     pub fn go_on(mut self, manifest: &Manifest) -> Result<Self, Error> {
-        let before = self.run()?.map_or_else(Vec::new, |run| run.outputs);
-        let kept = |name: &str| manifest.outputs.iter().any(|output| output.path == name);
-        let doomed = doomed(
-            &self.path,
-            before.iter().map(|output| &*output.path).filter(|name| !kept(name)),
-        )?;
+        let mut dropped = self.run()?.map_or_else(Vec::new, |run| run.outputs);
+        dropped.retain(|old| manifest.outputs.iter().all(|output| output.path != old.path));
+        let doomed = doomed(&self.path, dropped.iter().map(|output| &*output.path))?;
         // What is left half deleted is still named by the older manifest.
         delete(&doomed)?;
         manifest.write(&self.path)?;
@@ -216,8 +196,8 @@ fn delete_run(directory: &Path, held: &[String]) -> Result<(), Error> {
     }
     let manifest = Manifest::read(directory)?;
     let mut doomed = doomed(directory, manifest.outputs.iter().map(|output| &*output.path))?;
-    let named = |file: &String| file == MANIFEST || manifest.outputs.iter().any(|output| output.path == *file);
-    if let Some(other) = held.iter().find(|file| !named(file)) {
+    let named: Vec<&String> = manifest.outputs.iter().map(|output| &output.path).collect();
+    if let Some(other) = held.iter().find(|file| *file != MANIFEST && !named.contains(file)) {
         return Err(occupied(
             directory,
             other,
@@ -233,12 +213,12 @@ fn delete_run(directory: &Path, held: &[String]) -> Result<(), Error> {
 fn doomed<'a>(directory: &Path, names: impl Iterator<Item = &'a str>) -> Result<Vec<PathBuf>, Error> {
     let mut doomed = Vec::new();
     for name in names {
-        let unsafe_output = |reason| Error::UnsafeOutput {
+        let is_there = inspect(directory, name).map_err(|reason| Error::UnsafeOutput {
             path: directory.to_owned(),
             name: name.to_owned(),
             reason,
-        };
-        if inspect(directory, name).map_err(unsafe_output)? {
+        })?;
+        if is_there {
             doomed.push(directory.join(name));
         }
     }
@@ -246,13 +226,10 @@ fn doomed<'a>(directory: &Path, names: impl Iterator<Item = &'a str>) -> Result<
 }
 
 fn delete(doomed: &[PathBuf]) -> Result<(), Error> {
-    let refused = |path: &PathBuf| fs::remove_file(path).map_err(|source| (path.clone(), source));
-    let deleted = doomed.iter().try_for_each(refused);
-    deleted.map_err(|(path, source)| Error::Directory {
-        action: "empty",
-        path,
-        source,
-    })
+    for path in doomed {
+        fs::remove_file(path).map_err(Error::directory("empty", path))?;
+    }
+    Ok(())
 }
 
 /// Whether an output that a `run.json` names is there to be deleted, or why it must not be.

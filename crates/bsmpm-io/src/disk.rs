@@ -14,14 +14,18 @@ pub fn free(folder: &Path) -> io::Result<u64> {
     Ok(found.f_bavail.saturating_mul(found.f_frsize))
 }
 
-/// A number of bytes, as `800MB` or `16GiB`.
+/// Returns a number of bytes from text such as `800MB` or `16GiB`.
 ///
 /// # Errors
 /// Says in words that the text is none.
 pub fn size(text: &str) -> Result<u64, String> {
-    let wrong = || format!("{text} is no size; expected e.g. 800MB, 16GiB");
+    bytes(text).ok_or_else(|| format!("{text} is no size; expected e.g. 800MB, 16GiB"))
+}
+
+/// Returns the number of bytes that `text` states; `None` where it states none.
+fn bytes(text: &str) -> Option<u64> {
     let split = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
-    let number: f64 = text[..split].trim().parse().map_err(|_| wrong())?;
+    let number: f64 = text[..split].trim().parse().ok()?;
     let factor = match text[split..].trim() {
         "" | "B" => 1.0,
         "kB" => 1e3,
@@ -30,12 +34,8 @@ pub fn size(text: &str) -> Result<u64, String> {
         "KiB" => 1024.0,
         "MiB" => 1024.0 * 1024.0,
         "GiB" => 1024.0 * 1024.0 * 1024.0,
-        _ => return Err(wrong()),
+        _ => return None,
     };
     let bytes = number * factor;
-    if (1.0..1e18).contains(&bytes) {
-        Ok(bytes as u64)
-    } else {
-        Err(wrong())
-    }
+    (1.0..1e18).contains(&bytes).then_some(bytes as u64)
 }

@@ -220,6 +220,15 @@ impl Error {
         }
     }
 
+    /// For `map_err`: the system's error while `action` was done to the output directory `path`.
+    pub(crate) fn directory(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::Directory {
+            action,
+            path: path.to_owned(),
+            source,
+        }
+    }
+
     pub(crate) fn checkpoint(path: &Path, reason: impl Into<String>) -> Self {
         Self::Checkpoint {
             path: path.to_owned(),

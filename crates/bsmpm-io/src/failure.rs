@@ -47,10 +47,9 @@ pub struct FailureMeasures {
 impl FailureMeasures {
     /// Of numbers that may not be finite.
     pub fn new(energy: f64, force: f64) -> Self {
-        let finite = |number: f64| Some(number).filter(|number| number.is_finite());
         Self {
-            energy: finite(energy),
-            force: finite(force),
+            energy: Some(energy).filter(|energy| energy.is_finite()),
+            force: Some(force).filter(|force| force.is_finite()),
         }
     }
 }

@@ -52,6 +52,15 @@ pub enum FieldValues {
 }
 
 impl FieldValues {
+    /// No numbers, of the same kind.
+    fn without_points(&self) -> Self {
+        match self {
+            Self::F64(_) => Self::F64(Vec::new()),
+            Self::U64(_) => Self::U64(Vec::new()),
+            Self::U16(_) => Self::U16(Vec::new()),
+        }
+    }
+
     /// How many numbers there are.
     pub fn len(&self) -> usize {
         match self {
@@ -101,14 +110,9 @@ impl Frame {
 
     /// The same without its points.
     pub fn without_points(&self) -> Self {
-        let none = |values: &FieldValues| match values {
-            FieldValues::F64(_) => FieldValues::F64(Vec::new()),
-            FieldValues::U64(_) => FieldValues::U64(Vec::new()),
-            FieldValues::U16(_) => FieldValues::U16(Vec::new()),
-        };
         let fields = self.fields.iter();
         let fields = fields.map(|field| Field {
-            values: none(&field.values),
+            values: field.values.without_points(),
             name: field.name.clone(),
             ..*field
         });
@@ -137,7 +141,8 @@ impl Frame {
             self.check_name(path, index)?;
             let expected = self.position.len() * field.components;
             if field.values.len() != expected || field.components == 0 {
-                let (item, found) = (field.name.clone(), field.values.len());
+                let item = field.name.clone();
+                let found = field.values.len();
                 return Err(Error::Length {
                     path: path.to_owned(),
                     item,
@@ -154,8 +159,8 @@ impl Frame {
 
     fn check_name(&self, path: &Path, index: usize) -> Result<(), Error> {
         let name = &self.fields[index].name;
-        let plain = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
-        let reason = if name.is_empty() || !name.chars().all(plain) {
+        let is_plain = name.chars().all(|c| c.is_ascii_alphanumeric() || "_-.".contains(c));
+        let reason = if name.is_empty() || !is_plain {
             "has characters other than letters, digits, `_`, `-` and `.`"
         } else if self.fields[..index].iter().any(|other| other.name == *name) {
             "is used for two fields"

@@ -8,7 +8,7 @@ use std::thread::{self, JoinHandle};
 
 use serde::{Deserialize, Serialize};
 
-use crate::atomic::{self, Filled};
+use crate::atomic::{self, FilledFile};
 use crate::frame::{Frame, Parts};
 use crate::manifest::{Manifest, ManifestOutput};
 use crate::relative::is_plain_relative;
@@ -34,15 +34,22 @@ const MOST_FILLED: usize = 16;
 #[derive(Debug)]
 pub struct Frames {
     directory: PathBuf,
-    entries: Vec<Entry>,          // of what is listed
-    filled: Vec<(Filled, Entry)>, // that no thread has yet, without their names
-    manifest: Option<Manifest>,   // names these
-    ending: Option<Ending>,
+    entries: Vec<Entry>,        // of what is listed
+    filled: Vec<FilledFrame>,   // that no thread has yet, without their names
+    manifest: Option<Manifest>, // names these
+    ending: Option<FrameThread>,
+}
+
+/// A frame in a file that has not its name yet.
+#[derive(Debug)]
+struct FilledFrame {
+    file: FilledFile,
+    entry: Entry,
 }
 
 /// A thread that ends frames.
 #[derive(Debug)]
-struct Ending {
+struct FrameThread {
     entries: Vec<Entry>, // of what is listed then
     thread: JoinHandle<Result<Vec<ManifestOutput>, Error>>,
 }
@@ -122,12 +129,12 @@ impl Frames {
         let is_there = self
             .filled
             .iter()
-            .map(|(_, entry)| entry)
+            .map(|frame| &frame.entry)
             .chain(listed)
             .any(|one| one.file == entry.file);
         let mut ended = self.ended(is_there || self.filled.len() >= MOST_FILLED)?;
-        self.filled
-            .push((vtu::filled(&self.directory.join(&entry.file), parts)?, entry));
+        let file = vtu::filled(&self.directory.join(&entry.file), parts)?;
+        self.filled.push(FilledFrame { file, entry });
         self.manifest = Some(manifest.clone());
         ended.extend(self.ended(false)?);
         Ok(ended)
@@ -140,7 +147,8 @@ impl Frames {
     pub fn ended(&mut self, wait: bool) -> Result<Vec<ManifestOutput>, Error> {
         let mut ended = Vec::new();
         loop {
-            if let Some(Ending { entries, thread }) = self.ending.take_if(|ending| wait || ending.thread.is_finished())
+            if let Some(FrameThread { entries, thread }) =
+                self.ending.take_if(|ending| wait || ending.thread.is_finished())
             {
                 let outputs = thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
                 ended.extend(outputs.inspect_err(|_| self.filled.clear())?);
@@ -149,12 +157,14 @@ impl Frames {
             if self.ending.is_some() || self.filled.is_empty() {
                 return Ok(ended);
             }
-            let (filled, manifest) = (std::mem::take(&mut self.filled), self.manifest.take());
+            let filled = std::mem::take(&mut self.filled);
+            let manifest = self.manifest.take();
             let mut entries = self.entries.clone();
-            filled.iter().for_each(|(_, entry)| enter(&mut entries, entry.clone()));
-            let (directory, all) = (self.directory.clone(), entries.clone());
-            let thread = thread::spawn(move || end(&directory, (filled, manifest), &all));
-            self.ending = Some(Ending { entries, thread });
+            filled.iter().for_each(|frame| enter(&mut entries, frame.entry.clone()));
+            let directory = self.directory.clone();
+            let all = entries.clone();
+            let thread = thread::spawn(move || end(&directory, filled, manifest, &all));
+            self.ending = Some(FrameThread { entries, thread });
         }
     }
 
@@ -173,12 +183,13 @@ fn enter(entries: &mut Vec<Entry>, entry: Entry) {
 /// Gives frames that were filled their names, once the manifest has these, and lists them.
 fn end(
     directory: &Path,
-    (filled, manifest): (Vec<(Filled, Entry)>, Option<Manifest>),
+    filled: Vec<FilledFrame>,
+    manifest: Option<Manifest>,
     entries: &[Entry],
 ) -> Result<Vec<ManifestOutput>, Error> {
     manifest.map_or(Ok(()), |manifest| manifest.write(directory))?;
     let mut outputs = Vec::new();
-    for (file, entry) in filled {
+    for FilledFrame { file, entry } in filled {
         file.give_name()?;
         outputs.push(ManifestOutput {
             path: entry.file,

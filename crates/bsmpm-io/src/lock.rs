@@ -54,21 +54,17 @@ impl Lock {
     /// # Errors
     /// [`Error::Locked`] by a run that lives, or that cannot be looked at; [`Error::Directory`] if the system refuses.
     pub fn take(directory: &Path, unseen: Unseen) -> Result<Self, Error> {
-        let refused = |source| Error::Directory {
-            action: "lock",
-            path: directory.to_owned(),
-            source,
-        };
-        let (path, own) = (directory.join(LOCK), Holder::this_process());
+        let path = directory.join(LOCK);
+        let own = Holder::this_process();
         for _ in 0..LOOKS.0 {
-            if create(&path, &own).map_err(refused)? {
+            if create(&path, &own).map_err(Error::directory("lock", directory))? {
                 return Ok(Self::held(path, own, None));
             }
-            let Some(found) = FoundLock::whole(&path).map_err(refused)? else {
+            let Some(found) = FoundLock::whole(&path).map_err(Error::directory("lock", directory))? else {
                 continue;
             };
             let note = found.yields(directory, &own, unseen)?;
-            if take_over(directory, (&own, &found), unseen)? {
+            if take_over(directory, &own, &found, unseen)? {
                 return Ok(Self::held(path, own, Some(note)));
             }
         }
@@ -127,15 +123,11 @@ fn create(path: &Path, own: &Holder) -> io::Result<bool> {
 }
 
 /// Puts `own` in the place of the dead holder that was found; false if the lock is no longer as it was.
-fn take_over(directory: &Path, (own, found): (&Holder, &FoundLock), unseen: Unseen) -> Result<bool, Error> {
-    let refused = |source| Error::Directory {
-        action: "lock",
-        path: directory.to_owned(),
-        source,
-    };
-    let (path, guard) = (directory.join(LOCK), directory.join(TAKEOVER));
+fn take_over(directory: &Path, own: &Holder, found: &FoundLock, unseen: Unseen) -> Result<bool, Error> {
+    let path = directory.join(LOCK);
+    let guard = directory.join(TAKEOVER);
     let mut looks = LOOKS.0;
-    while !create(&guard, own).map_err(refused)? {
+    while !create(&guard, own).map_err(Error::directory("lock", directory))? {
         // Another takes it over just now, which is a matter of milliseconds; or it was killed in them.
         looks -= 1;
         match (looks, unseen) {
@@ -155,7 +147,7 @@ fn take_over(directory: &Path, (own, found): (&Holder, &FoundLock), unseen: Unse
             atomic::replace(&path, |file| file.write_all(own.text().as_bytes())).map(|()| true)
         }
         Ok(_) => Ok(false),
-        Err(source) => Err(refused(source)),
+        Err(source) => Err(Error::directory("lock", directory)(source)),
     };
     remove(&guard, own);
     replaced

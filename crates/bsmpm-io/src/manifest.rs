@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::time::SystemTime;
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::utc::utc;
@@ -278,14 +279,17 @@ impl Manifest {
         }
         let path = directory.join(MANIFEST);
         let text = fs::read_to_string(&path).map_err(Error::file("read", &path))?;
-        let damaged = |error: serde_json::Error| Error::format(&path, error.to_string());
-        let ManifestForm { schema } = serde_json::from_str(&text).map_err(damaged)?;
+        let ManifestForm { schema } = parse(&path, &text)?;
         if schema != SCHEMA {
             return Err(Error::format(
                 &path,
                 format!("it has format {schema}, and this program reads format {SCHEMA}"),
             ));
         }
-        serde_json::from_str(&text).map_err(damaged)
+        parse(&path, &text)
     }
+}
+
+fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, Error> {
+    serde_json::from_str(text).map_err(|error| Error::format(path, error.to_string()))
 }

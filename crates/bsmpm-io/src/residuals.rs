@@ -60,31 +60,23 @@ impl Iterate {
     /// The file's columns, the last one where water flows; `time_unit` is `s`, or `-` for pseudo-time.
     pub fn columns(time_unit: &str, flows: bool) -> Vec<TableColumn> {
         let all = ["step", "time", "iteration", "method", "energy", "force", "water"];
-        let unit = |name: &str| if name == "time" { time_unit } else { "-" };
         all[..6 + usize::from(flows)]
             .iter()
-            .map(|name| TableColumn::new(name, unit(name)))
+            .map(|&name| TableColumn::new(name, if name == "time" { time_unit } else { "-" }))
             .collect()
     }
 
     /// The iteration as a row under [`Iterate::columns`].
     pub fn cells(&self, flows: bool) -> Vec<Cell> {
-        let measure = |value: f64| {
-            if value.is_finite() {
-                Cell::Float(value)
-            } else {
-                Cell::Empty
-            }
-        };
         let mut cells = vec![
             Cell::Int(self.step),
             Cell::Float(self.time),
             Cell::Int(self.iteration),
             self.method.map_or(Cell::Empty, |method| Cell::Word(method.word())),
-            measure(self.energy),
-            measure(self.force),
+            measure_cell(self.energy),
+            measure_cell(self.force),
         ];
-        cells.extend(flows.then(|| measure(self.water)));
+        cells.extend(flows.then(|| measure_cell(self.water)));
         cells
     }
 
@@ -92,13 +84,6 @@ impl Iterate {
         let cells: Vec<&str> = line.split(',').collect();
         let [step, time, iteration, method, energy, force, ref water @ ..] = cells[..] else {
             return None;
-        };
-        let measure = |cell: &str| {
-            if cell.is_empty() {
-                Some(f64::NAN)
-            } else {
-                cell.parse().ok()
-            }
         };
         Some(Self {
             step: step.parse().ok()?,
@@ -109,14 +94,32 @@ impl Iterate {
             } else {
                 Some(ResidualMethod::of(method)?)
             },
-            energy: measure(energy)?,
-            force: measure(force)?,
+            energy: parse_measure(energy)?,
+            force: parse_measure(force)?,
             water: match water {
                 [] => f64::NAN,
-                [water] => measure(water)?,
+                [water] => parse_measure(water)?,
                 _ => return None,
             },
         })
+    }
+}
+
+/// The cell of a measure, empty for one that is not finite.
+fn measure_cell(value: f64) -> Cell {
+    if value.is_finite() {
+        Cell::Float(value)
+    } else {
+        Cell::Empty
+    }
+}
+
+/// Reads a measure, which is NaN in an empty cell; `None` for what is no number.
+fn parse_measure(cell: &str) -> Option<f64> {
+    if cell.is_empty() {
+        Some(f64::NAN)
+    } else {
+        cell.parse().ok()
     }
 }
 
@@ -131,8 +134,8 @@ pub fn read(path: &Path) -> Result<Vec<Iterate>, Error> {
         .enumerate()
         .skip(1)
         .filter(|(_, line)| !line.starts_with('#'));
-    let row = |(index, line): (usize, &str)| {
+    rows.map(|(index, line)| {
         Iterate::parse(line).ok_or_else(|| Error::format(path, format!("line {}: no row of residuals", index + 1)))
-    };
-    rows.map(row).collect()
+    })
+    .collect()
 }

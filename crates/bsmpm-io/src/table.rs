@@ -69,7 +69,8 @@ impl CsvTable {
         check_headings(path, columns)?;
         let file = File::create_new(path).map_err(Error::file("create", path))?;
         atomic::sync_folder(path).map_err(Error::file("create", path))?;
-        let (path, columns) = (path.to_owned(), columns.to_vec());
+        let path = path.to_owned();
+        let columns = columns.to_vec();
         let mut table = Self {
             path,
             file,
@@ -155,7 +156,8 @@ impl CsvTable {
     /// file is then as before. [`Error::File`] when the system refuses.
     pub fn row(&mut self, cells: &[Cell]) -> Result<(), Error> {
         if cells.len() != self.columns.len() {
-            let (expected, found) = (self.columns.len(), cells.len());
+            let expected = self.columns.len();
+            let found = cells.len();
             return Err(Error::Length {
                 path: self.path.clone(),
                 item: "a row".to_owned(),
@@ -198,14 +200,19 @@ impl CsvTable {
 
 /// The two heading lines.
 fn heading(columns: &[TableColumn]) -> String {
-    let join = |part: fn(&TableColumn) -> &str| columns.iter().map(part).collect::<Vec<_>>().join(",");
-    format!("{}\n# {}\n", join(|column| &column.name), join(|column| &column.unit))
+    let names: Vec<&str> = columns.iter().map(|column| &*column.name).collect();
+    let units: Vec<&str> = columns.iter().map(|column| &*column.unit).collect();
+    format!("{}\n# {}\n", names.join(","), units.join(","))
+}
+
+/// Whether a name or unit cannot stand in the heading lines.
+fn is_bad_heading(text: &str) -> bool {
+    text.trim() != text || text.is_empty() || text.contains([',', '"', '#', '\n', '\r'])
 }
 
 fn check_headings(path: &Path, columns: &[TableColumn]) -> Result<(), Error> {
-    let bad = |text: &str| text.trim() != text || text.is_empty() || text.contains([',', '"', '#', '\n', '\r']);
     for (index, TableColumn { name, unit }) in columns.iter().enumerate() {
-        let reason = if bad(name) || bad(unit) {
+        let reason = if is_bad_heading(name) || is_bad_heading(unit) {
             "(or its unit) is empty, or contains a comma, a quote, a # or a space at an end"
         } else if columns[..index].iter().any(|other| other.name == *name) {
             "is used for two columns"

@@ -4,8 +4,8 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use crate::Error;
-use crate::atomic::{self, Filled};
-use crate::frame::{Field, FieldValues, Frame, Parts};
+use crate::atomic::{self, FilledFile};
+use crate::frame::{FieldValues, Frame, Parts};
 
 pub use crate::vtu_read::read;
 
@@ -43,10 +43,10 @@ pub fn write_parts(path: &Path, parts: Parts<'_>) -> Result<(), Error> {
 }
 
 /// The same under a temporary name.
-pub(crate) fn filled(path: &Path, parts: Parts<'_>) -> Result<Filled, Error> {
+pub(crate) fn filled(path: &Path, parts: Parts<'_>) -> Result<FilledFile, Error> {
     parts.head.check(path)?;
     let mut refused = None;
-    let filled = Filled::new(path, |file| fill(file, path, parts, &mut refused));
+    let filled = FilledFile::new(path, |file| fill(file, path, parts, &mut refused));
     refused.map_or(filled, Err)
 }
 
@@ -61,17 +61,13 @@ fn fill(
     }: Parts<'_>,
     refused: &mut Option<Error>,
 ) -> io::Result<()> {
-    let mut places = Vec::new(); // of every array in the file, behind its length
-    write_head(file, (&head, names), points, &mut places)?;
+    let names: Vec<String> = names.iter().map(|(name, list)| name_array(name, list)).collect();
+    let places = write_head(file, &head, &names, points)?;
     file.write_all(b"  <AppendedData encoding=\"raw\">\n_")?;
     let start = file.stream_position()?;
     let mut given = 0;
-    let mut wrong = |error: Error| {
-        *refused = Some(error);
-        io::Error::other("refused")
-    };
     while let Some(part) = next() {
-        part.check(path).map_err(&mut wrong)?;
+        part.check(path).map_err(|error| refuse(refused, error))?;
         if part.without_points() != head {
             return Err(io::Error::other("a part of another frame"));
         }
@@ -85,13 +81,13 @@ fn fill(
         given += count;
     }
     if given != points {
-        let item = "a frame".to_owned();
-        return Err(wrong(Error::Length {
+        let error = Error::Length {
             path: path.to_owned(),
-            item,
+            item: "a frame".to_owned(),
             expected: points,
             found: given,
-        }));
+        };
+        return Err(refuse(refused, error));
     }
     let mut end = 0;
     for (data, place) in arrays(&head, 0).zip(&places) {
@@ -104,29 +100,27 @@ fn fill(
     file.write_all(b"\n  </AppendedData>\n</VTKFile>\n")
 }
 
+/// Keeps an error for the caller of [`fill`], which itself returns errors of the system only.
+fn refuse(refused: &mut Option<Error>, error: Error) -> io::Error {
+    *refused = Some(error);
+    io::Error::other("refused")
+}
+
 /// Bytes that each point of frames with the fields of `frame` takes; a head of some kilobytes comes with them.
 pub fn point_bytes(frame: &Frame) -> u64 {
     arrays(frame, 0).map(|data| data.point_bytes() as u64).sum()
 }
 
-/// The text, and where the numbers of each array begin from where their bytes do.
-fn write_head(
-    file: &mut impl Write,
-    (head, names): (&Frame, &[(String, Vec<String>)]),
-    points: usize,
-    places: &mut Vec<u64>,
-) -> io::Result<()> {
-    let mut data = arrays(head, 0);
-    let mut offset = 0;
-    let mut array = |file: &mut dyn Write, name: &str, components: usize| {
-        let data = data
-            .next()
-            .ok_or_else(|| io::Error::other("more arrays announced than written"))?;
-        write_array(file, name, components, data.kind(), offset)?;
-        places.push(offset as u64 + LENGTH);
-        offset += LENGTH as usize + points * data.point_bytes();
-        io::Result::Ok(())
-    };
+/// Writes the text with the arrays `names`. Returns the place of the numbers of every array, behind its length, counted
+/// from the first byte of the arrays.
+fn write_head(file: &mut impl Write, head: &Frame, names: &[String], points: usize) -> io::Result<Vec<u64>> {
+    let data: Vec<Data<'_>> = arrays(head, 0).collect();
+    let mut places = Vec::new();
+    let mut place = LENGTH;
+    for data in &data {
+        places.push(place);
+        place += LENGTH + (points * data.point_bytes()) as u64;
+    }
     writeln!(file, "<?xml version=\"1.0\"?>")?;
     let order = "byte_order=\"LittleEndian\" header_type=\"UInt64\"";
     writeln!(
@@ -138,21 +132,22 @@ fn write_head(
         file,
         "    <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{points}\">\n      <PointData>"
     )?;
-    for Field { name, components, .. } in &head.fields {
-        array(file, name, *components)?;
+    for (index, field) in head.fields.iter().enumerate() {
+        write_array(file, &field.name, &data[index], places[index])?;
     }
+    let count = head.fields.len();
     writeln!(file, "      </PointData>\n      <Points>")?;
-    array(file, "Points", 3)?;
+    write_array(file, "Points", &data[count], places[count])?;
     writeln!(file, "      </Points>\n      <Cells>")?;
-    for name in ["connectivity", "offsets", "types"] {
-        array(file, name, 1)?;
+    for (name, index) in ["connectivity", "offsets", "types"].into_iter().zip(count + 1..) {
+        write_array(file, name, &data[index], places[index])?;
     }
-    writeln!(file, "      </Cells>\n    </Piece>\n  </UnstructuredGrid>")
+    writeln!(file, "      </Cells>\n    </Piece>\n  </UnstructuredGrid>")?;
+    Ok(places)
 }
 
-/// Time and step as text: exact, and legible without a program. `TimeValue` is the name that ParaView looks for. Names
-/// are lists of characters by their codes, each ended by 0, as VTK has them.
-fn write_moment(file: &mut impl Write, frame: &Frame, names: &[(String, Vec<String>)]) -> io::Result<()> {
+/// Writes time and step as text: exact, and legible without a program. `TimeValue` is the name that ParaView looks for.
+fn write_moment(file: &mut impl Write, frame: &Frame, names: &[String]) -> io::Result<()> {
     let Frame { step, time, .. } = frame;
     let one = "NumberOfTuples=\"1\" format=\"ascii\"";
     writeln!(file, "    <FieldData>")?;
@@ -164,19 +159,29 @@ fn write_moment(file: &mut impl Write, frame: &Frame, names: &[(String, Vec<Stri
         file,
         "      <DataArray type=\"UInt64\" Name=\"Step\" {one}>{step}</DataArray>"
     )?;
-    for (name, list) in names {
-        let codes = list
-            .iter()
-            .flat_map(|name| name.bytes().chain([0]))
-            .map(|code| code.to_string());
-        let (codes, count) = (codes.collect::<Vec<_>>().join(" "), list.len());
-        let array = format!("Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"{count}\" format=\"ascii\"");
-        writeln!(file, "      <{array}>{codes}</Array>")?;
+    for array in names {
+        writeln!(file, "      {array}")?;
     }
     writeln!(file, "    </FieldData>")
 }
 
-fn write_array(file: &mut dyn Write, name: &str, components: usize, kind: &str, offset: usize) -> io::Result<()> {
+/// The array of a list of names: characters by their codes, each name ended by 0, as VTK has them.
+fn name_array(name: &str, list: &[String]) -> String {
+    let codes = list
+        .iter()
+        .flat_map(|name| name.bytes().chain([0]))
+        .map(|code| code.to_string());
+    let codes = codes.collect::<Vec<_>>().join(" ");
+    let count = list.len();
+    let array = format!("Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"{count}\" format=\"ascii\"");
+    format!("<{array}>{codes}</Array>")
+}
+
+/// Announces an array, whose numbers begin at `place` behind their length.
+fn write_array(file: &mut impl Write, name: &str, data: &Data<'_>, place: u64) -> io::Result<()> {
+    let kind = data.kind();
+    let components = data.components;
+    let offset = place - LENGTH;
     write!(
         file,
         "        <DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\""
@@ -198,11 +203,15 @@ fn arrays(frame: &Frame, first: usize) -> impl Iterator<Item = Data<'_>> {
         numbers: (&field.values).into(),
     });
     let place = Numbers::F64(frame.position.as_flattened());
-    let count = |first: usize| Numbers::Count {
-        first: first as i64,
-        points,
-    };
-    let cells = [count(first), count(first + 1), Numbers::Vertices { points }];
+    let first = first as i64;
+    let cells = [
+        Numbers::Count { first, points },
+        Numbers::Count {
+            first: first + 1,
+            points,
+        },
+        Numbers::Vertices { points },
+    ];
     let cells = cells.map(|numbers| Data { components: 1, numbers });
     fields
         .chain([Data {

@@ -24,7 +24,8 @@ fn parse(bytes: &[u8]) -> Result<Frame, String> {
         position: Vec::new(),
         fields: Vec::new(),
     };
-    let (mut section, mut points) = ("", 0_usize);
+    let mut section = "";
+    let mut points = 0_usize;
     for tag in tags(head) {
         match tag.name {
             "VTKFile" if tag.attribute("header_type") != Some("UInt64") => {

@@ -101,8 +101,9 @@ pub fn page(code: &str) -> Option<&'static Page> {
 
 /// Texts that the programs print with a code, with `…` for names and numbers.
 pub fn texts(code: &str) -> impl Iterator<Item = &'static str> {
-    let of_code = move |line: &'static str| line.strip_prefix(code)?.strip_prefix(": ");
-    TEXTS.lines().filter_map(of_code)
+    TEXTS
+        .lines()
+        .filter_map(move |line| line.strip_prefix(code)?.strip_prefix(": "))
 }
 
 /// The catalogue as a page of the manual, in Markdown.

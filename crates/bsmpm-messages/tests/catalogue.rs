@@ -43,7 +43,8 @@ fn rust_files(directory: &Path, files: &mut Vec<PathBuf>) {
 /// The string literal that `source` begins with, behind its opening quote: with `…` for what is formatted into it,
 /// and without line breaks.
 fn literal(source: &str) -> String {
-    let (mut text, mut characters) = (String::new(), source.chars().peekable());
+    let mut text = String::new();
+    let mut characters = source.chars().peekable();
     while let Some(character) = characters.next() {
         match character {
             '"' => break,

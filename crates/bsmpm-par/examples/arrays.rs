@@ -27,7 +27,7 @@ fn print(universe: &Universe, file: &Path) -> Result<(), Refusal> {
     let hdf5 = Hdf5::initialize(universe).expect("HDF5 starts");
     let (found, _) = find(&universe.world(), Wanted::Named(file))?;
     let found = found.expect("a checkpoint that is named is found or refused");
-    let opened = Opened::new((&hdf5, universe.world()), &found)?;
+    let opened = Opened::new(&hdf5, universe.world(), &found)?;
     let law_state = found
         .record
         .arrays
@@ -44,7 +44,7 @@ fn print(universe: &Universe, file: &Path) -> Result<(), Refusal> {
     }
     let guess = found.record.array("guess").expect("the nodal displacement");
     let rows = guess.rows as usize;
-    let guess = opened.guess((rows, guess.width as usize), 0..rows)?;
+    let guess = opened.guess(rows, guess.width as usize, 0..rows)?;
     let bytes: Vec<u8> = guess.iter().flat_map(|value| value.to_le_bytes()).collect();
     println!("guess {}", blake3::hash(&bytes));
     let state = CheckpointState::parse(&found.path, &opened.state()?)?;

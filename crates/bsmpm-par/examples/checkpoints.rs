@@ -25,12 +25,12 @@ fn main() -> ExitCode {
     let hdf5 = Hdf5::initialize(&universe).expect("HDF5 starts");
     let number = |text: &str| text.parse().expect("a number");
     let done = match arguments[..] {
-        ["write", directory, points, step] => write(&universe, &hdf5, directory, (number(points), number(step)), None),
+        ["write", directory, points, step] => write(&universe, &hdf5, directory, number(points), number(step), None),
         ["write", directory, points, step, phase] => {
-            write(&universe, &hdf5, directory, (number(points), number(step)), Some(phase))
+            write(&universe, &hdf5, directory, number(points), number(step), Some(phase))
         }
         ["storm", directory, points] => {
-            (1..).try_for_each(|step| write(&universe, &hdf5, directory, (number(points), step), None))
+            (1..).try_for_each(|step| write(&universe, &hdf5, directory, number(points), step, None))
         }
         ["newest", folder, points] => read(&universe, &hdf5, Wanted::Newest(Path::new(folder)), number(points)),
         ["named", file, points] => read(&universe, &hdf5, Wanted::Named(Path::new(file)), number(points)),
@@ -47,11 +47,13 @@ fn write(
     universe: &Universe,
     hdf5: &Hdf5<'_>,
     directory: &str,
-    (count, step): (u64, u64),
+    count: u64,
+    step: u64,
     phase: Option<&str>,
 ) -> Result<(), Refusal> {
     let world = universe.world();
-    let (rank, ranks) = (world.rank() as u64, world.size() as u64);
+    let rank = world.rank() as u64;
+    let ranks = world.size() as u64;
     // Unequal shares, and none at all for the last of several ranks.
     let cut = |rank: u64| {
         if rank + 1 >= ranks {
@@ -88,7 +90,7 @@ fn write(
             std::process::abort();
         }
     };
-    checkpoint::write((hdf5, &world), store.as_ref(), &facts, &contents, &strike).map(|_| ())
+    checkpoint::write(hdf5, &world, store.as_ref(), &facts, &contents, &strike).map(|_| ())
 }
 
 fn read(universe: &Universe, hdf5: &Hdf5<'_>, wanted: Wanted<'_>, count: u64) -> Result<(), Refusal> {
@@ -111,20 +113,21 @@ fn read(universe: &Universe, hdf5: &Hdf5<'_>, wanted: Wanted<'_>, count: u64) ->
         .map_or(0, |array| array.width as usize);
     let names: Vec<&str> = found.record.arrays.iter().map(|array| array.name.as_str()).collect();
     let mut held = Points::<2>::holding(&names, law_state);
-    let opened = Opened::new((hdf5, universe.world()), &found)?;
+    let opened = Opened::new(hdf5, universe.world(), &found)?;
     let text = opened.state()?;
     opened.points(held.named_columns())?;
     let layers = 2 * found.record.ranks as usize;
     for rank in 0..u64::from(found.record.ranks) {
         let at = (2 * rank) as usize;
         assert_eq!(
-            opened.guess((layers, WIDTH), at..at + 2)?,
+            opened.guess(layers, WIDTH, at..at + 2)?,
             guess(rank, found.record.step),
             "another displacement"
         );
     }
     opened.close()?;
-    let (rank, ranks) = (world.rank() as u64, world.size() as u64);
+    let rank = world.rank() as u64;
+    let ranks = world.size() as u64;
     let start = |rank: u64| rank * (count / ranks) + rank.min(count % ranks);
     assert_eq!(
         held,

@@ -198,8 +198,10 @@ const COMMAND: &str = "BSMPM_COMMAND";
 
 /// A word as a shell reads it.
 fn quoted(word: &str) -> String {
-    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=:,+@%".contains(letter);
-    if !word.is_empty() && word.chars().all(is_plain) {
+    let is_plain = word
+        .chars()
+        .all(|letter| letter.is_ascii_alphanumeric() || "-_./=:,+@%".contains(letter));
+    if !word.is_empty() && is_plain {
         word.into()
     } else {
         format!("'{}'", word.replace('\'', "'\\''"))
@@ -232,12 +234,13 @@ fn petsc_options(options: &[String]) -> Result<(), String> {
         }
     }
     // The value would be a viewer, and some of those write files of their own choice of name: binary, hdf5, vtk, ...
-    let views = |name: &str| ["view", "monitor", "reason"].iter().any(|part| name.contains(part));
-    let viewer = options
-        .windows(2)
-        .find(|pair| views(&pair[0]) && !pair[1].starts_with('-'));
+    let viewer = options.windows(2).find(|pair| {
+        let views = ["view", "monitor", "reason"].iter().any(|part| pair[0].contains(part));
+        views && !pair[1].starts_with('-')
+    });
     viewer.map_or(Ok(()), |pair| {
-        let (name, value) = (&pair[0], &pair[1]);
+        let name = &pair[0];
+        let value = &pair[1];
         Err(format!(
             "E0707: the PETSc option {name} has the value {value}, which PETSc would take as a file or \
             format. Nothing was run. Remove the value."
@@ -246,16 +249,12 @@ fn petsc_options(options: &[String]) -> Result<(), String> {
 }
 
 fn wall(text: &str) -> Result<Duration, String> {
-    let wrong = || format!("{text} is not a time of the form HH:MM:SS");
-    let parts: Vec<u64> = text
-        .split(':')
-        .map(|part| part.parse().map_err(|_| wrong()))
-        .collect::<Result<_, _>>()?;
-    match parts[..] {
-        [hours, minutes, seconds] if minutes < 60 && seconds < 60 && hours < 1_000_000 => {
+    let parts: Option<Vec<u64>> = text.split(':').map(|part| part.parse().ok()).collect();
+    match parts.as_deref() {
+        Some(&[hours, minutes, seconds]) if minutes < 60 && seconds < 60 && hours < 1_000_000 => {
             Ok(Duration::from_secs(hours * 3600 + minutes * 60 + seconds))
         }
-        _ => Err(wrong()),
+        _ => Err(format!("{text} is not a time of the form HH:MM:SS")),
     }
 }
 

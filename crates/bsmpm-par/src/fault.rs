@@ -38,23 +38,24 @@ impl Fault {
         }
     }
 
-    fn parse(text: &str) -> Result<Self, String> {
-        let read = || {
-            let (kind, places) = text.split_once(':')?;
-            let (place, step) = places.rsplit_once(',').unwrap_or(("", places));
-            let place = match kind {
-                "panic" => FaultPlace::Rank(place.strip_prefix("rank=")?.parse().ok()?),
-                "kill" => FaultPlace::Phase(phase(place.strip_prefix("phase=")?)?),
-                "reject" if place.is_empty() => FaultPlace::Convergence,
-                _ => return None,
-            };
-            Some(Self {
-                place,
-                step: step.strip_prefix("step=")?.parse().ok()?,
-            })
+    fn read(text: &str) -> Option<Self> {
+        let (kind, places) = text.split_once(':')?;
+        let (place, step) = places.rsplit_once(',').unwrap_or(("", places));
+        let place = match kind {
+            "panic" => FaultPlace::Rank(place.strip_prefix("rank=")?.parse().ok()?),
+            "kill" => FaultPlace::Phase(phase(place.strip_prefix("phase=")?)?),
+            "reject" if place.is_empty() => FaultPlace::Convergence,
+            _ => return None,
         };
+        Some(Self {
+            place,
+            step: step.strip_prefix("step=")?.parse().ok()?,
+        })
+    }
+
+    fn parse(text: &str) -> Result<Self, String> {
         let forms = "panic:rank=R,step=N, kill:phase=P,step=N or reject:step=N";
-        read().ok_or_else(|| {
+        Self::read(text).ok_or_else(|| {
             format!(
                 "E0709: BSMPM_FAULT (environment variable for program tests) has an unknown value, \"{text}\". \
                  Nothing was run. Unset BSMPM_FAULT, or use one of: {forms}."

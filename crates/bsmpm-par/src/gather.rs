@@ -40,12 +40,12 @@ enum FieldSource<'a, const D: usize> {
     State(Variable, &'a [Material]),
     Volume,
     /// what the case asks for
-    Asked(FrameField, Around<'a, D>),
+    Asked(FrameField, PointContext<'a, D>),
 }
 
 /// What points belong to.
 #[derive(Clone, Copy)]
-pub struct Around<'a, const D: usize> {
+pub struct PointContext<'a, const D: usize> {
     /// laws by number
     pub materials: &'a [Material],
     /// ids of every body's points; empty if no frame reports bodies
@@ -61,16 +61,17 @@ pub struct Around<'a, const D: usize> {
 impl<'a, const D: usize> FieldSource<'a, D> {
     /// All of a scene, in the order of the files; the same on all ranks: vectors and tensors, then numbers, then who a
     /// point is.
-    fn all(points: &'a Points<D>, projected: Option<&'a [f64]>, around: Around<'a, D>) -> Vec<Self> {
+    fn all(points: &'a Points<D>, projected: Option<&'a [f64]>, around: PointContext<'a, D>) -> Vec<Self> {
         let materials = around.materials;
         let shown = Points::<D>::COLUMNS.iter().filter(|info| info.frame.is_some());
         let shown = shown.filter_map(|info| points.column(info.name).map(|column| (info, column)));
         let (real, whole): (Vec<_>, Vec<_>) = shown.partition(|(_, column)| column.number() == Number::F64);
         let (numbers, mut shaped): (Vec<_>, Vec<_>) = real.into_iter().partition(|(_, column)| column.width() == 1);
         shaped.sort_by_key(|(_, column)| column.width());
-        let columns = |list: Vec<(&'static ColumnInfo, &'a dyn Column)>| {
-            list.into_iter().map(|(info, column)| Self::Column(info, column))
-        };
+        let [shaped, numbers, whole] = [shaped, numbers, whole].map(|columns| {
+            let columns = columns.into_iter();
+            columns.map(|(info, column)| Self::Column(info, column))
+        });
         let mut variables: Vec<Variable> = Vec::new();
         for variable in materials.iter().flat_map(|material| material.state()) {
             if variables.iter().all(|known| known.name != variable.name) {
@@ -78,16 +79,10 @@ impl<'a, const D: usize> FieldSource<'a, D> {
             }
         }
         let state = variables.into_iter().map(|variable| Self::State(variable, materials));
-        let first = columns(shaped)
-            .chain([Self::Pressure])
-            .chain(projected.map(Self::Projected));
+        let first = shaped.chain([Self::Pressure]).chain(projected.map(Self::Projected));
         let asked = around.fields.iter().map(|&field| Self::Asked(field, around));
-        let numbers = first
-            .chain(columns(numbers))
-            .chain(state)
-            .chain([Self::Volume])
-            .chain(asked);
-        numbers.chain(columns(whole).rev()).collect()
+        let numbers = first.chain(numbers).chain(state).chain([Self::Volume]).chain(asked);
+        numbers.chain(whole.rev()).collect()
     }
 
     /// Its name and unit.
@@ -136,7 +131,8 @@ impl<'a, const D: usize> FieldSource<'a, D> {
 
     /// The field of the rows, in which its numbers begin at `at`.
     fn field(&self, rows: &[&[f64]], at: usize) -> Field {
-        let (name, components) = (self.label().0, self.components());
+        let name = self.label().0;
+        let components = self.components();
         let number = match self {
             Self::Column(_, column) => column.number(),
             Self::Asked(FrameField::Body, _) => Number::U64,
@@ -158,13 +154,11 @@ impl<'a, const D: usize> FieldSource<'a, D> {
     }
 }
 
-impl<const D: usize> Around<'_, D> {
+impl<const D: usize> PointContext<'_, D> {
     fn put(&self, field: FrameField, points: &Points<D>, p: usize, row: &mut Vec<f64>) {
-        let sigma = || points.sigma.at(p);
-        let of_water = |number: &dyn Fn(PoreWater<'_, D>) -> f64| self.water.map_or(0.0, number);
         row.push(match field {
-            FrameField::Q => invariants::deviatoric(&sigma()),
-            FrameField::PrincipalStresses => return row.extend(invariants::principal(&sigma())),
+            FrameField::Q => invariants::deviatoric(&points.sigma.at(p)),
+            FrameField::PrincipalStresses => return row.extend(invariants::principal(&points.sigma.at(p))),
             FrameField::MobilisedStrength => invariants::mobilised(self.materials, points, p),
             FrameField::DeviatoricStrain => invariants::deviatoric_strain(points, p),
             FrameField::Yielding => {
@@ -172,15 +166,16 @@ impl<const D: usize> Around<'_, D> {
                 f64::from(u8::from(Material::is_yielding(mobilised)))
             }
             FrameField::Density => invariants::density(points, p),
-            FrameField::PorePressure => of_water(&|water| water.pressure(p)),
-            FrameField::ExcessPressure => of_water(&|water| water.excess(p)),
-            FrameField::Porosity => of_water(&|water| water.porosity(p)),
-            FrameField::Saturation => of_water(&|water| water.saturation(p)),
+            FrameField::PorePressure => self.water.map_or(0.0, |water| water.pressure(p)),
+            FrameField::ExcessPressure => self.water.map_or(0.0, |water| water.excess(p)),
+            FrameField::Porosity => self.water.map_or(0.0, |water| water.porosity(p)),
+            FrameField::Saturation => self.water.map_or(0.0, |water| water.saturation(p)),
             FrameField::Flux => {
                 return row.extend(spatial(self.fluxes.get(p).unwrap_or(&Vector::zeros())));
             }
             FrameField::TotalStress => {
-                return row.extend(self.water.map_or_else(sigma, |water| water.total_stress(p)).0);
+                let total = self.water.map(|water| water.total_stress(p));
+                return row.extend(total.unwrap_or_else(|| points.sigma.at(p)).0);
             }
             FrameField::Body => self.bodies.partition_point(|ids| ids.end <= points.id[p]) as f64,
         });
@@ -188,7 +183,7 @@ impl<const D: usize> Around<'_, D> {
 }
 
 /// The frame of the present state, on its way to rank 0.
-pub struct Gathering<'a, const D: usize> {
+pub struct GatheredFrame<'a, const D: usize> {
     world: &'a SimpleCommunicator,
     points: &'a Points<D>,
     sources: Vec<FieldSource<'a, D>>,
@@ -199,19 +194,21 @@ pub struct Gathering<'a, const D: usize> {
     total: usize,
 }
 
-impl<'a, const D: usize> Gathering<'a, D> {
+impl<'a, const D: usize> GatheredFrame<'a, D> {
     /// The points of all ranks with what they belong to, and with their projected pressures (Pa) if these are wanted.
     /// Collective.
     pub fn new(
         world: &'a SimpleCommunicator,
-        (points, around): (&'a Points<D>, Around<'a, D>),
+        points: &'a Points<D>,
+        around: PointContext<'a, D>,
         projected: Option<&'a [f64]>,
         moment: FrameMoment,
     ) -> Self {
         let mut by_id: Vec<u32> = (0..points.len() as u32).collect();
         by_id.sort_unstable_by_key(|&p| points.id[p as usize]);
         let own = by_id.last().map_or(0, |&p| points.id[p as usize] + 1);
-        let (mut end, mut total) = (0_u64, 0_u64);
+        let mut end = 0_u64;
+        let mut total = 0_u64;
         world.all_reduce_into(&own, &mut end, SystemOperation::max());
         world.all_reduce_into(&(points.len() as u64), &mut total, SystemOperation::sum());
         let sources = FieldSource::all(points, projected, around);
@@ -276,7 +273,8 @@ impl<'a, const D: usize> Gathering<'a, D> {
 
     /// This rank's points up to the id `end`, which have not gone before: id, place, and the fields of each.
     fn pack(&mut self, end: u64) -> Vec<f64> {
-        let (points, rest) = (self.points, &self.by_id[self.gone..]);
+        let points = self.points;
+        let rest = &self.by_id[self.gone..];
         let count = rest.partition_point(|&p| points.id[p as usize] < end);
         let mut rows = Vec::with_capacity(count * width(&self.sources));
         for p in rest[..count].iter().map(|&p| p as usize) {
@@ -318,7 +316,7 @@ fn no_points<const D: usize>(dynamic: bool) -> Points<D> {
 }
 
 /// Bytes that a point takes in a frame's file.
-pub fn point_bytes<const D: usize>(dynamic: bool, projected: bool, around: Around<'_, D>) -> u64 {
+pub fn point_bytes<const D: usize>(dynamic: bool, projected: bool, around: PointContext<'_, D>) -> u64 {
     let points = no_points(dynamic);
     let sources = FieldSource::all(&points, projected.then_some(&[]), around);
     vtu::point_bytes(&unpack(
@@ -338,11 +336,11 @@ fn unpack<const D: usize>(
     sources: &[FieldSource<'_, D>],
 ) -> Frame {
     let mut at = HEAD;
-    let field = |source: &FieldSource<'_, D>| {
+    let mut fields = Vec::with_capacity(sources.len());
+    for source in sources {
+        fields.push(source.field(rows, at));
         at += source.components();
-        source.field(rows, at - source.components())
-    };
-    let fields = sources.iter().map(field).collect();
+    }
     let position = rows
         .iter()
         .map(|row| std::array::from_fn(|axis| lower[axis] + row[1 + axis]))

@@ -25,7 +25,7 @@ use bsmpm::stabilisation::Stabilisation;
 use bsmpm::water::observed::PoreWater;
 use bsmpm_io::manifest::{Indicator, Summary};
 use bsmpm_io::table::Columns;
-use bsmpm_scene::{Body, Case, GridAxis, NarrowestOpening};
+use bsmpm_scene::{Case, GridAxis, NarrowestOpening};
 use std::collections::BTreeMap;
 
 /// Usual root mean square, and usual largest one, of the quadrature defect.
@@ -107,8 +107,11 @@ struct Energy {
 impl IndicatorState {
     /// Of the points of all ranks at a time. Collective; the same on all.
     pub fn of<K: Kinematics<D>, const D: usize>(
-        (model, points, t): (&Model<K, D>, &Points<D>, f64),
-        (recorder, budget): (&Recorder<D>, Option<Budget>),
+        model: &Model<K, D>,
+        points: &Points<D>,
+        t: f64,
+        recorder: &Recorder<D>,
+        budget: Option<Budget>,
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
         let defect = quadrature::defect(model, points, halo);
@@ -118,9 +121,9 @@ impl IndicatorState {
             .iter()
             .map(|material| material.elastic().young)
             .fold(0.0, f64::max);
-        let noise = relative_pressure_noise(&model.grid, points, (model.weighting, young), halo)?;
+        let noise = relative_pressure_noise(&model.grid, points, model.weighting, young, halo)?;
         let energy = recorder.books().map(|books| {
-            let now = Stored::of(model, (points, t), halo);
+            let now = Stored::of(model, points, t, halo);
             let numbers = [
                 books.flows.external.abs(),
                 books.flows.plastic,
@@ -186,25 +189,32 @@ impl IndicatorState {
         );
         // JSON has no other numbers.
         all.retain(|(_, indicator)| indicator.value.is_finite());
-        let judged = |(name, indicator): (&str, Indicator)| {
-            let (text, which) = (text::of(name, case, indicator.value), indicator.meaning.clone());
+        let mut judged = BTreeMap::new();
+        for (name, indicator) in all {
+            let text = text::of(name, case, indicator.value);
+            let which = indicator.meaning.clone();
             let limited = indicator.limited(limits::of(name, case), limits::are_accepted(name, case));
-            (name.to_owned(), report::worded(name, &text, &which, limited))
-        };
-        all.into_iter().map(judged).collect()
+            judged.insert(name.to_owned(), report::worded(name, &text, &which, limited));
+        }
+        judged
     }
 
     /// The volume that the most compressed material has lost. With enough points any is usual.
     fn compression(&self, case: &Case) -> Indicator {
         let (enough, most) = COMPRESSION;
-        let lost = |body: &&Body| self.compression[body.material];
-        let largest = |bodies: &mut dyn Iterator<Item = f64>| bodies.fold(0.0, f64::max);
-        let is_coarse = |body: &&Body| body.points_per_cell < enough && case.solver.quadrature == Quadrature::Points;
-        let coarse = largest(&mut case.bodies.iter().filter(is_coarse).map(|body| lost(&body)));
-        if coarse > most {
-            return at_most(most, coarse);
+        let mut largest = 0.0_f64;
+        let mut largest_of_coarse = 0.0_f64;
+        for body in &case.bodies {
+            let lost = self.compression[body.material];
+            largest = largest.max(lost);
+            if body.points_per_cell < enough && case.solver.quadrature == Quadrature::Points {
+                largest_of_coarse = largest_of_coarse.max(lost);
+            }
         }
-        at_most(1.0, largest(&mut case.bodies.iter().map(|body| lost(&body))))
+        if largest_of_coarse > most {
+            return at_most(most, largest_of_coarse);
+        }
+        at_most(1.0, largest)
     }
 
     /// Those of the state alone.
@@ -236,10 +246,13 @@ fn at_most(most: f64, value: f64) -> Indicator {
     Indicator::new(value, "-", "", [0.0, most])
 }
 
+/// The part of a whole; 0 of any for no part.
+fn share(part: f64, whole: f64) -> f64 {
+    if part == 0.0 { 0.0 } else { part / whole }
+}
+
 /// Those of all steps together that need no more than their totals.
 fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str, Indicator)> {
-    let longest = |axis: &GridAxis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
-    let share = |part: f64, whole: f64| if part == 0.0 { 0.0 } else { part / whole };
     // Elastic bodies without weight are meant to hang on planes of symmetry; soil is not.
     let has_soil = case
         .bodies
@@ -252,7 +265,7 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
         .filter(|_| may_come_off);
     let pull = pull.map(|(pull, largest)| ("support-pull", at_most(PULL, share(pull, largest))));
     let setback = summary.largest_front_setback.map(|setback| {
-        let usual = [0.0, SETBACK * longest(&case.grid.axes[0])];
+        let usual = [0.0, SETBACK * case.grid.axes[0].longest()];
         ("front-setback", Indicator::new(setback, "m", "", usual))
     });
     let [background, load_share] = of_background(case, summary);

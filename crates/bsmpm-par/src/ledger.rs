@@ -7,7 +7,7 @@ mod stiffness;
 pub(crate) use first::versions;
 
 use crate::cli::Arguments;
-use crate::restart::Beginning;
+use crate::restart::FreshStart;
 use bsmpm::control::Accepted;
 use bsmpm::error::Measures;
 use bsmpm::method::Criteria;
@@ -26,7 +26,6 @@ use bsmpm_io::steps::{STEPS, StepRow};
 use bsmpm_io::table::{Cell, CsvTable, TableColumn};
 use bsmpm_ranks::simulation::Cost;
 use bsmpm_scene::Case;
-use bsmpm_scene::Profile;
 use bsmpm_scene::surfaces;
 
 /// The open files of a run, and what its manifest will say.
@@ -62,26 +61,37 @@ struct Headings {
     profiles: Vec<(String, Vec<TableColumn>)>, // with the names of the files
 }
 
+/// Raises the largest value `so_far` to `value`, where that is larger.
+fn raise(so_far: &mut Option<f64>, value: f64) {
+    *so_far = Some(so_far.map_or(value, |so_far| so_far.max(value)));
+}
+
+fn residual_method(method: Method) -> residuals::ResidualMethod {
+    match method {
+        Method::QuasiNewton(QuasiNewton::Multisecant) => residuals::ResidualMethod::Multisecant,
+        Method::QuasiNewton(QuasiNewton::Broyden) => residuals::ResidualMethod::Broyden,
+        Method::Newton => residuals::ResidualMethod::Newton,
+    }
+}
+
 impl Headings {
     fn of(case: &Case, columns: &[TableColumn]) -> Self {
         let time = if case.analysis.kind.is_timeless() { "-" } else { "s" };
-        let first = || vec![TableColumn::new("step", "-"), TableColumn::new("time", time)];
-        let mut history = first();
-        history.extend(columns.iter().cloned());
-        let profile = |profile: &Profile| {
+        let first = [TableColumn::new("step", "-"), TableColumn::new("time", time)];
+        let mut profiles = Vec::new();
+        for profile in &case.profiles {
             let columns = profile.columns();
             let columns = columns
                 .iter()
                 .map(|column| TableColumn::new(&column.name, &column.unit));
-            (profile.file(), first().into_iter().chain(columns).collect())
-        };
-        let profiles = case.profiles.iter().map(profile).collect();
+            profiles.push((profile.file(), first.iter().cloned().chain(columns).collect()));
+        }
         let residuals = case
             .output
             .residuals
             .then(|| Iterate::columns(time, case.flow.is_some()));
         Self {
-            history,
+            history: first.iter().chain(columns).cloned().collect(),
             steps: StepRow::columns(time).into(),
             residuals,
             profiles,
@@ -93,8 +103,9 @@ impl Ledger {
     /// A new run in a directory that is held.
     pub fn open(
         held: OutputDirectory,
-        beginning: &Beginning,
-        (arguments, case): (&Arguments, &Case),
+        beginning: &FreshStart,
+        arguments: &Arguments,
+        case: &Case,
         ranks: usize,
         columns: Vec<TableColumn>,
     ) -> Result<Self, Error> {
@@ -198,18 +209,17 @@ impl Ledger {
     }
 
     /// The rows of a profile at a time.
-    pub fn profile(&mut self, number: usize, (step, time): (u64, f64), rows: &[Vec<f64>]) -> Result<(), Error> {
-        let cells = |row: &Vec<f64>| -> Vec<Cell> {
-            [Cell::Int(step), Cell::Float(time)]
-                .into_iter()
-                .chain(row.iter().map(|&value| Cell::Float(value)))
-                .collect()
-        };
-        rows.iter().try_for_each(|row| self.profiles[number].row(&cells(row)))
+    pub fn profile(&mut self, number: usize, step: u64, time: f64, rows: &[Vec<f64>]) -> Result<(), Error> {
+        for row in rows {
+            let mut cells = vec![Cell::Int(step), Cell::Float(time)];
+            cells.extend(row.iter().map(|&value| Cell::Float(value)));
+            self.profiles[number].row(&cells)?;
+        }
+        Ok(())
     }
 
     /// A row of `steps.csv`, its share of the totals, and the rows of its iterations where they are wanted.
-    pub fn step(&mut self, number: u64, accepted: &Accepted, (cost, wall): (Cost, f64)) -> Result<(), Error> {
+    pub fn step(&mut self, number: u64, accepted: &Accepted, cost: Cost, wall: f64) -> Result<(), Error> {
         let report = &accepted.report;
         self.manifest.summary.steps = number;
         self.attempts(accepted.rejected.len(), accepted.counts);
@@ -235,22 +245,7 @@ impl Ledger {
             .chain(self.manifest.summary.largest_accumulated_slip)
             .reduce(f64::max);
         self.manifest.summary.largest_accumulated_slip = largest;
-        let sizes = &mut self.manifest.sizes;
-        sizes.insert("active_nodes".into(), report.active_nodes as u64);
-        sizes.insert("unknowns".into(), report.unknowns as u64);
-        if let Some(water) = &report.water {
-            sizes.insert("water_unknowns".into(), water.unknowns as u64);
-        }
-        let most = [
-            ("most_massless_nodes", report.massless_nodes),
-            ("most_background_cells", report.background_cells),
-            ("most_tied_functions", report.tied_functions),
-            ("most_untied_functions", report.untied_functions),
-        ];
-        for (name, count) in most {
-            let most = sizes.entry(name.into()).or_default();
-            *most = (*most).max(count as u64);
-        }
+        self.sizes(report);
         let row = StepRow {
             step: number,
             time: accepted.t,
@@ -275,6 +270,25 @@ impl Ledger {
         self.residuals(number, accepted)
     }
 
+    fn sizes(&mut self, report: &StepReport) {
+        let sizes = &mut self.manifest.sizes;
+        sizes.insert("active_nodes".into(), report.active_nodes as u64);
+        sizes.insert("unknowns".into(), report.unknowns as u64);
+        if let Some(water) = &report.water {
+            sizes.insert("water_unknowns".into(), water.unknowns as u64);
+        }
+        let most = [
+            ("most_massless_nodes", report.massless_nodes),
+            ("most_background_cells", report.background_cells),
+            ("most_tied_functions", report.tied_functions),
+            ("most_untied_functions", report.untied_functions),
+        ];
+        for (name, count) in most {
+            let most = sizes.entry(name.into()).or_default();
+            *most = (*most).max(count as u64);
+        }
+    }
+
     /// What a step reports of how far its state can be trusted. A state without a direction from it was accepted as
     /// balanced to round-off, or far below the tolerance; one that settled, by its forces alone.
     fn measures(&mut self, number: u64, report: &StepReport) {
@@ -283,11 +297,7 @@ impl Ledger {
         if let Some(passes) = &mut summary.smoothing_passes {
             *passes += report.smoothed;
         }
-        summary.largest_advance = Some(
-            summary
-                .largest_advance
-                .map_or(report.advance, |so_far| so_far.max(report.advance)),
-        );
+        raise(&mut summary.largest_advance, report.advance);
         let penetrations = report.rigid.iter().map(|rigid| rigid.penetration);
         summary.deepest_penetration = penetrations.chain(summary.deepest_penetration).reduce(f64::max);
         summary.settled_steps += u64::from(report.settled);
@@ -310,12 +320,10 @@ impl Ledger {
         }
         // Where statuses of contacts were corrected, histories go on from search to search: the last alone judges.
         if let Some(last) = report.judged.filter(|_| !report.settled) {
-            let larger =
-                |so_far: &mut Option<f64>, ratio: f64| *so_far = Some(so_far.map_or(ratio, |so| so.max(ratio)));
-            larger(&mut summary.largest_force_measure, last.force / criteria.force);
-            larger(&mut summary.largest_energy_measure, last.energy / criteria.energy);
+            raise(&mut summary.largest_force_measure, last.force / criteria.force);
+            raise(&mut summary.largest_energy_measure, last.energy / criteria.energy);
             if let Some(water) = last.water {
-                larger(&mut summary.largest_water_measure, water / criteria.water());
+                raise(&mut summary.largest_water_measure, water / criteria.water());
             }
         }
     }
@@ -331,8 +339,8 @@ impl Ledger {
                 0.0
             };
             let [size, pull] = [size, pull].map(|force| force * self.whole);
-            summary.largest_reaction = Some(summary.largest_reaction.map_or(size, |so_far| so_far.max(size)));
-            summary.largest_pull = Some(summary.largest_pull.map_or(pull, |so_far| so_far.max(pull)));
+            raise(&mut summary.largest_reaction, size);
+            raise(&mut summary.largest_pull, pull);
         }
     }
 
@@ -341,12 +349,7 @@ impl Ledger {
         let summary = &mut self.manifest.summary;
         let farthest = summary.farthest_front.map_or(front, |so_far| so_far.max(front));
         summary.farthest_front = Some(farthest);
-        let setback = farthest - front;
-        summary.largest_front_setback = Some(
-            summary
-                .largest_front_setback
-                .map_or(setback, |so_far| so_far.max(setback)),
-        );
+        raise(&mut summary.largest_front_setback, farthest - front);
     }
 
     /// The rows of `residuals.csv`, if there is one.
@@ -356,24 +359,15 @@ impl Ledger {
         };
         let report = &accepted.report;
         let flows = self.water_flows;
-        let row = |iteration, method: Option<Method>, [energy, force, water]: [f64; 3]| {
-            let method = method.map(|method| match method {
-                Method::QuasiNewton(QuasiNewton::Multisecant) => residuals::ResidualMethod::Multisecant,
-                Method::QuasiNewton(QuasiNewton::Broyden) => residuals::ResidualMethod::Broyden,
-                Method::Newton => residuals::ResidualMethod::Newton,
-            });
-            Iterate {
-                step,
-                time: accepted.t,
-                iteration,
-                method,
-                energy,
-                force,
-                water,
-            }
-            .cells(flows)
+        let mut row = Iterate {
+            step,
+            time: accepted.t,
+            iteration: 0,
+            method: None,
+            energy: f64::NAN,
+            force: f64::NAN,
+            water: f64::NAN,
         };
-        let mut iteration = 0;
         for &Measures {
             energy,
             force,
@@ -381,16 +375,26 @@ impl Ledger {
             method,
         } in &report.history
         {
-            iteration += 1;
-            table.row(&row(
-                iteration,
-                Some(method),
-                [energy, force, water.unwrap_or(f64::NAN)],
-            ))?;
+            row = Iterate {
+                iteration: row.iteration + 1,
+                method: Some(residual_method(method)),
+                energy,
+                force,
+                water: water.unwrap_or(f64::NAN),
+                ..row
+            };
+            table.row(&row.cells(flows))?;
         }
         if report.history.last().is_none_or(|last| last.force != report.force) {
-            let water = report.water.as_ref().map_or(f64::NAN, |water| water.measure);
-            table.row(&row(iteration + 1, None, [f64::NAN, report.force, water]))?;
+            row = Iterate {
+                iteration: row.iteration + 1,
+                method: None,
+                energy: f64::NAN,
+                force: report.force,
+                water: report.water.as_ref().map_or(f64::NAN, |water| water.measure),
+                ..row
+            };
+            table.row(&row.cells(flows))?;
         }
         Ok(())
     }

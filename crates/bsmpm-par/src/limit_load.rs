@@ -27,24 +27,26 @@ pub fn found(case: &Case, history: &Columns) -> Vec<ManifestLimitLoad> {
         .collect()
 }
 
+/// How far (m) that which carries the load has been moved at `t`.
+fn moved(load: &SoughtLoad, t: f64) -> f64 {
+    let moved = load.path.at(t);
+    moved.iter().fold(0.0, |length: f64, along| length.hypot(*along))
+}
+
+/// The load in a row of the history; `None` without its columns there.
+fn sum(load: &SoughtLoad, history: &Columns, row: usize) -> Option<f64> {
+    let parts = load.columns.iter();
+    parts
+        .map(|(column, weight)| Some(weight * history.get(column)?.get(row)?))
+        .sum()
+}
+
 fn of_load(sought: &LimitLoad, load: &SoughtLoad, history: &Columns) -> Option<ManifestLimitLoad> {
     let times = history.get("time")?;
     let last = times.len().checked_sub(1)?;
-    let moved = |row: usize| {
-        load.path
-            .at(times[row])
-            .iter()
-            .fold(0.0, |length: f64, along| length.hypot(*along))
-    };
-    let late = (0..=last).find(|row| moved(*row) >= LATE * moved(last))?;
-    let at = |row: usize| -> Option<f64> {
-        let parts = load
-            .columns
-            .iter()
-            .map(|(column, weight)| Some(weight * history.get(column)?.get(row)?));
-        parts.sum()
-    };
-    let [before, value] = [at(late)?, at(last)?];
+    let late = (0..=last).find(|&row| moved(load, times[row]) >= LATE * moved(load, times[last]))?;
+    let before = sum(load, history, late)?;
+    let value = sum(load, history, last)?;
     let change = if value == 0.0 { 0.0 } else { (value - before) / value };
     let is_reached = value > 0.0 && change.abs() <= REACHED;
     Some(ManifestLimitLoad {

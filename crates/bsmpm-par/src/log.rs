@@ -123,7 +123,8 @@ impl Log {
         if self.progress == Progress::Off || self.format == LogFormat::Json || now < self.due {
             return;
         }
-        let (done, unit) = (t / self.end, self.unit);
+        let done = t / self.end;
+        let unit = self.unit;
         let line = format!(
             "{:4.1} %, t = {} of {}{unit}, step {number}, {}",
             100.0 * done,
@@ -226,7 +227,9 @@ pub fn duration(seconds: f64) -> String {
         return format!("{seconds:.1} s");
     }
     let whole = seconds.round() as u64;
-    let (minutes, hours, days) = (whole / 60, whole / 3600, whole / 86_400);
+    let minutes = whole / 60;
+    let hours = whole / 3600;
+    let days = whole / 86_400;
     match (days, hours, minutes) {
         (0, 0, 0) => format!("{whole} s"),
         (0, 0, _) => format!("{minutes} min {} s", whole % 60),

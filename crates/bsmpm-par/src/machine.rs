@@ -9,13 +9,9 @@ const TICKS: f64 = 100.0;
 pub fn cpu_seconds() -> f64 {
     let stat = fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let after_name = stat.rsplit(')').next().unwrap_or_default();
-    let ticks = |field: usize| {
-        after_name
-            .split_whitespace()
-            .nth(field)
-            .and_then(|text| text.parse::<f64>().ok())
-    };
-    (ticks(11).unwrap_or(0.0) + ticks(12).unwrap_or(0.0)) / TICKS
+    let fields: Vec<&str> = after_name.split_whitespace().collect();
+    let [user, system] = [11, 12].map(|field| fields.get(field).and_then(|text| text.parse::<f64>().ok()));
+    (user.unwrap_or(0.0) + system.unwrap_or(0.0)) / TICKS
 }
 
 /// Largest resident memory of this process so far, bytes; 0 if unknown.
@@ -37,12 +33,10 @@ pub fn processors() -> Option<u64> {
 pub fn blas() -> Option<String> {
     let maps = fs::read_to_string("/proc/self/maps").unwrap_or_default();
     let files = maps.lines().filter_map(|line| line.split('/').next_back());
-    let known = |name: &&str| {
-        ["openblas", "mkl", "blis", "libblas"]
-            .iter()
-            .any(|part| name.contains(part))
-    };
-    let mut found: Vec<&str> = files.filter(known).collect();
+    let known = ["openblas", "mkl", "blis", "libblas"];
+    let mut found: Vec<&str> = files
+        .filter(|name| known.iter().any(|part| name.contains(part)))
+        .collect();
     found.sort_unstable();
     found.dedup();
     // Debian calls an optimised BLAS libblas.so too; the package's own library is loaded then as well.

@@ -37,9 +37,16 @@ enum Limit {
     Process,
 }
 
+/// Memory that a limit allows, in bytes.
+struct MemoryLimit {
+    by: Limit,
+    allowed: u64,
+}
+
 impl Display for Shortage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (needed, allowed) = (self.needed as f64 / GIB, self.allowed as f64 / GIB);
+        let needed = self.needed as f64 / GIB;
+        let allowed = self.allowed as f64 / GIB;
         write!(f, "about {needed:.1} GiB ")?;
         let ranks = self.ranks;
         match self.by {
@@ -82,19 +89,20 @@ pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> 
     let here = world.split_shared(world.rank()).size().unsigned_abs() as usize;
     let mut code = exit::DONE;
     if world.rank() == 0 {
-        let (estimate, limits) = (case.estimate(ranks), limits(arguments.max_memory));
-        let shortage = |needed: u64| {
-            let mut limits = limits.iter().filter_map(|&(by, bytes)| Some((by, bytes?)));
-            limits.find_map(|limit| short(needed, (ranks, here), limit))
-        };
-        if let (None, Some(shortage)) = (shortage(estimate.bytes), shortage(estimate.bytes_with_newton)) {
+        let estimate = case.estimate(ranks);
+        let limits = limits(arguments.max_memory);
+        let [shortage, shortage_with_newton] = [estimate.bytes, estimate.bytes_with_newton].map(|needed| {
+            let mut limits = limits.iter();
+            limits.find_map(|limit| short(needed, ranks, here, limit.by, limit.allowed))
+        });
+        if let (None, Some(shortage)) = (&shortage, shortage_with_newton) {
             let text = format!(
                 "W0723: Newton's method, which the program uses if a step converges badly, needs too much memory: \
                  {shortage}. The operating system may then end the run. Increase `grid.cell`, or use more computers."
             );
             say(&headed(&text, "warning"));
         }
-        match shortage(estimate.bytes) {
+        match shortage {
             Some(shortage) if arguments.check && shortage.by != Limit::Asked => {
                 let text = format!(
                     "W0724: the case needs too much memory: {shortage}. This computer cannot run it. Increase `grid.cell`, \
@@ -114,7 +122,7 @@ pub fn admit(world: &SimpleCommunicator, arguments: &Arguments, case: &Case) -> 
 }
 
 /// `ranks` in all and `here`, on this host.
-fn short(needed: u64, (ranks, here): (usize, usize), (by, allowed): (Limit, u64)) -> Option<Shortage> {
+fn short(needed: u64, ranks: usize, here: usize, by: Limit, allowed: u64) -> Option<Shortage> {
     let each = needed / ranks as u64;
     let (needed, ranks) = match by {
         Limit::Asked => (needed, ranks),
@@ -130,21 +138,28 @@ fn short(needed: u64, (ranks, here): (usize, usize), (by, allowed): (Limit, u64)
 }
 
 /// What was asked for, or what this host and its control groups tell; and what the process's own limits do.
-fn limits(asked: Option<u64>) -> Vec<(Limit, Option<u64>)> {
-    let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
-    let process = (
-        Limit::Process,
-        left(&read("/proc/self/limits"), &read("/proc/self/status")),
-    );
-    if asked.is_some() {
-        return vec![(Limit::Asked, asked), process];
-    }
-    let group = group(Path::new("/sys/fs/cgroup"), &read("/proc/self/cgroup"));
-    vec![
-        (Limit::Group, group),
-        (Limit::Free, kilobytes(&read("/proc/meminfo"), "MemAvailable:")),
-        process,
-    ]
+fn limits(asked: Option<u64>) -> Vec<MemoryLimit> {
+    let process = left(&read("/proc/self/limits"), &read("/proc/self/status"));
+    let mut limits = match asked {
+        Some(_) => vec![(Limit::Asked, asked)],
+        None => vec![
+            (
+                Limit::Group,
+                group(Path::new("/sys/fs/cgroup"), &read("/proc/self/cgroup")),
+            ),
+            (Limit::Free, kilobytes(&read("/proc/meminfo"), "MemAvailable:")),
+        ],
+    };
+    limits.push((Limit::Process, process));
+    let known = limits.into_iter();
+    known
+        .filter_map(|(by, allowed)| Some(MemoryLimit { by, allowed: allowed? }))
+        .collect()
+}
+
+/// The text of a file of the system; empty if it cannot be read.
+fn read(path: &str) -> String {
+    fs::read_to_string(path).unwrap_or_default()
 }
 
 fn kilobytes(text: &str, name: &str) -> Option<u64> {
@@ -154,37 +169,41 @@ fn kilobytes(text: &str, name: &str) -> Option<u64> {
 
 /// What the limits of address space and of data leave to a process besides what it has and what its BLAS reserves.
 fn left(limits: &str, status: &str) -> Option<u64> {
-    let of = |name: &str, size: &str| {
+    let bounded = [("Max address space", "VmSize:"), ("Max data size", "VmData:")].into_iter();
+    let left = bounded.filter_map(|(name, size)| {
         let line = limits.lines().find_map(|line| line.strip_prefix(name))?;
         let limit = line.split_whitespace().next()?.parse::<u64>().ok()?; // none where it is "unlimited"
         Some(limit.saturating_sub(kilobytes(status, size).unwrap_or(0) + RESERVED))
-    };
-    [of("Max address space", "VmSize:"), of("Max data size", "VmData:")]
-        .into_iter()
-        .flatten()
-        .min()
+    });
+    left.min()
 }
 
 /// The least limit of the process's control groups of either version and of those around them; `membership` is
 /// /proc/self/cgroup. In a container its own group may be what is mounted.
 fn group(mounted: &Path, membership: &str) -> Option<u64> {
-    let of_line = |line: &str| {
-        let mut parts = line.splitn(3, ':').skip(1);
-        let (controllers, path) = (parts.next()?, parts.next()?);
-        let (below, file): (&[&str], _) = match controllers {
-            "" => (&["", "unified"], "memory.max"),
-            named if named.split(',').any(|name| name == "memory") => (&["memory"], "memory.limit_in_bytes"),
-            _ => return None,
-        };
-        let own = PathBuf::from(path.trim_start_matches('/'));
-        let files = below
-            .iter()
-            .flat_map(|below| own.ancestors().map(move |group| mounted.join(below).join(group)));
-        files
-            .filter_map(|group| fs::read_to_string(group.join(file)).ok()?.trim().parse::<u64>().ok())
-            .min()
+    membership
+        .lines()
+        .filter_map(|line| limit_of_group(mounted, line))
+        .min()
+}
+
+/// The least limit of the group that a line of /proc/self/cgroup names, and of those around it.
+fn limit_of_group(mounted: &Path, line: &str) -> Option<u64> {
+    let mut parts = line.splitn(3, ':').skip(1);
+    let controllers = parts.next()?;
+    let path = parts.next()?;
+    let (below, file): (&[&str], _) = match controllers {
+        "" => (&["", "unified"], "memory.max"),
+        named if named.split(',').any(|name| name == "memory") => (&["memory"], "memory.limit_in_bytes"),
+        _ => return None,
     };
-    membership.lines().filter_map(of_line).min()
+    let own = PathBuf::from(path.trim_start_matches('/'));
+    let files = below
+        .iter()
+        .flat_map(|below| own.ancestors().map(move |group| mounted.join(below).join(group)));
+    files
+        .filter_map(|group| fs::read_to_string(group.join(file)).ok()?.trim().parse::<u64>().ok())
+        .min()
 }
 
 #[cfg(test)]
@@ -228,12 +247,11 @@ mod tests {
 
     #[test]
     fn each_limit_is_held_against_what_it_bounds() {
-        let ranks = (4, 2);
-        let is_short = |limit| short(4 << 30, ranks, limit).is_some();
-        assert!(is_short((Limit::Asked, 3 << 30)) && !is_short((Limit::Asked, 4 << 30)));
-        assert!(is_short((Limit::Free, 1 << 30)) && !is_short((Limit::Group, 2 << 30)));
-        assert!(is_short((Limit::Process, 1 << 29)) && !is_short((Limit::Process, 1 << 30)));
-        let said = short(4 << 30, ranks, (Limit::Free, 1 << 30)).unwrap().to_string();
+        let is_short = |by, allowed| short(4 << 30, 4, 2, by, allowed).is_some();
+        assert!(is_short(Limit::Asked, 3 << 30) && !is_short(Limit::Asked, 4 << 30));
+        assert!(is_short(Limit::Free, 1 << 30) && !is_short(Limit::Group, 2 << 30));
+        assert!(is_short(Limit::Process, 1 << 29) && !is_short(Limit::Process, 1 << 30));
+        let said = short(4 << 30, 4, 2, Limit::Free, 1 << 30).unwrap().to_string();
         assert!(
             said.contains("about 2.0 GiB on this computer (2 rank(s)), where 1.0 GiB are available"),
             "{said}"

@@ -21,7 +21,9 @@ const FIELDS: usize = 3 + 3 + 3 + 6 + 1 + 2;
 /// `lower` is the grid's corner, `t` the time. Collective.
 pub fn rows<K: Kinematics<D>, const D: usize>(
     profile: &Profile,
-    (model, lower, t): (&Model<K, D>, [f64; 3], f64),
+    model: &Model<K, D>,
+    lower: [f64; 3],
+    t: f64,
     points: &Points<D>,
     halo: &dyn Halo,
 ) -> Vec<Vec<f64>> {
@@ -36,62 +38,75 @@ pub fn rows<K: Kinematics<D>, const D: usize>(
         Configuration::Initial
     };
     let water = PoreWater::of(model, points, t);
-    let fields = |p: usize| {
-        let velocity = points.motion.as_ref().map_or(Vector::zeros(), |motion| motion.v[p]);
-        let vectors = [points.u[p], points.displacement(p), velocity].map(|vector| gather::spatial(&vector));
-        let pores = water.map_or([0.0; 2], |water| [water.pressure(p), water.excess(p)]);
-        let numbers = vectors
-            .into_iter()
-            .flatten()
-            .chain(points.sigma.at(p).0)
-            .chain([points.eps_p[p]])
-            .chain(pores);
-        let mut fields = [0.0; FIELDS];
-        fields
-            .iter_mut()
-            .zip(numbers)
-            .for_each(|(field, number)| *field = number);
-        fields
-    };
-    let found = place::values::<K, D, _>(&model.grid, points, (&local, configuration), fields, halo);
-    let row = |((distance, at), found): (&(f64, [f64; 3]), &Option<[f64; FIELDS]>)| {
-        let [
-            ux,
-            uy,
-            uz,
-            dx,
-            dy,
-            dz,
-            vx,
-            vy,
-            vz,
-            xx,
-            yy,
-            zz,
-            xy,
-            yz,
-            xz,
-            plastic,
-            pore,
-            excess,
-        ] = (*found)?;
-        let moved = if profile.fixed { [0.0; 3] } else { [ux, uy, uz] };
-        let stress = Symmetric([xx, yy, zz, xy, yz, xz]);
+    let found = place::values::<K, D, _>(
+        &model.grid,
+        points,
+        &local,
+        configuration,
+        |p| fields(points, water, p),
+        halo,
+    );
+    let mut rows = Vec::new();
+    for ((distance, at), found) in places.iter().zip(found) {
+        let Some(found) = found else { continue };
         let mut row = vec![*distance];
-        row.extend((0..D).map(|axis| at[axis] + moved[axis]));
-        for quantity in &profile.quantities {
-            match quantity {
-                ProfileQuantity::Displacement => row.extend([dx, dy, dz].iter().take(D)),
-                ProfileQuantity::Velocity => row.extend([vx, vy, vz].iter().take(D)),
-                ProfileQuantity::Stress => row.extend(gather::shown::<D>(&stress.0)),
-                ProfileQuantity::P => row.push(invariants::pressure(&stress)),
-                ProfileQuantity::Q => row.push(invariants::deviatoric(&stress)),
-                ProfileQuantity::PlasticStrain => row.push(plastic),
-                ProfileQuantity::PorePressure => row.push(pore),
-                ProfileQuantity::ExcessPressure => row.push(excess),
-            }
+        row.extend((0..D).map(|axis| at[axis] + if profile.fixed { 0.0 } else { found[axis] }));
+        extend::<D>(&mut row, profile, &found);
+        rows.push(row);
+    }
+    rows
+}
+
+/// The numbers of a point that a row is made of.
+fn fields<const D: usize>(points: &Points<D>, water: Option<PoreWater<'_, D>>, p: usize) -> [f64; FIELDS] {
+    let velocity = points.motion.as_ref().map_or(Vector::zeros(), |motion| motion.v[p]);
+    let vectors = [points.u[p], points.displacement(p), velocity].map(|vector| gather::spatial(&vector));
+    let pores = water.map_or([0.0; 2], |water| [water.pressure(p), water.excess(p)]);
+    let numbers = vectors
+        .into_iter()
+        .flatten()
+        .chain(points.sigma.at(p).0)
+        .chain([points.eps_p[p]])
+        .chain(pores);
+    let mut fields = [0.0; FIELDS];
+    fields
+        .iter_mut()
+        .zip(numbers)
+        .for_each(|(field, number)| *field = number);
+    fields
+}
+
+/// Adds the quantities that the profile reports in `D` dimensions.
+fn extend<const D: usize>(row: &mut Vec<f64>, profile: &Profile, fields: &[f64; FIELDS]) {
+    let [
+        ..,
+        dx,
+        dy,
+        dz,
+        vx,
+        vy,
+        vz,
+        xx,
+        yy,
+        zz,
+        xy,
+        yz,
+        xz,
+        plastic,
+        pore,
+        excess,
+    ] = *fields;
+    let stress = Symmetric([xx, yy, zz, xy, yz, xz]);
+    for quantity in &profile.quantities {
+        match quantity {
+            ProfileQuantity::Displacement => row.extend([dx, dy, dz].iter().take(D)),
+            ProfileQuantity::Velocity => row.extend([vx, vy, vz].iter().take(D)),
+            ProfileQuantity::Stress => row.extend(gather::shown::<D>(&stress.0)),
+            ProfileQuantity::P => row.push(invariants::pressure(&stress)),
+            ProfileQuantity::Q => row.push(invariants::deviatoric(&stress)),
+            ProfileQuantity::PlasticStrain => row.push(plastic),
+            ProfileQuantity::PorePressure => row.push(pore),
+            ProfileQuantity::ExcessPressure => row.push(excess),
         }
-        Some(row)
-    };
-    places.iter().zip(&found).filter_map(row).collect()
+    }
 }

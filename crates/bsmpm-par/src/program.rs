@@ -12,6 +12,7 @@ use bsmpm::lanes;
 use bsmpm_io::exit;
 use bsmpm_ranks::linear;
 use bsmpm_ranks::signals::Requests;
+use bsmpm_ranks::simulation::Libraries;
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
@@ -39,7 +40,8 @@ fn refuse(universe: &Universe, code: u8, reason: &str) -> u8 {
 /// What is to be run, `None` if it was only to be checked; `Err` holds the exit code, and rank 0 has said why.
 fn prepare(universe: &Universe) -> Result<Option<(Task, Cut)>, u8> {
     let world = universe.world();
-    let (speaks, ranks) = (world.rank() == 0, world.size().unsigned_abs() as usize);
+    let speaks = world.rank() == 0;
+    let ranks = world.size().unsigned_abs() as usize;
     let arguments = Arguments::read(speaks)?;
     let fault = agreed(universe, exit::USAGE, Fault::from_environment(ranks))?;
     agreed(universe, exit::USAGE, choose_lanes())?;
@@ -65,7 +67,8 @@ fn prepare(universe: &Universe) -> Result<Option<(Task, Cut)>, u8> {
 fn agreed<T>(universe: &Universe, code: u8, mine: Result<T, String>) -> Result<T, u8> {
     let world = universe.world();
     // What is wrong everywhere is said once.
-    let (first, own) = (world.rank() == 0, u8::from(mine.is_err()));
+    let first = world.rank() == 0;
+    let own = u8::from(mine.is_err());
     let everywhere = world.size().unsigned_abs() as usize == bsmpm_ranks::launch::count(&world, own == 1);
     if let (Err(reason), true) = (&mine, first || !everywhere) {
         launch::complain(reason);
@@ -102,22 +105,21 @@ fn start_threads(count: u32) -> Result<(), String> {
 /// Options of PETSc, each with its value if it has one, that have every solve reported: they wait for the run's own
 /// systems.
 fn reports(options: &[String]) -> (Vec<&str>, Vec<(&str, Option<&str>)>) {
-    let is_name = |option: &str| option.starts_with('-') && option.parse::<f64>().is_err();
-    let reports = |option: &str| {
-        option != "-log_view"
-            && ["_view", "_monitor", "_converged_reason"]
-                .iter()
-                .any(|part| option.contains(part))
-    };
-    let (mut others, mut waiting) = (Vec::new(), Vec::<(&str, Option<&str>)>::new());
+    let mut others = Vec::new();
+    let mut waiting = Vec::<(&str, Option<&str>)>::new();
     let mut is_value = false; // of one that waits
     for option in options.iter().map(String::as_str) {
+        let is_name = option.starts_with('-') && option.parse::<f64>().is_err();
+        let has_report = ["_view", "_monitor", "_converged_reason"]
+            .iter()
+            .any(|part| option.contains(part));
+        let waits = is_name && has_report && option != "-log_view";
         match waiting.last_mut() {
-            Some((_, value)) if is_value && !is_name(option) => *value = Some(option),
-            _ if is_name(option) && reports(option) => waiting.push((option, None)),
+            Some((_, value)) if is_value && !is_name => *value = Some(option),
+            _ if waits => waiting.push((option, None)),
             _ => others.push(option),
         }
-        is_value = is_name(option) && reports(option);
+        is_value = waits;
     }
     (others, waiting)
 }
@@ -161,7 +163,11 @@ fn solve(universe: &Universe, task: Task, cut: Cut) -> Result<u8, u8> {
         )
     });
     let requests = Rc::new(agreed(universe, exit::BUG, requests)?);
-    begin::run((universe, &hdf5), (&petsc, choice), task, cut, requests)
+    let libraries = Libraries {
+        universe,
+        petsc: &petsc,
+    };
+    begin::run(libraries, &hdf5, choice, task, cut, requests)
 }
 
 #[cfg(test)]

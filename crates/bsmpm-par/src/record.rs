@@ -20,7 +20,9 @@ use bsmpm_scene::model::vector;
 use bsmpm_scene::surfaces::{self, DrainPlace, Gauge};
 use bsmpm_scene::words::Measurement;
 use bsmpm_scene::{Case, GridSpec, History, Made, Quantity, Stage};
-use place::{FollowedPoint, PoreAt, at_followed, at_surface, both, displacement, followed_place, pore, section};
+use place::{
+    FollowedPoint, PoreAt, at_followed, at_surface, both, displacement, followed_place, pore, section, velocity,
+};
 use reported::{at_face, contact, rigid};
 
 /// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
@@ -48,16 +50,20 @@ pub struct Recorder<const D: usize> {
 impl<const D: usize> Recorder<D> {
     /// Finds the points nearest to the wanted places.
     pub fn new(case: &Case, points: &Points<D>, halo: &dyn Halo) -> Self {
-        let (histories, lower) = (&case.histories, vector::<D, _>(case.grid.lower()));
+        let histories = &case.histories;
+        let lower = vector::<D, _>(case.grid.lower());
         let lasting = case.lasting();
-        let comes_later = |number: usize| case.stages.iter().any(|stage| stage.follows.contains(&number));
-        let follow = |(number, history): (usize, &History)| {
-            let at = followed_place(&history.quantity).filter(|_| !comes_later(number))?;
-            observe::nearest(points, &(vector(at) - lower), |id| !history.lasts || lasting(id), halo)
-        };
-        let followed = histories.iter().enumerate().map(follow).collect();
-        let has_box = |number: &usize| histories[*number].quantity.counted().within.is_some();
-        let vacant = (0..histories.len()).filter(has_box).collect();
+        let mut followed = Vec::with_capacity(histories.len());
+        for (number, history) in histories.iter().enumerate() {
+            let comes_later = case.stages.iter().any(|stage| stage.follows.contains(&number));
+            let at = followed_place(&history.quantity).filter(|_| !comes_later);
+            followed.push(at.and_then(|at| {
+                observe::nearest(points, &(vector(at) - lower), |id| !history.lasts || lasting(id), halo)
+            }));
+        }
+        let vacant = (0..histories.len())
+            .filter(|&number| histories[number].quantity.counted().within.is_some())
+            .collect();
         let state = RecordState {
             followed,
             vacant,
@@ -72,29 +78,16 @@ impl<const D: usize> Recorder<D> {
     }
 
     fn of(case: &Case, state: RecordState) -> Self {
-        let react = |history: &History| match history.quantity {
+        let reacting = case.histories.iter().map(|history| match history.quantity {
             Quantity::Reaction { face } => surfaces::strip_of_face(case, face),
             _ => None,
-        };
-        let wants_work = |history: &History| {
-            matches!(
-                history.quantity,
-                Quantity::Strip {
-                    measured: Measurement::Work,
-                    ..
-                }
-            )
-        };
+        });
+        let mut quantities = case.histories.iter().map(|history| &history.quantity);
+        let wants_work = quantities
+            .any(|quantity| matches!(quantity, Quantity::Strip { measured, .. } if *measured == Measurement::Work));
         let strips = case.prescribed.len() + usize::from(case.footing.is_some());
         let mut work = state.work;
-        work.resize(
-            if case.histories.iter().any(wants_work) {
-                strips
-            } else {
-                0
-            },
-            0.0,
-        );
+        work.resize(if wants_work { strips } else { 0 }, 0.0);
         Self {
             work,
             histories: case.histories.clone(),
@@ -102,7 +95,7 @@ impl<const D: usize> Recorder<D> {
             vacant: state.vacant,
             empty: Vec::new(),
             followed: state.followed,
-            reacting: case.histories.iter().map(react).collect(),
+            reacting: reacting.collect(),
             gauge: Gauge::of(case),
             drains: surfaces::drain_places(case),
             books: state.books.map(|BooksForm(books)| books),
@@ -116,8 +109,11 @@ impl<const D: usize> Recorder<D> {
 
     /// What must be known to go on.
     pub fn state(&self) -> RecordState {
-        let (followed, books) = (self.followed.clone(), self.books.map(BooksForm));
-        let (vacant, work, datum) = (self.vacant.clone(), self.work.clone(), self.datum.clone());
+        let followed = self.followed.clone();
+        let books = self.books.map(BooksForm);
+        let vacant = self.vacant.clone();
+        let work = self.work.clone();
+        let datum = self.datum.clone();
         RecordState {
             followed,
             vacant,
@@ -129,8 +125,9 @@ impl<const D: usize> Recorder<D> {
     }
 
     /// Follows points of the bodies that a stage has placed, and sets displacements to zero where it wants that.
-    pub fn begin_stage(&mut self, (case, stage): (&Case, &Stage), points: &Points<D>, halo: &dyn Halo) {
-        let (taken, placed) = (case.taken_by(stage), case.placed_by(stage));
+    pub fn begin_stage(&mut self, case: &Case, stage: &Stage, points: &Points<D>, halo: &dyn Halo) {
+        let taken = case.taken_by(stage);
+        let placed = case.placed_by(stage);
         self.followed
             .iter_mut()
             .filter(|followed| followed.is_some_and(&taken))
@@ -141,12 +138,17 @@ impl<const D: usize> Recorder<D> {
             }
         }
         if stage.resets_displacements {
-            let raw = |(number, history): (usize, &History)| match (&history.quantity, self.followed[number]) {
-                (Quantity::Displacement { at }, Some(id)) => displacement((*at, self.lower), id, points, halo).to_vec(),
-                (quantity, _) if is_of_rigid(quantity) => self.moved[number].clone(),
-                _ => vec![0.0; D],
-            };
-            self.datum = self.histories.iter().enumerate().map(raw).collect();
+            let mut datum = Vec::with_capacity(self.histories.len());
+            for (number, history) in self.histories.iter().enumerate() {
+                datum.push(match (&history.quantity, self.followed[number]) {
+                    (Quantity::Displacement { at }, Some(id)) => {
+                        displacement(*at, self.lower, id, points, halo).to_vec()
+                    }
+                    (quantity, _) if is_of_rigid(quantity) => self.moved[number].clone(),
+                    _ => vec![0.0; D],
+                });
+            }
+            self.datum = datum;
         }
     }
 
@@ -158,8 +160,7 @@ impl<const D: usize> Recorder<D> {
         self.left.mass += outflow.mass;
         let mut lost = Vec::new();
         for (followed, history) in self.followed.iter_mut().zip(&self.histories) {
-            let is_gone = |id| observe::at_point(points, id, halo, |_| [1.0]) == [0.0];
-            if followed.is_some_and(is_gone) {
+            if followed.is_some_and(|id| observe::at_point(points, id, halo, |_| [1.0]) == [0.0]) {
                 *followed = None;
                 lost.push(history.name.clone());
             }
@@ -169,18 +170,12 @@ impl<const D: usize> Recorder<D> {
 
     /// Whether the number of every column of the last row is one: means and places of no point are none.
     pub fn reported(&self) -> Vec<bool> {
-        let is_sum = |history: &History| {
-            let quantity = &history.quantity;
-            matches!(
-                quantity,
-                Quantity::Mass { .. } | Quantity::Momentum { .. } | Quantity::AngularMomentum { .. }
-            ) || matches!(quantity, Quantity::KineticEnergy { .. })
-        };
-        let reported = |(number, history): (usize, &History)| {
-            let is_reported = is_sum(history) || !self.empty.contains(&number);
-            std::iter::repeat_n(is_reported, history.columns().len())
-        };
-        self.histories.iter().enumerate().flat_map(reported).collect()
+        let mut reported = Vec::new();
+        for (number, history) in self.histories.iter().enumerate() {
+            let is_reported = is_sum(&history.quantity) || !self.empty.contains(&number);
+            reported.extend(std::iter::repeat_n(is_reported, history.columns().len()));
+        }
+        reported
     }
 
     /// Names of the histories in whose box no point has been yet, if there are any.
@@ -231,11 +226,12 @@ impl<const D: usize> Recorder<D> {
         &mut self,
         model: &Model<K, D>,
         points: &Points<D>,
-        (t, report): (f64, &StepReport),
+        t: f64,
+        report: &StepReport,
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
         let energy = if model.balances_energy {
-            self.energy(model, points, (t, report), halo)
+            self.energy(model, points, t, report, halo)
         } else {
             Vec::new()
         };
@@ -251,46 +247,8 @@ impl<const D: usize> Recorder<D> {
         let mut row = Vec::new();
         for (number, history) in self.histories.iter().enumerate() {
             let mut values = match &history.quantity {
-                Quantity::Reaction { face } => self.reaction(number, model, *face, report),
-                Quantity::FootingPressure | Quantity::FootingForce | Quantity::Penetration | Quantity::Slip => {
-                    vec![self.footing(&history.quantity, t, report)]
-                }
                 Quantity::Energy => energy.clone(),
-                Quantity::Outflow => vec![self.left.mass],
-                Quantity::Strip { number, measured } => self.strip(*number, *measured, report),
-                Quantity::Contact { face }
-                | Quantity::Gap { face }
-                | Quantity::SlipRate { face }
-                | Quantity::FrictionPower { face } => {
-                    contact(history.quantity.measurement(), at_face(model, *face, report), report.dt)
-                }
-                Quantity::PorePressure { at, surface } | Quantity::Pore { at, surface, .. } => {
-                    let place = vector::<D, _>(*at) - self.lower;
-                    let read = match surface {
-                        true => PoreAt::Surface(place),
-                        false => PoreAt::Point(FollowedPoint::of(self.followed[number], place, &self.grid)),
-                    };
-                    let water = PoreWater::of(model, points, t);
-                    pore((history.quantity.measurement(), water), read, (model, points), halo)?
-                }
-                Quantity::PorePressures { .. } => {
-                    let water = PoreWater::of(model, points, t);
-                    water
-                        .map_or([0.0; 3], |water| water.range(&self.parts[number], halo))
-                        .to_vec()
-                }
-                Quantity::WaterOutflow { drain } => {
-                    vec![drain.map_or(points.surface.crossed.out(), |drain| self.drained(drain, points))]
-                }
-                Quantity::WaterBalance => {
-                    vec![
-                        PoreWater::of(model, points, t)
-                            .and_then(|water| water.balance(halo))
-                            .unwrap_or(0.0),
-                    ]
-                }
-                Quantity::Rigid { what, body } => rigid(*what, *body, (t, model), report),
-                quantity => self.values((number, quantity), model, points, halo)?,
+                _ => self.value(number, model, points, t, report, halo)?,
             };
             if is_of_rigid(&history.quantity) {
                 self.moved[number].clone_from(&values);
@@ -300,6 +258,51 @@ impl<const D: usize> Recorder<D> {
             row.extend(values.iter().map(|value| history.factor() * value));
         }
         Ok(row)
+    }
+
+    /// The quantity of a history other than the energy.
+    fn value<K: Kinematics<D>>(
+        &self,
+        number: usize,
+        model: &Model<K, D>,
+        points: &Points<D>,
+        t: f64,
+        report: &StepReport,
+        halo: &dyn Halo,
+    ) -> Result<Vec<f64>, StepError> {
+        let quantity = &self.histories[number].quantity;
+        let water = PoreWater::of(model, points, t);
+        Ok(match quantity {
+            Quantity::Reaction { face } => self.reaction(number, model, *face, report),
+            Quantity::FootingPressure | Quantity::FootingForce | Quantity::Penetration | Quantity::Slip => {
+                vec![self.footing(quantity, t, report)]
+            }
+            Quantity::Outflow => vec![self.left.mass],
+            Quantity::Strip { number, measured } => self.strip(*number, *measured, report),
+            Quantity::Contact { face }
+            | Quantity::Gap { face }
+            | Quantity::SlipRate { face }
+            | Quantity::FrictionPower { face } => {
+                contact(quantity.measurement(), at_face(model, *face, report), report.dt)
+            }
+            Quantity::PorePressure { at, surface } | Quantity::Pore { at, surface, .. } => {
+                let place = vector::<D, _>(*at) - self.lower;
+                let read = match surface {
+                    true => PoreAt::Surface(place),
+                    false => PoreAt::Point(FollowedPoint::of(self.followed[number], place, &self.grid)),
+                };
+                pore(quantity.measurement(), water, read, model, points, halo)?
+            }
+            Quantity::PorePressures { .. } => water
+                .map_or([0.0; 3], |water| water.range(&self.parts[number], halo))
+                .to_vec(),
+            Quantity::WaterOutflow { drain } => {
+                vec![drain.map_or(points.surface.crossed.out(), |drain| self.drained(drain, points))]
+            }
+            Quantity::WaterBalance => vec![water.and_then(|water| water.balance(halo)).unwrap_or(0.0)],
+            Quantity::Rigid { what, body } => rigid(*what, *body, t, model, report),
+            quantity => self.values(number, quantity, model, points, halo)?,
+        })
     }
 
     /// m3/m  out of a drain so far, by its number in the file.
@@ -316,23 +319,25 @@ impl<const D: usize> Recorder<D> {
     /// A quantity of all points.
     fn values<K: Kinematics<D>>(
         &self,
-        (number, quantity): (usize, &Quantity),
+        number: usize,
+        quantity: &Quantity,
         model: &Model<K, D>,
         points: &Points<D>,
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
-        let (left, bottom, followed) = (self.lower[0], self.lower[D - 1], self.followed[number]);
+        let left = self.lower[0];
+        let bottom = self.lower[D - 1];
         let part = &self.parts[number];
         Ok(match quantity {
             Quantity::Runout { percentile, .. } if *percentile < 100.0 => {
-                vec![left + observe::percentile(points, part, (0, *percentile), halo)]
+                vec![left + observe::percentile(points, part, 0, *percentile, halo)]
             }
             Quantity::Runout { .. } => vec![left + observe::farthest(points, part, 0, halo)],
             Quantity::Front => vec![left + observe::front(model, points, halo)],
             Quantity::Height { at_x: None, .. } => vec![bottom + observe::farthest(points, part, D - 1, halo)],
             Quantity::Height { at_x: Some(x), .. } => {
                 let [x, _] = self.grid.local([*x, bottom]);
-                vec![bottom + observe::surface(&model.grid, (points, part), x, halo)]
+                vec![bottom + observe::surface(&model.grid, points, part, x, halo)]
             }
             Quantity::MaxDisplacement { .. } => vec![observe::largest_displacement(points, part, halo)],
             Quantity::Mass { .. } => vec![observe::mass(points, part, halo)],
@@ -350,22 +355,6 @@ impl<const D: usize> Recorder<D> {
             Quantity::MeanDisplacement { .. } => observe::mean_displacement(points, part, halo).as_slice().to_vec(),
             Quantity::MeanVelocity { .. } => observe::mean_velocity(points, part, halo).as_slice().to_vec(),
             Quantity::PlasticStrain { .. } => observe::plastic_strain(points, part, halo).to_vec(),
-            Quantity::SectionForces { lines, round, fixed } => {
-                let local = lines.iter().map(|line| line.map(|end| vector(end) - self.lower));
-                let at_start = Section {
-                    lines: local.collect(),
-                    round: *round,
-                };
-                section::<K, D>((&model.grid, points), at_start, *fixed, halo)
-            }
-            Quantity::Velocity { at, surface: true } => {
-                let velocity = |p: usize| points.motion.as_ref().map_or([0.0; D], |motion| motion.v[p].into());
-                at_surface((model, points), vector(*at) - self.lower, velocity, halo)
-            }
-            Quantity::Stress { at, surface: true } => {
-                let stress = |p: usize| points.sigma.at(p).0;
-                shown::<D>(&at_surface((model, points), vector(*at) - self.lower, stress, halo))
-            }
             Quantity::Heave { .. } => vec![observe::heave(points, part, halo)],
             Quantity::StressNoise => both(noise::stress_noise(
                 &model.grid,
@@ -374,28 +363,59 @@ impl<const D: usize> Recorder<D> {
                 VERTICAL,
                 halo,
             )?),
-            Quantity::PressureNoise { .. } => both(noise::pressure_noise(
-                &model.grid,
-                (points, part),
-                model.weighting,
-                halo,
-            )?),
+            Quantity::PressureNoise { .. } => {
+                both(noise::pressure_noise(&model.grid, points, part, model.weighting, halo)?)
+            }
+            quantity => self.local_values(number, quantity, model, points, halo),
+        })
+    }
+
+    /// A quantity at a place or a section.
+    fn local_values<K: Kinematics<D>>(
+        &self,
+        number: usize,
+        quantity: &Quantity,
+        model: &Model<K, D>,
+        points: &Points<D>,
+        halo: &dyn Halo,
+    ) -> Vec<f64> {
+        let followed = self.followed[number];
+        match quantity {
+            Quantity::SectionForces { lines, round, fixed } => {
+                let local = lines.iter().map(|line| line.map(|end| vector(end) - self.lower));
+                let at_start = Section {
+                    lines: local.collect(),
+                    round: *round,
+                };
+                section::<K, D>(&model.grid, points, at_start, *fixed, halo)
+            }
+            Quantity::Velocity { at, surface: true } => {
+                let at = vector(*at) - self.lower;
+                at_surface(model, points, at, |p| velocity(points, p), halo)
+            }
+            Quantity::Stress { at, surface: true } => {
+                let at = vector(*at) - self.lower;
+                shown::<D>(&at_surface(model, points, at, |p| points.sigma.at(p).0, halo))
+            }
             Quantity::Displacement { at } => {
-                let Some(id) = followed else { return Ok(vec![0.0; D]) };
-                let total = displacement((*at, self.lower), id, points, halo);
-                let datum = |axis: usize| self.datum.get(number).map_or(0.0, |datum| datum[axis]);
-                (0..D).map(|axis| total[axis] - datum(axis)).collect()
+                let Some(id) = followed else { return vec![0.0; D] };
+                let total = displacement(*at, self.lower, id, points, halo);
+                let datum = self.datum.get(number);
+                (0..D)
+                    .map(|axis| total[axis] - datum.map_or(0.0, |datum| datum[axis]))
+                    .collect()
             }
             quantity => {
                 let at = followed_place(quantity).map_or(Vector::zeros(), |at| vector::<D, _>(at) - self.lower);
                 at_followed(
                     quantity,
                     FollowedPoint::of(followed, at, &self.grid),
-                    (model, points),
+                    model,
+                    points,
                     halo,
                 )
             }
-        })
+        }
     }
 
     /// Where the energy is and went, in the order of the quantity's columns, with the step of `report` entered.
@@ -403,10 +423,11 @@ impl<const D: usize> Recorder<D> {
         &mut self,
         model: &Model<K, D>,
         points: &Points<D>,
-        (t, report): (f64, &StepReport),
+        t: f64,
+        report: &StepReport,
         halo: &dyn Halo,
     ) -> Vec<f64> {
-        let now = Stored::of(model, (points, t), halo);
+        let now = Stored::of(model, points, t, halo);
         let books = self.books.get_or_insert_with(|| Books::open(now));
         if let Some(step) = report.energy {
             books.flows += step;
@@ -430,6 +451,17 @@ impl<const D: usize> Recorder<D> {
     }
 }
 
+/// Whether it is a sum over points, which is 0 of no point.
+fn is_sum(quantity: &Quantity) -> bool {
+    matches!(
+        quantity,
+        Quantity::Mass { .. }
+            | Quantity::Momentum { .. }
+            | Quantity::AngularMomentum { .. }
+            | Quantity::KineticEnergy { .. }
+    )
+}
+
 /// Whether it reports how far the footing or a rigid body has moved.
 fn is_of_rigid(quantity: &Quantity) -> bool {
     use Measurement::{RigidDisplacement, RigidRotation};
@@ -446,22 +478,25 @@ fn is_of_rigid(quantity: &Quantity) -> bool {
 /// The points that every history counts.
 fn parts<const D: usize>(case: &Case) -> Vec<Part> {
     // Bodies are counted for those alone who name one.
-    let (mut ids, origin) = (None, vector::<D, _>(case.grid.lower()));
-    let local = |corner: [f64; 3]| {
-        let from_origin = vector::<D, _>(corner) - origin;
-        std::array::from_fn(|axis| if axis < D { from_origin[axis] } else { 0.0 })
-    };
-    let mut part = |history: &History| {
+    let mut ids = None;
+    let origin = vector::<D, _>(case.grid.lower());
+    let mut parts = Vec::with_capacity(case.histories.len());
+    for history in &case.histories {
         let counted = history.quantity.counted();
         let made = match counted.made {
             Made::All => Part::Whole,
             Made::Material(number) => Part::Material(number),
             Made::Body(number) => Part::Ids(ids.get_or_insert_with(|| case.ids())[number].clone()),
         };
-        match counted.within {
-            Some(corners) => Part::Within(Box::new(made), corners.map(local)),
-            None => made,
-        }
-    };
-    case.histories.iter().map(&mut part).collect()
+        let Some(corners) = counted.within else {
+            parts.push(made);
+            continue;
+        };
+        let corners = corners.map(|corner| {
+            let from_origin = vector::<D, _>(corner) - origin;
+            std::array::from_fn(|axis| if axis < D { from_origin[axis] } else { 0.0 })
+        });
+        parts.push(Part::Within(Box::new(made), corners));
+    }
+    parts
 }

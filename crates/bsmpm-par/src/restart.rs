@@ -4,6 +4,7 @@ mod there;
 
 use crate::checkpoint::{self, CheckpointState, Opened, Refusal, Wanted, agree, broadcast, find};
 use crate::cli::{Arguments, Restart};
+use bsmpm::boundary::Surface;
 use bsmpm::control::Stepper;
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::Kinematics;
@@ -19,21 +20,21 @@ use bsmpm_ranks::load;
 use bsmpm_ranks::migrate;
 use bsmpm_ranks::slab::{NodeBox, Slabs, common};
 use bsmpm_ranks::traffic::Traffic;
-use bsmpm_scene::{Case, Line, Stage};
+use bsmpm_scene::{Case, Line};
 use hdf5_collective::Hdf5;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::environment::Universe;
-use mpi::topology::Communicator;
+use mpi::topology::{Communicator, SimpleCommunicator};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use there::There;
+use there::PriorRun;
 
 /// How a run starts.
 pub enum RunStart<'h> {
     /// From the case.
-    New(Beginning),
+    New(FreshStart),
     /// From a checkpoint.
-    Resumed(Box<Resumed<'h>>),
+    Resumed(Box<ResumedRun<'h>>),
     /// Not at all: the case's end was reached before, with that exit code.
     Complete(u8),
 }
@@ -51,7 +52,7 @@ impl RunStart<'_> {
 
 /// What a run that starts from its case finds.
 #[derive(Clone, Debug)]
-pub struct Beginning {
+pub struct FreshStart {
     /// What becomes of a run that is there.
     pub existing: Existing,
     /// How often it has been started before, on the first rank.
@@ -60,7 +61,7 @@ pub struct Beginning {
     pub warnings: Vec<String>,
 }
 
-impl Default for Beginning {
+impl Default for FreshStart {
     fn default() -> Self {
         Self {
             existing: Existing::Refuse,
@@ -71,7 +72,7 @@ impl Default for Beginning {
 }
 
 /// A checkpoint from which a run goes on.
-pub struct Resumed<'h> {
+pub struct ResumedRun<'h> {
     /// It and its record.
     pub found: FoundCheckpoint,
     /// Everything that is no array.
@@ -91,7 +92,8 @@ pub struct Resumed<'h> {
 /// The same on all ranks: the checkpoint, or the run in the directory, is of another case, or damaged (76); the last
 /// restarts came to nothing (72).
 pub fn plan<'h>(
-    (hdf5, universe): (&'h Hdf5<'h>, &Universe),
+    hdf5: &'h Hdf5<'h>,
+    universe: &Universe,
     held: Option<&OutputDirectory>,
     arguments: &Arguments,
     case: &Case,
@@ -103,9 +105,9 @@ pub fn plan<'h>(
         } else {
             Existing::Refuse
         };
-        return Ok(RunStart::New(Beginning {
+        return Ok(RunStart::New(FreshStart {
             existing,
-            ..Beginning::default()
+            ..FreshStart::default()
         }));
     };
     let run = agree(
@@ -116,12 +118,12 @@ pub fn plan<'h>(
     if auto {
         let there = agree(
             &world,
-            held.map_or(Ok(There::Unfinished), |_| there::look(run.as_ref(), case)),
+            held.map_or(Ok(PriorRun::Unfinished), |_| there::look(run.as_ref(), case)),
         )?;
-        match There::of(broadcast(&world, 0, there.bytes())) {
-            There::Nothing => return Ok(RunStart::New(Beginning::default())),
-            There::Complete(code) => return Ok(RunStart::Complete(code)),
-            There::Unfinished => {}
+        match PriorRun::of(broadcast(&world, 0, there.bytes())) {
+            PriorRun::Nothing => return Ok(RunStart::New(FreshStart::default())),
+            PriorRun::Complete(code) => return Ok(RunStart::Complete(code)),
+            PriorRun::Unfinished => {}
         }
     }
     let folder = arguments.directory().join(FOLDER);
@@ -131,7 +133,7 @@ pub fn plan<'h>(
     };
     let Some(found) = found else {
         let afresh = held.map_or_else(
-            || Ok(Beginning::default()),
+            || Ok(FreshStart::default()),
             |_| there::afresh(run.as_ref(), &passed_over, world.size()),
         );
         return agree(&world, afresh).map(RunStart::New);
@@ -145,23 +147,26 @@ pub fn plan<'h>(
             Ok(())
         },
     )?;
-    resume((hdf5, universe), found, (passed_over, restarts), case)
+    resume(hdf5, universe, found, passed_over, restarts, case)
 }
 
 /// Opens a checkpoint that was found, `passed_over` what is wrong with newer ones, if it is of that case. Collective.
 fn resume<'h>(
-    (hdf5, universe): (&'h Hdf5<'h>, &Universe),
+    hdf5: &'h Hdf5<'h>,
+    universe: &Universe,
     found: FoundCheckpoint,
-    (passed_over, restarts): (Vec<String>, Vec<manifest::ManifestRestart>),
+    passed_over: Vec<String>,
+    restarts: Vec<manifest::ManifestRestart>,
     case: &Case,
 ) -> Result<RunStart<'h>, Refusal> {
-    let opened = Opened::new((hdf5, universe.world()), &found)?;
+    let opened = Opened::new(hdf5, universe.world(), &found)?;
     let state = CheckpointState::parse(&found.path, &opened.state()?)?;
     let past = &state.files.manifest;
     let changed = there::admissible(&format!("checkpoint `{}`", found.path.display()), past, case)?;
-    let divided = |stage: &Stage| stage.strength_reduction.is_some() && stage.at <= state.progress.t;
+    let mut begun = case.stages.iter().filter(|stage| stage.at <= state.progress.t);
     if let Some(change) = changed.iter().find(|change| change.is_of_later_strength())
-        && past.stages.iter().any(|stage| stage.strength_reduction.is_some()) | case.stages.iter().any(divided)
+        && past.stages.iter().any(|stage| stage.strength_reduction.is_some())
+            | begun.any(|stage| stage.strength_reduction.is_some())
     {
         let reason = format!(
             "E0722: the strength was already reduced before checkpoint `{}`, and the reduction has changed since: \
@@ -171,7 +176,8 @@ fn resume<'h>(
         return Err(Refusal::new(exit::CHECKPOINT, reason));
     }
     let changed: Vec<String> = changed.iter().map(ToString::to_string).collect();
-    let (t, end) = (state.progress.t, case.analysis.end);
+    let t = state.progress.t;
+    let end = case.analysis.end;
     if t > end {
         let reason = format!(
             "E0723: checkpoint `{}` is at t = {t}, after the end of the case (t = {end}). The run cannot be \
@@ -188,7 +194,7 @@ fn resume<'h>(
     ));
     warnings.extend(there::new_defaults(past, case));
     warnings.extend(changed.iter().map(|change| there::changed_since(change)));
-    Ok(RunStart::Resumed(Box::new(Resumed {
+    Ok(RunStart::Resumed(Box::new(ResumedRun {
         found,
         state,
         changed,
@@ -198,14 +204,11 @@ fn resume<'h>(
     })))
 }
 
-impl Resumed<'_> {
+impl ResumedRun<'_> {
     /// Whether the checkpoint is one of the run in that directory.
     pub fn is_in(&self, directory: &Path) -> bool {
-        let whole = |path: &Path| path.canonicalize().ok();
-        self.found
-            .path
-            .parent()
-            .is_some_and(|folder| whole(folder).is_some_and(|f| whole(&directory.join(FOLDER)) == Some(f)))
+        let own = self.found.path.parent().and_then(|folder| folder.canonicalize().ok());
+        own.is_some_and(|own| directory.join(FOLDER).canonicalize().is_ok_and(|folder| folder == own))
     }
 
     /// The directory of the run that wrote the checkpoint, if it is still in its folder.
@@ -219,8 +222,9 @@ impl Resumed<'_> {
     /// # Errors
     /// The same on all ranks (76): they are not of this case.
     pub fn lines(&self, case: &Case) -> Result<[Vec<Line>; 3], Refusal> {
-        let foreign = || Refusal::unusable(&self.found.path, "its grid lines are not those of the case");
-        self.state.lines(&case.grid).ok_or_else(foreign)
+        self.state
+            .lines(&case.grid)
+            .ok_or_else(|| self.foreign("its grid lines are not those of the case"))
     }
 
     /// The run's mass matrix, whatever the program would choose today.
@@ -241,7 +245,56 @@ impl Resumed<'_> {
         schedule: &Schedule,
     ) -> Result<(Slabs, Points<D>, Stepper), Refusal> {
         let world = universe.world();
-        let foreign = |what: &str| Refusal::unusable(&self.found.path, what);
+        let mut points = self.points(universe, case, model)?;
+        let held = self
+            .state
+            .within(&model.grid)
+            .ok_or_else(|| self.foreign("its active domain is not one of the grid"))?;
+        let past = self
+            .cut(&held)
+            .ok_or_else(|| self.foreign("its partition is not one of the grid"))?;
+        let (grid, slabs) = self.slabs(universe, case, &held, &past, &points)?;
+        model.grid = grid;
+        let rank = world.rank().unsigned_abs() as usize;
+        let window = model.grid.window_of(slabs.cells(rank, model.grid.room()));
+        migrate::points(&world, &Traffic::default(), &slabs, &window, &mut points);
+        points.surface = self
+            .state
+            .surface()
+            .filter(|surface| fits(surface, model))
+            .ok_or_else(|| self.foreign("its surfaces are not those of the case"))?;
+        points.free_field = self
+            .free_field(model, state_width(case))
+            .ok_or_else(|| self.foreign("its free-field columns are not those of the case"))?;
+        let guess = self.guess(&held, &past, &window)?;
+        let is_finite = guess.iter().all(|value| value.is_finite());
+        agree(
+            &world,
+            if is_finite {
+                Ok(())
+            } else {
+                Err(self.foreign("a nodal displacement is not finite"))
+            },
+        )?;
+        let stepper = Stepper::resume(guess, self.state.progress, schedule);
+        Ok((
+            slabs,
+            points,
+            stepper.ok_or_else(|| self.foreign("the state of its step control is invalid"))?,
+        ))
+    }
+
+    fn foreign(&self, what: &str) -> Refusal {
+        Refusal::unusable(&self.found.path, what)
+    }
+
+    /// An equal share of the points, as the file has them. Collective.
+    fn points<K: Kinematics<D>, const D: usize>(
+        &self,
+        universe: &Universe,
+        case: &Case,
+        model: &Model<K, D>,
+    ) -> Result<Points<D>, Refusal> {
         let names: Vec<&str> = self
             .found
             .record
@@ -249,83 +302,37 @@ impl Resumed<'_> {
             .iter()
             .map(|array| array.name.as_str())
             .collect();
-        let laws = case.materials.iter().map(|named| &named.material);
-        let width = bsmpm::material::state_width(laws);
-        let mut points = Points::holding(&names, width);
+        let mut points = Points::holding(&names, state_width(case));
         self.opened.points(points.named_columns())?;
         let left = self.state.record.left.points;
         let present = (!case.stages.is_empty() || left > 0).then(|| case.ids_at(self.state.progress.t));
-        let known = (model.materials.len(), present.as_deref(), left);
-        checkpoint::require(&world, &self.found.path, &mut points, &model.grid, known)?;
-        let held = self
-            .state
-            .within(&model.grid)
-            .ok_or_else(|| foreign("its active domain is not one of the grid"))?;
-        let past = self
-            .cut(&held)
-            .ok_or_else(|| foreign("its partition is not one of the grid"))?;
-        let (grid, slabs) = self.slabs(universe, case, (&held, &past), &points)?;
-        model.grid = grid;
-        let rank = world.rank().unsigned_abs() as usize;
-        let window = model.grid.window_of(slabs.cells(rank, model.grid.room()));
-        migrate::points((&world, &Traffic::default()), &slabs, &window, &mut points);
-        points.surface = self
-            .state
-            .surface()
-            .ok_or_else(|| foreign("its surfaces are not those of the case"))?;
-        let surface = model.boundary.surface();
-        let sizes = |lists: &[Vec<_>]| lists.iter().map(Vec::len).collect::<Vec<_>>();
-        let same = sizes(&points.surface.traction) == sizes(&surface.traction)
-            && sizes(&points.surface.position) == sizes(&surface.position)
-            && sizes(&points.surface.pressure) == sizes(&surface.pressure)
-            && points.surface.bodies.len() == surface.bodies.len()
-            && model.boundary.fits(&model.grid, &points.surface.held);
-        let anchors = &points.surface.anchors;
-        let lengths = |lists: &[Vec<u64>]| lists.iter().map(Vec::len).collect::<Vec<_>>();
-        let anchored = (anchors.strips.is_empty() && anchors.loads.is_empty())
-            || (lengths(&anchors.strips) == sizes(&surface.traction)
-                && lengths(&anchors.loads) == sizes(&surface.position));
-        let wet = model.surfaces().water;
-        let anchored = anchored
-            && (anchors.water.is_empty()
-                || lengths(&anchors.water) == wet.iter().map(|points| points.len()).collect::<Vec<_>>());
-        if !same || !anchored {
-            return Err(foreign("its surfaces are not those of the case"));
+        checkpoint::require(
+            &universe.world(),
+            &self.found.path,
+            &mut points,
+            &model.grid,
+            model.materials.len(),
+            present.as_deref(),
+            left,
+        )?;
+        Ok(points)
+    }
+
+    /// The free-field columns that follow faces of the model; `None` if they are not of this case.
+    fn free_field<K: Kinematics<D>, const D: usize>(
+        &self,
+        model: &Model<K, D>,
+        width: usize,
+    ) -> Option<Vec<Points<D>>> {
+        let mut columns = Vec::new();
+        for column in &self.state.free_field {
+            columns.push(column.points(width)?);
         }
-        let columns = self
-            .state
-            .free_field
-            .iter()
-            .map(|column| column.points(width))
-            .collect::<Option<Vec<_>>>();
-        let sound = |column: &Points<D>| {
-            column
-                .material
-                .iter()
-                .all(|&law| usize::from(law) < model.materials.len())
-        };
-        let columns = columns.filter(|columns| columns.iter().all(sound));
+        let mut laws = columns.iter().flat_map(|column: &Points<D>| &column.material);
+        let is_sound = laws.all(|&law| usize::from(law) < model.materials.len());
         let followers = model.boundary.absorbing().filter(|face| face.follows).count();
         let expected = if self.state.steps > 0 { followers } else { 0 };
-        points.free_field = columns
-            .filter(|columns| columns.len() == expected)
-            .ok_or_else(|| foreign("its free-field columns are not those of the case"))?;
-        let guess = self.guess((&held, &past), &window)?;
-        let is_finite = guess.iter().all(|value| value.is_finite());
-        agree(
-            &world,
-            if is_finite {
-                Ok(())
-            } else {
-                Err(foreign("a nodal displacement is not finite"))
-            },
-        )?;
-        let stepper = Stepper::resume(guess, self.state.progress, schedule);
-        Ok((
-            slabs,
-            points,
-            stepper.ok_or_else(|| foreign("the state of its step control is invalid"))?,
-        ))
+        (is_sound && columns.len() == expected).then_some(columns)
     }
 
     /// The cut that the run had; `None` if it is not one of the grid that is `held`.
@@ -345,7 +352,8 @@ impl Resumed<'_> {
         &self,
         universe: &Universe,
         case: &Case,
-        (held, past): (&Grid<D>, &Slabs),
+        held: &Grid<D>,
+        past: &Slabs,
         points: &Points<D>,
     ) -> Result<(Grid<D>, Slabs), Refusal> {
         let world = universe.world();
@@ -353,54 +361,37 @@ impl Resumed<'_> {
         if past.ranks() == ranks {
             return Ok((held.clone(), past.clone()));
         }
-        let sum = |own: Vec<f64>| {
-            let mut counts = vec![0.0; own.len()];
-            world.all_reduce_into(&own[..], &mut counts[..], SystemOperation::sum());
-            counts
-        };
-        let cut = || {
-            let parts = case.parts(ranks, [held.room()[0].len(), held.room()[1].len()])?;
-            let grid = held.with_columns([ranks / parts, parts]);
-            let slabs = load::cut(&grid, &sum(load::points_by_column(&grid, points)), ranks / parts)?;
-            if parts == 1 {
-                return Some((grid, slabs));
-            }
-            let counts = sum(load::points_by_row(&grid, &slabs, points));
-            let slabs = load::parted(&grid, slabs, &counts, parts)?;
-            Some((grid, slabs))
-        };
-        cut().ok_or_else(|| Refusal::new(exit::CASE, case.too_many(ranks)))
+        cut_again(&world, case, held, points).ok_or_else(|| Refusal::new(exit::CASE, case.too_many(ranks)))
     }
 
     /// The displacement from which the next step starts, m, at the nodes of a `window`: zero where the room that was
     /// `held` under the cut `past` had none. Collective.
-    fn guess<const D: usize>(&self, (held, past): (&Grid<D>, &Slabs), window: &Grid<D>) -> Result<Vec<f64>, Refusal> {
-        let (q, layer, row) = (
-            held.order(),
-            held.layer_nodes(),
-            held.layer_nodes() / held.nodes_along(1),
-        );
+    fn guess<const D: usize>(&self, held: &Grid<D>, past: &Slabs, window: &Grid<D>) -> Result<Vec<f64>, Refusal> {
+        let q = held.order();
+        let layer = held.layer_nodes();
+        let row = held.layer_nodes() / held.nodes_along(1);
         // The file's rows are the layers of all, or rank by rank the rows of nodes that it owned.
-        let (of, whole) = ((q, &held.room()[1]), past.parts().is_empty());
+        let whole = past.parts().is_empty();
         let boxes: Vec<NodeBox> = match whole {
             true => vec![[held.layers(), held.room()[1].start..held.room()[1].end + q]],
-            false => (0..past.ranks()).map(|rank| past.owned(rank, of)).collect(),
+            false => (0..past.ranks())
+                .map(|rank| past.owned(rank, q, &held.room()[1]))
+                .collect(),
         };
-        let lines = |nodes: &NodeBox| nodes[0].len() * if whole { 1 } else { nodes[1].len() };
         let mut before = vec![0];
         before.extend(boxes.iter().scan(0, |sum, nodes| {
-            *sum += lines(nodes);
+            *sum += nodes[0].len() * if whole { 1 } else { nodes[1].len() };
             Some(*sum)
         }));
         let seen: NodeBox = std::array::from_fn(|axis| {
             let start = window.cells_along()[axis].start;
             start..start + window.nodes_along(axis)
         });
-        let needed = |at: &usize| !common(&boxes[*at], &seen).iter().any(Range::is_empty);
-        let (first, last) = (
-            (0..boxes.len()).find(needed).unwrap_or(0),
-            (0..boxes.len()).rfind(needed),
-        );
+        let needed: Vec<usize> = (0..boxes.len())
+            .filter(|&at| !common(&boxes[at], &seen).iter().any(Range::is_empty))
+            .collect();
+        let first = needed.first().copied().unwrap_or(0);
+        let last = needed.last().copied();
         let rows = match whole {
             true => {
                 let own = last.map_or(held.layers().start..held.layers().start, |_| {
@@ -411,24 +402,22 @@ impl Resumed<'_> {
             false => before[first]..last.map_or(before[first], |last| before[last + 1]),
         };
         let width = if whole { layer } else { row };
-        let numbers = self.opened.guess((before[boxes.len()], width * D), rows.clone())?;
-        let place = |node: usize| {
+        let numbers = self.opened.guess(before[boxes.len()], width * D, rows.clone())?;
+        let mut guess = vec![0.0; window.nodes() * D];
+        for (node, values) in guess.chunks_exact_mut(D).enumerate() {
             let at = window.node_at(node);
-            let held = held.node_index(&at)?;
-            if whole {
-                return Some(held - rows.start * layer);
-            }
-            let owner = past.owner(&[at[0], at[1]]);
-            let [layers, along] = &boxes[owner];
-            let line = before[owner] + (at[0] - layers.start) * along.len() + at[1] - along.start;
-            Some((line - rows.start) * row + held % row)
-        };
-        let value = |node: usize| {
-            let at = place(node);
-            let numbers = &numbers;
-            (0..D).map(move |component| at.map_or(0.0, |at| numbers[at * D + component]))
-        };
-        Ok((0..window.nodes()).flat_map(value).collect())
+            let Some(held) = held.node_index(&at) else { continue };
+            let start = if whole {
+                held - rows.start * layer
+            } else {
+                let owner = past.owner(&[at[0], at[1]]);
+                let [layers, along] = &boxes[owner];
+                let line = before[owner] + (at[0] - layers.start) * along.len() + at[1] - along.start;
+                (line - rows.start) * row + held % row
+            };
+            values.copy_from_slice(&numbers[start * D..(start + 1) * D]);
+        }
+        Ok(guess)
     }
 
     /// Closes the checkpoint. Collective.
@@ -438,4 +427,57 @@ impl Resumed<'_> {
     pub fn close(self) -> Result<(), Refusal> {
         self.opened.close()
     }
+}
+
+/// The grid cut into about equal loads; `None` where it has no room for so many ranks. Collective.
+fn cut_again<const D: usize>(
+    world: &SimpleCommunicator,
+    case: &Case,
+    held: &Grid<D>,
+    points: &Points<D>,
+) -> Option<(Grid<D>, Slabs)> {
+    let ranks = world.size().unsigned_abs() as usize;
+    let parts = case.parts(ranks, [held.room()[0].len(), held.room()[1].len()])?;
+    let grid = held.with_columns([ranks / parts, parts]);
+    let counts = sum(world, &load::points_by_column(&grid, points));
+    let slabs = load::cut(&grid, &counts, ranks / parts)?;
+    if parts == 1 {
+        return Some((grid, slabs));
+    }
+    let counts = sum(world, &load::points_by_row(&grid, &slabs, points));
+    let slabs = load::parted(&grid, slabs, &counts, parts)?;
+    Some((grid, slabs))
+}
+
+fn sum(world: &SimpleCommunicator, own: &[f64]) -> Vec<f64> {
+    let mut sum = vec![0.0; own.len()];
+    world.all_reduce_into(own, &mut sum[..], SystemOperation::sum());
+    sum
+}
+
+/// Numbers that the state of a material point needs.
+fn state_width(case: &Case) -> usize {
+    bsmpm::material::state_width(case.materials.iter().map(|named| &named.material))
+}
+
+fn lengths<T>(lists: &[Vec<T>]) -> Vec<usize> {
+    lists.iter().map(Vec::len).collect()
+}
+
+/// Whether `read` has as many lists, and as long ones, as the surface of the model.
+fn fits<K: Kinematics<D>, const D: usize>(read: &Surface<D>, model: &Model<K, D>) -> bool {
+    let surface = model.boundary.surface();
+    let is_same = lengths(&read.traction) == lengths(&surface.traction)
+        && lengths(&read.position) == lengths(&surface.position)
+        && lengths(&read.pressure) == lengths(&surface.pressure)
+        && read.bodies.len() == surface.bodies.len()
+        && model.boundary.fits(&model.grid, &read.held);
+    let anchors = &read.anchors;
+    let has_none = anchors.strips.is_empty() && anchors.loads.is_empty();
+    let is_anchored = has_none
+        || (lengths(&anchors.strips) == lengths(&surface.traction)
+            && lengths(&anchors.loads) == lengths(&surface.position));
+    let wet = model.surfaces().water;
+    let wet: Vec<usize> = wet.iter().map(|points| points.len()).collect();
+    is_same && is_anchored && (anchors.water.is_empty() || lengths(&anchors.water) == wet)
 }

@@ -29,7 +29,7 @@ use bsmpm_scene::Case;
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
 use mpi::topology::Communicator;
-use save::Saving;
+use save::SaveTimes;
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 use std::time::Instant;
@@ -44,6 +44,24 @@ pub struct Task {
     pub arguments: Arguments,
     /// a fault on demand
     pub fault: Option<Fault>,
+}
+
+/// A simulation, and what is recorded of it.
+pub struct Scene<'p, K, const D: usize> {
+    /// The simulation.
+    pub simulation: Simulation<'p, K, D>,
+    /// What is recorded of it.
+    pub recorder: Recorder<D>,
+}
+
+/// What a run writes with.
+pub struct RunFiles<'p> {
+    /// HDF5, initialised.
+    pub hdf5: &'p Hdf5<'p>,
+    /// Files of the run, on rank 0.
+    pub ledger: Option<Ledger>,
+    /// Messages on the terminal.
+    pub log: Log,
 }
 
 /// A run under way.
@@ -63,14 +81,14 @@ pub struct Run<'p, K, const D: usize> {
     warned_strips: BTreeSet<usize>,
     warned_rigid: BTreeSet<usize>,
     hdf5: &'p Hdf5<'p>,
-    saving: Saving,
+    saving: SaveTimes,
     stop_cause: Option<StopCause>,
-    before: Before,
+    before: Continuation,
 }
 
 /// What of a run was there before this program went on with it.
 #[derive(Debug, Default)]
-pub struct Before {
+pub struct Continuation {
     /// whether anything was
     pub resumed: bool,
     /// whether that was in another directory
@@ -94,21 +112,22 @@ pub struct Before {
 impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
     /// A run at its start, or where it goes on, which is now.
     pub fn new(
-        (universe, hdf5): (&'p Universe, &'p Hdf5<'p>),
-        Task { case, arguments, fault }: Task,
-        (simulation, recorder): (Simulation<'p, K, D>, Recorder<D>),
-        (ledger, log): (Option<Ledger>, Log),
+        universe: &'p Universe,
+        files: RunFiles<'p>,
+        task: Task,
+        scene: Scene<'p, K, D>,
         timers: Rc<Timers>,
-        mut before: Before,
+        mut before: Continuation,
     ) -> Self {
-        let (start, frame_times, last_frame) = (
-            Instant::now(),
-            bsmpm_scene::model::frame_times(&case),
-            before.last_frame,
-        );
+        let Task { case, arguments, fault } = task;
+        let RunFiles { hdf5, ledger, log } = files;
+        let Scene { simulation, recorder } = scene;
+        let start = Instant::now();
+        let frame_times = bsmpm_scene::model::frame_times(&case);
+        let last_frame = before.last_frame;
         let has_gaps = ledger.as_ref().is_some_and(Ledger::has_gaps);
         let newest = (before.resumed && !before.is_branch).then(|| simulation.steps());
-        let saving = Saving::new(newest, before.is_branch || has_gaps, simulation.steps());
+        let saving = SaveTimes::new(newest, before.is_branch || has_gaps, simulation.steps());
         Self {
             universe,
             case,
@@ -198,10 +217,11 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
 
     /// Fails on all ranks if a stage that begins then cannot.
     fn accept(&mut self, accepted: &Accepted) -> Result<(), StepError> {
-        let (step, wall) = (self.simulation.steps(), self.wall());
+        let step = self.simulation.steps();
+        let wall = self.wall();
         self.log.step(step, accepted, wall);
         let written = self.ledger.as_mut().map_or(Ok(()), |ledger| {
-            ledger.step(step, accepted, (self.simulation.cost(), wall))
+            ledger.step(step, accepted, self.simulation.cost(), wall)
         });
         self.require(written);
         if self.saving.is_first(step) {
@@ -234,7 +254,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
             model, points, halo, ..
         } = &self.simulation;
         let time = self.simulation.time();
-        let row = match self.recorder.row(model, points, (time, report), &**halo) {
+        let row = match self.recorder.row(model, points, time, report, &**halo) {
             Ok(row) => row,
             Err(error) => launch::end(&self.universe.world(), exit::BUG, &error),
         };

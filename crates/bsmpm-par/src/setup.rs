@@ -17,9 +17,15 @@ use bsmpm_scene::words::{Factor, Word};
 use bsmpm_scene::{Case, Geometry, GridAxis, Initial};
 use std::ops::Range;
 
-/// Cells along each axis that the ranks together see ([`bsmpm::grid::room`]), the slabs of them, and in how many parts
-/// each of these is to be cut.
-pub type Cut = (Vec<Range<usize>>, Slabs, usize);
+/// Partition of the grid at the start.
+pub struct Cut {
+    /// Cells along each axis that the ranks together see ([`bsmpm::grid::room`]).
+    pub room: Vec<Range<usize>>,
+    /// Slabs of these cells.
+    pub slabs: Slabs,
+    /// Number of parts into which each slab is to be cut.
+    pub parts: usize,
+}
 
 /// A state at the start, and what leading it to equilibrium took, if the case wants that.
 pub type Start = (Equilibrium, Option<Settling>);
@@ -57,7 +63,7 @@ pub fn cut(case: &Case, ranks: usize) -> Option<Cut> {
         .collect();
     let layer_nodes = room[1..].iter().map(|cells| cells.len() + case.grid.order).product();
     let slabs = Slabs::cut(&load::by_column(&counts, layer_nodes), slabs)?.starting_at(room[0].start);
-    Some((room, slabs, parts))
+    Some(Cut { room, slabs, parts })
 }
 
 /// Parts of a slab at the start.
@@ -96,11 +102,6 @@ fn decides(option: &str) -> bool {
 
 /// What the program chooses by itself in a run on so many ranks with further `options` of PETSc.
 pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::ManifestChoice> {
-    let choice = |key: &str, value: &str, reason: &str| manifest::ManifestChoice {
-        key: key.into(),
-        value: value.into(),
-        reason: reason.into(),
-    };
     let mut choices = Vec::new();
     if case.geometry == Geometry::Axisymmetric {
         let reason = "x is the radius. Histories and run.json are of the whole circle (N, J, kg, m3); the volumes of material \
@@ -153,12 +154,20 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::M
     choices
 }
 
+fn choice(key: &str, value: &str, reason: &str) -> manifest::ManifestChoice {
+    manifest::ManifestChoice {
+        key: key.into(),
+        value: value.into(),
+        reason: reason.into(),
+    }
+}
+
 /// What the linear solver is chosen for.
 fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::ManifestChoice> {
     let newton = case.solver.nonlinear != bsmpm_scene::Nonlinear::Broyden;
     let mut rows = Vec::new();
     if case.solver.linear.factor == Some(DISSECTION) && !linear.dissection {
-        rows.push((
+        rows.push(choice(
             "solver.linear.factor",
             "mumps",
             "options after -- select the solver of PETSc",
@@ -167,7 +176,7 @@ fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::M
     if linear.redundant && (newton || !linear.dissection) {
         let reason = "solver.reproducible: every rank factorises the whole system, because a parallel factorisation may not be \
                       reproducible to the bit";
-        rows.push((
+        rows.push(choice(
             if linear.dissection {
                 "newton_pc_type"
             } else {
@@ -178,33 +187,36 @@ fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::M
         ));
     }
     if case.solver.linear_on(ranks) != case.solver.linear && linear.dissection {
-        rows.push(("solver.linear", "direct", "spline multigrid works on one rank only"));
+        rows.push(choice(
+            "solver.linear",
+            "direct",
+            "spline multigrid works on one rank only",
+        ));
     } else if case.solver.linear_on(ranks) != case.solver.linear {
         let reason = "solver.reproducible: multigrid on several ranks may not be reproducible to the bit; with false it takes fewer \
                       iterations";
-        rows.push(("solver.linear", "incomplete-cholesky", reason));
+        rows.push(choice("solver.linear", "incomplete-cholesky", reason));
     }
     if case.solver.reproducible && ranks > 1 && linear.whole_nodes() {
-        rows.push((
+        rows.push(choice(
             "solver.reproducible",
             "false",
             "multigrid on several ranks may not be reproducible to the bit",
         ));
     }
     if linear.factor.as_deref() == Some("mumps") && !linear.dissection {
-        rows.push((
+        rows.push(choice(
             "mat_mumps_icntl_7",
             "2",
             "ordering by minimum fill, the fastest for plane grids",
         ));
-        rows.push(("mat_mumps_icntl_14", "100", "the estimated workspace may be too small"));
+        rows.push(choice(
+            "mat_mumps_icntl_14",
+            "100",
+            "the estimated workspace may be too small",
+        ));
     }
-    let owned = |(key, value, reason): (&str, &str, &str)| manifest::ManifestChoice {
-        key: key.into(),
-        value: value.into(),
-        reason: reason.into(),
-    };
-    rows.into_iter().map(owned).collect()
+    rows
 }
 
 /// Warnings of the case on so many ranks, and of what the program makes of it.
@@ -236,10 +248,9 @@ fn smoothing(case: &Case, steps: u64) -> Option<(f64, f64)> {
 
 /// Length (m) along which so many passes of smoothing reach in the largest cells.
 pub fn smoothing_length(case: &Case, passes: f64) -> f64 {
-    let longest = |axis: &GridAxis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
     smooth::length(
         case.grid.order,
-        case.grid.axes.iter().map(longest).fold(0.0, f64::max),
+        case.grid.axes.iter().map(GridAxis::longest).fold(0.0, f64::max),
         passes,
     )
 }

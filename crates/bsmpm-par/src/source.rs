@@ -64,10 +64,12 @@ fn broadcast(world: &SimpleCommunicator, bytes: impl FnOnce() -> Result<Vec<u8>,
 /// What `--check` prints: sizes, choices and warnings.
 pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
     let estimate = case.estimate(ranks);
-    let each = |bytes: u64| bytes / ranks as u64 / 1_048_576 + 1;
-    let newton = match estimate.bytes_with_newton {
-        same if same == estimate.bytes => String::new(),
-        more => format!("; {} once a step needs Newton's method", each(more)),
+    let [own, own_with_newton] =
+        [estimate.bytes, estimate.bytes_with_newton].map(|bytes| bytes / ranks as u64 / 1_048_576 + 1);
+    let newton = if estimate.bytes_with_newton == estimate.bytes {
+        String::new()
+    } else {
+        format!("; {own_with_newton} once a step needs Newton's method")
     };
     let pressures = match estimate.pressures {
         0 => String::new(),
@@ -79,10 +81,7 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
         format!("cells            {}", estimate.cells),
         format!("nodes            {}", estimate.nodes),
         format!("unknowns         at most {}{pressures}", estimate.unknowns),
-        format!(
-            "memory           about {} MiB on each of {ranks} rank(s){newton}",
-            each(estimate.bytes)
-        ),
+        format!("memory           about {own} MiB on each of {ranks} rank(s){newton}"),
         format!(
             "ranks            at most {}, useful: about {}",
             case.most_ranks(),
@@ -91,7 +90,9 @@ pub fn describe(case: &Case, ranks: usize, options: &[String]) -> String {
         format!("nominal steps    {}", bsmpm_scene::model::nominal_steps(case)),
     ];
     if let Some(narrowest) = &case.opening {
-        let (cells, path, width) = (narrowest.cells, &narrowest.path, narrowest.brief_width());
+        let cells = narrowest.cells;
+        let path = &narrowest.path;
+        let width = narrowest.brief_width();
         lines.push(format!(
             "hole or notch    {cells:.1} cells across {path} of {width} m, the fewest of all"
         ));

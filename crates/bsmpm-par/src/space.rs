@@ -31,27 +31,25 @@ struct Need {
 pub fn admit<K: Kinematics<D>, const D: usize>(
     world: &SimpleCommunicator,
     held: Option<&OutputDirectory>,
-    (arguments, case): (&Arguments, &Case),
+    arguments: &Arguments,
+    case: &Case,
     simulation: &mut Simulation<'_, K, D>,
 ) -> Result<Option<String>, Refusal> {
-    let need = Need::of(world, (held, arguments.force), case, simulation);
+    let need = Need::of(world, held, arguments.force, case, simulation);
     let shortage = held.and_then(|held| need.shortage(held, arguments.force));
-    let refused = |room: String| {
-        let reason = format!(
-            "E0701: the disk has too little space: {room}. Nothing was run. Free space on the disk, or remove \
-             `--strict-space`."
-        );
-        Refusal::new(exit::WRITE, reason)
-    };
-    let warning = |room| {
-        format!(
+    let outcome = match shortage {
+        None => Ok(None),
+        Some(room) if arguments.strict_space => {
+            let reason = format!(
+                "E0701: the disk has too little space: {room}. Nothing was run. Free space on the disk, or remove \
+                 `--strict-space`."
+            );
+            Err(Refusal::new(exit::WRITE, reason))
+        }
+        Some(room) => Ok(Some(format!(
             "W0722: the disk may have too little space: {room}. The run may stop early. Free space on the disk, \
              or write fewer frames (a larger `output.every`)."
-        )
-    };
-    let outcome = match shortage {
-        Some(room) if arguments.strict_space => Err(refused(room)),
-        room => Ok(room.map(warning)),
+        ))),
     };
     agree(world, outcome)
 }
@@ -59,15 +57,19 @@ pub fn admit<K: Kinematics<D>, const D: usize>(
 impl Need {
     fn of<K: Kinematics<D>, const D: usize>(
         world: &SimpleCommunicator,
-        (held, emptied): (Option<&OutputDirectory>, bool),
+        held: Option<&OutputDirectory>,
+        emptied: bool,
         case: &Case,
         simulation: &mut Simulation<'_, K, D>,
     ) -> Self {
-        let (own, mut points) = (simulation.points.len() as u64, 0_u64);
+        let own = simulation.points.len() as u64;
+        let mut points = 0_u64;
         world.all_reduce_into(&own, &mut points, SystemOperation::sum());
-        let (time, begun) = (simulation.time(), simulation.steps() > 0);
+        let time = simulation.time();
+        let begun = simulation.steps() > 0;
         // Columns that points carry from the first step on.
-        let (model, own) = (&simulation.model, &simulation.points);
+        let model = &simulation.model;
+        let own = &simulation.points;
         let is_damped = !model.damping.is_empty() && model.stabilisation.smooths();
         let dilation = u64::from(model.stabilisation.averages() && own.dilation.is_none());
         let smoothing = 6 * u64::from(is_damped && own.smoothing.is_none());
@@ -92,7 +94,7 @@ impl Need {
                     * gather::point_bytes::<D>(
                         case.analysis.regime == Regime::Dynamic,
                         case.output.projected_pressure,
-                        gather::Around {
+                        gather::PointContext {
                             materials: &simulation.model.materials,
                             bodies: &[],
                             water: None,
@@ -115,13 +117,12 @@ impl Need {
     fn shortage(&self, held: &OutputDirectory, emptied: bool) -> Option<String> {
         // A system that cannot tell is no reason to say anything.
         let free = disk::free(held.path()).ok()? + if emptied { doomed(held) } else { 0 };
-        let mebibytes = |bytes: u64| bytes as f64 / MIB;
         (free < self.bytes()).then(|| {
             format!(
                 "`{}` has {:.1} MiB left, and the run may write {:.1} MiB ({} frames, {} checkpoints)",
                 held.path().display(),
-                mebibytes(free),
-                mebibytes(self.bytes()),
+                free as f64 / MIB,
+                self.bytes() as f64 / MIB,
                 self.frames,
                 self.checkpoints
             )
@@ -131,10 +132,9 @@ impl Need {
 
 /// Frames from `time` on, those at the start and at the end included.
 fn frames(case: &Case, time: f64, begun: bool) -> u64 {
-    let before_end = |wanted: &f64| *wanted > time && *wanted < case.analysis.end;
     let timed = bsmpm_scene::model::frame_times(case)
         .into_iter()
-        .filter(before_end)
+        .filter(|wanted| *wanted > time && *wanted < case.analysis.end)
         .count() as u64;
     let counted = match case.output.every {
         Some(Every::Steps(every)) => ((case.analysis.end - time) / case.analysis.dt) as u64 / every,

@@ -23,7 +23,8 @@ fn main() -> ExitCode {
         Err(failure) => panic!("{failure}"),
     };
     let world = universe.world();
-    let (rank, ranks) = (world.rank() as usize, world.size() as usize);
+    let rank = world.rank() as usize;
+    let ranks = world.size() as usize;
     let block: usize = std::env::args()
         .nth(1)
         .expect("a block")
@@ -31,7 +32,7 @@ fn main() -> ExitCode {
         .expect("a number of bytes");
     for round in 0..5 {
         let outgoing: Vec<(usize, Vec<u8>)> = (0..ranks).map(|to| (to, message(rank + round, to, block))).collect();
-        let incoming = migrate::exchange((&world, &Traffic::default()), &outgoing, block);
+        let incoming = migrate::exchange(&world, &Traffic::default(), &outgoing, block);
         let all = (0..ranks).map(|from| (from, message(from + round, rank, block)));
         let expected: Vec<(usize, Vec<u8>)> = all.filter(|(_, message)| !message.is_empty()).collect();
         assert!(incoming == expected, "rank {rank} got other bytes in round {round}");

@@ -51,8 +51,9 @@ fn main() -> ExitCode {
         .expect("a grid")
         .window(slabs.columns(petsc.rank()));
     let timers = Rc::new(Timers::default());
-    let shared = (Rc::clone(&timers), Rc::new(Requests::of_signals().expect("signals")));
-    let halo = Rc::new(MpiHalo::new(universe.world(), &slabs, &grid, shared));
+    let requests = Rc::new(Requests::of_signals().expect("signals"));
+    let halo = MpiHalo::new(universe.world(), &slabs, &grid, Rc::clone(&timers), requests);
+    let halo = Rc::new(halo);
     let mut solver = KspSolver::<2, 2>::new(&petsc, choice, &grid, Rc::clone(&halo), timers);
     measure(
         &mut solver,
@@ -65,7 +66,8 @@ fn main() -> ExitCode {
 }
 
 fn choice(method: &str, ksp: &str, pc: &str, factor: Option<String>) -> Choice {
-    let (dissection, redundant) = (method == "direct", method == "redundant");
+    let dissection = method == "direct";
+    let redundant = method == "redundant";
     Choice {
         dissection,
         ksp: ksp.into(),
@@ -134,7 +136,8 @@ fn measure(solver: &mut dyn LinearSolver, grid: &Grid<2>, halo: &dyn Halo, nu: f
 
 /// Elastic stiffness of a full cell, E = 1 Pa, by 3 x 3 Gauss points.
 fn stiffness(grid: &Grid<2>, cell: usize, nu: f64) -> Vec<f64> {
-    let (lame, shear) = (nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 / (1.0 + nu));
+    let lame = nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    let shear = 0.5 / (1.0 + nu);
     let gauss = [
         (-0.6_f64.sqrt(), 5.0 / 9.0),
         (0.0, 8.0 / 9.0),
@@ -153,8 +156,12 @@ fn stiffness(grid: &Grid<2>, cell: usize, nu: f64) -> Vec<f64> {
         let grad = |a: usize| [dx[a / 3] * ny[a % 3], nx[a / 3] * dy[a % 3]];
         let weight = wx * wy * size[0] * size[1] / 4.0;
         for (entry, value) in block.iter_mut().enumerate() {
-            let (row, column) = (entry / 18, entry % 18);
-            let (a, b, i, j) = (grad(row / 2), grad(column / 2), row % 2, column % 2);
+            let row = entry / 18;
+            let column = entry % 18;
+            let a = grad(row / 2);
+            let b = grad(column / 2);
+            let i = row % 2;
+            let j = column % 2;
             let inner = if i == j { a[0] * b[0] + a[1] * b[1] } else { 0.0 };
             *value += weight * (lame * a[i] * b[j] + shear * (inner + a[j] * b[i]));
         }

@@ -2,7 +2,7 @@
 //! the columns. Nodal sums are therefore bitwise identical on any number of slabs.
 
 use crate::signals::{Requests, WIDTH};
-use crate::slab::{NodeBox, SharedLayer, Slabs, common};
+use crate::slab::{SharedLayer, Slabs, common};
 use crate::timers::Timers;
 use crate::traffic::TrafficKind;
 use bsmpm::exact::{Exact, WORDS};
@@ -55,7 +55,7 @@ impl NodeRuns {
     }
 
     /// Puts for each number what `both` makes of it and of the message's.
-    fn unpack(&self, message: &[f64], (nodal, width): (&mut [f64], usize), both: impl Fn(f64, f64) -> f64) {
+    fn unpack(&self, message: &[f64], nodal: &mut [f64], width: usize, both: impl Fn(f64, f64) -> f64) {
         let mut message = message.iter();
         for run in &self.0 {
             let own = &mut nodal[run.start * width..run.end * width];
@@ -99,22 +99,30 @@ impl MpiHalo {
         world: SimpleCommunicator,
         slabs: &Slabs,
         grid: &Grid<D>,
-        (timers, requests): (Rc<Timers>, Rc<Requests>),
+        timers: Rc<Timers>,
+        requests: Rc<Requests>,
     ) -> Self {
         let rank = world.rank().unsigned_abs() as usize;
-        let (q, layer, rows) = (grid.order(), grid.layer_nodes(), &grid.room()[1]);
-        let (start, row) = (grid.cells_along()[1].start, layer / grid.nodes_along(1));
-        let places = |nodes: &NodeBox| NodeRuns(grid.nodes_within(nodes));
-        let own = slabs.owned(rank, (q, rows));
-        let neighbour = |(other, nodes): (usize, NodeBox)| Neighbour {
-            rank: other,
-            mine: places(&common(&nodes, &own)),
-            theirs: places(&common(&nodes, &slabs.owned(other, (q, rows)))),
-            layers: slabs.shared_layers((rank, other), q),
-            run: (nodes[1].start - start) * row..(nodes[1].end - start) * row,
-            nodes: places(&nodes),
-        };
-        let neighbours = slabs.shared(rank, (q, rows)).into_iter().map(neighbour).collect();
+        let q = grid.order();
+        let layer = grid.layer_nodes();
+        let rows = &grid.room()[1];
+        let start = grid.cells_along()[1].start;
+        let row = layer / grid.nodes_along(1);
+        let own = slabs.owned(rank, q, rows);
+        let mut neighbours = Vec::new();
+        for (other, nodes) in slabs.shared(rank, q, rows) {
+            let mine = common(&nodes, &own);
+            let theirs = common(&nodes, &slabs.owned(other, q, rows));
+            let [shared, mine, theirs] = [&nodes, &mine, &theirs].map(|nodes| NodeRuns(grid.nodes_within(nodes)));
+            neighbours.push(Neighbour {
+                rank: other,
+                nodes: shared,
+                mine,
+                theirs,
+                layers: slabs.shared_layers(rank, other, q),
+                run: (nodes[1].start - start) * row..(nodes[1].end - start) * row,
+            });
+        }
         let owned = OwnedNodes::new(own[0].len(), layer, own[1].len() * row);
         Self {
             world,
@@ -166,7 +174,7 @@ impl MpiHalo {
             .collect();
         let incoming = self.exchange(kind, &outgoing, |other| other.nodes.count() * width);
         for (part, other) in incoming.iter().zip(&self.neighbours) {
-            other.nodes.unpack(part, (nodal, width), &both);
+            other.nodes.unpack(part, nodal, width, &both);
         }
     }
 
@@ -220,7 +228,8 @@ impl Neighbour {
 
     /// What the columns of this rank contribute to the shared nodes: layer after layer, column after column.
     fn pieces(&self, contributions: &Contributions) -> Vec<f64> {
-        let (run, mut message) = (self.run(contributions.width()), Vec::new());
+        let run = self.run(contributions.width());
+        let mut message = Vec::new();
         for shared in &self.layers {
             for column in shared.own.clone() {
                 match contributions.of(column, shared.layer) {
@@ -238,7 +247,7 @@ impl Neighbour {
     }
 
     /// Adds them to the nodal array, whose layers have so many nodes.
-    fn add_pieces(&self, message: &[f64], (layer, width): (usize, usize), nodal: &mut [f64]) {
+    fn add_pieces(&self, message: &[f64], layer: usize, width: usize, nodal: &mut [f64]) {
         let run = self.run(width);
         let mut pieces = message.chunks_exact(run.len());
         for shared in &self.layers {
@@ -260,7 +269,8 @@ impl Halo for MpiHalo {
             return contributions.alone();
         }
         let _timed = self.timers.time("halo");
-        let (layer, width) = (self.layer_nodes, contributions.width());
+        let layer = self.layer_nodes;
+        let width = contributions.width();
         let outgoing: Vec<_> = self
             .neighbours
             .iter()
@@ -272,11 +282,11 @@ impl Halo for MpiHalo {
         let lower = self.neighbours.partition_point(|other| other.rank < self.rank);
         let (before, after) = incoming.split_at(lower);
         for (part, other) in before.iter().zip(&self.neighbours) {
-            other.add_pieces(part, (layer, width), &mut nodal);
+            other.add_pieces(part, layer, width, &mut nodal);
         }
         contributions.add_to(&mut nodal);
         for (part, other) in after.iter().zip(&self.neighbours[lower..]) {
-            other.add_pieces(part, (layer, width), &mut nodal);
+            other.add_pieces(part, layer, width, &mut nodal);
         }
         nodal
     }
@@ -293,7 +303,7 @@ impl Halo for MpiHalo {
             .collect();
         let incoming = self.exchange(TrafficKind::HaloShare, &outgoing, |other| other.theirs.count() * width);
         for (part, other) in incoming.iter().zip(&self.neighbours) {
-            other.theirs.unpack(part, (nodal, width), |_, received| received);
+            other.theirs.unpack(part, nodal, width, |_, received| received);
         }
     }
 
@@ -367,8 +377,8 @@ impl Halo for MpiHalo {
     }
 
     fn is_private(&self, node: usize) -> bool {
-        let is_seen = |other: &Neighbour| other.nodes.0.iter().any(|run| run.contains(&node));
-        self.owned.contains(node) && !self.neighbours.iter().any(is_seen)
+        let mut shared = self.neighbours.iter().flat_map(|other| &other.nodes.0);
+        self.owned.contains(node) && !shared.any(|run| run.contains(&node))
     }
 
     fn is_interrupted(&self) -> bool {

@@ -63,17 +63,18 @@ pub struct Tallies {
 impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
     /// A solver for a window of the grid.
     pub fn new(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
-        Self::of(petsc, (choice, Stencil::new(grid)), grid, halo, timers)
+        Self::of(petsc, choice, Stencil::new(grid), grid, halo, timers)
     }
 
     /// The same for functions of degree q - 1, numbered within the nodes.
     fn lowered(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
-        Self::of(petsc, (choice, Stencil::lowered(grid)), grid, halo, timers)
+        Self::of(petsc, choice, Stencil::lowered(grid), grid, halo, timers)
     }
 
     fn of(
         petsc: &'p Petsc<'p>,
-        (choice, stencil): (Choice, Stencil<D, C>),
+        choice: Choice,
+        stencil: Stencil<D, C>,
         grid: &Grid<D>,
         halo: Rc<MpiHalo>,
         timers: Rc<Timers>,
@@ -86,7 +87,8 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         } else {
             stencil
         };
-        let (free, numbers) = (Vec::new(), Vec::new());
+        let free = Vec::new();
+        let numbers = Vec::new();
         Self {
             petsc,
             choice,
@@ -168,7 +170,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
                 if block > 1 && C == D {
                     matrix.set_rigid_body_modes(&places_of::<D, C>(&self.grid, &self.halo, &self.numbers))?;
                 }
-                none.insert(System::new(self.petsc, (&self.choice, symmetry), matrix)?)
+                none.insert(System::new(self.petsc, &self.choice, symmetry, matrix)?)
             }
         };
         system.matrix.set_values(&values)?;
@@ -189,7 +191,9 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         if self.shell.is_none() {
             self.shell = Some(ShellSystem::new(self.petsc, &self.choice).map_err(failed)?);
         }
-        let (owned, free, is_sized) = (self.halo.owned(), &self.free, self.is_sized);
+        let owned = self.halo.owned();
+        let free = &self.free;
+        let is_sized = self.is_sized;
         if let (Some(shell), false) = (&mut self.shell, is_sized) {
             let unknowns = owned.places::<C>().filter(|&component| free[component]).collect();
             shell.resize(unknowns).map_err(failed)?;
@@ -203,7 +207,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
 
     fn solve_shell(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
         match self.shell_system() {
-            Some((shell, matrix, tally)) if shell.is_ready() => shell.solve(matrix, (rhs, solution), tally),
+            Some((shell, matrix, tally)) if shell.is_ready() => shell.solve(matrix, rhs, solution, tally),
             _ => Err(missing()),
         }
     }
@@ -236,7 +240,9 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         if self.cycles.is_none() {
             self.cycles = Some(CycleSystem::new(self.petsc, &self.choice).map_err(failed)?);
         }
-        let (owned, free, is_sized) = (self.halo.owned(), &self.free, self.is_sized);
+        let owned = self.halo.owned();
+        let free = &self.free;
+        let is_sized = self.is_sized;
         if let (Some(cycles), false) = (&mut self.cycles, is_sized) {
             let unknowns = owned.places::<C>().filter(|&component| free[component]).collect();
             cycles.resize(unknowns).map_err(failed)?;
@@ -396,7 +402,7 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
         }
         if self.choice.is_geometric() {
             let (cycles, matrix, tally) = self.cycle_system().ok_or_else(missing)?;
-            return cycles.solve(matrix, (rhs, solution), tally);
+            return cycles.solve(matrix, rhs, solution, tally);
         }
         match self.choice.is_rough() {
             true => self.solve_assembled(System::approach, rhs, solution),
@@ -411,7 +417,7 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
     fn solve_to(&mut self, relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
         if self.choice.is_geometric() {
             let (cycles, matrix, tally) = self.cycle_system().ok_or_else(missing)?;
-            return cycles.solve_to(relative, matrix, (rhs, solution), tally);
+            return cycles.solve_to(relative, matrix, rhs, solution, tally);
         }
         match self.choice.is_rough() {
             true => self.solve_assembled(
@@ -432,27 +438,33 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
     ) -> Result<Krylov, SolveError> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("linear solve");
-        let (unknowns, halo) = (self.unknowns(), Rc::clone(&self.halo));
+        let unknowns = self.unknowns();
+        let halo = Rc::clone(&self.halo);
         let own: Vec<f64> = unknowns
             .iter()
             .map(|&at| if self.free[at] { rhs[at] } else { 0.0 })
             .collect();
-        let (mut nodal, mut image) = (vec![0.0; rhs.len()], vec![0.0; rhs.len()]);
+        let mut nodal = vec![0.0; rhs.len()];
+        let mut image = vec![0.0; rhs.len()];
         let free = &self.free;
-        let mut on_unknowns = |x: &[f64], y: &mut [f64]| {
-            spread::<C>(&halo, &unknowns, x, &mut nodal);
-            nodal
-                .iter_mut()
-                .zip(free)
-                .for_each(|(value, &free)| *value *= f64::from(u8::from(free)));
-            product(&nodal, &mut image);
-            for ((y, x), &component) in y.iter_mut().zip(x).zip(&unknowns) {
-                *y = if free[component] { image[component] } else { *x };
-            }
-        };
         let system = self.general.as_mut().ok_or_else(missing)?;
         let tally = self.tallies.general.get_or_insert_default();
-        let (krylov, x) = system.solve_with((&mut on_unknowns, relative), &own, tally)?;
+        let (krylov, x) = system.solve_with(
+            &mut |x, y| {
+                spread::<C>(&halo, &unknowns, x, &mut nodal);
+                nodal
+                    .iter_mut()
+                    .zip(free)
+                    .for_each(|(value, &free)| *value *= f64::from(u8::from(free)));
+                product(&nodal, &mut image);
+                for ((y, x), &component) in y.iter_mut().zip(x).zip(&unknowns) {
+                    *y = if free[component] { image[component] } else { *x };
+                }
+            },
+            relative,
+            &own,
+            tally,
+        )?;
         spread::<C>(&self.halo, &unknowns, &x, solution);
         Ok(krylov)
     }

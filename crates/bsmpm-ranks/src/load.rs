@@ -77,18 +77,12 @@ pub fn cut<const D: usize>(grid: &Grid<D>, points: &[f64], slabs: usize) -> Opti
 pub fn parted<const D: usize>(grid: &Grid<D>, slabs: Slabs, points: &[f64], parts: usize) -> Option<Slabs> {
     let rows = &grid.room()[1];
     let across: usize = (2..D).map(|axis| grid.room()[axis].len() + grid.order()).product();
-    let of_slab = |(slab, points): (usize, &[f64])| {
-        let cut = Slabs::cut(
-            &by_column(points, slabs.layers(slab, grid.order()).len() * across),
-            parts,
-        )?;
-        Some(cut.starting_at(rows.start).bounds().to_vec())
-    };
-    let bounds = points
-        .chunks_exact(rows.len())
-        .enumerate()
-        .map(of_slab)
-        .collect::<Option<Vec<_>>>()?;
+    let mut bounds = Vec::new();
+    for (slab, points) in points.chunks_exact(rows.len()).enumerate() {
+        let loads = by_column(points, slabs.layers(slab, grid.order()).len() * across);
+        let cut = Slabs::cut(&loads, parts)?;
+        bounds.push(cut.starting_at(rows.start).bounds().to_vec());
+    }
     slabs.parted(bounds, rows)
 }
 
@@ -103,38 +97,34 @@ pub fn of_rank(points: usize, nodes: usize) -> f64 {
 }
 
 /// Work of every rank under a cut of columns with so many points, for splines of order `q`.
-pub fn of_slabs(points: &[f64], slabs: &Slabs, (layer_nodes, q): (usize, usize)) -> Vec<f64> {
-    let (nodes, first) = (
-        |rank: usize| slabs.layers(rank, q).len() * layer_nodes,
-        slabs.bounds()[0],
-    );
-    let held = |rank: usize| {
+pub fn of_slabs(points: &[f64], slabs: &Slabs, layer_nodes: usize, q: usize) -> Vec<f64> {
+    let first = slabs.bounds()[0];
+    let mut loads = Vec::with_capacity(slabs.ranks());
+    for rank in 0..slabs.ranks() {
         let columns = slabs.columns(rank);
-        points[columns.start - first..columns.end - first].iter().sum::<f64>() as usize
-    };
-    (0..slabs.ranks())
-        .map(|rank| of_rank(held(rank), nodes(rank)))
-        .collect()
+        let held = points[columns.start - first..columns.end - first].iter().sum::<f64>();
+        loads.push(of_rank(held as usize, slabs.layers(rank, q).len() * layer_nodes));
+    }
+    loads
 }
 
 /// The same of slabs with parts, by points in the rows of every slab.
 pub fn of_parts<const D: usize>(points: &[f64], slabs: &Slabs, grid: &Grid<D>) -> Vec<f64> {
-    let (rows, q) = (&grid.room()[1], grid.order());
+    let rows = &grid.room()[1];
+    let q = grid.order();
     let across: usize = (2..D).map(|axis| grid.room()[axis].len() + q).product();
-    let held = |rank: usize| {
-        let (slab, cells) = (slabs.place(rank).0, &slabs.cells(rank, grid.room())[1]);
+    let mut loads = Vec::with_capacity(slabs.ranks());
+    for rank in 0..slabs.ranks() {
+        let slab = slabs.place(rank).0;
+        let cells = &slabs.cells(rank, grid.room())[1];
         let of_slab = &points[slab * rows.len()..(slab + 1) * rows.len()];
-        of_slab[cells.start - rows.start..cells.end - rows.start]
+        let held = of_slab[cells.start - rows.start..cells.end - rows.start]
             .iter()
-            .sum::<f64>() as usize
-    };
-    let nodes = |rank: usize| {
-        let [layers, rows] = slabs.nodes(rank, (q, rows));
-        layers.len() * rows.len() * across
-    };
-    (0..slabs.ranks())
-        .map(|rank| of_rank(held(rank), nodes(rank)))
-        .collect()
+            .sum::<f64>();
+        let [layers, along] = slabs.nodes(rank, q, rows);
+        loads.push(of_rank(held as usize, layers.len() * along.len() * across));
+    }
+    loads
 }
 
 /// Largest load over the mean.
@@ -169,9 +159,9 @@ mod tests {
     fn the_loads_of_slabs_are_those_of_the_ranks_that_hold_them() {
         let counts = [36.0, 0.0, 12.0, 8.0];
         let slabs = Slabs::new(vec![0, 1, 4], 2, 0..4).unwrap();
-        assert_eq!(of_slabs(&counts, &slabs, (5, 2)), [of_rank(36, 15), of_rank(20, 25)]);
+        assert_eq!(of_slabs(&counts, &slabs, 5, 2), [of_rank(36, 15), of_rank(20, 25)]);
         assert_eq!(
-            of_slabs(&counts, &slabs.clone().starting_at(3), (5, 2)),
+            of_slabs(&counts, &slabs.clone().starting_at(3), 5, 2),
             [of_rank(36, 15), of_rank(20, 25)]
         );
         // Each window has the ghost layers besides its columns.

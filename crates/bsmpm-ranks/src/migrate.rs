@@ -15,14 +15,17 @@ const MESSAGE: usize = 1 << 20;
 
 /// Sends every point to the rank whose cells it is in, and sorts by cell. `grid` is the window under `slabs`.
 pub fn points<const D: usize>(
-    (world, traffic): (&SimpleCommunicator, &Traffic),
+    world: &SimpleCommunicator,
+    traffic: &Traffic,
     slabs: &Slabs,
     grid: &Grid<D>,
     points: &mut Points<D>,
 ) {
     let rank = world.rank().unsigned_abs() as usize;
-    let owner = |p: usize| grid.locate(&points.x[p]).map_or(rank, |cell| slabs.owner(&cell));
-    let PointPlan { stay, leave } = PointPlan::new(threads::each(points.len(), owner).into_iter(), rank);
+    let owners = threads::each(points.len(), |p| {
+        grid.locate(&points.x[p]).map_or(rank, |cell| slabs.owner(&cell))
+    });
+    let PointPlan { stay, leave } = PointPlan::new(owners.into_iter(), rank);
     // Messages are column by column: every column then takes its rows from the message in one run.
     let mut outgoing: Vec<(usize, Vec<u8>)> = leave.iter().map(|(other, _)| (*other, Vec::new())).collect();
     for column in points.columns() {
@@ -34,7 +37,7 @@ pub fn points<const D: usize>(
         }
     }
     let point_bytes = points.bytes();
-    for (_, message) in exchange((world, traffic), &outgoing, MESSAGE) {
+    for (_, message) in exchange(world, traffic, &outgoing, MESSAGE) {
         let arrivals = message.len() / point_bytes;
         let mut rest = &message[..];
         for column in points.columns() {
@@ -47,41 +50,50 @@ pub fn points<const D: usize>(
 /// Nodal values (`width` a node) of a window of `old`, as the same window of the returned grid has them: `old` with the
 /// room of `new` along the axes that are not cut. What lies outside the old room is zero.
 pub fn across<const D: usize>(old: &Grid<D>, new: &Grid<D>, values: &[f64], width: usize) -> (Grid<D>, Vec<f64>) {
-    let (mut room, mut window) = (new.room().clone(), new.room().clone());
+    let mut room = new.room().clone();
+    let mut window = new.room().clone();
     for axis in 0..if old.is_parted() { 2 } else { 1 } {
         (room[axis], window[axis]) = (old.room()[axis].clone(), old.cells_along()[axis].clone());
     }
     let new = new.within(room).window_of(window);
-    let value = |node: usize| {
-        let held = old.node_index(&new.node_at(node));
-        (0..width).map(move |number| held.map_or(0.0, |node| values[node * width + number]))
-    };
-    let values = (0..new.nodes()).flat_map(value).collect();
-    (new, values)
+    let mut moved = vec![0.0; new.nodes() * width];
+    for (node, moved) in moved.chunks_exact_mut(width).enumerate() {
+        if let Some(held) = old.node_index(&new.node_at(node)) {
+            moved.copy_from_slice(&values[held * width..(held + 1) * width]);
+        }
+    }
+    (new, moved)
 }
 
-/// Nodal values (`width` a node) of this rank's window `from` under the old cut, moved to its window `to` under the new
-/// one; zero where there was none.
+/// A partition of the grid, and what this rank sees of the grid under it.
+#[derive(Clone, Copy)]
+pub struct GridPartition<'a, const D: usize> {
+    /// The partition.
+    pub slabs: &'a Slabs,
+    /// The part of the grid that this rank sees.
+    pub window: &'a Grid<D>,
+}
+
+/// Nodal values (`width` a node) of this rank under the partition `old`, moved to its nodes under the partition `new`;
+/// zero where there was none.
 pub fn nodal<const D: usize>(
-    (world, traffic): (&SimpleCommunicator, &Traffic),
-    (old, new): (&Slabs, &Slabs),
-    (from, to): (&Grid<D>, &Grid<D>),
+    world: &SimpleCommunicator,
+    traffic: &Traffic,
+    old: GridPartition<'_, D>,
+    new: GridPartition<'_, D>,
     values: &[f64],
     width: usize,
 ) -> Vec<f64> {
     let rank = world.rank().unsigned_abs() as usize;
+    let from = old.window;
+    let to = new.window;
     let mut moved = vec![0.0; to.nodes() * width];
-    let NodePlan { send, receive } = NodePlan::new((old, new), rank, (to.order(), &to.room()[1]));
-    let numbers = |grid: &Grid<D>, nodes: &NodeBox| {
-        grid.nodes_within(nodes)
-            .into_iter()
-            .flat_map(move |run| run.start * width..run.end * width)
-    };
+    let NodePlan { send, receive } = NodePlan::new(old.slabs, new.slabs, rank, to.order(), &to.room()[1]);
     let mut outgoing = Vec::new();
     for (other, nodes) in send {
-        let part = numbers(from, &nodes);
+        let part = numbers(from, &nodes, width);
         if other == rank {
-            numbers(to, &nodes)
+            numbers(to, &nodes, width)
                 .zip(part)
                 .for_each(|(slot, at)| moved[slot] = values[at]);
         } else {
@@ -89,18 +101,25 @@ pub fn nodal<const D: usize>(
         }
     }
     let receive = receive.into_iter().filter(|(other, _)| *other != rank);
-    for ((_, message), (_, nodes)) in exchange((world, traffic), &outgoing, MESSAGE).iter().zip(receive) {
-        for (slot, bytes) in numbers(to, &nodes).zip(message.chunks_exact(8)) {
+    for ((_, message), (_, nodes)) in exchange(world, traffic, &outgoing, MESSAGE).iter().zip(receive) {
+        for (slot, bytes) in numbers(to, &nodes, width).zip(message.chunks_exact(8)) {
             moved[slot] = f64::from_le_bytes(bytes.try_into().unwrap_or_default());
         }
     }
     moved
 }
 
+/// Places of the numbers of `nodes` among nodal values (`width` a node) of the window `grid`.
+fn numbers<const D: usize>(grid: &Grid<D>, nodes: &NodeBox, width: usize) -> impl Iterator<Item = usize> {
+    let runs = grid.nodes_within(nodes).into_iter();
+    runs.flat_map(move |run| run.start * width..run.end * width)
+}
+
 /// Sends every rank its message, and returns those received; both ascending by rank and without empty ones. Longer
 /// messages than a `block` of bytes go in several. Collective.
 pub fn exchange(
-    (world, traffic): (&SimpleCommunicator, &Traffic),
+    world: &SimpleCommunicator,
+    traffic: &Traffic,
     outgoing: &[(usize, Vec<u8>)],
     block: usize,
 ) -> Vec<(usize, Vec<u8>)> {

@@ -15,7 +15,8 @@ pub struct PointPlan {
 impl PointPlan {
     /// The plan of `rank` for points that belong to `owners`.
     pub fn new(owners: impl Iterator<Item = usize>, rank: usize) -> Self {
-        let (mut stay, mut leave) = (Vec::new(), Vec::<(usize, Vec<u32>)>::new());
+        let mut stay = Vec::new();
+        let mut leave = Vec::<(usize, Vec<u32>)>::new();
         for (p, owner) in (0..).zip(owners) {
             if owner == rank {
                 stay.push(p);
@@ -42,15 +43,16 @@ pub struct NodePlan {
 impl NodePlan {
     /// The plan of `rank` from the cut `old` to the cut `new`, for splines of order `q`, where slabs without parts have
     /// those `rows` of cells.
-    pub fn new((old, new): (&Slabs, &Slabs), rank: usize, of: (usize, &Range<usize>)) -> Self {
-        let (owned, window) = (old.owned(rank, of), new.nodes(rank, of));
-        let parts = |part: &dyn Fn(usize) -> NodeBox| {
-            let all = (0..new.ranks()).map(|other| (other, part(other)));
-            all.filter(|(_, nodes)| !nodes.iter().any(Range::is_empty)).collect()
-        };
+    pub fn new(old: &Slabs, new: &Slabs, rank: usize, q: usize, rows: &Range<usize>) -> Self {
+        let owned = old.owned(rank, q, rows);
+        let window = new.nodes(rank, q, rows);
+        let send = (0..new.ranks()).map(|other| (other, common(&owned, &new.nodes(other, q, rows))));
+        let receive = (0..new.ranks()).map(|other| (other, common(&old.owned(other, q, rows), &window)));
         Self {
-            send: parts(&|other| common(&owned, &new.nodes(other, of))),
-            receive: parts(&|other| common(&old.owned(other, of), &window)),
+            send: send.filter(|(_, nodes)| !nodes.iter().any(Range::is_empty)).collect(),
+            receive: receive
+                .filter(|(_, nodes)| !nodes.iter().any(Range::is_empty))
+                .collect(),
         }
     }
 }
@@ -83,10 +85,10 @@ mod tests {
     /// Bounds of two parts of 6 rows, slab by slab.
     const PARTS: [[usize; 2]; 3] = [[3, 3], [1, 5], [5, 2]];
 
-    fn agrees((old, new): (&Slabs, &Slabs), ranks: usize, q: usize) {
-        let of = (q, &(0..6));
+    fn agrees(old: &Slabs, new: &Slabs, ranks: usize, q: usize) {
+        let rows = &(0..6);
         for rank in 0..ranks {
-            let plan = NodePlan::new((old, new), rank, of);
+            let plan = NodePlan::new(old, new, rank, q, rows);
             let nodes = |[layers, rows]: &NodeBox| -> Vec<[usize; 2]> {
                 layers
                     .clone()
@@ -95,12 +97,12 @@ mod tests {
             };
             let mut received: Vec<[usize; 2]> = plan.receive.iter().flat_map(|(_, part)| nodes(part)).collect();
             received.sort_unstable();
-            assert_eq!(received, nodes(&new.nodes(rank, of)));
+            assert_eq!(received, nodes(&new.nodes(rank, q, rows)));
             for (other, part) in plan.receive {
-                assert!(NodePlan::new((old, new), other, of).send.contains(&(rank, part)));
+                assert!(NodePlan::new(old, new, other, q, rows).send.contains(&(rank, part)));
             }
             for (other, part) in plan.send {
-                assert!(NodePlan::new((old, new), other, of).receive.contains(&(rank, part)));
+                assert!(NodePlan::new(old, new, other, q, rows).receive.contains(&(rank, part)));
             }
         }
     }
@@ -109,7 +111,7 @@ mod tests {
     fn each_new_window_receives_every_node_once_from_its_old_owner() {
         let cut = |bounds: [usize; 5]| Slabs::new(bounds.to_vec(), 4, 0..12).unwrap();
         for (old, new) in CUTS.iter().flat_map(|old| CUTS.map(|new| (cut(*old), cut(new)))) {
-            (1..4).for_each(|q| agrees((&old, &new), 4, q));
+            (1..4).for_each(|q| agrees(&old, &new, 4, q));
         }
         let cut = |at: usize, parts: [usize; 2]| {
             let slabs = Slabs::new(vec![0, at, 12], 2, 0..12).unwrap();
@@ -119,18 +121,20 @@ mod tests {
             .iter()
             .flat_map(|old| PARTS.map(|new| (cut(4, *old), cut(9, new))))
         {
-            (1..4).for_each(|q| agrees((&old, &new), 4, q));
+            (1..4).for_each(|q| agrees(&old, &new, 4, q));
         }
     }
 
     #[test]
     fn layers_that_were_in_no_window_before_are_sent_by_nobody() {
-        let (old, new) = (Slabs::new(vec![4, 6, 8], 2, 4..8), Slabs::new(vec![2, 5, 12], 2, 2..12));
-        let (old, new) = (old.unwrap(), new.unwrap());
+        let old = Slabs::new(vec![4, 6, 8], 2, 4..8);
+        let new = Slabs::new(vec![2, 5, 12], 2, 2..12);
+        let old = old.unwrap();
+        let new = new.unwrap();
         let boxed = |parts: Vec<(usize, Range<usize>)>| -> Vec<(usize, NodeBox)> {
             parts.into_iter().map(|(rank, layers)| (rank, [layers, 0..3])).collect()
         };
-        let [first, last] = [0, 1].map(|rank| NodePlan::new((&old, &new), rank, (2, &(0..1))));
+        let [first, last] = [0, 1].map(|rank| NodePlan::new(&old, &new, rank, 2, &(0..1)));
         let received = (boxed(vec![(0, 4..6), (1, 6..7)]), boxed(vec![(0, 5..6), (1, 6..10)]));
         assert_eq!((first.receive, last.receive), received);
         assert_eq!(
@@ -142,7 +146,7 @@ mod tests {
     #[test]
     fn a_cut_that_stays_moves_only_what_neighbours_share() {
         let slabs = Slabs::new(vec![0, 3, 6, 9, 12], 4, 0..12).unwrap();
-        let plan = NodePlan::new((&slabs, &slabs), 1, (2, &(0..1)));
+        let plan = NodePlan::new(&slabs, &slabs, 1, 2, &(0..1));
         assert_eq!(plan.send, [(0, [3..5, 0..3]), (1, [3..6, 0..3])]);
         assert_eq!(plan.receive, [(1, [3..6, 0..3]), (2, [6..8, 0..3])]);
     }

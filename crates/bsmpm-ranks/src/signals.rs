@@ -27,7 +27,8 @@ pub struct Requests {
 impl Requests {
     /// Those of the signals that come from now on. To be called once.
     pub fn of_signals() -> io::Result<Self> {
-        let (requests, ending) = (Self::default(), Arc::new(AtomicBool::new(false)));
+        let requests = Self::default();
+        let ending = Arc::new(AtomicBool::new(false));
         for signal in [SIGTERM, SIGINT] {
             register_ending(signal, Arc::clone(&ending), Arc::clone(&requests.stop))?;
         }
@@ -76,14 +77,16 @@ impl Requests {
 /// decides which signal is the first, because two threads may handle two signals at the same time.
 #[allow(unsafe_code)]
 fn register_ending(signal: c_int, ending: Arc<AtomicBool>, stop: Arc<AtomicBool>) -> io::Result<()> {
-    let handle = move || {
-        if ending.swap(true, Ordering::SeqCst) {
-            let _ = low_level::emulate_default_handler(signal);
-        }
-        stop.store(true, Ordering::SeqCst);
-    };
-    // SAFETY: Atomic stores and `emulate_default_handler` are async-signal-safe.
-    unsafe { low_level::register(signal, handle) }.map(drop)
+    // SAFETY: `handle` is async-signal-safe.
+    unsafe { low_level::register(signal, move || handle(signal, &ending, &stop)) }.map(drop)
+}
+
+/// What a signal does. Atomic stores and `emulate_default_handler` are async-signal-safe.
+fn handle(signal: c_int, ending: &AtomicBool, stop: &AtomicBool) {
+    if ending.swap(true, Ordering::SeqCst) {
+        let _ = low_level::emulate_default_handler(signal);
+    }
+    stop.store(true, Ordering::SeqCst);
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use crate::halo::MpiHalo;
 use crate::linear::{Choice, Solvers, Tallies};
 use crate::load;
 use crate::migrate;
+use crate::migrate::GridPartition;
 use crate::signals::Requests;
 use crate::slab::Slabs;
 use crate::timers::Timers;
@@ -57,6 +58,25 @@ pub struct Cost {
     pub is_cut_again: bool,
 }
 
+/// The libraries that a simulation needs, initialised.
+#[derive(Clone, Copy)]
+pub struct Libraries<'p> {
+    /// MPI.
+    pub universe: &'p Universe,
+    /// PETSc.
+    pub petsc: &'p Petsc<'p>,
+}
+
+/// A model at time 0 and its points, on the ranks of a partition.
+pub struct PartitionedModel<K, const D: usize> {
+    /// The model; its grid covers the active domain of all ranks.
+    pub model: Model<K, D>,
+    /// The partition.
+    pub slabs: Slabs,
+    /// The points in this rank's cells.
+    pub points: Points<D>,
+}
+
 /// The distributed state of a run.
 pub struct Simulation<'p, K, const D: usize> {
     /// the scene, seen through this rank's window
@@ -65,8 +85,7 @@ pub struct Simulation<'p, K, const D: usize> {
     pub points: Points<D>,
     /// the exchange with the other ranks under the present cut
     pub halo: Rc<MpiHalo>,
-    universe: &'p Universe,
-    petsc: &'p Petsc<'p>,
+    libraries: Libraries<'p>,
     choice: Choice,
     slabs: Slabs,
     schedule: Schedule,
@@ -78,29 +97,36 @@ pub struct Simulation<'p, K, const D: usize> {
 }
 
 impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
-    /// A run at time 0. `model` has the whole room of its grid as its window, `points` are those of this rank's cells.
+    /// A run at time 0.
     pub fn new(
-        (universe, petsc, choice): (&'p Universe, &'p Petsc<'p>, Choice),
-        mut model: Model<K, D>,
-        (slabs, mut points): (Slabs, Points<D>),
+        libraries: Libraries<'p>,
+        choice: Choice,
+        partitioned: PartitionedModel<K, D>,
         schedule: Schedule,
-        (timers, requests): (Rc<Timers>, Rc<Requests>),
+        timers: Rc<Timers>,
+        requests: Rc<Requests>,
     ) -> Self {
+        let Libraries { universe, petsc } = libraries;
+        let PartitionedModel {
+            mut model,
+            slabs,
+            mut points,
+        } = partitioned;
         model.grid = model.grid.window_of(slabs.cells(petsc.rank(), model.grid.room()));
         let slabs = slabs.reaching(model.grid.beyond());
         points.sort_by_cell(&model.grid);
         points.surface = model.boundary.surface();
-        let halo = MpiHalo::new(universe.world(), &slabs, &model.grid, (Rc::clone(&timers), requests));
+        let halo = MpiHalo::new(universe.world(), &slabs, &model.grid, Rc::clone(&timers), requests);
         let halo = Rc::new(halo);
         let solver = Solvers::new(petsc, &choice, &model, &halo, &timers);
         let stepper = Stepper::new(model.grid.nodes() * D);
-        let (steps, cost) = (0, Cost::default());
+        let steps = 0;
+        let cost = Cost::default();
         Self {
             model,
             points,
             halo,
-            universe,
-            petsc,
+            libraries,
             choice,
             slabs,
             schedule,
@@ -128,13 +154,13 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         } = self;
         match start {
             StartStress::Given(sigma) => initial::set_stress(model, points, sigma),
-            StartStress::Elastic => initial::set_elastic(model, points, (&**halo, solver))?,
-            StartStress::Spread(k0) => initial::set_spread(model, points, k0, (&**halo, solver))?,
+            StartStress::Elastic => initial::set_elastic(model, points, &**halo, solver)?,
+            StartStress::Spread(k0) => initial::set_spread(model, points, k0, &**halo, solver)?,
         }
         let settling = settles
-            .then(|| initial::settle(model, points, (&**halo, solver)))
+            .then(|| initial::settle(model, points, &**halo, solver))
             .transpose()?;
-        initial::hold(model, points, (&**halo, solver))?;
+        initial::hold(model, points, &**halo, solver)?;
         Ok((initial::balance(model, points, &**halo)?, settling))
     }
 
@@ -153,7 +179,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     /// parts.
     #[allow(clippy::type_complexity)]
     pub fn arrays(&mut self) -> (Vec<(&'static str, &mut dyn Column)>, (Cow<'_, [f64]>, usize)) {
-        let (owned, grid) = (self.halo.owned(), &self.model.grid);
+        let owned = self.halo.owned();
+        let grid = &self.model.grid;
         let layer = grid.layer_nodes() * D;
         let guess = if self.slabs.parts().is_empty() {
             let end = owned.runs().last().map_or(0, |run| run.end);
@@ -177,7 +204,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
 
     /// Options given to PETSc that nothing has asked for, without their dash.
     pub fn unused_options(&self) -> Vec<String> {
-        self.petsc.unused_options().unwrap_or_default()
+        self.libraries.petsc.unused_options().unwrap_or_default()
     }
 
     /// How the linear solves of this program have ended so far.
@@ -197,10 +224,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
 
     /// One accepted step, after which every point is on the rank of its cell; `None` at the end.
     pub fn advance(&mut self) -> Option<Result<Accepted, Failure>> {
-        let (before, load) = (
-            self.timers.traffic().counts(),
-            load::of_rank(self.points.len(), self.model.grid.nodes()),
-        );
+        let before = self.timers.traffic().counts();
+        let load = load::of_rank(self.points.len(), self.model.grid.nodes());
         let outcome = {
             let _timed = self.timers.time("step");
             let _awake = Awake::over(self.points.len());
@@ -216,8 +241,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
             self.steps += 1;
             let timers = Rc::clone(&self.timers);
             let _timed = timers.time("migration");
-            let exchange = (self.halo.world(), timers.traffic());
-            migrate::points(exchange, &self.slabs, &self.model.grid, &mut self.points);
+            let world = self.halo.world();
+            migrate::points(world, timers.traffic(), &self.slabs, &self.model.grid, &mut self.points);
             let looks = self.slabs.ranks() > 1 && self.steps.is_multiple_of(LOOK);
             let is_cut_again = looks && self.balance(accepted.counts.evaluations as u64);
             let (mut cost, has_room) = self.count(before, load);
@@ -255,9 +280,12 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
             .anchors
             .without(&self.model.surfaces(), &gone, anchored, &*self.halo);
         self.points.surface.anchors = anchors;
-        let (slabs, rank, grid) = (self.slabs.clone(), self.petsc.rank(), self.model.grid.clone());
-        let is_ours = |seed: &Seed<D>| grid.locate(&seed.x).is_none_or(|cell| slabs.owner(&cell) == rank);
-        self.points.place(placed(self.columns()).filter(is_ours));
+        let slabs = self.slabs.clone();
+        let rank = self.libraries.petsc.rank();
+        let grid = self.model.grid.clone();
+        let seeds = placed(self.columns());
+        self.points
+            .place(seeds.filter(|seed| grid.locate(&seed.x).is_none_or(|cell| slabs.owner(&cell) == rank)));
         let mut numbers = [
             (before - left) as f64,
             (self.points.len() - left) as f64,
@@ -295,22 +323,24 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         water.fill(&mut self.points, first, t);
         let mut placed = self.points.id[first..].to_vec();
         placed.sort_unstable();
-        let is_placed = |id: u64| placed.binary_search(&id).is_ok();
-        let held =
-            PoreWater::of(&self.model, &self.points, t).map_or(0.0, |water| water.taken_by(is_placed, &*self.halo));
+        let water = PoreWater::of(&self.model, &self.points, t);
+        let held = water.map_or(0.0, |water| {
+            water.taken_by(|id| placed.binary_search(&id).is_ok(), &*self.halo)
+        });
         self.points.surface.crossed.removed -= held;
     }
 
     /// Anchors surfaces that did not act to what is there now, and puts loads there.
     fn settle_surfaces(&mut self, idle: &Idle) {
-        let (boundary, anchored) = (&self.model.boundary, self.points.anchored());
+        let boundary = &self.model.boundary;
+        let anchored = self.points.anchored();
         let anchors = self
             .points
             .surface
             .anchors
             .renewed(&self.model.surfaces(), idle, anchored, &*self.halo);
-        let places = anchors.places((boundary, &self.model.grid), anchored, &*self.halo);
-        let pressure = follower::now::<K, D>(&boundary.loads, (&self.model.grid, &anchors), anchored, &*self.halo);
+        let places = anchors.places(boundary, &self.model.grid, anchored, &*self.halo);
+        let pressure = follower::now::<K, D>(&boundary.loads, &self.model.grid, &anchors, anchored, &*self.halo);
         let surface = &mut self.points.surface;
         surface.anchors = anchors;
         for load in (0..idle.loads.len()).filter(|&load| idle.loads[load]) {
@@ -327,7 +357,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
             grid: self.model.grid.clone(),
             ..next
         };
-        initial::exchange((&self.model, &next), &mut self.points, &*self.halo)?;
+        initial::exchange(&self.model, &next, &mut self.points, &*self.halo)?;
         self.model = next;
         self.begin_afresh();
         Ok(())
@@ -345,16 +375,14 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
             ..
         } = self;
         points.surface.held.clear();
-        initial::hold_at(model, points, t, (&**halo, solver))?;
+        initial::hold_at(model, points, t, &**halo, solver)?;
         free_field::go_on(model, points, t)
     }
 
     /// Columns of the whole grid whose points come to this rank's slab.
     fn columns(&self) -> Range<usize> {
-        let (slab, own) = (
-            self.slabs.place(self.petsc.rank()).0,
-            self.slabs.columns(self.petsc.rank()),
-        );
+        let slab = self.slabs.place(self.libraries.petsc.rank()).0;
+        let own = self.slabs.columns(self.libraries.petsc.rank());
         let end = if slab + 1 == self.slabs.slabs() {
             self.model.grid.axes()[0].cells()
         } else {
@@ -377,7 +405,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let mut numbers = vec![0.0; 3 + self.slabs.ranks()];
         numbers[..2].copy_from_slice(&sent.sent().map(|count| count as f64));
         numbers[2] = f64::from(self.lacks_room());
-        numbers[3 + self.petsc.rank()] = load;
+        numbers[3 + self.libraries.petsc.rank()] = load;
         self.halo.reduce(&mut numbers);
         let cost = Cost {
             reductions: sent.of(TrafficKind::Reduction).calls + 1,
@@ -395,13 +423,12 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let grid = &self.model.grid;
         let mut counts = load::points_by_column(grid, &self.points);
         self.halo.reduce(&mut counts);
-        let most = |loads: Vec<f64>| loads.into_iter().fold(0.0, f64::max);
         let Some(better) = load::cut(grid, &counts, self.slabs.slabs()) else {
             return false;
         };
         let (better, loads) = if self.slabs.parts().is_empty() {
-            let of = |slabs: &Slabs| most(load::of_slabs(&counts, slabs, (grid.layer_nodes(), grid.order())));
-            let loads = [of(&self.slabs), of(&better)];
+            let loads = [&self.slabs, &better]
+                .map(|slabs| largest(load::of_slabs(&counts, slabs, grid.layer_nodes(), grid.order())));
             (better, loads)
         } else {
             let Some((better, counts)) = self.parted(grid, better) else {
@@ -409,7 +436,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
             };
             let mut now = [load::of_rank(self.points.len(), grid.nodes())];
             self.halo.maximum(&mut now);
-            let loads = [now[0], most(load::of_parts(&counts, &better, grid))];
+            let loads = [now[0], largest(load::of_parts(&counts, &better, grid))];
             (better, loads)
         };
         if !load::pays(loads[0], loads[1], LOOK * evaluations) {
@@ -454,18 +481,30 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     /// Goes over to a room and its cut.
     fn recut(&mut self, grid: Grid<D>, slabs: Slabs) {
         let timers = Rc::clone(&self.timers);
-        let world = self.universe.world();
+        let world = self.libraries.universe.world();
         let (from, guess) = migrate::across(&self.model.grid, &grid, &self.stepper.guess, D);
-        self.model.grid = grid.window_of(slabs.cells(self.petsc.rank(), grid.room()));
-        let (cuts, grids) = ((&self.slabs, &slabs), (&from, &self.model.grid));
-        self.stepper.guess = migrate::nodal((&world, timers.traffic()), cuts, grids, &guess, D);
-        migrate::points((&world, timers.traffic()), &slabs, &self.model.grid, &mut self.points);
+        self.model.grid = grid.window_of(slabs.cells(self.libraries.petsc.rank(), grid.room()));
+        let old = GridPartition {
+            slabs: &self.slabs,
+            window: &from,
+        };
+        let new = GridPartition {
+            slabs: &slabs,
+            window: &self.model.grid,
+        };
+        self.stepper.guess = migrate::nodal(&world, timers.traffic(), old, new, &guess, D);
+        migrate::points(&world, timers.traffic(), &slabs, &self.model.grid, &mut self.points);
         self.slabs = slabs;
-        let shared = (Rc::clone(&timers), Rc::clone(self.halo.requests()));
-        self.halo = Rc::new(MpiHalo::new(world, &self.slabs, &self.model.grid, shared));
+        let requests = Rc::clone(self.halo.requests());
+        let halo = MpiHalo::new(world, &self.slabs, &self.model.grid, Rc::clone(&timers), requests);
+        self.halo = Rc::new(halo);
         let halo = Rc::clone(&self.halo);
         let tallies = self.solver.tallies();
-        self.solver = Solvers::new(self.petsc, &self.choice, &self.model, &halo, &timers);
+        self.solver = Solvers::new(self.libraries.petsc, &self.choice, &self.model, &halo, &timers);
         self.solver.count_on(tallies);
     }
+}
+
+fn largest(loads: Vec<f64>) -> f64 {
+    loads.into_iter().fold(0.0, f64::max)
 }

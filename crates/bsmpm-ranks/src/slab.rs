@@ -34,7 +34,8 @@ impl Slabs {
             .collect();
         let total = before[cost.len()];
         let middle: Vec<f64> = before.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
-        let (mut low, mut high) = (0.0, total);
+        let mut low = 0.0;
+        let mut high = total;
         let mut first = earliest(&before, ranks, total)?;
         for _ in 0..BISECTIONS {
             let most = 0.5 * (low + high);
@@ -90,12 +91,12 @@ impl Slabs {
     /// such a cut of every slab, all with as many parts that have cells, of all `rows` of the grid's room.
     pub fn parted(self, parts: Vec<Vec<usize>>, rows: &Range<usize>) -> Option<Self> {
         let count = parts.first().map_or(0, Vec::len);
-        let whole = |part: &Vec<usize>| {
-            part.len() == count && part.is_sorted_by(|a, b| a < b) && part.first() == Some(&rows.start)
-        };
-        let ends = parts.iter().all(|part| part.last() == Some(&rows.end));
-        let good = parts.len() + 1 == self.bounds.len() && count > 1 && ends && parts.iter().all(whole);
-        good.then_some(Self { parts, ..self })
+        let is_good = parts.len() + 1 == self.bounds.len() && count > 1;
+        let are_whole = parts.iter().all(|part| {
+            let is_whole = part.first() == Some(&rows.start) && part.last() == Some(&rows.end);
+            part.len() == count && part.is_sorted_by(|a, b| a < b) && is_whole
+        });
+        (is_good && are_whole).then_some(Self { parts, ..self })
     }
 
     /// Columns at which they begin, and the number of columns last.
@@ -155,7 +156,7 @@ impl Slabs {
 
     /// Node layers in the window of a rank: those that its cells touch, for splines of order `q`, and those beyond.
     pub fn layers(&self, rank: usize, q: usize) -> Range<usize> {
-        window(&self.bounds, self.place(rank).0, (q, self.beyond))
+        window(&self.bounds, self.place(rank).0, q, self.beyond)
     }
 
     /// Node layers that a rank owns.
@@ -164,17 +165,17 @@ impl Slabs {
     }
 
     /// Nodes in the window of a rank, where the grid's room has those `rows` of cells.
-    pub fn nodes(&self, rank: usize, (q, rows): (usize, &Range<usize>)) -> NodeBox {
+    pub fn nodes(&self, rank: usize, q: usize, rows: &Range<usize>) -> NodeBox {
         let (slab, part) = self.place(rank);
         let rows = self
             .parts
             .get(slab)
-            .map_or(rows.start..rows.end + q, |of| window(of, part, (q, self.beyond)));
+            .map_or(rows.start..rows.end + q, |of| window(of, part, q, self.beyond));
         [self.layers(rank, q), rows]
     }
 
     /// Nodes that a rank owns.
-    pub fn owned(&self, rank: usize, (q, rows): (usize, &Range<usize>)) -> NodeBox {
+    pub fn owned(&self, rank: usize, q: usize, rows: &Range<usize>) -> NodeBox {
         let (slab, part) = self.place(rank);
         [
             self.owned_layers(rank, q),
@@ -185,44 +186,48 @@ impl Slabs {
     }
 
     /// Other ranks that share nodes with `rank`, ascending, and the nodes.
-    pub fn shared(&self, rank: usize, (q, rows): (usize, &Range<usize>)) -> Vec<(usize, NodeBox)> {
-        let own = self.nodes(rank, (q, rows));
+    pub fn shared(&self, rank: usize, q: usize, rows: &Range<usize>) -> Vec<(usize, NodeBox)> {
+        let own = self.nodes(rank, q, rows);
         (0..self.ranks())
             .filter(|&other| other != rank)
-            .map(|other| (other, common(&own, &self.nodes(other, (q, rows)))))
+            .map(|other| (other, common(&own, &self.nodes(other, q, rows))))
             .filter(|(_, nodes)| !nodes.iter().any(Range::is_empty))
             .collect()
     }
 
     /// Layers that a rank shares with another one, ascending, and which columns of either touch them.
-    pub fn shared_layers(&self, (rank, other): (usize, usize), q: usize) -> Vec<SharedLayer> {
-        let (first, reach) = (self.columns(rank).start, q + self.beyond);
-        let touching =
-            |rank: usize, layer: usize| intersection(&self.columns(rank), &(layer.saturating_sub(reach)..layer + 1));
-        let shared = |layer: usize| {
-            let own = touching(rank, layer);
-            SharedLayer {
+    pub fn shared_layers(&self, rank: usize, other: usize, q: usize) -> Vec<SharedLayer> {
+        let first = self.columns(rank).start;
+        let reach = q + self.beyond;
+        let mut shared = Vec::new();
+        for layer in intersection(&self.layers(rank, q), &self.layers(other, q)) {
+            let touching = layer.saturating_sub(reach)..layer + 1;
+            let own = intersection(&self.columns(rank), &touching);
+            shared.push(SharedLayer {
                 layer: layer - first,
                 own: own.start - first..own.end - first,
-                theirs: touching(other, layer).len(),
-            }
-        };
-        intersection(&self.layers(rank, q), &self.layers(other, q))
-            .map(shared)
-            .collect()
+                theirs: intersection(&self.columns(other), &touching).len(),
+            });
+        }
+        shared
     }
 
     /// Ranks from the first to the last one whose window has a node, given by its layer and its row.
     pub fn touching(&self, [layer, row]: [usize; 2], q: usize) -> Range<usize> {
         let slabs = stretches(&self.bounds, layer, q + self.beyond);
-        let of_slab = |slab: usize| match self.parts.get(slab) {
-            None => slab..slab + 1,
-            Some(rows) => {
-                let (first, parts) = (slab * self.parts_of_slab(), stretches(rows, row, q + self.beyond));
-                first + parts.start..first + parts.end
-            }
+        let first = self.touching_of_slab(slabs.start, row, q);
+        let last = self.touching_of_slab(slabs.end - 1, row, q);
+        first.start..last.end
+    }
+
+    /// Those of one slab.
+    fn touching_of_slab(&self, slab: usize, row: usize, q: usize) -> Range<usize> {
+        let Some(rows) = self.parts.get(slab) else {
+            return slab..slab + 1;
         };
-        of_slab(slabs.start).start..of_slab(slabs.end - 1).end
+        let first = slab * self.parts_of_slab();
+        let parts = stretches(rows, row, q + self.beyond);
+        first + parts.start..first + parts.end
     }
 }
 
@@ -242,7 +247,7 @@ fn stretches(bounds: &[usize], node: usize, reach: usize) -> Range<usize> {
 }
 
 /// Nodes along an axis in the window of a stretch of cells.
-fn window(bounds: &[usize], stretch: usize, (q, beyond): (usize, usize)) -> Range<usize> {
+fn window(bounds: &[usize], stretch: usize, q: usize, beyond: usize) -> Range<usize> {
     let end = (bounds[stretch + 1] + beyond).min(bounds[bounds.len() - 1]);
     bounds[stretch]..end + q
 }
@@ -301,7 +306,8 @@ mod tests {
             let owned: Vec<usize> = (0..ranks).flat_map(|rank| slabs.owned_layers(rank, q)).collect();
             assert_eq!(owned, (0..columns + q).collect::<Vec<_>>());
             for rank in 0..ranks {
-                let (own, window) = (slabs.owned_layers(rank, q), slabs.layers(rank, q));
+                let own = slabs.owned_layers(rank, q);
+                let window = slabs.layers(rank, q);
                 assert!(window.start <= own.start && own.end <= window.end);
                 assert!(slabs.columns(rank).all(|column| slabs.owner(&[column]) == rank));
             }
@@ -312,11 +318,11 @@ mod tests {
     fn sharing_is_mutual_also_when_slabs_are_thinner_than_the_order() {
         let slabs = Slabs::cut(&[1.0; 4], 4).unwrap();
         for rank in 0..4 {
-            for (other, nodes) in slabs.shared(rank, (3, &(0..5))) {
-                assert!(slabs.shared(other, (3, &(0..5))).contains(&(rank, nodes)));
+            for (other, nodes) in slabs.shared(rank, 3, &(0..5)) {
+                assert!(slabs.shared(other, 3, &(0..5)).contains(&(rank, nodes)));
             }
         }
-        assert_eq!(slabs.shared(0, (3, &(0..5))).len(), 3);
+        assert_eq!(slabs.shared(0, 3, &(0..5)).len(), 3);
     }
 
     #[test]
@@ -328,14 +334,15 @@ mod tests {
             (vec![0, 2, 3, 6], 2, 1),
         ];
         for (bounds, q, beyond) in cuts {
-            let (ranks, columns) = (bounds.len() - 1, bounds[bounds.len() - 1]);
+            let ranks = bounds.len() - 1;
+            let columns = bounds[bounds.len() - 1];
             let slabs = Slabs::new(bounds, ranks, 0..columns).unwrap().reaching(beyond);
             for rank in 0..ranks {
                 for layer in slabs.layers(rank, q) {
                     let touching = layer.saturating_sub(q + beyond)..layer + 1;
                     let own = intersection(&slabs.columns(rank), &touching).len();
                     let others = (0..ranks).filter(|&other| other != rank).map(|other| {
-                        let layers = slabs.shared_layers((rank, other), q);
+                        let layers = slabs.shared_layers(rank, other, q);
                         let shared = layers.iter().find(|shared| shared.layer + slabs.bounds[rank] == layer);
                         shared.map_or(0, |shared| shared.theirs)
                     });
@@ -353,7 +360,7 @@ mod tests {
         let slabs = Slabs::new(vec![0, 2, 3, 5], 3, 0..5).unwrap().reaching(1);
         assert_eq!([0, 1, 2].map(|rank| slabs.layers(rank, 2)), [0..5, 2..6, 3..7]);
         assert_eq!([0, 1, 2].map(|rank| slabs.owned_layers(rank, 2)), [0..2, 2..3, 3..7]);
-        assert_eq!(slabs.shared(0, (2, &(0..1))), [(1, [2..5, 0..3]), (2, [3..5, 0..3])]);
+        assert_eq!(slabs.shared(0, 2, &(0..1)), [(1, [2..5, 0..3]), (2, [3..5, 0..3])]);
     }
 
     /// Three slabs of three parts each, of even and of thin ones, none of which lie side by side.
@@ -367,13 +374,12 @@ mod tests {
     #[test]
     fn every_node_and_cell_has_one_owner_whose_window_has_it_and_neighbours_agree_on_what_they_share() {
         for (q, beyond) in [(1, 0), (2, 0), (2, 3), (3, 1)] {
-            let (slabs, rows) = (parted(beyond), 1..10);
-            let windows: Vec<NodeBox> = (0..9).map(|rank| slabs.nodes(rank, (q, &rows))).collect();
+            let slabs = parted(beyond);
+            let rows = 1..10;
+            let windows: Vec<NodeBox> = (0..9).map(|rank| slabs.nodes(rank, q, &rows)).collect();
             let holds = |nodes: &NodeBox, at: [usize; 2]| (0..2).all(|axis| nodes[axis].contains(&at[axis]));
             for at in (2..11 + q).flat_map(|layer| (1..10 + q).map(move |row| [layer, row])) {
-                let owners: Vec<usize> = (0..9)
-                    .filter(|&rank| holds(&slabs.owned(rank, (q, &rows)), at))
-                    .collect();
+                let owners: Vec<usize> = (0..9).filter(|&rank| holds(&slabs.owned(rank, q, &rows), at)).collect();
                 assert!(
                     owners.len() == 1 && holds(&windows[owners[0]], at),
                     "{at:?}: {owners:?}"
@@ -396,8 +402,8 @@ mod tests {
                         .clone()
                         .all(|i| rows_of.clone().all(|j| slabs.owner(&[i, j]) == rank))
                 );
-                for (other, nodes) in slabs.shared(rank, (q, &rows)) {
-                    assert!(slabs.shared(other, (q, &rows)).contains(&(rank, nodes)));
+                for (other, nodes) in slabs.shared(rank, q, &rows) {
+                    assert!(slabs.shared(other, q, &rows).contains(&(rank, nodes)));
                 }
             }
         }

@@ -58,12 +58,14 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
     fn of_patches(grid: &Grid<D>, width: usize, offsets: Vec<usize>) -> Self {
         let places = Places::new(grid);
         let patch = offsets.len();
-        let at = |k: usize| std::array::from_fn(|axis| k / width.pow((D - 1 - axis) as u32) % width);
-        let number = |k: usize| places.number(at(k));
-        let slot = (0..patch * patch)
-            .map(|pair| places.of(number(pair / patch), number(pair % patch)))
+        let numbers: Vec<usize> = (0..patch)
+            .map(|k| places.number(std::array::from_fn(|axis| k / width.pow((D - 1 - axis) as u32) % width)))
             .collect();
-        let (rows, values) = (vec![NONE; grid.nodes()], Vec::new());
+        let slot = (0..patch * patch)
+            .map(|pair| places.of(numbers[pair / patch], numbers[pair % patch]))
+            .collect();
+        let rows = vec![NONE; grid.nodes()];
+        let values = Vec::new();
         Self {
             places,
             slot,
@@ -78,14 +80,14 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
     /// Sums by columns keep all.
     pub fn keep(&mut self, kept: impl Fn(usize) -> bool) {
         let mut count = 0;
-        let mut next = || {
-            count += 1;
-            count - 1
-        };
         let all = self.columns.is_some();
-        self.rows = (0..self.rows.len())
-            .map(|node| if all || kept(node) { next() } else { NONE })
-            .collect();
+        for (node, row) in self.rows.iter_mut().enumerate() {
+            *row = NONE;
+            if all || kept(node) {
+                *row = count;
+                count += 1;
+            }
+        }
         self.values.clear();
         self.values.resize(count * self.width(), 0.0);
         self.values.shrink_to(2 * self.values.len());
@@ -97,7 +99,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
     pub fn by_columns(self, grid: &Grid<D>, owned: OwnedNodes) -> Self {
         let stencil = self;
         let none = Contributions::none(grid, stencil.width(), Vec::new());
-        let (sums, diagonal) = (none.clone(), vec![0.0; grid.nodes() * C]);
+        let sums = none.clone();
+        let diagonal = vec![0.0; grid.nodes() * C];
         let columns = StencilColumns {
             none,
             sums,
@@ -150,7 +153,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
 
     /// Adds the dense block of the patch whose first node is `first`.
     pub fn add(&mut self, first: usize, block: &[f64]) {
-        let (offsets, slot) = (std::mem::take(&mut self.offsets), std::mem::take(&mut self.slot));
+        let offsets = std::mem::take(&mut self.offsets);
+        let slot = std::mem::take(&mut self.slot);
         self.add_blocks(first, &offsets, &slot, block);
         (self.offsets, self.slot) = (offsets, slot);
     }
@@ -168,7 +172,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
 
     /// Adds the dense block of the nodes at `offsets` from `first`, which see each other at the places `slot`.
     fn add_blocks(&mut self, first: usize, offsets: &[usize], slot: &[usize], block: &[f64]) {
-        let (width, count) = (self.width(), offsets.len());
+        let width = self.width();
+        let count = offsets.len();
         for (a, offset) in offsets.iter().enumerate() {
             let values = match &mut self.columns {
                 Some(columns) => &mut columns.sums.patch(first)[offset * width..(offset + 1) * width],
@@ -202,8 +207,9 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
     /// Largest entry on the diagonal of this window's blocks.
     pub fn largest_diagonal(&self) -> f64 {
         let middle = self.places.count() / 2;
-        let entries = |row: &[f64]| (0..C).map(|i| row[(middle * C + i) * C + i]).fold(0.0, f64::max);
-        self.values.chunks_exact(self.width()).map(entries).fold(0.0, f64::max)
+        let rows = self.values.chunks_exact(self.width());
+        rows.flat_map(|row| (0..C).map(|i| row[(middle * C + i) * C + i]))
+            .fold(0.0, f64::max)
     }
 
     /// A component's row: the first component of every node that it couples with, and the entries there; nothing for a
@@ -228,7 +234,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
     /// Adds `weight` times a block to that of a node with another one, which lies in its stencil unless the block is
     /// zero.
     pub fn add_block(&mut self, node: usize, other: usize, weight: f64, block: &[f64]) {
-        let (row, width) = (self.rows[node], self.width());
+        let row = self.rows[node];
+        let width = self.width();
         if let (true, Some(place)) = (row != NONE, self.places.between(node, other)) {
             let values = &mut self.values[row * width + place * C * C..][..C * C];
             values
@@ -261,7 +268,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
             if row != NONE {
                 let values = &self.values[row * self.width()..][..self.width()];
                 for (place, other) in self.places.around(node) {
-                    let (block, x) = (&values[place * C * C..][..C * C], &x[Nodal::<C>::of(other)]);
+                    let block = &values[place * C * C..][..C * C];
+                    let x = &x[Nodal::<C>::of(other)];
                     for i in 0..C {
                         image[i] += (0..C).map(|j| block[i * C + j] * x[j]).sum::<f64>();
                     }
@@ -284,7 +292,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
 
     /// The same where all rows are this rank's: where each of so many begins, and the columns of their entries.
     pub fn rows_of(&self, count: usize, numbers: &Numbering, free: &[bool]) -> (Vec<usize>, Vec<usize>) {
-        let (mut starts, mut columns) = (vec![0; count + 1], Vec::new());
+        let mut starts = vec![0; count + 1];
+        let mut columns = Vec::new();
         self.walk(numbers, free, |row, column, _| {
             columns.push(column);
             starts[row + 1] = columns.len();
@@ -301,11 +310,6 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
 
     /// Visits every entry with its global row and column and its place in `values`.
     fn walk(&self, numbers: &Numbering, free: &[bool], mut visit: impl FnMut(usize, usize, usize)) {
-        let handed = |a: usize, b: usize| {
-            self.columns
-                .as_ref()
-                .is_none_or(|columns| columns.owned.contains(self.places.lowest(a, b)))
-        };
         for (component, row) in numbers.iter().enumerate() {
             let Some(row) = row else { continue };
             let (node, i) = Nodal::<C>::split(component);
@@ -313,7 +317,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
                 continue;
             }
             for (place, other) in self.places.around(node) {
-                if !handed(node, other) {
+                let columns = self.columns.as_ref();
+                if columns.is_some_and(|columns| !columns.owned.contains(self.places.lowest(node, other))) {
                     continue;
                 }
                 let at = self.rows[node] * self.width() + (place * C + i) * C;
@@ -355,7 +360,8 @@ mod tests {
     fn entries_hold_the_sum_of_the_patch_blocks() {
         let grid = grid();
         let size = grid.nodes() * 2;
-        let (mut stencil, mut dense) = (all(&grid), vec![0.0; size * size]);
+        let mut stencil = all(&grid);
+        let mut dense = vec![0.0; size * size];
         for cell in 0..grid.cells() {
             let first = grid.first_node(&grid.cell_at(cell));
             let block: Vec<f64> = (0..18 * 18)
@@ -367,8 +373,10 @@ mod tests {
                 dense[component(entry / 18) * size + component(entry % 18)] += value;
             }
         }
-        let (numbers, free): (Numbering, _) = ((0..size).map(Some).collect(), vec![true; size]);
-        let (places, values) = (stencil.coordinates(&numbers, &free), stencil.entries(&numbers, &free));
+        let numbers: Numbering = (0..size).map(Some).collect();
+        let free = vec![true; size];
+        let places = stencil.coordinates(&numbers, &free);
+        let values = stencil.entries(&numbers, &free);
         let mut found = vec![0.0; size * size];
         for ((row, column), value) in places.rows.iter().zip(&places.columns).zip(values) {
             assert_eq!(
@@ -390,7 +398,8 @@ mod tests {
     fn entries_hold_the_sum_of_blocks_of_neighbouring_cells() {
         let grid = grid().reaching(1);
         let size = grid.nodes() * 2;
-        let (mut stencil, mut dense) = (all(&grid), vec![0.0; size * size]);
+        let mut stencil = all(&grid);
+        let mut dense = vec![0.0; size * size];
         for (cell, across) in [([0, 0], 3), ([2, 1], 3), ([1, 1], 4)] {
             let first = grid.first_node(&cell);
             let nodes: Vec<usize> = (0..12).map(|k| first + k / across * 5 + k % across).collect();
@@ -403,8 +412,10 @@ mod tests {
                 dense[component(entry / 24) * size + component(entry % 24)] += value;
             }
         }
-        let (numbers, free): (Numbering, _) = ((0..size).map(Some).collect(), vec![true; size]);
-        let (places, values) = (stencil.coordinates(&numbers, &free), stencil.entries(&numbers, &free));
+        let numbers: Numbering = (0..size).map(Some).collect();
+        let free = vec![true; size];
+        let places = stencil.coordinates(&numbers, &free);
+        let values = stencil.entries(&numbers, &free);
         let mut found = vec![0.0; size * size];
         for ((row, column), value) in places.rows.iter().zip(&places.columns).zip(values) {
             found[row * size + column] += value;
@@ -415,7 +426,8 @@ mod tests {
     /// Two windows of a grid, each with its cells, give the rows of the whole to the bit.
     #[test]
     fn sums_by_columns_do_not_depend_on_the_cut() {
-        let (grid, cut) = (grid(), 2);
+        let grid = grid();
+        let cut = 2;
         let stencil = |columns: Range<usize>| {
             let window = grid.window(columns.clone());
             let mut stencil = Stencil::<2, 2>::new(&window).by_columns(&window, OwnedNodes::first(window.nodes()));
@@ -502,7 +514,8 @@ mod tests {
                 stencil.add(grid.first_node(&grid.cell_at(cell)), &block);
             }
         };
-        let (mut whole, kept) = (all(&grid), |node: usize| !node.is_multiple_of(3));
+        let mut whole = all(&grid);
+        let kept = |node: usize| !node.is_multiple_of(3);
         let mut some = whole.clone();
         some.keep(kept);
         add(&mut whole);

@@ -13,7 +13,7 @@ pub struct Timers {
 }
 
 /// Adds to its phase when dropped.
-pub struct Timed<'a> {
+pub struct PhaseTimer<'a> {
     timers: &'a Timers,
     phase: &'static str,
     start: Instant,
@@ -21,8 +21,8 @@ pub struct Timed<'a> {
 
 impl Timers {
     /// Times `phase` until the value is dropped; phases may nest, each counts its own whole span.
-    pub fn time(&self, phase: &'static str) -> Timed<'_> {
-        Timed {
+    pub fn time(&self, phase: &'static str) -> PhaseTimer<'_> {
+        PhaseTimer {
             timers: self,
             phase,
             start: Instant::now(),
@@ -40,7 +40,7 @@ impl Timers {
     }
 }
 
-impl Drop for Timed<'_> {
+impl Drop for PhaseTimer<'_> {
     fn drop(&mut self) {
         *self.timers.seconds.borrow_mut().entry(self.phase).or_default() += self.start.elapsed().as_secs_f64();
     }

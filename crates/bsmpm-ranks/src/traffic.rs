@@ -87,7 +87,8 @@ impl TrafficCounts {
     /// What has been added since `before`.
     pub fn since(&self, before: &Self) -> Self {
         Self(TrafficKind::ALL.map(|kind| {
-            let (now, then) = (self.of(kind), before.of(kind));
+            let now = self.of(kind);
+            let then = before.of(kind);
             Count {
                 calls: now.calls - then.calls,
                 messages: now.messages - then.messages,

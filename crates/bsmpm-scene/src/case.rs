@@ -272,12 +272,11 @@ impl Case {
         if self.water.is_some() {
             return self.bodies_at_start().map(|body| self.weight_above(body, at, g)).sum();
         }
-        let above = |body: &Body| {
-            self.materials[body.material]
-                .density
-                .map_or(0.0, |rho| rho * body.region.above(at))
-        };
-        g * self.bodies_at_start().map(above).sum::<f64>()
+        let masses = self.bodies_at_start().map(|body| {
+            let density = self.materials[body.material].density;
+            density.map_or(0.0, |rho| rho * body.region.above(at))
+        });
+        g * masses.sum::<f64>()
     }
 }
 

@@ -29,8 +29,9 @@ impl Case {
     /// Whether the velocities of some bodies have an angular momentum about their centre of mass. The place of a body
     /// is the middle of its bounds.
     fn rotates(&self, piece: &[usize]) -> bool {
-        let velocities = || piece.iter().map(|&body| self.bodies[body].velocity.unwrap_or_default());
-        if velocities().all(|velocity| Some(velocity) == velocities().next()) {
+        let velocities = piece.iter().map(|&body| self.bodies[body].velocity.unwrap_or_default());
+        let velocities: Vec<[f64; 3]> = velocities.collect();
+        if velocities.iter().all(|velocity| *velocity == velocities[0]) {
             return false;
         }
         let masses: Vec<f64> = piece.iter().map(|&body| self.mass(body)).collect();
@@ -39,8 +40,9 @@ impl Case {
             std::array::from_fn(|axis| 0.5 * (lower[axis] + upper[axis]))
         });
         let arms = about_mean(places.collect(), &masses);
-        let relative = about_mean(velocities().collect(), &masses);
-        let (mut momentum, mut most) = ([0.0; 3], 0.0);
+        let relative = about_mean(velocities, &masses);
+        let mut momentum = [0.0; 3];
+        let mut most = 0.0;
         for ((mass, arm), velocity) in masses.iter().zip(&arms).zip(&relative) {
             let moment = cross(*arm, *velocity);
             momentum = std::array::from_fn(|axis| momentum[axis] + mass * moment[axis]);

@@ -67,8 +67,9 @@ impl Difference {
 
 impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let shown = |value: &Option<String>| value.clone().unwrap_or_else(|| "not given".to_owned());
-        write!(f, "{} was {}, and is {}", self.key, shown(&self.was), shown(&self.is))
+        let was = self.was.as_deref().unwrap_or("not given");
+        let is = self.is.as_deref().unwrap_or("not given");
+        write!(f, "{} was {was}, and is {is}", self.key)
     }
 }
 
@@ -77,7 +78,8 @@ impl fmt::Display for Difference {
 /// # Errors
 /// Those of a text that is no case.
 pub fn differences(was: &str, is: &str) -> Result<Vec<Difference>, Vec<Error>> {
-    let (was, is) = (values(was)?, values(is)?);
+    let was = values(was)?;
+    let is = values(is)?;
     let moved = [&was, &is]
         .iter()
         .any(|values| values.keys().any(|key| MOVED.iter().any(|table| below(key, table))));
@@ -88,12 +90,11 @@ pub fn differences(was: &str, is: &str) -> Result<Vec<Difference>, Vec<Error>> {
         // The default of a table that only one of them has.
         (one, other) => one.or(other).is_some_and(|value| value.written),
     });
-    let shown = |value: Option<&DifferenceValue>| value.map(|value| value.shown.clone());
     Ok(differing
         .map(|key| Difference {
             key: key.clone(),
-            was: shown(was.get(key)),
-            is: shown(is.get(key)),
+            was: was.get(key).map(|value| value.shown.clone()),
+            is: is.get(key).map(|value| value.shown.clone()),
             may_change: FREE.iter().any(|free| below(key, free))
                 && !BOUND.iter().any(|bound| below(key, bound))
                 && (divides_later || !DIVIDED.contains(&key.as_str()))
@@ -223,10 +224,8 @@ mod tests {
     #[test]
     fn the_order_of_materials_is_that_of_the_points_numbers() {
         let clay = "[material.clay]\nmodel = \"elastic\"\nyoung = 1e6\npoisson = 0.3\ndensity = 2000.0\n";
-        let (soil_first, clay_first) = (
-            CASE.replace("[[body]]", &format!("{clay}[[body]]")),
-            CASE.replace("[material.soil]", &format!("{clay}[material.soil]")),
-        );
+        let soil_first = CASE.replace("[[body]]", &format!("{clay}[[body]]"));
+        let clay_first = CASE.replace("[material.soil]", &format!("{clay}[material.soil]"));
         let found = differences(&soil_first, &clay_first).unwrap();
         assert_eq!(found.len(), 1);
         assert_eq!(

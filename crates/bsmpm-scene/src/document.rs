@@ -88,8 +88,7 @@ pub(crate) fn parse(source: &Source<'_>, report: &mut Report<'_>) -> DocumentTab
         })
         .collect();
     syntax::report_all(source, &errors, report);
-    let place = |span: std::ops::Range<usize>| Origin::Text(span.start);
-    entries(table.get_ref(), &place)
+    entries(table.get_ref(), &|span| Origin::Text(span.start))
 }
 
 /// The value `text` of an override, standing at `origin`.
@@ -104,18 +103,22 @@ pub(crate) fn parse_value(text: &str, origin: Origin) -> Result<Node, String> {
 type Placing<'a> = dyn Fn(std::ops::Range<usize>) -> Origin + 'a;
 
 fn entries(table: &DeTable<'_>, place: &Placing<'_>) -> DocumentTable {
-    let entry =
-        |(key, value): (&toml::Spanned<std::borrow::Cow<'_, str>>, &toml::Spanned<DeValue<'_>>)| DocumentEntry {
-            key: key.get_ref().to_string(),
-            origin: place(key.span()),
-            node: Node {
-                origin: place(value.span()),
-                value: convert(value.get_ref(), place),
-            },
-        };
-    let mut entries: Vec<DocumentEntry> = table.iter().map(entry).collect();
+    let entries = table.iter().map(|(key, value)| DocumentEntry {
+        key: key.get_ref().to_string(),
+        origin: place(key.span()),
+        node: node(value, place),
+    });
+    let mut entries: Vec<DocumentEntry> = entries.collect();
     entries.sort_by_key(|entry| entry.origin);
     DocumentTable { entries }
+}
+
+/// Converts a value and keeps its place.
+fn node(value: &toml::Spanned<DeValue<'_>>, place: &Placing<'_>) -> Node {
+    Node {
+        origin: place(value.span()),
+        value: convert(value.get_ref(), place),
+    }
 }
 
 fn convert(value: &DeValue<'_>, place: &Placing<'_>) -> Value {
@@ -128,13 +131,7 @@ fn convert(value: &DeValue<'_>, place: &Placing<'_>) -> Value {
         DeValue::Float(number) => Value::Float(number.as_str().to_owned()),
         DeValue::Boolean(flag) => Value::Flag(*flag),
         DeValue::Datetime(date) => Value::Date(date.to_string()),
-        DeValue::Array(list) => {
-            let node = |item: &toml::Spanned<DeValue<'_>>| Node {
-                origin: place(item.span()),
-                value: convert(item.get_ref(), place),
-            };
-            Value::List(list.iter().map(node).collect())
-        }
+        DeValue::Array(list) => Value::List(list.iter().map(|item| node(item, place)).collect()),
         DeValue::Table(table) => Value::Table(entries(table, place)),
     }
 }

@@ -1,6 +1,6 @@
 //! Replaces outdated names of keys and options in old case files, and reports each replacement.
 
-use crate::document::{DocumentTable, Node, Value};
+use crate::document::{DocumentEntry, DocumentTable, Node, Value};
 use crate::key_path::join;
 use crate::report::Report;
 use crate::schema::{Kind, ROOT, Table};
@@ -34,29 +34,32 @@ pub(crate) fn star_slopes(document: &mut DocumentTable) {
 
 fn in_table(written: &mut DocumentTable, table: &'static Table, path: &str, report: &mut Report<'_>) {
     let names: Vec<String> = written.entries.iter().map(|entry| entry.key.clone()).collect();
-    let is_given = |name: &str| names.iter().any(|other| other == name);
     written.entries.retain_mut(|entry| {
         let path = join(path, &entry.key);
-        if table.key(&entry.key).is_none()
-            && let Some(key) = table.renamed(&entry.key)
-        {
-            if is_given(key.name) {
-                let message = format!(
-                    "E0016: this key is the earlier name of the key `{now}`, and the case gives both keys. Delete \
-                     this key, or delete `{now}`.",
-                    now = key.name
-                );
-                report.error(entry.origin, &path, message);
-                return false;
-            }
-            report.renamed(&entry.key, key.name, &path);
-            key.name.clone_into(&mut entry.key);
-        }
-        if let Some(key) = table.key(&entry.key) {
+        let is_kept = rename(entry, &names, table, &path, report);
+        if is_kept && let Some(key) = table.key(&entry.key) {
             in_value(&mut entry.node, &key.kind, &path, report);
         }
-        true
+        is_kept
     });
+}
+
+/// Gives an entry the name of now of its key. `false` after an error: it is one of the `names` of the table already.
+fn rename(entry: &mut DocumentEntry, names: &[String], table: &Table, path: &str, report: &mut Report<'_>) -> bool {
+    let renamed = table.renamed(&entry.key).filter(|_| table.key(&entry.key).is_none());
+    let Some(key) = renamed else { return true };
+    if names.iter().any(|other| other == key.name) {
+        let message = format!(
+            "E0016: this key is the earlier name of the key `{now}`, and the case gives both keys. Delete \
+             this key, or delete `{now}`.",
+            now = key.name
+        );
+        report.error(entry.origin, path, message);
+        return false;
+    }
+    report.renamed(&entry.key, key.name, path);
+    key.name.clone_into(&mut entry.key);
+    true
 }
 
 fn in_value(node: &mut Node, kind: &Kind, path: &str, report: &mut Report<'_>) {

@@ -110,23 +110,31 @@ struct Systems {
     perhaps: [u128; 2],
 }
 
+/// Settings that the memory of linear systems depends on.
+#[derive(Clone, Copy)]
+struct SolverSettings<'a> {
+    linear: &'a Linear,
+    reproducible: bool,
+    nonlinear: Nonlinear,
+}
+
 impl Systems {
     /// `entries` of the stiffness of so many `unknowns` along so many axes, which couples layers of nodes up to `reach`
     /// apart: separators are as wide, in which the constants are those of quadratic splines. By `nonlinear`.
     ///
     /// Where water `flows` Newton's directions are preconditioned by those of the secants, and have one unknown a node
     /// more.
-    fn of(
-        (linear, reproducible, nonlinear, dims): (&Linear, bool, Nonlinear, usize),
-        (unknowns, entries): (u128, u128),
-        reach: u128,
-        flows: bool,
-    ) -> Self {
+    fn of(settings: SolverSettings<'_>, dims: usize, unknowns: u128, entries: u128, reach: u128, flows: bool) -> Self {
+        let SolverSettings {
+            linear,
+            reproducible,
+            nonlinear,
+        } = settings;
         let direct = linear.factor.is_some();
         let levels = u128::from(unknowns.max(2).ilog2());
-        let flat = |level: u128| unknowns * levels * level;
+        let flat = unknowns * levels;
         let [factor, fronts] = match dims {
-            2 => [flat(LEVEL) * reach / 2, flat(FRONT) * reach.pow(2) / 4],
+            2 => [flat * LEVEL * reach / 2, flat * FRONT * reach.pow(2) / 4],
             _ => [DENSE * reach.pow(2) * (unknowns as f64).powf(4.0 / 3.0) as u128; 2],
         };
         let factor = if direct { factor } else { 0 };
@@ -209,17 +217,15 @@ impl Case {
     }
 
     fn room_in<const D: usize>(&self, least: [usize; 2]) -> Vec<Range<usize>> {
-        let around = |a: [Range<usize>; D], b: [Range<usize>; D]| {
-            std::array::from_fn(|axis| a[axis].start.min(b[axis].start)..a[axis].end.max(b[axis].end))
-        };
         let cells: [usize; D] = std::array::from_fn(|axis| self.grid.spans(axis));
-        let spans = |body: &Body| -> [Range<usize>; D] {
+        let spans = self.bodies.iter().map(|body| -> [Range<usize>; D] {
             let cells = body.occupied(&self.grid);
             std::array::from_fn(|axis| self.grid.spans_of(axis, &cells[axis]))
-        };
-        let occupied = self.bodies.iter().map(spans).reduce(around);
+        });
+        let occupied = spans
+            .reduce(|a, b| std::array::from_fn(|axis| a[axis].start.min(b[axis].start)..a[axis].end.max(b[axis].end)));
         let occupied = occupied.unwrap_or_else(|| cells.map(|cells| 0..cells));
-        room::around(&occupied, cells, (self.grid.order, self.beyond()), least).to_vec()
+        room::around(&occupied, cells, self.grid.order, self.beyond(), least).to_vec()
     }
 
     /// Pore pressures that the bodies' cells touch at the start, and entries of their matrix; `None` where no water
@@ -255,7 +261,7 @@ impl Case {
 
     /// Bytes that another rank adds in space, where layers of nodes are large: those on both sides of the cut that rows
     /// reach, with so many `bytes` a node, and of a dissection what it has of the cut.
-    fn ghosts(&self, (occupied, reach): (u128, u128), bytes: u128, dissects: bool) -> u128 {
+    fn ghosts(&self, occupied: u128, reach: u128, bytes: u128, dissects: bool) -> u128 {
         let longest = self
             .room([1; 2])
             .iter()
@@ -268,58 +274,41 @@ impl Case {
 
     /// Sizes of the case on so many ranks.
     pub fn estimate(&self, ranks: usize) -> Estimate {
-        let (nodes, points) = (nodes(&self.grid), u128::from(self.points()));
+        let nodes = nodes(&self.grid);
+        let points = u128::from(self.points());
         let places = places(self);
         let dims = self.grid.dims() as u128;
         // The stencil of the stiffness: a double for each pair of components a place; of every node where it stands,
         // and of which kind it is.
-        let (stencil, every) = (places * dims.pow(2) * 8, 8 + 2);
+        let stencil = places * dims.pow(2) * 8;
+        let every = 8 + 2;
         let order = self.grid.order as u128;
         let occupied = occupied_nodes(self, order).min(nodes);
         let entries = dims * occupied * dims * places;
         let reach = order + self.beyond() as u128;
-        let (linear, ranks) = (self.solver.linear_on(ranks), ranks as u128);
-        let by = (
-            &linear,
-            self.solver.reproducible,
-            self.solver.nonlinear,
-            self.grid.dims(),
-        );
-        let systems = Systems::of(by, (dims * occupied, entries), reach, self.flow.is_some());
-        let (point, vectors) = if dims == 3 {
-            (POINT_IN_SPACE, VECTORS * 3 / 2)
-        } else {
-            (POINT, VECTORS)
+        let linear = self.solver.linear_on(ranks);
+        let ranks = ranks as u128;
+        let settings = SolverSettings {
+            linear: &linear,
+            reproducible: self.solver.reproducible,
+            nonlinear: self.solver.nonlinear,
         };
-        let lowered = if self.stabilisation.lowers() { LOWERED } else { 0 };
-        let is_damped = self.materials.iter().any(|named| named.retardation > 0.0);
-        let smoothing = if is_damped && self.stabilisation.smooths() {
-            8 * if dims == 3 { 6 } else { 4 }
-        } else {
-            0
-        };
-        let passing = systems.built.max(points * SAVED);
-        let water = self.pressures().map(|(pressures, entries)| {
-            // Solved by itself, as a part of the directions.
-            let by = (&linear, self.solver.reproducible, Nonlinear::Broyden, self.grid.dims());
-            let system = Systems::of(by, (pressures, entries), order - 1, true);
-            // A third number of every node's vectors, secants included.
-            let held = points * WET + entries * 8 + room_nodes(self) * VECTORS / 2;
-            (pressures, held + system.held, system.repeated)
-        });
-        let (pressures, wet, wet_repeated) = water.unwrap_or_default();
+        let flows = self.flow.is_some();
+        let systems = Systems::of(settings, self.grid.dims(), dims * occupied, entries, reach, flows);
+        let vectors = if dims == 3 { VECTORS * 3 / 2 } else { VECTORS };
+        let (pressures, wet, wet_repeated) = self.water_system(settings).unwrap_or_default();
         let dissects = linear.factor == Some(Factor::Dissection);
         let ghosts = match dims {
-            3 => self.ghosts((occupied, reach), stencil + every + vectors, dissects),
+            3 => self.ghosts(occupied, reach, stencil + every + vectors, dissects),
             _ => 0,
         };
         // Coordinates of entries, as rows are summed by several.
         let sums = ranks > 1 && linear.applications > 0 && linear.pc != Pc::SplineMultigrid;
-        let bytes = points * (point + lowered + smoothing)
+        let bytes = points * self.point_bytes()
             + occupied * stencil
             + room_nodes(self) * (every + vectors)
             + systems.held
-            + passing
+            + systems.built.max(points * SAVED)
             + wet
             + ranks * PROCESS
             + (ranks - 1) * (systems.repeated + wet_repeated + ghosts)
@@ -331,7 +320,6 @@ impl Case {
             _ => [0; 2],
         };
         let newton = perhaps + systems.perhaps[0] + (ranks - 1) * systems.perhaps[1];
-        let bounded = |number: u128| u64::try_from(number).unwrap_or(u64::MAX);
         Estimate {
             cells: bounded(cells(&self.grid)),
             nodes: bounded(nodes),
@@ -345,6 +333,41 @@ impl Case {
             bytes_with_newton: bounded(bytes + now + newton),
         }
     }
+
+    /// Bytes of a point, its smoothing included.
+    fn point_bytes(&self) -> u128 {
+        let is_in_space = self.grid.dims() == 3;
+        let point = if is_in_space { POINT_IN_SPACE } else { POINT };
+        let lowered = if self.stabilisation.lowers() { LOWERED } else { 0 };
+        let is_damped = self.materials.iter().any(|named| named.retardation > 0.0);
+        let smoothing = if is_damped && self.stabilisation.smooths() {
+            8 * if is_in_space { 6 } else { 4 }
+        } else {
+            0
+        };
+        point + lowered + smoothing
+    }
+
+    /// Number of the pore pressures, bytes of water that flows, and those that each further rank repeats; `None` where
+    /// none flows.
+    fn water_system(&self, settings: SolverSettings<'_>) -> Option<(u128, u128, u128)> {
+        let (pressures, entries) = self.pressures()?;
+        // Solved by itself, as a part of the directions.
+        let settings = SolverSettings {
+            nonlinear: Nonlinear::Broyden,
+            ..settings
+        };
+        let reach = self.grid.order as u128 - 1;
+        let system = Systems::of(settings, self.grid.dims(), pressures, entries, reach, true);
+        // A third number of every node's vectors, secants included.
+        let held = u128::from(self.points()) * WET + entries * 8 + room_nodes(self) * VECTORS / 2;
+        Some((pressures, held + system.held, system.repeated))
+    }
+}
+
+/// The number, or the largest one that can be given.
+fn bounded(number: u128) -> u64 {
+    u64::try_from(number).unwrap_or(u64::MAX)
 }
 
 /// Cells of the grid.
@@ -375,21 +398,23 @@ fn room_nodes(case: &Case) -> u128 {
 /// Functions of an order that the bodies' cells touch at the start: exact for boxes, and for shapes without holes or
 /// bays.
 fn occupied_nodes(case: &Case, order: u128) -> u128 {
-    let of_body = |body: &Body| -> u128 {
-        let cells = body.occupied(&case.grid);
-        let further = |axis: usize| case.grid.spans_of(axis, &cells[axis]).len() - cells[axis].len();
-        if cells.len() == 3 {
-            // Layers on all sides: of a cuboid exact.
-            let within = body.cells(&case.grid) as f64;
-            let around = cells.iter().enumerate().map(|(axis, cells)| {
-                (cells.len() + further(axis)) as f64 / cells.len().max(1) as f64
-                    + order as f64 / cells.len().max(1) as f64
-            });
-            return (within * around.product::<f64>()).round() as u128;
-        }
-        let [columns, rows] = [0, 1].map(|axis| cells[axis].len() as u128);
-        let repeated = further(0) as u128 * rows + further(1) as u128 * columns;
-        body.cells(&case.grid) + repeated + order * (columns + rows + order)
-    };
-    case.bodies.iter().map(of_body).sum()
+    let bodies = case.bodies.iter();
+    bodies.map(|body| nodes_of_body(&case.grid, body, order)).sum()
+}
+
+/// Functions of an order that a body's cells touch at the start.
+fn nodes_of_body(grid: &GridSpec, body: &Body, order: u128) -> u128 {
+    let cells = body.occupied(grid);
+    let further = |axis: usize| grid.spans_of(axis, &cells[axis]).len() - cells[axis].len();
+    if cells.len() == 3 {
+        // Layers on all sides: of a cuboid exact.
+        let within = body.cells(grid) as f64;
+        let around = cells.iter().enumerate().map(|(axis, cells)| {
+            (cells.len() + further(axis)) as f64 / cells.len().max(1) as f64 + order as f64 / cells.len().max(1) as f64
+        });
+        return (within * around.product::<f64>()).round() as u128;
+    }
+    let [columns, rows] = [0, 1].map(|axis| cells[axis].len() as u128);
+    let repeated = further(0) as u128 * rows + further(1) as u128 * columns;
+    body.cells(grid) + repeated + order * (columns + rows + order)
 }

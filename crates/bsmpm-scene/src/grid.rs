@@ -89,20 +89,19 @@ impl GridSpec {
 
     /// Cells along an axis whose knot span lies in a range.
     pub(crate) fn cells_in(&self, axis: usize, spans: &Range<usize>) -> Range<usize> {
-        let first = |from: usize| self.axes[axis].first_cell(|cell| self.span(axis, cell) >= from);
-        first(spans.start)..first(spans.end)
+        let [first, end] =
+            [spans.start, spans.end].map(|from| self.axes[axis].first_cell(|cell| self.span(axis, cell) >= from));
+        first..end
     }
 
     /// Breakpoints along an axis, m from the first, each as often as it stands in the knot vector.
     pub(crate) fn repeated(&self, axis: usize) -> Vec<f64> {
-        let copies = |i: usize| {
-            self.lines[axis]
-                .iter()
-                .find(|line| line.breakpoint == i)
-                .map_or(1, |l| l.multiplicity)
-        };
-        let of = |i: usize| std::iter::repeat_n(self.axes[axis].breakpoint(i), copies(i));
-        (0..=self.axes[axis].cells()).flat_map(of).collect()
+        let breakpoints = (0..=self.axes[axis].cells()).flat_map(|i| {
+            let line = self.lines[axis].iter().find(|line| line.breakpoint == i);
+            let copies = line.map_or(1, |line| line.multiplicity);
+            std::iter::repeat_n(self.axes[axis].breakpoint(i), copies)
+        });
+        breakpoints.collect()
     }
 
     /// A place of the case from the grid's lower corner, m: in the closed grid to the last bit. Validation lets a place
@@ -162,7 +161,8 @@ impl GridAxis {
 
     /// First cell for which `past` holds, which must hold for all later ones too; the number of cells if there is none.
     pub(crate) fn first_cell(&self, past: impl Fn(usize) -> bool) -> usize {
-        let (mut lower, mut upper) = (0, self.cells());
+        let mut lower = 0;
+        let mut upper = self.cells();
         while lower < upper {
             let middle = lower + (upper - lower) / 2;
             if past(middle) {

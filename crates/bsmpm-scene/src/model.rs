@@ -1,9 +1,8 @@
 //! Converts a case to the input of the crate `bsmpm`: model, material points and step sequence.
 
-use crate::region::Region;
 use crate::seed::seed_bodies;
 use crate::words::AnalysisType;
-use crate::{Acting, Body, Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Shares, Stage, surfaces};
+use crate::{Acting, Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Shares, Stage, surfaces};
 use bsmpm::background::Background;
 use bsmpm::boundary::rigid::{self, Reaching, RigidBody, RigidState};
 use bsmpm::boundary::{Boundary, Support};
@@ -46,7 +45,8 @@ pub fn criteria(case: &Case) -> Criteria {
 pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result<Model<K, D>, GridError> {
     let coefficient = case.solver.background;
     let background = (coefficient > 0.0).then_some(Background { coefficient });
-    let (grid, materials) = (grid(case)?, case.materials_at(t));
+    let grid = grid(case)?;
+    let materials = case.materials_at(t);
     let flow = surfaces::flow::<K, D>(case, &grid, t);
     Ok(Model {
         materials: materials.iter().map(|named| named.material.clone()).collect(),
@@ -103,24 +103,24 @@ fn water<const D: usize>(case: &Case, flow: Option<Flow<D>>) -> Option<Water<D>>
 
 /// s  of every material; empty where none is damped.
 fn damping(materials: &[NamedMaterial]) -> Vec<f64> {
-    let times = || materials.iter().map(|named| named.retardation);
-    if times().all(|time| time == 0.0) {
+    let times: Vec<f64> = materials.iter().map(|named| named.retardation).collect();
+    if times.iter().all(|time| *time == 0.0) {
         Vec::new()
     } else {
-        times().collect()
+        times
     }
 }
 
 /// The grid of a case.
 pub(crate) fn grid<const D: usize>(case: &Case) -> Result<Grid<D>, GridError> {
     let order = case.grid.order;
-    let knots = |axis: usize| match &case.grid.axes[axis] {
+    let axes = (0..D).map(|axis| match &case.grid.axes[axis] {
         GridAxis::Uniform { cell, cells, .. } if case.grid.lines[axis].is_empty() => {
             KnotVector::uniform(*cell, *cells, order)
         }
         _ => KnotVector::graded(&case.grid.repeated(axis), order),
-    };
-    let axes = (0..D).map(knots).collect::<Result<Vec<_>, _>>()?;
+    });
+    let axes = axes.collect::<Result<Vec<_>, _>>()?;
     let axes = std::array::from_fn(|axis| axes[axis].clone());
     Ok(Grid::new(axes)?.reaching(case.beyond()))
 }
@@ -129,7 +129,7 @@ fn boundary<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f6
     Boundary {
         supports: supports(case, t),
         outlets: outlets(case, t),
-        strips: surfaces::strips::<K, D>(case, grid, (penalty(case), t)),
+        strips: surfaces::strips::<K, D>(case, grid, penalty(case), t),
         resting: case
             .footing
             .iter()
@@ -152,26 +152,27 @@ fn reach(case: &Case) -> Vec<f64> {
 }
 
 fn supports<const D: usize>(case: &Case, t: f64) -> Vec<Support<D>> {
-    let support = |of: crate::FaceSupport| {
-        let Face { axis, upper } = of.face;
-        match (of.support, of.contact) {
-            (_, Some(contact)) => Some(Support::contact(axis, upper, contact)),
-            (crate::Support::Fixed, _) => Some(Support::fixed(axis, upper)),
-            (crate::Support::Roller, _) => Some(Support::roller(axis, upper)),
-            (crate::Support::Absorbing, _) => Some(Support::absorbing(axis, upper)),
-            (crate::Support::FreeField, _) => Some(Support::free_field(axis, upper)),
-            (crate::Support::Free | crate::Support::Outflow | crate::Support::Contact, None) => None,
-        }
-    };
     case.faces_at(t).into_iter().filter_map(support).collect()
+}
+
+/// The support of a face, if it has one.
+fn support<const D: usize>(of: crate::FaceSupport) -> Option<Support<D>> {
+    let Face { axis, upper } = of.face;
+    match (of.support, of.contact) {
+        (_, Some(contact)) => Some(Support::contact(axis, upper, contact)),
+        (crate::Support::Fixed, _) => Some(Support::fixed(axis, upper)),
+        (crate::Support::Roller, _) => Some(Support::roller(axis, upper)),
+        (crate::Support::Absorbing, _) => Some(Support::absorbing(axis, upper)),
+        (crate::Support::FreeField, _) => Some(Support::free_field(axis, upper)),
+        (crate::Support::Free | crate::Support::Outflow | crate::Support::Contact, None) => None,
+    }
 }
 
 /// Faces that let material out: the axis, and whether it is the upper one.
 fn outlets(case: &Case, t: f64) -> Vec<(usize, bool)> {
-    let out = |of: &crate::FaceSupport| of.support == crate::Support::Outflow;
     case.faces_at(t)
         .iter()
-        .filter(|of| out(of))
+        .filter(|of| of.support == crate::Support::Outflow)
         .map(|of| (of.face.axis, of.face.upper))
         .collect()
 }
@@ -187,15 +188,13 @@ pub fn faces(case: &Case, t: f64) -> Vec<(usize, f64)> {
 }
 
 fn pushes<const D: usize>(case: &Case, t: f64) -> Vec<(usize, f64)> {
-    let push = |support: &Support<D>| match (support.absorbs, support.upper) {
-        (true, _) => 0.0,
-        (false, true) => -1.0,
-        (false, false) => 1.0,
-    };
-    supports(case, t)
-        .iter()
-        .map(|support| (support.axis, push(support)))
-        .collect()
+    let supports = supports::<D>(case, t).into_iter();
+    let pushes = supports.map(|support| match (support.absorbs, support.upper) {
+        (true, _) => (support.axis, 0.0),
+        (false, true) => (support.axis, -1.0),
+        (false, false) => (support.axis, 1.0),
+    });
+    pushes.collect()
 }
 
 /// N/m, of a solid N  reaction of a face below which it does nothing: a strain of 1e-9 of the softest material over the
@@ -272,26 +271,25 @@ fn extents<K: Kinematics<D>, const D: usize>(case: &Case, points: &Points<D>) ->
         reach: &reach(case),
         weight: K::weight,
     };
-    let is_soil = |x: &Vector<D>| {
-        let at = placed_at(case.grid.lower(), x);
-        let holds = |region: &Region| {
-            if D == 3 {
-                region.contains_in_space(at)
-            } else {
-                region.contains([at[0], at[1]])
+    Some(rigid::extents(&bodies, &states, &reaching, |x| is_soil(case, x)))
+}
+
+/// Whether a place (m, from the grid's lower corner) lies in a body at the start.
+fn is_soil<const D: usize>(case: &Case, x: &Vector<D>) -> bool {
+    let at = placed_at(case.grid.lower(), x);
+    case.bodies.iter().enumerate().any(|(number, body)| {
+        case.is_there(number, 0.0)
+            && match D {
+                3 => body.region.contains_in_space(at),
+                _ => body.region.contains([at[0], at[1]]),
             }
-        };
-        case.bodies
-            .iter()
-            .enumerate()
-            .any(|(number, body)| case.is_there(number, 0.0) && holds(&body.region))
-    };
-    Some(rigid::extents((&bodies, &states), &reaching, is_soil))
+    })
 }
 
 /// Pa  pore pressure that a point carries, at `x` (m, from the grid's lower corner) at the start.
 fn carried_pressure<const D: usize>(case: &Case, material: u16, x: &Vector<D>) -> f64 {
-    let (ratio, lower) = (case.materials[usize::from(material)].ratio, case.grid.lower());
+    let ratio = case.materials[usize::from(material)].ratio;
+    let lower = case.grid.lower();
     if ratio > 0.0 {
         ratio * case.overburden(placed_at(lower, x))
     } else {
@@ -347,6 +345,18 @@ pub fn schedule(case: &Case) -> Schedule {
     })
 }
 
+/// Times at which the load with a number turns (s) in each span in which it acts: those of its rows, or else the end
+/// of its ramp.
+fn load_turns(case: &Case, load: usize, ramp: f64, shares: &Shares) -> Vec<f64> {
+    let rows: Vec<f64> = shares.iter().map(|row| row.0).collect();
+    let rows = if rows.is_empty() { vec![ramp] } else { rows };
+    let times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
+    let begins = times.filter_map(|t| case.acts_since(Acting::Load(load), t));
+    begins
+        .flat_map(|begin| rows.iter().map(move |row| begin + row))
+        .collect()
+}
+
 /// Times at which loads, strips, levels, heads and pressures that are given turn, where water flows, beside which there
 /// are no rigid bodies: what lies between the ends of a step would not be seen. A rate has its mean over a step.
 fn turns(case: &Case) -> Vec<f64> {
@@ -357,20 +367,10 @@ fn turns(case: &Case) -> Vec<f64> {
     else {
         return Vec::new();
     };
-    let course = |(number, (ramp, shares)): (usize, (f64, &Shares))| -> Vec<f64> {
-        let rows: Vec<f64> = shares.iter().map(|row| row.0).collect();
-        let rows = if rows.is_empty() { vec![ramp] } else { rows };
-        let begun = |t: f64| case.acts_since(Acting::Load(number), t);
-        let begins = std::iter::once(0.0)
-            .chain(case.stages.iter().map(|stage| stage.at))
-            .filter_map(begun);
-        begins
-            .flat_map(|begin| rows.iter().map(move |row| begin + row))
-            .collect()
-    };
     let tractions = case.tractions.iter().map(|load| (load.ramp, &load.amplitude));
     let loads = tractions.chain(case.point_loads.iter().map(|load| (load.ramp, &load.amplitude)));
-    let loads = loads.enumerate().flat_map(course);
+    let loads = loads.enumerate();
+    let loads = loads.flat_map(|(load, (ramp, shares))| load_turns(case, load, ramp, shares));
     let strips = case
         .footing
         .iter()
@@ -423,28 +423,23 @@ pub fn groups(case: &Case) -> Groups {
 }
 
 fn groups_of(case: &Case, materials: &[NamedMaterial]) -> Groups {
-    let kind = |named: &NamedMaterial| {
+    let kinds = materials.iter().map(|named| {
         let alone = named.material.is_graded() || !named.material.is_linear();
         let graded = alone.then(|| named.name.clone());
         let adjoint = case.stabilisation.lowers() && is_dilatant(&named.material);
         (named.material.elastic().clone(), graded, adjoint)
-    };
-    Groups::of_alike(&materials.iter().map(kind).collect::<Vec<_>>())
+    });
+    Groups::of_alike(&kinds.collect::<Vec<_>>())
 }
 
 /// What averages are weighted with: mass, or volume where materials differ in density or some have none.
 pub fn weighting(case: &Case) -> Weighting {
-    let wets = |body: &Body| {
-        let named = &case.materials[body.material];
-        case.water.is_some()
-            && named
-                .saturated
-                .is_some_and(|saturated| Some(saturated) != named.density)
-    };
-    if case.bodies.iter().any(wets) {
+    let mut materials = case.bodies.iter().map(|body| &case.materials[body.material]);
+    let mut densities = materials.clone().map(|named| named.density);
+    let is_wet = case.water.is_some();
+    if is_wet && materials.any(|named| named.saturated.is_some_and(|wet| Some(wet) != named.density)) {
         return Weighting::Volume;
     }
-    let mut densities = case.bodies.iter().map(|body| case.materials[body.material].density);
     match densities.next() {
         Some(Some(first)) if densities.all(|density| density == Some(first)) => Weighting::Mass,
         _ => Weighting::Volume,

@@ -119,9 +119,11 @@ impl Surroundings<'_> {
         for point in points {
             let Some(wall) = self.wall(point, size) else { continue };
             for end in [point.at - point.half, point.at + point.half] {
-                let within = |axis: usize| end[axis].clamp(self.bounds[0][axis], self.bounds[1][axis]);
-                bounds[0] = std::array::from_fn(|axis| bounds[0][axis].min(within(axis)));
-                bounds[1] = std::array::from_fn(|axis| bounds[1][axis].max(within(axis)));
+                for axis in 0..3 {
+                    let within = end[axis].clamp(self.bounds[0][axis], self.bounds[1][axis]);
+                    bounds[0][axis] = bounds[0][axis].min(within);
+                    bounds[1][axis] = bounds[1][axis].max(within);
+                }
             }
             match walls.iter_mut().find(|(edge, _)| *edge == point.edge) {
                 Some((_, known)) if known.width >= wall.width => {}
@@ -130,10 +132,10 @@ impl Surroundings<'_> {
             }
         }
         let mut walls: Vec<OpeningWall> = walls.into_iter().map(|(_, wall)| wall).collect();
-        let widths = || walls.iter().map(|wall| wall.width);
+        let widths = walls.iter().map(|wall| wall.width);
         let width = match points.first()?.kind {
-            SurfaceKind::Round => widths().reduce(f64::max)?,
-            SurfaceKind::Flat | SurfaceKind::Smooth => widths().reduce(f64::min)?,
+            SurfaceKind::Round => widths.reduce(f64::max)?,
+            SurfaceKind::Flat | SurfaceKind::Smooth => widths.reduce(f64::min)?,
         };
         if points[0].kind == SurfaceKind::Round {
             walls.iter_mut().for_each(|wall| wall.width = width);
@@ -143,11 +145,11 @@ impl Surroundings<'_> {
 
     /// The wall at a piece of surface of a body of a size (m), if an opening begins there.
     fn wall(&self, point: &SurfacePoint, size: f64) -> Option<OpeningWall> {
-        let (off, reach) = (OFF * size, 2.0 * size);
-        let is_open = |normal: &Vector<3>| {
-            self.is_material(point.at - normal * off) && !self.is_material(point.at + normal * off)
-        };
-        let normal = [point.normal, -point.normal].into_iter().find(is_open)?;
+        let off = OFF * size;
+        let reach = 2.0 * size;
+        let mut normals = [point.normal, -point.normal].into_iter();
+        let normal = normals
+            .find(|normal| self.is_material(point.at - normal * off) && !self.is_material(point.at + normal * off))?;
         let start = point.at + normal * off;
         let mut directions = self.directions(&normal, point.kind).into_iter();
         let width = directions.find_map(|direction| self.across(&Ray { start, direction }, reach))?;
@@ -176,8 +178,9 @@ impl Surroundings<'_> {
             .collect();
         for inclination in INCLINATIONS {
             let (sin, cos) = inclination.sin_cos();
-            let inclined = |tangent: &Vector<3>| [normal * cos + tangent * sin, normal * cos - tangent * sin];
-            directions.extend(tangents.iter().flat_map(inclined));
+            for tangent in &tangents {
+                directions.extend([normal * cos + tangent * sin, normal * cos - tangent * sin]);
+            }
         }
         directions
     }

@@ -83,8 +83,8 @@ impl<'a> Setting<'a> {
     /// The key at a depth of the path, by its name of now.
     fn name_of_now(&mut self, schema: Option<&'static Schema>, depth: usize) -> &'a str {
         let name = self.parts[depth];
-        let is_unknown = |schema: &&'static Schema| schema.key(name).is_none();
-        let Some(key) = schema.filter(is_unknown).and_then(|schema| schema.renamed(name)) else {
+        let schema = schema.filter(|schema| schema.key(name).is_none());
+        let Some(key) = schema.and_then(|schema| schema.renamed(name)) else {
             return name;
         };
         self.renamed.push((name, key.name));
@@ -170,7 +170,8 @@ impl<'a> Setting<'a> {
         match &mut node.value {
             Value::Table(table) => self.in_table(table, schema, depth),
             Value::List(items) => {
-                let (length, last) = (items.len(), depth + 1 == self.parts.len());
+                let length = items.len();
+                let last = depth + 1 == self.parts.len();
                 if part == EACH && length > 0 && !last {
                     return items
                         .iter_mut()

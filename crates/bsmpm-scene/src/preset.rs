@@ -180,22 +180,7 @@ fn fill_accuracy(
     filling.put("grid", &["degree"], &quoted(ORDER), "");
     let cells = scene.cells(preset);
     filling.cells(cells.as_ref(), &scene, preset);
-    // The cells that a case gives by hand count, too.
-    match scene.steps(preset, cells.as_ref().map(|cells| cells.edge)) {
-        Some((steps, why)) => {
-            filling.put("analysis", &["steps", "dt"], &steps.to_string(), &why);
-        }
-        None if scene.is_consolidation() => {
-            let message = "E0254: a preset cannot choose the time steps of a consolidation analysis. Give analysis.dt \
-                           and analysis.growth.";
-            filling.miss("analysis", &["steps", "dt"], message.into());
-        }
-        None if cells.is_some() || scene.shortest().is_some() => {
-            let message = choice.cannot_choose("analysis.steps", scene::STEPS);
-            filling.miss("analysis", &["steps", "dt"], message);
-        }
-        None => {} // an error of the cells
-    }
+    filling.steps(cells.as_ref(), &scene, preset);
     if let Some(why) = scene.locks() {
         filling.put("stabilisation", &["method"], &quoted(METHOD), why);
     }
@@ -277,7 +262,6 @@ impl Completion<'_, '_> {
 
     /// Reports an error that no value can be chosen for these keys of a table, unless one of them is given.
     fn miss(&mut self, table: &str, keys: &[&str], message: String) {
-        let given = |table: &DocumentTable| keys.iter().any(|key| table.get(key).is_some());
         match self.document.get(table) {
             Some(DocumentEntry {
                 node: Node {
@@ -285,7 +269,7 @@ impl Completion<'_, '_> {
                     ..
                 },
                 ..
-            }) if given(table) => {}
+            }) if keys.iter().any(|key| table.get(key).is_some()) => {}
             _ => self
                 .report
                 .consequence(self.choice.origin, self.choice.key, message, scene::BASIS),
@@ -302,7 +286,9 @@ impl Completion<'_, '_> {
                         .sizes
                         .iter()
                         .for_each(|(value, why)| self.tell("grid.knots", value, why));
-                    self.doubt(cells.too_thin(scene, FEWEST));
+                    if let Some((side, cell)) = cells.too_thin(scene, FEWEST) {
+                        self.doubt(side, cell);
+                    }
                     points = if cells.is_graded() {
                         points.max(GRADED_POINTS)
                     } else {
@@ -320,22 +306,42 @@ impl Completion<'_, '_> {
     }
 
     /// Warns of a body whose shorter side (m) has too few cells of an edge (m).
-    fn doubt(&mut self, thin: Option<(f64, f64)>) {
-        if let Some((side, cell)) = thin {
-            self.report.warn(format!(
-                "W0203: {ACCURACY}: a body with a thickness of {} m has fewer than {FEWEST} cells of {} m across. The \
-                 stresses in this body are inaccurate. Set grid.cell to at most {} m.",
-                brief(side),
-                brief(cell),
-                brief(side / FEWEST)
-            ));
+    fn doubt(&mut self, side: f64, cell: f64) {
+        self.report.warn(format!(
+            "W0203: {ACCURACY}: a body with a thickness of {} m has fewer than {FEWEST} cells of {} m across. The \
+             stresses in this body are inaccurate. Set grid.cell to at most {} m.",
+            brief(side),
+            brief(cell),
+            brief(side / FEWEST)
+        ));
+    }
+
+    /// Gives the analysis steps, unless it has some, or says why none can be chosen. The cells that a case gives by
+    /// hand count, too.
+    fn steps(&mut self, cells: Option<&Cells>, scene: &PresetScene<'_>, preset: &Preset) {
+        const KEYS: [&str; 2] = ["steps", "dt"];
+        match scene.steps(preset, cells.map(|cells| cells.edge)) {
+            Some((steps, why)) => {
+                self.put("analysis", &KEYS, &steps.to_string(), &why);
+            }
+            None if scene.is_consolidation() => {
+                let message = "E0254: a preset cannot choose the time steps of a consolidation analysis. Give \
+                               analysis.dt and analysis.growth.";
+                self.miss("analysis", &KEYS, message.into());
+            }
+            None if cells.is_some() || scene.shortest().is_some() => {
+                let message = self.choice.cannot_choose("analysis.steps", scene::STEPS);
+                self.miss("analysis", &KEYS, message);
+            }
+            None => {} // an error of the cells
         }
     }
 
     /// Gives every body that has none its points.
     fn points(&mut self, points: u64) {
         const KEY: &str = "points_per_cell";
-        let (origin, value) = (self.choice.origin, points.to_string());
+        let origin = self.choice.origin;
+        let value = points.to_string();
         let Some(DocumentEntry {
             node: Node {
                 value: Value::List(bodies),

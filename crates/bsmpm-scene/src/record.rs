@@ -160,7 +160,7 @@ impl Context {
                     record.fields.push(RecordField::absent(key.name, origin, None));
                 }
                 (None, Presence::Default(text)) => {
-                    let datum = self.default(&key.kind, text, (origin, &path), report);
+                    let datum = self.default(&key.kind, text, origin, &path, report);
                     record.fields.push(RecordField::absent(key.name, origin, datum));
                 }
                 (None, Presence::Optional | Presence::Later | Presence::Retired) => {}
@@ -173,13 +173,7 @@ impl Context {
         record
     }
 
-    fn default(
-        self,
-        kind: &Kind,
-        text: &str,
-        (origin, path): (Origin, &str),
-        report: &mut Report<'_>,
-    ) -> Option<Datum> {
+    fn default(self, kind: &Kind, text: &str, origin: Origin, path: &str, report: &mut Report<'_>) -> Option<Datum> {
         let Ok(node) = document::parse_value(text, origin) else {
             let message =
                 format!("E0099: the default value `{text}` cannot be read. Report this defect of the program.");
@@ -207,7 +201,7 @@ impl Context {
                 report.error(node.origin, path, value::expected(kind, node));
                 None
             }
-            _ => value::read(kind, node, path, (self.pseudo_time, self.geometry), report),
+            _ => value::read(kind, node, path, self.pseudo_time, self.geometry, report),
         }
     }
 
@@ -304,8 +298,10 @@ fn missing(key: &Key) -> String {
         return format!("E0014: this key is missing. Add it; its value is {}.", key.kind);
     };
     // A preset fills the others.
-    let is_named = |key: &&Key| matches!(key.presence, Presence::Required) && !key.has_preset;
-    let required = table.keys.iter().filter(is_named);
+    let required = table
+        .keys
+        .iter()
+        .filter(|key| matches!(key.presence, Presence::Required) && !key.has_preset);
     let groups = table.exclusive.iter().filter(|group| group.required);
     let names: Vec<String> = required
         .map(|key| format!("`{}`", key.name))

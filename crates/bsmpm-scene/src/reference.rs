@@ -250,8 +250,9 @@ fn unless_preset(has_preset: bool) -> &'static str {
 
 /// Whether a group is that of the second end of a segment, whose first end has the same group.
 fn is_second_end(group: &Group, table: &Table) -> bool {
-    let first = |other: &Group| other.keys.contains(&"from") && other.keys.last() == group.keys.last();
-    group.keys.contains(&"to") && table.exclusive.iter().any(first)
+    let mut groups = table.exclusive.iter();
+    group.keys.contains(&"to")
+        && groups.any(|other| other.keys.contains(&"from") && other.keys.last() == group.keys.last())
 }
 
 fn presence(presence: Presence) -> String {

@@ -126,8 +126,8 @@ impl Region {
         if let Self::Solid(volume) = self {
             return volume.above(at);
         }
-        let length = |[lower, upper]: [f64; 2]| (upper - lower.max(at[1])).max(0.0);
-        self.vertical(at[0]).into_iter().map(length).sum()
+        let pieces = self.vertical(at[0]).into_iter();
+        pieces.map(|[lower, upper]| (upper - lower.max(at[1])).max(0.0)).sum()
     }
 
     /// Whether a place of a solid lies inside, m in the case's coordinates.
@@ -174,8 +174,11 @@ impl Outline {
     pub(crate) fn new(
         edges: Vec<Edge>,
         shapes: usize,
-        (bounds, area): ([[f64; 2]; 2], f64),
-        (grid, geometry, points_per_cell): (&GridSpec, Geometry, usize),
+        bounds: [[f64; 2]; 2],
+        area: f64,
+        grid: &GridSpec,
+        geometry: Geometry,
+        points_per_cell: usize,
     ) -> Result<Self, String> {
         affordable(&edges, grid, points_per_cell)?;
         let origin = grid.corner();
@@ -201,7 +204,9 @@ impl Outline {
 
     /// Counts points and cells column by column; where something is cut out, the area is that of all cells' parts.
     fn count(&mut self, grid: &GridSpec, points_per_cell: usize) {
-        let (mut tally, mut total, mut area) = (CellTally::default(), 0_u64, 0.0);
+        let mut tally = CellTally::default();
+        let mut total = 0_u64;
+        let mut area = 0.0;
         for i in self.columns(grid) {
             let column = self.column(grid, points_per_cell, i);
             area += column.area;
@@ -238,7 +243,7 @@ impl Outline {
 
     /// The part of a column of cells.
     pub(crate) fn column(&self, grid: &GridSpec, points_per_cell: usize, i: usize) -> cells::CellColumn {
-        column(&self.edges, self.shapes, (grid, self.lattice(points_per_cell)), i)
+        column(&self.edges, self.shapes, grid, self.lattice(points_per_cell), i)
     }
 
     /// Its points in a cell.
@@ -261,10 +266,11 @@ pub(crate) fn rectangle(lower: [f64; 2], upper: [f64; 2], origin: [f64; 2], shap
 
 /// The edges of a polygon, from `origin`.
 pub(crate) fn polygon(corners: &[[f64; 2]], origin: [f64; 2], shape: usize) -> Vec<Edge> {
-    let place = |k: usize| [0, 1].map(|axis| corners[k % corners.len()][axis] - origin[axis]);
-    (0..corners.len())
-        .map(|k| Edge::line(place(k), place(k + 1), shape))
-        .collect()
+    let places = corners
+        .iter()
+        .map(|corner| [0, 1].map(|axis| corner[axis] - origin[axis]));
+    let next = places.clone().cycle().skip(1);
+    places.zip(next).map(|(a, b)| Edge::line(a, b, shape)).collect()
 }
 
 /// Cells along an axis that an interval (m from the first) touches, those at whose ends it ends too.
@@ -281,11 +287,11 @@ fn affordable(edges: &[Edge], grid: &GridSpec, points_per_cell: usize) -> Result
             edges.len()
         ));
     }
-    let cut = |edge: &Edge| {
+    let cut = edges.iter().map(|edge| {
         let [x, y] = [[edge.a[0], edge.b[0]], edge.heights()];
         (reached(&grid.axes[0], x).len() + reached(&grid.axes[1], y).len()) as u128
-    };
-    let cells: u128 = edges.iter().map(cut).sum();
+    });
+    let cells: u128 = cut.sum();
     if cells * edges.len() as u128 * points_per_cell as u128 > MOST_WORK {
         return Err(format!(
             "E0036: the {} edges of the shape cut about {cells} cells. Generating its material points would take too \

@@ -43,14 +43,14 @@ struct Renaming {
 }
 
 /// Warnings that differ only in the key that they concern.
-struct Merged {
+struct MergedWarning {
     /// The code and `": "`, or nothing.
     head: String,
     keys: Vec<String>,
     text: String,
 }
 
-impl Merged {
+impl MergedWarning {
     fn line(&self) -> String {
         let Self { head, keys, text } = self;
         match keys.is_empty() {
@@ -155,7 +155,8 @@ impl<'a> Report<'a> {
             Origin::Override(number) => (Place::Override(shortened(&self.overrides[number])), None),
             Origin::Nowhere => (Place::File, None),
         };
-        let (file, key) = (self.source.name.to_owned(), shortened(key));
+        let file = self.source.name.to_owned();
+        let key = shortened(key);
         let code = code_of(&message).map(str::to_owned);
         let message = without_code(&message).to_owned();
         Error {
@@ -176,13 +177,13 @@ impl<'a> Report<'a> {
 
     /// Hands over the warnings. Warnings that differ only in the key that they begin with are one, with all these keys.
     pub(crate) fn take_warnings(&mut self) -> Vec<String> {
-        let mut merged: Vec<Merged> = Vec::new();
+        let mut merged: Vec<MergedWarning> = Vec::new();
         let mut numbers: HashMap<String, usize> = HashMap::new();
         for warning in std::mem::take(&mut self.warnings) {
             let head = code_of(&warning).map_or_else(String::new, |code| format!("{code}: "));
             let words = without_code(&warning);
             let Some((key, text)) = words.split_once(": ").filter(|(key, _)| !key.contains(' ')) else {
-                merged.push(Merged {
+                merged.push(MergedWarning {
                     head,
                     keys: Vec::new(),
                     text: words.to_owned(),
@@ -191,7 +192,7 @@ impl<'a> Report<'a> {
             };
             let number = *numbers.entry(format!("{head}{text}")).or_insert(merged.len());
             if number == merged.len() {
-                merged.push(Merged {
+                merged.push(MergedWarning {
                     head,
                     keys: Vec::new(),
                     text: text.to_owned(),
@@ -199,7 +200,7 @@ impl<'a> Report<'a> {
             }
             merged[number].keys.push(key.to_owned());
         }
-        merged.iter().map(Merged::line).collect()
+        merged.iter().map(MergedWarning::line).collect()
     }
 
     pub(crate) fn note(&mut self, key: impl Into<String>, value: impl Into<String>, reason: impl Into<String>) {
@@ -233,13 +234,14 @@ impl<'a> Report<'a> {
 
     /// Hands over what earlier names the case has: one sentence for each.
     pub(crate) fn take_renamings(&mut self) -> Vec<String> {
-        let sentence = |Renaming { earlier, now, paths }: Renaming| {
+        let renamings = std::mem::take(&mut self.renamings).into_iter();
+        let sentences = renamings.map(|Renaming { earlier, now, paths }| {
             format!(
                 "{}: `{earlier}` is now called `{now}`. Replace the earlier name, which is still read.",
                 listed(&paths)
             )
-        };
-        std::mem::take(&mut self.renamings).into_iter().map(sentence).collect()
+        });
+        sentences.collect()
     }
 
     pub(crate) fn failed(&self) -> bool {
@@ -249,12 +251,12 @@ impl<'a> Report<'a> {
     /// Drops errors that only follow from others, unless nothing would be left.
     fn drop_consequences(&mut self) {
         let all = KeyCounts::of(self.errors.iter().flat_map(|reported| &reported.about));
-        let follows = |reported: &ReportedError| {
+        let is_dropped = self.errors.iter().map(|reported| {
             let own = KeyCounts::of(reported.about.iter());
-            let has_other = |cause: &String| all.concerned(cause) > own.concerned(cause);
-            self.is_of_guess(&reported.error.key) || reported.causes.iter().any(has_other)
-        };
-        let is_dropped: Vec<bool> = self.errors.iter().map(follows).collect();
+            let mut causes = reported.causes.iter();
+            self.is_of_guess(&reported.error.key) || causes.any(|cause| all.concerned(cause) > own.concerned(cause))
+        });
+        let is_dropped: Vec<bool> = is_dropped.collect();
         if is_dropped.iter().all(|dropped| *dropped) {
             return;
         }
@@ -264,10 +266,10 @@ impl<'a> Report<'a> {
 
     /// Whether a key path is that of a value, or of an item of it, whose key's name was guessed.
     fn is_of_guess(&self, path: &str) -> bool {
-        let is_item = |rest: &str| rest.chars().all(|c| c.is_ascii_digit() || c == '.');
-        self.assumed
-            .iter()
-            .any(|assumed| path.strip_prefix(assumed.as_str()).is_some_and(is_item))
+        self.assumed.iter().any(|assumed| {
+            let rest = path.strip_prefix(assumed.as_str());
+            rest.is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit() || c == '.'))
+        })
     }
 
     /// The errors in the order of the file, without repetitions and without those that only follow from others; those
@@ -276,14 +278,8 @@ impl<'a> Report<'a> {
         self.drop_consequences();
         self.errors.sort_by_key(|reported| reported.origin);
         let mut seen = HashSet::new();
-        let once =
-            |error: &Error| seen.insert((format!("{:?}", error.place), error.key.clone(), error.message.clone()));
-        let mut errors: Vec<Error> = self
-            .errors
-            .into_iter()
-            .map(|reported| reported.error)
-            .filter(once)
-            .collect();
+        let mut errors: Vec<Error> = self.errors.into_iter().map(|reported| reported.error).collect();
+        errors.retain(|error| seen.insert((format!("{:?}", error.place), error.key.clone(), error.message.clone())));
         if errors.len() > MOST {
             let more = errors.len() - MOST;
             errors.truncate(MOST);

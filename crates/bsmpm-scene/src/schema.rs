@@ -241,7 +241,8 @@ impl Range {
 
     /// The condition on `name` in words, e.g. `0 <= friction < 90`.
     pub fn condition(&self, name: &str) -> String {
-        let (more, at_least) = (" < ", " <= ");
+        let more = " < ";
+        let at_least = " <= ";
         match (self.lower, self.upper) {
             (Bound::Unbounded, Bound::Unbounded) => format!("any {name}"),
             (Bound::Excluded(lower), Bound::Unbounded) => format!("{name} > {lower}"),

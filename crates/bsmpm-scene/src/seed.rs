@@ -161,7 +161,8 @@ fn of_box<'a, K: Kinematics<D>, const D: usize>(
 ) -> impl Iterator<Item = Seed<D>> + 'a {
     let cells = across.cells.start.max(columns.start)..across.cells.end.min(columns.end);
     cells.flat_map(move |i| {
-        let (across, up) = (across.clone(), up.clone());
+        let across = across.clone();
+        let up = up.clone();
         let row = (i - across.cells.start) * up.cells.len();
         up.cells.clone().flat_map(move |j| {
             let cell = (row + (j - up.cells.start)) as u64;
@@ -187,7 +188,8 @@ fn of_outline<'a, K: Kinematics<D>, const D: usize>(
 ) -> impl Iterator<Item = Seed<D>> + 'a {
     let tally = outline.tally();
     let occupied = &tally.occupied[0];
-    let (grid, n) = (&case.grid, body.points_per_cell);
+    let grid = &case.grid;
+    let n = body.points_per_cell;
     (occupied.start.max(columns.start)..occupied.end.min(columns.end)).flat_map(move |i| {
         let first_id = first_id + tally.before[i - occupied.start];
         let x = [grid.axes[0].breakpoint(i), grid.axes[0].breakpoint(i + 1)];
@@ -196,10 +198,11 @@ fn of_outline<'a, K: Kinematics<D>, const D: usize>(
                 RegionPart::Whole(rows) => (rows, Vec::new()),
                 RegionPart::Cut(_, places) => (0..0, places),
             };
-            let y = move |j: usize| [grid.axes[1].breakpoint(j), grid.axes[1].breakpoint(j + 1)];
-            whole
-                .flat_map(move |j| of_cell(outline.lattice(n), [x, y(j)]))
-                .chain(cut)
+            let of_whole = whole.flat_map(move |j| {
+                let y = [grid.axes[1].breakpoint(j), grid.axes[1].breakpoint(j + 1)];
+                of_cell(outline.lattice(n), [x, y])
+            });
+            of_whole.chain(cut)
         });
         places
             .zip(first_id..)
@@ -233,15 +236,11 @@ impl Body {
             return Vector::zeros();
         };
         let lower = case.grid.lower();
-        let arm = |axis: usize| {
-            if axis < D {
-                x[axis] - (about[axis] - lower[axis])
-            } else {
-                0.0
-            }
-        };
-        let turned = |[a, b]: [usize; 2]| rate[a] * arm(b) - rate[b] * arm(a);
-        vector([[1, 2], [2, 0], [0, 1]].map(turned))
+        let mut arm = [0.0; 3];
+        for axis in 0..D {
+            arm[axis] = x[axis] - (about[axis] - lower[axis]);
+        }
+        vector([[1, 2], [2, 0], [0, 1]].map(|[a, b]: [usize; 2]| rate[a] * arm[b] - rate[b] * arm[a]))
     }
 
     /// kg/m3  of a point, whose place is in m from the grid's lower corner.

@@ -53,14 +53,15 @@ impl Sketch {
         let kind = root
             .record("analysis")
             .and_then(|analysis| analysis.word::<AnalysisType>("type"));
-        let (regime, is_timeless) = (kind.map(AnalysisType::regime), kind.map(AnalysisType::is_timeless));
-        let ends = |strip: &Record| Some([strip.pair("from")?, strip.pair("to")?]);
+        let regime = kind.map(AnalysisType::regime);
+        let is_timeless = kind.map(AnalysisType::is_timeless);
+        let footing = root.record("footing");
         Self {
             regime,
             is_timeless,
             stabilisation: regime.and_then(|_| validate::stabilisation(&root)),
             boundary: validate::boundary(&root),
-            footing: root.record("footing").and_then(ends),
+            footing: footing.and_then(|strip| Some([strip.pair("from")?, strip.pair("to")?])),
             strength_reduction: root
                 .record("strength_reduction")
                 .and_then(|reduction| reduction.number("factor")),

@@ -4,7 +4,7 @@ use crate::document::{DocumentEntry, DocumentTable, Node, Value};
 use crate::key_path::join;
 use crate::nearest::nearest;
 use crate::report::{Report, shortened};
-use crate::schema::{Key, Kind, Presence, Table, answer};
+use crate::schema::{Kind, Presence, Table, answer};
 use bsmpm_messages::code_of;
 
 /// Unknown keys of a table that are reported at most.
@@ -34,18 +34,17 @@ impl Mender<'_, '_> {
     /// Gives misspelt keys the name that is meant, if neither it nor a rival of it is given.
     fn rename_misspelt(&mut self, written: &mut DocumentTable, table: &'static Table, path: &str) {
         let mut given: Vec<String> = written.entries.iter().map(|entry| entry.key.clone()).collect();
-        let is_unknown = |key: &str| table.key(key).is_none();
         for entry in written
             .entries
             .iter_mut()
-            .filter(|entry| is_unknown(&entry.key))
+            .filter(|entry| table.key(&entry.key).is_none())
             .take(MOST_UNKNOWN)
         {
             let Some(meant) = meant(table, &entry.key) else {
                 continue;
             };
-            let is_given = |name: &str| given.iter().any(|other| other == name);
-            if is_given(meant) || table.rivals(meant).any(is_given) {
+            let mut names = std::iter::once(meant).chain(table.rivals(meant));
+            if names.any(|name| given.iter().any(|other| other == name)) {
                 continue;
             }
             let assumed = join(path, meant);
@@ -121,9 +120,11 @@ impl Mender<'_, '_> {
     /// `[material]` for `[material.NAME]`: the table gets the name `soil`, so that its values are checked as well.
     fn name_single_table(&mut self, node: &mut Node, table: &Table, path: &str) {
         let Value::Table(written) = &mut node.value else { return };
-        let is_key =
-            |entry: &DocumentEntry| !matches!(entry.node.value, Value::Table(_)) && table.key(&entry.key).is_some();
-        if written.entries.is_empty() || !written.entries.iter().all(is_key) {
+        let has_only_keys = written
+            .entries
+            .iter()
+            .all(|entry| !matches!(entry.node.value, Value::Table(_)) && table.key(&entry.key).is_some());
+        if written.entries.is_empty() || !has_only_keys {
             return;
         }
         let message = format!(
@@ -168,10 +169,10 @@ impl Mender<'_, '_> {
 /// stand for a value.
 fn meant(table: &'static Table, name: &str) -> Option<&'static str> {
     if answer(table, name).is_some() {
-        let is_value = |key: &Key| !matches!(key.kind, Kind::Table(_) | Kind::Named(_) | Kind::Tables(_));
-        return answered(table, name)
-            .into_iter()
-            .find(|name| table.key(name).is_some_and(is_value));
+        return answered(table, name).into_iter().find(|name| {
+            let kind = table.key(name).map(|key| &key.kind);
+            kind.is_some_and(|kind| !matches!(kind, Kind::Table(_) | Kind::Named(_) | Kind::Tables(_)))
+        });
     }
     nearest(name, names(table))
 }
@@ -237,7 +238,8 @@ fn unknown_key(root: &'static Table, table: &'static Table, key: &str) -> String
             ),
         };
     }
-    let (name, header) = (shortened(key), table.header);
+    let name = shortened(key);
+    let header = table.header;
     if let Some(meant) = nearest(key, names(table)) {
         return format!("E0011: the name `{name}` is not a known key of {header}; did you mean `{meant}`?");
     }

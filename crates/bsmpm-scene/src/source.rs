@@ -36,19 +36,13 @@ pub fn load(path: &Path) -> io::Result<Vec<u8>> {
             "E0004: the case file and its data files together are larger than {LIMIT} MiB, the limit. Reduce the \
              number of rows in the data files."
         );
-        return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+        return Err(invalid(message));
     }
     Ok(whole)
 }
 
 /// Bytes of a regular file, at most [`MAX_BYTES`] + 1 of them.
 fn bounded(path: &Path) -> io::Result<Vec<u8>> {
-    let unread = |error: io::Error| {
-        io::Error::new(
-            error.kind(),
-            format!("E0001: the file cannot be read: {error}. Check its path."),
-        )
-    };
     if !std::fs::metadata(path).map_err(unread)?.is_file() {
         let message = "E0001: the file cannot be read: it is a directory, pipe or device. Give the name of a file.";
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
@@ -59,6 +53,17 @@ fn bounded(path: &Path) -> io::Result<Vec<u8>> {
         .read_to_end(&mut bytes)
         .map_err(unread)?;
     Ok(bytes)
+}
+
+/// The error of a file that cannot be read.
+fn unread(error: io::Error) -> io::Error {
+    let message = format!("E0001: the file cannot be read: {error}. Check its path.");
+    io::Error::new(error.kind(), message)
+}
+
+/// The error of a file that does not hold what it should.
+fn invalid(message: impl Into<String>) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, message.into())
 }
 
 /// Text of a case file: UTF-8 without its byte order mark. One error if it is too large, UTF-16, binary or no UTF-8.

@@ -49,15 +49,12 @@ impl Signal {
         }
         let total: f64 = energy[1..].iter().sum();
         let mut sum = 0.0;
-        let reached = |part: &f64| {
+        let place = energy[1..].iter().position(|part| {
             sum += part;
             sum >= SHARE * total
-        };
+        });
         // What is constant leaves round-off besides its mean.
-        let place = energy[1..]
-            .iter()
-            .position(reached)
-            .filter(|_| total > ROUND_OFF * energy[0])?;
+        let place = place.filter(|_| total > ROUND_OFF * energy[0])?;
         Some((place + 1) as f64 / (2.0 * end))
     }
 
@@ -66,14 +63,14 @@ impl Signal {
         let values: Vec<f64> = (0..=samples).map(|k| self.at(number, k as f64 * step)).collect();
         let means = values.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
         let mut sum = 0.0;
-        let mut add = |mean: f64| {
+        let integrals = means.clone().map(|mean| {
             sum += mean;
             sum - 0.5 * mean
-        };
+        });
         match self.kind {
             InputKind::Force => means.collect(),
             InputKind::Motion => values.windows(2).map(|pair| pair[1] - pair[0]).collect(),
-            InputKind::Acceleration => means.map(&mut add).collect(),
+            InputKind::Acceleration => integrals.collect(),
         }
     }
 

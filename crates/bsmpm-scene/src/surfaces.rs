@@ -6,7 +6,7 @@ pub(crate) mod transition;
 pub(crate) use strips::neighbours;
 pub use strips::{penalty, strips};
 
-use crate::case::{Triangle, keeps_direction};
+use crate::case::{Traction, Triangle, keeps_direction};
 use crate::grid::vector;
 use crate::{Acting, Case, DrainSite, Face, Geometry, LoadedLine, Plate, Push, Rigid, RigidShape, Shares, Site};
 use bsmpm::boundary::rigid::Outline;
@@ -37,50 +37,22 @@ pub fn name_of_strip(case: &Case, strip: usize) -> String {
 /// Tractions, then point loads, once the stages until the time `t` have begun; of those whose direction changes the
 /// part along the first axis, and behind all others (`Case::turning_loads`) those along the other axes.
 pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f64) -> Vec<Load<D>> {
-    let placed = |at: [f64; 3]| vector::<D, _>(at) - vector(case.grid.lower());
-    let tractions = case.tractions.iter().map(|traction| {
-        let (points, left) = on_line::<K, D>(case, grid, &traction.line);
-        let height = |point: &SurfacePoint<D>| point.x[D - 1] + case.grid.lower()[D - 1];
-        let (values, follows) = match traction.push {
-            Push::Stress(stress) => {
-                let pushed = points
-                    .iter()
-                    .map(|point| vector(stress.map(|along| along.at(height(point)))));
-                (pushed.collect(), false)
-            }
-            Push::Pressure { profile, side } => {
-                let pressed = points
-                    .iter()
-                    .zip(left)
-                    .map(|(point, left)| left * (side * profile.at(height(point))));
-                (pressed.collect(), true)
-            }
-        };
-        (
-            Load {
-                points,
-                traction: values,
-                follows,
-                ramp: traction.ramp,
-                amplitude: Vec::new(),
-            },
-            &traction.amplitude,
-        )
-    });
+    let tractions = case.tractions.iter();
+    let tractions = tractions.map(|traction| (traction_load::<K, D>(case, grid, traction), &traction.amplitude));
     let forces = case.point_loads.iter().map(|load| {
-        let point = SurfacePoint::at(placed(load.at), 1.0 / case.geometry.whole());
+        let at = vector::<D, _>(load.at) - vector(case.grid.lower());
+        let point = SurfacePoint::at(at, 1.0 / case.geometry.whole());
         (Load::dead(vec![point], vector(load.force), load.ramp), &load.amplitude)
     });
-    let switched = |(number, (load, shares)): (usize, (Load<D>, &Shares))| {
+    let mut all = Vec::new();
+    let mut further = Vec::new();
+    for (number, (load, shares)) in tractions.chain(forces).enumerate() {
         let acting = match case.acts_since(Acting::Load(number), t) {
             None => vec![(0.0, Vector::zeros())],
-            Some(since) if since > 0.0 => course((load.ramp, shares), since),
+            Some(since) if since > 0.0 => course(load.ramp, shares, since),
             Some(_) => shares.clone(),
         };
-        steady(load, &acting, keeps_direction(shares))
-    };
-    let (mut all, mut further) = (Vec::new(), Vec::new());
-    for (first, others) in tractions.chain(forces).enumerate().map(switched) {
+        let (first, others) = steady(load, &acting, keeps_direction(shares));
         all.push(first);
         further.extend(others);
     }
@@ -88,24 +60,51 @@ pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f
     all
 }
 
+/// A traction at the points of its line, without its amplitude.
+fn traction_load<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, traction: &Traction) -> Load<D> {
+    let (points, left) = on_line::<K, D>(case, grid, &traction.line);
+    let base = case.grid.lower()[D - 1];
+    let heights = points.iter().map(|point| point.x[D - 1] + base);
+    let (values, follows) = match traction.push {
+        Push::Stress(stress) => {
+            let pushed = heights.map(|height| vector(stress.map(|along| along.at(height))));
+            (pushed.collect(), false)
+        }
+        Push::Pressure { profile, side } => {
+            let pressed = heights
+                .zip(left)
+                .map(|(height, left)| left * (side * profile.at(height)));
+            (pressed.collect(), true)
+        }
+    };
+    Load {
+        points,
+        traction: values,
+        follows,
+        ramp: traction.ramp,
+        amplitude: Vec::new(),
+    }
+}
+
 /// A load as one of a steady direction, and those of the axes behind the first if its direction changes.
 fn steady<const D: usize>(load: Load<D>, shares: &Shares, keeps_direction: bool) -> (Load<D>, Vec<Load<D>>) {
-    let along = |axis: usize| shares.iter().map(|(t, share)| (*t, share[axis])).collect();
     if keeps_direction {
-        return (
-            Load {
-                amplitude: along(0),
-                ..load
-            },
-            Vec::new(),
-        );
+        let amplitude = shares_along(shares, 0);
+        return (Load { amplitude, ..load }, Vec::new());
     }
-    let part = |axis: usize| Load {
+    let parts = (0..D).map(|axis| Load {
         traction: load.traction.iter().map(|of| unit::<D>(axis) * of[axis]).collect(),
-        amplitude: along(axis),
+        amplitude: shares_along(shares, axis),
         ..load.clone()
-    };
-    (part(0), (1..D).map(part).collect())
+    });
+    let mut parts: Vec<Load<D>> = parts.collect();
+    let first = parts.remove(0);
+    (first, parts)
+}
+
+/// Shares along an axis, with their times, s.
+fn shares_along(shares: &Shares, axis: usize) -> Vec<(f64, f64)> {
+    shares.iter().map(|(t, share)| (*t, share[axis])).collect()
 }
 
 /// Points of a line, with unit normals to the left of a segment, towards the middle of a circle, along a plate's axis,
@@ -119,7 +118,8 @@ fn on_line<K: Kinematics<D>, const D: usize>(
     let place = |at: [f64; 2]| vector(case.grid.local(at));
     match line {
         &LoadedLine::Segment { from, to } => {
-            let (from, to) = (place(from), place(to));
+            let from = place(from);
+            let to = place(to);
             let points = surface::along::<K, D>(grid, &from, &to, across);
             points.into_iter().map(|point| (point, normal(&from, &to))).unzip()
         }
@@ -132,11 +132,11 @@ fn on_line<K: Kinematics<D>, const D: usize>(
         }
         LoadedLine::Triangles(triangles) => {
             let base = vector::<D, _>(case.grid.lower());
-            let point = |triangle: &Triangle| SurfacePoint::of_triangle(triangle.map(|at| vector::<D, _>(at) - base));
-            triangles
-                .iter()
-                .map(|triangle| (point(triangle), vector(normal_of(triangle))))
-                .unzip()
+            let points = triangles.iter().map(|triangle| {
+                let corners = triangle.map(|at| vector::<D, _>(at) - base);
+                (SurfacePoint::of_triangle(corners), vector(normal_of(triangle)))
+            });
+            points.unzip()
         }
     }
 }
@@ -153,7 +153,7 @@ pub(crate) fn normal_of(triangle: &Triangle) -> [f64; 3] {
 }
 
 /// The course of a load that begins at the time `since`, where nothing of it acts yet.
-fn course((ramp, amplitude): (f64, &Shares), since: f64) -> Shares {
+fn course(ramp: f64, amplitude: &Shares, since: f64) -> Shares {
     let ramp = [(ramp, Vector::from_element(1.0))];
     let rows = if amplitude.is_empty() { &ramp[..] } else { amplitude };
     std::iter::once((since, Vector::zeros()))
@@ -171,27 +171,21 @@ fn around<K: Kinematics<D>, const D: usize>(
     let length = std::f64::consts::TAU * radius;
     // In fours, so that a circle has the grid's symmetries.
     let pieces = 4 * (length / grid.smallest_edge() * count as f64 / 4.0).ceil() as usize;
-    let point = |k: usize| {
-        let outward = |part: f64| {
+    let mut points = Vec::new();
+    for k in 0..pieces {
+        // At the first end, in the middle and at the second end of the piece.
+        let outward: [Vector<D>; 3] = [0.0, 0.5, 1.0].map(|part| {
             let (sin, cos) = ((k as f64 + part) * std::f64::consts::TAU / pieces as f64).sin_cos();
             vector([cos, sin])
-        };
-        let place = |part: f64| center + outward(part) * radius;
-        let (x, [a, b]) = (place(0.5), [0.0, 1.0].map(place));
+        });
+        let [a, x, b] = outward.map(|outward| center + outward * radius);
         let area = length / pieces as f64 * K::weight(&x);
-        (
-            SurfacePoint {
-                x,
-                area,
-                corners: [a, a, b, b],
-            },
-            -outward(0.5),
-        )
-    };
-    (0..pieces)
-        .map(point)
-        .filter(|(point, _)| grid.locate(&point.x).is_some())
-        .collect()
+        let corners = [a, a, b, b];
+        if grid.locate(&x).is_some() {
+            points.push((SurfacePoint { x, area, corners }, -outward[1]));
+        }
+    }
+    points
 }
 
 /// Where the physics has a drain.
@@ -205,18 +199,16 @@ pub enum DrainPlace {
 
 /// Where every drain of a case is, in the order of the file.
 pub fn drain_places(case: &Case) -> Vec<DrainPlace> {
-    let (mut faces, mut surfaces) = (0.., 0..);
-    let place = |drain: &crate::Drain| match drain.site {
+    let mut faces = 0..;
+    let mut surfaces = 0..;
+    let drains = case.flow.iter().flat_map(|flow| &flow.drains);
+    let places = drains.filter_map(|drain| match drain.site {
         DrainSite::Face(_) => faces.next().map(DrainPlace::Face),
         DrainSite::Lines(_) | DrainSite::Circle { .. } | DrainSite::Plate(_) => {
             surfaces.next().map(DrainPlace::Surface)
         }
-    };
-    case.flow
-        .iter()
-        .flat_map(|flow| &flow.drains)
-        .filter_map(place)
-        .collect()
+    });
+    places.collect()
 }
 
 /// What the case calls a drained surface or, behind those, an inflow, by the numbers that the physics has.
@@ -250,75 +242,76 @@ pub fn flow<K: Kinematics<D>, const D: usize>(
 ) -> Option<bsmpm::water::flow::Flow<D>> {
     let flow = case.flow.as_ref()?;
     let base = case.grid.lower()[D - 1];
-    let given = |given: &Given| match given {
-        Given::Head(Course(rows)) => Given::Head(Course(rows.iter().map(|(t, head)| (*t, head - base)).collect())),
-        other => other.clone(),
-    };
-    let acts = |what: Acting| case.acts_since(what, t).is_some();
-    let drain = |(number, drain): (usize, &crate::Drain)| {
-        if matches!(drain.site, DrainSite::Face(_)) {
-            return None;
+    let mut drains = Vec::new();
+    let mut faces = Vec::new();
+    for (number, drain) in flow.drains.iter().enumerate() {
+        let given = given_above(&drain.given, base);
+        let acts = case.acts_since(Acting::Drain(number), t).is_some();
+        if let DrainSite::Face(Face { axis, upper }) = drain.site {
+            faces.push(DrainedFace {
+                axis,
+                upper,
+                given,
+                acts,
+            });
+            continue;
         }
-        let parts = drain
-            .site
-            .lines()
-            .into_iter()
-            .map(|line| on_line::<K, D>(case, grid, &line));
+        let lines = drain.site.lines().into_iter();
+        let parts = lines.map(|line| on_line::<K, D>(case, grid, &line));
         let (points, normals) = parts
             .flat_map(|(points, normals)| points.into_iter().zip(normals))
             .unzip();
-        Some(Drain {
+        drains.push(Drain {
             points,
             normals,
-            given: given(&drain.given),
-            acts: acts(Acting::Drain(number)),
-        })
-    };
-    let face = |(number, drain): (usize, &crate::Drain)| match drain.site {
-        DrainSite::Face(Face { axis, upper }) => Some(DrainedFace {
-            axis,
-            upper,
-            given: given(&drain.given),
-            acts: acts(Acting::Drain(number)),
-        }),
-        DrainSite::Lines(_) | DrainSite::Circle { .. } | DrainSite::Plate(_) => None,
-    };
-    let inflow = |(number, inflow): (usize, &crate::Inflow)| {
+            given,
+            acts,
+        });
+    }
+    let mut inflows = Vec::new();
+    for (number, inflow) in flow.inflows.iter().enumerate() {
         let line = match inflow.site {
             Site::Segment { from, to } => Some(LoadedLine::Segment { from, to }),
             Site::Plate(plate) => Some(LoadedLine::Plate(plate)),
             Site::Face(_) => None,
         };
         let (points, normals) = line.map(|line| on_line::<K, D>(case, grid, &line)).unwrap_or_default();
-        let acts = acts(Acting::Inflow(number));
-        Inflow {
+        inflows.push(Inflow {
             points,
             normals,
             rate: inflow.rate.clone(),
             runs_off: inflow.runs_off,
-            acts,
-        }
-    };
+            acts: case.acts_since(Acting::Inflow(number), t).is_some(),
+        });
+    }
     Some(bsmpm::water::flow::Flow {
         bulk: flow.bulk,
         soils: flow.soils.iter().map(|soil| soil.as_ref().map(of_ground)).collect(),
-        drains: flow.drains.iter().enumerate().filter_map(drain).collect(),
-        faces: flow.drains.iter().enumerate().filter_map(face).collect(),
-        inflows: flow.inflows.iter().enumerate().map(inflow).collect(),
+        drains,
+        faces,
+        inflows,
         suction: flow.suction,
         motion: case.water_at(t),
     })
 }
 
+/// What is given at a drain, with heads (m) above the grid's lower corner, whose height is `base`, m.
+fn given_above(given: &Given, base: f64) -> Given {
+    match given {
+        Given::Head(Course(rows)) => Given::Head(Course(rows.iter().map(|(t, head)| (*t, head - base)).collect())),
+        other => other.clone(),
+    }
+}
+
 /// A soil in the dimension of the geometry.
 fn of_ground<const D: usize>(soil: &Soil<3>) -> Soil<D> {
-    let along = |permeability: &Permeability<3>| Permeability {
+    let permeability = soil.permeability.as_ref().map(|permeability| Permeability {
         along: vector(permeability.along.into()),
         law: permeability.law,
-    };
+    });
     Soil {
         porosity: soil.porosity,
-        permeability: soil.permeability.as_ref().map(along),
+        permeability,
         retention: soil.retention.clone(),
     }
 }
@@ -326,20 +319,21 @@ fn of_ground<const D: usize>(soil: &Soil<3>) -> Soil<D> {
 /// Rigid bodies in the order of the file, once the stages until the time `t` have begun.
 pub fn rigid<const D: usize>(case: &Case, t: f64) -> Vec<RigidBody<D>> {
     let divided = case.divided_at(t);
-    let of = |(number, rigid): (usize, &Rigid)| {
+    let mut bodies = Vec::new();
+    for (number, rigid) in case.rigid.iter().enumerate() {
         let since = case.acts_since(Acting::Rigid(number), t);
         let begun = since.filter(|since| *since > 0.0 && rigid.force != [0.0; 3]);
         let later = begun.map(|since| Rigid {
-            amplitude: course((rigid.ramp, &rigid.amplitude), since),
+            amplitude: course(rigid.ramp, &rigid.amplitude, since),
             ..rigid.clone()
         });
-        RigidBody {
+        bodies.push(RigidBody {
             acts: since.is_some(),
             friction: rigid.friction / divided,
             ..rigid_body(later.as_ref().unwrap_or(rigid), case.grid.lower(), case.geometry)
-        }
-    };
-    case.rigid.iter().enumerate().map(of).collect()
+        });
+    }
+    bodies
 }
 
 /// An outline about a reference point, both in m.
@@ -367,25 +361,6 @@ pub(crate) fn rigid_body<const D: usize>(rigid: &Rigid, lower: [f64; 3], geometr
         .collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
-    let path = |t: f64| {
-        let stays = || {
-            rigid
-                .path
-                .rows
-                .last()
-                .map_or_else(Vector::zeros, |(_, moved)| Vector::from(*moved))
-        };
-        let rows: Vec<(f64, Vector<3>)> = rigid
-            .path
-            .rows
-            .iter()
-            .map(|(t, moved)| (*t, Vector::from(*moved)))
-            .collect();
-        let moved = between(&rows, Vector::zeros(), t).unwrap_or_else(stays);
-        let turned = rigid.rotation.last().map_or(0.0, |(_, angle)| *angle);
-        let turned = between(&rigid.rotation, 0.0, t).unwrap_or(turned);
-        Vector::<3>::new(moved[0], moved[1], if D == 2 { turned } else { moved[2] })
-    };
     let reference = match &rigid.shape {
         RigidShape::InSpace(solid) => solid.reference(),
         RigidShape::Polygon(_) | RigidShape::Circle { .. } => [rigid.about[0], rigid.about[1], 0.0],
@@ -418,11 +393,22 @@ pub(crate) fn rigid_body<const D: usize>(rigid: &Rigid, lower: [f64; 3], geometr
         center,
         friction: rigid.friction,
         free: rigid.free,
-        path: times.into_iter().map(|t| (t, path(t))).collect(),
+        path: times.into_iter().map(|t| (t, motion::<D>(rigid, t))).collect(),
         mass: Vector::<3>::new(rigid.mass[0], rigid.mass[0], rigid.mass[1]) / geometry.whole(),
         load,
         velocity: Vector::from(rigid.velocity),
     }
+}
+
+/// Displacement of a rigid body at the time `t`, m; in a plane its last component is the angle.
+fn motion<const D: usize>(rigid: &Rigid, t: f64) -> Vector<3> {
+    let rows = rigid.path.rows.iter().map(|(t, moved)| (*t, Vector::from(*moved)));
+    let rows: Vec<(f64, Vector<3>)> = rows.collect();
+    let last = rows.last().map_or_else(Vector::zeros, |(_, moved)| *moved);
+    let moved = between(&rows, Vector::zeros(), t).unwrap_or(last);
+    let turned = rigid.rotation.last().map_or(0.0, |(_, angle)| *angle);
+    let turned = between(&rigid.rotation, 0.0, t).unwrap_or(turned);
+    Vector::<3>::new(moved[0], moved[1], if D == 2 { turned } else { moved[2] })
 }
 
 /// Points of a plate, `count` along each axis of a cell.
@@ -438,13 +424,9 @@ fn on_plate<K: Kinematics<D>, const D: usize>(
         return surface::over::<K, D>(grid, &lower, &upper, count);
     }
     // Of a disc the part inside the grid.
-    let inside = |at: Vector<D>| {
-        at.zip_map(
-            &Vector::from_fn(|axis, _| case.grid.axes[axis].length()),
-            |x, length| x.clamp(0.0, length),
-        )
-    };
-    surface::within::<K, D>(grid, (&inside(lower), &inside(upper)), (&middle, plate.radius()), count)
+    let lengths = Vector::from_fn(|axis, _| case.grid.axes[axis].length());
+    let [lower, upper] = [lower, upper].map(|at| at.zip_map(&lengths, |x, length| x.clamp(0.0, length)));
+    surface::within::<K, D>(grid, &lower, &upper, &middle, plate.radius(), count)
 }
 
 fn unit<const D: usize>(along: usize) -> Vector<D> {
@@ -478,7 +460,8 @@ impl Gauge {
             .map(|(time, moved)| (*time, Vector::from(*moved)))
             .collect();
         let height = case.grid.dims() - 1;
-        let (path, down) = (Path { rows }, -unit::<3>(height));
+        let path = Path { rows };
+        let down = -unit::<3>(height);
         let whole = path.at(case.analysis.end);
         let moving = whole.try_normalize(0.0).unwrap_or(down);
         let (normal, area) = match footing.site {

@@ -294,16 +294,16 @@ pub(crate) fn parse_per_metre(text: &str, of: Dimension) -> Result<f64, String> 
         .trim()
         .strip_suffix('m')
         .and_then(|rest| rest.trim_end().strip_suffix('/'));
-    let units: Vec<String> = of.units().map(|unit| format!("{unit}/m")).collect();
-    let wrong = || {
-        format!(
+    let Some(upper) = upper else {
+        let units: Vec<String> = of.units().map(|unit| format!("{unit}/m")).collect();
+        return Err(format!(
             "E0021: the unit of \"{}\" must be a unit per metre, because the value is a change with height. Use one \
              of {}.",
             crate::report::shortened(text),
             units.join(", ")
-        )
+        ));
     };
-    parse(upper.ok_or_else(wrong)?, of)
+    parse(upper, of)
 }
 
 /// Value and dimension of `text`, whatever its unit; `meant` helps to guess what an unknown unit stands for.
@@ -334,13 +334,11 @@ pub(crate) fn parse_any(text: &str, meant: Option<Dimension>) -> Result<(f64, Di
     }
     let alias = ALIASES.iter().find(|(alias, _)| *alias == plain);
     let plain = alias.map_or(plain, |(_, name)| (*name).to_owned());
-    let known = |(dimension, units): &(Dimension, &'static [(&'static str, Worth)])| {
-        units
-            .iter()
-            .find(|(name, _)| *name == plain)
-            .map(|(_, worth)| (*dimension, *worth))
-    };
-    let Some((dimension, worth)) = UNITS.iter().chain(&NOT_OFFERED).find_map(known) else {
+    let known = UNITS.iter().chain(&NOT_OFFERED).find_map(|(dimension, units)| {
+        let (_, worth) = units.iter().find(|(name, _)| *name == plain)?;
+        Some((*dimension, *worth))
+    });
+    let Some((dimension, worth)) = known else {
         let all = UNITS
             .iter()
             .filter(|(dimension, _)| meant.is_none_or(|meant| meant == *dimension));
@@ -380,12 +378,11 @@ fn value(number: &str, worth: Worth) -> Result<f64, String> {
     let (mantissa, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
     match worth {
         Ten(shift) => {
-            let beyond = |_| {
+            let exponent: i64 = exponent.parse().map_err(|_| {
                 format!(
                     "E0010: the exponent of {number} is too large or too small for the program. Correct the exponent."
                 )
-            };
-            let exponent: i64 = exponent.parse().map_err(beyond)?;
+            })?;
             finite(&format!("{mantissa}e{}", exponent.saturating_add(shift.into())))
         }
         Times(factor) => finite(number).map(|value| value * factor),

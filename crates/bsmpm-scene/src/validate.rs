@@ -3,6 +3,7 @@
 mod approach;
 mod axisymmetric;
 mod body;
+mod domain;
 mod element;
 mod flow;
 mod free_field;
@@ -51,6 +52,7 @@ use bsmpm::model::WallVelocity;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm::step::newmark::Newmark;
+use domain::{Domain, Loads, Structures};
 
 /// Coefficient of friction up to which faces and strips in contact were verified.
 const MOST_SHOWN_FRICTION: f64 = 1.0;
@@ -82,101 +84,66 @@ pub(crate) enum CaseUse {
 /// The case that `record` describes; `text` is what was read. `None` after an error.
 pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mut Report<'_>) -> Option<Case> {
     solid::refuse(record, report);
-    let kind = record.record("analysis").and_then(|analysis| analysis.word("type"));
-    let regime = kind.map(AnalysisType::regime);
-    let analysis = analysis(record, kind, report);
-    let end = analysis.as_ref().map(|analysis| analysis.end);
-    let boundary = boundary(record);
-    let grid = grid::read(record, boundary, report);
-    let bodies = body::read_all(record, grid.as_ref(), regime, report);
-    let time = analysis.as_ref().map(|analysis| (analysis.end, analysis.dt));
-    let factor = reduction::at_start(record).and_then(|reduction| reduction.number("factor"));
-    let stages = stage::read_all((record, factor), bodies.as_deref(), time, report);
-    let contacts = contacts(record, factor, report);
-    let (placed, made) = (grid.as_ref(), bodies.as_deref());
-    let mut gravity = gravity(record, regime, end, report);
-    let water = water::read(record, (placed, gravity.as_ref()), regime, end, report);
-    let shaking = load::shaking(
-        record,
-        (regime, analysis.as_ref().map(|analysis| (analysis.end, analysis.dt))),
-        report,
-    );
-    let around = site::AroundStrip {
-        grid: placed,
-        bodies: made,
-        boundary,
-        factor,
-        end,
-        dt: analysis
-            .as_ref()
-            .filter(|of| of.kind != AnalysisType::Consolidation)
-            .map(|analysis| analysis.dt),
-    };
-    let mut footing = strip::footing(record, around, report);
-    let mut prescribed = strip::prescribed(record, around, report);
-    let mut rigid = rigid::read_all(record, (around, regime), factor, report);
-    let moved = limit_load::MovedBodies {
-        footing: footing.as_mut(),
-        prescribed: &mut prescribed,
-        rigid: &mut rigid,
-    };
-    let stiffness = limit_load::shrink(record, placed, moved, report);
-    let reduction = material::Reduction::of(record, stiffness);
-    let geometry = record.word("geometry");
-    let facts = material::CaseFacts {
-        regime,
-        geometry,
-        grid: placed,
-        bodies: made,
-        stages: stages.as_deref(),
-        reduction,
-    };
-    let materials = material::read_all(record, facts, report);
-    let flow = flow::read(record, materials.as_deref(), (around, stages.as_deref()), report);
-    let mut tractions = load::tractions(record, around, report);
-    let mut point_loads = load::point_loads(record, around, report);
-    let mut initial = load::initial(record, (materials.as_deref(), made), gravity.as_ref(), regime, report);
-    if let Some(end) = end.filter(|_| load::is_unloaded(record)) {
-        initial = None;
-        load::grow(
-            (gravity.as_mut(), &mut tractions, &mut point_loads, &mut rigid),
-            end,
-            report,
-        );
+    let (mut case, stiffness) = read(record, text, report)?;
+    if report.failed() {
+        return None;
     }
+    if case_use == CaseUse::ElementTests {
+        return Some(case);
+    }
+    check(&mut case, record, stiffness, report);
+    Some(Case {
+        renamings: report.take_renamings(),
+        warnings: report.take_warnings(),
+        notes: std::mem::take(&mut report.notes),
+        ..case
+    })
+}
+
+/// The case as its tables describe it, and by which Young's moduli were multiplied.
+fn read(record: &Record, text: String, report: &mut Report<'_>) -> Option<(Case, f64)> {
+    let domain = Domain::read(record, report);
+    let grid = domain.grid.as_ref();
+    let regime = domain.regime;
+    let end = domain.end();
+    let gravity = gravity(record, regime, end, report);
+    let water = water::read(record, grid, gravity.as_ref(), regime, end, report);
+    let times = domain.analysis.as_ref().map(|analysis| (analysis.end, analysis.dt));
+    let shaking = load::shaking(record, regime, times, report);
+    let mut structures = Structures::read(record, &domain, report);
+    let materials = domain.materials(record, structures.stiffness, report);
+    let made = materials.as_deref();
+    let flow = flow::read(record, made, domain.around(), domain.stages.as_deref(), report);
+    let loads = Loads::read(record, &domain, made, gravity, &mut structures.rigid, report);
     let stabilisation = stabilisation(record);
-    let solver = solver::read(record, regime, (grid.as_ref(), materials.as_deref()), report);
+    let solver = solver::read(record, regime, grid, made, report);
     let output = output::read(record, end, report);
-    let histories = history::read_all(
-        record,
-        (regime, grid.as_ref(), materials.as_deref().zip(bodies.as_deref())),
-        report,
-    );
-    let profiles = profile::read_all(record, (regime, grid.as_ref(), end), report);
+    let histories = history::read_all(record, regime, grid, domain.bodies_of(made), report);
+    let profiles = profile::read_all(record, regime, grid, end, report);
     let checks = history::checks(record, &histories, end, report);
-    let elements = element::read_all(record, (materials.as_deref(), placed), report);
-    let mut case = Case {
+    let elements = element::read_all(record, made, grid, report);
+    let case = Case {
         title: record.text("title").unwrap_or_default().to_owned(),
         geometry: record.word("geometry")?,
-        analysis: analysis?,
-        grid: grid?,
+        analysis: domain.analysis?,
+        grid: domain.grid?,
         materials: materials?,
-        bodies: bodies?,
-        stages: stages?,
-        gravity,
+        bodies: domain.bodies?,
+        stages: domain.stages?,
+        gravity: loads.gravity,
         water,
         flow: flow?,
         shaking,
-        boundary: boundary?,
-        contacts: contacts?,
-        footing,
-        prescribed,
-        rigid,
-        tractions,
-        point_loads,
-        strength_reduction: factor,
-        settles: initial.is_some() && load::settles(record),
-        initial,
+        boundary: domain.boundary?,
+        contacts: domain.contacts?,
+        footing: structures.footing,
+        prescribed: structures.prescribed,
+        rigid: structures.rigid,
+        tractions: loads.tractions,
+        point_loads: loads.point_loads,
+        strength_reduction: domain.factor,
+        settles: loads.initial.is_some() && load::settles(record),
+        initial: loads.initial,
         stabilisation: stabilisation?,
         solver: solver?,
         output: output?,
@@ -191,32 +158,31 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
         notes: Vec::new(),
         text,
     };
-    if report.failed() {
-        return None;
-    }
-    if case_use == CaseUse::ElementTests {
-        return Some(case);
-    }
-    waves::choose_mass(&mut case, record, report);
-    side::of_pressures(&mut case, record, report);
-    body::warn_of_overlap(&case, report);
-    gap::check(&case, report);
-    approach::check(&case, report);
-    plausible::check(&case, record, report);
-    solver::of_case(&mut case, record, report);
-    physics::walls(&mut case, record, report);
-    solver::warn_of_background(&case, report);
-    solid::check(&case, record, report);
-    rigid::check(&case, record, report);
-    stage::check(&mut case, record, report);
-    load::sudden(&case, report);
-    physics::rest(&mut case, record, report);
-    strip::beside_fixed(&case, report);
-    section::warn_of_neighbours(&case, record, report);
-    let inside_cells = lines::place(&mut case, record, report);
-    solver::fit_weights(&mut case, record, report);
+    Some((case, structures.stiffness))
+}
+
+/// Checks the rules between the parts of a case, and completes those that depend on others.
+fn check(case: &mut Case, record: &Record, stiffness: f64, report: &mut Report<'_>) {
+    waves::choose_mass(case, record, report);
+    side::of_pressures(case, record, report);
+    body::warn_of_overlap(case, report);
+    gap::check(case, report);
+    approach::check(case, report);
+    plausible::check(case, record, report);
+    solver::of_case(case, record, report);
+    physics::walls(case, record, report);
+    solver::warn_of_background(case, report);
+    solid::check(case, record, report);
+    rigid::check(case, record, report);
+    stage::check(case, record, report);
+    load::sudden(case, report);
+    physics::rest(case, record, report);
+    strip::beside_fixed(case, report);
+    section::warn_of_neighbours(case, record, report);
+    let inside_cells = lines::place(case, record, report);
+    solver::fit_weights(case, record, report);
     limit_load::complete(
-        &mut case,
+        case,
         record,
         limit_load::Preparation {
             stiffness,
@@ -224,27 +190,20 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
         },
         report,
     );
-    meeting::check(&case, record, report);
-    opening::check(&mut case, record, report);
-    touching::check(&case, record, report);
-    material::band::check(&case, record, report);
-    physics::check(&case, record, report);
-    lasting::check(&case, record, report);
-    leaving::check(&case, record, report);
-    reduction::at_stage(&mut case, record, report);
-    free_field::check(&case, record, report);
-    water::check(&case, record, report);
-    ratio::check(&case, record, report);
-    flow::check(&case, record, report);
-    axisymmetric::check(&case, record, report);
-    waves::check(&case, record, report);
-    let renamings = report.take_renamings();
-    Some(Case {
-        renamings,
-        warnings: report.take_warnings(),
-        notes: std::mem::take(&mut report.notes),
-        ..case
-    })
+    meeting::check(case, record, report);
+    opening::check(case, record, report);
+    touching::check(case, record, report);
+    material::band::check(case, record, report);
+    physics::check(case, record, report);
+    lasting::check(case, record, report);
+    leaving::check(case, record, report);
+    reduction::at_stage(case, record, report);
+    free_field::check(case, record, report);
+    water::check(case, record, report);
+    ratio::check(case, record, report);
+    flow::check(case, record, report);
+    axisymmetric::check(case, record, report);
+    waves::check(case, record, report);
 }
 
 fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>) -> Option<Analysis> {
@@ -279,7 +238,7 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
         analysis.error("dt", message, report);
         return None;
     }
-    let growth = growth(analysis, (kind, dt), report)?;
+    let growth = growth(analysis, kind, dt, report)?;
     if end / dt > MOST_STEPS {
         let message = format!(
             "E0257: dt = {dt} needs {:.3e} steps until the end of the analysis (at most {MOST_STEPS:e}). Increase \
@@ -302,7 +261,7 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
 }
 
 /// By which steps grow, and to which length, if they do; the outer option is `None` after an error.
-fn growth(analysis: &Record, (kind, dt): (AnalysisType, f64), report: &mut Report<'_>) -> Option<Option<(f64, f64)>> {
+fn growth(analysis: &Record, kind: AnalysisType, dt: f64, report: &mut Report<'_>) -> Option<Option<(f64, f64)>> {
     let mut keys = ["growth", "dt_max"].into_iter().filter(|key| analysis.gives(key));
     if let Some(key) = keys.next() {
         if kind != AnalysisType::Consolidation {
@@ -428,7 +387,8 @@ fn contact(boundary: &Record, side: Side, factor: Option<f64>, report: &mut Repo
 
 /// Friction, divided by the `factor` of the strength, and whether material comes off; none after an error.
 fn law(face: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<Contact> {
-    let (given, lifts) = (face.number("friction_coefficient")?, face.flag("separates")?);
+    let given = face.number("friction_coefficient")?;
+    let lifts = face.flag("separates")?;
     let friction = factor.map_or(given, |factor| given / factor);
     if friction != given {
         let reason = format!("divided by strength_reduction.factor = {}", factor.unwrap_or(1.0));

@@ -35,34 +35,29 @@ pub(crate) struct WaveInput {
     pub axis: Option<usize>,
 }
 
+impl WaveInput {
+    /// The input of a record's rows in a run until `end` (s); `None` of what makes no wave.
+    fn of(record: &Record, kind: InputKind, rows: &[ListRow], axis: Option<usize>, end: f64) -> Option<Self> {
+        let rows = rows.iter().map(|row| (row.numbers[0], row.numbers[1..].to_vec()));
+        let rows = rows.collect();
+        let frequency = Signal { kind, rows }.frequency(end)?;
+        let name = record.path.clone();
+        Some(Self { name, frequency, axis })
+    }
+}
+
 /// The inputs of a case that a record or a table gives, but for those that make no wave.
 pub(crate) fn inputs(root: &Record) -> Vec<WaveInput> {
     let Some(end) = root.record("analysis").and_then(|analysis| analysis.number("end")) else {
         return Vec::new();
     };
     let mut found = Vec::new();
-    let mut add = |record: &Record, kind: InputKind, rows: &[ListRow], axis: Option<usize>| {
-        let rows = rows
-            .iter()
-            .map(|row| (row.numbers[0], row.numbers[1..].to_vec()))
-            .collect();
-        let frequency = Signal { kind, rows }.frequency(end);
-        found.extend(frequency.map(|frequency| WaveInput {
-            name: record.path.clone(),
-            frequency,
-            axis,
-        }));
-    };
     if let Some((record, rows)) = root
         .record("shaking")
         .and_then(|of| Some((of, of.rows("acceleration")?)))
     {
-        add(
-            record,
-            InputKind::Acceleration,
-            rows,
-            guided(root, record, columns(rows)),
-        );
+        let axis = guided(root, record, columns(rows));
+        found.extend(WaveInput::of(record, InputKind::Acceleration, rows, axis, end));
     }
     for (table, record) in LOADED.into_iter().flat_map(|table| listed(root, table)) {
         for (key, rows) in FORCES.into_iter().filter_map(|key| Some((key, record.rows(key)?))) {
@@ -76,7 +71,7 @@ pub(crate) fn inputs(root: &Record) -> Vec<WaveInput> {
             } else {
                 None
             };
-            add(record, InputKind::Force, rows, axis);
+            found.extend(WaveInput::of(record, InputKind::Force, rows, axis, end));
         }
     }
     let footing = root.record("footing").map(|record| ("footing", record));
@@ -87,7 +82,7 @@ pub(crate) fn inputs(root: &Record) -> Vec<WaveInput> {
             } else {
                 None
             };
-            add(record, InputKind::Motion, rows, axis);
+            found.extend(WaveInput::of(record, InputKind::Motion, rows, axis, end));
         }
     }
     found
@@ -134,11 +129,9 @@ fn ends(record: &Record) -> Option<[[f64; 2]; 2]> {
 fn guided(root: &Record, record: &Record, along: Option<usize>) -> Option<usize> {
     let axis = along?;
     let boundary = root.record("boundary")?;
-    let is_roller = |side: Side| boundary.word(side.word()) == Some(Support::Roller);
-    let sides = Side::of(root.word("geometry")?);
-    let is_guided = (0..sides.len())
-        .filter(|of| *of != axis)
-        .all(|of| sides[of].into_iter().all(is_roller));
+    let sides = Side::of(root.word("geometry")?).iter().enumerate();
+    let mut others = sides.filter(|(of, _)| *of != axis).flat_map(|(_, sides)| sides);
+    let is_guided = others.all(|side| boundary.word(side.word()) == Some(Support::Roller));
     let is_whole = record.gives("face") || record.path == "shaking" || axis < 2 && covers(root, record, 1 - axis);
     (is_guided && is_whole).then_some(axis)
 }

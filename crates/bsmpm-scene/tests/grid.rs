@@ -11,7 +11,8 @@ fn a_place_on_a_face_has_a_cell_wherever_the_grid_starts() {
     let mut missed = 0;
     for tenths in -200..200 {
         for cells in [1, 3, 7, 12, 29, 60] {
-            let (lower, cell) = (f64::from(tenths) / 10.0, 0.1);
+            let lower = f64::from(tenths) / 10.0;
+            let cell = 0.1;
             let grid = GridSpec {
                 axes: vec![axis(lower, cell, cells), axis(1.0 - lower, cell, cells)],
                 order: 2,

@@ -218,7 +218,8 @@ fn cells_fit_between_faces_that_stay() {
             "accuracy=draft",
         ],
     );
-    let (x, y) = (&case.grid.axes[0], &case.grid.axes[1]);
+    let x = &case.grid.axes[0];
+    let y = &case.grid.axes[1];
     assert_eq!((x.cells(), y.shortest()), (28, 0.02));
     assert!((x.length() - 0.55).abs() < 1e-12, "{x:?}");
     // A face that is moved stays where it is, too.
@@ -344,7 +345,8 @@ fn assert_sound(case: &Case, corners: [[f64; 2]; 2], longest: f64, most: f64) {
         .iter()
         .zip([0, 1].map(|k| [corners[0][k], corners[1][k]]))
     {
-        let (all, edges) = (breakpoints(axis), edges(axis));
+        let all = breakpoints(axis);
+        let edges = edges(axis);
         assert!(
             all[0] == lower && all[all.len() - 1] == upper && all.is_sorted(),
             "{all:?}"
@@ -374,7 +376,8 @@ fn cells_are_small_around_a_strip_and_on_its_way_and_grow_away_from_it() {
         ("reference", 1.0 / 12.0, 1.0, 0.25, 1.1),
     ] {
         let case = valid(FOOTING, &[&format!("accuracy={word}")]);
-        let (x, y) = (&case.grid.axes[0], &case.grid.axes[1]);
+        let x = &case.grid.axes[0];
+        let y = &case.grid.axes[1];
         assert_sound(&case, [[0.0, 0.0], [10.0, 12.0]], 1.1 * longest, 1.15 * growth);
         // From the strip's axis to beyond its end; from below its last place to above its first, all breakpoints.
         assert!(
@@ -524,7 +527,8 @@ fn rigid_bodies_have_small_cells_around_the_edges_that_soil_lies_at() {
 fn every_strip_and_load_has_small_cells_of_its_own() {
     let load = "traction.0={ from = [6.0, 10.0], to = [6.5, 10.0], stress = [0.0, -100.0], ramp = 1.0 }";
     let case = valid(FOOTING, &[load]);
-    let (x, y) = (&case.grid.axes[0], &case.grid.axes[1]);
+    let x = &case.grid.axes[0];
+    let y = &case.grid.axes[1];
     assert!(
         is_fine(x, [0.0, 1.5], 0.125) && is_fine(x, [6.0, 6.5], 0.03125),
         "{x:?}"
@@ -614,7 +618,8 @@ fn cells_of_what_softens_in_bands_of_a_given_width_are_equal_squares() {
     ];
     assert!(oblong(&valid(COLUMN, &flat)) > 1.01);
     let case = valid(COLUMN, &[&flat[..], &[&soft("rods")]].concat());
-    let (x, y) = (&case.grid.axes[0], &case.grid.axes[1]);
+    let x = &case.grid.axes[0];
+    let y = &case.grid.axes[1];
     assert!(
         oblong(&case) <= 1.01 && (0.2..0.44).contains(&x.longest()),
         "{x:?} {y:?}"
@@ -625,7 +630,8 @@ fn cells_of_what_softens_in_bands_of_a_given_width_are_equal_squares() {
     );
     // As small everywhere as a strip wants them, with lines at its end and on the ground.
     let case = valid(FOOTING, &["accuracy=draft", &soft("clay")]);
-    let (x, y) = (&case.grid.axes[0], &case.grid.axes[1]);
+    let x = &case.grid.axes[0];
+    let y = &case.grid.axes[1];
     assert!(
         is_fine(x, [0.0, 10.0], 0.25) && is_fine(y, [0.0, 10.0], 0.25),
         "{x:?} {y:?}"

@@ -69,7 +69,8 @@ fn winds(corners: &[[f64; 2]], at: [f64; 2]) -> bool {
         [corner[0] - at[0], corner[1] - at[1]]
     };
     let angle = |k: usize| {
-        let (p, q) = (seen(k), seen(k + 1));
+        let p = seen(k);
+        let q = seen(k + 1);
         (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1])
     };
     (0..corners.len()).map(angle).sum::<f64>().abs() > 1.0
@@ -78,7 +79,8 @@ fn winds(corners: &[[f64; 2]], at: [f64; 2]) -> bool {
 fn shoelace(corners: &[[f64; 2]]) -> f64 {
     let term = |k: usize| {
         let from = |k: usize| [0, 1].map(|axis| corners[k % corners.len()][axis] - corners[0][axis]);
-        let (p, q) = (from(k), from(k + 1));
+        let p = from(k);
+        let q = from(k + 1);
         p[0] * q[1] - q[0] * p[1]
     };
     0.5 * (0..corners.len()).map(term).sum::<f64>().abs()
@@ -280,10 +282,8 @@ fn what_is_cut_out_is_gone_once() {
 fn random_cuts_against_counted_places() {
     let mut random = Random(4);
     for round in 0..20 {
-        let (whole, cut) = (
-            star(&mut random, [20.0, 10.0], 9.0),
-            star(&mut random, [22.0, 11.0], 6.0),
-        );
+        let whole = star(&mut random, [20.0, 10.0], 9.0);
+        let cut = star(&mut random, [22.0, 11.0], 6.0);
         let body = format!("{}\nsubtract = [{{ {} }}]", polygon(&whole), polygon(&cut));
         let case = case(METRES, &[&body], 3);
         let n = 400;
@@ -447,7 +447,8 @@ fn bodies_are_cut_at_planes_of_symmetry() {
         "{circle}\nsubtract = [{{ box = {{ lower = [-20, -20], upper = [0, 20] }} }}, \
          {{ box = {{ lower = [-20, -20], upper = [20, 0] }} }}]"
     );
-    let (quarter, expected) = (points(circle), points(&by_hand));
+    let quarter = points(circle);
+    let expected = points(&by_hand);
     assert_eq!((quarter.0, expected.0), (1, 0));
     assert_eq!(quarter.1, expected.1);
     let area: f64 = quarter.1.iter().map(|seed| seed.volume).sum();
@@ -501,7 +502,8 @@ fn solids_are_cut_at_planes_of_symmetry() {
 #[test]
 fn a_polygon_may_repeat_its_first_corner_at_its_end() {
     let of = |corners: &str| case(METRES, &[&format!("polygon = [{corners}]")], 2);
-    let (open, closed) = (of("[1, 0], [9, 0], [4, 6]"), of("[1, 0], [9, 0], [4, 6], [1, 0]"));
+    let open = of("[1, 0], [9, 0], [4, 6]");
+    let closed = of("[1, 0], [9, 0], [4, 6], [1, 0]");
     assert_eq!(open.bodies[0].area(), closed.bodies[0].area());
     assert_eq!(open.points(), closed.points());
 }

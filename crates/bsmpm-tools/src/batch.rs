@@ -54,18 +54,19 @@ impl Batch<'_> {
     }
 
     /// The outcome of one run, made now unless it is there; its reason is that of a run that did not come to its end.
-    fn outcome(&self, order: &RunOrder) -> Outcome {
+    pub fn outcome(&self, order: &RunOrder) -> Outcome {
         let limit = self
             .max_wall
             .map(|limit| ["--max-wall".to_owned(), clock(limit.as_secs())]);
+        let stamp = self.solver.stamp();
         // Its launcher, too, for the cost depends on the ranks.
-        let origin = |stamp| format!("{}\n{stamp}\n\n{}", self.solver.command.join(" "), order.case.text);
+        let origin = stamp.map(|stamp| format!("{}\n{stamp}\n\n{}", self.solver.command.join(" "), order.case.text));
         let task = LaunchTask {
             case: self.path,
             set: &order.set,
             further: limit.into_iter().flatten().collect(),
             directory: self.directory(order),
-            origin: self.solver.stamp().map(origin),
+            origin,
             from: None,
             force: self.force,
             resume: true,
@@ -86,10 +87,12 @@ impl Batch<'_> {
 /// Bytes that runs side by side may take together: what is asked for, or what this machine has free, if it can be
 /// determined.
 fn memory(asked: Option<u64>) -> u64 {
-    let free = || {
-        let text = fs::read_to_string("/proc/meminfo").ok()?;
-        let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-        Some(line.split_whitespace().next()?.parse::<u64>().ok()? * 1024)
-    };
-    asked.or_else(free).unwrap_or(u64::MAX)
+    asked.or_else(free_memory).unwrap_or(u64::MAX)
+}
+
+/// Returns the free memory of this machine (bytes), if it can be determined.
+fn free_memory() -> Option<u64> {
+    let text = fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    Some(line.split_whitespace().next()?.parse::<u64>().ok()? * 1024)
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use crate::picture::axes::Label;
 use crate::picture::chart::{Chart, ChartCurve};
 use crate::picture::colour::{self, INK};
 use crate::picture::legend::{LegendEntry, Mark};
@@ -114,7 +115,8 @@ impl CompareArguments {
     }
 }
 
-fn number(text: &str) -> Result<f64, String> {
+/// Reads a finite number.
+pub(crate) fn number(text: &str) -> Result<f64, String> {
     text.trim()
         .parse()
         .ok()
@@ -205,13 +207,11 @@ fn draw(arguments: &CompareArguments, runs: &Runs, path: &Path) -> Result<(), Er
             legend.push(entry);
         }
     }
-    let x = (&*runs.x.0, &*runs.x.1);
-    let y = (&*runs.y.0, &*runs.y.1);
     let chart = Chart {
         title: &runs.title,
         below: "",
-        x,
-        y,
+        x: Label::of(&runs.x.0, &runs.x.1),
+        y: Label::of(&runs.y.0, &runs.y.1),
         curves: &curves,
         levels: &arguments.lines,
         legend,

@@ -112,10 +112,9 @@ fn chosen(case: &Case, arguments: &ElementArguments) -> Result<Vec<StressPath>, 
         );
         return Err(Error::Usage { reason });
     }
-    let wanted = |name: &String| arguments.tests.is_empty() || arguments.tests.contains(name);
     case.elements
         .iter()
-        .filter(|test| wanted(&test.name))
+        .filter(|test| arguments.tests.is_empty() || arguments.tests.contains(&test.name))
         .map(|test| StressPath::of(case, test))
         .collect()
 }

@@ -99,16 +99,15 @@ pub fn run(arguments: &EstimateArguments, mut announce: impl FnMut(&str)) -> Res
     let found = if arguments.no_probe {
         guess
     } else {
-        let (ranks, command) = (arguments.probed(ranks), &arguments.command()[..]);
         let plan = probe::ProbePlan {
             case: &case,
-            ranks,
-            command,
+            ranks: arguments.probed(ranks),
+            command: &arguments.command(),
             may_be_whole: !arguments.no_whole,
         };
         probe::estimate(&plan, &guess, deadline(arguments.budget), &mut announce)?
     };
-    let mut report = EstimateReport::of(&arguments.case, &case, ranks, (speed, &found));
+    let mut report = EstimateReport::of(&arguments.case, &case, ranks, speed, &found);
     if let Some(actual) = actual {
         if actual.text != case.text {
             let warning = "W0854: the run given by --against has another case or other --set options, so the \

@@ -44,10 +44,10 @@ fn line(Page { code, title, .. }: &Page) -> String {
 }
 
 fn explained(code: &str) -> Result<String, Error> {
-    let unknown = || Error::Usage {
-        reason: format!("E0849: there is no message with the code `{code}`. List all codes with `bsmpm explain`."),
+    let Some(Page { code, title, text }) = page(code) else {
+        let reason = format!("E0849: there is no message with the code `{code}`. List all codes with `bsmpm explain`.");
+        return Err(Error::Usage { reason });
     };
-    let Page { code, title, text } = page(code).ok_or_else(unknown)?;
     let mut explanation = format!("{code}: {title}\n\n{}\n\nThe program prints:\n", text.replace("**", ""));
     for printed in texts(code) {
         let _ = writeln!(explanation, "  {printed}");

@@ -156,16 +156,16 @@ pub fn run(arguments: &FosArguments, report: impl FnMut(&str)) -> Result<(String
 /// The same without words and pictures.
 pub(crate) fn factor(arguments: &FosArguments) -> Result<FoundFactor, Error> {
     let (report, _) = found(arguments, |_| ())?;
-    let trials = || report.trials.iter().map(|row| &row.trial);
     let finding = report.finding;
-    let middle = || Some(f64::midpoint(finding.last_stable?, finding.first_failed?));
+    let band = finding.last_stable.zip(finding.first_failed);
+    let mut trials = report.trials.iter().map(|row| &row.trial);
     Ok(FoundFactor {
-        factor: finding.estimate.or_else(middle),
+        factor: finding.estimate.or(band.map(|(low, high)| f64::midpoint(low, high))),
         cost: RunCost {
             wall_seconds: report.seconds,
-            ..trials().map(FosTrial::cost).sum()
+            ..trials.clone().map(FosTrial::cost).sum()
         },
-        kept: trials().all(|trial| trial.kept),
+        kept: trials.all(|trial| trial.kept),
     })
 }
 
@@ -173,7 +173,8 @@ pub(crate) fn factor(arguments: &FosArguments) -> Result<FoundFactor, Error> {
 fn found(arguments: &FosArguments, mut report: impl FnMut(&str)) -> Result<(FosReport, Subject), Error> {
     let start = Instant::now();
     let command = command::words(&arguments.command, 1);
-    let (plan, jobs) = (arguments.plan()?, command::jobs(arguments.jobs, &command)?);
+    let plan = arguments.plan()?;
+    let jobs = command::jobs(arguments.jobs, &command)?;
     // Whatever the number of jobs: threads in BLAS would sum in another order.
     let solver = SolverProgram {
         command: &command,
@@ -246,11 +247,9 @@ impl FosArguments {
         let usage = |reason: String| Err(Error::Usage { reason });
         let sought = self.seismic.map_or(Sought::FactorOfSafety, Sought::SeismicCoefficient);
         let ([from, to], width) = sought.range();
-        let (from, to, width) = (
-            self.from.unwrap_or(from),
-            self.to.unwrap_or(to),
-            self.width.unwrap_or(width),
-        );
+        let from = self.from.unwrap_or(from);
+        let to = self.to.unwrap_or(to);
+        let width = self.width.unwrap_or(width);
         // A stage that came to its end stands.
         let from = if self.stage.is_some() { from.max(1.0) } else { from };
         let least = if sought.is_seismic() { 0.0 } else { LEAST };

@@ -58,21 +58,20 @@ impl Index {
             return none;
         }
         let Some(order) = order(h, f) else { return none };
-        let power = |fine: usize| (h[fine + 1] / h[fine]).powf(order);
-        let band = |fine: usize| {
+        let powers = [0, 1].map(|fine| (h[fine + 1] / h[fine]).powf(order));
+        let [fine, coarse] = [0, 1].map(|fine| {
             let change = ((f[fine] - f[fine + 1]) / f[fine]).abs();
-            Some(SAFETY * change / (power(fine) - 1.0)).filter(|band| band.is_finite())
-        };
-        let (fine, coarse) = (band(0), band(1));
+            Some(SAFETY * change / (powers[fine] - 1.0)).filter(|band| band.is_finite())
+        });
         Self {
             order: Some(order),
             // Where the sign changes each time, the limit lies between the values.
-            extrapolated: (course == ConvergenceType::Monotone).then(|| f[0] + (f[0] - f[1]) / (power(0) - 1.0)),
+            extrapolated: (course == ConvergenceType::Monotone).then(|| f[0] + (f[0] - f[1]) / (powers[0] - 1.0)),
             fine,
             coarse,
             ratio: fine
                 .zip(coarse)
-                .map(|(fine, coarse)| coarse / (power(0) * fine))
+                .map(|(fine, coarse)| coarse / (powers[0] * fine))
                 .filter(|ratio| ratio.is_finite()),
             ..none
         }
@@ -80,7 +79,8 @@ impl Index {
 }
 
 fn course(h: [f64; 3], f: [f64; 3]) -> ConvergenceType {
-    let (fine, coarse) = (f[1] - f[0], f[2] - f[1]);
+    let fine = f[1] - f[0];
+    let coarse = f[2] - f[1];
     let scale = f.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     if fine.abs() <= NOISE * scale {
         return ConvergenceType::Unchanged;
@@ -97,7 +97,8 @@ fn course(h: [f64; 3], f: [f64; 3]) -> ConvergenceType {
 
 /// |e32/e21| of the order p: r21^p (r32^p - s)/(r21^p - s), s = 1 where both have one sign, else -1 (Celik's Eq. 3).
 fn growth(h: [f64; 3], order: f64, has_same_sign: bool) -> f64 {
-    let (fine, coarse) = (h[1] / h[0], h[2] / h[1]);
+    let fine = h[1] / h[0];
+    let coarse = h[2] / h[1];
     match (has_same_sign, order == 0.0) {
         (true, true) => coarse.ln() / fine.ln(),
         (true, false) => fine.powf(order) * (order * coarse.ln()).exp_m1() / (order * fine.ln()).exp_m1(),
@@ -109,7 +110,8 @@ fn growth(h: [f64; 3], order: f64, has_same_sign: bool) -> f64 {
 fn order(h: [f64; 3], f: [f64; 3]) -> Option<f64> {
     let ratio = (f[2] - f[1]) / (f[1] - f[0]);
     let is_below = |order: f64| growth(h, order, ratio > 0.0) < ratio.abs();
-    let (mut low, mut high) = (0.0, HIGHEST);
+    let mut low = 0.0;
+    let mut high = HIGHEST;
     if is_below(high) {
         return None;
     }

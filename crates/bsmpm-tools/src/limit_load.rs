@@ -74,13 +74,16 @@ pub struct FoundLimitLoads {
 /// Those of the command line and of the case on each grid before anything runs; [`Error::Run`] for a run that did not
 /// come to its end; those of files.
 pub fn run(arguments: &LimitLoadArguments, mut say: impl FnMut(&str)) -> Result<FoundLimitLoads, Error> {
-    let (options, path) = (&arguments.options, &*arguments.case);
-    let (command, output) = (options.words(), options.directory(path, ".limit-load"));
+    let options = &arguments.options;
+    let path = &*arguments.case;
+    let command = options.words();
+    let output = options.directory(path, ".limit-load");
     let bytes = case::load(path)?;
     let orders = arguments.orders(&bytes)?;
     let batch = options.batch(&command, path, &output)?;
     let outcomes = batch.run(&orders, command::ranks(&command), |index, outcome| {
-        let (cell, cpu) = (orders[index].case.grid.shortest(), outcome.cost.cpu_seconds);
+        let cell = orders[index].case.grid.shortest();
+        let cpu = outcome.cost.cpu_seconds;
         say(format!(
             "cells of {cell:.4} m: {}, {cpu:.1} CPU s {}",
             outcome.words(),
@@ -136,16 +139,15 @@ impl LimitLoadArguments {
                     .collect(),
             );
         }
-        let order = |further: Vec<String>| {
-            let named = further.len();
-            let set = [&set[..], &further].concat();
-            let refused = |errors| Error::BadCase {
+        let mut orders = Vec::new();
+        for further in all {
+            let order = RunOrder::read(&self.case, bytes, [&set[..], &further].concat(), further.len());
+            orders.push(order.map_err(|errors| Error::BadCase {
                 path: self.case.clone(),
                 errors,
-            };
-            RunOrder::read(&self.case, bytes, set, named).map_err(refused)
-        };
-        all.into_iter().map(order).collect()
+            })?);
+        }
+        Ok(orders)
     }
 }
 

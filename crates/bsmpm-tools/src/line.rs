@@ -13,25 +13,27 @@ pub(crate) struct FittedLine {
 }
 
 impl FittedLine {
-    pub fn through(a: (f64, f64), b: (f64, f64)) -> Self {
-        let slope = (b.1 - a.1) / (b.0 - a.0);
+    pub fn through(a: [f64; 2], b: [f64; 2]) -> Self {
+        let slope = (b[1] - a[1]) / (b[0] - a[0]);
         Self {
-            at_zero: a.1 - slope * a.0,
+            at_zero: a[1] - slope * a[0],
             slope,
         }
     }
 
     /// The line of least squares; level through a single place.
-    pub fn fitted(places: &[(f64, f64)]) -> Option<Self> {
+    pub fn fitted(places: &[[f64; 2]]) -> Option<Self> {
         let count = places.len() as f64;
-        let mean = places.iter().fold((0.0, 0.0), |sum, place| {
-            (sum.0 + place.0 / count, sum.1 + place.1 / count)
-        });
-        let product: f64 = places.iter().map(|place| (place.0 - mean.0) * (place.1 - mean.1)).sum();
-        let square: f64 = places.iter().map(|place| (place.0 - mean.0).powi(2)).sum();
+        let mut mean = [0.0; 2];
+        for [x, y] in places {
+            mean[0] += x / count;
+            mean[1] += y / count;
+        }
+        let product: f64 = places.iter().map(|[x, y]| (x - mean[0]) * (y - mean[1])).sum();
+        let square: f64 = places.iter().map(|[x, _]| (x - mean[0]).powi(2)).sum();
         let slope = if square > 0.0 { product / square } else { 0.0 };
         (!places.is_empty()).then_some(Self {
-            at_zero: mean.1 - slope * mean.0,
+            at_zero: mean[1] - slope * mean[0],
             slope,
         })
     }

@@ -8,6 +8,7 @@ use bsmpm_io::table::Columns;
 use bsmpm_scene::Regime;
 use clap::Args;
 
+use crate::compare::number;
 use crate::record::RunRecord;
 use crate::{Error, reference};
 
@@ -21,6 +22,7 @@ mod section;
 mod space;
 mod surface;
 
+pub use crate::picture::ticks::ValueRange;
 pub use field::FieldName;
 pub use section::Section;
 
@@ -39,7 +41,7 @@ pub struct PlotArguments {
     pub field: Option<FieldName>,
     /// Range of the colours in the unit of the picture, so that runs can be compared [default: the range of the values]
     #[arg(long, value_name = "MIN,MAX", value_parser = ends, allow_hyphen_values = true)]
-    pub range: Option<(f64, f64)>,
+    pub range: Option<ValueRange>,
     /// Section of a 3-D run, normal to an axis at a coordinate in m, such as y=0.5 [default: normal to y, in the middle
     /// of the grid]
     #[arg(long, value_name = "AXIS=PLACE", value_parser = Section::read)]
@@ -75,12 +77,11 @@ pub(crate) fn time(text: &str) -> Result<f64, String> {
     }
 }
 
-fn ends(text: &str) -> Result<(f64, f64), String> {
-    let number = |part: &str| part.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+fn ends(text: &str) -> Result<ValueRange, String> {
     let ends = text
         .split_once(',')
-        .and_then(|(lower, upper)| Some((number(lower)?, number(upper)?)));
-    ends.filter(|(lower, upper)| lower < upper)
+        .and_then(|(low, high)| Some(ValueRange::of(number(low).ok()?, number(high).ok()?)));
+    ends.filter(|ends| ends.low < ends.high)
         .ok_or_else(|| "expected two numbers MIN,MAX with MIN below MAX".to_owned())
 }
 
@@ -124,11 +125,11 @@ fn pictures(arguments: &PlotArguments) -> Result<(RunRecord, Vec<String>), Error
     let (frames, section) = section::of(&record, frames, arguments.section)?;
     if !frames.is_empty() {
         for (field, range) in coloured {
-            names.extend(body::draw(&record, &frames, field, (range, section))?);
+            names.extend(body::draw(&record, &frames, field, range, section)?);
         }
         let is_upright = section.is_none_or(|section| section.axis < 2);
         if is_upright && has_surface(&record, reference.as_ref()) {
-            names.push(surface::draw(&record, (&frames, section), reference.as_ref())?);
+            names.push(surface::draw(&record, &frames, section, reference.as_ref())?);
         }
     }
     names.extend(curves::draw(&record, reference.as_ref())?);

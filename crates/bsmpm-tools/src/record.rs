@@ -14,6 +14,7 @@ use bsmpm_scene::words::{Support, Word};
 use bsmpm_scene::{Regime, Sketch, SketchedHistory};
 
 use crate::Error;
+use crate::picture::axes::Label;
 
 /// s
 const DAY: f64 = 86_400.0;
@@ -62,29 +63,24 @@ impl RunRecord {
     }
 
     /// What they are called, with their unit.
-    pub fn axes(&self) -> [(&'static str, &'static str); 2] {
+    pub fn axes(&self) -> [Label<'static>; 2] {
         let names = if self.manifest.case.geometry == "axisymmetric" {
             ["r", "y", "z"]
         } else {
             ["x", "y", "z"]
         };
-        self.plane().map(|axis| (names[axis], "m"))
+        self.plane().map(|axis| Label::of(names[axis], "m"))
     }
 
     /// Whether inertia acts: as the case says, else by the unit of time, which a quasi-static analysis does not have.
     pub fn regime(&self) -> Regime {
-        let by_unit = || {
-            let unit = [&self.history, &self.steps]
-                .into_iter()
-                .flatten()
-                .find_map(|table| table.unit("time"));
-            if unit == Some("-") {
-                Regime::QuasiStatic
-            } else {
-                Regime::Dynamic
-            }
-        };
-        self.case.regime.unwrap_or_else(by_unit)
+        let mut tables = [&self.history, &self.steps].into_iter().flatten();
+        self.case
+            .regime
+            .unwrap_or_else(|| match tables.find_map(|table| table.unit("time")) {
+                Some("-") => Regime::QuasiStatic,
+                _ => Regime::Dynamic,
+            })
     }
 
     /// The column `name` of `history.csv`.
@@ -95,11 +91,12 @@ impl RunRecord {
     /// The columns of `history.csv` that record a quantity, found by the case's `[[history]]` tables, or without such
     /// by name.
     pub fn columns(&self, quantity: &str) -> Vec<Recorded<'_>> {
-        let is_wanted = |column: &Recorded| match self.history_of(column.name) {
-            Some(history) => history.quantity.word() == quantity,
-            None => self.case.histories.is_empty() && bears(column.name, quantity),
-        };
-        self.all_columns().filter(is_wanted).collect()
+        self.all_columns()
+            .filter(|column| match self.history_of(column.name) {
+                Some(history) => history.quantity.word() == quantity,
+                None => self.case.histories.is_empty() && bears(column.name, quantity),
+            })
+            .collect()
     }
 
     fn all_columns(&self) -> impl Iterator<Item = Recorded<'_>> {
@@ -136,11 +133,11 @@ impl RunRecord {
     }
 
     /// The axis label of time.
-    pub fn time_label(&self) -> (&'static str, &'static str) {
+    pub fn time_label(&self) -> Label<'static> {
         if self.is_timeless() {
-            ("Pseudo-time", "-")
+            Label::of("Pseudo-time", "-")
         } else {
-            ("Time", "s")
+            Label::of("Time", "s")
         }
     }
 
@@ -160,20 +157,23 @@ impl RunRecord {
 
     /// Whether the grid's lower and upper faces along the axes of pictures hold the body.
     pub fn walls(&self) -> [[bool; 2]; 2] {
-        let held = |axes: [[Support; 2]; 3]| self.plane().map(|axis| axes[axis].map(|face| face != Support::Free));
-        self.case.boundary.map_or_else(Default::default, held)
+        let Some(axes) = self.case.boundary else {
+            return Default::default();
+        };
+        self.plane().map(|axis| axes[axis].map(|face| face != Support::Free))
     }
 
     /// m  The whole width of the footing, of which a half model that begins or ends at a plane of symmetry has only the
     /// half.
     pub fn footing_width(&self) -> Option<f64> {
-        let ([from, to], grid) = (self.case.footing?, self.manifest.grid.as_ref()?);
-        let (left, right) = (from[0].min(to[0]), from[0].max(to[0]));
+        let [from, to] = self.case.footing?;
+        let grid = self.manifest.grid.as_ref()?;
+        let left = from[0].min(to[0]);
+        let right = from[0].max(to[0]);
         let width = right - left;
         let is_plane = self.case.boundary?[0].map(|face| face == Support::Roller);
-        let touches = |end: f64, face: f64| (end - face).abs() <= 1e-6 * width;
-        let at_left = is_plane[0] && touches(left, *grid.lower.first()?);
-        let at_right = is_plane[1] && touches(right, *grid.upper.first()?);
+        let at_left = is_plane[0] && (left - grid.lower.first()?).abs() <= 1e-6 * width;
+        let at_right = is_plane[1] && (right - grid.upper.first()?).abs() <= 1e-6 * width;
         (width > 0.0).then_some(if at_left == at_right { width } else { 2.0 * width })
     }
 
@@ -199,8 +199,9 @@ impl RunRecord {
     }
 
     fn nearest(&self, time: f64) -> Option<usize> {
-        let distance = |index: &usize| (self.entries[*index].time - time).abs();
-        (0..self.entries.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        let distances = self.entries.iter().map(|entry| (entry.time - time).abs());
+        let nearest = distances.enumerate().min_by(|(_, a), (_, b)| a.total_cmp(b));
+        nearest.map(|(index, _)| index)
     }
 
     /// The case's times are hit exactly, but for rounding; one that a run has not reached has no frame.
@@ -252,19 +253,28 @@ impl<'a> Recorded<'a> {
 
 /// A name as a formula: factors between `_`, a fraction with `_over_`, Greek letters by their names.
 fn formula(name: &str) -> String {
-    let factor = |factor: &str| match factor {
-        "gamma" => "γ".to_owned(),
-        "delta" => "δ".to_owned(),
-        "sigma" => "σ".to_owned(),
-        _ => factor
-            .strip_suffix('2')
-            .map_or_else(|| factor.to_owned(), |base| format!("{base}²")),
-    };
-    let product = |text: &str| text.split('_').map(factor).collect::<Vec<_>>().join(" ");
     match name.split_once("_over_") {
         Some((above, below)) if below.contains('_') => format!("{}/({})", product(above), product(below)),
         Some((above, below)) => format!("{}/{}", product(above), product(below)),
         None => product(name),
+    }
+}
+
+/// The factors of a formula.
+fn product(text: &str) -> String {
+    text.split('_').map(factor).collect::<Vec<_>>().join(" ")
+}
+
+/// A factor of a formula.
+fn factor(text: &str) -> String {
+    match text {
+        "gamma" => "γ".to_owned(),
+        "delta" => "δ".to_owned(),
+        "sigma" => "σ".to_owned(),
+        _ => match text.strip_suffix('2') {
+            Some(base) => format!("{base}²"),
+            None => text.to_owned(),
+        },
     }
 }
 

@@ -15,23 +15,19 @@ pub(crate) fn columns(path: &Path) -> Result<Columns, Error> {
 
 /// The first two columns of a CSV file with a line of names; what stands in further columns does not matter, nor do
 /// lines that begin with `#`. The name is that of the file.
-pub(crate) fn places(path: &Path) -> Result<(String, Vec<(f64, f64)>), Error> {
+pub(crate) fn places(path: &Path) -> Result<(String, Vec<[f64; 2]>), Error> {
     let text = fs::read_to_string(path).map_err(Error::unread("reference", path))?;
-    let is_comment = |line: &&str| line.trim_start().starts_with('#');
-    let pairs = text.lines().map(|line| {
-        if is_comment(&line) {
-            String::new()
-        } else {
-            first_two(line)
-        }
-    });
-    let pairs = pairs.collect::<Vec<_>>().join("\n");
+    let mut pairs = Vec::new();
+    for line in text.lines() {
+        pairs.push(match line.trim_start().starts_with('#') {
+            true => String::new(),
+            false => first_two(line),
+        });
+    }
+    let pairs = pairs.join("\n");
     let table = parsed(path, &pairs, "it needs two columns x,y below a line with their names")?;
-    let places: Vec<_> = table.values[0]
-        .iter()
-        .copied()
-        .zip(table.values[1].iter().copied())
-        .collect();
+    let rows = table.values[0].iter().zip(&table.values[1]);
+    let places: Vec<[f64; 2]> = rows.map(|(&x, &y)| [x, y]).collect();
     if places.is_empty() {
         let reason = "it has a line of names, but no points".to_owned();
         return Err(Error::BadReference {

@@ -66,56 +66,69 @@ impl<'a, T> ReportTable<'a, T> {
         self
     }
 
-    /// The cells of a row, each with its column.
-    fn cells(&self, row: usize) -> impl Iterator<Item = (&ReportColumn, &String)> {
-        self.columns.iter().map(move |column| (column, &column.cells[row]))
-    }
-
-    fn headings(&self) -> impl Iterator<Item = (&ReportColumn, &String)> {
-        self.columns.iter().map(|column| (column, &column.heading))
+    /// The headings, then the cells of every row.
+    fn lines(&self) -> impl Iterator<Item = Vec<&String>> {
+        let headings = self.columns.iter().map(|column| &column.heading).collect();
+        let rows = (0..self.rows.len()).map(|row| self.columns.iter().map(|column| &column.cells[row]).collect());
+        std::iter::once(headings).chain(rows)
     }
 
     /// Columns as wide as they must be, two spaces apart, all behind an indent.
     pub fn text(&self, indent: &str) -> String {
-        let width = |column: &ReportColumn| {
-            column
-                .cells
-                .iter()
-                .chain([&column.heading])
-                .map(|cell| cell.chars().count())
-                .max()
-                .unwrap_or(0)
-        };
-        let cell = |(column, cell): (&ReportColumn, &String)| match column.align {
-            Align::Left => format!("{cell:<width$}", width = width(column)),
-            Align::Right => format!("{cell:>width$}", width = width(column)),
-        };
-        let line = |cells: Vec<String>| format!("{indent}{}", cells.join("  ")).trim_end().to_owned() + "\n";
-        let rows = (0..self.rows.len()).map(|row| line(self.cells(row).map(cell).collect()));
-        line(self.headings().map(cell).collect()) + &rows.collect::<String>()
+        let mut text = String::new();
+        for line in self.lines() {
+            let cells = self.columns.iter().zip(line);
+            let cells: Vec<String> = cells.map(|(column, cell)| column.aligned(cell)).collect();
+            text += format!("{indent}{}", cells.join("  ")).trim_end();
+            text.push('\n');
+        }
+        text
     }
 
     pub fn markdown(&self) -> String {
-        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-        let escaped = |(_, cell): (&ReportColumn, &String)| cell.replace('|', "\\|");
-        let rows = (0..self.rows.len()).map(|row| line(self.cells(row).map(escaped).collect()));
-        let headings = line(self.headings().map(escaped).collect());
-        format!(
-            "{headings}|{}\n{}",
-            " --- |".repeat(self.columns.len()),
-            rows.collect::<String>()
-        )
+        let mut text = String::new();
+        for (number, line) in self.lines().enumerate() {
+            let cells: Vec<String> = line.iter().map(|cell| cell.replace('|', "\\|")).collect();
+            text += &format!("| {} |\n", cells.join(" | "));
+            if number == 0 {
+                text += &format!("|{}\n", " --- |".repeat(self.columns.len()));
+            }
+        }
+        text
     }
 
     /// Comma-separated values. The headings are quoted where they must be only.
     pub fn csv(&self, quoted: Quoted) -> String {
-        let cell = |cell: &String, quoted| match quoted == Quoted::All || cell.contains([',', '"', '\n', '\r']) {
+        let mut text = String::new();
+        for (number, line) in self.lines().enumerate() {
+            let quoted = if number == 0 { Quoted::Needed } else { quoted };
+            let cells: Vec<String> = line.into_iter().map(|cell| quoted.cell(cell)).collect();
+            text += &cells.join(",");
+            text.push('\n');
+        }
+        text
+    }
+}
+
+impl ReportColumn {
+    /// A cell, filled with spaces to the width of the column.
+    fn aligned(&self, cell: &str) -> String {
+        let cells = self.cells.iter().chain([&self.heading]);
+        let width = cells.map(|cell| cell.chars().count()).max().unwrap_or(0);
+        match self.align {
+            Align::Left => format!("{cell:<width$}"),
+            Align::Right => format!("{cell:>width$}"),
+        }
+    }
+}
+
+impl Quoted {
+    /// A cell of comma-separated values.
+    fn cell(self, cell: &str) -> String {
+        match self == Self::All || cell.contains([',', '"', '\n', '\r']) {
             true => format!("\"{}\"", cell.replace('"', "\"\"")),
-            false => cell.clone(),
-        };
-        let line = |cells: Vec<String>| cells.join(",") + "\n";
-        let rows = (0..self.rows.len()).map(|row| line(self.cells(row).map(|(_, text)| cell(text, quoted)).collect()));
-        line(self.headings().map(|(_, text)| cell(text, Quoted::Needed)).collect()) + &rows.collect::<String>()
+            false => cell.to_owned(),
+        }
     }
 }
 

@@ -105,7 +105,8 @@ impl SlurmArguments {
     fn script(&self) -> Vec<u8> {
         let seconds = self.time.as_secs();
         let notice = NOTICE.min(seconds / 4);
-        let (ranks, name) = (self.ranks, self.job_name());
+        let ranks = self.ranks;
+        let name = self.job_name();
         let mut script = format!(
             "#!/bin/bash\n\
              #SBATCH --job-name={name}\n\
@@ -164,14 +165,12 @@ impl SlurmArguments {
             .map(OsStr::new)
             .or(self.case.file_stem())
             .unwrap_or_default();
-        let plain = |c: char| {
-            if c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-') {
-                c
-            } else {
-                '_'
-            }
-        };
-        let name: String = given.to_string_lossy().chars().map(plain).take(LONGEST_NAME).collect();
+        let given = given.to_string_lossy();
+        let plain = given.replace(
+            |c: char| !(c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-')),
+            "_",
+        );
+        let name: String = plain.chars().take(LONGEST_NAME).collect();
         let name = name.trim_start_matches(['-', '.']);
         if name.is_empty() {
             "bsmpm".to_owned()
@@ -193,8 +192,9 @@ fn file(path: &Path) -> Vec<u8> {
 
 /// A word as the shell reads it back, byte for byte.
 fn quoted(word: &[u8]) -> Vec<u8> {
-    let is_plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"_-./:+,@%".contains(byte);
-    if !word.is_empty() && word.iter().all(is_plain) {
+    let mut bytes = word.iter();
+    let is_plain = bytes.all(|byte| byte.is_ascii_alphanumeric() || b"_-./:+,@%".contains(byte));
+    if !word.is_empty() && is_plain {
         return word.to_vec();
     }
     let inner = word
@@ -213,23 +213,9 @@ pub(crate) fn clock(seconds: u64) -> String {
 
 /// HH:MM:SS or D-HH:MM:SS.
 fn limit(text: &str) -> Result<Duration, String> {
-    let wrong = || format!("`{text}` is not a time limit. Use HH:MM:SS or D-HH:MM:SS");
-    let number = |part: &str, most: u64| {
-        let is_number = part.len() <= 5 && part.bytes().all(|byte| byte.is_ascii_digit());
-        part.parse()
-            .ok()
-            .filter(|number| is_number && *number <= most)
-            .ok_or_else(wrong)
+    let Some(seconds) = seconds(text) else {
+        return Err(format!("`{text}` is not a time limit. Use HH:MM:SS or D-HH:MM:SS"));
     };
-    let (days, rest) = text
-        .split_once('-')
-        .map_or((None, text), |(days, rest)| (Some(days), rest));
-    let [hours, minutes, seconds] = rest.split(':').collect::<Vec<_>>()[..] else {
-        return Err(wrong());
-    };
-    let days: u64 = days.map_or(Ok(0), |days| number(days, 365))?;
-    let hours: u64 = number(hours, 9999)?;
-    let seconds = (24 * days + hours) * 3600 + number(minutes, 59)? * 60 + number(seconds, 59)?;
     if seconds < SHORTEST {
         return Err(format!(
             "{text} is too short for a start, a step and a checkpoint. Use at least {}",
@@ -237,4 +223,21 @@ fn limit(text: &str) -> Result<Duration, String> {
         ));
     }
     Ok(Duration::from_secs(seconds))
+}
+
+/// Returns the seconds of HH:MM:SS or D-HH:MM:SS.
+fn seconds(text: &str) -> Option<u64> {
+    let (days, rest) = text.split_once('-').unwrap_or(("0", text));
+    let [hours, minutes, seconds] = rest.split(':').collect::<Vec<_>>()[..] else {
+        return None;
+    };
+    let hours = 24 * number(days, 365)? + number(hours, 9999)?;
+    Some(hours * 3600 + number(minutes, 59)? * 60 + number(seconds, 59)?)
+}
+
+/// Reads a number of at most five digits that is not above `most`.
+fn number(part: &str, most: u64) -> Option<u64> {
+    let is_number = part.len() <= 5 && part.bytes().all(|byte| byte.is_ascii_digit());
+    let number = part.parse().ok()?;
+    (is_number && number <= most).then_some(number)
 }

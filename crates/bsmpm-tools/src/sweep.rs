@@ -104,8 +104,11 @@ fn share(text: &str) -> Result<f64, String> {
 /// Those of the command line and the case before anything runs; [`Error::NoResult`] if no run came to its end; those of
 /// files.
 pub fn run(arguments: &SweepArguments, mut report: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
-    let (plan, options, path) = (arguments.plan()?, &arguments.options, &*arguments.case);
-    let (command, output) = (options.words(), options.directory(path, ".sweep"));
+    let plan = arguments.plan()?;
+    let options = &arguments.options;
+    let path = &*arguments.case;
+    let command = options.words();
+    let output = options.directory(path, ".sweep");
     let batch = options.batch(&command, path, &output)?;
     let outcomes = outcomes(&batch, &plan, command::ranks(&command), &mut report);
     let (values, outcomes) = measured(&plan.quantities, outcomes);
@@ -158,23 +161,22 @@ fn outcomes(batch: &Batch, plan: &SweepPlan, ranks: usize, report: &mut dyn FnMu
         .filter_map(|&index| plan.points[index].order.as_ref().ok())
         .cloned()
         .collect();
-    let (count, mut ended) = (orders.len(), 0);
-    let mut tell = |index: usize, outcome: &Outcome| {
-        ended += 1;
-        let kept = if outcome.kept { ", kept" } else { "" };
-        let (name, cpu) = (plan.points[wanted[index]].name(), outcome.cost.cpu_seconds);
-        let line = format!(
-            "{ended}/{count}  {name}: {}, {cpu:.1} CPU s{kept} {}",
-            outcome.words(),
-            outcome.reason
-        );
-        report(line.trim_end());
-    };
-    let made = if plan.quantities.iter().any(SweepQuantity::is_factor) {
-        batch.with(&orders, ranks, |order| safety::outcome(batch, order), &mut tell)
-    } else {
-        batch.run(&orders, ranks, &mut tell)
-    };
+    let is_search = plan.quantities.iter().any(SweepQuantity::is_factor);
+    let count = orders.len();
+    let mut ended = 0;
+    let made = batch.with(
+        &orders,
+        ranks,
+        |order| match is_search {
+            true => safety::outcome(batch, order),
+            false => batch.outcome(order),
+        },
+        |index, outcome| {
+            ended += 1;
+            let point = &plan.points[wanted[index]];
+            report(format!("{ended}/{count}  {}", line(point, outcome)).trim_end());
+        },
+    );
     wanted
         .iter()
         .zip(made)
@@ -182,54 +184,63 @@ fn outcomes(batch: &Batch, plan: &SweepPlan, ranks: usize, report: &mut dyn FnMu
     outcomes.into_iter().flatten().collect()
 }
 
+/// What became of a point, for the screen.
+fn line(point: &Point, outcome: &Outcome) -> String {
+    let kept = if outcome.kept { ", kept" } else { "" };
+    format!(
+        "{}: {}, {:.1} CPU s{kept} {}",
+        point.name(),
+        outcome.words(),
+        outcome.cost.cpu_seconds,
+        outcome.reason
+    )
+}
+
 /// Why a point is not begun, if it is not.
 fn refused(point: &Point, batch: &Batch, ranks: usize) -> Option<Outcome> {
     match &point.order {
         Err(errors) => Some(Outcome::never(RunState::Invalid, errors.join("\n"))),
         Ok(order) => {
-            let (needed, allowed) = (order.load(ranks).memory, batch.limits.memory);
-            let reason = || {
-                format!(
-                    "it needs about {:.0} MiB, and {:.0} MiB are available",
-                    mebibytes(needed),
-                    mebibytes(allowed)
-                )
-            };
-            (needed > allowed).then(|| Outcome::never(RunState::Memory, reason()))
+            let needed = order.load(ranks).memory;
+            let allowed = batch.limits.memory;
+            let reason = format!(
+                "it needs about {:.0} MiB, and {:.0} MiB are available",
+                mebibytes(needed),
+                mebibytes(allowed)
+            );
+            (needed > allowed).then(|| Outcome::never(RunState::Memory, reason))
         }
     }
 }
 
 /// The quantities of the runs that came to their end; where one is missing, the outcome says why.
 fn measured(quantities: &[SweepQuantity], mut outcomes: Vec<Outcome>) -> (Vec<Option<ReferenceValues>>, Vec<Outcome>) {
-    let of = |outcome: &mut Outcome| -> Option<ReferenceValues> {
-        let history = outcome.history.as_ref().filter(|_| outcome.state == RunState::Done)?;
+    let mut values = Vec::new();
+    for outcome in &mut outcomes {
+        let history = outcome.history.as_ref().filter(|_| outcome.state == RunState::Done);
+        let Some(history) = history else {
+            values.push(None);
+            continue;
+        };
         let found: Vec<Result<Vec<f64>, String>> = quantities.iter().map(|quantity| quantity.values(history)).collect();
         let missing = found.iter().find_map(|found| found.as_ref().err().cloned());
         outcome.reason = missing.unwrap_or_default();
-        Some(found.into_iter().map(Result::ok).collect())
-    };
-    let values = outcomes.iter_mut().map(of).collect();
+        values.push(Some(found.into_iter().map(Result::ok).collect()));
+    }
     (values, outcomes)
 }
 
 /// A picture for each quantity that has errors.
 fn pictures(report: &SweepReport, output: &Path) -> Result<Vec<PathBuf>, Error> {
-    let plain = |c: char| {
-        if c.is_ascii_alphanumeric() || ".-_".contains(c) {
-            c
-        } else {
-            '-'
-        }
-    };
     let mut drawn = Vec::new();
     for (index, name) in report.quantities.iter().enumerate() {
-        let name: String = if report.quantities.len() > 1 {
+        let name = if report.quantities.len() > 1 {
             format!("_{name}")
         } else {
             String::new()
         };
-        let path = output.join(format!("sweep{}.png", name.chars().map(plain).collect::<String>()));
+        let name = name.replace(|c: char| !(c.is_ascii_alphanumeric() || ".-_".contains(c)), "-");
+        let path = output.join(format!("sweep{name}.png"));
         if picture::draw(report, index, &path)? {
             drawn.push(path);
         }
@@ -239,25 +250,27 @@ fn pictures(report: &SweepReport, output: &Path) -> Result<Vec<PathBuf>, Error> 
 
 /// Writes the case with overrides; it is the case that was run, or it is not written.
 fn written_back(bytes: &[u8], set: &[String], file: &Path) -> Result<(), Error> {
-    let usage = |reason: String| Error::Usage {
-        reason: format!(
-            "E0841: the best parameter values cannot be written to the file {}: {reason}. Copy the case, and enter \
-             the printed values by hand.",
-            file.display()
-        ),
-    };
     let original = String::from_utf8_lossy(bytes);
-    let text = write::text(&original, set).map_err(usage)?;
+    let text = write::text(&original, set).map_err(|reason| unwritable(file, &reason))?;
     let name = file.display().to_string();
     Case::from_text(&name, &text, &[]).map_err(|errors| Error::bad_case(file, &errors))?;
     let run = case::parsed(file, bytes, set)?;
     let differences = bsmpm_scene::differences(&run.text, &text).map_err(|errors| Error::bad_case(file, &errors))?;
     if let Some(difference) = differences.first() {
-        return Err(usage(format!(
-            "the written case would differ from the run: {difference}"
-        )));
+        let reason = format!("the written case would differ from the run: {difference}");
+        return Err(unwritable(file, &reason));
     }
     Ok(atomic::replace(file, |file| file.write_all(text.as_bytes()))?)
+}
+
+/// The error of a case that cannot be written with overrides.
+fn unwritable(file: &Path, reason: &str) -> Error {
+    let reason = format!(
+        "E0841: the best parameter values cannot be written to the file {}: {reason}. Copy the case, and enter \
+         the printed values by hand.",
+        file.display()
+    );
+    Error::Usage { reason }
 }
 
 #[cfg(test)]

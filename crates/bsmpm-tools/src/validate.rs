@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 
 use crate::Error;
 use crate::launch::{self, SolverProgram};
-use crate::plot::FieldName;
+use crate::plot::{FieldName, ValueRange};
 
 mod check;
 mod course;
@@ -126,16 +126,17 @@ pub fn run(arguments: &ValidateArguments, mut report: impl FnMut(&str)) -> Resul
 /// What is asked for; a validation that judges nothing would pass whatever the program does.
 fn parts<'a>(matrix: &'a ValidationMatrix, arguments: &ValidateArguments) -> Result<Vec<MatrixPart<'a>>, Error> {
     let asked = |depth: Depth| !arguments.short || depth == Depth::Short;
-    let named = |study: &MatrixStudy, part: &str| study.title.to_lowercase().contains(&part.to_lowercase());
-    let wanted = |study: &&MatrixStudy| arguments.only.as_ref().is_none_or(|part| named(study, part));
-    let part = |study: &'a MatrixStudy| {
+    let mut parts: Vec<MatrixPart<'a>> = Vec::new();
+    for study in &matrix.study {
+        let only = arguments.only.as_deref().unwrap_or_default().to_lowercase();
+        if !study.title.to_lowercase().contains(&only) {
+            continue;
+        }
         let runs: Vec<&MatrixRun> = study.run.iter().filter(|run| asked(study.depth_of(run))).collect();
-        let is_run = |name: &&str| runs.iter().any(|run| run.name == **name);
-        let is_asked = |row: &&matrix::MatrixRow| row.depth.is_none_or(asked) && row.runs().iter().all(is_run);
-        let rows = study.row.iter().filter(is_asked).collect();
-        MatrixPart { study, runs, rows }
-    };
-    let parts: Vec<MatrixPart<'a>> = matrix.study.iter().filter(wanted).map(part).collect();
+        let mut rows: Vec<&matrix::MatrixRow> = study.row.iter().filter(|row| row.depth.is_none_or(asked)).collect();
+        rows.retain(|row| row.runs().iter().all(|name| runs.iter().any(|run| run.name == *name)));
+        parts.push(MatrixPart { study, runs, rows });
+    }
     if parts.iter().flat_map(|part| &part.rows).any(|row| row.is_judged()) {
         return Ok(parts.into_iter().filter(|part| !part.runs.is_empty()).collect());
     }
@@ -190,24 +191,25 @@ fn case_of<'a>(study: &'a MatrixStudy, row: &matrix::MatrixRow) -> &'a str {
 
 /// The path of a file from a directory, with `/` between its parts. Links are not resolved.
 fn path_between(directory: &Path, file: &Path) -> String {
-    let parts = |path: &Path| {
-        let mut parts: Vec<String> = Vec::new();
-        for part in std::path::absolute(path)
-            .unwrap_or_else(|_| path.to_owned())
-            .components()
-        {
-            match part {
-                Component::ParentDir => _ = parts.pop(),
-                Component::Normal(name) => parts.push(name.to_string_lossy().into_owned()),
-                Component::Prefix(_) | Component::RootDir | Component::CurDir => {}
-            }
-        }
-        parts
-    };
-    let (from, to) = (parts(directory), parts(file));
+    let from = names(directory);
+    let to = names(file);
     let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
     let up = vec!["..".to_owned(); from.len() - shared];
     [&up, &to[shared..]].concat().join("/")
+}
+
+/// The names along a path from the root.
+fn names(path: &Path) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    for part in path.components() {
+        match part {
+            Component::ParentDir => _ = names.pop(),
+            Component::Normal(name) => names.push(name.to_string_lossy().into_owned()),
+            Component::Prefix(_) | Component::RootDir | Component::CurDir => {}
+        }
+    }
+    names
 }
 
 /// The number of a row and what it is worth; `case` is the path of its case file for the table.
@@ -285,7 +287,7 @@ fn draw_body(plot: &matrix::Plot, outcomes: &BTreeMap<String, MatrixOutcome>, ou
     let arguments = crate::plot::PlotArguments {
         times: plot.times.clone(),
         field: FieldName::from_str(&plot.field, true).ok(),
-        range: plot.range,
+        range: plot.range.map(|(low, high)| ValueRange { low, high }),
         ..crate::plot::PlotArguments::of(directory.clone())
     };
     for name in crate::plot::draw(&arguments)?

@@ -74,13 +74,16 @@ pub struct VerifyArguments {
 /// Those of the command line and of the case on each grid before anything runs; [`Error::Run`] for a run that did not
 /// come to its end; those of files.
 pub fn run(arguments: &VerifyArguments, mut report: impl FnMut(&str)) -> Result<(String, Vec<PathBuf>), Error> {
-    let (options, path) = (&arguments.options, &*arguments.case);
-    let (command, output) = (options.words(), options.directory(path, ".verify"));
+    let options = &arguments.options;
+    let path = &*arguments.case;
+    let command = options.words();
+    let output = options.directory(path, ".verify");
     let bytes = case::load(path)?;
     let grids = Grids::of(arguments, &bytes)?;
     let batch = options.batch(&command, path, &output)?;
     let outcomes = batch.run(&grids.orders, command::ranks(&command), |index, outcome| {
-        let (h, cpu) = (grids.sizes[index], outcome.cost.cpu_seconds);
+        let h = grids.sizes[index];
+        let cpu = outcome.cost.cpu_seconds;
         report(format!("cells of {h} m: {}, {cpu:.1} CPU s {}", outcome.words(), outcome.reason).trim_end());
     });
     for (outcome, h) in outcomes.iter().zip(grids.sizes) {

@@ -7,7 +7,7 @@ mod integrals;
 mod tensor;
 
 use crate::exact::Exact;
-use crate::grid::shape::{Patch, Shape};
+use crate::grid::shape::Shape;
 use crate::grid::{Contributions, Grid};
 use crate::kinematics::Kinematics;
 use crate::lanes::LANES;
@@ -56,21 +56,23 @@ impl Background {
         points: &Points<D>,
         materials: &[Material],
     ) -> Blocks {
-        let modulus = |patch: &Patch| {
-            let young = |p: usize| materials[usize::from(points.material[p])].young_at(points.height(p));
-            patch.points.clone().map(young).fold(0.0, f64::max)
-        };
         let mut forms = Forms::new(grid);
-        let soft = |patch: &Patch| {
+        let mut cells = Vec::with_capacity(shape.patches().len());
+        for patch in shape.patches() {
             let cell = grid.cell_at(patch.cell);
             let (lower, size) = grid.cell_box(&cell);
-            let factor = self.coefficient * modulus(patch) * K::weight(&(lower + size * 0.5));
-            SoftCell {
+            let points = patch
+                .points
+                .clone()
+                .map(|p| (usize::from(points.material[p]), points.height(p)));
+            let young = points.map(|(material, height)| materials[material].young_at(height));
+            let modulus = young.fold(0.0, f64::max);
+            let factor = self.coefficient * modulus * K::weight(&(lower + size * 0.5));
+            cells.push(SoftCell {
                 form: forms.of(&cell),
                 factor,
-            }
-        };
-        let cells = shape.patches().iter().map(soft).collect();
+            });
+        }
         Blocks {
             cells,
             forms: forms.found,
@@ -96,12 +98,11 @@ impl Blocks {
     pub fn work<const D: usize>(&self, shape: &Shape<D>, u: &[f64]) -> Exact {
         let mut works: Vec<f64> = Vec::with_capacity(self.cells.len());
         self.each_product::<D>(shape, u, |_, u, forces| {
-            works.push(
-                u.iter()
-                    .zip(forces)
-                    .map(|(u, force)| (0..D).map(|i| u[i] * force[i]).sum::<f64>())
-                    .sum(),
-            );
+            let terms = u
+                .iter()
+                .zip(forces)
+                .map(|(u, force)| (0..D).map(|i| u[i] * force[i]).sum::<f64>());
+            works.push(terms.sum());
         });
         works.into_iter().collect()
     }
@@ -114,7 +115,8 @@ impl Blocks {
         mut product: impl FnMut(usize, &[[f64; D]], &[[f64; D]]),
     ) {
         let size = shape.offsets().len();
-        let (mut u_of, mut forces) = ([[0.0; D]; LANES * MOST_NODES], [[0.0; D]; LANES * MOST_NODES]);
+        let mut u_of = [[0.0; D]; LANES * MOST_NODES];
+        let mut forces = [[0.0; D]; LANES * MOST_NODES];
         for (cells, patches) in self.cells.chunks(LANES).zip(shape.patches().chunks(LANES)) {
             for (patch, own) in patches.iter().zip(u_of.chunks_exact_mut(size)) {
                 for (at_node, offset) in own.iter_mut().zip(shape.offsets()) {

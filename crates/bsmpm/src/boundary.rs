@@ -12,6 +12,7 @@ pub mod rigid;
 pub mod strip;
 pub mod surface;
 
+use crate::schedule::TimeInterval;
 pub use anchor::Idle;
 pub use coulomb::{Contact, ContactReport};
 pub use load::Load;
@@ -22,9 +23,8 @@ pub use surface::{Anchors, Surface, SurfacePoint};
 use crate::exact::Exact;
 use crate::grid::Grid;
 use crate::nodal::Nodal;
-use crate::parallel::Halo;
+use crate::parallel::{Halo, OwnedNodes};
 use crate::points::Points;
-use crate::schedule::turns;
 use crate::tensor::Vector;
 use crate::water::crossed::Crossed;
 
@@ -93,6 +93,17 @@ impl<const D: usize> Support<D> {
         velocity[axis] = Some(0.0);
         Self::moving(axis, upper, velocity)
     }
+
+    /// Whether it moves the material.
+    fn is_driven(&self) -> bool {
+        self.velocity.iter().flatten().any(|&velocity| velocity != 0.0)
+    }
+
+    /// Whether by the nodal `reaction` it pushes the material beside the edge that a node of it may be on.
+    fn pushes(&self, grid: &Grid<D>, reaction: &[f64], node: usize) -> bool {
+        let within = reaction.get(Nodal::<D>::at(grid.off_edges(node, self.axis), self.axis));
+        within.is_some_and(|&within| if self.upper { within < 0.0 } else { within > 0.0 })
+    }
 }
 
 /// All that holds and loads a scene besides gravity.
@@ -152,25 +163,27 @@ impl<const D: usize> Boundary<D> {
     }
 
     /// Whether a load or the motion of a strip turns sharply in a step.
-    pub fn turns(&self, step: (f64, f64)) -> bool {
-        let moves = |strip: &Strip<D>| turns(&strip.path.rows, Vector::zeros(), |u| u.norm(), step);
-        self.loads.iter().any(|load| load.turns(step)) || self.strips.iter().any(|strip| strip.acts() && moves(strip))
+    pub fn turns(&self, interval: TimeInterval) -> bool {
+        self.loads.iter().any(|load| load.turns(interval))
+            || self
+                .strips
+                .iter()
+                .any(|strip| strip.acts() && strip.path.turns(interval))
     }
 
     /// Whether something moves as prescribed in the step from `t` to `t + dt`: a face, a strip or a rigid body.
     pub fn moves(&self, t: f64, dt: f64) -> bool {
-        let is_driven = |support: &Support<D>| support.velocity.iter().flatten().any(|&velocity| velocity != 0.0);
-        let strip_moves = |strip: &Strip<D>| strip.acts() && strip.path.at(t) != strip.path.at(t + dt);
-        let prescribed = |body: &RigidBody<D>, t: f64| body.pick(&Vector::zeros(), &body.on_path(t));
-        let body_moves = |body: &RigidBody<D>| body.acts && prescribed(body, t) != prescribed(body, t + dt);
-        self.supports.iter().any(is_driven) || self.strips.iter().any(strip_moves) || self.rigid.iter().any(body_moves)
+        let mut strips = self.strips.iter().filter(|strip| strip.acts());
+        let mut bodies = self.rigid.iter().filter(|body| body.acts);
+        self.supports.iter().any(Support::is_driven)
+            || strips.any(|strip| strip.path.at(t) != strip.path.at(t + dt))
+            || bodies.any(|body| body.prescribed(t) != body.prescribed(t + dt))
     }
 
     /// Whether something moves as prescribed in the step from `t` to `t + dt`, and everything that does has the
     /// velocity that it had in the step of length `last_dt` before.
     pub fn moves_steadily(&self, t: f64, last_dt: f64, dt: f64) -> bool {
-        let is_driven = |support: &Support<D>| support.velocity.iter().flatten().any(|&velocity| velocity != 0.0);
-        let mut moves = self.supports.iter().any(is_driven);
+        let mut moves = self.supports.iter().any(Support::is_driven);
         for strip in self.strips.iter().filter(|strip| strip.acts()) {
             let places = [t - last_dt, t, t + dt].map(|t| strip.path.at(t));
             let Some(velocity) = steady_velocity(&places, last_dt, dt) else {
@@ -179,8 +192,7 @@ impl<const D: usize> Boundary<D> {
             moves |= velocity.norm() > 0.0;
         }
         for body in self.rigid.iter().filter(|body| body.acts) {
-            let prescribed = |t: f64| body.pick(&Vector::zeros(), &body.on_path(t));
-            let places = [t - last_dt, t, t + dt].map(prescribed);
+            let places = [t - last_dt, t, t + dt].map(|t| body.prescribed(t));
             let Some(velocity) = steady_velocity(&places, last_dt, dt) else {
                 return false;
             };
@@ -191,14 +203,17 @@ impl<const D: usize> Boundary<D> {
 
     /// The state of strips and loads at the start: no traction, every point at its place.
     pub fn surface(&self) -> Surface<D> {
-        let at_rest = |strip: &Strip<D>| vec![Vector::zeros(); strip.points.len()];
+        let at_rest = self
+            .strips
+            .iter()
+            .map(|strip| vec![Vector::zeros(); strip.points.len()]);
+        let places = self
+            .loads
+            .iter()
+            .map(|load| load.points.iter().map(|point| point.x).collect());
         Surface {
-            traction: self.strips.iter().map(at_rest).collect(),
-            position: self
-                .loads
-                .iter()
-                .map(|load| load.points.iter().map(|point| point.x).collect())
-                .collect(),
+            traction: at_rest.collect(),
+            position: places.collect(),
             pressure: self.loads.iter().map(Load::at_rest).collect(),
             anchors: Anchors::default(),
             held: Vec::new(),
@@ -238,12 +253,12 @@ impl<const D: usize> Boundary<D> {
 
     /// Whether material at `x`, m, has left the grid, and through outlets alone.
     pub fn lets_out(&self, grid: &Grid<D>, x: &Vector<D>) -> bool {
-        let beyond = |axis: usize| match x[axis] {
+        let left = (0..D).filter_map(|axis| match x[axis] {
             x if x < 0.0 => Some((axis, false)),
             x if x > grid.axes()[axis].length() => Some((axis, true)),
             _ => None,
-        };
-        let mut left = (0..D).filter_map(beyond).peekable();
+        });
+        let mut left = left.peekable();
         left.peek().is_some() && left.all(|face| self.outlets.contains(&face))
     }
 
@@ -285,66 +300,75 @@ impl<const D: usize> Boundary<D> {
     /// supports hold at their common edge counts for the one that it is normal to, which has the pressure there; for
     /// one in contact, too, where it pushes beside the edge.
     pub fn reactions(&self, grid: &Grid<D>, reaction: &[f64], halo: &dyn Halo) -> Vec<Vec<f64>> {
-        let owned = halo.owned();
-        let mut counted = vec![false; reaction.len()];
-        let mut sums = vec![Exact::default(); self.supports.len() * D];
-        let mut sum = |(support, sum): (&Support<D>, &mut [Exact]), acts: &dyn Fn(usize, usize) -> bool| {
-            for node in grid.face_nodes(support.axis, support.upper) {
-                for component in (0..D).filter(|&component| acts(node, component)) {
-                    if !std::mem::replace(&mut counted[Nodal::<D>::at(node, component)], true) && owned.contains(node) {
-                        sum[component].add(reaction[Nodal::<D>::at(node, component)]);
-                    }
-                }
-            }
+        let supports = &self.supports[..];
+        let mut sums = ReactionSums {
+            supports,
+            grid,
+            reaction,
+            owned: halo.owned(),
+            counted: vec![false; reaction.len()],
+            sums: vec![Exact::default(); supports.len() * D],
         };
-        let holds = |support: &Support<D>, component: usize| support.velocity[component].is_some();
-        let in_contact = |(support, _): &(&Support<D>, &mut [Exact])| support.contact.is_some();
+        let in_contact: Vec<usize> = (0..supports.len()).filter(|&k| supports[k].contact.is_some()).collect();
         // Who holds goes first, then what pushes, then what has friction.
-        for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
-            sum((support, sums), &|_, component| {
-                component == support.axis && holds(support, component)
+        for (number, support) in supports.iter().enumerate().rev() {
+            sums.add(number, |_, c| c == support.axis && support.velocity[c].is_some());
+        }
+        for &number in &in_contact {
+            let support = &supports[number];
+            sums.add(number, |node, c| {
+                c == support.axis && support.pushes(grid, reaction, node)
             });
         }
-        for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
-            let pushes = |node: usize| {
-                let within = reaction.get(Nodal::<D>::at(grid.off_edges(node, support.axis), support.axis));
-                within.is_some_and(|&within| if support.upper { within < 0.0 } else { within > 0.0 })
-            };
-            sum((support, sums), &|node, component| {
-                component == support.axis && pushes(node)
-            });
+        for (number, support) in supports.iter().enumerate().rev() {
+            sums.add(number, |_, c| c != support.axis && support.velocity[c].is_some());
         }
-        for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).rev() {
-            sum((support, sums), &|_, component| {
-                component != support.axis && holds(support, component)
-            });
-        }
-        for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(in_contact) {
-            sum((support, sums), &|_, component| component == support.axis);
+        for &number in &in_contact {
+            sums.add(number, |_, c| c == supports[number].axis);
         }
         // Along an edge in space that it shares with a face with friction, a smooth one decides nothing.
         for has_friction in [true, false] {
-            let of = |(support, _): &(&Support<D>, &mut [Exact])| {
-                support
+            for (number, support) in supports.iter().enumerate() {
+                if support
                     .contact
                     .is_some_and(|contact| (contact.friction > 0.0) == has_friction)
-            };
-            for (support, sums) in self.supports.iter().zip(sums.chunks_exact_mut(D)).filter(of) {
-                sum((support, sums), &|_, component| component != support.axis);
+                {
+                    sums.add(number, |_, c| c != support.axis);
+                }
             }
         }
-        for (support, sums) in self
-            .supports
-            .iter()
-            .zip(sums.chunks_exact_mut(D))
-            .filter(|(s, _)| s.absorbs)
-        {
-            sum((support, sums), &|_, _| true);
+        for (number, _) in supports.iter().enumerate().filter(|(_, support)| support.absorbs) {
+            sums.add(number, |_, _| true);
         }
-        halo.total(&sums).chunks_exact(D).map(<[f64]>::to_vec).collect()
+        halo.total(&sums.sums).chunks_exact(D).map(<[f64]>::to_vec).collect()
     }
 }
-/// The velocity between the last two of three places, if it is that between the first two but for round-off.
+
+/// Sums over the nodes of every support of the reaction, of which each component counts once.
+struct ReactionSums<'a, const D: usize> {
+    supports: &'a [Support<D>],
+    grid: &'a Grid<D>,
+    reaction: &'a [f64],
+    owned: OwnedNodes,
+    counted: Vec<bool>,
+    sums: Vec<Exact>, // D of every support
+}
+
+impl<const D: usize> ReactionSums<'_, D> {
+    /// Adds to the sums of a support what it `decides`, by node and component.
+    fn add(&mut self, number: usize, decides: impl Fn(usize, usize) -> bool) {
+        let support = &self.supports[number];
+        for node in self.grid.face_nodes(support.axis, support.upper) {
+            for component in (0..D).filter(|&component| decides(node, component)) {
+                let place = Nodal::<D>::at(node, component);
+                if !std::mem::replace(&mut self.counted[place], true) && self.owned.contains(node) {
+                    self.sums[number * D + component].add(self.reaction[place]);
+                }
+            }
+        }
+    }
+}
+
 fn steady_velocity<const N: usize>(places: &[Vector<N>; 3], last_dt: f64, dt: f64) -> Option<Vector<N>> {
     let before = (places[1] - places[0]) / last_dt;
     let now = (places[2] - places[1]) / dt;

@@ -6,10 +6,11 @@ use crate::energy::{Budget, Stored};
 use crate::error::StepError;
 use crate::grid::extension::ExtendedSplines;
 use crate::kinematics::Kinematics;
+use crate::method::Criteria;
 use crate::model::{Model, Regime};
-use crate::parallel::{Halo, LinearSolver};
+use crate::parallel::{Backend, Halo, LinearSolver};
 use crate::points::Points;
-use crate::schedule::Schedule;
+use crate::schedule::{Schedule, TimeInterval};
 use crate::step::newmark::Newmark;
 use crate::step::{Counts, StepReport, step};
 use std::borrow::Cow;
@@ -136,61 +137,28 @@ impl Stepper {
         solver: &mut dyn LinearSolver,
     ) -> Option<Result<Accepted, Failure>> {
         if let Err(made) = self.at.budget.map_or(Ok(()), |budget| budget.require()) {
-            let counts = Counts::default();
-            return Some(Err(Failure {
-                t: self.at.t,
-                dt: self.at.guess_dt,
-                attempts: vec![made],
-                counts,
-            }));
+            return Some(Err(self.failure(self.at.guess_dt, vec![made], Counts::default())));
         }
-        let (from, to) = match self.at.nominal {
-            Some(nominal) => nominal,
-            None => (self.at.t, schedule.next(self.at.t)?),
-        };
-        self.at.nominal = Some((from, to));
         let before = (self.at.cuts, self.at.easy, self.at.budget);
-        if model.regime == Regime::Dynamic && self.at.budget.is_none() {
-            self.at.budget = Some(Budget::open(Stored::of(model, (points, self.at.t), halo)));
-        }
-        let (mut rejected, mut counts) = (Vec::new(), Counts::default());
+        let (from, to) = self.begin(schedule, model, points, halo)?;
+        let mut rejected = Vec::new();
+        let mut counts = Counts::default();
         let mut has_drag = false; // the next attempt has the background's whole drag
         loop {
-            let size = TICKS >> self.at.cuts;
-            let end = if self.at.tick + size == TICKS {
-                to
-            } else {
-                from + (to - from) * fraction(self.at.tick + size)
-            };
+            let end = self.end_of_attempt(from, to);
             let dt = end - self.at.t;
             let mut guess = self.scaled_guess(dt);
-            let resisted = if has_drag {
-                Resisted::Displacement
-            } else {
-                self.resisted(model, dt)
+            let resisted = match has_drag {
+                true => Resisted::Displacement,
+                false => self.resisted(model, dt),
             };
             let model = self.with_sudden_forces(model.over(dt));
-            match step(
-                &model,
-                points,
-                &mut guess,
-                (self.at.t, dt),
-                resisted,
-                (halo, solver),
-                &mut counts,
-            ) {
+            let interval = TimeInterval { start: self.at.t, dt };
+            let backend = &mut Backend { halo, solver };
+            let error = match step(&model, points, &mut guess, interval, resisted, backend, &mut counts) {
                 Ok(report) => {
                     (self.guess, self.at.guess_dt, self.at.t) = (guess, dt, end);
-                    if let (Some(budget), Some(turnover)) = (&mut self.at.budget, &report.turnover) {
-                        budget.enter(turnover);
-                        if let Some(outflow) = &report.outflow {
-                            budget.exchange(&outflow.stored);
-                        }
-                    }
-                    self.accept(
-                        size,
-                        report.first_guess && report.iterations * 2 <= model.criteria.max_iterations,
-                    );
+                    self.accept(&report, &model.criteria);
                     return Some(Ok(Accepted {
                         t: end,
                         dt,
@@ -199,46 +167,64 @@ impl Stepper {
                         rejected,
                     }));
                 }
-                Err(StepError::Interrupted) => {
-                    // As if it had never begun: who goes on from here later makes the same attempts.
-                    (self.at.cuts, self.at.easy, self.at.budget) = before;
-                    rejected.push(StepError::Interrupted);
-                    return Some(Err(Failure {
-                        t: self.at.t,
-                        dt,
-                        attempts: rejected,
-                        counts,
-                    }));
-                }
-                Err(error) => {
-                    let hopeless = matches!(
-                        error,
-                        StepError::Outside { .. }
-                            | StepError::Unloaded { .. }
-                            | StepError::Undrained { .. }
-                            | StepError::Material { .. }
-                            | StepError::OtherRank
-                    );
-                    rejected.push(error);
-                    if resisted == Resisted::Change && !hopeless {
-                        has_drag = true;
-                        continue;
-                    }
-                    has_drag = false;
-                    if hopeless || self.at.cuts == MOST_CUTS {
-                        // Who goes on from here, with another nominal step, starts as this one did.
-                        (self.at.cuts, self.at.easy, _) = before;
-                        return Some(Err(Failure {
-                            t: self.at.t,
-                            dt,
-                            attempts: rejected,
-                            counts,
-                        }));
-                    }
-                    self.at.cuts += 1;
-                    self.at.easy = 0;
-                }
+                Err(error) => error,
+            };
+            let is_hopeless = is_hopeless(&error);
+            rejected.push(error);
+            if rejected.last() == Some(&StepError::Interrupted) {
+                // As if it had never begun: who goes on from here later makes the same attempts.
+                (self.at.cuts, self.at.easy, self.at.budget) = before;
+                return Some(Err(self.failure(dt, rejected, counts)));
             }
+            has_drag = resisted == Resisted::Change && !is_hopeless;
+            if has_drag {
+                continue;
+            }
+            if is_hopeless || self.at.cuts == MOST_CUTS {
+                // Who goes on from here, with another nominal step, starts as this one did.
+                (self.at.cuts, self.at.easy, _) = before;
+                return Some(Err(self.failure(dt, rejected, counts)));
+            }
+            (self.at.cuts, self.at.easy) = (self.at.cuts + 1, 0);
+        }
+    }
+
+    /// Begins a nominal step, unless one is under way, and returns its start and end, s; `None` at the end of the
+    /// schedule. The first step of a stage in dynamics opens the bound on the energy.
+    fn begin<K: Kinematics<D>, const D: usize>(
+        &mut self,
+        schedule: &Schedule,
+        model: &Model<K, D>,
+        points: &Points<D>,
+        halo: &dyn Halo,
+    ) -> Option<(f64, f64)> {
+        let nominal = match self.at.nominal {
+            Some(nominal) => nominal,
+            None => (self.at.t, schedule.next(self.at.t)?),
+        };
+        self.at.nominal = Some(nominal);
+        if model.regime == Regime::Dynamic && self.at.budget.is_none() {
+            self.at.budget = Some(Budget::open(Stored::of(model, points, self.at.t, halo)));
+        }
+        Some(nominal)
+    }
+
+    /// Returns the end of the next attempt in a nominal step, s.
+    fn end_of_attempt(&self, from: f64, to: f64) -> f64 {
+        let done = self.at.tick + (TICKS >> self.at.cuts);
+        if done == TICKS {
+            to
+        } else {
+            from + (to - from) * fraction(done)
+        }
+    }
+
+    fn failure(&self, dt: f64, attempts: Vec<StepError>, counts: Counts) -> Failure {
+        Failure {
+            t: self.at.t,
+            dt,
+            attempts,
+            counts,
         }
     }
 
@@ -279,9 +265,18 @@ impl Stepper {
         self.guess.iter().map(|u| ratio * u).collect()
     }
 
-    fn accept(&mut self, size: u32, easy: bool) {
+    /// Goes on by the step of the last attempt, and enters its energy.
+    fn accept(&mut self, report: &StepReport, criteria: &Criteria) {
+        if let (Some(budget), Some(turnover)) = (&mut self.at.budget, &report.turnover) {
+            budget.enter(turnover);
+            if let Some(outflow) = &report.outflow {
+                budget.exchange(&outflow.stored);
+            }
+        }
+        let is_easy = report.first_guess && report.iterations * 2 <= criteria.max_iterations;
+        let size = TICKS >> self.at.cuts;
         self.at.tick += size;
-        self.at.easy = if easy { self.at.easy + 1 } else { 0 };
+        self.at.easy = if is_easy { self.at.easy + 1 } else { 0 };
         if self.at.tick == TICKS {
             (self.at.tick, self.at.nominal) = (0, None);
         }
@@ -290,6 +285,18 @@ impl Stepper {
             self.at.easy = 0;
         }
     }
+}
+
+/// Whether no smaller step can mend what failed.
+fn is_hopeless(error: &StepError) -> bool {
+    matches!(
+        error,
+        StepError::Outside { .. }
+            | StepError::Unloaded { .. }
+            | StepError::Undrained { .. }
+            | StepError::Material { .. }
+            | StepError::OtherRank
+    )
 }
 
 fn fraction(tick: u32) -> f64 {

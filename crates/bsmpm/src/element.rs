@@ -48,6 +48,16 @@ pub struct Control {
     pub duration: f64,
 }
 
+impl Control {
+    /// What the components are driven to after a `share` of the stage, from what they had at its `start`.
+    fn wanted(&self, start: &[f64; COMPONENTS], share: f64) -> [Target; COMPONENTS] {
+        std::array::from_fn(|k| match self.targets[k] {
+            Target::Strain(growth) => Target::Strain(start[k] + share * growth),
+            Target::Stress(end) => Target::Stress(start[k] + share * (end - start[k])),
+        })
+    }
+}
+
 /// Why a path has no beginning, or no end.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ElementError {
@@ -169,22 +179,17 @@ impl Element {
             Target::Stress(_) => self.total(k),
         });
         let volume = self.volume_strain();
-        let wanted = |share: f64| -> [Target; COMPONENTS] {
-            std::array::from_fn(|k| match control.targets[k] {
-                Target::Strain(growth) => Target::Strain(start[k] + share * growth),
-                Target::Stress(end) => Target::Stress(start[k] + share * (end - start[k])),
-            })
-        };
         let own = self.law.clone();
         for step in 0..control.steps {
-            let (mut done, mut part) = (0.0_f64, 1.0_f64);
+            let mut done = 0.0_f64;
+            let mut part = 1.0_f64;
             while done < 1.0 {
                 let share = (step as f64 + (done + part).min(1.0)) / control.steps as f64;
                 let undrained = control.undrained.then_some(volume);
                 self.law = own
                     .over(part * control.duration / control.steps as f64)
                     .unwrap_or_else(|| own.clone());
-                match self.solve(&wanted(share), undrained) {
+                match self.solve(&control.wanted(&start, share), undrained) {
                     Ok(found) => {
                         self.accept(found);
                         done += part;
@@ -232,8 +237,7 @@ impl Element {
             }
         }
         let young = self.law.elastic().young;
-        let attempt = |strain, pore| self.attempt((strain, pore), (wanted, &free, undrained));
-        let mut now = attempt(strain, self.pore_pressure)?;
+        let mut now = self.attempt(strain, self.pore_pressure, wanted, &free, undrained)?;
         for _ in 0..ITERATIONS {
             let size = (0..COMPONENTS)
                 .map(|k| total(&now.sigma, now.pore_pressure, k).abs())
@@ -243,7 +247,7 @@ impl Element {
                 return Ok(now);
             }
             let by = self
-                .correction(&now, (&free, undrained.is_some()))
+                .correction(&now, &free, undrained.is_some())
                 .ok_or("the stiffness is not finite")?;
             let mut length = 1.0;
             now = loop {
@@ -256,7 +260,7 @@ impl Element {
                 } else {
                     0.0
                 };
-                match attempt(strain, now.pore_pressure + pore) {
+                match self.attempt(strain, now.pore_pressure + pore, wanted, &free, undrained) {
                     Ok(next) if next.residual.norm() < now.residual.norm() => break next,
                     _ if length * 2_f64.powi(HALVINGS as i32) <= 1.0 => return Err(not_carried(&now, &free, wanted)),
                     _ => length *= 0.5,
@@ -268,8 +272,11 @@ impl Element {
 
     fn attempt(
         &self,
-        (strain, pore_pressure): ([f64; COMPONENTS], f64),
-        (wanted, free, undrained): (&[Target; COMPONENTS], &[usize], Option<f64>),
+        strain: [f64; COMPONENTS],
+        pore_pressure: f64,
+        wanted: &[Target; COMPONENTS],
+        free: &[usize],
+        undrained: Option<f64>,
     ) -> Result<Attempt, String> {
         let before = deformation(&self.strain)
             .try_inverse()
@@ -303,12 +310,10 @@ impl Element {
 
     /// The smallest correction of what is free, strains and the pore pressure over Young's modulus, by the consistent
     /// tangent: `dσ = dτ/J - σ tr l`.
-    fn correction(&self, now: &Attempt, (free, undrained): (&[usize], bool)) -> Option<DVector<f64>> {
+    fn correction(&self, now: &Attempt, free: &[usize], undrained: bool) -> Option<DVector<f64>> {
         let size = now.residual.len();
-        let (young, volume) = (
-            self.law.elastic().young,
-            (now.strain[0] + now.strain[1] + now.strain[2]).exp(),
-        );
+        let young = self.law.elastic().young;
+        let volume = (now.strain[0] + now.strain[1] + now.strain[2]).exp();
         let mut jacobian = DMatrix::zeros(size, size);
         for (column, &k) in free.iter().enumerate() {
             let l = velocity(now.strain[3], k);
@@ -335,10 +340,8 @@ fn not_carried(now: &Attempt, free: &[usize], wanted: &[Target; COMPONENTS]) -> 
     let found = free.iter().filter_map(|&k| {
         let Target::Stress(given) = wanted[k] else { return None };
         let name = ["xx", "yy", "zz", "xy"][k];
-        Some(format!(
-            "stress-{name} is {:.6e} Pa for {given:.6e} Pa",
-            total(&now.sigma, now.pore_pressure, k)
-        ))
+        let stress = total(&now.sigma, now.pore_pressure, k);
+        Some(format!("stress-{name} is {stress:.6e} Pa for {given:.6e} Pa"))
     });
     found.collect::<Vec<_>>().join(", ")
 }

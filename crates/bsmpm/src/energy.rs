@@ -4,6 +4,7 @@
 
 mod budget;
 
+use crate::schedule::TimeInterval;
 pub use budget::{Budget, Turnover};
 
 use crate::boundary::{Surface, load};
@@ -49,6 +50,14 @@ impl Flows {
     pub fn numerical(&self) -> f64 {
         self.transfer + self.integration + self.smoothing + self.background + self.penalty
     }
+
+    /// The flows of these sums, in the order of [`Self::each`].
+    fn of(sums: &[f64]) -> Self {
+        let mut flows = Self::default();
+        let each = flows.each().into_iter();
+        each.zip(sums).for_each(|(flow, sum)| *flow = *sum);
+        flows
+    }
 }
 
 impl<T> Flows<T> {
@@ -89,7 +98,8 @@ impl Stored {
     /// Of the points of all ranks at time `t`, s.
     pub fn of<K: Kinematics<D>, const D: usize>(
         model: &Model<K, D>,
-        (points, t): (&Points<D>, f64),
+        points: &Points<D>,
+        t: f64,
         halo: &dyn Halo,
     ) -> Self {
         let sums = halo.total(&[kinetic(points), elastic(model, points, t)]);
@@ -138,8 +148,7 @@ pub struct Draft {
     elastic: Exact,
     dry: Option<Vec<f64>>, // kg  masses before the points take water in, where it flows
     friction_work: Exact,  // half of the work of friction and dashpots at faces, part of the external work
-    t: f64,
-    dt: f64,
+    interval: TimeInterval,
 }
 
 impl Draft {
@@ -147,64 +156,31 @@ impl Draft {
     /// [`Budget`] is made of.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        (found, answers): (&Found<K, D>, &[Answer]),
-        (t, dt): (f64, f64),
+        found: &Found<K, D>,
+        answers: &[Answer],
+        interval: TimeInterval,
     ) -> Self {
         let Problem {
-            model,
-            nodes,
-            attachments,
-            points,
-            halo,
-            ..
+            model, nodes, points, ..
         } = *problem;
         let u = &found.u[..];
-        let supports = over_layers(halo, D, |c| found.reaction[c] * u[c]);
         let mut flows = Flows {
-            external: supports,
+            external: over_layers(problem.halo, D, |c| found.reaction[c] * u[c]),
             ..Flows::<Exact>::default()
         };
-        let [closing, friction_work] = nodes.contacts.work(u, &found.reaction, halo);
-        flows.external -= &closing;
-        flows.integration -= &closing;
-        if let Some(inertia) = nodes.inertia.as_ref().filter(|inertia| !inertia.struck.is_empty()) {
-            let blow = over_layers(halo, D, |c| inertia.struck[c]);
-            flows.external += &blow;
-            flows.transfer = blow;
-        }
-        let mut friction_work = friction_work;
-        if !nodes.rigid.is_empty() {
-            let [given, grown, friction] = nodes.rigid.work(u, halo);
-            flows.external += &given;
-            flows.integration -= &grown;
-            friction_work += &friction;
-        }
-        if let Some(inertia) = &nodes.inertia {
-            friction_work.extend(
-                nodes
-                    .dashpots
-                    .work::<D>(inertia, u, halo)
-                    .into_iter()
-                    .map(|work| 0.5 * work),
-            );
-        }
-        add_gravity(&mut flows, problem, u, (t, dt));
-        add_water(&mut flows, problem, u, (t, dt));
-        let strips = attachments.work(u);
-        flows.external += &strips.given;
-        flows.external -= &strips.friction_work;
-        flows.integration -= &strips.grown;
-        flows.penalty = strips.given;
-        flows.penalty -= &strips.taken;
-        flows.penalty -= &strips.friction_work;
-        let stored =
-            |p: usize| [answers[p].dissipation, answers[p].elastic_energy].map(|dense| points.volume[p] * dense);
-        let [plastic, mut elastic] = threads::sums(points.len(), stored);
+        let friction_work = add_contact(&mut flows, problem, found);
+        add_gravity(&mut flows, problem, u, interval);
+        add_water(&mut flows, problem, u, interval);
+        add_strips(&mut flows, problem, u);
+        let [plastic, mut elastic] = threads::sums(points.len(), |p| {
+            [answers[p].dissipation, answers[p].elastic_energy].map(|dense| points.volume[p] * dense)
+        });
         flows.plastic = plastic;
         let mut damped = Exact::ZERO;
         if !model.damping.is_empty() {
-            let taken = |p: usize| found.trial.damping_takes(model, points, p).unwrap_or(0.0);
-            damped = threads::sum(points.len(), |p| points.volume[p] * taken(p));
+            damped = threads::sum(points.len(), |p| {
+                points.volume[p] * found.trial.damping_takes(model, points, p).unwrap_or(0.0)
+            });
             flows.plastic += &damped;
         }
         if model.balances_energy {
@@ -224,11 +200,10 @@ impl Draft {
             elastic,
             dry,
             friction_work,
-            t,
-            dt,
+            interval,
         };
         if model.balances_energy {
-            draft.add_losses(problem, (found, answers));
+            draft.add_losses(problem, found, answers);
         }
         draft
     }
@@ -237,7 +212,8 @@ impl Draft {
     fn add_losses<K: Kinematics<D>, const D: usize>(
         &mut self,
         problem: &Problem<'_, K, D>,
-        (found, answers): (&Found<K, D>, &[Answer]),
+        found: &Found<K, D>,
+        answers: &[Answer],
     ) {
         let Problem {
             model,
@@ -246,17 +222,18 @@ impl Draft {
             points,
             ..
         } = *problem;
-        let (flows, u) = (&mut self.flows, &found.u[..]);
-        let (pressures, volume) = (Pressures::of(problem, &found.trial), problem.volume());
-        let work_of = |p: usize, grad: K::Gradient| {
+        let flows = &mut self.flows;
+        let u = &found.u[..];
+        let pressures = Pressures::of(problem, &found.trial);
+        let volume = problem.volume();
+        let work = transfer::gradients::<K, D, _>(shape, &points.x, u, |p, grad| {
             let tau = pressures.acting::<K, D>(p, volume[p], answers[p].tau);
             let tau = found.trial.pressed(p, found.trial.damped_at(model, points, p, tau));
             volume[p] * K::flux(&tau, &found.trial.dF(p)).dot(&grad)
-        };
-        let work = transfer::gradients::<K, D, _>((shape, &points.x), u, work_of);
+        });
         flows.integration += &threads::sum(work.len(), |p| work[p]);
         flows.integration -= &self.elastic;
-        flows.integration += &elastic(model, points, self.t);
+        flows.integration += &elastic(model, points, self.interval.start);
         flows.smoothing += &self.elastic;
         flows.transfer += &kinetic(points);
         add_inertia(flows, problem, u);
@@ -282,16 +259,11 @@ impl Draft {
             elastic: strained,
             dry,
             friction_work,
-            t,
-            dt,
+            interval,
         } = self;
         let moving = kinetic(points);
         if let Some((dry, motion)) = dry.zip(points.motion.as_ref()) {
-            let masses = points.mass.iter().zip(dry);
-            let brought = masses
-                .zip(&motion.v)
-                .map(|((mass, dry), v)| 0.5 * (mass - dry) * v.norm_squared());
-            let brought: Exact = brought.collect();
+            let brought = brought(points, &dry, &motion.v);
             own.external += &brought;
             own.transfer += &brought;
         }
@@ -299,41 +271,34 @@ impl Draft {
         // Where loads grow in the first step, forces at its end do up to twice the work that is counted by their mean:
         // of friction and dashpots half is left out of the bound on what is made.
         external -= &friction_work;
-        let round_off = round_off(model, points);
         let mut sums = vec![
             external,
             own.plastic.clone(),
             damped,
             moving.clone(),
             strained,
-            round_off,
+            round_off(model, points),
         ];
         if model.balances_energy {
             own.transfer -= &moving;
-            own.smoothing -= &elastic(model, points, t + dt);
+            own.smoothing -= &elastic(model, points, interval.end());
             sums.extend(own.each().map(|flow| flow.clone()));
         }
         let sums = halo.total(&sums);
         // The loads' points are the same on every rank.
-        let (loads, loads_grown) = load::work(&model.boundary.loads, (&points.surface, surface), (t, dt));
-        let stored = Stored {
-            kinetic: sums[3],
-            elastic: sums[4],
-        };
+        let (loads, loads_grown) = load::work(&model.boundary.loads, &points.surface, surface, interval);
         let turnover = Turnover {
             external: sums[0] + loads,
             plastic: sums[1],
             damped: sums[2],
-            stored,
+            stored: Stored {
+                kinetic: sums[3],
+                elastic: sums[4],
+            },
             round_off: sums[5],
         };
         let flows = model.balances_energy.then(|| {
-            let mut flows = Flows::default();
-            flows
-                .each()
-                .into_iter()
-                .zip(&sums[6..])
-                .for_each(|(flow, sum)| *flow = *sum);
+            let mut flows = Flows::of(&sums[6..]);
             flows.external += loads;
             flows.integration -= loads_grown;
             flows
@@ -349,8 +314,9 @@ fn round_off<K, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Exac
         .iter()
         .map(|material| material.elastic().young)
         .collect();
-    let of = |p: usize| points.volume[p] * young[usize::from(points.material[p])];
-    threads::sum(points.len(), |p| of(p) * ROUND_OFF.powi(2))
+    threads::sum(points.len(), |p| {
+        points.volume[p] * young[usize::from(points.material[p])] * ROUND_OFF.powi(2)
+    })
 }
 
 fn kinetic<const D: usize>(points: &Points<D>) -> Exact {
@@ -360,12 +326,62 @@ fn kinetic<const D: usize>(points: &Points<D>) -> Exact {
     threads::sum(points.len(), |p| 0.5 * points.mass[p] * motion.v[p].norm_squared())
 }
 
+/// Kinetic energy of what has come into the points since their masses were the `dry` ones, kg.
+fn brought<const D: usize>(points: &Points<D>, dry: &[f64], v: &[Vector<D>]) -> Exact {
+    let masses = points.mass.iter().zip(dry).zip(v);
+    masses
+        .map(|((mass, dry), v)| 0.5 * (mass - dry) * v.norm_squared())
+        .collect()
+}
+
 /// A state that is no strain has no energy: not a number, like the step that led to it.
 fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, t: f64) -> Exact {
-    let of = |p: usize| points.volume[p] * model.elastic_energy(points, p, &points.b_e.at(p));
-    let mut energy = threads::sum(points.len(), of);
+    let mut energy = threads::sum(points.len(), |p| {
+        points.volume[p] * model.elastic_energy(points, p, &points.b_e.at(p))
+    });
     energy += &work::in_points(model, points, t);
     energy
+}
+
+/// Work of contact at faces, of rigid bodies and of nodes that are struck; returns half of the work of friction and
+/// dashpots.
+fn add_contact<K: Kinematics<D>, const D: usize>(
+    flows: &mut Flows<Exact>,
+    problem: &Problem<'_, K, D>,
+    found: &Found<K, D>,
+) -> Exact {
+    let Problem { nodes, halo, .. } = *problem;
+    let u = &found.u[..];
+    let [closing, mut friction_work] = nodes.contacts.work(u, &found.reaction, halo);
+    flows.external -= &closing;
+    flows.integration -= &closing;
+    if let Some(inertia) = nodes.inertia.as_ref().filter(|inertia| !inertia.struck.is_empty()) {
+        let blow = over_layers(halo, D, |c| inertia.struck[c]);
+        flows.external += &blow;
+        flows.transfer = blow;
+    }
+    if !nodes.rigid.is_empty() {
+        let [given, grown, friction] = nodes.rigid.work(u, halo);
+        flows.external += &given;
+        flows.integration -= &grown;
+        friction_work += &friction;
+    }
+    if let Some(inertia) = &nodes.inertia {
+        let works = nodes.dashpots.work::<D>(inertia, u, halo).into_iter();
+        friction_work.extend(works.map(|work| 0.5 * work));
+    }
+    friction_work
+}
+
+/// Work of strips.
+fn add_strips<K, const D: usize>(flows: &mut Flows<Exact>, problem: &Problem<'_, K, D>, u: &[f64]) {
+    let strips = problem.attachments.work(u);
+    flows.external += &strips.given;
+    flows.external -= &strips.friction_work;
+    flows.integration -= &strips.grown;
+    flows.penalty = strips.given;
+    flows.penalty -= &strips.taken;
+    flows.penalty -= &strips.friction_work;
 }
 
 /// Work of gravity and still water by their mean, and half of what they have grown times u.
@@ -373,9 +389,12 @@ fn add_gravity<K: Kinematics<D>, const D: usize>(
     flows: &mut Flows<Exact>,
     problem: &Problem<'_, K, D>,
     u: &[f64],
-    (t, dt): (f64, f64),
+    interval: TimeInterval,
 ) {
-    let (Some(before), Some(after)) = (problem.model.body_force(t), problem.model.body_force(t + dt)) else {
+    let Some(before) = problem.model.body_force(interval.start) else {
+        return;
+    };
+    let Some(after) = problem.model.body_force(interval.end()) else {
         return;
     };
     let moved = transfer::to_points::<D, D, _>(problem.shape, u, |p, du| Vector::from(du) * problem.points.mass[p]);
@@ -389,12 +408,13 @@ fn add_water<K: Kinematics<D>, const D: usize>(
     flows: &mut Flows<Exact>,
     problem: &Problem<'_, K, D>,
     u: &[f64],
-    (t, dt): (f64, f64),
+    interval: TimeInterval,
 ) {
+    let times = [interval.start, interval.end()];
     let Problem {
         model, points, shape, ..
     } = *problem;
-    if let Some(work) = carried::work::<K, D>(model, (shape, points), problem.volume(), u, [t, t + dt]) {
+    if let Some(work) = carried::work::<K, D>(model, shape, points, problem.volume(), u, times) {
         flows
             .external
             .extend(work.iter().map(|[before, after]| 0.5 * (before + after)));
@@ -402,13 +422,17 @@ fn add_water<K: Kinematics<D>, const D: usize>(
             .integration
             .extend(work.iter().map(|[before, after]| -0.5 * (after - before)));
     }
-    let (Some(before), Some(after)) = (model.still_water(t), model.still_water(t + dt)) else {
+    let Some(before) = model.still_water(interval.start) else {
+        return;
+    };
+    let Some(after) = model.still_water(interval.end()) else {
         return;
     };
     let work = transfer::to_points::<D, D, _>(problem.shape, u, |p, du| {
         let follows = model.follows_water(points, p);
-        let point = (p, model.span(points, p));
-        let [before, after] = [before, after].map(|water| water.force(points, point, follows).dot(&Vector::from(du)));
+        let span = model.span(points, p);
+        let [before, after] =
+            [&before, &after].map(|water| water.force(points, p, span, follows).dot(&Vector::from(du)));
         [0.5 * (before + after), -0.5 * (after - before)]
     });
     flows.external.extend(work.iter().map(|work| work[0]));
@@ -418,14 +442,15 @@ fn add_water<K: Kinematics<D>, const D: usize>(
 /// Work of the inertia, and the kinetic energy of this rank's own nodes at both ends of the step.
 fn add_inertia<K, const D: usize>(flows: &mut Flows<Exact>, problem: &Problem<'_, K, D>, u: &[f64]) {
     let Some(inertia) = &problem.nodes.inertia else { return };
-    let (halo, mass) = (problem.halo, problem.mass());
-    let kinetic = |v: &[f64]| {
-        let momentum = mass.times(v);
-        over_layers(halo, D, |c| 0.5 * momentum[c] * v[c])
-    };
+    let halo = problem.halo;
+    let mass = problem.mass();
     let velocity: Vec<f64> = u.iter().enumerate().map(|(c, &u)| inertia.velocity(c, u)).collect();
     let acting: Vec<f64> = u.iter().enumerate().map(|(c, &u)| inertia.acting(c, u)).collect();
-    let (before, after, force) = (kinetic(&inertia.v), kinetic(&velocity), mass.times(&acting));
+    let [before, after] = [&inertia.v[..], &velocity].map(|v| {
+        let momentum = mass.times(v);
+        over_layers(halo, D, |c| 0.5 * momentum[c] * v[c])
+    });
+    let force = mass.times(&acting);
     flows.transfer += &after;
     flows.transfer -= &before;
     flows.integration += &over_layers(halo, D, |c| force[c] * u[c]);

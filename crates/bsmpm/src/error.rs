@@ -135,7 +135,7 @@ pub enum StepError {
     #[error(
         "E0747: no convergence after {iterations} iterations{}. Final residuals: {}{}{}.",
         if *iterations < criteria.max_iterations { "" } else { " (the limit)" },
-        criteria.judged(*energy, (*force, *material)),
+        criteria.judged(*energy, *force, *material),
         history.last().and_then(|last| last.water).map_or_else(String::new, |water| criteria.judged_water(water)),
         unsolved.as_ref().map_or_else(String::new, |reason| format!("; the linear solver failed: {reason}"))
     )]

@@ -45,7 +45,8 @@ impl Exact {
         } else {
             (fraction | 1 << 52, exponent - 1)
         };
-        let (digit, spread) = ((shift / BITS) as usize, u128::from(significand) << (shift % BITS));
+        let digit = (shift / BITS) as usize;
+        let spread = u128::from(significand) << (shift % BITS);
         let sign = if number.is_sign_negative() { -1 } else { 1 };
         for (k, word) in self.words[digit..digit + 3].iter_mut().enumerate() {
             *word += sign * i64::from((spread >> (BITS * k as u32)) as u32);

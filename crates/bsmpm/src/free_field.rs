@@ -13,6 +13,7 @@ use crate::model::Model;
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
 use crate::points::Points;
+use crate::schedule::TimeInterval;
 use crate::solve;
 use crate::step::adjoint::Pressures;
 use crate::step::commit;
@@ -47,7 +48,7 @@ impl<const D: usize> FreeField<D> {
     pub fn after<K: Kinematics<D>>(
         model: &Model<K, D>,
         points: &Points<D>,
-        (t, dt): (f64, f64),
+        interval: TimeInterval,
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
         let mut field = Self::default();
@@ -56,9 +57,9 @@ impl<const D: usize> FreeField<D> {
             let alone = beside(model, support)?;
             let (column, start) = match points.free_field.get(number) {
                 Some(column) => (column.clone(), None),
-                None => begin((model, &alone), support, (points, t), halo)?,
+                None => begin(model, &alone, support, points, interval.start, halo)?,
             };
-            let (column, beside) = advance(&alone, support, column, (t, dt))?;
+            let (column, beside) = advance(&alone, support, column, interval)?;
             field.beside.push(Beside { face, start, ..beside });
             field.columns.push(column);
         }
@@ -115,13 +116,15 @@ fn less<const D: usize>(forces: &[Vector<D>], start: Option<&[Vector<D>]>) -> Ve
 
 /// The scene beside a face: its cells, one across, between the faces that meet it.
 fn beside<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, face: &Support<D>) -> Result<Model<K, D>, StepError> {
-    let wrong = |_| StepError::OtherRank; // cannot be: of axes that a grid has
-    let (mut axes, axis) = (model.grid.axes().clone(), face.axis);
+    let mut axes = model.grid.axes().clone();
+    let axis = face.axis;
     debug_assert!(axis == 0, "layers of nodes across axis 0 are tied");
     let width = model.grid.axes()[axis].breakpoint(face.last_cell(&model.grid) + 1)
         - model.grid.axes()[axis].breakpoint(face.last_cell(&model.grid));
-    axes[axis] = KnotVector::uniform(width, 1, model.grid.order()).map_err(wrong)?;
-    let grid = Grid::new(axes).map_err(wrong)?.reaching(model.grid.beyond());
+    // Neither fails, of axes that a grid has.
+    axes[axis] = KnotVector::uniform(width, 1, model.grid.order()).map_err(|_| StepError::OtherRank)?;
+    let grid = Grid::new(axes).map_err(|_| StepError::OtherRank)?;
+    let grid = grid.reaching(model.grid.beyond());
     let supports = model
         .boundary
         .supports
@@ -146,19 +149,19 @@ fn beside<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, face: &Support<
 /// exchange of its points.
 #[allow(clippy::type_complexity)]
 fn begin<K: Kinematics<D>, const D: usize>(
-    (model, alone): (&Model<K, D>, &Model<K, D>),
+    model: &Model<K, D>,
+    alone: &Model<K, D>,
     face: &Support<D>,
-    (points, t): (&Points<D>, f64),
+    points: &Points<D>,
+    t: f64,
     halo: &dyn Halo,
 ) -> Result<(Points<D>, Option<Vec<Vector<D>>>), StepError> {
     let last = face.last_cell(&model.grid);
-    let at_face = |p: &usize| {
-        model
-            .grid
-            .locate(&points.x[*p])
-            .is_some_and(|cell| cell[face.axis] == last)
-    };
-    let own: Vec<u32> = (0..points.len()).filter(at_face).map(|p| p as u32).collect();
+    let at_face = (0..points.len()).filter(|&p| {
+        let cell = model.grid.locate(&points.x[p]);
+        cell.is_some_and(|cell| cell[face.axis] == last)
+    });
+    let own: Vec<u32> = at_face.map(|p| p as u32).collect();
     let mut column = everywhere(points.only(&own), halo);
     let lower = model.grid.axes()[face.axis].breakpoint(last);
     column.x.iter_mut().for_each(|x| x[face.axis] -= lower);
@@ -177,9 +180,10 @@ fn hold<K: Kinematics<D>, const D: usize>(
     column: &mut Points<D>,
     t: f64,
 ) -> Result<Vec<Vector<D>>, StepError> {
-    let (tied, mut solver) = (TiedHalo::of(&alone.grid), Band::of(&alone.grid));
+    let tied = TiedHalo::of(&alone.grid);
+    let mut solver = Band::of(&alone.grid);
     column.surface.held.clear();
-    initial::hold_at(alone, column, t, (&tied, &mut solver))?;
+    initial::hold_at(alone, column, t, &tied, &mut solver)?;
     for held in &mut column.surface.held {
         let row = held.len() / (alone.grid.order() + 1);
         let first = held[..row].to_vec();
@@ -187,8 +191,9 @@ fn hold<K: Kinematics<D>, const D: usize>(
             .for_each(|layer| layer.copy_from_slice(&first));
     }
     let shape = Shape::at(&alone.grid, column)?;
-    let nodes = Nodes::map(alone, &shape, column, (t, 0.0), &tied)?;
-    let attachments = StripAttachments::at(&[], &column.surface, (&alone.grid, &nodes.free), (t, 0.0));
+    let instant = TimeInterval { start: t, dt: 0.0 };
+    let nodes = Nodes::map(alone, &shape, column, instant, &tied)?;
+    let attachments = StripAttachments::at(&[], &column.surface, &alone.grid, &nodes.free, instant);
     let problem = Problem {
         model: alone,
         shape: &shape,
@@ -213,7 +218,8 @@ fn everywhere<const D: usize>(mut own: Points<D>, halo: &dyn Halo) -> Points<D> 
     bytes.resize(length[0] as usize, 0.0);
     halo.reduce(&mut bytes);
     let message: Vec<u8> = bytes.iter().map(|&byte| byte as u8).collect();
-    let (mut all, mut rest) = (own.only(&[]), &message[..]);
+    let mut all = own.only(&[]);
+    let mut rest = &message[..];
     while !rest.is_empty() {
         all.columns().into_iter().for_each(|column| column.take(&mut rest));
     }
@@ -225,17 +231,13 @@ fn advance<K: Kinematics<D>, const D: usize>(
     alone: &Model<K, D>,
     face: &Support<D>,
     mut column: Points<D>,
-    (t, dt): (f64, f64),
+    interval: TimeInterval,
 ) -> Result<(Points<D>, Beside<D>), StepError> {
-    let (tied, mut solver) = (TiedHalo::of(&alone.grid), Band::of(&alone.grid));
+    let tied = TiedHalo::of(&alone.grid);
+    let mut solver = Band::of(&alone.grid);
     let shape = Shape::at(&alone.grid, &column)?;
-    let mut nodes = Nodes::map(alone, &shape, &column, (t, dt), &tied)?;
-    if let Some(inertia) = nodes.inertia.as_mut().filter(|_| t == 0.0)
-        && initial::is_pushed(alone, &column, &tied)?
-    {
-        inertia.newmark = Newmark::of_the_end();
-    }
-    let attachments = StripAttachments::at(&[], &column.surface, (&alone.grid, &nodes.free), (t, dt));
+    let nodes = mapped(alone, &shape, &column, interval, &tied)?;
+    let attachments = StripAttachments::at(&[], &column.surface, &alone.grid, &nodes.free, interval);
     let problem = Problem {
         model: alone,
         shape: &shape,
@@ -247,23 +249,19 @@ fn advance<K: Kinematics<D>, const D: usize>(
     let guess: Vec<f64> = nodes
         .inertia
         .iter()
-        .flat_map(|inertia| inertia.v.iter().map(|v| v * dt))
+        .flat_map(|inertia| inertia.v.iter().map(|v| v * interval.dt))
         .collect();
     let found = solve::find(&problem, &guess, &mut solver, &mut Counts::default())?;
     commit::check_inside(alone, &shape, &column, &found.u, &tied)?;
     let force = force(&problem, &found.trial, face)?;
+    let inertia = nodes.inertia.as_ref();
     let layer = tied.owned().places::<D>();
-    let velocity_of = |c: usize| {
-        nodes
-            .inertia
-            .as_ref()
-            .map_or(0.0, |inertia| inertia.velocity(c, found.u[c]))
-    };
-    let velocity: Vec<f64> = layer.map(velocity_of).collect();
+    let velocity = layer.map(|c| inertia.map_or(0.0, |inertia| inertia.velocity(c, found.u[c])));
+    let velocity: Vec<f64> = velocity.collect();
     let velocity = velocity.chunks_exact(D).map(Vector::from_column_slice).collect();
-    let answers = commit::answers(alone, &found.trial, &column, &tied)?;
+    let update = commit::constitutive_update(alone, &found.trial, &column, &tied)?;
     let across: Vec<f64> = column.x.iter().map(|x| x[face.axis]).collect();
-    commit::commit(alone, (&shape, &nodes), (found, answers), &mut column, &tied);
+    commit::commit(alone, &shape, &nodes, found, update, &mut column, &tied);
     // Nothing differs across the column: its material stays before the face.
     column
         .x
@@ -282,6 +280,23 @@ fn advance<K: Kinematics<D>, const D: usize>(
     ))
 }
 
+/// The nodes of a column in a step, which in its first one begins with the forces at its end if they are out of balance.
+fn mapped<K: Kinematics<D>, const D: usize>(
+    alone: &Model<K, D>,
+    shape: &Shape<D>,
+    column: &Points<D>,
+    interval: TimeInterval,
+    tied: &TiedHalo,
+) -> Result<Nodes<D>, StepError> {
+    let mut nodes = Nodes::map(alone, shape, column, interval, tied)?;
+    if let Some(inertia) = nodes.inertia.as_mut().filter(|_| interval.start == 0.0)
+        && initial::is_pushed(alone, column, tied)?
+    {
+        inertia.newmark = Newmark::of_the_end();
+    }
+    Ok(nodes)
+}
+
 /// N  of every node of the face, what the stress of the column does there: the flux that the internal forces of the
 /// ground have, so that these balance where the ground moves as the column does.
 fn force<K: Kinematics<D>, const D: usize>(
@@ -296,22 +311,21 @@ fn force<K: Kinematics<D>, const D: usize>(
         halo,
         ..
     } = *problem;
-    let (pressures, volume) = (Pressures::of(problem, trial), problem.volume());
+    let pressures = Pressures::of(problem, trial);
+    let volume = problem.volume();
     let width = model.grid.axes()[face.axis].length();
     let outward = if face.upper { 1.0 } else { -1.0 };
-    let flux = |p: usize| {
+    let mut fluxes: Vec<[f64; D]> = Vec::with_capacity(points.len());
+    for (p, &volume) in volume.iter().enumerate() {
         let response = trial.respond(model, points, p);
         let response = response.map_err(|source| StepError::Material {
             id: points.id[p],
             source,
         })?;
-        let tau = pressures.acting::<K, D>(p, volume[p], response.tau());
-        let flux = K::flux(&trial.damped(model, points, (p, &response), tau), &trial.dF(p));
-        Ok(std::array::from_fn(|i| {
-            outward * flux[(i, face.axis)] * volume[p] / width
-        }))
-    };
-    let fluxes: Vec<[f64; D]> = (0..points.len()).map(flux).collect::<Result<_, StepError>>()?;
+        let tau = pressures.acting::<K, D>(p, volume, response.tau());
+        let flux = K::flux(&trial.damped(model, points, p, &response, tau), &trial.dF(p));
+        fluxes.push(std::array::from_fn(|i| outward * flux[(i, face.axis)] * volume / width));
+    }
     let nodal = halo.sum(&transfer::to_nodes::<D, D>(shape, |p| fluxes[p]));
     Ok(halo
         .owned()

@@ -40,6 +40,17 @@ pub struct Grid<const D: usize> {
     beyond: usize, // further layers of nodes in a window
 }
 
+/// Extent of the nodal contributions of a column of cells.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ColumnExtent {
+    /// Layers of nodes that the column touches.
+    pub layers: usize,
+    /// Nodes of a layer.
+    pub layer_nodes: usize,
+    /// Nodes of the grid of this rank.
+    pub nodes: usize,
+}
+
 impl<const D: usize> Grid<D> {
     /// The whole grid as one window. Fails if the axes differ in order.
     pub fn new(axes: [KnotVector; D]) -> Result<Self, GridError> {
@@ -88,9 +99,10 @@ impl<const D: usize> Grid<D> {
 
     /// The same grid seen through the cells of a box.
     pub fn window_of(&self, window: [Range<usize>; D]) -> Self {
-        let inside =
-            |axis: usize| self.room[axis].start <= window[axis].start && window[axis].end <= self.room[axis].end;
-        debug_assert!((0..D).all(|axis| !window[axis].is_empty() && inside(axis)));
+        debug_assert!((0..D).all(|axis| {
+            let room = &self.room[axis];
+            !window[axis].is_empty() && room.start <= window[axis].start && window[axis].end <= room.end
+        }));
         Self { window, ..self.clone() }
     }
 
@@ -141,6 +153,15 @@ impl<const D: usize> Grid<D> {
     /// Layers of nodes that a column of cells contributes to: those that it touches, and those beyond.
     pub fn column_layers(&self) -> usize {
         self.order() + 1 + self.beyond
+    }
+
+    /// Returns the extent of the contributions of a column of cells.
+    pub(crate) fn column_extent(&self) -> ColumnExtent {
+        ColumnExtent {
+            layers: self.column_layers(),
+            layer_nodes: self.layer_nodes(),
+            nodes: self.nodes(),
+        }
     }
 
     /// Nodes of one layer across axis 0.
@@ -214,8 +235,7 @@ impl<const D: usize> Grid<D> {
     /// Functions (along each axis) of a cell (global), in the order of its nodes, axis 0 slowest.
     pub fn functions_of(&self, cell: [usize; D]) -> impl Iterator<Item = [usize; D]> {
         let width = self.order() + 1;
-        let digit = move |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
-        (0..self.cell_nodes()).map(move |k| std::array::from_fn(|axis| cell[axis] + digit(k, axis)))
+        (0..self.cell_nodes()).map(move |k| std::array::from_fn(|axis| cell[axis] + digit::<D>(k, axis, width)))
     }
 
     /// Offsets of a cell's nodes from its first one, axis 0 slowest: the paper's p2N, which is the same for all cells.
@@ -233,9 +253,8 @@ impl<const D: usize> Grid<D> {
         (0..width.pow(D as u32))
             .map(|k| {
                 (0..D).fold(0, |offset, axis| {
-                    let a = k / width.pow((D - 1 - axis) as u32) % width;
                     let along = if axis == 0 { 1 } else { self.nodes_along(axis) };
-                    offset * along + a
+                    offset * along + digit::<D>(k, axis, width)
                 })
             })
             .collect()
@@ -252,7 +271,9 @@ impl<const D: usize> Grid<D> {
 
     /// The nearest node of the window in the same layer across `axis` that is on none of the other axes' faces.
     pub fn off_edges(&self, node: usize, axis: usize) -> usize {
-        let (place, mut found, mut stride) = (self.node_at(node), node, 1);
+        let place = self.node_at(node);
+        let mut found = node;
+        let mut stride = 1;
         for other in (0..D).rev() {
             match place[other] {
                 _ if other == axis => {}
@@ -290,8 +311,10 @@ impl<const D: usize> Grid<D> {
     /// Local nodes of the window within a box of nodes (global) along the first two axes: as few ranges as there can
     /// be.
     pub fn nodes_within(&self, [layers, rows]: &[Range<usize>; 2]) -> Vec<Range<usize>> {
-        let (layer, row) = (self.layer_nodes(), self.layer_nodes() / self.nodes_along(1));
-        let (first, start) = (self.window[0].start, self.window[1].start);
+        let layer = self.layer_nodes();
+        let row = self.layer_nodes() / self.nodes_along(1);
+        let first = self.window[0].start;
+        let start = self.window[1].start;
         if layers.is_empty() || rows.is_empty() {
             return Vec::new();
         }
@@ -301,8 +324,12 @@ impl<const D: usize> Grid<D> {
         } else {
             (layers.len(), rows.len() * row)
         };
-        let at = |along: usize| (layers.start + along - first) * layer + (rows.start - start) * row;
-        (0..runs).map(|along| at(along)..at(along) + run).collect()
+        (0..runs)
+            .map(|along| {
+                let start = (layers.start + along - first) * layer + (rows.start - start) * row;
+                start..start + run
+            })
+            .collect()
     }
 
     /// Number of a node (local) among those of the whole grid.
@@ -357,4 +384,10 @@ impl<const D: usize> Grid<D> {
             .map(KnotVector::smallest_cell)
             .fold(f64::INFINITY, f64::min)
     }
+}
+
+/// Digit of `number` in the system of the `base`, of which axis 0 is the slowest.
+#[inline]
+pub(crate) fn digit<const D: usize>(number: usize, axis: usize, base: usize) -> usize {
+    number / base.pow((D - 1 - axis) as u32) % base
 }

@@ -3,6 +3,9 @@
 
 mod settle;
 
+use crate::parallel::Backend;
+use crate::points::MappedPoints;
+use crate::schedule::TimeInterval;
 pub use settle::{Settling, set_spread, settle};
 
 use crate::boundary::StripReport;
@@ -15,6 +18,7 @@ use crate::model::Model;
 use crate::parallel::{Halo, LinearSolver, agreed};
 use crate::points::{Packed, Points};
 use crate::solve::contact;
+use crate::solve::found::Found;
 use crate::solve::round_off::RoundOff;
 use crate::step::Counts;
 use crate::step::nodes::Nodes;
@@ -69,44 +73,46 @@ pub fn set_stress<K: Kinematics<D>, const D: usize>(
 /// keeps its Kirchhoff stress, with the elastic strain that the new law has at it; a law of another kind begins in the
 /// state of its start. Fails on all ranks if a point has no response before.
 pub fn exchange<K: Kinematics<D>, const D: usize>(
-    (before, after): (&Model<K, D>, &Model<K, D>),
+    before: &Model<K, D>,
+    after: &Model<K, D>,
     points: &mut Points<D>,
     halo: &dyn Halo,
 ) -> Result<(), StepError> {
-    let law = |model: &Model<K, D>, points: &Points<D>, p: usize| {
-        model.materials[usize::from(points.material[p])]
-            .at(points.height(p))
-            .into_owned()
-    };
-    let mut exchanged = || {
-        for p in 0..points.len() {
-            let (old, new) = (law(before, points, p), law(after, points, p));
-            if old == new {
-                continue;
-            }
-            let response = before.respond(points, p, &points.b_e.at(p));
-            let tau = response
-                .map_err(|source| StepError::Material {
-                    id: points.id[p],
-                    source,
-                })?
-                .tau();
-            if new.separation() != Separation::Closing
-                && let Some(gap) = &mut points.gap
-            {
-                gap[p] = 0.0;
-            }
-            let state = points.state.as_mut().map_or(&mut [][..], |state| state.of_point_mut(p));
-            if old.state() != new.state() {
-                state.fill(0.0);
-            }
-            if !old.is_linear() || old.elastic() != new.elastic() {
-                points.b_e.set(p, b_e_of(&new, &tau, state));
-            }
+    agreed(halo, exchange_own(before, after, points), StepError::OtherRank)
+}
+
+/// [`exchange`] of this rank's points.
+fn exchange_own<K: Kinematics<D>, const D: usize>(
+    before: &Model<K, D>,
+    after: &Model<K, D>,
+    points: &mut Points<D>,
+) -> Result<(), StepError> {
+    for p in 0..points.len() {
+        let material = usize::from(points.material[p]);
+        let [old, new] = [before, after].map(|model| model.materials[material].at(points.height(p)));
+        if old == new {
+            continue;
         }
-        Ok(())
-    };
-    agreed(halo, exchanged(), StepError::OtherRank)
+        let response = before.respond(points, p, &points.b_e.at(p));
+        let response = response.map_err(|source| StepError::Material {
+            id: points.id[p],
+            source,
+        })?;
+        let tau = response.tau();
+        if new.separation() != Separation::Closing
+            && let Some(gap) = &mut points.gap
+        {
+            gap[p] = 0.0;
+        }
+        let state = points.state.as_mut().map_or(&mut [][..], |state| state.of_point_mut(p));
+        if old.state() != new.state() {
+            state.fill(0.0);
+        }
+        if !old.is_linear() || old.elastic() != new.elastic() {
+            points.b_e.set(p, b_e_of(&new, &tau, state));
+        }
+    }
+    Ok(())
 }
 
 /// The elastic left Cauchy-Green tensor that belongs to a Cauchy stress in Pa where nothing has moved, and the law's
@@ -131,7 +137,8 @@ pub fn b_e_of(law: &Material, stress: &Symmetric, state: &mut [f64]) -> Symmetri
 pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
-    (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
+    halo: &dyn Halo,
+    solver: &mut dyn LinearSolver,
 ) -> Result<(), StepError> {
     let model = &model.settling();
     let start = Undeformed::of(model, points, halo)?;
@@ -151,13 +158,13 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
         solver.solve_to(SOLVED, &residual.f_oob, &mut du)?;
         u.iter_mut().zip(&du).for_each(|(u, du)| *u += du);
         start.nodes.extend(&model.grid, &mut u, halo);
-        strains = transfer::gradients::<K, D, _>((&start.shape, &points.x), &u, |_, grad| {
+        strains = transfer::gradients::<K, D, _>(&start.shape, &points.x, &u, |_, grad| {
             Symmetric::of(&K::gradient::<f64>(&grad))
         });
     }
     let (_, traction) = start
         .attachments
-        .conclude((&model.boundary.strips, &model.grid), &points.surface, &u, halo);
+        .conclude(&model.boundary.strips, &model.grid, &points.surface, &u, halo);
     points.surface.traction = traction;
     for (p, strain) in strains.iter().enumerate() {
         points.b_e.set(p, exponential(strain));
@@ -172,9 +179,10 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
 pub fn hold<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
-    (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
+    halo: &dyn Halo,
+    solver: &mut dyn LinearSolver,
 ) -> Result<(), StepError> {
-    hold_at(model, points, 0.0, (halo, solver))
+    hold_at(model, points, 0.0, halo, solver)
 }
 
 /// The same of the state at a later time, once the ground or what acts on it has changed: the forces of the equilibrium
@@ -183,20 +191,16 @@ pub fn hold_at<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
     t: f64,
-    (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
+    halo: &dyn Halo,
+    solver: &mut dyn LinearSolver,
 ) -> Result<(), StepError> {
     if model.boundary.absorbing().next().is_none() {
         return Ok(());
     }
     let at_rest = &model.at_rest();
-    let Undeformed {
-        shape,
-        mut nodes,
-        mut attachments,
-    } = Undeformed::at(at_rest, points, t, halo)?;
-    let (guess, counts) = (vec![0.0; model.grid.nodes() * D], &mut Counts::default());
-    let around = (&mut attachments, &*points);
-    let found = contact::find(at_rest, &shape, &mut nodes, around, &guess, (halo, solver), counts)?;
+    let mut start = Undeformed::at(at_rest, points, t, halo)?;
+    let backend = &mut Backend { halo, solver };
+    let found = start.find(at_rest, points, backend, &mut Counts::default())?;
     points.surface.held = model.boundary.held(&model.grid, &found.reaction, halo);
     Ok(())
 }
@@ -209,32 +213,39 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Result<Equilibrium, StepError> {
     let model = &model.at_rest();
-    let yields = |p: usize| match model.respond(points, p, &points.b_e.at(p)) {
-        Ok(response) => Ok(u32::from(
-            response.branch() != Branch::Elastic && response.plastic_increment() > ON,
-        )),
-        Err(source) => Err(StepError::Material {
-            id: points.id[p],
-            source,
-        }),
-    };
-    let counted = (0..points.len()).try_fold(0.0, |sum, p| Ok(sum + f64::from(yields(p)?)));
+    let counted = (0..points.len()).try_fold(0.0, |sum, p| {
+        let yields = yields(model, points, p)?;
+        Ok(sum + f64::from(u32::from(yields)))
+    });
     let mut yielding = [agreed(halo, counted, StepError::OtherRank)?];
     let start = Undeformed::of(model, points, halo)?;
     let at_rest = vec![0.0; model.grid.nodes() * D];
     let balance = Residual::of(&start.problem(model, points, halo), &at_rest).balance;
     halo.reduce(&mut yielding);
     let reactions = model.boundary.reactions(&model.grid, &balance.reaction, halo);
-    let (strips, _) =
-        start
-            .attachments
-            .conclude((&model.boundary.strips, &model.grid), &points.surface, &at_rest, halo);
+    let (strips, _) = start
+        .attachments
+        .conclude(&model.boundary.strips, &model.grid, &points.surface, &at_rest, halo);
     Ok(Equilibrium {
         force: balance.measure(),
         yielding: yielding[0] as u64,
         reactions,
         strips,
     })
+}
+
+/// Whether the stress of a point lies outside the yield surface.
+fn yields<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    points: &Points<D>,
+    p: usize,
+) -> Result<bool, StepError> {
+    let response = model.respond(points, p, &points.b_e.at(p));
+    let response = response.map_err(|source| StepError::Material {
+        id: points.id[p],
+        source,
+    })?;
+    Ok(response.branch() != Branch::Elastic && response.plastic_increment() > ON)
 }
 
 /// Whether forces at time 0 are out of balance, by more than the tolerance and round-off.
@@ -273,30 +284,49 @@ impl<const D: usize> Undeformed<D> {
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
         let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?;
-        let mut nodes = Nodes::map(model, &shape, points, (t, 0.0), halo)?;
+        let instant = TimeInterval { start: t, dt: 0.0 };
+        let mut nodes = Nodes::map(model, &shape, points, instant, halo)?;
         // The displacements of a start are none: what it seeks is a stress.
         let followers = std::mem::take(&mut nodes.followers);
         if !followers.is_empty() {
-            let (loads, still) = (&model.boundary.loads[..], vec![0.0; model.grid.nodes() * D]);
-            let traction =
-                followers.tractions::<K>((loads, &model.grid), points, (&still, &|_| Tensor::identity()), halo);
+            let loads = &model.boundary.loads[..];
+            let still = vec![0.0; model.grid.nodes() * D];
+            let traction = followers.tractions::<K>(loads, &model.grid, points, &still, &|_| Tensor::identity(), halo);
             let mut force = followers.forces(&traction, &model.grid, halo);
             nodes.reduce(&mut [&mut force], halo);
             nodes.f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
         }
         let movable = nodes.movable();
-        let mut attachments = StripAttachments::at(
-            &model.boundary.strips,
-            &points.surface,
-            (&model.grid, &movable),
-            (t, 0.0),
-        );
+        let mut attachments =
+            StripAttachments::at(&model.boundary.strips, &points.surface, &model.grid, &movable, instant);
         attachments.wet(nodes.pore_pressure.as_ref());
         Ok(Self {
             shape,
             nodes,
             attachments,
         })
+    }
+
+    /// Finds the equilibrium of the points from no displacement on.
+    fn find<K: Kinematics<D>>(
+        &mut self,
+        model: &Model<K, D>,
+        points: &Points<D>,
+        backend: &mut Backend<'_>,
+        counts: &mut Counts,
+    ) -> Result<Found<K, D>, StepError> {
+        let shape = &self.shape;
+        let mapped = MappedPoints { shape, points };
+        let guess = vec![0.0; model.grid.nodes() * D];
+        contact::find(
+            model,
+            mapped,
+            &mut self.nodes,
+            &mut self.attachments,
+            &guess,
+            backend,
+            counts,
+        )
     }
 
     fn problem<'a, K>(
@@ -323,11 +353,11 @@ fn elastic_residual<K: Kinematics<D>, const D: usize>(
     u: &[f64],
 ) -> Balance {
     let volume = problem.volume();
-    let f_int = transfer::divergence::<K, D>((problem.shape, &problem.points.x), |p| {
+    let f_int = transfer::divergence::<K, D>(problem.shape, &problem.points.x, |p| {
         let tau = stress_of(&elastic_at(problem.model, problem.points, p), &strains[p]);
         K::flux(&tau, &Tensor::identity()) * volume[p]
     });
-    Balance::of(problem, (u, &|_| Tensor::identity()), problem.halo.sum(&f_int), 0)
+    Balance::of(problem, u, &|_| Tensor::identity(), problem.halo.sum(&f_int), 0)
 }
 
 fn elastic_at<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, p: usize) -> Elastic {

@@ -5,6 +5,7 @@ mod axisymmetric;
 mod plane_strain;
 mod solid;
 
+use crate::material::Moduli;
 pub use axisymmetric::Axisymmetric;
 pub use plane_strain::PlaneStrain;
 pub use solid::Solid;
@@ -77,7 +78,7 @@ pub trait Kinematics<const D: usize>: Copy + Debug + Default + Send + Sync + 'st
 
     /// Elastic stiffness of a node pair from T = sum V0 g_a (x) g_b, g their numbers: where these are derivatives,
     /// lambda T + mu T^T + mu tr T I.
-    fn stiffness(moment: &Moment<Self, D>, lame: (f64, f64)) -> Square<D>;
+    fn stiffness(moment: &Moment<Self, D>, moduli: Moduli) -> Square<D>;
 
     /// Volume at `x` per m^D of the grid: what volumes and areas are multiplied with. Linear in x.
     fn weight(_x: &Vector<D>) -> f64 {
@@ -100,7 +101,7 @@ pub type SlopeOf<K, R, const D: usize> = <<K as Kinematics<D>>::Gradient as Grad
 /// Sums over a node pair's numbers.
 pub type Moment<K, const D: usize> = <<K as Kinematics<D>>::Gradient as Gradient<D>>::Moment;
 /// A linear map of gradients.
-pub type Moduli<K, const D: usize> = <<K as Kinematics<D>>::Gradient as Gradient<D>>::Moduli;
+pub type GradientModuli<K, const D: usize> = <<K as Kinematics<D>>::Gradient as Gradient<D>>::Moduli;
 
 /// A matrix of D rows and G columns: gradients of grid fields, and what works on them.
 pub trait Gradient<const D: usize>:
@@ -213,7 +214,8 @@ impl<const D: usize, const G: usize> Gradient<D> for SMatrix<f64, D, G> {
 
 /// lambda T + mu T^T + mu tr T I, T = sum V0 grad N_a (x) grad N_b.
 #[inline]
-fn isotropic<const D: usize>(moment: &Square<D>, (lambda, mu): (f64, f64)) -> Square<D> {
+fn isotropic<const D: usize>(moment: &Square<D>, moduli: Moduli) -> Square<D> {
+    let Moduli { lambda, mu } = moduli;
     moment * lambda + moment.transpose() * mu + Square::<D>::identity() * (mu * moment.trace())
 }
 

@@ -221,7 +221,8 @@ macro_rules! vector {
                     return self;
                 }
                 let marks = Self::choose(mask, self.like(1.0), self.like(0.0)).numbers();
-                let (mut numbers, [first, second]) = (self.numbers(), arguments.map(Self::numbers));
+                let mut numbers = self.numbers();
+                let [first, second] = arguments.map(Self::numbers);
                 for lane in (0..$count).filter(|&lane| marks[lane] > 0.0) {
                     numbers[lane] = rare([first[lane], second[lane]]);
                 }

@@ -29,7 +29,7 @@ pub use law::{Branch, Law, Projection, Separation, Variable, split};
 pub use mohr_coulomb::MohrCoulomb;
 pub use mu_i::MuI;
 pub use response::Response;
-pub use softening::{Decay, Rate, SofteningMohrCoulomb};
+pub use softening::{Decay, Rate, SofteningMohrCoulomb, Strength};
 pub use stiffness::Stiffness;
 pub use tangent::Tangent;
 pub use von_mises::VonMises;
@@ -254,7 +254,7 @@ macro_rules! laws {
                         (moduli, moduli.stress(spectrum.eps), Flowed::Elastic)
                     }
                 };
-                Ok(Response::new(*b_trial, spectrum, moduli, (tau, flowed)))
+                Ok(Response::new(*b_trial, spectrum, moduli, tau, flowed))
             }
         }
 
@@ -279,10 +279,10 @@ macro_rules! laws {
             }
 
             /// See [`Law::chord`]; 2μ if elastic.
-            pub fn chord(&self, moduli: Moduli, differences: (f64, f64)) -> f64 {
+            pub fn chord(&self, moduli: Moduli, tau: f64, eps: f64) -> f64 {
                 match self {
                     Self::Elastic => 2.0 * moduli.mu,
-                    $(Self::$Law(flow) => $module::$Law::chord(flow, moduli, differences),)*
+                    $(Self::$Law(flow) => $module::$Law::chord(flow, moduli, tau, eps),)*
                 }
             }
 

@@ -46,7 +46,7 @@ pub struct Criteria {
 impl Criteria {
     /// Both measures beside their tolerances, in words; the force measure with the number of the material that it is
     /// of.
-    pub fn judged(&self, energy: f64, (force, material): (f64, Option<usize>)) -> String {
+    pub fn judged(&self, energy: f64, force: f64, material: Option<usize>) -> String {
         let of = material.map_or_else(String::new, |material| format!(" of material {material}"));
         format!(
             "energy residual {}, force residual{of} {}",

@@ -18,7 +18,7 @@ use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
 use crate::water::Water;
 use crate::water::ambient::{Ambient, Span, StillWater};
-use crate::water::flow::{Flow, Motion};
+use crate::water::flow::Motion;
 use std::borrow::Cow;
 use std::marker::PhantomData;
 
@@ -174,7 +174,8 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
 
     /// Force per mass at time `t`, m/s2: gravity less the ground's acceleration; `None` without either.
     pub fn body_force(&self, t: f64) -> Option<Vector<D>> {
-        let (gravity, shaking) = (self.gravity.map(|gravity| gravity.at(t)), self.shaking.as_ref());
+        let gravity = self.gravity.map(|gravity| gravity.at(t));
+        let shaking = self.shaking.as_ref();
         match (gravity, shaking.map(|shaking| shaking.at(t))) {
             (Some(gravity), Some(ground)) => Some(gravity - ground),
             (gravity, ground) => gravity.or(ground.map(|ground| -ground)),
@@ -192,9 +193,13 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
 
     /// Whether the mass of point `p` follows the water in its pores: water that flows changes it by itself.
     pub fn follows_water(&self, points: &Points<D>, p: usize) -> bool {
+        points.pore_pressure.is_some() && self.flows_at(points, p)
+    }
+
+    /// Whether water flows in the material of point `p`.
+    fn flows_at(&self, points: &Points<D>, p: usize) -> bool {
         let flow = self.water.as_ref().and_then(|water| water.flow.as_ref());
-        let flows = |flow: &Flow<D>| flow.soils[usize::from(points.material[p])].is_some();
-        points.pore_pressure.is_some() && flow.is_some_and(flows)
+        flow.is_some_and(|flow| flow.soils[usize::from(points.material[p])].is_some())
     }
 
     /// The model in a step of the length `dt`, s: another one only where a strength follows the rate.
@@ -202,14 +207,11 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
     where
         K: Clone,
     {
-        let over = |material: &Material| material.over(dt);
-        if self.materials.iter().all(|material| over(material).is_none()) {
+        if self.materials.iter().all(|material| material.over(dt).is_none()) {
             return Cow::Borrowed(self);
         }
-        let materials = self
-            .materials
-            .iter()
-            .map(|material| over(material).unwrap_or_else(|| material.clone()));
+        let materials = self.materials.iter();
+        let materials = materials.map(|material| material.over(dt).unwrap_or_else(|| material.clone()));
         Cow::Owned(Self {
             materials: materials.collect(),
             ..self.clone()
@@ -272,8 +274,7 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
     /// How far point `p`, as it is deformed, spans up and down for still water. With pressures of its own it has the
     /// still water's at its place, as their sum is what acts.
     pub fn span(&self, points: &Points<D>, p: usize) -> Span {
-        let flow = self.water.as_ref().and_then(|water| water.flow.as_ref());
-        if flow.is_some_and(|flow| flow.soils[usize::from(points.material[p])].is_some()) {
+        if self.flows_at(points, p) {
             return Span::default();
         }
         let start = points.x[p] - points.u[p];
@@ -282,17 +283,18 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
             .reach
             .get(usize::from(points.material[p]))
             .zip(self.grid.locate(&start));
-        reach.map_or_else(Span::default, |(share, cell)| {
-            let (lower, edges) = self.grid.cell_box(&cell);
-            let parts = edges * (2.0 * share);
-            let filled = points.volume[p] / (parts.product() * K::weight(&start));
-            let span = Span::of(start[D - 1] - lower[D - 1], parts[D - 1], filled);
-            let stretched = self.boundary.reach_along(&self.grid, points, p, D - 1) / (0.5 * parts[D - 1]);
-            Span {
-                reach: span.reach * stretched,
-                ..span
-            }
-        })
+        let Some((share, cell)) = reach else {
+            return Span::default();
+        };
+        let (lower, edges) = self.grid.cell_box(&cell);
+        let parts = edges * (2.0 * share);
+        let filled = points.volume[p] / (parts.product() * K::weight(&start));
+        let span = Span::of(start[D - 1] - lower[D - 1], parts[D - 1], filled);
+        let stretched = self.boundary.reach_along(&self.grid, points, p, D - 1) / (0.5 * parts[D - 1]);
+        Span {
+            reach: span.reach * stretched,
+            ..span
+        }
     }
 
     /// What shows how far the points reach.
@@ -307,8 +309,8 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
 
     /// Whether all points have one Young's modulus.
     pub fn is_uniformly_stiff(&self) -> bool {
-        let uniform = |m: &Material| !matches!(m, Material::Graded(_)) && m.elastic().young == self.stiffest();
-        self.materials.iter().all(uniform)
+        let mut materials = self.materials.iter();
+        materials.all(|m| !matches!(m, Material::Graded(_)) && m.elastic().young == self.stiffest())
     }
 }
 

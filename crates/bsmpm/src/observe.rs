@@ -36,8 +36,9 @@ fn largest<const D: usize>(
     halo: &dyn Halo,
     value: impl Fn(usize) -> f64 + Sync,
 ) -> f64 {
-    let of_part = |p| if part.holds(points, p) { value(p) } else { 0.0 };
-    let mut largest = [threads::largest(points.len(), of_part)];
+    let mut largest = [threads::largest(points.len(), |p| {
+        if part.holds(points, p) { value(p) } else { 0.0 }
+    })];
     halo.maximum(&mut largest);
     largest[0]
 }
@@ -46,13 +47,15 @@ fn largest<const D: usize>(
 pub fn percentile<const D: usize>(
     points: &Points<D>,
     part: &Part,
-    (axis, percentile): (usize, f64),
+    axis: usize,
+    percentile: f64,
     halo: &dyn Halo,
 ) -> f64 {
     let mut count = [part.of(points).count() as f64];
     halo.reduce(&mut count);
     let wanted = percentile / 100.0 * count[0];
-    let (mut lower, mut upper) = (0.0, farthest(points, part, axis, halo));
+    let mut lower = 0.0;
+    let mut upper = farthest(points, part, axis, halo);
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (lower + upper);
         let mut below = [part.of(points).filter(|&p| points.x[p][axis] <= middle).count() as f64];
@@ -73,18 +76,15 @@ pub fn largest_displacement<const D: usize>(points: &Points<D>, part: &Part, hal
 
 /// Largest coordinate along the last axis (m) of the points of a part that lie within half a cell of `x` along axis 0
 /// (m); 0 if there are none.
-pub fn surface<const D: usize>(grid: &Grid<D>, (points, part): (&Points<D>, &Part), x: f64, halo: &dyn Halo) -> f64 {
+pub fn surface<const D: usize>(grid: &Grid<D>, points: &Points<D>, part: &Part, x: f64, halo: &dyn Halo) -> f64 {
     let axis = &grid.axes()[0];
     let half = axis
         .cell_of(x)
         .map_or(0.0, |cell| 0.5 * (axis.breakpoint(cell + 1) - axis.breakpoint(cell)));
-    let at = |p: usize| &points.x[p];
     largest(points, part, halo, |p| {
-        if (at(p)[0] - x).abs() <= half {
-            at(p)[D - 1]
-        } else {
-            0.0
-        }
+        let place = &points.x[p];
+        let is_near = (place[0] - x).abs() <= half;
+        if is_near { place[D - 1] } else { 0.0 }
     })
 }
 
@@ -100,8 +100,10 @@ fn total<const D: usize, const N: usize>(
     halo: &dyn Halo,
     term: impl Fn(usize, usize) -> f64 + Sync,
 ) -> [f64; N] {
-    let of_part = |p| std::array::from_fn(|k| if part.holds(points, p) { term(p, k) } else { 0.0 });
-    let sums = halo.total(&threads::sums::<N>(points.len(), of_part));
+    let sums = threads::sums::<N>(points.len(), |p| {
+        std::array::from_fn(|k| if part.holds(points, p) { term(p, k) } else { 0.0 })
+    });
+    let sums = halo.total(&sums);
     std::array::from_fn(|k| sums[k])
 }
 
@@ -205,7 +207,9 @@ pub fn angular_momentum<const D: usize>(
 ) -> [f64; 3] {
     let Some(motion) = &points.motion else { return [0.0; 3] };
     total(points, part, halo, |p, k| {
-        let (arm, v, [a, b]) = (points.x[p] - place, motion.v[p], [[1, 2], [2, 0], [0, 1]][k]);
+        let arm = points.x[p] - place;
+        let v = motion.v[p];
+        let [a, b] = [[1, 2], [2, 0], [0, 1]][k];
         if a.max(b) < D {
             points.mass[p] * (arm[a] * v[b] - arm[b] * v[a])
         } else {
@@ -258,8 +262,7 @@ pub fn displacement<const D: usize>(points: &Points<D>, p: usize, place: &Vector
 /// Where the material is now (m, from the grid's lower corner) that was at `place` before anything moved, by the motion
 /// about the point that was the nearest to it then; `None` without points.
 pub fn moved<const D: usize>(points: &Points<D>, place: &Vector<D>, halo: &dyn Halo) -> Option<Vector<D>> {
-    let apart = |p: usize| (points.x[p] - points.u[p] - place).norm_squared();
-    let id = nearest_by(points, apart, halo)?;
+    let id = nearest_by(points, |p| (points.x[p] - points.u[p] - place).norm_squared(), halo)?;
     let along: [f64; D] = at_point(points, id, halo, |p| displacement(points, p, place).into());
     Some(place + Vector::from(along))
 }

@@ -88,10 +88,13 @@ pub trait Halo {
     }
 }
 
+/// Two nodal vectors of a dot product.
+pub type VectorPair<'a> = (&'a [f64], &'a [f64]);
+
 /// Dot products of nodal vectors (`width` numbers a node) over all nodes, each counted once, in one reduction.
-pub fn dots(halo: &dyn Halo, width: usize, pairs: &[(&[f64], &[f64])]) -> Vec<f64> {
-    let dot = |(a, b): &(&[f64], &[f64])| over_layers(halo, width, |c| a[c] * b[c]);
-    halo.total(&pairs.iter().map(dot).collect::<Vec<_>>())
+pub fn dots(halo: &dyn Halo, width: usize, pairs: &[VectorPair<'_>]) -> Vec<f64> {
+    let sums = pairs.iter().map(|(a, b)| over_layers(halo, width, |c| a[c] * b[c]));
+    halo.total(&sums.collect::<Vec<_>>())
 }
 
 /// Sum over the components of this rank's own nodes, `width` a node: plainly within a layer, exactly over the layers.
@@ -204,4 +207,12 @@ impl Halo for Alone {
         sums.iter().map(Exact::value).collect()
     }
     fn maximum(&self, _numbers: &mut [f64]) {}
+}
+
+/// Communication between the ranks, and the solver of the linear systems.
+pub struct Backend<'a> {
+    /// Exchange with other ranks.
+    pub halo: &'a dyn Halo,
+    /// Solver of the linear systems.
+    pub solver: &'a mut dyn LinearSolver,
 }

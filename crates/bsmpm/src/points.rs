@@ -8,10 +8,19 @@ pub use packed::{Components, Packed};
 
 use crate::boundary::Surface;
 use crate::boundary::anchor::Anchored;
-use crate::grid::{Grid, Located};
+use crate::grid::{Grid, Located, Shape};
 use crate::tensor::{Symmetric, Tensor, Vector};
 use crate::threads;
 use rayon::prelude::*;
+
+/// Material points and their shape functions.
+#[derive(Clone, Copy)]
+pub struct MappedPoints<'a, const D: usize> {
+    /// Shape functions at the points.
+    pub shape: &'a Shape<D>,
+    /// The points.
+    pub points: &'a Points<D>,
+}
 
 /// What a column is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -350,11 +359,10 @@ impl<const D: usize> Points<D> {
     /// Sorts by (cell, id), the canonical order: neither migration nor restart then matters to any sum over points.
     /// Points outside the window keep the end.
     pub fn sort_by_cell(&mut self, grid: &Grid<D>) {
-        let key = |p: usize| match grid.locate(&self.x[p]) {
+        let keys = threads::each(self.len(), |p| match grid.locate(&self.x[p]) {
             Some(cell) if grid.holds(&cell) => (grid.cell_index(&cell), self.id[p]),
             _ => (usize::MAX, self.id[p]),
-        };
-        let keys = threads::each(self.len(), key);
+        });
         if keys.is_sorted() {
             return;
         }

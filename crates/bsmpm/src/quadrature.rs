@@ -28,7 +28,8 @@ const FACTORS: [f64; 2] = [0.1, 10.0];
 /// Weight of every point, m^D of the reference volume; the same bits on any number of ranks. An exchange with the
 /// neighbours for every pass of the iteration, and three more.
 pub fn fitted<K: Kinematics<D>, const D: usize>(
-    (grid, boundary): (&Grid<D>, &Boundary<D>),
+    grid: &Grid<D>,
+    boundary: &Boundary<D>,
     shape: &Shape<D>,
     points: &Points<D>,
     halo: &dyn Halo,
@@ -37,17 +38,8 @@ pub fn fitted<K: Kinematics<D>, const D: usize>(
     let volume: Vec<f64> = (0..points.len())
         .map(|p| points.volume[p] * points.F.at(p).determinant())
         .collect();
-    let integrals = |factor: &dyn Fn(usize) -> f64| -> Vec<f64> {
-        let weights: Vec<f64> = volume
-            .iter()
-            .enumerate()
-            .map(|(p, volume)| volume * factor(p))
-            .collect();
-        halo.sum(&transfer::to_nodes(&lower, |p| [weights[p]]))
-    };
-    let own = integrals(&|_| 1.0);
+    let own = halo.sum(&transfer::to_nodes(&lower, |p| [volume[p]]));
     let outside = outside(grid, boundary, &lower, halo);
-    let inside = |node: usize| !outside[node] && own[node] > 0.0;
     let missing: Vec<f64> = (0..own.len())
         .map(|node| grid.lowered_volume::<K>(node) - own[node])
         .collect();
@@ -55,15 +47,15 @@ pub fn fitted<K: Kinematics<D>, const D: usize>(
     let mut found = vec![0.0; own.len()];
     for _ in 0..PASSES {
         let change: Vec<f64> = transfer::to_points::<D, 1, _>(&lower, &found, |_, [change]| change);
-        let changed = integrals(&|p| change[p]);
-        let rest = |node: usize| {
-            if inside(node) {
+        let changed = halo.sum(&transfer::to_nodes(&lower, |p| [volume[p] * change[p]]));
+        chebyshev.advance(&mut found, |node| {
+            let is_inside = !outside[node] && own[node] > 0.0;
+            if is_inside {
                 (missing[node] - changed[node]) / own[node]
             } else {
                 0.0
             }
-        };
-        chebyshev.advance(&mut found, rest);
+        });
     }
     let [least, most] = FACTORS;
     transfer::to_points::<D, 1, _>(&lower, &found, |p, [change]| {
@@ -112,7 +104,8 @@ impl Chebyshev {
     /// The next pass, `rest` being what is left of the right-hand side over the lumped form.
     fn advance(&mut self, found: &mut [f64], rest: impl Fn(usize) -> f64) {
         let [least, most] = Self::EIGENVALUES;
-        let (middle, half) = (0.5 * (most + least), 0.5 * (most - least));
+        let middle = 0.5 * (most + least);
+        let half = 0.5 * (most - least);
         let (keep, take) = if self.rho == 0.0 {
             self.rho = half / middle;
             (0.0, 1.0 / middle)

@@ -5,9 +5,28 @@ use std::ops::{Add, Mul, Sub};
 /// Steps this much too long or too short (relative to dt) are taken as hitting a wanted time.
 const SAME: f64 = 1e-6;
 
+/// The time interval of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeInterval {
+    /// Time at the start of the step, s.
+    pub start: f64,
+    /// Size of the step, s.
+    pub dt: f64,
+}
+
+impl TimeInterval {
+    /// Returns the time at the end of the step, s.
+    pub fn end(&self) -> f64 {
+        self.start + self.dt
+    }
+}
+
+/// A time, s (or pseudo-time), and what is given for it.
+pub type Row<T> = (f64, T);
+
 /// What rows of a time, increasing, and a value have at time `t` >= 0: linear between them, from `start` at time 0 to
 /// the first; `None` after the last.
-pub fn between<T>(rows: &[(f64, T)], start: T, t: f64) -> Option<T>
+pub fn between<T>(rows: &[Row<T>], start: T, t: f64) -> Option<T>
 where
     T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
 {
@@ -24,21 +43,30 @@ where
 
 /// Whether what is given by rows turns sharply in a step, its start included and its end not: where the slope changes
 /// by more than half of the steeper one. Rows as of [`between`], at the last of which they stay.
-pub fn turns<T>(rows: &[(f64, T)], start: T, size: impl Fn(T) -> f64, (t, end): (f64, f64)) -> bool
+pub fn turns<T>(rows: &[Row<T>], start: T, size: impl Fn(T) -> f64, interval: TimeInterval) -> bool
 where
     T: Copy + Sub<Output = T> + Mul<f64, Output = T>,
 {
-    let slack = SAME * (end - t);
-    let slope = |from: (f64, T), to: (f64, T)| (to.1 - from.1) * (to.0 - from.0).max(f64::MIN_POSITIVE).recip();
-    let is_sharp = |k: usize| {
-        let (before, row) = (if k == 0 { (0.0, start) } else { rows[k - 1] }, rows[k]);
-        let (comes, goes) = (
-            slope(before, row),
-            slope(row, *rows.get(k + 1).unwrap_or(&(f64::MAX, row.1))),
-        );
-        size(goes - comes) > 0.5 * f64::max(size(comes), size(goes))
-    };
-    (0..rows.len()).any(|k| (t - slack..end - slack).contains(&rows[k].0) && is_sharp(k))
+    let end = interval.end();
+    let slack = SAME * (end - interval.start);
+    let times = interval.start - slack..end - slack;
+    for (k, &row) in rows.iter().enumerate().filter(|(_, row)| times.contains(&row.0)) {
+        let before = if k == 0 { (0.0, start) } else { rows[k - 1] };
+        let comes = slope(before, row);
+        let goes = slope(row, *rows.get(k + 1).unwrap_or(&(f64::MAX, row.1)));
+        if size(goes - comes) > 0.5 * f64::max(size(comes), size(goes)) {
+            return true;
+        }
+    }
+    false
+}
+
+/// Change of what is given over time from one row to the next.
+fn slope<T>(from: Row<T>, to: Row<T>) -> T
+where
+    T: Sub<Output = T> + Mul<f64, Output = T>,
+{
+    (to.1 - from.1) * (to.0 - from.0).max(f64::MIN_POSITIVE).recip()
 }
 
 /// Steps of which each is longer than the one before, from dt on.
@@ -135,7 +163,7 @@ impl Schedule {
         let target = *self.wanted.get(reached)?;
         let from = if reached == 0 { 0.0 } else { self.wanted[reached - 1] };
         if let Some(growth) = &self.growth {
-            return Some(self.grown(growth, t, (from, target)));
+            return Some(self.grown(growth, t, from, target));
         }
         let steps = ((t - from) / self.dt + SAME).floor() + 1.0;
         let station = from + steps * self.dt;
@@ -147,13 +175,12 @@ impl Schedule {
     }
 
     /// The same between two wanted times, of steps that grow.
-    fn grown(&self, growth: &Growth, t: f64, (from, target): (f64, f64)) -> f64 {
+    fn grown(&self, growth: &Growth, t: f64, from: f64, target: f64) -> f64 {
         let start = growth.start(from, SAME * self.dt);
-        let steps = |time: f64| growth.steps(self.dt, time - start);
-        let (first, last) = (steps(from), steps(target));
+        let [first, last, now] = [from, target, t].map(|time| growth.steps(self.dt, time - start));
         let count = (last - first - SAME).ceil().max(1.0);
         let each = (last - first) / count;
-        let done = ((steps(t) - first) / each + SAME).floor() + 1.0;
+        let done = ((now - first) / each + SAME).floor() + 1.0;
         if done >= count {
             target
         } else {
@@ -240,7 +267,8 @@ mod tests {
         let again = Schedule::new(1.0, 1e4, [5e3]).growing(growth(vec![5e3]));
         let found = stations(&again);
         let at = found.iter().position(|&t| t == 5e3).unwrap();
-        let (first, after) = (found[0], found[at + 1] - 5e3);
+        let first = found[0];
+        let after = found[at + 1] - 5e3;
         assert!(
             (after / first - 1.0).abs() < 0.3 && after <= 1.0 + 1e-9,
             "{first} {after}"
@@ -259,7 +287,10 @@ mod tests {
 
     #[test]
     fn rows_turn_where_a_slope_changes_by_half_and_not_where_they_follow_a_curve() {
-        let turn = |rows: &[(f64, f64)], step| turns(rows, 0.0, f64::abs, step);
+        let turn = |rows: &[(f64, f64)], start: f64, end: f64| {
+            let interval = TimeInterval { start, dt: end - start };
+            turns(rows, 0.0, f64::abs, interval)
+        };
         let ramp = [(1.0, 2.0), (2.0, 3.2), (3.0, 3.2), (3.1, 9.0)];
         let found = [
             (0.0, 1.0),
@@ -272,14 +303,14 @@ mod tests {
             (3.2, 5.0),
         ];
         assert_eq!(
-            found.map(|step| turn(&ramp, step)),
+            found.map(|(start, end)| turn(&ramp, start, end)),
             [false, false, true, true, false, true, true, false]
         );
         // A row on the end of a step, but for round-off, is of the next one.
-        assert!(!turn(&ramp, (1.0, 2.0 + 1e-15)) && turn(&ramp, (2.0 + 1e-15, 2.5)));
+        assert!(!turn(&ramp, 1.0, 2.0 + 1e-15) && turn(&ramp, 2.0 + 1e-15, 2.5));
         let wave: Vec<(f64, f64)> = (0..=40).map(|k| f64::from(k) * 0.05).map(|t| (t, t.sin())).collect();
-        assert!(!turn(&wave, (0.01, 1.3)) && turn(&wave, (1.3, 1.7)) && !turn(&wave, (1.7, 1.99)));
-        assert!(!turn(&[(0.0, 0.0), (0.0, 0.0)], (0.0, 1.0)) && turn(&[(0.0, 1.0)], (0.0, 1.0)));
+        assert!(!turn(&wave, 0.01, 1.3) && turn(&wave, 1.3, 1.7) && !turn(&wave, 1.7, 1.99));
+        assert!(!turn(&[(0.0, 0.0), (0.0, 0.0)], 0.0, 1.0) && turn(&[(0.0, 1.0)], 0.0, 1.0));
     }
 
     #[test]

@@ -18,6 +18,7 @@ use crate::error::StepError;
 use crate::kinematics::Kinematics;
 use crate::method::{Nonlinear, QuasiNewton};
 use crate::parallel::LinearSolver;
+use crate::solve::quasi_newton::SecantMethod;
 use crate::step::nodes::Nodes;
 use crate::step::problem::Problem;
 use crate::step::report::Counts;
@@ -35,10 +36,8 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
 ) -> Result<Found<K, D>, StepError> {
-    let (last, zero) = (
-        admissible(problem.nodes, guess),
-        admissible(problem.nodes, &vec![0.0; guess.len()]),
-    );
+    let last = admissible(problem.nodes, guess);
+    let zero = admissible(problem.nodes, &vec![0.0; guess.len()]);
     let mut differs = [f64::from(u8::from(last != zero))];
     problem.halo.maximum(&mut differs);
     let flows = problem.nodes.pores.is_some();
@@ -47,13 +46,12 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         Nonlinear::QuasiNewton(_) | Nonlinear::Auto if flows => Nonlinear::QuasiNewton(QuasiNewton::Multisecant),
         method => method,
     };
-    let goes_on = |found: &Result<Found<K, D>, StepError>| found.as_ref().is_err_and(|error| !error.is_final());
     let by_newton = (flows && problem.model.nonlinear == Nonlinear::Auto).then(|| last.clone());
-    let mut found = search(problem, method, last, (solver, counts));
+    let mut found = search(problem, method, last, solver, counts);
     // Of water Newton's method before another guess: of the steps that secants do not do from the first one it does
     // more, and what neither does costs the same (`decisions.md` of the manual).
     if let Some(last) = by_newton.filter(|_| goes_on(&found)) {
-        found = search(problem, Nonlinear::Newton, last, (solver, counts));
+        found = search(problem, Nonlinear::Newton, last, solver, counts);
     }
     if goes_on(&found) && differs[0] > 0.0 {
         let method = if method == Nonlinear::Auto {
@@ -61,7 +59,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         } else {
             method
         };
-        found = search(problem, method, zero, (solver, counts)).map(|found| Found {
+        found = search(problem, method, zero, solver, counts).map(|found| Found {
             first_guess: false,
             ..found
         });
@@ -72,44 +70,55 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     found
 }
 
+/// Whether another method or guess may find what was not found.
+fn goes_on<T>(found: &Result<T, StepError>) -> bool {
+    found.as_ref().is_err_and(|error| !error.is_final())
+}
+
 /// Seeks equilibrium from one guess.
 fn search<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     method: Nonlinear,
     u: Vec<f64>,
-    (solver, counts): (&mut dyn LinearSolver, &mut Counts),
+    solver: &mut dyn LinearSolver,
+    counts: &mut Counts,
 ) -> Result<Found<K, D>, StepError> {
     let mut convergence = Convergence::new(problem);
-    let secants = match method {
+    let update = match method {
         Nonlinear::Newton => {
             let found = newton::iterate(problem, u, solver, counts, &mut convergence);
             return found
                 .or_else(|failure| settled(problem, failure, counts, &convergence))
                 .map_err(|failure| *failure.error);
         }
-        Nonlinear::QuasiNewton(secants) => secants,
+        Nonlinear::QuasiNewton(update) => update,
         Nonlinear::Auto => QuasiNewton::Multisecant,
     };
-    let patient = method != Nonlinear::Auto;
-    let mut failure = match by_secants(problem, (secants, patient), u, (solver, counts), &mut convergence) {
+    let is_patient = method != Nonlinear::Auto;
+    let secants = SecantMethod { update, is_patient };
+    let mut failure = match by_secants(problem, secants, u, solver, counts, &mut convergence) {
         Ok(found) => return Ok(found),
         Err(failure) => failure,
     };
-    if let (Some(best), false) = (failure.best.take(), patient) {
+    if !is_patient && let Some(best) = failure.best.take() {
         let found = newton::iterate(problem, best, solver, counts, &mut convergence);
         failure = match found.or_else(|failure| settled(problem, failure, counts, &convergence)) {
             Ok(found) => return Ok(found),
             Err(failure) => failure,
         };
         if let Some(best) = failure.best.take() {
-            failure = match by_secants(problem, (secants, true), best, (solver, counts), &mut convergence) {
+            let patient = SecantMethod {
+                is_patient: true,
+                ..secants
+            };
+            failure = match by_secants(problem, patient, best, solver, counts, &mut convergence) {
                 Ok(found) => return Ok(found),
                 Err(failure) => failure,
             };
         }
     }
     // Secants alone that come to their limit might have gone on.
-    let found = if patient {
+    let found = if is_patient {
         Err(failure)
     } else {
         settled(problem, failure, counts, &convergence)
@@ -140,9 +149,10 @@ fn settled<K: Kinematics<D>, const D: usize>(
 /// Secants on the stiffness at `u`, where they start.
 fn by_secants<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    method: (QuasiNewton, bool),
+    method: SecantMethod,
     u: Vec<f64>,
-    (solver, counts): (&mut dyn LinearSolver, &mut Counts),
+    solver: &mut dyn LinearSolver,
+    counts: &mut Counts,
     convergence: &mut Convergence,
 ) -> Result<Found<K, D>, Stopped> {
     let residual = evaluate(problem, &u, counts);
@@ -157,19 +167,19 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
             counts.factorisations += 1;
         }
     }
-    quasi_newton::iterate(problem, method, (u, residual), solver, counts, convergence)
+    quasi_newton::iterate(problem, method, u, residual, solver, counts, convergence)
 }
 
 /// The guess where it is free, the prescribed values, zero elsewhere; behind it the pressures that the points have,
 /// where water flows.
 fn admissible<const D: usize>(nodes: &Nodes<D>, guess: &[f64]) -> Vec<f64> {
-    let component = |(c, &value): (usize, &f64)| match nodes.prescribed[c] {
+    let displacements = guess.iter().enumerate().map(|(c, &value)| match nodes.prescribed[c] {
         Some(prescribed) => prescribed,
         None if nodes.free[c] => value,
         None => 0.0,
-    };
+    });
     let pressures = nodes.pores.iter().flat_map(|pores| pores.guess.iter().copied());
-    guess.iter().enumerate().map(component).chain(pressures).collect()
+    displacements.chain(pressures).collect()
 }
 
 /// The forces under `u`, counted.

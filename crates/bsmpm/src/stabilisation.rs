@@ -38,14 +38,14 @@ impl Groups {
     /// Materials that are alike in everything that averages feel are one group, under the number of the first of them.
     pub fn of_alike<T: PartialEq>(materials: &[T]) -> Self {
         let mut kinds: Vec<&T> = Vec::new();
-        let mut number = |material| {
+        let mut of = Vec::with_capacity(materials.len());
+        for material in materials {
             let known = kinds.iter().position(|kind| *kind == material);
-            known.unwrap_or_else(|| {
+            of.push(known.unwrap_or(kinds.len()) as u16);
+            if known.is_none() {
                 kinds.push(material);
-                kinds.len() - 1
-            }) as u16
-        };
-        let of: Vec<u16> = materials.iter().map(&mut number).collect();
+            }
+        }
         if kinds.len() > 1 {
             Self { of, count: kinds.len() }
         } else {
@@ -102,11 +102,8 @@ impl<'a> Grouped<'a> {
         std::iter::from_fn(move || {
             let first = start;
             let group = (first < points.end).then(|| self.of(first))?;
-            let differs = |p: &usize| self.of(*p) != group;
-            start = self
-                .by
-                .and_then(|_| (first..points.end).find(differs))
-                .unwrap_or(points.end);
+            let change = self.by.and_then(|_| (first..points.end).find(|&p| self.of(p) != group));
+            start = change.unwrap_or(points.end);
             Some((group, first..start))
         })
     }

@@ -22,6 +22,7 @@ pub mod stiffness;
 pub mod trial;
 pub mod walls;
 
+use crate::schedule::TimeInterval;
 pub use report::{Counts, StepReport};
 
 use crate::background::Resisted;
@@ -34,12 +35,12 @@ use crate::grid::Shape;
 use crate::initial;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime};
-use crate::parallel::{Halo, LinearSolver, agreed};
-use crate::points::Points;
-use crate::solve;
+use crate::parallel::{Backend, Halo, agreed};
+use crate::points::{MappedPoints, Points};
+use crate::solve::{self, found::Found};
 use crate::water::backward::is_smooth;
 use crate::water::crossed::Flowed;
-use commit::Committed;
+use commit::ConstitutiveUpdate;
 use newmark::Newmark;
 use nodes::Nodes;
 use outflow::Outflow;
@@ -52,40 +53,20 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
     guess: &mut Vec<f64>,
-    (t, dt): (f64, f64),
+    interval: TimeInterval,
     resisted: Resisted,
-    (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
+    backend: &mut Backend<'_>,
     counts: &mut Counts,
 ) -> Result<StepReport, StepError> {
+    let halo = backend.halo;
     let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?; // (1)
-    let mut nodes = Nodes::after(model, (&shape, points), guess, (t, dt), halo)?; // (2)
-    if resisted == Resisted::Change {
-        nodes.resist_change_from(guess, &model.grid, halo);
-    }
-    let free_field = FreeField::after(model, points, (t, dt), halo)?;
-    free_field.drive(&mut nodes);
-    if let Some(inertia) = nodes.inertia.as_mut().filter(|_| t == 0.0)
-        && initial::is_pushed(model, points, halo)?
-    {
-        inertia.newmark = Newmark::of_the_end();
-    }
+    let (mut nodes, free_field) = start(model, &shape, points, guess, interval, resisted, halo)?; // (2)
     let movable = nodes.movable();
-    let mut attachments = StripAttachments::at(
-        &model.boundary.strips,
-        &points.surface,
-        (&model.grid, &movable),
-        (t, dt),
-    );
+    let mut attachments =
+        StripAttachments::at(&model.boundary.strips, &points.surface, &model.grid, &movable, interval);
     attachments.wet(nodes.pore_pressure.as_ref());
-    let found = solve::contact::find(
-        model,
-        &shape,
-        &mut nodes,
-        (&mut attachments, points),
-        guess,
-        (halo, solver),
-        counts,
-    )?; // (3)-(9)
+    let mapped = MappedPoints { shape: &shape, points };
+    let found = solve::contact::find(model, mapped, &mut nodes, &mut attachments, guess, backend, counts)?; // (3)-(9)
     let problem = Problem {
         model,
         shape: &shape,
@@ -94,105 +75,160 @@ pub fn step<K: Kinematics<D>, const D: usize>(
         points,
         halo,
     };
-    commit::check_inside(model, &shape, points, &found.u, halo)?;
-    let (strips, traction) =
-        attachments.conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
-    let (rigid, bodies) = nodes.rigid.conclude(&found.u, halo);
-    if let Some(bodies) = rigid::overlapping(&model.boundary.rigid, &bodies) {
-        return Err(StepError::Overlapping { bodies });
-    }
+    let Outcome {
+        mut report,
+        mut surface,
+        update,
+        draft,
+    } = Outcome::of(&problem, &found, interval)?;
     let carried = nodes.rigid.carried(&found.u, points.len(), halo);
     let held = nodes.rigid.held(&found.u, halo);
-    let mut report = StepReport {
-        dt,
-        strips,
-        rigid,
-        ..StepReport::of(&problem, &found)
-    };
-    if !model.boundary.moves(t, dt) {
-        report.background_share = report::background_share(&problem, &found);
+    let committed = commit::commit(model, &shape, &nodes, found, update, points, halo); // (10), (11)
+    *guess = committed.u;
+    let reaching = model.reaching(points);
+    let extent = nodes.rigid.extents_after(&held, &surface.bodies, &reaching);
+    points.extent = extent.or(points.extent.take());
+    points.tangential_force = carried.or(points.tangential_force.take());
+    if let Some(draft) = draft {
+        let (flows, turnover) = draft.close(model, points, &surface, halo);
+        report.energy = flows;
+        report.turnover = Some(turnover);
     }
-    let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo);
-    let position = load::moved(
-        &model.boundary.loads,
-        &points.surface,
-        (&model.grid, &nodes.active),
-        &found.u,
-        halo,
-    );
-    let pressure = nodes.followers.tractions::<K>(
-        (&model.boundary.loads, &model.grid),
-        points,
-        (&found.u, &|p| found.trial.dF(p)),
-        halo,
-    );
-    let mut surface = Surface {
-        traction,
-        position,
-        pressure,
-        anchors,
-        bodies,
-        ..points.surface.clone()
-    };
-    let (answers, state) = commit::answers(model, &found.trial, points, halo)?;
-    report.second_order_works = commit::second_order_works(model, points, &answers, halo);
-    if let Some([_, internal]) = &mut report.background {
-        *internal = internal.max(commit::stress_work(&found.trial, points, &answers, halo));
+    let end = interval.end();
+    settle(model, points, &mut surface, &mut report, committed.content, end, halo);
+    free_field.settle(&mut surface.held);
+    points.surface = surface;
+    points.free_field = free_field.columns;
+    Ok(StepReport {
+        advance: committed.advance,
+        smoothed: committed.smoothed,
+        beside_fixed: committed.beside_fixed,
+        outflow: Outflow::of(model, points, end, halo),
+        ..report
+    })
+}
+
+/// Step (2): maps the points to the nodes, which columns of the free field drive beside the ground.
+fn start<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    shape: &Shape<D>,
+    points: &Points<D>,
+    guess: &[f64],
+    interval: TimeInterval,
+    resisted: Resisted,
+    halo: &dyn Halo,
+) -> Result<(Nodes<D>, FreeField<D>), StepError> {
+    let mut nodes = Nodes::after(model, shape, points, guess, interval, halo)?;
+    if resisted == Resisted::Change {
+        nodes.resist_change_from(guess, &model.grid, halo);
     }
-    let accounts = model.balances_energy || model.regime == Regime::Dynamic;
-    let draft = accounts.then(|| Draft::of(&problem, (&found, &answers), (t, dt)));
-    if halo.rejects() {
-        return Err(StepError::Interrupted);
-    }
-    // (10), (11)
-    let Committed {
-        u,
-        advance,
-        smoothed,
-        content,
-        beside_fixed,
-    } = commit::commit(model, (&shape, &nodes), (found, (answers, state)), points, halo);
-    *guess = u;
-    if let Some(extent) = nodes
-        .rigid
-        .extents_after(&held, &surface.bodies, &model.reaching(points))
+    let free_field = FreeField::after(model, points, interval, halo)?;
+    free_field.drive(&mut nodes);
+    if let Some(inertia) = nodes.inertia.as_mut().filter(|_| interval.start == 0.0)
+        && initial::is_pushed(model, points, halo)?
     {
-        points.extent = Some(extent);
+        inertia.newmark = Newmark::of_the_end();
     }
-    if carried.is_some() {
-        points.tangential_force = carried;
+    Ok((nodes, free_field))
+}
+
+/// What a step did whose displacement is found, before the points have taken it.
+struct Outcome<const D: usize> {
+    report: StepReport,
+    surface: Surface<D>, // at the end of the step
+    update: ConstitutiveUpdate,
+    draft: Option<Draft>, // of the energy, if it is asked for
+}
+
+impl<const D: usize> Outcome<D> {
+    /// Of a displacement. Fails if points leave the grid, rigid bodies overlap, a law refuses a point, or the step is
+    /// interrupted.
+    fn of<K: Kinematics<D>>(
+        problem: &Problem<'_, K, D>,
+        found: &Found<K, D>,
+        interval: TimeInterval,
+    ) -> Result<Self, StepError> {
+        let Problem { model, nodes, halo, .. } = *problem;
+        let points = problem.points;
+        commit::check_inside(model, problem.shape, points, &found.u, halo)?;
+        let Model { boundary, grid, .. } = model;
+        let start = &points.surface;
+        let (strips, traction) = problem
+            .attachments
+            .conclude(&boundary.strips, grid, start, &found.u, halo);
+        let (rigid, bodies) = nodes.rigid.conclude(&found.u, halo);
+        if let Some(bodies) = rigid::overlapping(&boundary.rigid, &bodies) {
+            return Err(StepError::Overlapping { bodies });
+        }
+        let mut report = StepReport {
+            dt: interval.dt,
+            strips,
+            rigid,
+            ..StepReport::of(problem, found)
+        };
+        if !boundary.moves(interval.start, interval.dt) {
+            report.background_share = report::background_share(problem, found);
+        }
+        let surface = Surface {
+            traction,
+            anchors: Anchors::of(&model.surfaces(), &start.anchors, points.anchored(), halo),
+            position: load::moved(&boundary.loads, start, grid, &nodes.active, &found.u, halo),
+            pressure: nodes.followers.tractions::<K>(
+                &boundary.loads,
+                grid,
+                points,
+                &found.u,
+                &|p| found.trial.dF(p),
+                halo,
+            ),
+            bodies,
+            ..start.clone()
+        };
+        let update = commit::constitutive_update(model, &found.trial, points, halo)?;
+        report.second_order_works = commit::second_order_works(model, points, &update.answers, halo);
+        if let Some([_, internal]) = &mut report.background {
+            *internal = internal.max(commit::stress_work(&found.trial, points, &update.answers, halo));
+        }
+        let accounts = model.balances_energy || model.regime == Regime::Dynamic;
+        let draft = accounts.then(|| Draft::of(problem, found, &update.answers, interval));
+        if halo.rejects() {
+            return Err(StepError::Interrupted);
+        }
+        Ok(Self {
+            draft,
+            report,
+            surface,
+            update,
+        })
     }
-    let account = draft.map(|draft| draft.close(model, points, &surface, halo));
+}
+
+/// Completes the surface and the report of a step with the points as they are at its end `t`, s, of which they have
+/// taken in `content` of water, m3.
+fn settle<K, const D: usize>(
+    model: &Model<K, D>,
+    points: &Points<D>,
+    surface: &mut Surface<D>,
+    report: &mut StepReport,
+    content: f64,
+    t: f64,
+    halo: &dyn Halo,
+) {
+    let strips = &model.boundary.strips;
     let places = surface
         .anchors
-        .places((&model.boundary, &model.grid), points.anchored(), halo);
-    let strips = &model.boundary.strips;
-    for number in 0..strips.len() {
-        report.strips[number].left_behind = places.left_behind(number, strips, t + dt, &model.grid);
+        .places(&model.boundary, &model.grid, points.anchored(), halo);
+    for (number, strip) in report.strips.iter_mut().enumerate() {
+        strip.left_behind = places.left_behind(number, strips, t, &model.grid);
     }
     surface.position = places.loads;
-    free_field.settle(&mut surface.held);
     if let Some(water) = &mut report.water {
         water.stored = content;
         surface.crossed.add(1.0, &water.crossed);
-        let flowed = || Flowed {
-            dt,
+        surface.flowed = is_smooth(model).then(|| Flowed {
+            dt: report.dt,
             crossed: water.crossed.clone(),
             left: water.left,
-        };
-        surface.flowed = is_smooth(model).then(flowed);
+        });
     }
-    points.surface = surface;
-    points.free_field = free_field.columns;
-    let outflow = Outflow::of(model, (points, t + dt), halo);
-    let (energy, turnover) = account.map_or((None, None), |(flows, turnover)| (flows, Some(turnover)));
-    Ok(StepReport {
-        energy,
-        turnover,
-        advance,
-        smoothed,
-        beside_fixed,
-        outflow,
-        ..report
-    })
 }

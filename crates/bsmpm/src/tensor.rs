@@ -20,8 +20,8 @@ impl Symmetric {
     /// The symmetric part of `t`.
     #[inline]
     pub fn of(t: &Tensor) -> Self {
-        let half = |i, j| 0.5 * (t[(i, j)] + t[(j, i)]);
-        Self([t[(0, 0)], t[(1, 1)], t[(2, 2)], half(0, 1), half(1, 2), half(0, 2)])
+        let [xy, yz, xz] = [(0, 1), (1, 2), (0, 2)].map(|(i, j)| 0.5 * (t[(i, j)] + t[(j, i)]));
+        Self([t[(0, 0)], t[(1, 1)], t[(2, 2)], xy, yz, xz])
     }
 
     /// The same tensor as a full matrix.
@@ -34,9 +34,9 @@ impl Symmetric {
     /// The double contraction `a : b`.
     #[inline]
     pub fn double_dot(&self, other: &Self) -> f64 {
-        let product = |i: usize| self.0[i] * other.0[i];
-        let normal = product(0) + product(1) + product(2);
-        let shear = product(3) + product(4) + product(5);
+        let [xx, yy, zz, xy, yz, xz] = std::array::from_fn(|i| self.0[i] * other.0[i]);
+        let normal = xx + yy + zz;
+        let shear = xy + yz + xz;
         normal + 2.0 * shear
     }
 

@@ -21,8 +21,9 @@ pub(crate) fn share(count: usize, work: &(dyn Fn(usize) + Sync)) {
 
 /// The same by chunks of so many points.
 pub(crate) fn by_chunks(points: usize, work: &(dyn Fn(usize, Range<usize>) + Sync)) {
-    let of = |chunk: usize| work(chunk, chunk * CHUNK..points.min((chunk + 1) * CHUNK));
-    share(points.div_ceil(CHUNK), &of);
+    share(points.div_ceil(CHUNK), &|chunk| {
+        work(chunk, chunk * CHUNK..points.min((chunk + 1) * CHUNK));
+    });
 }
 
 /// What every chunk of points leaves.
@@ -50,12 +51,12 @@ pub fn sum(points: usize, value: impl Fn(usize) -> f64 + Sync) -> Exact {
 
 /// Sums of several values over the points.
 pub fn sums<const N: usize>(points: usize, values: impl Fn(usize) -> [f64; N] + Sync) -> [Exact; N] {
-    let of = |_, points: Range<usize>| {
+    let parts = of_chunks(points, |_, points| {
         let mut sums = [const { Exact::ZERO }; N];
         points.for_each(|p| sums.iter_mut().zip(values(p)).for_each(|(sum, value)| sum.add(value)));
         sums
-    };
-    added(of_chunks(points, of))
+    });
+    added(parts)
 }
 
 /// Sums of what so many pieces of work have.
@@ -86,7 +87,8 @@ pub(crate) fn apart<T>(rows: &mut [T], width: usize) -> Vec<Mutex<&mut [T]>> {
 
 /// Changes the rows of the points, of `width` items each.
 pub fn change<T: Send>(rows: &mut [T], width: usize, change: impl Fn(usize, &mut [T]) + Sync) {
-    let (points, rows) = (rows.len() / width, apart(rows, width));
+    let points = rows.len() / width;
+    let rows = apart(rows, width);
     by_chunks(points, &|chunk, points| {
         let rows = &mut **rows[chunk].lock().expect("the chunk's only thread");
         points

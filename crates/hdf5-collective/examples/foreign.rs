@@ -23,7 +23,9 @@ use std::ptr;
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let text = |text: &str| CString::new(text).expect("no zero byte");
-    let (kind, file, array) = (&*arguments[0], text(&arguments[1]), text(&arguments[2]));
+    let kind = &*arguments[0];
+    let file = text(&arguments[1]);
+    let array = text(&arguments[2]);
     // SAFETY: a valid text; the library starts itself.
     let id = unsafe { H5Fopen(file.as_ptr(), H5F_ACC_RDWR, H5P_DEFAULT) };
     assert!(id >= 0, "the file can be opened");
@@ -103,7 +105,8 @@ unsafe fn array(file: hid_t, name: &CString, kind: &str) -> i32 {
         "empty" => 0,
         _ => 64,
     };
-    let (dims, chunk): ([hsize_t; 3], [hsize_t; 3]) = ([rows, 2, 2], [64, 2, 2]);
+    let dims: [hsize_t; 3] = [rows, 2, 2];
+    let chunk: [hsize_t; 3] = [64, 2, 2];
     let dimensions = match kind {
         "one-dimension" => 1,
         "three-dimensions" => 3,

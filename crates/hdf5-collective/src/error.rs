@@ -37,3 +37,18 @@ pub enum Error {
     #[error("another rank failed")]
     OtherRank,
 }
+
+impl Error {
+    /// What is strange about a part of the file.
+    pub(crate) fn foreign(item: impl Into<String>, reason: &str) -> Self {
+        Self::Foreign {
+            item: item.into(),
+            reason: reason.to_owned(),
+        }
+    }
+
+    /// What is strange about the array `name`.
+    pub(crate) fn foreign_array(name: &str, reason: &str) -> Self {
+        Self::foreign(format!("the array {name}"), reason)
+    }
+}

@@ -88,18 +88,11 @@ fn words() -> String {
 }
 
 fn text(text: &str) -> Result<CString> {
-    CString::new(text).map_err(|_| Error::Foreign {
-        item: format!("{text:?}"),
-        reason: "holds a zero byte".to_owned(),
-    })
+    CString::new(text).map_err(|_| Error::foreign(format!("{text:?}"), "holds a zero byte"))
 }
 
 fn path(path: &Path) -> Result<CString> {
-    let foreign = |_| Error::Foreign {
-        item: path.display().to_string(),
-        reason: "holds a NUL".to_owned(),
-    };
-    CString::new(path.as_os_str().as_bytes()).map_err(foreign)
+    CString::new(path.as_os_str().as_bytes()).map_err(|_| Error::foreign(path.display().to_string(), "holds a NUL"))
 }
 
 /// Starts the library: it prints nothing and loads no code.
@@ -121,7 +114,9 @@ pub(crate) fn start() -> Result<()> {
 
 /// Version of the library linked at run time.
 pub(crate) fn version() -> (u32, u32, u32) {
-    let (mut major, mut minor, mut release) = (0, 0, 0);
+    let mut major = 0;
+    let mut minor = 0;
+    let mut release = 0;
     // SAFETY: the pointers are valid; the function reads constants only.
     unsafe { H5get_libversion(&raw mut major, &raw mut minor, &raw mut release) };
     (major, minor, release)
@@ -151,7 +146,8 @@ fn kind(number: Number) -> hid_t {
 
 impl File {
     pub(crate) fn create(world: &SimpleCommunicator, file: &Path) -> Result<Self> {
-        let (access, name) = (shared(world)?, path(file)?);
+        let access = shared(world)?;
+        let name = path(file)?;
         // SAFETY: valid text and property list.
         let id = unsafe { H5Fcreate(name.as_ptr(), H5F_ACC_TRUNC, H5P_DEFAULT, access.0) };
         if id < 0 {
@@ -162,7 +158,8 @@ impl File {
     }
 
     pub(crate) fn open(world: &SimpleCommunicator, file: &Path) -> Result<Self> {
-        let (access, name) = (shared(world)?, path(file)?);
+        let access = shared(world)?;
+        let name = path(file)?;
         // SAFETY: valid text and property list.
         let id = unsafe { H5Fopen(name.as_ptr(), H5F_ACC_RDONLY, access.0) };
         if id < 0 {
@@ -224,12 +221,14 @@ impl File {
     }
 
     fn name(&self, index: u64) -> Result<String> {
-        let (action, root) = ("read a name", c".");
+        let action = "read a name";
+        let root = c".";
         let mut name = [0_u8; NAME];
         let mut link = H5L_info1_t::default();
         // SAFETY: an open file, valid texts, and a buffer of the length that is given.
         let length = unsafe {
-            let (by, order) = (H5_index_t::H5_INDEX_NAME, H5_iter_order_t::H5_ITER_INC);
+            let by = H5_index_t::H5_INDEX_NAME;
+            let order = H5_iter_order_t::H5_ITER_INC;
             H5Lget_name_by_idx(
                 self.0,
                 root.as_ptr(),
@@ -242,16 +241,12 @@ impl File {
             )
         };
         check(action, if length < 0 { -1 } else { 0 })?;
-        let foreign = |item: &str, reason: &str| Error::Foreign {
-            item: item.to_owned(),
-            reason: reason.to_owned(),
-        };
         let name = CStr::from_bytes_until_nul(&name)
             .ok()
             .and_then(|name| name.to_str().ok());
         let name = name.filter(|name| isize::try_from(name.len()) == Ok(length as isize) && !name.is_empty());
         let name = name
-            .ok_or_else(|| foreign("a name in the file", "is none of ours"))?
+            .ok_or_else(|| Error::foreign("a name in the file", "is none of ours"))?
             .to_owned();
         // SAFETY: an open file, a valid text and pointer.
         check(action, unsafe {
@@ -260,16 +255,12 @@ impl File {
         if link.type_ == H5L_type_t::H5L_TYPE_HARD {
             Ok(name)
         } else {
-            Err(foreign(&name, "is linked, not there"))
+            Err(Error::foreign(name, "is linked, not there"))
         }
     }
 
     /// An array of the file and its shape, if it is one that this library could have written.
     pub(crate) fn array(&self, name: &str) -> Result<(Array, Shape)> {
-        let foreign = |reason: &str| Error::Foreign {
-            item: format!("the array {name}"),
-            reason: reason.to_owned(),
-        };
         let label = text(name)?;
         // SAFETY: an open file and a valid text; opening the object before the array distinguishes a group or type.
         let id = unsafe {
@@ -278,14 +269,14 @@ impl File {
             let is_array = H5Iget_type(object) == H5I_type_t::H5I_DATASET;
             H5Oclose(object);
             if !is_array {
-                return Err(foreign("is no array"));
+                return Err(Error::foreign_array(name, "is no array"));
             }
             Id::new("open an array", H5Dopen2(self.0, label.as_ptr(), H5P_DEFAULT))?
         };
-        let [rows, width] = extent(&id)?.ok_or_else(|| foreign("has not two dimensions"))?;
-        let number = number(&id)?.ok_or_else(|| foreign("holds other numbers than ours"))?;
+        let [rows, width] = extent(&id)?.ok_or_else(|| Error::foreign_array(name, "has not two dimensions"))?;
+        let number = number(&id)?.ok_or_else(|| Error::foreign_array(name, "holds other numbers than ours"))?;
         if let Some(reason) = strange_storage(&id, rows)? {
-            return Err(foreign(reason));
+            return Err(Error::foreign_array(name, reason));
         }
         Ok((Array { id, number }, Shape { number, rows, width }))
     }

@@ -37,7 +37,8 @@ impl<'u> Hdf5<'u> {
 
     /// The outcome of this rank, or `OtherRank` where only others failed. Collective.
     pub(crate) fn agree<T>(&self, mine: Result<T>) -> Result<T> {
-        let (own, mut most) = (u8::from(mine.is_err()), 0_u8);
+        let own = u8::from(mine.is_err());
+        let mut most = 0_u8;
         self.world().all_reduce_into(&own, &mut most, SystemOperation::max());
         if most > 0 {
             mine.and(Err(Error::OtherRank))

@@ -31,12 +31,16 @@ impl<'h> Reader<'h> {
     /// # Errors
     /// [`Error::Foreign`] if there is anything that [`crate::Writer`] never writes.
     pub fn arrays(&self) -> Result<Vec<(String, Shape)>> {
-        let shape = |name: String| self.file.array(&name).map(|(_, shape)| (name, shape));
-        let all = self
-            .file
-            .names()
-            .and_then(|names| names.into_iter().map(shape).collect());
-        self.hdf5.agree(all)
+        self.hdf5.agree(self.shapes())
+    }
+
+    fn shapes(&self) -> Result<Vec<(String, Shape)>> {
+        let mut shapes = Vec::new();
+        for name in self.file.names()? {
+            let (_, shape) = self.file.array(&name)?;
+            shapes.push((name, shape));
+        }
+        Ok(shapes)
     }
 
     /// This rank's equal share of an array's rows, in little-endian bytes; in the order of the ranks they are the
@@ -63,24 +67,20 @@ impl<'h> Reader<'h> {
     }
 
     fn rows(&self, name: &str, shape: Shape, rows: Range<u64>) -> Result<Vec<u8>> {
-        let foreign = |reason: &str| Error::Foreign {
-            item: format!("the array {name}"),
-            reason: reason.to_owned(),
-        };
         let (array, found) = self.file.array(name)?;
         if found != shape {
-            return Err(foreign("has another shape than expected"));
+            return Err(Error::foreign_array(name, "has another shape than expected"));
         }
         if rows.start > rows.end || rows.end > shape.rows {
-            return Err(foreign("has fewer rows than expected"));
+            return Err(Error::foreign_array(name, "has fewer rows than expected"));
         }
         let count = rows.end - rows.start;
         let size = shape
             .row_bytes()
             .zip(usize::try_from(count).ok())
             .and_then(|(size, count)| size.checked_mul(count));
-        let mut bytes = vec![0; size.ok_or_else(|| foreign("is too large"))?];
-        array.read((rows.start, count, shape.width), &mut bytes)?;
+        let mut bytes = vec![0; size.ok_or_else(|| Error::foreign_array(name, "is too large"))?];
+        array.read(rows.start, count, shape.width, &mut bytes)?;
         Ok(bytes)
     }
 
@@ -96,9 +96,10 @@ impl<'h> Reader<'h> {
 
 /// The rows of one of several ranks: all rows once, in order, no share more than a row larger than another.
 fn share(rows: u64, rank: u64, ranks: u64) -> Range<u64> {
-    let (each, over) = (rows / ranks, rows % ranks);
-    let start = |rank: u64| rank * each + rank.min(over);
-    start(rank)..start(rank + 1)
+    let each = rows / ranks;
+    let over = rows % ranks;
+    let start = rank * each + rank.min(over);
+    start..start + each + u64::from(rank < over)
 }
 
 #[cfg(test)]

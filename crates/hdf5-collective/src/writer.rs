@@ -28,15 +28,11 @@ impl<'h> Writer<'h> {
     ///
     /// # Errors
     /// [`Error::Torn`] when it cannot be written, [`Error::Foreign`] when this rank has no whole rows.
-    pub fn write(&mut self, name: &str, (number, width): (Number, u64), rows: &[u8]) -> Result<Shape> {
-        let foreign = |reason: &str| Error::Foreign {
-            item: format!("the array {name}"),
-            reason: reason.to_owned(),
-        };
+    pub fn write(&mut self, name: &str, number: Number, width: u64, rows: &[u8]) -> Result<Shape> {
         let size = Shape { number, rows: 0, width }.row_bytes().filter(|&size| size > 0);
         let whole = size
             .filter(|size| rows.len().is_multiple_of(*size))
-            .ok_or_else(|| foreign("has no whole rows"));
+            .ok_or_else(|| Error::foreign_array(name, "has no whole rows"));
         let count = (rows.len() / self.hdf5.agree(whole)?) as u64;
         let (start, total) = self.hdf5.place(count);
         let shape = Shape {
@@ -48,7 +44,7 @@ impl<'h> Writer<'h> {
         let array = self.file.add(name, shape).map_err(|error| torn(name, &error))?;
         if total > 0 {
             array
-                .write((start, count, width), rows)
+                .write(start, count, width, rows)
                 .map_err(|error| torn(name, &error))?;
         }
         Ok(shape)

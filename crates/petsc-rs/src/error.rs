@@ -110,19 +110,19 @@ pub(crate) unsafe extern "C" fn keep_error(
 ) -> ffi::PetscErrorCode {
     // SAFETY: PETSc passes null or NUL-terminated texts that live during this call.
     let (func, file, message) = unsafe { (text(func), text(file), text(message)) };
-    let keep = |caught: &RefCell<Caught>| {
-        if let Ok(mut caught) = caught.try_borrow_mut() {
-            if kind == ffi::PETSC_ERROR_INITIAL {
-                *caught = Caught {
-                    message: message.trim().to_owned(),
-                    trace: Vec::new(),
-                };
-            }
-            caught.trace.push(format!("{func} ({file}:{line})"));
-        }
-    };
     // Fails only while the thread ends: the code alone is reported then.
-    let _ = CAUGHT.try_with(keep);
+    let _ = CAUGHT.try_with(|caught| {
+        let Ok(mut caught) = caught.try_borrow_mut() else {
+            return;
+        };
+        if kind == ffi::PETSC_ERROR_INITIAL {
+            *caught = Caught {
+                message: message.trim().to_owned(),
+                trace: Vec::new(),
+            };
+        }
+        caught.trace.push(format!("{func} ({file}:{line})"));
+    });
     code
 }
 
@@ -155,7 +155,8 @@ pub(crate) fn int(what: &'static str, value: usize) -> Result<ffi::PetscInt> {
 
 /// Indices as PETSc's integers, each below `bound`.
 pub(crate) fn indices(what: &'static str, values: &[usize], bound: usize) -> Result<Vec<ffi::PetscInt>> {
-    let convert = |(entry, &index): (usize, &usize)| {
+    let mut converted = Vec::with_capacity(values.len());
+    for (entry, &index) in values.iter().enumerate() {
         if index >= bound {
             return Err(Error::OutOfRange {
                 what,
@@ -164,9 +165,9 @@ pub(crate) fn indices(what: &'static str, values: &[usize], bound: usize) -> Res
                 bound,
             });
         }
-        int(what, index)
-    };
-    values.iter().enumerate().map(convert).collect()
+        converted.push(int(what, index)?);
+    }
+    Ok(converted)
 }
 
 /// Refuses a length other than the expected one.

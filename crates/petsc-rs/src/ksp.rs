@@ -104,7 +104,8 @@ impl<'p> Ksp<'p> {
     /// chosen a factorisation, else `Unsupported`. Whether PETSc has the package shows in
     /// [`Ksp::set_up`]. Collective.
     pub fn set_factor_solver(&mut self, name: &str) -> Result<()> {
-        let (name, pc) = (c_string(name)?, self.pc()?);
+        let name = c_string(name)?;
+        let pc = self.pc()?;
         let mut taken = ptr::null();
         // SAFETY: the handle is valid; the text is copied.
         check(unsafe { ffi::PCFactorSetMatSolverType(pc, name.as_ptr()) })?;
@@ -128,7 +129,8 @@ impl<'p> Ksp<'p> {
 
     /// The preconditioner's name, `None` before there is one.
     pub fn pc_type_name(&self) -> Result<Option<String>> {
-        let (mut name, pc) = (ptr::null(), self.pc()?);
+        let mut name = ptr::null();
+        let pc = self.pc()?;
         // SAFETY: the handle and the pointer are valid.
         check(unsafe { ffi::PCGetType(pc, &mut name) })?;
         // SAFETY: null or a text of PETSc.
@@ -153,8 +155,10 @@ impl<'p> Ksp<'p> {
     /// When an iteration ends. Collective.
     pub fn set_tolerances(&mut self, tolerances: Tolerances) -> Result<()> {
         let most = int("max_iterations", tolerances.max_iterations)?;
-        let (relative, absolute) = (tolerances.relative, tolerances.absolute);
-        let (mut divergence, none) = (0.0, ptr::null_mut());
+        let relative = tolerances.relative;
+        let absolute = tolerances.absolute;
+        let mut divergence = 0.0;
+        let none = ptr::null_mut();
         // SAFETY: the handle is valid; null pointers are not filled.
         check(unsafe { ffi::KSPGetTolerances(self.raw, none, none, &mut divergence, ptr::null_mut()) })?;
         // SAFETY: the handle is valid; PETSc checks the numbers.

@@ -85,7 +85,9 @@ impl<'p> Matrix<'p> {
             });
         let (starts, columns) = petsc.agree(checked)?;
         matrix.entries = columns.len();
-        let (i, j, v) = (starts.as_ptr(), columns.as_ptr(), values.as_ptr());
+        let i = starts.as_ptr();
+        let j = columns.as_ptr();
+        let v = values.as_ptr();
         // SAFETY: `local_rows + 1` ascending starts, as many columns below the global size and
         // values as the last of them; PETSc copies. Of the two, the one of another type does nothing.
         check(unsafe { ffi::MatSeqAIJSetPreallocationCSR(matrix.raw, i, j, v) })?;
@@ -114,7 +116,8 @@ impl<'p> Matrix<'p> {
             pattern,
             entries: 0,
         };
-        let (m, n) = (int("matrix rows", local_rows)?, int("matrix rows", global)?);
+        let m = int("matrix rows", local_rows)?;
+        let n = int("matrix rows", global)?;
         // SAFETY: PETSc runs; the handle is created before it is used; null handles are destroyable.
         check(unsafe { ffi::MatCreate(petsc.comm(), &mut matrix.raw) })?;
         // SAFETY: the handle is valid.
@@ -127,7 +130,8 @@ impl<'p> Matrix<'p> {
     }
 
     fn find_owned(&mut self) -> Result<()> {
-        let (mut from, mut to) = (0, 0);
+        let mut from = 0;
+        let mut to = 0;
         // SAFETY: the matrix is set up; the pointers are valid.
         check(unsafe { ffi::MatGetOwnershipRange(self.raw, &mut from, &mut to) })?;
         self.owned = from.unsigned_abs() as usize..to.unsigned_abs() as usize;

@@ -21,13 +21,14 @@ impl Petsc<'_> {
     /// Names, without the dash, of the options that were set and that PETSc has not read so far:
     /// misspelt ones, or ones of a solver that is not in use.
     pub fn unused_options(&self) -> Result<Vec<String>> {
-        let (mut count, mut names, mut values) = (0, ptr::null_mut(), ptr::null_mut());
+        let mut count = 0;
+        let mut names = ptr::null_mut();
+        let mut values = ptr::null_mut();
         // SAFETY: PETSc runs; the pointers are valid; the arrays are given back below.
         check(unsafe { ffi::PetscOptionsLeftGet(ptr::null_mut(), &mut count, &mut names, &mut values) })?;
-        // SAFETY: PETSc filled `count` NUL-terminated names.
-        let name = |entry| unsafe { text(*names.add(entry)) };
         let left = (0..usize::try_from(count).unwrap_or(0))
-            .map(name)
+            // SAFETY: PETSc filled `count` NUL-terminated names.
+            .map(|entry| unsafe { text(*names.add(entry)) })
             .filter(|name| !FIXED_OPTIONS.contains(&format!("-{name}").as_str()))
             .collect();
         // SAFETY: the arrays of the call above, once.

@@ -130,7 +130,8 @@ impl<'u> Petsc<'u> {
 
     /// The sum of `local` over the ranks, refused when PETSc's integer cannot hold it. Collective.
     pub(crate) fn total(&self, what: &'static str, local: usize) -> Result<usize> {
-        let (mine, mut sum) = (local as u64, 0_u64);
+        let mine = local as u64;
+        let mut sum = 0_u64;
         let world = self.universe.world();
         world.all_reduce_into(&mine, &mut sum, SystemOperation::sum());
         let value = usize::try_from(sum).unwrap_or(usize::MAX);
@@ -148,11 +149,15 @@ impl Drop for Petsc<'_> {
 
 /// Version of the PETSc linked at run time: major, minor, subminor. Needs no running PETSc.
 pub fn version() -> (u32, u32, u32) {
-    let (mut major, mut minor, mut subminor, mut release) = (0, 0, 0, 0);
+    let mut major = 0;
+    let mut minor = 0;
+    let mut subminor = 0;
+    let mut release = 0;
     // SAFETY: the pointers are valid; the function reads constants only and cannot fail.
     unsafe { ffi::PetscGetVersionNumber(&mut major, &mut minor, &mut subminor, &mut release) };
-    let number = |part| u32::try_from(part).unwrap_or(0);
-    (number(major), number(minor), number(subminor))
+    [major, minor, subminor]
+        .map(|part| u32::try_from(part).unwrap_or(0))
+        .into()
 }
 
 /// Bits of PETSc's integer, 32 or 64.

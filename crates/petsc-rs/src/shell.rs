@@ -125,10 +125,8 @@ pub(crate) struct Shell<'p> {
 impl<'p> Shell<'p> {
     /// A matrix of which this rank has `rows` rows. Collective.
     pub fn new(petsc: &'p Petsc, rows: usize) -> Result<Self> {
-        let (local, global) = (
-            int("matrix rows", rows)?,
-            int("matrix rows", petsc.total("matrix rows", rows)?)?,
-        );
+        let local = int("matrix rows", rows)?;
+        let global = int("matrix rows", petsc.total("matrix rows", rows)?)?;
         let mut shell = Self {
             raw: ptr::null_mut(),
             slot: Box::into_raw(Slot::new(rows)),
@@ -221,16 +219,20 @@ pub(crate) unsafe extern "C" fn pc_apply(pc: ffi::PC, x: ffi::Vec, y: ffi::Vec) 
         Ok(slot) => slot,
         Err(code) => return code,
     };
-    let apply = |shell: &mut dyn ShellPc, x: &[f64], y: &mut [f64]| match shell.apply(x, y) {
+    // SAFETY: distinct vectors of the slot's layout by the contract.
+    slot.with(|shell| unsafe { on_arrays(slot.rows.get(), x, y, |x, y| apply(pc, shell, x, y)) })
+}
+
+/// Sets y = B x by the preconditioner that was lent; `pc` is failed with it.
+fn apply(pc: ffi::PC, shell: &mut dyn ShellPc, x: &[f64], y: &mut [f64]) -> ffi::PetscErrorCode {
+    match shell.apply(x, y) {
         Ok(()) => 0,
         Err(failure) => {
             // Norms and products of it tell the other ranks, too.
             y.fill(f64::INFINITY);
             fail(pc, Some(failure))
         }
-    };
-    // SAFETY: distinct vectors of the slot's layout by the contract.
-    slot.with(|shell| unsafe { on_arrays(slot.rows.get(), x, y, |x, y| apply(shell, x, y)) })
+    }
 }
 
 /// The slot that a shell preconditioner has as its context.
@@ -241,8 +243,8 @@ unsafe fn pc_slot<'s>(pc: ffi::PC) -> std::result::Result<&'s Slot<dyn ShellPc>,
     let mut place = ptr::null_mut::<c_void>();
     // SAFETY: the handle and the pointer are valid.
     let code = unsafe { ffi::PCShellGetContext(pc, (&raw mut place).cast()) };
-    // SAFETY: a slot by the contract, which is only shared.
     if code == 0 {
+        // SAFETY: a slot by the contract, which is only shared.
         Ok(unsafe { &*place.cast::<Slot<dyn ShellPc>>() })
     } else {
         Err(code)
@@ -270,7 +272,8 @@ unsafe fn on_arrays(
     y: ffi::Vec,
     work: impl FnOnce(&[f64], &mut [f64]) -> ffi::PetscErrorCode,
 ) -> ffi::PetscErrorCode {
-    let (mut from, mut to) = (ptr::null(), ptr::null_mut());
+    let mut from = ptr::null();
+    let mut to = ptr::null_mut();
     // SAFETY: valid handles and pointers by the contract; the array is given back below.
     let code = unsafe { ffi::VecGetArrayRead(x, &mut from) };
     if code != 0 {

@@ -19,7 +19,8 @@ impl<'p> Vector<'p> {
     /// A zero vector of which this rank owns `local` entries (0 is allowed). Collective.
     pub fn new(petsc: &'p Petsc, local: usize) -> Result<Self> {
         let global = petsc.total("vector length", local)?;
-        let (local, length) = (int("vector length", local)?, int("vector length", global)?);
+        let local = int("vector length", local)?;
+        let length = int("vector length", global)?;
         let mut vector = Self {
             petsc,
             raw: ptr::null_mut(),
@@ -32,7 +33,8 @@ impl<'p> Vector<'p> {
         check(unsafe { ffi::VecSetSizes(vector.raw, local, length) })?;
         // SAFETY: as above.
         check(unsafe { ffi::VecSetType(vector.raw, c"standard".as_ptr()) })?;
-        let (mut from, mut to) = (0, 0);
+        let mut from = 0;
+        let mut to = 0;
         // SAFETY: the vector is set up; the pointers are valid.
         check(unsafe { ffi::VecGetOwnershipRange(vector.raw, &mut from, &mut to) })?;
         vector.owned = from.unsigned_abs() as usize..to.unsigned_abs() as usize;

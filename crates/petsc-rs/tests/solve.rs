@@ -51,7 +51,8 @@ fn main() {
     let printed = captured.end();
     let quiet = expect(printed.is_empty(), &format!("printed: {printed}"));
     report("nothing is printed from start to end", quiet);
-    let (all, failed) = (CHECKS.len() + 2, failures.len());
+    let all = CHECKS.len() + 2;
+    let failed = failures.len();
     failures.iter().for_each(|line| println!("{line}"));
     println!("{} passed, {failed} failed", all - failed);
     if failed > 0 {
@@ -70,8 +71,11 @@ fn text(error: Error) -> String {
 
 /// 1-D Poisson matrix, `scale` (-1, 2, -1), as entries of this rank's rows: (rows, columns, values).
 fn entries(petsc: &Petsc, scale: f64) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
-    let (from, n) = (petsc.rank() * LOCAL, petsc.ranks() * LOCAL);
-    let (mut rows, mut columns, mut values) = (vec![], vec![], vec![]);
+    let from = petsc.rank() * LOCAL;
+    let n = petsc.ranks() * LOCAL;
+    let mut rows = vec![];
+    let mut columns = vec![];
+    let mut values = vec![];
     for row in from..from + LOCAL {
         for column in row.saturating_sub(1)..(row + 2).min(n) {
             rows.push(row);
@@ -172,7 +176,9 @@ fn coo_equals_csr(petsc: &Petsc) -> Result<(), String> {
         .collect();
     let mut csr = Matrix::from_csr(petsc, LOCAL, 1, &starts, &columns, &values).map_err(text)?;
     let coo = poisson(petsc)?;
-    let (x, mut y, mut z) = (wavy(petsc)?, wavy(petsc)?, wavy(petsc)?);
+    let x = wavy(petsc)?;
+    let mut y = wavy(petsc)?;
+    let mut z = wavy(petsc)?;
     coo.mult(&x, &mut y).map_err(text)?;
     expect(coo.entries() == csr.entries(), "entries")?;
     for factor in [1.0, 4.0] {
@@ -185,7 +191,9 @@ fn coo_equals_csr(petsc: &Petsc) -> Result<(), String> {
     }
     // Element by element: entries repeat, and the last of a rank lies in the next rank's row too.
     let n = petsc.ranks() * LOCAL;
-    let (mut rows, mut columns, mut values) = (vec![], vec![], vec![]);
+    let mut rows = vec![];
+    let mut columns = vec![];
+    let mut values = vec![];
     for element in first..first + LOCAL {
         for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             rows.push((element + i) % n);
@@ -232,7 +240,8 @@ fn iterative(petsc: &Petsc) -> Result<(), String> {
     ksp.set_pc_type("none").map_err(text)?;
     tolerances.max_iterations = 2;
     ksp.set_tolerances(tolerances).map_err(text)?;
-    let (b, mut x) = (wavy(petsc)?, wavy(petsc)?);
+    let b = wavy(petsc)?;
+    let mut x = wavy(petsc)?;
     match ksp.solve(&b, &mut x) {
         Err(Error::Diverged {
             reason: -3,
@@ -247,7 +256,8 @@ fn iterative(petsc: &Petsc) -> Result<(), String> {
 fn product(petsc: &Petsc) -> Result<(), String> {
     let matrix = poisson(petsc)?;
     let times = |x: &[f64], y: &mut [f64]| {
-        let (mut from, mut to) = (Vector::new(petsc, LOCAL).unwrap(), Vector::new(petsc, LOCAL).unwrap());
+        let mut from = Vector::new(petsc, LOCAL).unwrap();
+        let mut to = Vector::new(petsc, LOCAL).unwrap();
         from.copy_from(x).unwrap();
         matrix.mult(&from, &mut to).unwrap();
         to.copy_to(y).unwrap();
@@ -256,10 +266,8 @@ fn product(petsc: &Petsc) -> Result<(), String> {
     let wanted: Vec<f64> = (0..LOCAL).map(|i| 1.0 + (i as f64).sin()).collect();
     let mut right = vec![0.0; LOCAL];
     times(&wanted, &mut right);
-    let (mut b, mut x) = (
-        Vector::new(petsc, LOCAL).map_err(text)?,
-        Vector::new(petsc, LOCAL).map_err(text)?,
-    );
+    let mut b = Vector::new(petsc, LOCAL).map_err(text)?;
+    let mut x = Vector::new(petsc, LOCAL).map_err(text)?;
     b.copy_from(&right).map_err(text)?;
     let mut ksp = Ksp::new(petsc).map_err(text)?;
     ksp.set_operator(&matrix).map_err(text)?;
@@ -318,7 +326,8 @@ fn singular(petsc: &Petsc) -> Result<(), String> {
         let mut ksp = solver(petsc, &matrix, ["preonly", "cholesky", package])?;
         ksp.set_up().map_err(text)?;
         matrix.set_values(&values).map_err(text)?;
-        let (b, mut x) = (wavy(petsc)?, wavy(petsc)?);
+        let b = wavy(petsc)?;
+        let mut x = wavy(petsc)?;
         let failures = [ksp.set_up().err(), ksp.solve(&b, &mut x).err()];
         for failure in failures {
             let right = matches!(failure, Some(Error::Diverged { reason: -11, .. }));
@@ -333,7 +342,8 @@ fn singular(petsc: &Petsc) -> Result<(), String> {
 /// A factorisation calls it a success and gives NaN; an iteration says -9.
 fn not_a_number(petsc: &Petsc) -> Result<(), String> {
     let matrix = poisson(petsc)?;
-    let (mut b, mut x) = (wavy(petsc)?, wavy(petsc)?);
+    let mut b = wavy(petsc)?;
+    let mut x = wavy(petsc)?;
     b.insert(&[3], &[f64::NAN]).map_err(text)?;
     let mut ksp = solver(petsc, &matrix, ["preonly", "cholesky", "mumps"])?;
     let verdict = ksp.solve(&b, &mut x);

@@ -12,10 +12,17 @@ struct FuzzGrid {
 }
 
 impl FuzzGrid {
+    /// The two ends of a segment, as lines of a case.
+    fn segment(&self, u: &mut Unstructured<'_>) -> Result<String> {
+        Ok(format!("from = {:?}\nto = {:?}", self.place(u)?, self.place(u)?))
+    }
+
     /// A place in eighths of the grid, ends included.
     fn place(&self, u: &mut Unstructured<'_>) -> Result<[f64; 2]> {
-        let mut part = || Ok(f64::from(u.int_in_range(0..=8_u8)?) / 8.0);
-        let parts = [part()?, part()?];
+        let mut parts = [0.0; 2];
+        for part in &mut parts {
+            *part = f64::from(u.int_in_range(0..=8_u8)?) / 8.0;
+        }
         Ok([0, 1].map(|axis| self.lower[axis] + parts[axis] * (self.upper[axis] - self.lower[axis])))
     }
 
@@ -46,7 +53,7 @@ pub fn text(u: &mut Unstructured<'_>) -> Result<String> {
     ])?;
     let materials = u.int_in_range(1..=2)?;
     for number in 0..materials {
-        material(u, number, (dynamic, start), &mut text)?;
+        material(u, number, dynamic, start, &mut text)?;
     }
     bodies(u, &grid, materials, &mut text)?;
     let faces = boundary(u, &mut text)?;
@@ -69,7 +76,8 @@ fn quoted<'a>(u: &mut Unstructured<'_>, words: &[&'a str]) -> Result<&'a str> {
 
 fn analysis(u: &mut Unstructured<'_>, text: &mut String) -> Result<bool> {
     let dynamic = u.arbitrary()?;
-    let (kind, steps) = (if dynamic { "dynamic" } else { "quasi-static" }, u.int_in_range(1..=4)?);
+    let kind = if dynamic { "dynamic" } else { "quasi-static" };
+    let steps = u.int_in_range(1..=4)?;
     line(
         text,
         &format!(
@@ -95,14 +103,12 @@ fn grid(u: &mut Unstructured<'_>, text: &mut String) -> Result<FuzzGrid> {
     let lower = *u.choose(&[[0.0, 0.0], [-3.0, 7.0], [1e6, -1e6]])?;
     let mut upper = [0, 1].map(|axis| lower[axis] + h * f64::from(cells[axis]));
     if u.ratio(1, 4)? {
-        let mut axis = |axis: usize| {
-            let mut knots = vec![lower[axis]];
-            for _ in 0..cells[axis] {
+        let mut knots = lower.map(|lower| vec![lower]);
+        for (knots, cells) in knots.iter_mut().zip(cells) {
+            for _ in 0..cells {
                 knots.push(knots[knots.len() - 1] + h * size(u, -1.5, 0.5)?);
             }
-            Ok(knots)
-        };
-        let knots = [axis(0)?, axis(1)?];
+        }
         upper = [0, 1].map(|axis| knots[axis][knots[axis].len() - 1]);
         let [x, y] = knots;
         line(
@@ -118,12 +124,7 @@ fn grid(u: &mut Unstructured<'_>, text: &mut String) -> Result<FuzzGrid> {
     Ok(FuzzGrid { lower, upper, h })
 }
 
-fn material(
-    u: &mut Unstructured<'_>,
-    number: usize,
-    (dynamic, start): (bool, FuzzStart),
-    text: &mut String,
-) -> Result<()> {
+fn material(u: &mut Unstructured<'_>, number: usize, dynamic: bool, start: FuzzStart, text: &mut String) -> Result<()> {
     let model = quoted(u, &["elastic", "mohr-coulomb", "tresca", "drucker-prager", "von-mises"])?;
     let poisson = if u.ratio(1, 8)? {
         0.5 - size(u, -9.0, -1.0)?
@@ -146,7 +147,8 @@ fn material(
     }
     let closing = model == "mohr-coulomb" && u.arbitrary()?;
     if model == "von-mises" {
-        let (strength, hardening) = (young * size(u, -8.0, 0.0)?, young * size(u, -8.0, 0.0)?);
+        let strength = young * size(u, -8.0, 0.0)?;
+        let hardening = young * size(u, -8.0, 0.0)?;
         line(text, &format!("yield_stress = {strength:?}\nhardening = {hardening:?}"));
     } else if model != "elastic" {
         let cohesion = if closing || u.ratio(1, 4)? {
@@ -180,7 +182,8 @@ fn material(
 
 fn bodies(u: &mut Unstructured<'_>, grid: &FuzzGrid, materials: usize, text: &mut String) -> Result<()> {
     for _ in 0..u.int_in_range(1..=2)? {
-        let (material, points) = (u.int_in_range(0..=materials - 1)?, u.int_in_range(1..=4_u8)?);
+        let material = u.int_in_range(0..=materials - 1)?;
+        let points = u.int_in_range(1..=4_u8)?;
         line(
             text,
             &format!("[[body]]\nmaterial = \"m{material}\"\npoints_per_cell = {points}"),
@@ -259,14 +262,17 @@ fn gravity(u: &mut Unstructured<'_>, start: FuzzStart, text: &mut String) -> Res
 fn loads(u: &mut Unstructured<'_>, grid: &FuzzGrid, text: &mut String) -> Result<()> {
     if u.ratio(1, 6)? {
         let stress = [signed(u, 0.0, 9.0)?, signed(u, 0.0, 9.0)?];
-        let (from, to, ramp) = (grid.place(u)?, grid.place(u)?, ramp(u)?);
+        let from = grid.place(u)?;
+        let to = grid.place(u)?;
+        let ramp = ramp(u)?;
         line(
             text,
             &format!("[[traction]]\nfrom = {from:?}\nto = {to:?}\nstress = {stress:?}\nramp = {ramp:?}"),
         );
     }
     if u.ratio(1, 6)? {
-        let (at, force) = (grid.place(u)?, [signed(u, 0.0, 9.0)?, signed(u, 0.0, 9.0)?]);
+        let at = grid.place(u)?;
+        let force = [signed(u, 0.0, 9.0)?, signed(u, 0.0, 9.0)?];
         line(
             text,
             &format!("[[point_load]]\nat = {at:?}\nforce = {force:?}\nramp = {:?}", ramp(u)?),
@@ -283,9 +289,10 @@ fn loads(u: &mut Unstructured<'_>, grid: &FuzzGrid, text: &mut String) -> Result
 
 /// A footing, and a face or segment that moves.
 fn strips(u: &mut Unstructured<'_>, grid: &FuzzGrid, free: [bool; 4], text: &mut String) -> Result<()> {
-    let segment = |u: &mut Unstructured<'_>| Ok(format!("from = {:?}\nto = {:?}", grid.place(u)?, grid.place(u)?));
     if u.ratio(1, 4)? {
-        let (segment, base, moved) = (segment(u)?, quoted(u, &["smooth", "rough"])?, grid.motion(u)?);
+        let segment = grid.segment(u)?;
+        let base = quoted(u, &["smooth", "rough"])?;
+        let moved = grid.motion(u)?;
         line(
             text,
             &format!("[footing]\n{segment}\ndisplacement = {moved:?}\nbase = \"{base}\""),
@@ -296,12 +303,10 @@ fn strips(u: &mut Unstructured<'_>, grid: &FuzzGrid, free: [bool; 4], text: &mut
         let site = if free[number] {
             format!("face = \"{}\"", ["left", "right", "bottom", "top"][number])
         } else {
-            segment(u)?
+            grid.segment(u)?
         };
-        let (way, components) = (
-            quoted(u, &["displacement", "velocity"])?,
-            quoted(u, &["all", "normal"])?,
-        );
+        let way = quoted(u, &["displacement", "velocity"])?;
+        let components = quoted(u, &["all", "normal"])?;
         line(
             text,
             &format!(

@@ -47,7 +47,8 @@ pub fn newest(folder: &Path) -> Result<(Option<FoundCheckpoint>, Vec<Error>), Er
 /// # Errors
 /// [`Error::Checkpoint`] when either is missing, damaged, or none of ours.
 pub fn named(path: &Path) -> Result<FoundCheckpoint, Error> {
-    let (arrays, record) = (path.with_extension("h5"), path.with_extension("json"));
+    let arrays = path.with_extension("h5");
+    let record = path.with_extension("json");
     let mut bytes = Vec::new();
     let (source, size) = open(&record)?;
     if size > RECORD_LIMIT {

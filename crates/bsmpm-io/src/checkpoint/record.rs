@@ -107,26 +107,28 @@ impl CheckpointRecord {
 
     /// The record that a file's bytes hold, if they are the bytes that were written, of this form, and make sense.
     pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
-        let refused = |reason: String| Error::checkpoint(path, reason);
-        let (hash, body) =
-            split(bytes).ok_or_else(|| refused("it is not the record of a checkpoint, or damaged".into()))?;
+        Self::read(bytes).map_err(|reason| Error::checkpoint(path, reason))
+    }
+
+    /// The same; says in words what is wrong with the bytes.
+    fn read(bytes: &[u8]) -> Result<Self, String> {
+        let (hash, body) = split(bytes).ok_or("it is not the record of a checkpoint, or damaged")?;
         let found = blake3::hash(body);
         if found.to_hex().as_bytes() != hash {
-            return Err(refused("it is damaged (its checksum is wrong)".into()));
+            return Err("it is damaged (its checksum is wrong)".into());
         }
-        let wrong = |error: serde_json::Error| refused(error.to_string());
         #[derive(Deserialize)]
         struct RecordForm {
             schema: u32,
         }
-        let RecordForm { schema } = serde_json::from_slice(body).map_err(wrong)?;
+        let RecordForm { schema } = serde_json::from_slice(body).map_err(|error| error.to_string())?;
         if schema != SCHEMA {
-            return Err(refused(format!(
+            return Err(format!(
                 "it has format {schema}, and this program reads format {SCHEMA}"
-            )));
+            ));
         }
-        let record: Self = serde_json::from_slice(body).map_err(wrong)?;
-        record.sense().map_err(refused)?;
+        let record: Self = serde_json::from_slice(body).map_err(|error| error.to_string())?;
+        record.sense()?;
         Ok(record)
     }
 

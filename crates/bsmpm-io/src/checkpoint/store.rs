@@ -79,7 +79,7 @@ pub struct Store {
 
 /// A checkpoint that is being written. What there is of it goes when this is dropped before it was committed.
 #[derive(Debug)]
-pub struct Pending {
+pub struct PendingCheckpoint {
     step: u64,
     path: PathBuf,
     record: PathBuf,
@@ -120,27 +120,26 @@ impl Store {
     /// [`Error::File`] when the system refuses.
     pub fn existing(&self, facts: &Facts) -> Result<Option<FoundCheckpoint>, Error> {
         let step = facts.step;
-        let same = |found: &FoundCheckpoint| found.record.case == facts.case && found.record.ranks == facts.ranks;
-        let found = named(&file(&self.folder, step, ".h5")).ok().filter(same);
+        let found = named(&file(&self.folder, step, ".h5"))
+            .ok()
+            .filter(|found| found.record.case == facts.case && found.record.ranks == facts.ranks);
         if found.is_none() && remove(&file(&self.folder, step, ".json"))? {
             sync(&self.folder)?;
         }
         Ok(found)
     }
 
-    /// Begins the checkpoint of a step: an empty file at [`Pending::path`], on a disk that has room for so many bytes.
+    /// Begins the checkpoint of a step: an empty file at [`PendingCheckpoint::path`], on a disk that has room for so
+    /// many bytes.
     ///
     /// # Errors
     /// [`Error::Space`] where it has not; [`Error::File`] when the system refuses otherwise. Nothing is left then.
-    pub fn begin(&self, step: u64, bytes: u64) -> Result<Pending, Error> {
-        let name = |ending| {
-            self.folder
-                .join(format!("{TEMPORARY}{}-{}{ending}", process::id(), stem(step)))
-        };
-        let pending = Pending {
+    pub fn begin(&self, step: u64, bytes: u64) -> Result<PendingCheckpoint, Error> {
+        let name = format!("{TEMPORARY}{}-{}", process::id(), stem(step));
+        let pending = PendingCheckpoint {
             step,
-            path: name(".h5"),
-            record: name(".json"),
+            path: self.folder.join(format!("{name}.h5")),
+            record: self.folder.join(format!("{name}.json")),
         };
         File::create(&pending.path).map_err(Error::file("create", &pending.path))?;
         pending.reserve(bytes)?;
@@ -154,7 +153,7 @@ impl Store {
     /// [`Error::File`] when the system refuses: the checkpoints of before are all there.
     pub fn commit(
         &self,
-        pending: Pending,
+        pending: PendingCheckpoint,
         facts: &Facts,
         arrays: Vec<RecordedArray>,
         at: &dyn Fn(Phase),
@@ -162,17 +161,17 @@ impl Store {
         at(Phase::Closed);
         let (bytes, blake3) = sync_and_hash(&pending.path).map_err(Error::file("write", &pending.path))?;
         at(Phase::Synced);
-        let record = record(facts, arrays, (bytes, blake3));
+        let record = record(facts, arrays, bytes, blake3);
         write_record(&pending.record, &record).map_err(Error::file("write", &pending.record))?;
         at(Phase::Recorded);
-        let place = |ending| file(&self.folder, pending.step, ending);
         let found = FoundCheckpoint {
-            path: place(".h5"),
+            path: file(&self.folder, pending.step, ".h5"),
             record,
         };
         fs::rename(&pending.path, &found.path).map_err(Error::file("write", &found.path))?;
         at(Phase::Named);
-        fs::rename(&pending.record, place(".json")).map_err(Error::file("write", &place(".json")))?;
+        let named = file(&self.folder, pending.step, ".json");
+        fs::rename(&pending.record, &named).map_err(Error::file("write", &named))?;
         at(Phase::Committed);
         sync(&self.folder)?;
         at(Phase::Kept);
@@ -181,16 +180,20 @@ impl Store {
         Ok(found)
     }
 
+    /// The steps of the files that end so.
+    fn list(&self, ending: &str) -> Result<Vec<u64>, Error> {
+        steps(&self.folder, ending).map_err(Error::file("read", &self.folder))
+    }
+
     /// Keeps the checkpoint of `newest` and those before it, as many as wanted. Records go first: one without its file
     /// would be a damaged checkpoint, a file without its record is none.
     fn purge(&self, newest: u64) -> Result<(), Error> {
-        let list = |ending| steps(&self.folder, ending).map_err(Error::file("read", &self.folder));
-        let older = list(".json")?.into_iter().filter(|&step| step <= newest);
+        let older = self.list(".json")?.into_iter().filter(|&step| step <= newest);
         let Some(last) = older.take(self.keep).last() else {
             return Ok(());
         };
         for ending in [".json", ".h5"] {
-            for step in list(ending)?.into_iter().filter(|&step| step < last) {
+            for step in self.list(ending)?.into_iter().filter(|&step| step < last) {
                 remove(&file(&self.folder, step, ending))?;
             }
             sync(&self.folder)?;
@@ -215,7 +218,7 @@ pub fn forget_beyond(directory: &Path, step: u64) -> Result<(), Error> {
     Ok(())
 }
 
-impl Pending {
+impl PendingCheckpoint {
     /// The file that is to be filled.
     pub fn path(&self) -> &Path {
         &self.path
@@ -226,14 +229,9 @@ impl Pending {
     /// # Errors
     /// [`Error::Space`] where there is none; [`Error::File`] when the system refuses otherwise.
     pub fn reserve(&self, needed: u64) -> Result<(), Error> {
-        let lacks = |available: String| Error::Space {
-            path: self.path.clone(),
-            needed,
-            available,
-        };
         // Beyond the limit the system would not refuse but end the process.
         if let Some(limit) = getrlimit(Resource::Fsize).current.filter(|&limit| limit < needed) {
-            return Err(lacks(format!("the system limits files to {limit} bytes")));
+            return Err(self.lacks(needed, format!("the system limits files to {limit} bytes")));
         }
         let file = File::options()
             .write(true)
@@ -242,13 +240,22 @@ impl Pending {
         match fallocate(&file, FallocateFlags::empty(), 0, needed) {
             // Not every file system can promise room.
             Ok(()) | Err(Errno::OPNOTSUPP | Errno::NOSYS) => Ok(()),
-            Err(Errno::NOSPC | Errno::DQUOT | Errno::FBIG) => Err(lacks(free(&self.path))),
+            Err(Errno::NOSPC | Errno::DQUOT | Errno::FBIG) => Err(self.lacks(needed, free(&self.path))),
             Err(error) => Err(Error::file("write", &self.path)(error.into())),
+        }
+    }
+
+    /// The error of a disk on which less is `available` than is needed.
+    fn lacks(&self, needed: u64, available: String) -> Error {
+        Error::Space {
+            path: self.path.clone(),
+            needed,
+            available,
         }
     }
 }
 
-impl Drop for Pending {
+impl Drop for PendingCheckpoint {
     fn drop(&mut self) {
         // What was committed has other names by now.
         let _ = fs::remove_file(&self.path);
@@ -264,7 +271,7 @@ fn free(path: &Path) -> String {
     )
 }
 
-fn record(facts: &Facts, arrays: Vec<RecordedArray>, (bytes, blake3): (u64, String)) -> CheckpointRecord {
+fn record(facts: &Facts, arrays: Vec<RecordedArray>, bytes: u64, blake3: String) -> CheckpointRecord {
     let Facts {
         version,
         case,

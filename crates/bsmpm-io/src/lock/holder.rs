@@ -45,21 +45,14 @@ pub(super) enum Fate {
 
 impl Holder {
     pub fn this_process() -> Self {
-        let line = |path: &str| fs::read_to_string(path).unwrap_or_default().trim().to_owned();
         let namespace = fs::read_link("/proc/self/ns/pid").unwrap_or_default();
-        let job = |name: &&str| {
-            std::env::var(name)
-                .ok()
-                .filter(|id| !id.is_empty())
-                .map(|id| format!("{name}={id}"))
-        };
         Self {
-            host: line("/proc/sys/kernel/hostname"),
-            boot: line("/proc/sys/kernel/random/boot_id"),
+            host: trimmed_text("/proc/sys/kernel/hostname"),
+            boot: trimmed_text("/proc/sys/kernel/random/boot_id"),
             namespace: namespace.to_string_lossy().into_owned(),
             pid: std::process::id(),
             started: start_of(std::process::id()),
-            job: JOBS.iter().find_map(job),
+            job: JOBS.iter().find_map(|name| job_of(name)),
             restarts: std::env::var(RESTARTS)
                 .ok()
                 .and_then(|count| count.parse().ok())
@@ -124,6 +117,17 @@ impl Display for Holder {
         }
         write!(f, ", since {}", self.since)
     }
+}
+
+/// The text of a file of the system, without what surrounds it; empty if it cannot be read.
+fn trimmed_text(path: &str) -> String {
+    fs::read_to_string(path).unwrap_or_default().trim().to_owned()
+}
+
+/// The job that an environment variable names, as `NAME=ID`.
+fn job_of(variable: &str) -> Option<String> {
+    let id = std::env::var(variable).ok().filter(|id| !id.is_empty())?;
+    Some(format!("{variable}={id}"))
 }
 
 /// When a process started, in ticks since the host did; none if it is gone, or dead and not yet taken away.

@@ -100,7 +100,8 @@ fn write_parts(path: &Path, frame: &Frame, announced: usize, parts: &[std::ops::
 #[test]
 fn a_frame_has_the_same_bytes_in_whatever_parts_it_comes() {
     let dir = tempfile::tempdir().unwrap();
-    let (whole, apart) = (dir.path().join("whole.vtu"), dir.path().join("apart.vtu"));
+    let whole = dir.path().join("whole.vtu");
+    let apart = dir.path().join("apart.vtu");
     let frame = frame(1000);
     vtu::write(&whole, &frame).unwrap();
     for parts in [&[0..1, 1..1, 1..999, 999..1000][..], &[0..333, 333..666, 666..1000]] {

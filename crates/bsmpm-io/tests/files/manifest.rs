@@ -48,7 +48,8 @@ fn manifest() -> Manifest {
         position: vec![0.5, 0.25],
         force: Some(2.0),
     };
-    let (residuals, reason) = (vec![Some(1.0), None], "no convergence".to_owned());
+    let residuals = vec![Some(1.0), None];
+    let reason = "no convergence".to_owned();
     manifest.failure = Some(ManifestFailure {
         step: 3,
         time: 0.1,

@@ -11,7 +11,8 @@ fn rows_are_read_as_they_were_written() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("residuals.csv");
     let row = |iteration, method, energy| {
-        let (time, water) = (0.1 + 0.2, 2e-5);
+        let time = 0.1 + 0.2;
+        let water = 2e-5;
         Iterate {
             step: 3,
             time,

@@ -8,6 +8,7 @@ use bsmpm::kinematics::{Gradient, Kinematics};
 use bsmpm::model::Model;
 use bsmpm::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
 use bsmpm::points::Points;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::{InternalForce, Residual};
@@ -18,7 +19,9 @@ use std::time::Instant;
 
 /// Shortest time of one call among those that fit into so many seconds, three at least, s.
 pub fn shortest(seconds: f64, mut call: impl FnMut()) -> f64 {
-    let (begin, mut shortest, mut calls) = (Instant::now(), f64::INFINITY, 0);
+    let begin = Instant::now();
+    let mut shortest = f64::INFINITY;
+    let mut calls = 0;
     while calls < 3 || begin.elapsed().as_secs_f64() < seconds {
         let start = Instant::now();
         call();
@@ -34,7 +37,7 @@ pub struct Bench<'a, K, const D: usize> {
     pub points: &'a Points<D>,
     pub halo: &'a dyn Halo,
     /// s  time and step
-    pub times: (f64, f64),
+    pub interval: TimeInterval,
     /// s  for each phase
     pub seconds: f64,
 }
@@ -47,18 +50,19 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
             model,
             points,
             halo,
-            times,
+            interval,
             ..
         } = *self;
         let shape = Shape::at(&model.grid, points)?;
-        let mut nodes = Nodes::map(model, &shape, points, times, halo)?;
-        let field = FreeField::after(model, points, times, halo)?;
+        let mut nodes = Nodes::map(model, &shape, points, interval, halo)?;
+        let field = FreeField::after(model, points, interval, halo)?;
         field.drive(&mut nodes);
         let attachments = StripAttachments::at(
             &model.boundary.strips,
             &points.surface,
-            (&model.grid, &nodes.free),
-            times,
+            &model.grid,
+            &nodes.free,
+            interval,
         );
         let problem = Problem {
             model,
@@ -79,23 +83,24 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
             drop(black_box(Shape::at(&model.grid, points)))
         });
         self.row("(2) points to nodes", None, || {
-            drop(black_box(Nodes::map(model, &shape, points, times, halo)))
+            drop(black_box(Nodes::map(model, &shape, points, interval, halo)))
         });
         if !field.columns.is_empty() {
             self.row("columns of the free field", None, || {
-                drop(black_box(FreeField::after(model, points, times, halo)))
+                drop(black_box(FreeField::after(model, points, interval, halo)))
             });
         }
         self.row("(4a) gather of grad u", Some(traffic.gradients), || {
             drop(black_box(transfer::gradients::<K, D, _>(
-                (&shape, &points.x),
+                &shape,
+                &points.x,
                 &u,
                 |_, grad| grad,
             )))
         });
         if model.stabilisation.averages() {
             self.row("(4c-e) average of F-bar", Some(traffic.average), || {
-                drop(black_box(nodes.mean_dilation(model, (&shape, points), halo, |_| 1.0)));
+                drop(black_box(nodes.mean_dilation(model, &shape, points, halo, |_| 1.0)));
             });
         }
         let trial = Trial::of(model, &shape, &nodes, points, &u, halo);
@@ -114,7 +119,7 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
             },
         );
         self.row("(5a) scatter of the internal force", Some(0), || {
-            drop(black_box(transfer::divergence::<K, D>((&shape, &points.x), |p| {
+            drop(black_box(transfer::divergence::<K, D>(&shape, &points.x, |p| {
                 K::flux(&points.sigma.at(p), &points.F.at(p))
             })));
         });
@@ -128,7 +133,8 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
         self.row("(6) stiffness, assembled and factorised", None, || {
             drop(black_box(stiffness::assemble(&problem, Some(&trial), solver)));
         });
-        let (f, mut w) = (Residual::of(&problem, &u).balance.f_oob, u.clone());
+        let f = Residual::of(&problem, &u).balance.f_oob;
+        let mut w = u.clone();
         self.row("(7) solution", Some(0), || drop(black_box(solver.solve(&f, &mut w))));
         Ok(())
     }
@@ -156,7 +162,8 @@ impl Traffic {
     fn of<K: Kinematics<D>, const D: usize>(model: &Model<K, D>) -> Self {
         let number = size_of::<f64>();
         let width = model.grid.order() + 1;
-        let (functions, tensor) = (2 * D * width, D * K::Gradient::SLOPES);
+        let functions = 2 * D * width;
+        let tensor = D * K::Gradient::SLOPES;
         // Without functions of their own averages read the rows with the derivatives between.
         let averaging = if model.stabilisation.lowers() {
             D * (width - 1)
@@ -179,7 +186,8 @@ impl Traffic {
 
 /// Bytes of a point in memory at rest, and with its shape functions and two trial states.
 pub fn bytes<K: Kinematics<D>, const D: usize>(mut points: Points<D>, model: &Model<K, D>) -> String {
-    let (rest, width) = (points.memory(), model.grid.order() + 1);
+    let rest = points.memory();
+    let width = model.grid.order() + 1;
     let averaged = model.stabilisation.averages();
     let lowered = model.stabilisation.lowers();
     let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());

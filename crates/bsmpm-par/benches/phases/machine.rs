@@ -8,7 +8,9 @@ const LENGTH: usize = 1 << 23;
 
 /// Best rate of a = b + s c, GB/s, by the bytes that the loop names (McCalpin, 1995: STREAM).
 pub fn triad(seconds: f64) -> f64 {
-    let (b, c, mut a) = (vec![1.0; LENGTH], vec![2.0; LENGTH], vec![0.0; LENGTH]);
+    let b = vec![1.0; LENGTH];
+    let c = vec![2.0; LENGTH];
+    let mut a = vec![0.0; LENGTH];
     let shortest = super::kernels::shortest(seconds, || {
         let s = black_box(3.0);
         a.iter_mut().zip(&b).zip(&c).for_each(|((a, b), c)| *a = b + s * c);
@@ -24,7 +26,8 @@ pub fn multiply_add(seconds: f64) -> f64 {
     let begin = Instant::now();
     let mut rounds = 0;
     while begin.elapsed().as_secs_f64() < seconds {
-        let (s, t) = (black_box(0.999_999), black_box(1e-6));
+        let s = black_box(0.999_999);
+        let t = black_box(1e-6);
         for _ in 0..ROUNDS {
             chains.iter_mut().for_each(|x| *x = *x * s + t);
         }

@@ -6,6 +6,7 @@ mod machine;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Model;
 use bsmpm::points::Points;
+use bsmpm::schedule::TimeInterval;
 use bsmpm_par::checkpoint::{self, Opened, Wanted};
 use bsmpm_par::{launch, setup};
 use bsmpm_ranks::halo::MpiHalo;
@@ -37,7 +38,7 @@ fn main() -> ExitCode {
         return ExitCode::FAILURE;
     };
     let seconds = seconds.parse().map_err(Into::into);
-    match seconds.and_then(|seconds| measure(&universe, (case, &set), (checkpoint, seconds))) {
+    match seconds.and_then(|seconds| measure(&universe, case, &set, checkpoint, seconds)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("phases: {error}");
@@ -62,7 +63,7 @@ fn state<K: Kinematics<D>, const D: usize>(
     let names: Vec<&str> = found.record.arrays.iter().map(|array| array.name.as_str()).collect();
     let width = bsmpm::material::state_width(&model.materials);
     let mut points = Points::holding(&names, width);
-    let opened = Opened::new((&hdf5, universe.world()), &found).map_err(refused)?;
+    let opened = Opened::new(&hdf5, universe.world(), &found).map_err(refused)?;
     opened.points(points.named_columns()).map_err(refused)?;
     let state = opened
         .state()
@@ -74,7 +75,7 @@ fn state<K: Kinematics<D>, const D: usize>(
     }
     let layers = model.grid.layers().len();
     let guess = opened
-        .guess((layers, model.grid.layer_nodes() * D), 0..layers)
+        .guess(layers, model.grid.layer_nodes() * D, 0..layers)
         .map_err(refused)?;
     opened.close().map_err(refused)?;
     points.surface = state.surface().ok_or("the checkpoint's surfaces are of another case")?;
@@ -88,7 +89,7 @@ fn state<K: Kinematics<D>, const D: usize>(
     Ok((points, guess, found.record.time()))
 }
 
-fn measure(universe: &Universe, (case, set): (&str, &[String]), how: (&str, f64)) -> Result<(), Box<dyn Error>> {
+fn measure(universe: &Universe, case: &str, set: &[String], path: &str, seconds: f64) -> Result<(), Box<dyn Error>> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(1)
         .use_current_thread()
@@ -96,27 +97,30 @@ fn measure(universe: &Universe, (case, set): (&str, &[String]), how: (&str, f64)
     let text = bsmpm_scene::load(Path::new(case))?;
     let case = Case::from_bytes(case, &text, set).map_err(|errors| format!("{errors:?}"))?;
     match case.geometry {
-        Geometry::PlaneStrain => measure_in::<PlaneStrain, 2>(universe, &case, how),
-        Geometry::Axisymmetric => measure_in::<Axisymmetric, 2>(universe, &case, how),
-        Geometry::Solid => measure_in::<Solid, 3>(universe, &case, how),
+        Geometry::PlaneStrain => measure_in::<PlaneStrain, 2>(universe, &case, path, seconds),
+        Geometry::Axisymmetric => measure_in::<Axisymmetric, 2>(universe, &case, path, seconds),
+        Geometry::Solid => measure_in::<Solid, 3>(universe, &case, path, seconds),
     }
 }
 
 fn measure_in<K: Kinematics<D>, const D: usize>(
     universe: &Universe,
     case: &Case,
-    (path, seconds): (&str, f64),
+    path: &str,
+    seconds: f64,
 ) -> Result<(), Box<dyn Error>> {
     let mut model = bsmpm_scene::model::model::<K, D>(case)?;
     let (points, guess, time) = state(universe, Path::new(path), &mut model)?;
     let columns = model.grid.columns();
     let slabs = Slabs::new(vec![columns.start, columns.end], 1, columns).ok_or("no columns")?;
-    let (timers, requests) = (Rc::new(Timers::default()), Rc::new(Requests::default()));
+    let timers = Rc::new(Timers::default());
+    let requests = Rc::new(Requests::default());
     let halo = Rc::new(MpiHalo::new(
         universe.world(),
         &slabs,
         &model.grid,
-        (Rc::clone(&timers), requests),
+        Rc::clone(&timers),
+        requests,
     ));
     let choice = setup::linear(case, 1, &[]);
     let petsc = Petsc::initialize(universe, &choice.options())?;
@@ -131,7 +135,10 @@ fn measure_in<K: Kinematics<D>, const D: usize>(
         model: &model,
         points: &points,
         halo: &*halo,
-        times: (time, case.analysis.dt),
+        interval: TimeInterval {
+            start: time,
+            dt: case.analysis.dt,
+        },
         seconds,
     };
     bench.run(&guess, &mut solver)?;
@@ -139,7 +146,8 @@ fn measure_in<K: Kinematics<D>, const D: usize>(
         "| bytes of a point; with its shape functions and two trial states | {} | | |",
         kernels::bytes(points, &model)
     );
-    let (triad, multiply_add) = (machine::triad(seconds), machine::multiply_add(seconds));
+    let triad = machine::triad(seconds);
+    let multiply_add = machine::multiply_add(seconds);
     println!("| triad, GB/s; dependent-free multiply-add, GFlop/s | {triad:.1}; {multiply_add:.1} | | |");
     Ok(())
 }

@@ -30,17 +30,15 @@ pub fn find(world: &SimpleCommunicator, wanted: Wanted<'_>) -> Result<(Option<Fo
     let first = world.rank() == 0;
     let looked = if first { look(wanted) } else { Ok((None, Vec::new())) };
     let (found, passed_over) = agree(world, looked)?;
-    let refusal =
-        |error: serde_json::Error| Refusal::new(exit::BUG, format!("a record cannot be sent to all ranks: {error}"));
-    let record = agree(
-        world,
-        serde_json::to_vec(&found.as_ref().map(|found| &found.record)).map_err(refusal),
-    )?;
+    let record = serde_json::to_vec(&found.as_ref().map(|found| &found.record));
+    let record = agree(world, record.map_err(|error| unsent(&error)))?;
     let path = found
         .as_ref()
         .map_or_else(Vec::new, |found| found.path.as_os_str().as_bytes().to_vec());
-    let (record, path) = (broadcast(world, 0, record), broadcast(world, 0, path));
-    let record: Option<CheckpointRecord> = agree(world, serde_json::from_slice(&record).map_err(refusal))?;
+    let record = broadcast(world, 0, record);
+    let path = broadcast(world, 0, path);
+    let record = serde_json::from_slice::<Option<CheckpointRecord>>(&record);
+    let record = agree(world, record.map_err(|error| unsent(&error)))?;
     Ok((
         record.map(|record| FoundCheckpoint {
             path: OsString::from_vec(path).into(),
@@ -48,6 +46,10 @@ pub fn find(world: &SimpleCommunicator, wanted: Wanted<'_>) -> Result<(Option<Fo
         }),
         passed_over,
     ))
+}
+
+fn unsent(error: &serde_json::Error) -> Refusal {
+    Refusal::new(exit::BUG, format!("a record cannot be sent to all ranks: {error}"))
 }
 
 fn look(wanted: Wanted<'_>) -> Result<(Option<FoundCheckpoint>, Vec<String>), Refusal> {
@@ -73,16 +75,11 @@ impl<'h> Opened<'h> {
     ///
     /// # Errors
     /// The same on all ranks (76): the file holds other arrays than its record says, or cannot be read.
-    pub fn new((hdf5, world): (&'h Hdf5<'h>, SimpleCommunicator), found: &FoundCheckpoint) -> Result<Self, Refusal> {
-        let refused = |reason: String| refused(&found.path, &reason);
-        let library = |error: hdf5_collective::Error| refused(error.to_string());
+    pub fn new(hdf5: &'h Hdf5<'h>, world: SimpleCommunicator, found: &FoundCheckpoint) -> Result<Self, Refusal> {
         visible(&world, found)?;
-        let reader = agree(&world, Reader::open(hdf5, &found.path).map_err(library))?;
-        let arrays = reader.arrays().map_err(library);
-        let arrays = agree(
-            &world,
-            arrays.and_then(|arrays| recorded(arrays, found).map_err(refused)),
-        )?;
+        let reader = Reader::open(hdf5, &found.path);
+        let reader = agree(&world, reader.map_err(|error| unread(&found.path, &error)))?;
+        let arrays = agree(&world, recorded(&reader, found))?;
         Ok(Self {
             reader,
             world,
@@ -96,12 +93,11 @@ impl<'h> Opened<'h> {
     /// # Errors
     /// The same on all ranks (76): it is no text, or cannot be read.
     pub fn state(&self) -> Result<Vec<u8>, Refusal> {
-        let text = |rows| Shape {
+        let shape = self.shape(STATE, |found| Shape {
             number: hdf5_collective::Number::U8,
-            rows,
+            rows: found.rows,
             width: 1,
-        };
-        let shape = self.shape(STATE, |found| text(found.rows))?;
+        })?;
         self.read(self.reader.range(STATE, shape, 0..shape.rows))
     }
 
@@ -130,8 +126,13 @@ impl<'h> Opened<'h> {
             let shape = self.shape(name, |_| Shape { number, rows, width })?;
             let bytes = self.read(self.reader.share(name, shape))?;
             let fits = bytes.chunks_exact(column.bytes()).all(|row| column.fits(row));
-            let strange = || refused(&self.path, &format!("the array {name} has components out of the plane"));
-            agree(&self.world, fits.then_some(()).ok_or_else(strange))?;
+            let outcome = if fits {
+                Ok(())
+            } else {
+                let reason = format!("the array {name} has components out of the plane");
+                Err(refused(&self.path, &reason))
+            };
+            agree(&self.world, outcome)?;
             let mut rest = &bytes[..];
             while !rest.is_empty() {
                 column.take(&mut rest);
@@ -145,7 +146,7 @@ impl<'h> Opened<'h> {
     ///
     /// # Errors
     /// The same on all ranks (76): it is not there, is of other nodes, or cannot be read.
-    pub fn guess(&self, (count, width): (usize, usize), rows: Range<usize>) -> Result<Vec<f64>, Refusal> {
+    pub fn guess(&self, count: usize, width: usize, rows: Range<usize>) -> Result<Vec<f64>, Refusal> {
         let held = Shape {
             number: hdf5_collective::Number::F64,
             rows: count as u64,
@@ -167,17 +168,11 @@ impl<'h> Opened<'h> {
         let Self {
             reader, world, path, ..
         } = self;
-        agree(
-            &world,
-            reader.close().map_err(|error| refused(&path, &error.to_string())),
-        )
+        agree(&world, reader.close().map_err(|error| unread(&path, &error)))
     }
 
     fn read(&self, read: hdf5_collective::Result<Vec<u8>>) -> Result<Vec<u8>, Refusal> {
-        agree(
-            &self.world,
-            read.map_err(|error| refused(&self.path, &error.to_string())),
-        )
+        agree(&self.world, read.map_err(|error| unread(&self.path, &error)))
     }
 
     fn find(&self, name: &str) -> Result<Shape, Refusal> {
@@ -226,15 +221,22 @@ fn refused(path: &Path, reason: &str) -> Refusal {
     Refusal::unusable(path, reason)
 }
 
-/// The file's arrays, if they are those of the record.
-fn recorded(arrays: Vec<(String, Shape)>, found: &FoundCheckpoint) -> Result<Vec<(String, Shape)>, String> {
-    let recorded = |(name, shape): &&(String, Shape)| found.record.array(name) == Some(&named(name, *shape));
-    if let Some((name, _)) = arrays.iter().find(|array| !recorded(array)) {
-        return Err(format!("the array {name} is not as its record says"));
+fn unread(path: &Path, error: &hdf5_collective::Error) -> Refusal {
+    refused(path, &error.to_string())
+}
+
+/// The file's arrays, if they are those of the record. Collective.
+fn recorded(reader: &Reader<'_>, found: &FoundCheckpoint) -> Result<Vec<(String, Shape)>, Refusal> {
+    let path = &found.path;
+    let arrays = reader.arrays().map_err(|error| unread(path, &error))?;
+    for (name, shape) in &arrays {
+        if found.record.array(name) != Some(&named(name, *shape)) {
+            return Err(refused(path, &format!("the array {name} is not as its record says")));
+        }
     }
     if arrays.len() == found.record.arrays.len() {
         Ok(arrays)
     } else {
-        Err("arrays of its record are missing".into())
+        Err(refused(path, "arrays of its record are missing"))
     }
 }

@@ -3,7 +3,7 @@
 use super::refusal::{Refusal, agree};
 use super::write::infinite;
 use bsmpm::grid::Grid;
-use bsmpm::points::{Column, Number, Points};
+use bsmpm::points::{Number, Points};
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::topology::SimpleCommunicator;
 use std::ops::Range;
@@ -22,32 +22,31 @@ pub fn require<const D: usize>(
     file: &Path,
     points: &mut Points<D>,
     grid: &Grid<D>,
-    (materials, present, left): (usize, Option<&[Range<u64>]>, u64),
+    materials: usize,
+    present: Option<&[Range<u64>]>,
+    left: u64,
 ) -> Result<(), Refusal> {
-    let refused = |reason: String| Refusal::unusable(file, &reason);
-    agree(
-        world,
-        finite(points)
-            .and_then(|()| possible(points, grid, materials))
-            .map_err(refused),
-    )?;
+    let own = finite(points).and_then(|()| possible(points, grid, materials));
+    agree(world, own.map_err(|reason| Refusal::unusable(file, &reason)))?;
     let all = 0..u64::MAX;
     let present = present.unwrap_or(std::slice::from_ref(&all));
-    agree(world, once(world, &points.id, (present, left)).map_err(refused))
+    let counted = once(world, &points.id, present, left);
+    agree(world, counted.map_err(|reason| Refusal::unusable(file, &reason)))
 }
 
 fn finite<const D: usize>(points: &mut Points<D>) -> Result<(), String> {
-    let real = |column: &dyn Column| column.number() == Number::F64;
     let found = points
         .named_columns()
         .into_iter()
-        .filter(|(_, column)| real(&**column))
+        .filter(|(_, column)| column.number() == Number::F64)
         .find_map(|(name, column)| {
             let (p, value) = infinite(&*column)?;
             Some((name, p, value))
         });
-    let describe = |(name, p, value): (&str, usize, f64)| format!("{name} of point {} is {value}", points.id[p]);
-    found.map_or(Ok(()), |found| Err(describe(found)))
+    match found {
+        None => Ok(()),
+        Some((name, p, value)) => Err(format!("{name} of point {} is {value}", points.id[p])),
+    }
 }
 
 fn possible<const D: usize>(points: &Points<D>, grid: &Grid<D>, materials: usize) -> Result<(), String> {
@@ -74,8 +73,9 @@ fn possible<const D: usize>(points: &Points<D>, grid: &Grid<D>, materials: usize
 
 /// Every number of `present` once, as far as there are points, but for at most so many that have `left`, of which
 /// stages may have taken some: a bit for each. Collective; `Err` on all ranks or none.
-fn once(world: &SimpleCommunicator, ids: &[u64], (present, left): (&[Range<u64>], u64)) -> Result<(), String> {
-    let (own, mut all) = (ids.len() as u64, 0_u64);
+fn once(world: &SimpleCommunicator, ids: &[u64], present: &[Range<u64>], left: u64) -> Result<(), String> {
+    let own = ids.len() as u64;
+    let mut all = 0_u64;
     world.all_reduce_into(&own, &mut all, SystemOperation::sum());
     let expected: u64 = present.iter().map(|range| range.end - range.start).sum();
     if expected < all || (expected > all + left && expected != u64::MAX) {
@@ -83,28 +83,22 @@ fn once(world: &SimpleCommunicator, ids: &[u64], (present, left): (&[Range<u64>]
             "it has {all} points, where the case has {expected} at that time"
         ));
     }
-    let place = |id: u64| {
-        let mut before = 0;
-        let range = present.iter().find(|range| {
-            let holds = range.contains(&id);
-            before += if holds { 0 } else { range.end - range.start };
-            holds
-        })?;
-        Some(before + id - range.start)
-    };
     let places = if left > 0 { expected } else { all };
     let mut seen = vec![0_u64; places.div_ceil(WORD).max(1) as usize];
-    for at in ids.iter().filter_map(|&id| place(id)).filter(|at| *at < places) {
+    for at in ids
+        .iter()
+        .filter_map(|&id| place(present, id))
+        .filter(|at| *at < places)
+    {
         seen[(at / WORD) as usize] |= 1 << (at % WORD);
     }
     let mut seen_by_all = vec![0_u64; seen.len()];
     world.all_reduce_into(&seen[..], &mut seen_by_all[..], SystemOperation::bitwise_or());
-    let bit = |at: u64| seen_by_all[(at / WORD) as usize] >> (at % WORD) & 1;
     // As many points as numbers: if no more are missing than may be, none is there twice.
     let mut missing = (0..)
         .zip(present.iter().cloned().flatten())
         .take(places as usize)
-        .filter(|(at, _)| bit(*at) == 0);
+        .filter(|(at, _)| seen_by_all[(at / WORD) as usize] >> (at % WORD) & 1 == 0);
     match missing.nth((places - all) as usize) {
         None => Ok(()),
         Some(_) if left > 0 => Err(format!("it has {all} points, of which one is there twice")),
@@ -112,4 +106,16 @@ fn once(world: &SimpleCommunicator, ids: &[u64], (present, left): (&[Range<u64>]
             "it has {all} points, but none is point {id}: another is there twice"
         )),
     }
+}
+
+/// The place of a number among those of `present`.
+fn place(present: &[Range<u64>], id: u64) -> Option<u64> {
+    let mut before = 0;
+    for range in present {
+        if range.contains(&id) {
+            return Some(before + id - range.start);
+        }
+        before += range.end - range.start;
+    }
+    None
 }

@@ -259,14 +259,14 @@ impl CheckpointState {
             Ok(_) => Err("the state that is read back differs".into()),
             Err(error) => Err(error.to_string()),
         });
-        let lost = |reason: String| {
-            format!(
+        whole.map_err(|reason| {
+            let reason = format!(
                 "E0725: the checkpoint of step {} cannot be written: {reason}. The run ends. Continue from the last \
                  checkpoint with smaller steps.",
                 self.steps
-            )
-        };
-        whole.map_err(|reason| Refusal::new(exit::LEFT, lost(reason)))
+            );
+            Refusal::new(exit::LEFT, reason)
+        })
     }
 
     /// What a checkpoint's text says.
@@ -279,21 +279,24 @@ impl CheckpointState {
 
     /// The repeated breakpoints of the run's grid; `None` if they are not of a grid like this one.
     pub fn lines(&self, grid: &GridSpec) -> Option<[Vec<Line>; 3]> {
-        let of = |axis: usize| self.lines.get(axis).map_or(&[][..], Vec::as_slice);
-        let fits = |axis: usize| {
-            if axis >= grid.dims() {
-                return of(axis).is_empty();
+        let mut all: [Vec<Line>; 3] = Default::default();
+        for (axis, lines) in self.lines.iter().enumerate() {
+            let all = all.get_mut(axis)?;
+            if !lines.is_sorted_by(|a, b| a[0] < b[0]) {
+                return None;
             }
-            let inner = 1..grid.axes[axis].cells();
-            let sound = |line: &[usize; 2]| inner.contains(&line[0]) && (2..=grid.order).contains(&line[1]);
-            of(axis).iter().all(sound) && of(axis).is_sorted_by(|a, b| a[0] < b[0])
-        };
-        let line = |&[breakpoint, multiplicity]: &[usize; 2]| Line {
-            breakpoint,
-            multiplicity,
-        };
-        let all = std::array::from_fn(|axis| of(axis).iter().map(line).collect());
-        (self.lines.len() <= all.len() && (0..all.len()).all(fits)).then_some(all)
+            for &[breakpoint, multiplicity] in lines {
+                let inner = 1..grid.axes.get(axis)?.cells();
+                if !inner.contains(&breakpoint) || !(2..=grid.order).contains(&multiplicity) {
+                    return None;
+                }
+                all.push(Line {
+                    breakpoint,
+                    multiplicity,
+                });
+            }
+        }
+        Some(all)
     }
 
     /// The grid with the room that the run had; `None` if it is no part of that grid.
@@ -302,10 +305,9 @@ impl CheckpointState {
             return Some(grid.clone());
         };
         let room: [[usize; 2]; D] = room.as_slice().try_into().ok()?;
-        let fits = |axis: usize| room[axis][0] < room[axis][1] && room[axis][1] <= grid.axes()[axis].cells();
-        (0..D)
-            .all(fits)
-            .then(|| grid.within(room.map(|[start, end]| start..end)))
+        let mut along = room.iter().zip(grid.axes());
+        let fits = along.all(|([start, end], axis)| start < end && *end <= axis.cells());
+        fits.then(|| grid.within(room.map(|[start, end]| start..end)))
     }
 
     /// The surfaces; `None` if they are of another dimension.
@@ -317,17 +319,15 @@ impl CheckpointState {
             water: self.water_anchors.clone(),
         };
         // Without any, as many empty lists as there are loads.
-        let of_loads = |lists: &[Vec<Row>]| {
-            if lists.is_empty() {
-                Some(vec![Vec::new(); self.position.len()])
-            } else {
-                vectors(lists)
-            }
+        let pressure = if self.pressure[0].is_empty() {
+            vec![Vec::new(); self.position.len()]
+        } else {
+            vectors(&self.pressure[0])?
         };
         Some(Surface {
             traction: vectors(&self.traction)?,
             position: vectors(&self.position)?,
-            pressure: of_loads(&self.pressure[0])?,
+            pressure,
             anchors,
             held: vectors(&self.held)?,
             bodies: (0..self.rigid.len()).map(|body| self.rigid_state(body)).collect(),
@@ -380,8 +380,12 @@ pub(crate) fn rows<const D: usize>(lists: &[Vec<Vector<D>>]) -> Vec<Vec<Row>> {
 
 /// The vectors again; `None` if one has another number of components.
 pub(crate) fn vectors<const D: usize>(lists: &[Vec<Row>]) -> Option<Vec<Vec<Vector<D>>>> {
-    let vector = |row: &Row| <[f64; D]>::try_from(row.as_slice()).ok().map(Vector::from);
-    lists.iter().map(|list| list.iter().map(vector).collect()).collect()
+    let mut all = Vec::with_capacity(lists.len());
+    for list in lists {
+        let rows = list.iter().map(|row| <[f64; D]>::try_from(row.as_slice()));
+        all.push(rows.map(|row| row.map(Vector::from)).collect::<Result<_, _>>().ok()?);
+    }
+    Some(all)
 }
 
 #[derive(Serialize, Deserialize)]

@@ -4,7 +4,7 @@ use super::refusal::{Refusal, agree, broadcast};
 use super::{GUESS, STATE, form, named};
 use crate::launch;
 use bsmpm::points::{Column, Number};
-use bsmpm_io::checkpoint::{Facts, FoundCheckpoint, Pending, Phase, Store};
+use bsmpm_io::checkpoint::{Facts, FoundCheckpoint, PendingCheckpoint, Phase, Store};
 use bsmpm_io::exit;
 use hdf5_collective::{Hdf5, Shape, Writer};
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
@@ -36,7 +36,8 @@ pub struct Contents<'a> {
 /// The same on all ranks, with nothing left of the new checkpoint and all older ones good: no room (74), trouble with
 /// the file (74), a number that is not finite (81).
 pub fn write(
-    (hdf5, world): (&Hdf5<'_>, &SimpleCommunicator),
+    hdf5: &Hdf5<'_>,
+    world: &SimpleCommunicator,
     store: Option<&Store>,
     facts: &Facts,
     contents: &Contents<'_>,
@@ -76,7 +77,7 @@ pub fn write(
 
 enum Begun {
     Existing(FoundCheckpoint),
-    Pending(Pending),
+    Pending(PendingCheckpoint),
 }
 
 fn begin(store: &Store, facts: &Facts, room: u64) -> Result<Begun, Refusal> {
@@ -98,20 +99,17 @@ fn shapes(world: &SimpleCommunicator, contents: &Contents<'_>) -> Vec<(&'static 
         .iter()
         .map(|(_, column)| column.rows() as u64)
         .collect();
-    let (guess, width) = (&contents.guess.0, contents.guess.1);
+    let guess = &contents.guess.0;
+    let width = contents.guess.1;
     own.push((guess.len() / width) as u64);
     let mut all = vec![0; own.len()];
     world.all_reduce_into(&own[..], &mut all[..], SystemOperation::sum());
     let layers = all.pop().unwrap_or_default();
-    let shape = |(column, rows): (&dyn Column, u64)| {
-        let (number, width) = form(column);
-        Shape { number, rows, width }
-    };
-    let columns = contents
-        .columns
-        .iter()
-        .zip(all)
-        .map(|((name, column), rows)| (*name, shape((&**column, rows))));
+    let mut shapes = Vec::new();
+    for ((name, column), rows) in contents.columns.iter().zip(all) {
+        let (number, width) = form(&**column);
+        shapes.push((*name, Shape { number, rows, width }));
+    }
     let text = Shape {
         number: hdf5_collective::Number::U8,
         rows: contents.state.len() as u64,
@@ -122,26 +120,24 @@ fn shapes(world: &SimpleCommunicator, contents: &Contents<'_>) -> Vec<(&'static 
         rows: layers,
         width: width as u64,
     };
-    columns.chain([(GUESS, guess), (STATE, text)]).collect()
+    shapes.extend([(GUESS, guess), (STATE, text)]);
+    shapes
 }
 
 /// Refuses a file that not all ranks see: the library would wait for a rank that cannot open it, or each host would
 /// fill one of its own. Collective.
 fn visible(world: &SimpleCommunicator, path: &Path) -> Result<(), Refusal> {
     let opened = std::fs::File::options().write(true).open(path);
-    let failure = |error: std::io::Error| {
-        let (rank, path) = (world.rank(), path.display());
-        format!(
+    let outcome = opened.map(drop).map_err(|error| {
+        let rank = world.rank();
+        let path = path.display();
+        let reason = format!(
             "E0717: rank {rank} cannot write to the checkpoint `{path}`: {error}. The checkpoint is incomplete. Use \
              an output directory that all hosts share."
-        )
-    };
-    agree(
-        world,
-        opened
-            .map(|_| ())
-            .map_err(|error| Refusal::new(exit::WRITE, failure(error))),
-    )
+        );
+        Refusal::new(exit::WRITE, reason)
+    });
+    agree(world, outcome)
 }
 
 /// No number that is not finite ever reaches a file.
@@ -197,7 +193,7 @@ struct Fill<'a> {
 }
 
 impl Fill<'_> {
-    fn all(&self, pending: Option<&Pending>, room: u64, contents: &Contents<'_>) -> Result<(), Refusal> {
+    fn all(&self, pending: Option<&PendingCheckpoint>, room: u64, contents: &Contents<'_>) -> Result<(), Refusal> {
         let created = Writer::create(self.hdf5, self.path);
         let mut writer = created.map_err(|error| Refusal::new(exit::WRITE, self.reason(&error)))?;
         // HDF5 has emptied the file, and given the room back.
@@ -218,13 +214,15 @@ impl Fill<'_> {
             if index == half {
                 (self.at)(Phase::Midway);
             }
-            writer.write(name, form(&**column), &rows(&**column))?;
+            let (number, width) = form(&**column);
+            writer.write(name, number, width, &rows(&**column))?;
         }
-        let (guess, width) = (&contents.guess.0, contents.guess.1);
+        let guess = &contents.guess.0;
+        let width = contents.guess.1;
         let bytes: Vec<u8> = guess.iter().flat_map(|value| value.to_le_bytes()).collect();
-        writer.write(GUESS, (hdf5_collective::Number::F64, width as u64), &bytes)?;
+        writer.write(GUESS, hdf5_collective::Number::F64, width as u64, &bytes)?;
         let text = if self.world.rank() == 0 { contents.state } else { &[] };
-        writer.write(STATE, (hdf5_collective::Number::U8, 1), text).map(|_| ())
+        writer.write(STATE, hdf5_collective::Number::U8, 1, text).map(|_| ())
     }
 
     fn reason(&self, error: &hdf5_collective::Error) -> String {

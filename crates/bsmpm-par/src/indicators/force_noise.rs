@@ -38,7 +38,6 @@ fn is_force(quantity: &Quantity) -> bool {
 
 /// The largest of its components, each over its own magnitude; those that are next to nothing are not judged.
 fn noise(force: &History, times: &[f64], history: &Columns) -> Option<f64> {
-    let magnitude = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     let names = force.columns().into_iter().map(|column| column.name);
     let columns: Vec<&[f64]> = names.filter_map(|name| history.get(&name)).collect();
     let largest = columns.iter().map(|values| magnitude(values)).fold(0.0, f64::max);
@@ -46,6 +45,10 @@ fn noise(force: &History, times: &[f64], history: &Columns) -> Option<f64> {
     judged
         .filter_map(|values| Some(deviation(times, values)? / magnitude(values)))
         .reduce(f64::max)
+}
+
+fn magnitude(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 /// Standard deviation of the errors of values.

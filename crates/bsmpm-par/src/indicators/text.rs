@@ -15,10 +15,9 @@ const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
 /// The text of an indicator of a case by its name, with places for the value, its range and the one that is meant;
 /// empty for a name that is none.
 pub(super) fn of(name: &str, case: &Case, value: f64) -> String {
-    let noise = || against_noise(case);
     match name {
-        "pressure-noise-average" => NOISE_ABOUT_AVERAGE.replace("{remedy}", noise()),
-        "pressure-noise-plane" => NOISE_ABOUT_PLANE.replace("{remedy}", noise()),
+        "pressure-noise-average" => NOISE_ABOUT_AVERAGE.replace("{remedy}", against_noise(case)),
+        "pressure-noise-plane" => NOISE_ABOUT_PLANE.replace("{remedy}", against_noise(case)),
         "energy-growth" => GROWTH.replace("{remedy}", against_growth(case.stabilisation)),
         "wall-velocity" => WALL.replace("{remedy}", against_sliding(case)),
         "interface-shift" => INTERFACE.replace("{remedy}", against_shift(case, value)),
@@ -167,6 +166,14 @@ fn constant(name: &str, case: &Case) -> &'static str {
             "I0012: numerical dissipation is {value} of the peak energy ({range}). The motion is damped too \
              strongly. Reduce `analysis.dt`."
         }
+        _ => of_motion(name, case),
+    }
+}
+
+/// Those of smoothing, and of what moves.
+fn of_motion(name: &str, case: &Case) -> &'static str {
+    let is_dynamic = case.analysis.regime == Regime::Dynamic;
+    match name {
         "smoothing-length" => {
             "I0014: strains were smoothed over a length of {value} ({range}). Details of the stress below this \
              length are lost. Use smaller cells, or set `stabilisation.method = \"consistent-f-bar\"`."
@@ -195,6 +202,13 @@ fn constant(name: &str, case: &Case) -> &'static str {
             "I0020: soil penetrates a rigid body by {value} ({range}). The position of the contact is wrong by this \
              distance. Increase `analysis.steps`."
         }
+        _ => of_forces(name, case),
+    }
+}
+
+/// Those of flow, of the resolution of footings and openings, of forces and of stiffnesses.
+fn of_forces(name: &str, case: &Case) -> &'static str {
+    match name {
         "permeability-shift" => {
             "I0022: an interface of two permeabilities has moved {value} from its grid line ({range}). Flow is wrong \
              by up to a factor of 2. Use larger cells, so that it moves less in units of cells."

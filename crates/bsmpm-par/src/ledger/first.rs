@@ -5,8 +5,8 @@ use crate::machine;
 use crate::setup;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_io::manifest::{self, GridExtent, Manifest, ManifestCheck};
-use bsmpm_scene::Case;
 use bsmpm_scene::words::Word;
+use bsmpm_scene::{Case, Check, GridAxis};
 
 /// The manifest of a new run of a case.
 pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Manifest {
@@ -25,12 +25,11 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
         described,
     );
     let axes = &case.grid.axes;
-    let longest = |axis: &bsmpm_scene::GridAxis| (0..axis.cells()).map(|i| axis.cell(i)).fold(0.0, f64::max);
     (manifest.ranks, manifest.threads) = (ranks as u32, arguments.threads);
     manifest.grid = Some(GridExtent {
         lower: case.grid.lower()[..axes.len()].to_vec(),
         upper: case.grid.upper()[..axes.len()].to_vec(),
-        cell: axes.iter().map(longest).collect(),
+        cell: axes.iter().map(GridAxis::longest).collect(),
     });
     let estimate = case.estimate(ranks);
     manifest.sizes = [
@@ -55,16 +54,20 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
     manifest.versions = versions();
     let smooths = case.stabilisation.lowers() || case.stabilisation == Stabilisation::ModifiedFBar;
     manifest.summary.smoothing_passes = smooths.then_some(0.0);
-    let check = |check: &bsmpm_scene::Check| ManifestCheck {
+    manifest.checks = case.checks.iter().map(unmade).collect();
+    manifest
+}
+
+/// A check that has not been made yet.
+fn unmade(check: &Check) -> ManifestCheck {
+    ManifestCheck {
         quantity: check.quantity.clone(),
         at: Some(check.at),
         value: None,
         min: check.min,
         max: check.max,
         passed: false,
-    };
-    manifest.checks = case.checks.iter().map(check).collect();
-    manifest
+    }
 }
 
 /// Versions of the libraries in use, by name.

@@ -3,7 +3,7 @@
 use super::{Headings, Ledger, first};
 use crate::checkpoint::{CheckpointState, Files};
 use crate::cli::Arguments;
-use crate::restart::Resumed;
+use crate::restart::ResumedRun;
 use bsmpm_io::Error;
 use bsmpm_io::checkpoint::{self, FoundCheckpoint, Store};
 use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
@@ -22,10 +22,11 @@ impl Ledger {
     /// another directory a new run begins there with the older one's rows.
     pub fn resume(
         held: OutputDirectory,
-        (arguments, case): (&Arguments, &Case),
+        arguments: &Arguments,
+        case: &Case,
         ranks: usize,
         columns: Vec<TableColumn>,
-        resumed: &Resumed<'_>,
+        resumed: &ResumedRun<'_>,
     ) -> Result<Self, Error> {
         let here = held.path().to_owned();
         let (mut manifest, mut news) = manifest(first::manifest(arguments, case, ranks), resumed);
@@ -122,33 +123,50 @@ struct Tables {
     profiles: Vec<CsvTable>,
 }
 
+/// The directory whose tables are gone on with.
+struct TableResumption<'a> {
+    directory: &'a Path,
+    /// the step that is made first
+    first: u64,
+    news: &'a mut Vec<String>,
+}
+
+impl TableResumption<'_> {
+    fn table(&mut self, name: &str, headings: &[TableColumn], mark: &TableMark) -> Result<CsvTable, Error> {
+        let path = self.directory.join(name);
+        if path.exists() {
+            return CsvTable::resume(&path, headings, mark);
+        }
+        let first = self.first;
+        self.news.push(format!(
+            "W0738: the file `{name}` of the earlier steps is missing, so the new file begins with step {first}. \
+             If you need the earlier steps, restore the old file from a copy."
+        ));
+        CsvTable::create(&path, headings)
+    }
+}
+
 impl Headings {
     /// The tables as far as they were; one that is not there begins again, which is reported in the `news`.
     fn resume(&self, directory: &Path, state: &CheckpointState, news: &mut Vec<String>) -> Result<Tables, Error> {
-        let mut table = |name: &str, headings: &[TableColumn], mark: &TableMark| {
-            let path = directory.join(name);
-            if path.exists() {
-                return CsvTable::resume(&path, headings, mark);
-            }
-            let first = state.steps + 1;
-            news.push(format!(
-                "W0738: the file `{name}` of the earlier steps is missing, so the new file begins with step {first}. \
-                 If you need the earlier steps, restore the old file from a copy."
-            ));
-            CsvTable::create(&path, headings)
-        };
         let files = &state.files;
+        let mut resumption = TableResumption {
+            directory,
+            first: state.steps + 1,
+            news,
+        };
+        let mut profiles = Vec::new();
+        for ((file, headings), mark) in self.profiles.iter().zip(&files.profiles) {
+            profiles.push(resumption.table(file, headings, mark)?);
+        }
         let residuals = self.residuals.as_ref().zip(files.residuals.as_ref());
-        let profiles = self.profiles.iter().zip(&files.profiles);
         Ok(Tables {
-            profiles: profiles
-                .map(|((file, of), mark)| table(file, of, mark))
-                .collect::<Result<_, _>>()?,
+            profiles,
             residuals: residuals
-                .map(|(headings, mark)| table(RESIDUALS, headings, mark))
+                .map(|(headings, mark)| resumption.table(RESIDUALS, headings, mark))
                 .transpose()?,
-            history: table(HISTORY, &self.history, &files.history)?,
-            steps: table(STEPS, &self.steps, &files.steps)?,
+            history: resumption.table(HISTORY, &self.history, &files.history)?,
+            steps: resumption.table(STEPS, &self.steps, &files.steps)?,
         })
     }
 
@@ -180,7 +198,7 @@ fn claim(
     held: OutputDirectory,
     headings: &Headings,
     manifest: &mut Manifest,
-    resumed: &Resumed<'_>,
+    resumed: &ResumedRun<'_>,
 ) -> Result<OutputDirectory, Error> {
     let here = held.path().to_owned();
     if resumed.is_in(&here) {
@@ -200,7 +218,7 @@ fn claim(
 
 /// The manifest of a run that goes on, the new one with all that the older one has counted and warned of; and the
 /// warnings of this start.
-fn manifest(new: Manifest, resumed: &Resumed<'_>) -> (Manifest, Vec<String>) {
+fn manifest(new: Manifest, resumed: &ResumedRun<'_>) -> (Manifest, Vec<String>) {
     let old = resumed.state.files.manifest.clone();
     let mut checks = new.checks.clone();
     for check in &mut checks {
@@ -259,7 +277,8 @@ fn manifest(new: Manifest, resumed: &Resumed<'_>) -> (Manifest, Vec<String>) {
 fn copy_tables(from: &Path, to: &Path, headings: &Headings) -> Result<(), Error> {
     let profiles = headings.profiles.iter().map(|(file, _)| &**file);
     for name in [HISTORY, STEPS, RESIDUALS].into_iter().chain(profiles) {
-        let (from, to) = (from.join(name), to.join(name));
+        let from = from.join(name);
+        let to = to.join(name);
         if from.is_file() {
             fs::copy(&from, &to).map_err(Error::file("copy", &from))?;
         }

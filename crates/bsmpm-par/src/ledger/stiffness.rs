@@ -25,10 +25,11 @@ impl Ledger {
             return;
         };
         let stages = &self.manifest.stages;
-        let begins = |stage: &ManifestStage| stage.step + 1 == number;
-        let weakens = |stage: &ManifestStage| stage.strength_reduction.is_some() || !stage.exchanged.is_empty();
-        let begins_stage = number == 1 || stages.iter().any(begins);
-        let redistributes = stages.iter().any(|stage| begins(stage) && weakens(stage));
+        let begun: Vec<&ManifestStage> = stages.iter().filter(|stage| stage.step + 1 == number).collect();
+        let begins_stage = number == 1 || !begun.is_empty();
+        let redistributes = begun
+            .iter()
+            .any(|stage| stage.strength_reduction.is_some() || !stage.exchanged.is_empty());
         let redistributes = redistributes || number == 1 && self.begins_with_stress;
         let start = stages.last().map_or(0.0, |stage| stage.time);
         let summary = &mut self.manifest.summary;

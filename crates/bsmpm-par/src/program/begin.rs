@@ -8,13 +8,14 @@ use crate::ledger::Ledger;
 use crate::log::Log;
 use crate::machine;
 use crate::record::Recorder;
-use crate::restart::{self, Resumed, RunStart};
-use crate::run::{Before, Run, Task};
+use crate::restart::{self, ResumedRun, RunStart};
+use crate::run::RunFiles;
+use crate::run::Scene;
+use crate::run::{Continuation, Run, Task};
 use crate::setup::Cut;
 use crate::space;
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
-use bsmpm::tensor::Vector;
 use bsmpm_io::directory::OutputDirectory;
 use bsmpm_io::exit;
 use bsmpm_io::lock::Unseen;
@@ -22,6 +23,8 @@ use bsmpm_io::table::TableColumn;
 use bsmpm_ranks::linear::Choice;
 use bsmpm_ranks::load::{self, Rows};
 use bsmpm_ranks::signals::Requests;
+use bsmpm_ranks::simulation::Libraries;
+use bsmpm_ranks::simulation::PartitionedModel;
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::slab::Slabs;
 use bsmpm_ranks::timers::Timers;
@@ -31,36 +34,38 @@ use hdf5_collective::Hdf5;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::environment::Universe;
 use mpi::topology::{Communicator, SimpleCommunicator};
-use petsc_rs::Petsc;
 use std::path::Path;
 use std::rc::Rc;
 
 /// Runs the task, whatever its geometry, with the libraries that have started; `Err` holds the exit code, and rank 0
 /// has said why.
 pub(super) fn run(
-    libraries: (&Universe, &Hdf5<'_>),
-    solver: (&Petsc<'_>, Choice),
+    libraries: Libraries<'_>,
+    hdf5: &Hdf5<'_>,
+    choice: Choice,
     task: Task,
     cut: Cut,
     requests: Rc<Requests>,
 ) -> Result<u8, u8> {
     match task.case.geometry {
-        Geometry::PlaneStrain => run_in::<PlaneStrain, 2>(libraries, solver, task, cut, requests),
-        Geometry::Axisymmetric => run_in::<Axisymmetric, 2>(libraries, solver, task, cut, requests),
-        Geometry::Solid => run_in::<Solid, 3>(libraries, solver, task, cut, requests),
+        Geometry::PlaneStrain => run_in::<PlaneStrain, 2>(libraries, hdf5, choice, task, cut, requests),
+        Geometry::Axisymmetric => run_in::<Axisymmetric, 2>(libraries, hdf5, choice, task, cut, requests),
+        Geometry::Solid => run_in::<Solid, 3>(libraries, hdf5, choice, task, cut, requests),
     }
 }
 
 fn run_in<K: Kinematics<D>, const D: usize>(
-    (universe, hdf5): (&Universe, &Hdf5<'_>),
-    (petsc, choice): (&Petsc<'_>, Choice),
+    libraries: Libraries<'_>,
+    hdf5: &Hdf5<'_>,
+    choice: Choice,
     mut task: Task,
     cut: Cut,
     requests: Rc<Requests>,
 ) -> Result<u8, u8> {
+    let universe = libraries.universe;
     let refused = |refusal: Refusal| refuse(universe, refusal.code, &refusal.reason);
     let held = hold(universe, &task.arguments).map_err(refused)?;
-    let mut start = restart::plan((hdf5, universe), held.as_ref(), &task.arguments, &task.case).map_err(refused)?;
+    let mut start = restart::plan(hdf5, universe, held.as_ref(), &task.arguments, &task.case).map_err(refused)?;
     if let RunStart::Resumed(resumed) = &start {
         let lines = resumed.lines(&task.case).map_err(refused)?;
         task.case.keep_lines(lines);
@@ -75,19 +80,21 @@ fn run_in<K: Kinematics<D>, const D: usize>(
         ));
     }
     let timers = Rc::new(Timers::default());
-    let seam = (universe, petsc, choice);
-    let mut scene = scene::<K, D>(seam, case, cut, &start, (Rc::clone(&timers), requests)).map_err(refused)?;
-    let warning = space::admit(&universe.world(), held.as_ref(), (arguments, case), &mut scene.0).map_err(refused)?;
+    let scene = scene::<K, D>(libraries, choice, case, cut, &start, Rc::clone(&timers), requests);
+    let mut scene = scene.map_err(refused)?;
+    let simulation = &mut scene.simulation;
+    let warning = space::admit(&universe.world(), held.as_ref(), arguments, case, simulation).map_err(refused)?;
     start.warn(warning);
     start.warn(crowded(&universe.world(), arguments.threads));
     let before = before(&start, &arguments.directory());
-    let ledger = ledger(universe, held, (arguments, case), scene.1.columns(), &start).map_err(refused)?;
+    let ledger = ledger(universe, held, arguments, case, scene.recorder.columns(), &start).map_err(refused)?;
     if let RunStart::Resumed(resumed) = start {
         resumed.close().map_err(refused)?;
     }
     let speaks = universe.world().rank() == 0;
     let log = Log::new(speaks, arguments, case);
-    Ok(Run::new((universe, hdf5), task, scene, (ledger, log), timers, before).until_the_end())
+    let files = RunFiles { hdf5, ledger, log };
+    Ok(Run::new(universe, files, task, scene, timers, before).until_the_end())
 }
 
 /// Prints a remark on rank 0 and hands the exit code on.
@@ -128,17 +135,18 @@ fn hold(universe: &Universe, arguments: &Arguments) -> Result<Option<OutputDirec
     agree(&world, held.transpose().map_err(Refusal::from))
 }
 
-type Scene<'p, K, const D: usize> = (Simulation<'p, K, D>, Recorder<D>);
-
 /// The points, on the ranks of their slabs, and what is recorded of them. Collective.
 fn scene<'p, K: Kinematics<D>, const D: usize>(
-    seam: (&'p Universe, &'p Petsc<'p>, Choice),
+    libraries: Libraries<'p>,
+    choice: Choice,
     case: &bsmpm_scene::Case,
-    (room, slabs, parts): Cut,
+    cut: Cut,
     start: &RunStart<'_>,
-    shared: (Rc<Timers>, Rc<Requests>),
+    timers: Rc<Timers>,
+    requests: Rc<Requests>,
 ) -> Result<Scene<'p, K, D>, Refusal> {
-    let universe = seam.0;
+    let universe = libraries.universe;
+    let Cut { room, slabs, parts } = cut;
     let at = if let RunStart::Resumed(resumed) = start {
         resumed.state.progress.t
     } else {
@@ -149,62 +157,71 @@ fn scene<'p, K: Kinematics<D>, const D: usize>(
     if let RunStart::Resumed(resumed) = start {
         let (slabs, points, stepper) = resumed.read(universe, case, &mut model, &schedule)?;
         let surface = points.surface.clone();
-        let mut simulation = Simulation::new(seam, model, (slabs, points), schedule, shared);
+        let partitioned = PartitionedModel { model, slabs, points };
+        let mut simulation = Simulation::new(libraries, choice, partitioned, schedule, timers, requests);
         simulation.resume(resumed.state.steps, stepper, surface);
         let recorder = Recorder::resume(case, &resumed.state.record);
-        let foreign = || {
+        let recorder = recorder.ok_or_else(|| {
             Refusal::new(
                 exit::CHECKPOINT,
                 "E0719: the histories of the case differ from those of the run that wrote the checkpoint. The run \
                  cannot be continued. Restore the histories of the case, or start again with `--force`.",
             )
-        };
-        return Ok((simulation, recorder.ok_or_else(foreign)?));
+        })?;
+        return Ok(Scene { simulation, recorder });
     }
     model.grid = model.grid.within(std::array::from_fn(|axis| room[axis].clone()));
     let world = universe.world();
     let rank = world.rank().unsigned_abs() as usize;
     let slabs = parted::<K, D>(
-        (&world, rank),
+        &world,
+        rank,
         case,
         &model.grid,
-        (slabs.reaching(model.grid.beyond()), parts),
+        slabs.reaching(model.grid.beyond()),
+        parts,
     );
     let slabs = slabs.ok_or_else(|| Refusal::new(exit::CASE, case.too_many(world.size().unsigned_abs() as usize)))?;
-    let is_ours = |x: &Vector<D>| model.grid.locate(x).is_none_or(|cell| slabs.owner(&cell) == rank);
-    let points = points::<K, D>(case, slabs.columns(rank), is_ours);
-    let simulation = Simulation::new(seam, model, (slabs, points), schedule, shared);
+    let points = points::<K, D>(case, slabs.columns(rank), |x| {
+        model.grid.locate(x).is_none_or(|cell| slabs.owner(&cell) == rank)
+    });
+    let partitioned = PartitionedModel { model, slabs, points };
+    let simulation = Simulation::new(libraries, choice, partitioned, schedule, timers, requests);
     let recorder = Recorder::new(case, &simulation.points, &*simulation.halo);
-    Ok((simulation, recorder))
+    Ok(Scene { simulation, recorder })
 }
 
 /// The slabs cut into their parts, by the points that they get: each of their ranks counts those of some columns.
 /// Collective.
 fn parted<K: Kinematics<D>, const D: usize>(
-    (world, rank): (&SimpleCommunicator, usize),
+    world: &SimpleCommunicator,
+    rank: usize,
     case: &bsmpm_scene::Case,
     grid: &Grid<D>,
-    (slabs, parts): (Slabs, usize),
+    slabs: Slabs,
+    parts: usize,
 ) -> Option<Slabs> {
     if parts == 1 {
         return Some(slabs);
     }
-    let (columns, part) = (slabs.columns(rank / parts), rank % parts);
-    let share = |part: usize| columns.start + columns.len() * part / parts;
+    let columns = slabs.columns(rank / parts);
+    let part = rank % parts;
+    let start = columns.start + columns.len() * part / parts;
+    let end = columns.start + columns.len() * (part + 1) / parts;
     let mut rows = Rows::none(grid, &slabs);
-    seeds::<K, D>(case, share(part)..share(part + 1)).for_each(|seed| rows.count(&seed.x));
+    seeds::<K, D>(case, start..end).for_each(|seed| rows.count(&seed.x));
     let mut counts = vec![0.0; rows.counts.len()];
     world.all_reduce_into(&rows.counts[..], &mut counts[..], SystemOperation::sum());
     load::parted(grid, slabs, &counts, parts)
 }
 
 /// What there was before.
-fn before(start: &RunStart<'_>, directory: &Path) -> Before {
+fn before(start: &RunStart<'_>, directory: &Path) -> Continuation {
     let RunStart::Resumed(resumed) = start else {
-        return Before::default();
+        return Continuation::default();
     };
-    let Resumed { state, .. } = &**resumed;
-    Before {
+    let ResumedRun { state, .. } = &**resumed;
+    Continuation {
         resumed: true,
         is_branch: !resumed.is_in(directory),
         last_frame: state.last_frame,
@@ -221,15 +238,16 @@ fn before(start: &RunStart<'_>, directory: &Path) -> Before {
 fn ledger(
     universe: &Universe,
     held: Option<OutputDirectory>,
-    (arguments, case): (&Arguments, &bsmpm_scene::Case),
+    arguments: &Arguments,
+    case: &bsmpm_scene::Case,
     columns: Vec<TableColumn>,
     start: &RunStart<'_>,
 ) -> Result<Option<Ledger>, Refusal> {
     let world = universe.world();
     let ranks = world.size().unsigned_abs() as usize;
     let opened = held.map(|held| match start {
-        RunStart::New(beginning) => Ledger::open(held, beginning, (arguments, case), ranks, columns),
-        RunStart::Resumed(resumed) => Ledger::resume(held, (arguments, case), ranks, columns, resumed),
+        RunStart::New(beginning) => Ledger::open(held, beginning, arguments, case, ranks, columns),
+        RunStart::Resumed(resumed) => Ledger::resume(held, arguments, case, ranks, columns, resumed),
         RunStart::Complete(_) => unreachable!("such a run does not begin"),
     });
     agree(&world, opened.transpose().map_err(Refusal::from))

@@ -28,7 +28,8 @@ pub(super) fn followed_place(quantity: &Quantity) -> Option<[f64; 3]> {
 /// Displacement (m) of the place that the point `id` is the nearest one to, since the start; `lower` is the grid's
 /// corner. Zero where there is no such point.
 pub(super) fn displacement<const D: usize>(
-    (at, lower): ([f64; 3], Vector<D>),
+    at: [f64; 3],
+    lower: Vector<D>,
     id: u64,
     points: &Points<D>,
     halo: &dyn Halo,
@@ -61,16 +62,18 @@ impl<const D: usize> FollowedPoint<D> {
     /// A field there: at the place, if it is in material, else of the point; zero where there is no such point.
     fn value<K: Kinematics<D>, const C: usize>(
         self,
-        (model, points): (&Model<K, D>, &Points<D>),
+        model: &Model<K, D>,
+        points: &Points<D>,
         field: impl Fn(usize) -> [f64; C],
         halo: &dyn Halo,
     ) -> [f64; C] {
-        let at_place = |at: Vector<D>| {
-            place::values::<K, D, _>(&model.grid, points, (&[at], Configuration::Initial), &field, halo)[0]
-        };
         // A stage may have removed the body of the point, and another one be there.
-        let is_there = |_: &Vector<D>| observe::at_point(points, self.id, halo, |_| [1.0]) == [1.0];
-        let found = self.place.filter(is_there).and_then(at_place);
+        let place = self
+            .place
+            .filter(|_| observe::at_point(points, self.id, halo, |_| [1.0]) == [1.0]);
+        let found = place.and_then(|at| {
+            place::values::<K, D, _>(&model.grid, points, &[at], Configuration::Initial, &field, halo)[0]
+        });
         found.unwrap_or_else(|| observe::at_point(points, self.id, halo, &field))
     }
 }
@@ -82,26 +85,32 @@ const EQUAL: f64 = 1.0 + 1e-6;
 pub(super) fn at_followed<K: Kinematics<D>, const D: usize>(
     quantity: &Quantity,
     followed: FollowedPoint<D>,
-    (model, points): (&Model<K, D>, &Points<D>),
+    model: &Model<K, D>,
+    points: &Points<D>,
     halo: &dyn Halo,
 ) -> Vec<f64> {
-    let velocity = |p: usize| points.motion.as_ref().map_or([0.0; D], |motion| motion.v[p].into());
     match quantity {
-        Quantity::Velocity { .. } => followed.value((model, points), velocity, halo).to_vec(),
-        Quantity::Stress { .. } => shown::<D>(&followed.value((model, points), |p| points.sigma.at(p).0, halo)),
+        Quantity::Velocity { .. } => followed.value(model, points, |p| velocity(points, p), halo).to_vec(),
+        Quantity::Stress { .. } => shown::<D>(&followed.value(model, points, |p| points.sigma.at(p).0, halo)),
         _ => Vec::new(),
     }
+}
+
+/// Velocity (m/s) of a point; zero where there is no motion.
+pub(super) fn velocity<const D: usize>(points: &Points<D>, p: usize) -> [f64; D] {
+    points.motion.as_ref().map_or([0.0; D], |motion| motion.v[p].into())
 }
 
 /// A field at the material place that was at `at` (m, from the grid's lower corner) before anything moved; zero where
 /// there is no material.
 pub(super) fn at_surface<K: Kinematics<D>, const D: usize, const C: usize>(
-    (model, points): (&Model<K, D>, &Points<D>),
+    model: &Model<K, D>,
+    points: &Points<D>,
     at: Vector<D>,
     field: impl Fn(usize) -> [f64; C],
     halo: &dyn Halo,
 ) -> Vec<f64> {
-    let found = place::values::<K, D, _>(&model.grid, points, (&[at], Configuration::Surface), field, halo);
+    let found = place::values::<K, D, _>(&model.grid, points, &[at], Configuration::Surface, field, halo);
     found[0].map_or_else(|| vec![0.0; C], |values| values.to_vec())
 }
 
@@ -114,54 +123,64 @@ pub(super) enum PoreAt<const D: usize> {
     Surface(Vector<D>),
 }
 
+impl<const D: usize> PoreAt<D> {
+    fn value<K: Kinematics<D>, const C: usize>(
+        self,
+        model: &Model<K, D>,
+        points: &Points<D>,
+        field: impl Fn(usize) -> [f64; C],
+        halo: &dyn Halo,
+    ) -> Vec<f64> {
+        match self {
+            Self::Point(followed) => followed.value(model, points, field, halo).to_vec(),
+            Self::Surface(at) => at_surface(model, points, at, field, halo),
+        }
+    }
+}
+
 /// A quantity of the pore water of a point or place; zero without it.
 pub(super) fn pore<K: Kinematics<D>, const D: usize>(
-    (measured, water): (Measurement, Option<PoreWater<'_, D>>),
+    measured: Measurement,
+    water: Option<PoreWater<'_, D>>,
     read: PoreAt<D>,
-    (model, points): (&Model<K, D>, &Points<D>),
+    model: &Model<K, D>,
+    points: &Points<D>,
     halo: &dyn Halo,
 ) -> Result<Vec<f64>, StepError> {
-    let number = |of: &dyn Fn(PoreWater<'_, D>, usize) -> f64| {
-        let field = |p: usize| [water.map_or(0.0, |water| of(water, p))];
-        match read {
-            PoreAt::Point(followed) => followed.value((model, points), field, halo).to_vec(),
-            PoreAt::Surface(at) => at_surface((model, points), at, field, halo),
-        }
+    if measured == Measurement::Flux {
+        let fluxes = water.map(|water| water.fluxes::<K>(&model.grid, halo)).transpose()?;
+        return Ok(read.value(
+            model,
+            points,
+            |p| fluxes.as_ref().map_or([0.0; D], |fluxes| fluxes[p].into()),
+            halo,
+        ));
+    }
+    let number = match measured {
+        Measurement::ExcessPressure => PoreWater::excess,
+        Measurement::Porosity => PoreWater::porosity,
+        _ => PoreWater::pressure,
     };
-    Ok(match measured {
-        Measurement::Flux => {
-            let fluxes = water.map(|water| water.fluxes::<K>(&model.grid, halo)).transpose()?;
-            let flux = |p: usize| fluxes.as_ref().map_or([0.0; D], |fluxes| fluxes[p].into());
-            match read {
-                PoreAt::Point(followed) => followed.value((model, points), flux, halo).to_vec(),
-                PoreAt::Surface(at) => at_surface((model, points), at, flux, halo),
-            }
-        }
-        Measurement::ExcessPressure => number(&|water, p| water.excess(p)),
-        Measurement::Porosity => number(&|water, p| water.porosity(p)),
-        _ => number(&|water, p| water.pressure(p)),
-    })
+    Ok(read.value(model, points, |p| [water.map_or(0.0, |water| number(&water, p))], halo))
 }
 
 /// Forces across a section, in the order of their columns; none across one that has lost its material.
 pub(super) fn section<K: Kinematics<D>, const D: usize>(
-    (grid, points): (&Grid<D>, &Points<D>),
+    grid: &Grid<D>,
+    points: &Points<D>,
     at_start: Section<D>,
     fixed: bool,
     halo: &dyn Halo,
 ) -> Vec<f64> {
-    let placed = |end: &Vector<D>| {
-        if fixed {
-            Some(*end)
-        } else {
-            observe::moved(points, end, halo)
-        }
+    let present = if fixed {
+        Some(at_start)
+    } else {
+        let lines = at_start
+            .lines
+            .iter()
+            .map(|[from, to]| Some([observe::moved(points, from, halo)?, observe::moved(points, to, halo)?]));
+        lines.collect::<Option<_>>().map(|lines| Section { lines, ..at_start })
     };
-    let lines = at_start
-        .lines
-        .iter()
-        .map(|[from, to]| Some([placed(from)?, placed(to)?]));
-    let present = lines.collect::<Option<_>>().map(|lines| Section { lines, ..at_start });
     let forces = present.map_or_else(SectionForces::default, |of| {
         observe::section_forces::<K, D>(grid, points, &of, halo)
     });

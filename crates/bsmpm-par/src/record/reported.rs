@@ -57,22 +57,22 @@ pub(super) fn at_face<K: Kinematics<D>, const D: usize>(
     report: &StepReport,
 ) -> Option<ContactReport> {
     let supports = &model.boundary.supports;
-    let of_face = |found: &&ContactReport| {
+    let mut contacts = report.contacts.iter().copied();
+    contacts.find(|found| {
         let support = &supports[found.support];
         support.axis == face.axis && support.upper == face.upper
-    };
-    report.contacts.iter().find(of_face).copied()
+    })
 }
 
 /// A quantity of a face or strip in contact in a step of the length `dt`; zero before the first step.
 pub(super) fn contact(measured: Measurement, found: Option<ContactReport>, dt: f64) -> Vec<f64> {
     let found = found.unwrap_or_default();
-    let rate = |sum: f64| if dt > 0.0 { sum / dt } else { 0.0 };
+    let [slip_rate, power] = [found.slip, found.dissipated].map(|sum| if dt > 0.0 { sum / dt } else { 0.0 });
     match measured {
         Measurement::Contact => vec![found.closed, found.sliding],
         Measurement::Gap => found.gap.to_vec(),
-        Measurement::SlipRate => vec![rate(found.slip)],
-        _ => vec![rate(found.dissipated)],
+        Measurement::SlipRate => vec![slip_rate],
+        _ => vec![power],
     }
 }
 
@@ -80,19 +80,18 @@ pub(super) fn contact(measured: Measurement, found: Option<ContactReport>, dt: f
 pub(super) fn rigid<K: Kinematics<D>, const D: usize>(
     what: Measurement,
     body: usize,
-    (t, model): (f64, &Model<K, D>),
+    t: f64,
+    model: &Model<K, D>,
     report: &StepReport,
 ) -> Vec<f64> {
-    let at_start = || {
+    let found = report.rigid.get(body).copied().unwrap_or_else(|| {
         let body = &model.boundary.rigid[body];
-        let state = body.at_rest();
         RigidReport {
             moved: body.on_path(t),
-            velocity: state.velocity,
+            velocity: body.at_rest().velocity,
             ..RigidReport::default()
         }
-    };
-    let found = report.rigid.get(body).copied().unwrap_or_else(at_start);
+    });
     match what {
         Measurement::RigidForce => found.force.as_slice()[..D].to_vec(),
         Measurement::RigidMoment => vec![found.force[2]],

@@ -1,6 +1,6 @@
 //! Examines an output directory for `--restart auto`.
 
-use super::Beginning;
+use super::FreshStart;
 use crate::checkpoint::Refusal;
 use crate::ledger;
 use bsmpm::grid::extension::ExtendedSplines;
@@ -19,14 +19,14 @@ const MOST_FUTILE: usize = 3;
 
 /// The run in a directory.
 #[derive(Clone, Copy)]
-pub(super) enum There {
+pub(super) enum PriorRun {
     Nothing,
     Unfinished,
     /// with its exit code
     Complete(u8),
 }
 
-impl There {
+impl PriorRun {
     pub(super) fn bytes(self) -> Vec<u8> {
         match self {
             Self::Nothing => vec![0],
@@ -45,8 +45,8 @@ impl There {
 }
 
 /// What there is to go on with. A run whose checks or indicators failed came to its end, too: they would fail again.
-pub(super) fn look(run: Option<&Manifest>, case: &Case) -> Result<There, Refusal> {
-    let Some(run) = run else { return Ok(There::Nothing) };
+pub(super) fn look(run: Option<&Manifest>, case: &Case) -> Result<PriorRun, Refusal> {
+    let Some(run) = run else { return Ok(PriorRun::Nothing) };
     let changed = admissible("the run in the output directory", run, case)?;
     let further = changed
         .iter()
@@ -56,40 +56,43 @@ pub(super) fn look(run: Option<&Manifest>, case: &Case) -> Result<There, Refusal
         (Status::Failed, Some(code @ (exit::CHECK | exit::INDICATOR))) => Some(code),
         _ => None,
     };
-    Ok(ended.filter(|_| !further).map_or(There::Unfinished, There::Complete))
+    Ok(ended
+        .filter(|_| !further)
+        .map_or(PriorRun::Unfinished, PriorRun::Complete))
 }
 
 fn is_later(change: &Difference) -> bool {
-    let number = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
-    number(&change.was)
-        .zip(number(&change.is))
-        .is_none_or(|(was, is)| is > was)
+    let [was, is] = [&change.was, &change.is].map(|text| text.as_ref()?.parse::<f64>().ok());
+    was.zip(is).is_none_or(|(was, is)| is > was)
+}
+
+fn refused(reason: String) -> Refusal {
+    Refusal::new(exit::CHECKPOINT, reason)
 }
 
 /// How a run begins again in whose directory there is no checkpoint: only if it was killed or stopped before it had
 /// one, so that nothing is deleted that had been kept.
-pub(super) fn afresh(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -> Result<Beginning, Refusal> {
-    let refused = |reason: String| Err(Refusal::new(exit::CHECKPOINT, reason));
+pub(super) fn afresh(run: Option<&Manifest>, passed_over: &[String], ranks: i32) -> Result<FreshStart, Refusal> {
     if let Some(bad) = passed_over.first() {
-        return refused(bad.clone());
+        return Err(refused(bad.clone()));
     }
     let Some(run) = run else {
-        return Ok(Beginning::default());
+        return Ok(FreshStart::default());
     };
     if let Some(gone) = &run.checkpoint {
-        return refused(format!(
+        return Err(refused(format!(
             "E0724: checkpoint `{gone}`, which run.json names, is missing. The run cannot be continued. Restore the \
              checkpoint, or start again with `--force`."
-        ));
+        )));
     }
     // One that was stopped has a checkpoint, unless that was before it had found its first state.
     let kept_nothing = [Some(exit::WRITE), Some(exit::STOPPED)].contains(&run.exit_code);
     if run.status != Status::Running && !kept_nothing {
         let ended = format!("{:?}", run.status).to_lowercase();
-        return refused(format!(
+        return Err(refused(format!(
             "E0726: the run in the output directory ended ({ended}) without a checkpoint. The run cannot be \
              continued. Start again with `--force`."
-        ));
+        )));
     }
     futile(&run.restarts, 0)?;
     let ranks = ranks.unsigned_abs();
@@ -101,7 +104,7 @@ pub(super) fn afresh(run: Option<&Manifest>, passed_over: &[String], ranks: i32)
         start: bsmpm_io::utc::now(),
         changed: Vec::new(),
     };
-    Ok(Beginning {
+    Ok(FreshStart {
         existing: Existing::Delete,
         restarts: run.restarts.iter().cloned().chain([restart]).collect(),
         warnings: vec![
@@ -114,7 +117,6 @@ pub(super) fn afresh(run: Option<&Manifest>, passed_over: &[String], ranks: i32)
 
 /// The keys that differ between a case and what was run, if a run may continue with all of them changed.
 pub(super) fn admissible(what: &str, past: &Manifest, case: &Case) -> Result<Vec<Difference>, Refusal> {
-    let refused = |reason: String| Refusal::new(exit::CHECKPOINT, reason);
     let differences = bsmpm_scene::differences(&past.case.text, &case.text);
     let differences = differences.map_err(|errors| refused(unreadable(what, &errors)))?;
     let bound: Vec<String> = differences

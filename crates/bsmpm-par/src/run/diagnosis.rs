@@ -20,8 +20,8 @@ const MOST_PLACES: usize = 10;
 pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, case: &Case) -> FailureReport {
     let last = failure.attempts.last();
     // The last attempt may have ended before it iterated; all ranks have the same kinds of errors.
-    let iterated = |error: &&StepError| matches!(error, StepError::NotConverged { .. });
-    let iterated = failure.attempts.iter().rev().find(iterated);
+    let mut latest = failure.attempts.iter().rev();
+    let iterated = latest.find(|error| matches!(error, StepError::NotConverged { .. }));
     let (history, tolerances) = match iterated {
         Some(StepError::NotConverged { history, criteria, .. }) => (
             history
@@ -65,25 +65,25 @@ type NodePlace = [f64; 6];
 
 /// The nodes whose forces are the least balanced, or the points that the ranks name, of all ranks.
 fn worst(world: &SimpleCommunicator, error: &StepError, grid: &GridSpec) -> Vec<Worst> {
-    let (lower, dims) = (grid.lower(), grid.dims());
+    let lower = grid.lower();
+    let dims = grid.dims();
     let kind = if matches!(error, StepError::NotConverged { .. } | StepError::Unbalanced { .. }) {
         "node"
     } else {
         "point"
     };
-    let at = |x: &[f64]| -> [f64; 3] { std::array::from_fn(|axis| lower[axis] + x.get(axis).copied().unwrap_or(0.0)) };
     let mut own: Vec<NodePlace> = match error {
         StepError::NotConverged { worst, .. } | StepError::Unbalanced { worst, .. } => worst
             .iter()
             .map(|node| {
-                let [x, y, z] = at(&node.x);
+                let [x, y, z] = in_case(lower, &node.x);
                 [-node.force, node.number as f64, node.force, x, y, z]
             })
             .collect(),
         other => other
             .point()
             .map(|(id, x)| {
-                let [x, y, z] = at(x);
+                let [x, y, z] = in_case(lower, x);
                 [id as f64, id as f64, 0.0, x, y, z]
             })
             .into_iter()
@@ -98,17 +98,22 @@ fn worst(world: &SimpleCommunicator, error: &StepError, grid: &GridSpec) -> Vec<
         .filter(|place| place.iter().all(|n| n.is_finite()))
         .collect();
     places.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let named = |place: &&[f64]| Worst {
+    let worst = places.iter().take(MOST_PLACES).map(|place| Worst {
         kind: kind.into(),
         id: place[1] as u64,
         position: place[3..3 + dims].to_vec(),
         force: (kind == "node").then_some(place[2]),
-    };
-    places.iter().take(MOST_PLACES).map(named).collect()
+    });
+    worst.collect()
+}
+
+/// The place `x` (m, from the grid's lower corner) in the coordinates of the case.
+fn in_case(lower: [f64; 3], x: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|axis| lower[axis] + x.get(axis).copied().unwrap_or(0.0))
 }
 
 fn advice(error: &StepError, case: &Case) -> Vec<String> {
-    let lines: &[&str] = match error {
+    match error {
         StepError::NotConverged {
             iterations,
             force,
@@ -117,17 +122,9 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             ..
         } => {
             let name = material.map(|number| case.materials[number].name.as_str());
-            return not_converged(*iterations, *force, name, criteria, case);
+            not_converged(*iterations, *force, name, criteria, case)
         }
-        StepError::Closed { .. } => &[
-            "The skeleton is compressed into its grains. Increase `porosity` or the stiffness of the soil.",
-            "Set `permeability_law = \"kozeny-carman\"`, and use shorter steps.",
-        ],
-        StepError::Unstable { .. } => &[
-            "The pressure is several times the shear modulus of nearly incompressible material. Increase `body.points_per_cell`.",
-            "If the body itself buckles, use a dynamic analysis.",
-        ],
-        StepError::EnergyMade { .. } => &[
+        StepError::EnergyMade { .. } => [
             match case.stabilisation {
                 Stabilisation::None => "Reduce `analysis.dt`.",
                 Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => "Set `stabilisation.method = \"none\"`.",
@@ -138,6 +135,30 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             "If bodies separate from a boundary, use shorter steps, or `analysis.newmark_gamma = 1`.",
             "Reduce the dilation angle, or add friction. The frames and [[history]] quantity = \"energy\" show where it begins.",
             "The saved state is wrong, too: do not continue from it.",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        StepError::Loose { body } => vec![against_motion(&case.rigid[*body])],
+        StepError::Overlapping { bodies } => {
+            let [one, other] = bodies.map(|number| case.rigid[number].name.as_str());
+            vec![format!(
+                "Keep `{one}` and `{other}` apart by other paths, or make them one body: rigid bodies do not contact each other."
+            )]
+        }
+        other => fixed_advice(other, case).iter().map(|line| (*line).to_owned()).collect(),
+    }
+}
+
+/// Advice that names nothing of the case; none for an error that has advice of its own.
+fn fixed_advice(error: &StepError, case: &Case) -> &'static [&'static str] {
+    match error {
+        StepError::Closed { .. } => &[
+            "The skeleton is compressed into its grains. Increase `porosity` or the stiffness of the soil.",
+            "Set `permeability_law = \"kozeny-carman\"`, and use shorter steps.",
+        ],
+        StepError::Unstable { .. } => &[
+            "The pressure is several times the shear modulus of nearly incompressible material. Increase `body.points_per_cell`.",
+            "If the body itself buckles, use a dynamic analysis.",
         ],
         StepError::Unsettled { .. } => &[
             "Increase `analysis.steps`, or reduce `analysis.dt`, so that the contact changes less in a step.",
@@ -148,13 +169,6 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             "The body may not stand at all. Use `gravity.ramp` without [initial], so that it yields as it is loaded.",
             "Increase `solver.force_tolerance`.",
         ],
-        StepError::Loose { body } => return vec![against_motion(&case.rigid[*body])],
-        StepError::Overlapping { bodies } => {
-            let [one, other] = bodies.map(|number| case.rigid[number].name.as_str());
-            return vec![format!(
-                "Keep `{one}` and `{other}` apart by other paths, or make them one body: rigid bodies do not contact each other."
-            )];
-        }
         StepError::Inverted { .. } => &[
             "Increase `analysis.steps` (or reduce `analysis.dt`), or increase `solver.background`.",
             "Look at the material points named: loose points at a free surface are the usual ones.",
@@ -178,9 +192,12 @@ fn advice(error: &StepError, case: &Case) -> Vec<String> {
             "Set `solver.linear = { factor = \"mumps\" }`.",
         ],
         StepError::Material { .. } | StepError::OtherRank => &["Increase `analysis.steps`, or reduce `analysis.dt`."],
-        StepError::Interrupted => &[],
-    };
-    lines.iter().map(|line| (*line).to_owned()).collect()
+        StepError::NotConverged { .. }
+        | StepError::EnergyMade { .. }
+        | StepError::Loose { .. }
+        | StepError::Overlapping { .. }
+        | StepError::Interrupted => &[],
+    }
 }
 
 /// Whether equilibrium is sought before the first step.
@@ -198,10 +215,14 @@ fn implausible(case: &Case) -> Vec<String> {
     slips.collect()
 }
 
+fn body_without_cohesion(case: &Case) -> Option<&Body> {
+    let mut bodies = case.bodies.iter();
+    bodies.find(|body| cohesion(&case.materials[body.material].material) == Some(0.0))
+}
+
 /// What helps where soil without cohesion has a free surface that its weight alone brings to failure.
 fn against_local_failure(case: &Case) -> Option<String> {
-    let is_without = |body: &&Body| cohesion(&case.materials[body.material].material) == Some(0.0);
-    let body = case.bodies.iter().find(is_without)?;
+    let body = body_without_cohesion(case)?;
     let is_at_rest = case.analysis.regime == Regime::QuasiStatic && !case.has_prescribed_motion();
     (is_at_rest && case.gravity.is_some()).then(|| {
         format!(
@@ -216,8 +237,7 @@ fn against_local_failure(case: &Case) -> Option<String> {
 /// dilation angle of 10 degrees ended with 80 whatever the background, with four times as many steps, and with a
 /// cohesion of 0.1 and 1 kPa; with the purpose it found its limit load.
 fn against_no_cohesion(case: &Case) -> Option<String> {
-    let is_without = |body: &&Body| cohesion(&case.materials[body.material].material) == Some(0.0);
-    let body = case.bodies.iter().find(is_without)?;
+    let body = body_without_cohesion(case)?;
     if case.analysis.regime != Regime::QuasiStatic || !case.has_prescribed_motion() {
         return None;
     }

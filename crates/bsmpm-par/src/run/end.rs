@@ -128,8 +128,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let Simulation {
             model, points, halo, ..
         } = &self.simulation;
-        let (time, budget) = (self.simulation.time(), self.simulation.progress().budget);
-        match IndicatorState::of((model, points, time), (&self.recorder, budget), &**halo) {
+        let time = self.simulation.time();
+        let budget = self.simulation.progress().budget;
+        match IndicatorState::of(model, points, time, &self.recorder, budget, &**halo) {
             Ok(state) => {
                 if let Some(ledger) = &mut self.ledger {
                     let history = table::read(&ledger.path().join(HISTORY)).ok();
@@ -144,11 +145,13 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Writes into the manifest what the run has cost so far. Collective.
     pub(super) fn account(&mut self) {
         let world = self.universe.world();
-        let (cpu, memory) = (machine::cpu_seconds(), machine::peak_memory());
+        let cpu = machine::cpu_seconds();
+        let memory = machine::peak_memory();
         let mut all_memory = vec![0_u64; world.size().unsigned_abs() as usize];
         world.all_gather_into(&memory, &mut all_memory[..]);
         let own: Vec<f64> = self.timers.traffic().counts().numbers().collect();
-        let (mut total, mut most) = ([&[cpu], &own[..]].concat(), own);
+        let mut total = [&[cpu], &own[..]].concat();
+        let mut most = own;
         self.simulation.halo.reduce(&mut total);
         self.simulation.halo.maximum(&mut most);
         let wall = self.wall();
@@ -194,20 +197,23 @@ fn communication(
     largest: &[f64],
 ) -> BTreeMap<String, Communication> {
     let numbers = sums.chunks_exact(3).zip(largest.chunks_exact(3));
-    let with = |(kind, (sum, most)): (TrafficKind, (&[f64], &[f64]))| {
+    let mut kinds = BTreeMap::new();
+    for (kind, (sum, most)) in TrafficKind::ALL.into_iter().zip(numbers) {
         let mut all = before.get(kind.name()).copied().unwrap_or_default();
         all.calls += most[0] as u64;
         all.messages += sum[1] as u64;
         all.bytes += sum[2] as u64;
         all.most_messages += most[1] as u64;
         all.most_bytes += most[2] as u64;
-        (kind.name().to_owned(), all)
-    };
-    TrafficKind::ALL.into_iter().zip(numbers).map(with).collect()
+        kinds.insert(kind.name().to_owned(), all);
+    }
+    kinds
 }
 
 /// A number with seven digits, or a dash for none.
 fn in_words(number: Option<f64>) -> String {
-    let rounded = |number: f64| format!("{number:.6e}").parse().unwrap_or(number);
-    number.map_or_else(|| "-".to_owned(), |number| rounded(number).to_string())
+    let Some(number) = number else {
+        return "-".to_owned();
+    };
+    format!("{number:.6e}").parse().unwrap_or(number).to_string()
 }

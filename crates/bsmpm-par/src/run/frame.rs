@@ -1,10 +1,11 @@
 //! Times and content of frames and profiles.
 
 use super::Run;
-use crate::gather::{self, Around, FrameMoment, Gathering};
+use crate::gather::{self, FrameMoment, GatheredFrame, PointContext};
 use crate::{launch, profile};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::observe::projection::projected_pressure;
+use bsmpm::tensor::Vector;
 use bsmpm::water::observed::PoreWater;
 use bsmpm_io::exit;
 use bsmpm_io::frame::Parts;
@@ -29,7 +30,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     /// Rows of the profiles that are wanted now. Collective.
     pub(super) fn profile(&mut self, wanted: impl Fn(&Self, &Profile) -> bool) {
-        let (step, time) = (self.simulation.steps(), self.simulation.time());
+        let step = self.simulation.steps();
+        let time = self.simulation.time();
         for number in 0..self.case.profiles.len() {
             let profile = &self.case.profiles[number];
             if !wanted(self, profile) {
@@ -38,9 +40,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let Simulation {
                 model, points, halo, ..
             } = &self.simulation;
-            let rows = profile::rows(profile, (model, self.case.grid.lower(), time), points, &**halo);
+            let rows = profile::rows(profile, model, self.case.grid.lower(), time, points, &**halo);
             let ledger = self.ledger.as_mut();
-            let written = ledger.map_or(Ok(()), |ledger| ledger.profile(number, (step, time), &rows));
+            let written = ledger.map_or(Ok(()), |ledger| ledger.profile(number, step, time, &rows));
             self.require(written);
         }
     }
@@ -48,28 +50,20 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Names of what the frames' fields number, where frames have fields on request.
     pub(super) fn names(&self) -> Vec<(&'static str, Vec<String>)> {
         let case = &self.case;
-        let materials = case.materials.iter().map(|material| material.name.clone()).collect();
-        let bodies = || {
-            case.bodies
-                .iter()
-                .map(|body| body.name.clone().unwrap_or_default())
-                .collect()
-        };
-        let of_bodies = case
-            .output
-            .fields
-            .contains(&FrameField::Body)
-            .then(|| (FrameField::Body.field(), bodies()));
-        let of_materials = (!case.output.fields.is_empty()).then_some(("material", materials));
-        of_materials.into_iter().chain(of_bodies).collect()
+        let mut names = Vec::new();
+        if !case.output.fields.is_empty() {
+            let materials = case.materials.iter().map(|material| material.name.clone());
+            names.push(("material", materials.collect()));
+        }
+        if case.output.fields.contains(&FrameField::Body) {
+            let bodies = case.bodies.iter().map(|body| body.name.clone().unwrap_or_default());
+            names.push((FrameField::Body.field(), bodies.collect()));
+        }
+        names
     }
 
-    pub(super) fn frame(&mut self) {
-        let timers = Rc::clone(&self.timers);
-        let _timed = timers.time("frames");
-        let begin = Instant::now();
-        let (step, time) = (self.simulation.steps(), self.simulation.time());
-        let world = self.universe.world();
+    /// The projected pressure of the points, where frames have it. Collective.
+    fn projected_pressure(&self) -> Option<Vec<f64>> {
         let Simulation {
             model, points, halo, ..
         } = &self.simulation;
@@ -78,37 +72,56 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             .output
             .projected_pressure
             .then(|| projected_pressure(model, points, &**halo));
-        let projected = projected
+        projected
             .transpose()
-            .unwrap_or_else(|error| launch::end(&world, exit::BUG, &error));
+            .unwrap_or_else(|error| launch::end(&self.universe.world(), exit::BUG, &error))
+    }
+
+    /// The flux of `water` at the points, where frames have it; else empty. Collective.
+    fn fluxes(&self, water: Option<PoreWater<'_, D>>) -> Vec<Vector<D>> {
+        let Simulation { model, halo, .. } = &self.simulation;
+        let flows = water.filter(|_| self.case.output.fields.contains(&FrameField::Flux));
+        let fluxes = flows.map(|water| water.fluxes::<K>(&model.grid, &**halo)).transpose();
+        fluxes
+            .unwrap_or_else(|error| launch::end(&self.universe.world(), exit::BUG, &error))
+            .unwrap_or_default()
+    }
+
+    pub(super) fn frame(&mut self) {
+        let timers = Rc::clone(&self.timers);
+        let _timed = timers.time("frames");
+        let begin = Instant::now();
+        let step = self.simulation.steps();
+        let time = self.simulation.time();
+        let world = self.universe.world();
+        let Simulation { model, points, .. } = &self.simulation;
+        let projected = self.projected_pressure();
         let moment = FrameMoment {
             step,
             time,
             lower: gather::spatial(&vector::<D, _>(self.case.grid.lower())),
         };
-        let (names, fields) = (self.names(), &self.case.output.fields);
+        let names = self.names();
+        let fields = &self.case.output.fields;
         let bodies = if fields.contains(&FrameField::Body) {
             self.case.ids()
         } else {
             Vec::new()
         };
         let water = PoreWater::of(model, points, time);
-        let flows = water.filter(|_| fields.contains(&FrameField::Flux));
-        let fluxes = flows.map(|water| water.fluxes::<K>(&model.grid, &**halo)).transpose();
-        let fluxes = fluxes
-            .unwrap_or_else(|error| launch::end(&world, exit::BUG, &error))
-            .unwrap_or_default();
-        let around = Around {
+        let fluxes = self.fluxes(water);
+        let around = PointContext {
             materials: &model.materials,
             bodies: &bodies,
             water,
             fluxes: &fluxes,
             fields,
         };
-        let mut frame = Gathering::new(&world, (points, around), projected.as_deref(), moment);
+        let mut frame = GatheredFrame::new(&world, points, around, projected.as_deref(), moment);
         let written = match &mut self.ledger {
             Some(ledger) => {
-                let (head, points) = (frame.head(), frame.points());
+                let head = frame.head();
+                let points = frame.points();
                 ledger.manifest().frame_units = frame.units(self.case.geometry.volume_unit());
                 ledger.manifest().frame_names = names
                     .iter()

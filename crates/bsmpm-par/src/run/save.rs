@@ -8,14 +8,14 @@ use crate::checkpoint::{
 use crate::launch;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::parallel::Halo;
-use bsmpm_io::checkpoint::{Facts, FoundCheckpoint, Phase};
+use bsmpm_io::checkpoint::{Facts, FoundCheckpoint};
 use mpi::topology::Communicator;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 /// When the last checkpoint was written, and what it and the frames cost.
 #[derive(Clone, Copy, Debug)]
-pub struct Saving {
+pub struct SaveTimes {
     newest: Option<u64>, // step
     soon: bool,          // what there is cannot be gone on from as it should
     first: u64,          // steps when this program began
@@ -24,7 +24,7 @@ pub struct Saving {
     frame: f64, // s  that the slowest frame took
 }
 
-impl Saving {
+impl SaveTimes {
     /// At the start of a run after `first` steps, whose newest checkpoint is of that step; another one is wanted soon
     /// if the directory has none, or none that fits its tables.
     pub fn new(newest: Option<u64>, soon: bool, first: u64) -> Self {
@@ -63,7 +63,8 @@ pub struct Due {
 impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// What is due, if a step may take as long as the `slowest` (s) so far and half as long again.
     pub(super) fn due(&self, slowest: f64) -> Due {
-        let (steps, wanted) = (self.simulation.steps(), &self.case.output.checkpoint);
+        let steps = self.simulation.steps();
+        let wanted = &self.case.output.checkpoint;
         let end = launch::age().as_secs_f64() + 1.5 * slowest + 3.0 * self.saving.cost + 1.5 * self.saving.frame;
         // Only the first rank knows the tables.
         let soon = self.saving.soon && self.saving.newest != Some(steps);
@@ -127,8 +128,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             self.log.detail("checkpoint", &text);
             self.require(written);
         }
-        let (last, cost) = (Instant::now(), begin.elapsed().as_secs_f64());
-        self.saving = Saving {
+        let last = Instant::now();
+        let cost = begin.elapsed().as_secs_f64();
+        self.saving = SaveTimes {
             newest: Some(step),
             soon: false,
             last,
@@ -160,15 +162,17 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             .transpose()
             .map_err(Refusal::from);
         let store = checkpoint::agree(&world, store)?;
-        let (fault, writes) = (self.fault, world.rank() == 0);
-        let strike = |phase: Phase| fault.iter().for_each(|fault| fault.strike_in(writes, step, phase));
+        let fault = self.fault;
+        let writes = world.rank() == 0;
         let (columns, guess) = self.simulation.arrays();
         let contents = Contents {
             columns,
             guess,
             state: &text,
         };
-        checkpoint::write((self.hdf5, &world), store, &facts, &contents, &strike)
+        checkpoint::write(self.hdf5, &world, store, &facts, &contents, &|phase| {
+            fault.iter().for_each(|fault| fault.strike_in(writes, step, phase));
+        })
     }
 
     /// The text of a checkpoint; nothing on ranks without files.
@@ -176,7 +180,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let Some(ledger) = &mut self.ledger else {
             return Ok(Vec::new());
         };
-        let (simulation, surface) = (&self.simulation, &self.simulation.points.surface);
+        let simulation = &self.simulation;
+        let surface = &self.simulation.points.surface;
         let state = CheckpointState {
             steps: step,
             slabs: simulation.slabs().bounds().to_vec(),

@@ -10,7 +10,7 @@ use bsmpm_io::exit;
 use bsmpm_io::manifest::ManifestStage;
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_scene::words::Word;
-use bsmpm_scene::{Acting, Stage, model};
+use bsmpm_scene::{Stage, model};
 
 impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Begins the stages of the time `t`.
@@ -20,18 +20,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     }
 
     fn begin_stage(&mut self, stage: &Stage) -> Result<(), StepError> {
-        let stored = |simulation: &Simulation<'_, K, D>| {
-            let Simulation {
-                model, points, halo, ..
-            } = simulation;
-            model
-                .balances_energy
-                .then(|| Stored::of(model, (points, stage.at), &**halo))
-        };
-        let before = stored(&self.simulation);
+        let before = self.stored(stage.at);
         let next = model::model_at(&self.case, stage.at);
         let next = next.unwrap_or_else(|error| launch::end(&self.universe.world(), exit::BUG, &error));
-        let (taken, idle) = (self.case.taken_by(stage), self.case.idle_before(stage.at));
+        let taken = self.case.taken_by(stage);
+        let idle = self.case.idle_before(stage.at);
         if stage.exchanges() {
             self.simulation.exchange(next)?;
         }
@@ -47,25 +40,40 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             self.simulation.points.reset_displacements();
         }
         let Simulation { points, halo, .. } = &self.simulation;
-        self.recorder.begin_stage((&self.case, stage), points, &**halo);
-        if let (Some(before), Some(after)) = (before, stored(&self.simulation)) {
+        self.recorder.begin_stage(&self.case, stage, points, &**halo);
+        if let (Some(before), Some(after)) = (before, self.stored(stage.at)) {
             self.recorder.exchange(before, after);
         }
-        let (step, time) = (self.simulation.steps(), self.simulation.time());
+        self.tell_stage(stage, removed, added);
+        Ok(())
+    }
+
+    /// The energy at `t`, where it is balanced. Collective.
+    fn stored(&self, t: f64) -> Option<Stored> {
+        let Simulation {
+            model, points, halo, ..
+        } = &self.simulation;
+        model.balances_energy.then(|| Stored::of(model, points, t, &**halo))
+    }
+
+    /// Says and notes what a stage has changed, with the numbers of points that it has `removed` and `added`.
+    fn tell_stage(&mut self, stage: &Stage, removed: u64, added: u64) {
+        let step = self.simulation.steps();
+        let time = self.simulation.time();
         let name = stage.name.as_deref().map_or(String::new(), |name| format!(" {name}"));
-        let material = |number: usize| &self.case.materials[number].name;
+        let materials = &self.case.materials;
         let exchanged: Vec<String> = stage
             .materials
             .iter()
-            .map(|&(from, to)| format!("{} follows {}", material(from), material(to)))
+            .map(|&(from, to)| format!("{} follows {}", materials[from].name, materials[to].name))
             .collect();
         let faces: Vec<String> = stage
             .faces
             .iter()
             .map(|of| format!("{} is {}", of.face.side(self.case.geometry).word(), of.support.word()))
             .collect();
-        let names = |list: &[(String, Acting)]| list.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
-        let (applied, released) = (names(&stage.apply), names(&stage.release));
+        let [applied, released] = [&stage.apply, &stage.release]
+            .map(|list| list.iter().map(|(name, _)| name.clone()).collect::<Vec<String>>());
         let strength_reduction = stage.strength_reduction;
         let changes = [
             (removed > 0).then(|| format!("{removed} material points removed")),
@@ -104,6 +112,5 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             ledger.manifest().stages.push(changes);
             ledger.begin_stage(&self.case, stage.at);
         }
-        Ok(())
     }
 }

@@ -37,7 +37,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 .detail("detail", &format!("{} = {} ({})", note.key, note.value, note.reason));
         }
         if self.before.resumed {
-            let (step, time) = (self.simulation.steps(), self.simulation.time());
+            let step = self.simulation.steps();
+            let time = self.simulation.time();
             self.log.line(
                 "restart",
                 &format!("Continuing from step {step} at t = {}.", self.moment(time)),
@@ -63,7 +64,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     /// Reports how well the stress at the start is balanced, and warns where the first step will move the body by it.
     fn tell_start(&mut self, (start, settling): &Start) {
-        let (unbalance, yielding) = (start.force, start.yielding);
+        let unbalance = start.force;
+        let yielding = start.yielding;
         let settling = settling.map(|Settling { rounds, evaluations }| ManifestSettling { rounds, evaluations });
         if let Some(ledger) = &mut self.ledger {
             ledger.manifest().initial = Some(ManifestInitial {

@@ -8,7 +8,7 @@ use bsmpm::tensor::Vector;
 use bsmpm::water::flow::Motion;
 use bsmpm_io::manifest::ManifestOutflow;
 use bsmpm_ranks::simulation::Simulation;
-use bsmpm_scene::{Face, Support};
+use bsmpm_scene::{Face, GridSpec, Support};
 
 /// Cells that a rigid body may move in a step at the soil that it touches.
 const FASTEST: f64 = 0.5;
@@ -19,18 +19,22 @@ const LEFT: f64 = 0.1;
 /// Cells between neighbours on a drained surface above which it is torn.
 const TORN: f64 = 1.0;
 
+/// How far (m) a body of this `extent` (m, from the grid's lower corner, along the axis of `face`) is past the face.
+fn past(grid: &GridSpec, face: Face, [least, most]: [f64; 2]) -> f64 {
+    match face.upper {
+        true => most - (grid.upper()[face.axis] - grid.lower()[face.axis]),
+        false => -least,
+    }
+}
+
 impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// Misspelt options of PETSc would do nothing in silence.
     pub(super) fn tell_unused_options(&mut self) {
-        let unused = self.simulation.unused_options();
-        let given = |name: &String| {
-            self.arguments
-                .petsc
-                .iter()
-                .any(|option| option.strip_prefix('-') == Some(name))
-        };
-        let misspelt: Vec<String> = unused.into_iter().filter(given).collect();
-        for name in misspelt {
+        for name in self.simulation.unused_options() {
+            let mut given = self.arguments.petsc.iter();
+            if !given.any(|option| option.strip_prefix('-') == Some(&name)) {
+                continue;
+            }
             let warning = format!(
                 "W0701: the linear solver did not use the PETSc option -{name}, which has no effect. Check its \
                  spelling, and whether this solver has the option."
@@ -42,8 +46,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     /// A rigid body that comes so fast that points are met too late, or so light a penalty that they go into it.
     pub(super) fn tell_rigid(&mut self, accepted: &Accepted) {
         for (number, report) in accepted.report.rigid.iter().enumerate() {
-            let (name, t) = (self.case.rigid[number].name.clone(), self.moment(accepted.t));
-            let (advance, depth) = (report.advance, report.penetration);
+            let name = self.case.rigid[number].name.clone();
+            let t = self.moment(accepted.t);
+            let advance = report.advance;
+            let depth = report.penetration;
             if advance > FASTEST && self.warned_rigid.insert(2 * number) {
                 self.warn(format!(
                     "W0702: rigid body `{name}` moves by {advance:.2} cells in one step at t = {t} (limit: \
@@ -70,26 +76,21 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             if !(body.acts && body.is_free()) || self.warned_rigid.contains(&known) {
                 continue;
             }
-            let (grid, slack) = (&self.case.grid, DEEPEST * self.case.grid.shortest());
-            let further = |face: Face| {
-                let [start, now] = [Vector::zeros(), report.moved].map(|moved| body.extent(&moved, face.axis));
-                let past = |[least, most]: [f64; 2]| match face.upper {
-                    true => most - (grid.upper()[face.axis] - grid.lower()[face.axis]),
-                    false => -least,
-                };
-                start
-                    .zip(now)
-                    .is_some_and(|(start, now)| past(now) > past(start).max(0.0) + slack)
-            };
+            let grid = &self.case.grid;
+            let slack = DEEPEST * self.case.grid.shortest();
             let faces = self.case.faces_at(accepted.t).into_iter();
-            let mut holding = faces.filter(|of| !matches!(of.support, Support::Free | Support::Outflow));
-            let Some(through) = holding.find(|of| of.face.axis < D && further(of.face)) else {
+            let mut holding =
+                faces.filter(|of| of.face.axis < D && !matches!(of.support, Support::Free | Support::Outflow));
+            let through = holding.find(|of| {
+                let extents = [Vector::zeros(), report.moved].map(|moved| body.extent(&moved, of.face.axis));
+                let [start, now] = extents.map(|extent| extent.map(|extent| past(grid, of.face, extent)));
+                start.zip(now).is_some_and(|(start, now)| now > start.max(0.0) + slack)
+            });
+            let Some(through) = through else {
                 continue;
             };
-            let (name, side) = (
-                self.case.rigid[number].name.clone(),
-                through.face.side(self.case.geometry),
-            );
+            let name = self.case.rigid[number].name.clone();
+            let side = through.face.side(self.case.geometry);
             let t = self.moment(accepted.t);
             self.warned_rigid.insert(known);
             self.warn(format!(
@@ -108,10 +109,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 continue;
             }
             let points = on.points.len();
-            let (name, t) = (
-                bsmpm_scene::surfaces::name_of_strip(&self.case, number),
-                self.moment(accepted.t),
-            );
+            let name = bsmpm_scene::surfaces::name_of_strip(&self.case, number);
+            let t = self.moment(accepted.t);
             let mut kind = number;
             let warning = if strip.held == 0 {
                 format!(
@@ -141,9 +140,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     /// A drain or an inflow most of which has no ground near lets nothing through there.
     pub(super) fn tell_drains(&mut self, accepted: &Accepted) {
-        let (Some(water), t) = (&accepted.report.water, self.moment(accepted.t)) else {
+        let Some(water) = &accepted.report.water else {
             return;
         };
+        let t = self.moment(accepted.t);
         let model = &self.simulation.model;
         let flow = model.water.as_ref().and_then(|water| water.flow.as_ref());
         let Some(flow) = flow.filter(|flow| flow.motion == Motion::Flows) else {
@@ -177,9 +177,10 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     /// Ground that goes away from a drained face of the grid leaves its drain there. `known`: of the first.
     fn tell_drained_faces(&mut self, accepted: &Accepted, known: usize) {
-        let (Some(water), t) = (&accepted.report.water, self.moment(accepted.t)) else {
+        let Some(water) = &accepted.report.water else {
             return;
         };
+        let t = self.moment(accepted.t);
         let flow = self
             .simulation
             .model
@@ -188,7 +189,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             .and_then(|water| water.flow.as_ref());
         let acts: Vec<bool> = flow.map_or_else(Vec::new, |flow| flow.faces.iter().map(|face| face.acts).collect());
         for (number, face) in water.faces.iter().enumerate().filter(|(number, _)| acts[*number]) {
-            let (sealed, off) = (face.held == 0, face.off as f64 > LEFT * face.near as f64);
+            let sealed = face.held == 0;
+            let off = face.off as f64 > LEFT * face.near as f64;
             if !(sealed || off) || !self.warned_strips.insert(known + 2 * number + usize::from(sealed)) {
                 continue;
             }

@@ -101,7 +101,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             exit::STOPPED => "Stopped",
             _ => "Failed",
         };
-        let (t, steps) = (self.moment(self.simulation.time()), summary.steps);
+        let t = self.moment(self.simulation.time());
+        let steps = summary.steps;
         if code == exit::STOPPED && steps == 0 {
             return format!(
                 "Stopped before the first step was complete, after {}.",

@@ -146,9 +146,8 @@ pub fn probe<'p>(petsc: &'p Petsc<'p>, choice: &Choice) -> petsc_rs::Result<()> 
     if choice.shell().is_some() {
         choice.apply(&mut ksp, Symmetry::Definite)?;
         ksp.set_shell_operator(1)?;
-        let mut product = |x: &[f64], y: &mut [f64]| y.copy_from_slice(x);
         return ksp
-            .solve_with_pc((&mut product, &mut Identity), |b| b.fill(1.0))
+            .solve_with_pc(&mut |x, y| y.copy_from_slice(x), &mut Identity, |b| b.fill(1.0))
             .map(|_| ());
     }
     let own = [petsc.rank()];
@@ -157,7 +156,8 @@ pub fn probe<'p>(petsc: &'p Petsc<'p>, choice: &Choice) -> petsc_rs::Result<()> 
     matrix.set_symmetry(petsc_rs::Symmetry::PositiveDefinite)?;
     ksp.set_operator(&matrix)?;
     choice.apply(&mut ksp, Symmetry::Definite)?;
-    let (mut b, mut x) = (Vector::new(petsc, 1)?, Vector::new(petsc, 1)?);
+    let mut b = Vector::new(petsc, 1)?;
+    let mut x = Vector::new(petsc, 1)?;
     b.fill(1.0)?;
     ksp.set_up()?;
     ksp.solve(&b, &mut x).map(|_| ())

@@ -24,11 +24,10 @@ impl<'p, const D: usize> Solvers<'p, D> {
         halo: &Rc<MpiHalo>,
         timers: &Rc<Timers>,
     ) -> Self {
-        let shared = || (Rc::clone(halo), Rc::clone(timers));
-        let (own, more) = (shared(), shared());
+        let grid = &model.grid;
         let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
-        let displacements = KspSolver::new(petsc, choice.clone(), &model.grid, own.0, own.1);
-        let water = flows.then(|| KspSolver::lowered(petsc, choice.clone(), &model.grid, more.0, more.1));
+        let displacements = KspSolver::new(petsc, choice.clone(), grid, Rc::clone(halo), Rc::clone(timers));
+        let water = flows.then(|| KspSolver::lowered(petsc, choice.clone(), grid, Rc::clone(halo), Rc::clone(timers)));
         Self { displacements, water }
     }
 

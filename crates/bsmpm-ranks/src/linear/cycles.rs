@@ -2,7 +2,7 @@
 
 use super::choice::Choice;
 use super::direct::{StiffnessOperator, gather};
-use super::multigrid::Multigrid;
+use super::multigrid::{Multigrid, Operator};
 use super::spread;
 use super::system::{MOST_ITERATIONS, failed, trusted};
 use super::tally::Tally;
@@ -65,10 +65,9 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         };
         let outcome = ksp.set_up_with_pc(&mut pc);
         tally.failure(&outcome);
-        let message = || "a part of the stiffness is not positive definite".to_owned();
         outcome.map_err(|error| {
             if multigrid.is_none() {
-                SolveError::Failed(message())
+                SolveError::Failed("a part of the stiffness is not positive definite".to_owned())
             } else {
                 failed(error)
             }
@@ -79,7 +78,8 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
     pub fn solve(
         &mut self,
         matrix: StiffnessOperator<'_, D, C>,
-        (rhs, solution): (&[f64], &mut [f64]),
+        rhs: &[f64],
+        solution: &mut [f64],
         tally: &mut Tally,
     ) -> Result<Solved, SolveError> {
         let Self {
@@ -95,9 +95,7 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
             cycles: *cycles,
             matrix,
         };
-        let outcome = ksp.solve_with_pc((&mut |x, y| matrix.multiply(x, y), &mut pc), |b| {
-            gather(unknowns, rhs, b)
-        });
+        let outcome = ksp.solve_with_pc(&mut |x, y| matrix.multiply(x, y), &mut pc, |b| gather(unknowns, rhs, b));
         tally.count(ksp, &outcome);
         let info = outcome.map_err(failed)?;
         ksp.solution(|x| spread::<C>(matrix.halo, unknowns, x, solution))
@@ -125,7 +123,8 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         &mut self,
         relative: f64,
         matrix: StiffnessOperator<'_, D, C>,
-        (rhs, solution): (&[f64], &mut [f64]),
+        rhs: &[f64],
+        solution: &mut [f64],
         tally: &mut Tally,
     ) -> Result<Solved, SolveError> {
         let tolerances = Tolerances {
@@ -139,7 +138,7 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
             .set_type("cg")
             .and_then(|()| self.ksp.set_norm(NormType::Unpreconditioned))
             .map_err(failed)?;
-        let found = self.solve(matrix, (rhs, solution), tally);
+        let found = self.solve(matrix, rhs, solution, tally);
         self.ksp_type = usual;
         self.ksp
             .set_type(&self.ksp_type)
@@ -169,7 +168,7 @@ impl<const D: usize, const C: usize> ShellPc for Cycles<'_, D, C> {
             ..
         } = self.matrix;
         let _timed = timers.time("factorisation");
-        *self.multigrid = Multigrid::new(grid, (stencil, free));
+        *self.multigrid = Multigrid::new(grid, Operator { stencil, free });
         if self.multigrid.is_some() {
             Ok(())
         } else {
@@ -187,12 +186,13 @@ impl<const D: usize, const C: usize> ShellPc for Cycles<'_, D, C> {
         } = self.matrix;
         let _timed = timers.time("linear solve");
         let multigrid = self.multigrid.as_ref().ok_or(PcFailure::Other)?;
-        let (mut rhs, mut solution) = (vec![0.0; free.len()], vec![0.0; free.len()]);
+        let mut rhs = vec![0.0; free.len()];
+        let mut solution = vec![0.0; free.len()];
         unknowns
             .iter()
             .zip(r)
             .for_each(|(&component, value)| rhs[component] = *value);
-        multigrid.apply((stencil, free), self.cycles, &rhs, &mut solution);
+        multigrid.apply(Operator { stencil, free }, self.cycles, &rhs, &mut solution);
         gather(unknowns, &solution, z);
         Ok(())
     }

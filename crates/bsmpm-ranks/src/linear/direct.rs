@@ -20,7 +20,7 @@ const NEAR: f64 = 1e-2;
 
 /// What is known of the factor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Standing {
+enum FactorState {
     /// there is none of the present matrix
     #[default]
     Missing,
@@ -45,7 +45,8 @@ pub(super) struct StiffnessOperator<'a, const D: usize, const C: usize> {
 impl<const D: usize, const C: usize> StiffnessOperator<'_, D, C> {
     /// y = A x of this rank's unknowns. Collective.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
-        let (mut nodal, mut image) = (vec![0.0; self.free.len()], vec![0.0; self.free.len()]);
+        let mut nodal = vec![0.0; self.free.len()];
+        let mut image = vec![0.0; self.free.len()];
         super::spread::<C>(self.halo, self.unknowns, x, &mut nodal);
         self.multiply_nodal(&nodal, &mut image);
         gather(self.unknowns, &image, y);
@@ -60,9 +61,8 @@ impl<const D: usize, const C: usize> StiffnessOperator<'_, D, C> {
     pub fn norms(&self, rhs: &[f64], solution: &[f64]) -> (f64, f64) {
         let mut image = vec![0.0; rhs.len()];
         self.multiply_nodal(solution, &mut image);
-        let square = |component: usize, value: f64| if self.free[component] { value * value } else { 0.0 };
-        let left = over_layers(self.halo, C, |c| square(c, rhs[c] - image[c]));
-        let right = over_layers(self.halo, C, |c| square(c, rhs[c]));
+        let left = over_layers(self.halo, C, |c| square(self.free[c], rhs[c] - image[c]));
+        let right = over_layers(self.halo, C, |c| square(self.free[c], rhs[c]));
         let squares = self.halo.total(&[left, right]);
         (squares[0].sqrt(), squares[1].sqrt())
     }
@@ -81,7 +81,7 @@ pub(super) fn gather(unknowns: &[usize], nodal: &[f64], values: &mut [f64]) {
 pub(super) struct DissectionFactor {
     dissection: Dissection,
     is_planned: bool, // for the present unknowns
-    standing: Standing,
+    standing: FactorState,
     rhs: Vec<f64>, // nodal
     /// the last application's result, right at all nodes of the window
     pub solution: Vec<f64>,
@@ -101,12 +101,12 @@ impl DissectionFactor {
 
     /// Forgets that there is a factor, as the matrix is another one.
     pub fn outdate(&mut self) {
-        self.standing = Standing::Missing;
+        self.standing = FactorState::Missing;
     }
 
     /// Whether there is one of the present matrix.
     pub fn is_there(&self) -> bool {
-        self.standing != Standing::Missing
+        self.standing != FactorState::Missing
     }
 }
 
@@ -126,32 +126,32 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
             timers,
             ..
         } = self.matrix;
-        let (link, _timed) = (halo.link(), timers.time("factorisation"));
+        let link = halo.link();
+        let _timed = timers.time("factorisation");
         if !self.factor.is_planned {
             let rank = halo.world().rank().unsigned_abs() as usize;
             self.factor
                 .dissection
-                .plan::<D, C>(&link, (halo.slabs(), rank), grid, free);
+                .plan::<D, C>(&link, halo.slabs(), rank, grid, free);
             self.factor.is_planned = true;
         }
         let mut largest = [stencil.largest_diagonal()];
         halo.maximum(&mut largest);
         let good = self.factor.dissection.factorise(&link, precision, stencil, largest[0]);
-        self.factor.standing = Standing::Untried;
-        let pivot =
-            |what: &str| SolveError::Failed(format!("a pivot {what} is not positive: the stiffness is not definite"));
-        agreed(
-            halo,
-            if good { Ok(()) } else { Err(pivot("here")) },
-            pivot("of another rank"),
-        )
+        self.factor.standing = FactorState::Untried;
+        let [here, elsewhere] = ["here", "of another rank"].map(|place| {
+            SolveError::Failed(format!(
+                "a pivot {place} is not positive: the stiffness is not definite"
+            ))
+        });
+        agreed(halo, if good { Ok(()) } else { Err(here) }, elsewhere)
     }
 
     /// The solution for the nodal right-hand side. The first one tries the factor: if it is not near, one of double
     /// precision is made, whose solution must be: no reason of KSP's says what a factor is worth.
     fn solve(&mut self) -> Result<(), SolveError> {
         self.back_substitute();
-        if self.factor.standing == Standing::Tried {
+        if self.factor.standing == FactorState::Tried {
             return Ok(());
         }
         let (mut left, right) = self.matrix.norms(&self.factor.rhs, &self.factor.solution);
@@ -166,7 +166,7 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
             trusted(left, right)?;
         }
         if right > 0.0 {
-            (self.factor.standing, self.factor.residual) = (Standing::Tried, Some(left / right));
+            (self.factor.standing, self.factor.residual) = (FactorState::Tried, Some(left / right));
         }
         Ok(())
     }
@@ -180,8 +180,12 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
             solution,
             ..
         } = &mut *self.factor;
-        let own = |component: usize| owned.contains(Nodal::<C>::node(component));
-        dissection.solve(&self.matrix.halo.link(), own, rhs, solution);
+        dissection.solve(
+            &self.matrix.halo.link(),
+            |component| owned.contains(Nodal::<C>::node(component)),
+            rhs,
+            solution,
+        );
     }
 
     /// Reports to KSP a failure, and the caller why.
@@ -200,7 +204,8 @@ impl<const D: usize, const C: usize> ShellPc for DissectionPc<'_, D, C> {
     }
 
     fn apply(&mut self, r: &[f64], z: &mut [f64]) -> Result<(), PcFailure> {
-        let (count, unknowns) = (self.matrix.free.len(), self.matrix.unknowns);
+        let count = self.matrix.free.len();
+        let unknowns = self.matrix.unknowns;
         let DissectionFactor { rhs, solution, .. } = &mut *self.factor;
         rhs.clear();
         rhs.resize(count, 0.0);
@@ -213,4 +218,9 @@ impl<const D: usize, const C: usize> ShellPc for DissectionPc<'_, D, C> {
         gather(unknowns, &self.factor.solution, z);
         self.report(outcome, PcFailure::Other)
     }
+}
+
+/// The square of a component that is free; of others 0.
+fn square(is_free: bool, value: f64) -> f64 {
+    if is_free { value * value } else { 0.0 }
 }

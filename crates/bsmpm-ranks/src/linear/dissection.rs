@@ -43,7 +43,8 @@ impl Dissection {
     pub fn plan<const D: usize, const C: usize>(
         &mut self,
         link: &dyn Link,
-        (slabs, rank): (&Slabs, usize),
+        slabs: &Slabs,
+        rank: usize,
         grid: &Grid<D>,
         free: &[bool],
     ) {
@@ -64,17 +65,17 @@ impl Dissection {
             start..end.max(start)
         });
         self.plan = Plan::new::<D, C>(counts, q, &inner, free);
-        let whole = |&component: &u32| {
+        let shared = self.plan.shared().iter().map(|&component| {
             let (node, component) = Nodal::<C>::split(component as usize);
             Nodal::<C>::at(grid.number_of(node), component)
-        };
-        let shared: Vec<usize> = self.plan.shared().iter().map(whole).collect();
+        });
+        let shared: Vec<usize> = shared.collect();
         let [layer, row] = [1, 2].map(|first| (first..D).map(|axis| grid.axes()[axis].functions()).product::<usize>());
-        let touching = |component: usize| {
+        let role = reduction::role(slabs.ranks(), rank);
+        self.reduction = TreeReduction::new(link, rank, role, &shared, |component| {
             let node = Nodal::<C>::node(component);
             slabs.touching([node / layer, node % layer / row], grid.order())
-        };
-        self.reduction = TreeReduction::new(link, (rank, reduction::role(slabs.ranks(), rank)), &shared, touching);
+        });
     }
 
     /// Factorises; `false` where a pivot of this rank was not positive and finite. `largest` is about the largest
@@ -121,9 +122,11 @@ impl Dissection {
             scale,
             ..
         } = self;
-        let own = |component: usize| if owned(component) { rhs[component] * *scale } else { 0.0 };
         work.clear();
-        work.extend(plan.order.iter().map(|&component| own(component as usize)));
+        work.extend(plan.order.iter().map(|&component| match component as usize {
+            component if owned(component) => rhs[component] * *scale,
+            _ => 0.0,
+        }));
         let triangles = Triangles { plan, factor };
         triangles.forward(work, scratch);
         reduction.solve(link, &mut work[plan.eliminated()..]);

@@ -15,7 +15,7 @@ use patches::Patches;
 use transfer::Transfer;
 
 /// Nodes along an axis of a patch of the smoother, and from one to the next.
-const PATCH: (usize, usize) = (4, 3);
+const PATCH: [usize; 2] = [4, 3];
 /// Free components up to which a level is solved at once.
 const FEW: usize = 1000;
 /// Steps of the power method, and what its eigenvalue is multiplied with to be a bound.
@@ -23,8 +23,29 @@ const POWER: (usize, f64) = (8, 1.2);
 /// Part of the largest eigenvalue from which the smoother damps.
 const SMOOTHED: f64 = 0.1;
 
-/// A matrix: blocks of the window's nodes, and which components are unknown.
-pub type Operator<'a, const D: usize, const C: usize> = (&'a Stencil<D, C>, &'a [bool]);
+/// A matrix on a window.
+#[derive(Clone, Copy)]
+pub struct Operator<'a, const D: usize, const C: usize> {
+    /// Blocks of the window's nodes.
+    pub stencil: &'a Stencil<D, C>,
+    /// Which components are unknown.
+    pub free: &'a [bool],
+}
+
+/// A matrix on a coarse grid.
+struct CoarseOperator<const D: usize, const C: usize> {
+    stencil: Stencil<D, C>,
+    free: Vec<bool>,
+}
+
+impl<const D: usize, const C: usize> CoarseOperator<D, C> {
+    fn operator(&self) -> Operator<'_, D, C> {
+        Operator {
+            stencil: &self.stencil,
+            free: &self.free,
+        }
+    }
+}
 
 /// All levels of a matrix, the finest first, whose matrix is the caller's.
 pub struct Multigrid<const D: usize, const C: usize> {
@@ -32,7 +53,7 @@ pub struct Multigrid<const D: usize, const C: usize> {
 }
 
 struct Level<const D: usize, const C: usize> {
-    own: Option<(Stencil<D, C>, Vec<bool>)>, // of all but the finest
+    own: Option<CoarseOperator<D, C>>, // of all but the finest
     patches: Patches,
     bound: f64,                   // of the eigenvalues of the smoothed matrix
     coarser: Option<Transfer<D>>, // `None` of the coarsest one, which one patch solves
@@ -41,10 +62,12 @@ struct Level<const D: usize, const C: usize> {
 impl<const D: usize, const C: usize> Multigrid<D, C> {
     /// Levels of a matrix on a window that is all of the grid's room. `None` if a box of it is not positive definite.
     pub fn new(grid: &Grid<D>, finest: Operator<'_, D, C>) -> Option<Self> {
-        let (mut levels, mut grid, mut own) = (Vec::new(), grid.clone(), None::<(Stencil<D, C>, Vec<bool>)>);
+        let mut levels = Vec::new();
+        let mut grid = grid.clone();
+        let mut own = None::<CoarseOperator<D, C>>;
         loop {
-            let operator = own.as_ref().map_or(finest, |(stencil, free)| (stencil, &free[..]));
-            let coarser = if count(operator.1) > FEW {
+            let operator = own.as_ref().map_or(finest, CoarseOperator::operator);
+            let coarser = if count(operator.free) > FEW {
                 Transfer::new(&grid)
             } else {
                 None
@@ -52,7 +75,7 @@ impl<const D: usize, const C: usize> Multigrid<D, C> {
             let along: [usize; D] = std::array::from_fn(|axis| grid.nodes_along(axis));
             let Some((coarse, transfer)) = coarser else {
                 let whole = along.iter().copied().fold(1, usize::max);
-                let patches = Patches::new(operator, along, (whole, whole))?;
+                let patches = Patches::new(operator, along, whole, whole)?;
                 levels.push(Level {
                     own,
                     patches,
@@ -61,7 +84,7 @@ impl<const D: usize, const C: usize> Multigrid<D, C> {
                 });
                 return Some(Self { levels });
             };
-            let patches = Patches::new(operator, along, PATCH)?;
+            let patches = Patches::new(operator, along, PATCH[0], PATCH[1])?;
             let bound = largest_eigenvalue(operator, &patches);
             let next = transfer.galerkin(operator, &coarse);
             levels.push(Level {
@@ -77,7 +100,8 @@ impl<const D: usize, const C: usize> Multigrid<D, C> {
     /// x = B b of nodal arrays by so many cycles, each of what the one before leaves.
     pub fn apply(&self, finest: Operator<'_, D, C>, cycles: usize, b: &[f64], x: &mut [f64]) {
         x.fill(0.0);
-        let (mut left, mut step) = (b.to_vec(), vec![0.0; b.len()]);
+        let mut left = b.to_vec();
+        let mut step = vec![0.0; b.len()];
         for number in 0..cycles {
             if number > 0 {
                 subtract_product(finest, &step, &mut left);
@@ -89,10 +113,7 @@ impl<const D: usize, const C: usize> Multigrid<D, C> {
 
     fn cycle(&self, number: usize, finest: Operator<'_, D, C>, b: &[f64], x: &mut [f64]) {
         let level = &self.levels[number];
-        let operator = level
-            .own
-            .as_ref()
-            .map_or(finest, |(stencil, free)| (stencil, &free[..]));
+        let operator = level.own.as_ref().map_or(finest, CoarseOperator::operator);
         x.fill(0.0);
         let Some(transfer) = &level.coarser else {
             return level.patches.add(b, x);
@@ -105,7 +126,7 @@ impl<const D: usize, const C: usize> Multigrid<D, C> {
         self.cycle(number + 1, finest, &coarse, &mut below);
         let mut step = transfer.prolong::<C>(&below);
         step.iter_mut()
-            .zip(operator.1)
+            .zip(operator.free)
             .filter(|(_, free)| !**free)
             .for_each(|(step, _)| *step = 0.0);
         subtract_product(operator, &step, &mut left);
@@ -118,8 +139,10 @@ impl<const D: usize, const C: usize> Level<D, C> {
     /// Two steps of Chebyshev's method for what is `left`, added to x; returns the last one, whose product is not yet
     /// taken off.
     fn smooth(&self, operator: Operator<'_, D, C>, left: &mut [f64], x: &mut [f64]) -> Vec<f64> {
-        let (upper, lower) = (self.bound, SMOOTHED * self.bound);
-        let (middle, half) = (0.5 * (upper + lower), 0.5 * (upper - lower));
+        let upper = self.bound;
+        let lower = SMOOTHED * self.bound;
+        let middle = 0.5 * (upper + lower);
+        let half = 0.5 * (upper - lower);
         let mut step = vec![0.0; left.len()];
         self.patches.add(left, &mut step);
         step.iter_mut().for_each(|step| *step /= middle);
@@ -136,22 +159,23 @@ impl<const D: usize, const C: usize> Level<D, C> {
 }
 
 /// b -= A x.
-fn subtract_product<const D: usize, const C: usize>((stencil, free): Operator<'_, D, C>, x: &[f64], b: &mut [f64]) {
+fn subtract_product<const D: usize, const C: usize>(operator: Operator<'_, D, C>, x: &[f64], b: &mut [f64]) {
     let mut image = vec![0.0; x.len()];
-    stencil.multiply(free, x, &mut image);
+    operator.stencil.multiply(operator.free, x, &mut image);
     b.iter_mut().zip(&image).for_each(|(b, image)| *b -= image);
 }
 
 /// Of the matrix after the patches' solutions: by the power method, from a vector that has all of them.
 fn largest_eigenvalue<const D: usize, const C: usize>(operator: Operator<'_, D, C>, patches: &Patches) -> f64 {
-    let (stencil, free) = operator;
+    let Operator { stencil, free } = operator;
     let mut state = 1_u32;
-    let mut next = || {
+    let mut x = vec![0.0; free.len()];
+    for (x, _) in x.iter_mut().zip(free).filter(|(_, free)| **free) {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        f64::from(state) / f64::from(u32::MAX) - 0.5
-    };
-    let mut x: Vec<f64> = free.iter().map(|free| if *free { next() } else { 0.0 }).collect();
-    let (mut image, mut largest) = (vec![0.0; x.len()], 1.0);
+        *x = f64::from(state) / f64::from(u32::MAX) - 0.5;
+    }
+    let mut image = vec![0.0; x.len()];
+    let mut largest = 1.0;
     for _ in 0..POWER.0 {
         stencil.multiply(free, &x, &mut image);
         x.fill(0.0);

@@ -78,7 +78,8 @@ impl<'p> ShellSystem<'p> {
     pub fn solve<const D: usize, const C: usize>(
         &mut self,
         matrix: StiffnessOperator<'_, D, C>,
-        (rhs, solution): (&[f64], &mut [f64]),
+        rhs: &[f64],
+        solution: &mut [f64],
         tally: &mut Tally,
     ) -> Result<Solved, SolveError> {
         let Self {
@@ -87,9 +88,7 @@ impl<'p> ShellSystem<'p> {
         let matrix = StiffnessOperator { unknowns, ..matrix };
         (factor.cause, factor.further, factor.residual) = (None, 0, None);
         let mut pc = DissectionPc { factor, matrix };
-        let outcome = ksp.solve_with_pc((&mut |x, y| matrix.multiply(x, y), &mut pc), |b| {
-            gather(unknowns, rhs, b)
-        });
+        let outcome = ksp.solve_with_pc(&mut |x, y| matrix.multiply(x, y), &mut pc, |b| gather(unknowns, rhs, b));
         tally.count(ksp, &outcome);
         let info = outcome.map_err(|error| pc.factor.cause.take().unwrap_or_else(|| failed(error)))?;
         let mut residual = factor.residual;

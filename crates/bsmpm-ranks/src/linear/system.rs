@@ -30,7 +30,8 @@ impl<'p> System<'p> {
     /// The system of a matrix, to be solved as `choice` and the options say. Collective.
     pub(super) fn new(
         petsc: &'p Petsc<'p>,
-        (choice, symmetry): (&Choice, Symmetry),
+        choice: &Choice,
+        symmetry: Symmetry,
         mut matrix: Matrix<'p>,
     ) -> petsc_rs::Result<Self> {
         // PETSc's copies of the whole do not know that they are definite: on one rank, too, MUMPS shall do as with
@@ -41,9 +42,12 @@ impl<'p> System<'p> {
         let mut ksp = Ksp::new(petsc)?;
         ksp.set_operator(&matrix)?;
         choice.apply(&mut ksp, symmetry)?;
-        let vector = || Vector::new(petsc, matrix.local_rows());
-        let (b, x, r) = (vector()?, vector()?, vector()?);
-        let (applications, ksp_type) = (choice.applications, choice.ksp.clone());
+        let rows = matrix.local_rows();
+        let b = Vector::new(petsc, rows)?;
+        let x = Vector::new(petsc, rows)?;
+        let r = Vector::new(petsc, rows)?;
+        let applications = choice.applications;
+        let ksp_type = choice.ksp.clone();
         Ok(Self {
             matrix,
             ksp,
@@ -69,8 +73,8 @@ impl<'p> System<'p> {
             let outcome = self.ksp.solve(left, &mut self.x);
             tally.count(&self.ksp, &outcome);
             outcome.map_err(failed)?;
-            let add = |x: &[f64]| sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += x);
-            self.x.read(add).map_err(failed)?;
+            let added = self.x.read(|x| sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += x));
+            added.map_err(failed)?;
         }
         // Of all ranks, as all or none go on.
         if !self.x.norm().map_err(failed)?.is_finite() {
@@ -91,11 +95,12 @@ impl<'p> System<'p> {
             absolute: 0.0,
             max_iterations: MOST_ITERATIONS,
         };
-        let set = |ksp: &mut Ksp<'p>, name: &str, norm| ksp.set_type(name).and_then(|()| ksp.set_norm(norm));
         self.ksp.set_tolerances(tolerances).map_err(failed)?;
-        set(&mut self.ksp, "cg", NormType::Unpreconditioned).map_err(failed)?;
+        self.ksp.set_type("cg").map_err(failed)?;
+        self.ksp.set_norm(NormType::Unpreconditioned).map_err(failed)?;
         let found = self.solve(rhs, tally);
-        set(&mut self.ksp, &self.ksp_type, NormType::None).map_err(failed)?;
+        self.ksp.set_type(&self.ksp_type).map_err(failed)?;
+        self.ksp.set_norm(NormType::None).map_err(failed)?;
         found
     }
 
@@ -106,7 +111,8 @@ impl<'p> System<'p> {
         tally.count(&self.ksp, &outcome);
         let info = outcome.map_err(failed)?;
         self.matrix.residual(&self.b, &self.x, &mut self.r).map_err(failed)?;
-        let (left, right) = (self.r.norm().map_err(failed)?, self.b.norm().map_err(failed)?);
+        let left = self.r.norm().map_err(failed)?;
+        let right = self.b.norm().map_err(failed)?;
         trusted(left, right)?;
         Ok((info.iterations, self.x.read(<[f64]>::to_vec).map_err(failed)?))
     }
@@ -114,7 +120,8 @@ impl<'p> System<'p> {
     /// Solution of this rank's unknowns for an operator known by its product, and what it leaves.
     pub(super) fn solve_with(
         &mut self,
-        (product, relative): (&mut Product<'_>, f64),
+        product: &mut Product<'_>,
+        relative: f64,
         rhs: &[f64],
         tally: &mut Tally,
     ) -> Result<(Krylov, Vec<f64>), SolveError> {

@@ -17,11 +17,10 @@ pub struct Tally {
 impl Tally {
     /// The names of a solver, of which nothing is counted yet; `shell` is that of a shell preconditioner.
     pub(super) fn of(ksp: &Ksp<'_>, shell: Option<&str>) -> Self {
-        let name = |name: petsc_rs::Result<Option<String>>| name.ok().flatten().unwrap_or_default();
-        let pc = name(ksp.pc_type_name());
+        let [pc, ksp] = [ksp.pc_type_name(), ksp.type_name()].map(|name| name.ok().flatten().unwrap_or_default());
         let pc = shell.map_or_else(|| pc.clone(), |shell| format!("{pc} ({shell})"));
         Self {
-            ksp: name(ksp.type_name()),
+            ksp,
             pc,
             reasons: BTreeMap::new(),
         }

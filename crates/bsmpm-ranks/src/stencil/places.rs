@@ -21,23 +21,23 @@ impl<const D: usize> Places<D> {
         let within: Vec<[isize; D]> = (0..side.pow(D as u32))
             .map(|place| digits(place, &[side; D]).map(|step| step as isize - half as isize))
             .collect();
-        let flat = |step: &[isize; D]| (1..D).fold(step[0], |sum, axis| sum * functions[axis] as isize + step[axis]);
-        let reach = within.iter().map(flat).collect();
-        let (mut kinds, mut inside) = (HashMap::new(), Vec::new());
-        let kind = (0..grid.nodes()).map(|node| {
+        let reach = within
+            .iter()
+            .map(|step| (1..D).fold(step[0], |sum, axis| sum * functions[axis] as isize + step[axis]))
+            .collect();
+        let mut kinds = HashMap::new();
+        let mut inside = Vec::new();
+        let mut kind = Vec::with_capacity(grid.nodes());
+        for node in 0..grid.nodes() {
             let node = digits(node, &functions);
             let room: [[usize; 2]; D] =
                 std::array::from_fn(|axis| [node[axis], functions[axis] - 1 - node[axis]].map(|nodes| nodes.min(half)));
-            *kinds.entry(room).or_insert_with(|| {
-                let fits = |step: &[isize; D]| {
-                    (0..D).all(|axis| step[axis].unsigned_abs() <= room[axis][usize::from(step[axis] > 0)])
-                };
-                let places = within.iter().enumerate().filter(|(_, step)| fits(step));
+            kind.push(*kinds.entry(room).or_insert_with(|| {
+                let places = within.iter().enumerate().filter(|(_, step)| fits(step, &room));
                 inside.push(places.map(|(place, _)| place as u16).collect());
                 (inside.len() - 1) as u16
-            })
-        });
-        let kind = kind.collect();
+            }));
+        }
         Self {
             functions,
             half,
@@ -99,4 +99,9 @@ fn digits<const D: usize>(mut number: usize, bases: &[usize; D]) -> [usize; D] {
     }
     digits[0] = number;
     digits
+}
+
+/// Whether a step leads to a node, where there are as many nodes below and above along each axis as `room` says.
+fn fits<const D: usize>(step: &[isize; D], room: &[[usize; 2]; D]) -> bool {
+    (0..D).all(|axis| step[axis].unsigned_abs() <= room[axis][usize::from(step[axis] > 0)])
 }

@@ -87,9 +87,10 @@ impl Case {
     /// Pa  suction at the start at `at` (m, in the case's coordinates) as it presses the grains of a material together:
     /// chi s; 0 where its pores stay full, or below the water
     pub(crate) fn suction_at(&self, material: u16, at: [f64; 3]) -> f64 {
-        let (Some(flow), Some(water)) = (self.flow.as_ref().filter(|flow| flow.retains()), &self.water) else {
+        let Some(flow) = self.flow.as_ref().filter(|flow| flow.retains()) else {
             return 0.0;
         };
+        let Some(water) = &self.water else { return 0.0 };
         let Some((height, _)) = water.table.table(at[0], 0.0) else {
             return 0.0;
         };

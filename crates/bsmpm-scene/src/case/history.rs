@@ -240,14 +240,11 @@ pub struct Face {
 impl Face {
     /// The face at a side, if the geometry has one there.
     pub fn of(side: Side, geometry: Geometry) -> Option<Self> {
-        let axes = Side::of(geometry).iter().enumerate();
-        let at = |(axis, sides): (usize, &[Side; 2])| {
-            sides.iter().position(|own| *own == side).map(|upper| Self {
-                axis,
-                upper: upper == 1,
-            })
-        };
-        axes.into_iter().find_map(at)
+        Side::of(geometry).iter().enumerate().find_map(|(axis, sides)| {
+            let number = sides.iter().position(|own| *own == side)?;
+            let upper = number == 1;
+            Some(Self { axis, upper })
+        })
     }
 
     /// Where it is.
@@ -336,24 +333,23 @@ impl History {
 
     /// Its columns in the history file.
     pub fn columns(&self) -> Vec<Column> {
-        let measured = self.quantity.measurement();
-        let unit = |unit: &str| {
-            if self.scale == 1.0 {
-                unit.to_owned()
-            } else {
-                format!("scaled {unit}")
-            }
-        };
-        let dims = self.geometry.dims();
-        let column = |(number, (suffix, _)): (usize, &(&str, &str))| {
-            let in_plane = measured.unit_of(number, dims);
-            let unit = unit(self.geometry.unit(in_plane).unwrap_or(in_plane));
-            Column {
-                name: format!("{}{suffix}", self.name),
-                unit,
-            }
-        };
-        measured.columns_in(dims).iter().enumerate().map(column).collect()
+        let columns = self.quantity.measurement().columns_in(self.geometry.dims());
+        let columns = columns.iter().enumerate().map(|(number, (suffix, _))| Column {
+            name: format!("{}{suffix}", self.name),
+            unit: self.unit_of(number),
+        });
+        columns.collect()
+    }
+
+    /// Unit of the column with a number.
+    fn unit_of(&self, number: usize) -> String {
+        let in_plane = self.quantity.measurement().unit_of(number, self.geometry.dims());
+        let unit = self.geometry.unit(in_plane).unwrap_or(in_plane);
+        if self.scale == 1.0 {
+            unit.to_owned()
+        } else {
+            format!("scaled {unit}")
+        }
     }
 }
 

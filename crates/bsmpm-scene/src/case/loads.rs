@@ -68,7 +68,8 @@ impl Plate {
 
     /// m  ends of the lines through its middle along the axes that follow the normal one
     pub fn lines(&self) -> [[[f64; 3]; 2]; 2] {
-        let (normal, middle) = (self.normal(), self.middle());
+        let normal = self.normal();
+        let middle = self.middle();
         [(normal + 1) % 3, (normal + 2) % 3].map(|axis| {
             [self.lower, self.upper]
                 .map(|end| std::array::from_fn(|along| if along == axis { end[along] } else { middle[along] }))
@@ -92,13 +93,14 @@ impl Plate {
         if !self.round {
             return length * width;
         }
-        let (middle, start) = (self.middle(), self.lower[along].max(lower[along]));
-        let chord = |k: usize| {
+        let middle = self.middle();
+        let start = self.lower[along].max(lower[along]);
+        let chords = (0..CHORDS).map(|k| {
             let off = start + (k as f64 + 0.5) / CHORDS as f64 * length - middle[along];
             let half = (self.radius().powi(2) - off * off).max(0.0).sqrt();
             within(across, [middle[across] - half, middle[across] + half])
-        };
-        (0..CHORDS).map(chord).sum::<f64>() * length / CHORDS as f64
+        });
+        chords.sum::<f64>() * length / CHORDS as f64
     }
 
     /// Whether a place in its plane is part of it.
@@ -250,10 +252,10 @@ impl Traction {
             LoadedLine::Circle { center, radius } => [center[1] - radius, center[1] + radius],
             LoadedLine::Plate(plate) => [plate.lower[2], plate.upper[2]],
             LoadedLine::Triangles(all) => {
-                let heights = || all.iter().flatten().map(|corner| corner[2]);
+                let heights = all.iter().flatten().map(|corner| corner[2]);
                 [
-                    heights().fold(f64::INFINITY, f64::min),
-                    heights().fold(f64::NEG_INFINITY, f64::max),
+                    heights.clone().fold(f64::INFINITY, f64::min),
+                    heights.fold(f64::NEG_INFINITY, f64::max),
                 ]
             }
         };

@@ -31,36 +31,31 @@ impl Profile {
 
     /// Columns of the file after step and time.
     pub fn columns(&self) -> Vec<Column> {
-        let column = |name: &str, unit: &str| Column {
-            name: name.to_owned(),
-            unit: unit.to_owned(),
-        };
         let quantities = self.quantities.iter().flat_map(|quantity| {
             let (names, unit) = quantity.columns_in(self.dims);
-            names.iter().map(move |name| column(name, unit))
+            names.iter().map(move |name| (*name, unit))
         });
-        let places = ["distance", "x", "y", "z"]
-            .into_iter()
-            .take(1 + self.dims)
-            .map(|name| column(name, "m"));
-        places.chain(quantities).collect()
+        let places = ["distance", "x", "y", "z"].into_iter().take(1 + self.dims);
+        let all = places.map(|name| (name, "m")).chain(quantities);
+        let columns = all.map(|(name, unit)| Column {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+        });
+        columns.collect()
     }
 
     /// Places on the line (m, in the case's coordinates), and their distances from its beginning, m.
     pub fn places(&self) -> Vec<(f64, [f64; 3])> {
         let [from, to] = self.ends;
         let length = (to[0] - from[0]).hypot(to[1] - from[1]).hypot(to[2] - from[2]);
-        let place = |number: usize| {
-            let part = if self.count == 1 {
-                0.5
-            } else {
-                number as f64 / (self.count - 1) as f64
-            };
-            (
-                part * length,
-                [0, 1, 2].map(|axis| (1.0 - part) * from[axis] + part * to[axis]),
-            )
-        };
-        (0..self.count).map(place).collect()
+        let parts = (0..self.count).map(|number| match self.count {
+            1 => 0.5,
+            count => number as f64 / (count - 1) as f64,
+        });
+        let places = parts.map(|part| {
+            let at = [0, 1, 2].map(|axis| (1.0 - part) * from[axis] + part * to[axis]);
+            (part * length, at)
+        });
+        places.collect()
     }
 }

@@ -1,6 +1,6 @@
 //! Data of stages. A stage changes bodies, loads, boundaries and materials of a case.
 
-use super::{Body, Case, DrainSite, Face, Gravity, MotionPath, NamedMaterial, Shares, Support, keeps_direction};
+use super::{Body, Case, DrainSite, Face, NamedMaterial, Shares, Support, keeps_direction};
 use bsmpm::boundary::{Contact, Idle};
 use bsmpm::tensor::Vector;
 use bsmpm::water::flow::Motion;
@@ -134,7 +134,8 @@ impl Case {
         Idle {
             loads: loads
                 .chain(self.turning_loads())
-                .map(|load| is_idle(Acting::Load(load)))
+                .map(Acting::Load)
+                .map(is_idle)
                 .collect(),
             water: surfaces
                 .map(Acting::Drain)
@@ -164,19 +165,15 @@ impl Case {
             .map(|(k, of)| (format!("traction.{k}"), of.ramp, &of.amplitude));
         let forces = self.point_loads.iter().enumerate();
         let forces = forces.map(|(k, of)| (format!("point_load.{k}"), of.ramp, &of.amplitude));
-        let is_sudden = |ramp: f64, amplitude: &Shares| match amplitude.first() {
-            Some((t, share)) => *t == 0.0 && *share != Vector::<3>::zeros(),
-            None => ramp == 0.0,
-        };
-        let acts = |load: usize| self.acts_since(Acting::Load(load), 0.0).is_some();
         let all = tractions.chain(forces).enumerate();
-        let sudden = all.filter(|(load, (_, ramp, amplitude))| is_sudden(*ramp, amplitude) && acts(*load));
-        let is_pushed = |gravity: &Gravity| gravity.ramp == 0.0 && !gravity.is_straight(self.grid.dims());
-        let inertia = self
+        let sudden = all.filter(|(load, (_, ramp, amplitude))| {
+            is_sudden(*ramp, amplitude) && self.acts_since(Acting::Load(*load), 0.0).is_some()
+        });
+        let pushes = self
             .gravity
-            .as_ref()
-            .is_some_and(is_pushed)
-            .then(|| "the horizontal gravity".to_owned());
+            .iter()
+            .filter(|gravity| gravity.ramp == 0.0 && !gravity.is_straight(self.grid.dims()));
+        let inertia = pushes.map(|_| "the horizontal gravity".to_owned());
         sudden.map(|(_, (name, ..))| name).chain(inertia).collect()
     }
 
@@ -184,9 +181,8 @@ impl Case {
     pub(crate) fn is_held(&self, what: Acting, holds: impl Fn(&Body) -> bool) -> bool {
         let times = std::iter::once(0.0).chain(self.stages.iter().map(|stage| stage.at));
         let acting: Vec<f64> = times.filter(|t| self.acts_since(what, *t).is_some()).collect();
-        let stays = |body: &usize| acting.iter().all(|t| self.is_there(*body, *t));
         (0..self.bodies.len())
-            .filter(stays)
+            .filter(|body| acting.iter().all(|t| self.is_there(*body, *t)))
             .any(|body| holds(&self.bodies[body]))
     }
 
@@ -208,40 +204,28 @@ impl Case {
     /// When the stage of a name ends (s, or pseudo-time): as the next one begins. `"start"`, of what is before the
     /// first stage; `"end"`, of the run.
     pub fn end_of_stage(&self, name: &str) -> Option<f64> {
-        let end = |next: usize| self.stages.get(next).map_or(self.analysis.end, |stage| stage.at);
-        match self.stages.iter().position(|stage| stage.name.as_deref() == Some(name)) {
-            Some(number) => Some(end(number + 1)),
-            None if name == START && self.stages.is_empty() => Some(0.0),
-            None if name == START => Some(end(0)),
-            None => (name == END).then_some(self.analysis.end),
-        }
+        let next = match self.stages.iter().position(|stage| stage.name.as_deref() == Some(name)) {
+            Some(number) => number + 1,
+            None if name == START && self.stages.is_empty() => return Some(0.0),
+            None if name == START => 0,
+            None => return (name == END).then_some(self.analysis.end),
+        };
+        Some(self.stages.get(next).map_or(self.analysis.end, |stage| stage.at))
     }
 
     /// Whether gravity, or a load that acts until a time, does not act in full then, or changes later.
     pub(crate) fn still_grows(&self, until: f64) -> bool {
         let before = self.just_before(until);
-        // From the last row before which it has another value; it begins with none.
-        let rests = |rows: &Shares| {
-            let values = std::iter::once(Vector::zeros()).chain(rows.iter().map(|row| row.1));
-            rows.iter()
-                .zip(values)
-                .filter(|(row, before)| row.1 != *before)
-                .map(|(row, _)| row.0)
-                .fold(0.0, f64::max)
-        };
-        let tractions = self.tractions.iter().map(|load| load.ramp.max(rests(&load.amplitude)));
-        let loads = tractions.chain(
-            self.point_loads
-                .iter()
-                .map(|load| load.ramp.max(rests(&load.amplitude))),
-        );
+        let tractions = self.tractions.iter().map(|load| (load.ramp, &load.amplitude));
+        let loads = tractions.chain(self.point_loads.iter().map(|load| (load.ramp, &load.amplitude)));
         let acting = loads
+            .map(|(ramp, amplitude)| ramp.max(rests_from(amplitude)))
             .enumerate()
             .filter_map(|(load, grows)| self.acts_since(Acting::Load(load), before).map(|since| since + grows));
         let rigid = self.rigid.iter().enumerate().filter(|(_, of)| of.force != [0.0; 3]);
         let rigid = rigid.filter_map(|(number, of)| {
             let since = self.acts_since(Acting::Rigid(number), before)?;
-            Some(since + of.ramp.max(rests(&of.amplitude)))
+            Some(since + of.ramp.max(rests_from(&of.amplitude)))
         });
         let gravity = self.gravity.iter().map(|gravity| gravity.ramp);
         acting.chain(rigid).chain(gravity).any(|end| end > until * (1.0 + 1e-9))
@@ -273,12 +257,11 @@ impl Case {
         let acting = paths
             .enumerate()
             .filter(|(strip, _)| self.acts_since(Acting::Strip(*strip), before).is_some());
-        let moves = |path: &MotionPath| {
+        acting.map(|(_, path)| path).any(|path| {
             let next = path.rows.partition_point(|row| row.0 <= until * (1.0 + 1e-9));
             let last = next.checked_sub(1).map_or([0.0; 3], |last| path.rows[last].1);
             path.rows[next..].iter().any(|row| row.1 != last)
-        };
-        acting.map(|(_, path)| path).any(moves)
+        })
     }
 
     /// A time at which nothing has begun that begins at the time `t`, and everything that began before.
@@ -288,13 +271,12 @@ impl Case {
 
     /// What all faces of the grid do once the stages until the time `t` have begun.
     pub fn faces_at(&self, t: f64) -> Vec<FaceSupport> {
-        let (mut faces, divided) = (Vec::new(), self.divided_at(t));
+        let mut faces = Vec::new();
+        let divided = self.divided_at(t);
         for (axis, upper) in (0..self.geometry.dims()).flat_map(|axis| [(axis, false), (axis, true)]) {
             let face = Face { axis, upper };
-            let (support, contact) = (
-                self.boundary[axis][usize::from(upper)],
-                self.contacts[axis][usize::from(upper)],
-            );
+            let support = self.boundary[axis][usize::from(upper)];
+            let contact = self.contacts[axis][usize::from(upper)];
             let mut begun = self.stages.iter().rev().filter(|stage| self.has_begun(stage, t));
             let changed = begun.find_map(|stage| stage.faces.iter().find(|of| of.face == face));
             let mut of = *changed.unwrap_or(&FaceSupport { face, support, contact });
@@ -324,44 +306,39 @@ impl Case {
             .filter(|stage| self.has_begun(stage, t))
             .flat_map(|stage| &stage.materials);
         exchanges.for_each(|&(from, to)| followed[from] = to);
-        let of = |(own, followed): (&NamedMaterial, usize)| NamedMaterial {
-            density: own.density,
-            saturated: own.saturated,
-            material: match divided {
-                1.0 => self.materials[followed].material.clone(),
-                further => self.materials[followed].material.clone().reduced(further),
-            },
-            ..self.materials[followed].clone()
-        };
-        self.materials.iter().zip(followed).map(of).collect()
+        let mut materials: Vec<NamedMaterial> = followed.into_iter().map(|of| self.materials[of].clone()).collect();
+        for (named, own) in materials.iter_mut().zip(&self.materials) {
+            named.density = own.density;
+            named.saturated = own.saturated;
+            if divided != 1.0 {
+                named.material = named.material.clone().reduced(divided);
+            }
+        }
+        materials
     }
 
     /// The materials that bodies which are there follow once the stages until the time `t` have begun.
     pub fn followed_at(&self, t: f64) -> impl Iterator<Item = NamedMaterial> {
-        let is_there = |number: usize| {
-            (0..self.bodies.len()).any(|body| self.bodies[body].material == number && self.is_there(body, t))
-        };
-        let there: Vec<bool> = (0..self.materials.len()).map(is_there).collect();
-        self.materials_at(t)
-            .into_iter()
-            .zip(there)
-            .filter_map(|(named, is_there)| is_there.then_some(named))
+        let bodies = self.bodies.iter().enumerate();
+        let there = bodies.filter(|(number, _)| self.is_there(*number, t));
+        let there: Vec<usize> = there.map(|(_, body)| body.material).collect();
+        let materials = self.materials_at(t).into_iter().enumerate();
+        materials.filter_map(move |(number, named)| there.contains(&number).then_some(named))
     }
 
     /// Whether a face, a strip or a rigid body has friction once the stages until the time `t` have begun.
     pub fn has_friction_at(&self, t: f64) -> bool {
-        let acts = |what: Acting| self.acts_since(what, t).is_some();
         let footing = self.footing.iter().map(|footing| footing.contact);
         let strips = footing
             .chain(self.prescribed.iter().map(|prescribed| prescribed.contact))
             .enumerate();
-        let strips = strips.filter(|(number, _)| acts(Acting::Strip(*number)));
+        let strips = strips.filter(|(number, _)| self.acts_since(Acting::Strip(*number), t).is_some());
         let strips = strips.filter_map(|(_, contact)| Some(contact?.law.friction));
         let rigid = self
             .rigid
             .iter()
             .enumerate()
-            .filter(|(number, _)| acts(Acting::Rigid(*number)));
+            .filter(|(number, _)| self.acts_since(Acting::Rigid(*number), t).is_some());
         let faces = self
             .faces_at(t)
             .into_iter()
@@ -375,16 +352,16 @@ impl Case {
     /// Whether bodies follow the law of a material at some time.
     pub fn is_followed(&self, material: usize) -> bool {
         let is_made = |number: usize| self.bodies.iter().any(|body| body.material == number);
-        let exchanges = || self.stages.iter().flat_map(|stage| &stage.materials);
-        is_made(material) || exchanges().any(|&(from, to)| to == material && is_made(from))
+        let mut exchanges = self.stages.iter().flat_map(|stage| &stage.materials);
+        is_made(material) || exchanges.any(|&(from, to)| to == material && is_made(from))
     }
 
     /// Whether a body is there once the stages until the time `t` have begun.
     pub fn is_there(&self, body: usize, t: f64) -> bool {
-        let begun = |stage: &&Stage| self.has_begun(stage, t);
-        let (adds, removes) = (|s: &Stage| s.add.contains(&body), |s: &Stage| s.remove.contains(&body));
-        let came = !self.stages.iter().any(adds) || self.stages.iter().filter(begun).any(adds);
-        came && !self.stages.iter().filter(begun).any(removes)
+        let adds = |stage: &Stage| stage.add.contains(&body);
+        let mut begun = self.stages.iter().filter(|stage| self.has_begun(stage, t));
+        let came = !self.stages.iter().any(adds) || begun.clone().any(adds);
+        came && !begun.any(|stage| stage.remove.contains(&body))
     }
 
     /// Whether a body is there from the start to the end.
@@ -438,6 +415,22 @@ impl Case {
     pub fn ids_at(&self, t: f64) -> Vec<Range<u64>> {
         self.ids_of(|body| self.is_there(body, t))
     }
+}
+
+/// Whether a load of a ramp (s, or pseudo-time) and an amplitude acts in full from the start.
+fn is_sudden(ramp: f64, amplitude: &Shares) -> bool {
+    match amplitude.first() {
+        Some((t, share)) => *t == 0.0 && *share != Vector::<3>::zeros(),
+        None => ramp == 0.0,
+    }
+}
+
+/// Returns when an amplitude changes for the last time (s, or pseudo-time): the last row before which it has another
+/// value. It begins with none.
+fn rests_from(rows: &Shares) -> f64 {
+    let values = std::iter::once(Vector::zeros()).chain(rows.iter().map(|row| row.1));
+    let changes = rows.iter().zip(values).filter(|(row, before)| row.1 != *before);
+    changes.map(|(row, _)| row.0).fold(0.0, f64::max)
 }
 
 /// Whether an id lies in one of the ranges.

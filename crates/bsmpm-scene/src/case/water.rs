@@ -1,7 +1,7 @@
 //! Data of hydrostatic water.
 
 use super::{Body, Case};
-use crate::grid::{GridAxis, GridSpec};
+use crate::grid::GridSpec;
 use bsmpm::water::ambient::{Ambient, Span};
 
 /// Still water.
@@ -16,7 +16,8 @@ pub struct Water {
 impl Water {
     /// The same with heights and places from the lower corner of a grid.
     pub(crate) fn from(&self, grid: &GridSpec) -> Ambient {
-        let (left, base) = (grid.lower()[0], grid.lower()[grid.dims() - 1]);
+        let left = grid.lower()[0];
+        let base = grid.lower()[grid.dims() - 1];
         let mut table = self.table.clone();
         if let Ambient::Line(places) = &mut table {
             places.iter_mut().for_each(|place| place.x -= left);
@@ -46,19 +47,17 @@ impl Case {
         let Some((saturated, (table, slope))) = named.saturated.zip(table) else {
             return density;
         };
-        // The lower side of its cell along an axis, and the length of its part of that.
-        let part = |(axis, at): (&GridAxis, f64)| {
-            let cell = axis
-                .first_cell(|cell| axis.lower() + axis.breakpoint(cell + 1) > at)
-                .min(axis.cells() - 1);
-            (
-                axis.lower() + axis.breakpoint(cell),
-                axis.cell(cell) / body.points_per_cell as f64,
-            )
-        };
-        let parts: Vec<(f64, f64)> = self.grid.axes.iter().zip(at).map(part).collect();
-        let up = parts.len() - 1;
-        let filled = volume / parts.iter().map(|(_, length)| length).product::<f64>();
+        // Along every axis the lower side of its cell, and the length of its part of that.
+        let mut lower = Vec::new();
+        let mut lengths = Vec::new();
+        for (axis, at) in self.grid.axes.iter().zip(at) {
+            let cell = axis.first_cell(|cell| axis.lower() + axis.breakpoint(cell + 1) > at);
+            let cell = cell.min(axis.cells() - 1);
+            lower.push(axis.lower() + axis.breakpoint(cell));
+            lengths.push(axis.cell(cell) / body.points_per_cell as f64);
+        }
+        let up = lengths.len() - 1;
+        let filled = volume / lengths.iter().product::<f64>();
         let flows = self
             .flow
             .as_ref()
@@ -66,7 +65,7 @@ impl Case {
         let span = if flows {
             Span::default()
         } else {
-            Span::of(at[up] - parts[up].0, parts[up].1, filled)
+            Span::of(at[up] - lower[up], lengths[up], filled)
         };
         density + span.under(slope).share_below(table - at[up]) * (saturated - density)
     }
@@ -74,11 +73,9 @@ impl Case {
     /// Pa  weight of a body vertically above `at` (m, in the case's coordinates) under the acceleration `g` (m/s2),
     /// less the water's uplift.
     pub(super) fn weight_above(&self, body: &Body, at: [f64; 3], g: f64) -> f64 {
-        let (named, all, up) = (
-            &self.materials[body.material],
-            body.region.above(at),
-            self.grid.dims() - 1,
-        );
+        let named = &self.materials[body.material];
+        let all = body.region.above(at);
+        let up = self.grid.dims() - 1;
         let Some((water, table)) = self.water.as_ref().zip(self.table(at[0])) else {
             return 0.0;
         };

@@ -35,7 +35,7 @@ pub(super) fn report_all(source: &Source<'_>, errors: &[SyntaxError<'_>], report
             continue;
         };
         let line = source.line(span.start);
-        let is_behind = unclosed.as_ref().is_some_and(|bracket| bracket.at <= span.start);
+        let is_behind = unclosed.as_ref().is_some_and(|of| of.bracket.at <= span.start);
         let name = &source.text[span.clone()];
         let is_in_repeated = repeated.is_some_and(|from| {
             source.text[from..span.start]
@@ -54,7 +54,8 @@ pub(super) fn report_all(source: &Source<'_>, errors: &[SyntaxError<'_>], report
         last_line = Some(line);
         report.error(Origin::Text(span.start), "", explained(source, span, error.message));
     }
-    if let Some(UnclosedBracket { at, opening, behind }) = unclosed {
+    if let Some(UnclosedBracket { bracket, behind }) = unclosed {
+        let Bracket { at, opening } = bracket;
         let closing = if opening == '[' { ']' } else { '}' };
         let line = source.line(behind);
         let message = format!(
@@ -107,10 +108,10 @@ fn explained(source: &Source<'_>, span: &std::ops::Range<usize>, message: &str) 
 
 /// The item of a list or of a table in braces that a byte lies in.
 fn item_at(text: &str, at: usize) -> &str {
-    let is_before = |c: char| "=,[{\n".contains(c);
-    let is_behind = |c: char| ",]}#\n".contains(c);
-    let start = text[..at].rfind(is_before).map_or(0, |before| before + 1);
-    let end = text[at..].find(is_behind).map_or(text.len(), |length| at + length);
+    let before = text[..at].rfind(['=', ',', '[', '{', '\n']);
+    let length = text[at..].find([',', ']', '}', '#', '\n']);
+    let start = before.map_or(0, |before| before + 1);
+    let end = length.map_or(text.len(), |length| at + length);
     text[start..end].trim()
 }
 
@@ -118,8 +119,10 @@ fn item_at(text: &str, at: usize) -> &str {
 fn with_decimal_comma(value: &str) -> Option<String> {
     let (whole, part) = value.split_once(',')?;
     let digits = whole.trim_start_matches(['+', '-']);
-    let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    (is_digits(digits) && is_digits(part)).then(|| format!("{whole}.{part}"))
+    let are_digits = [digits, part]
+        .iter()
+        .all(|text| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit()));
+    are_digits.then(|| format!("{whole}.{part}"))
 }
 
 /// Whether a value is a number, a blank and a word.
@@ -187,9 +190,9 @@ fn header(line: &str) -> Option<Header<'_>> {
         None => (line.strip_prefix('[')?.strip_suffix(']')?, false),
     };
     let name = line.trim();
-    let is_name = |c: char| c.is_ascii_alphanumeric() || "_-.\"' ".contains(c);
-    (name.starts_with(|c: char| c.is_ascii_alphabetic() || "_\"'".contains(c)) && name.chars().all(is_name))
-        .then_some(Header { name, is_list })
+    let is_name = name.starts_with(|c: char| c.is_ascii_alphabetic() || "_\"'".contains(c))
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-.\"' ".contains(c));
+    is_name.then_some(Header { name, is_list })
 }
 
 /// Byte at which an entry of the same table begins, in the text before another one; in an inline table it is in the
@@ -211,11 +214,17 @@ fn first_entry(before: &str, name: &str) -> Option<usize> {
     None
 }
 
-/// A bracket that is not closed before a place at which a value cannot go on.
-struct UnclosedBracket {
+/// A bracket that begins a list or a table.
+#[derive(Clone, Copy)]
+struct Bracket {
     /// byte
     at: usize,
     opening: char,
+}
+
+/// A bracket that is not closed before a place at which a value cannot go on.
+struct UnclosedBracket {
+    bracket: Bracket,
     /// byte of the place
     behind: usize,
 }
@@ -223,19 +232,16 @@ struct UnclosedBracket {
 /// The first value whose bracket is not closed before the next entry, the next header or the end; `None` also where a
 /// string has no end.
 fn unclosed_bracket(text: &str) -> Option<UnclosedBracket> {
-    let mut open: Vec<(usize, char)> = Vec::new();
+    let mut open: Vec<Bracket> = Vec::new();
     let mut start = 0;
     while start < text.len() {
         let line = text[start..].lines().next().unwrap_or_default();
-        let is_in_list = matches!(open.last(), Some((_, '[')));
-        if let Some(&(at, opening)) = open.first()
+        let is_in_list = open.last().is_some_and(|bracket| bracket.opening == '[');
+        if let Some(&bracket) = open.first()
             && (header(line).is_some() || is_in_list && is_entry(line))
         {
-            return Some(UnclosedBracket {
-                at,
-                opening,
-                behind: start,
-            });
+            let behind = start;
+            return Some(UnclosedBracket { bracket, behind });
         }
         let value = if open.is_empty() { value_of(line) } else { Some(0) };
         start = match value {
@@ -244,12 +250,9 @@ fn unclosed_bracket(text: &str) -> Option<UnclosedBracket> {
         };
         start = text[start..].find('\n').map_or(text.len(), |length| start + length + 1);
     }
-    let (at, opening) = *open.first()?;
-    Some(UnclosedBracket {
-        at,
-        opening,
-        behind: text.len(),
-    })
+    let bracket = *open.first()?;
+    let behind = text.len();
+    Some(UnclosedBracket { bracket, behind })
 }
 
 /// Byte at which the value of an entry begins in its line, if the line is one.
@@ -260,7 +263,7 @@ fn value_of(line: &str) -> Option<usize> {
 
 /// Follows the brackets of a value from a byte to the end of the line, or of one in which a longer string ends; the
 /// byte of the end. `None` if a string has no end.
-fn scan_value(text: &str, from: usize, open: &mut Vec<(usize, char)>) -> Option<usize> {
+fn scan_value(text: &str, from: usize, open: &mut Vec<Bracket>) -> Option<usize> {
     let mut at = from;
     while let Some(next) = text[at..].chars().next() {
         match next {
@@ -270,7 +273,7 @@ fn scan_value(text: &str, from: usize, open: &mut Vec<(usize, char)>) -> Option<
                 at = end_of_string(text, at)?;
                 continue;
             }
-            '[' | '{' => open.push((at, next)),
+            '[' | '{' => open.push(Bracket { at, opening: next }),
             ']' | '}' => drop(open.pop()),
             _ => {}
         }

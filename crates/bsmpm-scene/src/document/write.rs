@@ -1,6 +1,7 @@
 //! Writes a document as TOML text.
 
 use super::{DocumentTable, Node, Value};
+use crate::key_path::join;
 use std::fmt::Write;
 
 impl DocumentTable {
@@ -12,31 +13,23 @@ impl DocumentTable {
     }
 
     fn write(&self, text: &mut String, path: &str) {
-        let of_tables =
-            |list: &[Node]| !list.is_empty() && list.iter().all(|item| matches!(item.value, Value::Table(_)));
-        let (mut tables, mut arrays) = (Vec::new(), Vec::new());
+        let mut tables = Vec::new();
+        let mut arrays = Vec::new();
         for entry in &self.entries {
             let key = quoted_key(&entry.key);
             match &entry.node.value {
                 Value::Table(table) => tables.push((key, table)),
-                Value::List(list) if of_tables(list) => arrays.push((key, list)),
+                Value::List(list) if has_only_tables(list) => arrays.push((key, list)),
                 value => _ = writeln!(text, "{key} = {}", inline(value)),
             }
         }
-        let below = |key: &str| {
-            if path.is_empty() {
-                key.to_owned()
-            } else {
-                format!("{path}.{key}")
-            }
-        };
         for (key, table) in tables {
-            let path = below(&key);
+            let path = join(path, &key);
             _ = writeln!(text, "\n[{path}]");
             table.write(text, &path);
         }
         for (key, list) in arrays {
-            let path = below(&key);
+            let path = join(path, &key);
             for item in list {
                 let Value::Table(table) = &item.value else { continue };
                 _ = writeln!(text, "\n[[{path}]]");
@@ -44,6 +37,11 @@ impl DocumentTable {
             }
         }
     }
+}
+
+/// Whether a list has items, and all of them are tables.
+fn has_only_tables(list: &[Node]) -> bool {
+    !list.is_empty() && list.iter().all(|item| matches!(item.value, Value::Table(_)))
 }
 
 fn inline(value: &Value) -> String {
@@ -56,10 +54,9 @@ fn inline(value: &Value) -> String {
             format!("[{}]", items.join(", "))
         }
         Value::Table(table) => {
-            let entry =
-                |entry: &super::DocumentEntry| format!("{} = {}", quoted_key(&entry.key), inline(&entry.node.value));
-            let entries: Vec<String> = table.entries.iter().map(entry).collect();
-            format!("{{ {} }}", entries.join(", "))
+            let entries = table.entries.iter();
+            let entries = entries.map(|entry| format!("{} = {}", quoted_key(&entry.key), inline(&entry.node.value)));
+            format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
         }
     }
 }

@@ -33,22 +33,24 @@ pub(crate) struct PlaneBody {
 impl PlaneShape {
     pub(crate) fn of(record: &Record) -> Option<Self> {
         if let Some(shape) = record.record("box") {
-            let ([x, y], [to_x, to_y]) = (shape.pair("lower")?, shape.pair("upper")?);
+            let [x, y] = shape.pair("lower")?;
+            let [to_x, to_y] = shape.pair("upper")?;
             return Some(Self {
                 corners: vec![[x, y], [to_x, y], [to_x, to_y], [x, to_y]],
                 is_round: false,
             });
         }
         if let Some(circle) = record.record("circle") {
-            let ([x, y], radius) = (circle.pair("centre")?, circle.number("radius")?);
+            let [x, y] = circle.pair("centre")?;
+            let radius = circle.number("radius")?;
             let angle = std::f64::consts::TAU / SIDES as f64;
             let radius = radius / (0.5 * angle).cos();
-            let corner = |k: usize| {
+            let corners = (0..SIDES).map(|k| {
                 let (sin, cos) = (k as f64 * angle).sin_cos();
                 [x + radius * cos, y + radius * sin]
-            };
+            });
             return Some(Self {
-                corners: (0..SIDES).map(corner).collect(),
+                corners: corners.collect(),
                 is_round: true,
             });
         }
@@ -65,9 +67,10 @@ impl PlaneShape {
 
     /// Whether a place lies inside: a ray to the right crosses its sides an odd number of times.
     pub(crate) fn contains(&self, [x, y]: [f64; 2]) -> bool {
-        let is_crossed =
-            |[a, b]: [[f64; 2]; 2]| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-        self.sides().filter(|side| is_crossed(*side)).count() % 2 == 1
+        let crossed = self
+            .sides()
+            .filter(|[a, b]| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
+        crossed.count() % 2 == 1
     }
 
     fn sides(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
@@ -77,8 +80,8 @@ impl PlaneShape {
 
     /// m  its corners, each with the shorter one of its sides
     pub(crate) fn vertices(&self) -> Vec<([f64; 2], f64)> {
-        let length = |[a, b]: [[f64; 2]; 2]| (b[0] - a[0]).hypot(b[1] - a[1]);
-        let lengths: Vec<f64> = self.sides().map(length).collect();
+        let lengths = self.sides().map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1]));
+        let lengths: Vec<f64> = lengths.collect();
         let before = lengths.iter().cycle().skip(lengths.len() - 1);
         let shorter = lengths.iter().zip(before).map(|(after, before)| after.min(*before));
         self.corners.iter().copied().zip(shorter).collect()
@@ -118,7 +121,8 @@ impl PlaneShape {
 
 /// The part of a segment within a rectangle, m (Liang and Barsky 1984).
 fn clipped([a, b]: [[f64; 2]; 2], [lower, upper]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
-    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    let mut from = 0.0_f64;
+    let mut to = 1.0_f64;
     for axis in 0..2 {
         let along = b[axis] - a[axis];
         if along == 0.0 && !(lower[axis]..=upper[axis]).contains(&a[axis]) {
@@ -130,8 +134,7 @@ fn clipped([a, b]: [[f64; 2]; 2], [lower, upper]: [[f64; 2]; 2]) -> Option<[[f64
             to = to.min(parts[0].max(parts[1]));
         }
     }
-    let place = |part: f64| [0, 1].map(|axis| a[axis] + part * (b[axis] - a[axis]));
-    (from < to).then(|| [place(from), place(to)])
+    (from < to).then(|| [from, to].map(|part| [0, 1].map(|axis| a[axis] + part * (b[axis] - a[axis]))))
 }
 
 impl PlaneBody {

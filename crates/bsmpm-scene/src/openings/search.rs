@@ -58,30 +58,29 @@ pub(crate) struct BodyOpening {
 pub(crate) fn in_plane(root: &Record, faces: &GridFaces) -> Vec<BodyOpening> {
     let bodies: Vec<Option<PlaneBody>> = root.records("body").iter().map(PlaneBody::of).collect();
     let rigid: Vec<PlaneShape> = root.records("rigid").iter().filter_map(PlaneShape::of).collect();
-    let flat = |[x, y]: [f64; 2]| [x, y, 0.0];
     let mut found: Vec<BodyOpening> = Vec::new();
     for there in phases(root) {
         for (number, body) in bodies.iter().enumerate().filter(|(number, _)| there[*number]) {
             let Some(body) = body else { continue };
-            let bounds = body.bounds().map(flat);
-            let is_there = |other: usize, at: [f64; 2]| bodies[other].as_ref().is_some_and(|body| body.contains(at));
-            let others: Vec<usize> = (0..bodies.len())
+            let bounds = body.bounds().map(|[x, y]| [x, y, 0.0]);
+            let others: Vec<&PlaneBody> = (0..bodies.len())
                 .filter(|&other| other != number && there[other])
+                .filter_map(|other| bodies[other].as_ref())
                 .collect();
-            let is_other = |[x, y, _]: [f64; 3]| {
-                others.iter().any(|&other| is_there(other, [x, y])) || rigid.iter().any(|shape| shape.contains([x, y]))
-            };
             let surroundings = Surroundings {
                 is_body: &|[x, y, _]| body.contains([x, y]),
-                is_other: &is_other,
+                is_other: &|[x, y, _]| {
+                    others.iter().any(|other| other.contains([x, y]))
+                        || rigid.iter().any(|shape| shape.contains([x, y]))
+                },
                 planes: &faces.planes(bounds),
                 bounds,
             };
             let side = (bounds[1][0] - bounds[0][0]).min(bounds[1][1] - bounds[0][1]);
             for (shape, outline) in body.shapes().enumerate() {
-                let is_notch = |opening: &Opening| shape > 0 || opening.width <= NOTCH * side;
                 add(&mut found, number, shape, || {
-                    surroundings.opening(&outline.surface(body.bounds())).filter(is_notch)
+                    let opening = surroundings.opening(&outline.surface(body.bounds()))?;
+                    (shape > 0 || opening.width <= NOTCH * side).then_some(opening)
                 });
             }
         }
@@ -96,9 +95,6 @@ pub(crate) fn in_space(case: &Case, root: &Record, faces: &GridFaces) -> Vec<Bod
         .iter()
         .filter_map(|rigid| solid_corners(&rigid.shape))
         .collect();
-    let is_in = |[lower, upper]: &[[f64; 3]; 2], at: [f64; 3]| {
-        (0..3).all(|axis| lower[axis] <= at[axis] && at[axis] <= upper[axis])
-    };
     let mut found: Vec<BodyOpening> = Vec::new();
     for there in phases(root) {
         for (number, record) in root
@@ -111,15 +107,14 @@ pub(crate) fn in_space(case: &Case, root: &Record, faces: &GridFaces) -> Vec<Bod
             let others: Vec<usize> = (0..case.bodies.len())
                 .filter(|&other| other != number && there[other])
                 .collect();
-            let is_other = |at: [f64; 3]| {
-                others
-                    .iter()
-                    .any(|&other| case.bodies[other].region.contains_in_space(at))
-                    || boxes.iter().any(|corners| is_in(corners, at))
-            };
             let surroundings = Surroundings {
                 is_body: &|at| region.contains_in_space(at),
-                is_other: &is_other,
+                is_other: &|at| {
+                    others
+                        .iter()
+                        .any(|&other| case.bodies[other].region.contains_in_space(at))
+                        || boxes.iter().any(|corners| is_in(corners, at))
+                },
                 planes: &faces.planes(region.corners()),
                 bounds: region.corners(),
             };
@@ -149,14 +144,21 @@ fn add(found: &mut Vec<BodyOpening>, body: usize, shape: usize, search: impl Fn(
     found.extend(search().map(|opening| BodyOpening { body, cut, opening }));
 }
 
+/// Whether a place lies between the lower and the upper corner of a cuboid.
+fn is_in([lower, upper]: &[[f64; 3]; 2], at: [f64; 3]) -> bool {
+    (0..3).all(|axis| lower[axis] <= at[axis] && at[axis] <= upper[axis])
+}
+
 /// Which bodies are there at the start and after each stage, each state once.
 pub(crate) fn phases(root: &Record) -> Vec<Vec<bool>> {
     let bodies = root.records("body");
     let time = |stage: &Record| stage.number("at").unwrap_or(0.0);
     let mut stages: Vec<&Record> = root.records("stage").iter().collect();
     stages.sort_by(|a, b| time(a).total_cmp(&time(b)));
-    let is_later = |body: &Record| stages.iter().any(|stage| names(stage, "add", body));
-    let mut there: Vec<bool> = bodies.iter().map(|body| !is_later(body)).collect();
+    let mut there: Vec<bool> = bodies
+        .iter()
+        .map(|body| !stages.iter().any(|stage| names(stage, "add", body)))
+        .collect();
     let mut phases = vec![there.clone()];
     for stage in &stages {
         for (there, body) in there.iter_mut().zip(bodies) {

@@ -33,13 +33,12 @@ pub(crate) fn surface_points(record: &Record, bounds: [[f64; 3]; 2]) -> Option<V
     if record.gives("surface") {
         let shape = record.record("surface")?;
         let scale = shape.number("scale")?;
-        let corner = |numbers: &[f64], k: usize| Vector::from([0, 1, 2].map(|axis| scale * numbers[3 * k + axis]));
         let rows = shape.rows("triangles")?;
         let every = rows.len().div_ceil(MOST_TRIANGLES).max(1);
         let triangles = rows
             .iter()
             .step_by(every)
-            .map(|row| [0, 1, 2].map(|k| corner(&row.numbers, k)));
+            .map(|row| [0, 1, 2].map(|k| Vector::from([0, 1, 2].map(|axis| scale * row.numbers[3 * k + axis]))));
         return Some(
             triangles
                 .enumerate()
@@ -65,22 +64,23 @@ fn triangle([a, b, c]: [Vector<3>; 3], edge: usize) -> Option<SurfacePoint> {
 fn cuboid(corners: [[f64; 3]; 2], bounds: [[f64; 3]; 2]) -> Vec<SurfacePoint> {
     let lower = Vector::<3>::from_fn(|axis, _| corners[0][axis].max(bounds[0][axis]));
     let upper = Vector::<3>::from_fn(|axis, _| corners[1][axis].min(bounds[1][axis]));
-    let face = |edge: usize| {
+    let mut points = Vec::with_capacity(6);
+    for edge in 0..6 {
         let axis = edge / 2;
         let mut at = 0.5 * (lower + upper);
         at[axis] = corners[edge % 2][axis];
         let normal = Vector::<3>::from_fn(|component, _| f64::from(u8::from(component == axis)));
         let mut half = 0.5 * (upper - lower);
         half[axis] = 0.0;
-        SurfacePoint {
+        points.push(SurfacePoint {
             at,
             normal,
             half,
             edge,
             kind: SurfaceKind::Flat,
-        }
-    };
-    (0..6).map(face).collect()
+        });
+    }
+    points
 }
 
 /// Places of a sphere on circles of latitude.
@@ -91,7 +91,8 @@ fn sphere(center: Vector<3>, radius: f64) -> Vec<SurfacePoint> {
         for azimuth in 0..AZIMUTHS {
             let (sin, cos) = (azimuth as f64 * std::f64::consts::TAU / AZIMUTHS as f64).sin_cos();
             let normal = Vector::from([up.cos() * cos, up.cos() * sin, up.sin()]);
-            let (edge, half) = (points.len(), Vector::zeros());
+            let edge = points.len();
+            let half = Vector::zeros();
             points.push(SurfacePoint {
                 at: center + normal * radius,
                 normal,
@@ -110,35 +111,27 @@ fn extruded(shape: &Record, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> 
     let along = [Axis::X, Axis::Y, Axis::Z]
         .iter()
         .position(|axis| Some(*axis) == shape.word::<Axis>("along"))?;
-    let (from, to) = (shape.number("from")?, shape.number("to")?);
+    let from = shape.number("from")?;
+    let to = shape.number("to")?;
     let [across, up] = plane(along);
-    let placed = |flat: Vector<3>| {
-        let mut at = Vector::zeros();
-        (at[across], at[up]) = (flat[0], flat[1]);
-        at
-    };
     let axis = Vector::from_fn(|component, _| f64::from(u8::from(component == along)));
-    let (first, last) = (from.max(bounds[0][along]), to.min(bounds[1][along]));
+    let first = from.max(bounds[0][along]);
+    let last = to.min(bounds[1][along]);
     let middle = axis * (0.5 * (first + last));
     let length = axis * (0.5 * (last - first));
-    let side = |point: SurfacePoint| SurfacePoint {
-        at: placed(point.at) + middle,
-        normal: placed(point.normal),
-        half: placed(point.half) + length,
-        edge: point.edge,
-        kind: point.kind,
-    };
-    let mut points: Vec<SurfacePoint> = outline
-        .surface(bounds.map(|corner| [corner[across], corner[up]]))
-        .into_iter()
-        .map(side)
-        .collect();
+    let mut points = outline.surface(bounds.map(|corner| [corner[across], corner[up]]));
+    for point in &mut points {
+        point.at = placed(point.at, across, up) + middle;
+        point.normal = placed(point.normal, across, up);
+        point.half = placed(point.half, across, up) + length;
+    }
     let count = outline.corners.len();
     let sum = outline
         .corners
         .iter()
         .fold([0.0; 2], |sum, corner| [sum[0] + corner[0], sum[1] + corner[1]]);
-    let center = placed(Vector::from([sum[0] / count as f64, sum[1] / count as f64, 0.0]));
+    let center = Vector::from([sum[0] / count as f64, sum[1] / count as f64, 0.0]);
+    let center = placed(center, across, up);
     for (end, edge) in [(from, count), (to, count + 1)] {
         points.push(SurfacePoint {
             at: center + axis * end,
@@ -151,6 +144,14 @@ fn extruded(shape: &Record, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> 
     Some(points)
 }
 
+/// The vector of a plane in space, with its components along two of the axes.
+fn placed(flat: Vector<3>, across: usize, up: usize) -> Vector<3> {
+    let mut at = Vector::zeros();
+    at[across] = flat[0];
+    at[up] = flat[1];
+    at
+}
+
 /// Sides of an outline of radius and height in some directions around the vertical, between the heights of a cuboid
 /// (m).
 fn revolved(shape: &Record, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> {
@@ -160,15 +161,17 @@ fn revolved(shape: &Record, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> 
     let mut points = Vec::new();
     for azimuth in 0..AZIMUTHS {
         let (sin, cos) = (azimuth as f64 * std::f64::consts::TAU / AZIMUTHS as f64).sin_cos();
-        let turned = |flat: Vector<3>| Vector::from([flat[0] * cos, flat[0] * sin, flat[1]]);
-        let point = |side: &SurfacePoint| SurfacePoint {
-            at: turned(side.at) + Vector::from([x, y, 0.0]),
-            normal: turned(side.normal),
-            half: turned(side.half),
-            edge: azimuth * outline.corners.len() + side.edge,
-            kind: side.kind,
-        };
-        points.extend(sides.iter().map(point));
+        for side in &sides {
+            let [at, normal, half] =
+                [side.at, side.normal, side.half].map(|flat| Vector::from([flat[0] * cos, flat[0] * sin, flat[1]]));
+            points.push(SurfacePoint {
+                at: at + Vector::from([x, y, 0.0]),
+                normal,
+                half,
+                edge: azimuth * outline.corners.len() + side.edge,
+                kind: side.kind,
+            });
+        }
     }
     Some(points)
 }

@@ -31,12 +31,12 @@ impl Spacing {
     /// grows linearly with the distance: then neighbours are as `growth` to one.
     fn cell(&self, x: f64) -> f64 {
         let half = (self.growth - 1.0) / (self.growth + 1.0);
-        let wanted = |range: &Fine| {
+        let wanted = self.fine.iter().map(|range| {
             let ahead = (range.cell + 2.0 * half * (range.lower - x)) / (1.0 + half);
             let behind = (range.cell + 2.0 * half * (x - range.upper)) / (1.0 - half);
             range.cell.max(ahead).max(behind)
-        };
-        self.fine.iter().map(wanted).fold(self.cell, f64::min)
+        });
+        wanted.fold(self.cell, f64::min)
     }
 
     /// m  Breakpoints from the one end of an axis to the other, with one at every wanted place that is half a cell from
@@ -65,8 +65,10 @@ impl Spacing {
     fn equal(&self, pair: &[f64]) -> Option<Vec<f64>> {
         let length = pair[1] - pair[0];
         let cells = (length / self.cell).round().max(1.0);
-        let at = |k: usize| pair[0] + length * (k as f64 / cells);
-        (cells <= MOST).then(|| (1..cells as usize).map(at).collect())
+        (cells <= MOST).then(|| {
+            let numbers = 1..cells as usize;
+            numbers.map(|k| pair[0] + length * (k as f64 / cells)).collect()
+        })
     }
 
     /// m  breakpoints of growing and shrinking cells between two places, all stretched alike to fit

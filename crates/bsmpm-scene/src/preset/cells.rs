@@ -3,7 +3,6 @@
 
 use super::Preset;
 use super::axis::{Fine, MOST, ON_LINE, Spacing};
-use super::concentration::PresetOpening;
 use super::scene::{GradedSegment, PresetScene, around};
 use crate::report::brief;
 use crate::validate::SQUARE;
@@ -48,13 +47,13 @@ impl Cells {
 
     /// m  the shorter side of the first body across which there are fewer than so many cells, and the edge of these
     pub(super) fn too_thin(&self, scene: &PresetScene<'_>, fewest: f64) -> Option<(f64, f64)> {
-        let thin = |[lower, upper]: [[f64; 2]; 2]| {
+        let bodies = scene.root.records("body").iter().filter_map(around);
+        let sides = bodies.map(|[lower, upper]| {
             let [x, y] = [0, 1].map(|axis| upper[axis] - lower[axis]);
             let axis = usize::from(y < x);
             (x.min(y), self.longest(axis, [lower[axis], upper[axis]]))
-        };
-        let bodies = scene.root.records("body").iter().filter_map(around).map(thin);
-        bodies
+        });
+        sides
             .filter(|(side, edge)| *side < fewest * edge)
             .min_by(|a, b| a.0.total_cmp(&b.0))
     }
@@ -77,54 +76,52 @@ impl PresetScene<'_> {
     pub(super) fn cells(&self, preset: &Preset) -> Option<Cells> {
         let [lower, upper] = self.bounds()?;
         let side = (upper[0] - lower[0]).min(upper[1] - lower[1]);
-        let (size, why) = (
-            side / preset.across,
-            format!("{} cells across the bodies ({side} m)", preset.across),
-        );
+        let size = side / preset.across;
+        let why = format!("{} cells across the bodies ({side} m)", preset.across);
         let (size, why) = self.wave_cell(size).unwrap_or((size, why));
         let mut zones = self.zones(preset, size)?;
         zones.extend(self.at_openings(preset, size));
         if self.materials().any(|material| material.gives("band_width")) {
-            let cell = |zone: &&Zone| zone.ranges[0].cell;
-            let smallest = zones.iter().min_by(|a, b| cell(a).total_cmp(&cell(b)));
-            let (size, why) = smallest.map_or((size, &why), |zone| (cell(&zone), &zone.why));
+            let all = zones.iter();
+            let smallest = all.min_by(|a, b| a.ranges[0].cell.total_cmp(&b.ranges[0].cell));
+            let (size, why) = smallest.map_or((size, &why), |zone| (zone.ranges[0].cell, &zone.why));
             return self.squares(size, why);
         }
         zones.extend(self.at_corners(preset, size));
         if zones.is_empty() {
             self.equal(size, why)
         } else {
-            self.graded(preset, (size, &why), &zones)
+            self.graded(preset, size, &why, &zones)
         }
     }
 
     /// Equal cells of about `size` (m). Along an axis between two faces that stay they come out whole.
     fn equal(&self, size: f64, why: String) -> Option<Cells> {
-        let (ends, wanted) = (self.ends()?, self.wanted());
-        let edge = |axis: usize| {
-            Some(if self.stays(axis)? {
-                whole(ends[axis], size)
-            } else {
-                size
-            })
-        };
-        let edges = [edge(0)?, edge(1)?];
+        let ends = self.ends()?;
+        let wanted = self.wanted();
+        let mut edges = [size; 2];
+        for (axis, edge) in edges.iter_mut().enumerate() {
+            if self.stays(axis)? {
+                *edge = whole(ends[axis], size);
+            }
+        }
         if !edges.iter().all(|edge| *edge > 0.0 && edge.is_finite()) {
             return None;
         }
         if self.on_lines(edges)? {
             return Some(of_edges(edges, why));
         }
-        let along = |axis: usize| {
+        let mut breakpoints = [Vec::new(), Vec::new()];
+        for (axis, breakpoints) in breakpoints.iter_mut().enumerate() {
             let spacing = Spacing {
                 cell: edges[axis],
                 growth: 1.0,
                 fine: Vec::new(),
             };
-            spacing.breakpoints(ends[axis], &wanted[axis])
-        };
+            *breakpoints = spacing.breakpoints(ends[axis], &wanted[axis])?;
+        }
         let why = format!("{why}, adjusted by up to half a cell to interfaces and to the ends of footings and loads");
-        let mut cells = of_breakpoints([along(0)?, along(1)?], why)?;
+        let mut cells = of_breakpoints(breakpoints, why)?;
         cells.breakpoints = None; // about equal ones
         Some(cells)
     }
@@ -133,7 +130,8 @@ impl PresetScene<'_> {
     /// of a material with a band_width goes by their edge. Of those down to a quarter as long the first whose lines are
     /// where strips, loads and materials end, or if none are the first.
     fn squares(&self, size: f64, why: &str) -> Option<Cells> {
-        let (ends, stays) = (self.ends()?, [self.stays(0)?, self.stays(1)?]);
+        let ends = self.ends()?;
+        let stays = [self.stays(0)?, self.stays(1)?];
         let along = usize::from(!stays[0] && stays[1]);
         let length = ends[along][1] - ends[along][0];
         let fewest = (length / size).round().max(1.0);
@@ -142,9 +140,11 @@ impl PresetScene<'_> {
         }
         let divided = (0..=3 * fewest as usize).map(|more| length / (fewest + more as f64));
         let given = (!stays[along]).then_some(size);
-        let fitted = |edge: f64| [0, 1].map(|axis| if stays[axis] { whole(ends[axis], edge) } else { edge });
-        let is_square = |[x, y]: &[f64; 2]| x.max(*y) <= SQUARE * x.min(*y);
-        let all: Vec<[f64; 2]> = given.into_iter().chain(divided).map(fitted).filter(is_square).collect();
+        let fitted = given
+            .into_iter()
+            .chain(divided)
+            .map(|edge| [0, 1].map(|axis| if stays[axis] { whole(ends[axis], edge) } else { edge }));
+        let all: Vec<[f64; 2]> = fitted.filter(|[x, y]| x.max(*y) <= SQUARE * x.min(*y)).collect();
         let edges = all
             .iter()
             .find(|edges| self.on_lines(**edges) == Some(true))
@@ -164,26 +164,29 @@ impl PresetScene<'_> {
             .iter()
             .filter_map(|motion| motion.word("face"))
             .collect();
-        let gives_way = |side: Side| boundary.word(side.word()) == Some(Support::Free) && !moved.contains(&side);
-        Some(!Side::ALL[axis].into_iter().any(gives_way))
+        let mut sides = Side::ALL[axis].into_iter();
+        Some(sides.all(|side| boundary.word(side.word()) != Some(Support::Free) || moved.contains(&side)))
     }
 
     /// Whether lines of equal cells with these edges (m) are at all places at which one is wanted.
     fn on_lines(&self, edges: [f64; 2]) -> Option<bool> {
-        let (ends, wanted) = (self.ends()?, self.wanted());
-        let on_line = |axis: usize| {
-            let ([lower, upper], edge) = (ends[axis], edges[axis]);
-            let off = |at: &f64| ((at - lower) / edge - ((at - lower) / edge).round()).abs();
-            let inside = |at: &&f64| (lower..=upper).contains(*at);
-            wanted[axis].iter().filter(inside).all(|at| off(at) <= ON_LINE)
-        };
-        Some(on_line(0) && on_line(1))
+        let ends = self.ends()?;
+        let wanted = self.wanted();
+        let are_on_lines = (0..2).all(|axis| {
+            let [lower, upper] = ends[axis];
+            let edge = edges[axis];
+            let mut inside = wanted[axis].iter().filter(|at| (lower..=upper).contains(*at));
+            inside.all(|at| ((at - lower) / edge - ((at - lower) / edge).round()).abs() <= ON_LINE)
+        });
+        Some(are_on_lines)
     }
 
     /// Small cells in the zones and growing ones away from them, up to the size (m) that the bodies want, which has a
     /// reason.
-    fn graded(&self, preset: &Preset, (size, why): (f64, &str), zones: &[Zone]) -> Option<Cells> {
-        let (ends, mut wanted, growth) = (self.ends()?, self.wanted(), preset.growth);
+    fn graded(&self, preset: &Preset, size: f64, why: &str, zones: &[Zone]) -> Option<Cells> {
+        let ends = self.ends()?;
+        let mut wanted = self.wanted();
+        let growth = preset.growth;
         for segment in self.segments().filter(|segment| !segment.is_rigid()) {
             // The surface under a strip, or the wall beside it.
             segment
@@ -191,17 +194,17 @@ impl PresetScene<'_> {
                 .into_iter()
                 .for_each(|along| wanted[1 - along].push(segment.ends[0][1 - along]));
         }
-        let along = |axis: usize| {
+        let mut breakpoints = [Vec::new(), Vec::new()];
+        for (axis, breakpoints) in breakpoints.iter_mut().enumerate() {
             let fine: Vec<Fine> = zones.iter().map(|zone| zone.ranges[axis]).collect();
-            let edges = fine.iter().flat_map(|range| [range.lower, range.upper]);
-            let wanted: Vec<f64> = wanted[axis].iter().copied().chain(edges).collect();
-            Spacing {
+            wanted[axis].extend(fine.iter().flat_map(|range| [range.lower, range.upper]));
+            let spacing = Spacing {
                 cell: size,
                 growth,
                 fine,
-            }
-            .breakpoints(ends[axis], &wanted)
-        };
+            };
+            *breakpoints = spacing.breakpoints(ends[axis], &wanted[axis])?;
+        }
         let around = match (zones.iter().any(|zone| zone.acts), zones.iter().all(|zone| zone.acts)) {
             (_, true) => "footings and loads",
             (true, false) => "footings, loads, holes, notches and re-entrant corners",
@@ -209,28 +212,19 @@ impl PresetScene<'_> {
         };
         let why =
             format!("{why}, smaller cells around {around}, each about {growth} times as long as the next smaller one");
-        let mut cells = of_breakpoints([along(0)?, along(1)?], why)?;
+        let mut cells = of_breakpoints(breakpoints, why)?;
         cells.edge = size;
         for Zone { ranges, why, acts } in zones {
             let edges = [0, 1].map(|axis| cells.longest(axis, [ranges[axis].lower, ranges[axis].upper]));
-            let range = |axis: usize| {
-                let [lower, upper] = [
-                    ranges[axis].lower.max(ends[axis][0]),
-                    ranges[axis].upper.min(ends[axis][1]),
-                ]
-                .map(brief);
-                format!("{} = {lower} to {upper}", NAMES[axis])
-            };
             if *acts {
                 cells.edge = edges.into_iter().fold(cells.edge, f64::min);
             }
-            let value = format!(
-                "{} by {} m at {}, {}",
-                brief(edges[0]),
-                brief(edges[1]),
-                range(0),
-                range(1)
-            );
+            let [x, y] = [0, 1].map(|axis| {
+                let lower = brief(ranges[axis].lower.max(ends[axis][0]));
+                let upper = brief(ranges[axis].upper.min(ends[axis][1]));
+                format!("{} = {lower} to {upper}", NAMES[axis])
+            });
+            let value = format!("{} by {} m at {x}, {y}", brief(edges[0]), brief(edges[1]));
             cells.sizes.push((value, why.clone()));
         }
         let longest = [0, 1].map(|axis| brief(cells.longest(axis, ends[axis])));
@@ -244,19 +238,21 @@ impl PresetScene<'_> {
     /// Where strips, loaded segments and rigid bodies want cells smaller than `size` (m).
     fn zones(&self, preset: &Preset, size: f64) -> Option<Vec<Zone>> {
         let ends = self.ends()?;
-        let zone = |segment: GradedSegment<'_>| {
+        let mut zones = Vec::new();
+        for segment in self.segments() {
             let (width, cut) = self.width(&segment, ends);
             let cell = (width / preset.along).min(segment.thinnest());
-            let (reach, places) = (preset.reach * width, self.places(&segment));
-            let range = |axis: usize| {
-                let along = || places.iter().map(|place| place[axis]);
-                let lower = along().fold(f64::INFINITY, f64::min) - reach;
-                Fine {
-                    lower,
-                    upper: along().fold(f64::NEG_INFINITY, f64::max) + reach,
-                    cell,
-                }
-            };
+            if !(cell > 0.0 && cell < size) {
+                continue;
+            }
+            let reach = preset.reach * width;
+            let places = self.places(&segment);
+            let ranges = [0, 1].map(|axis| {
+                let along = places.iter().map(|place| place[axis]);
+                let lower = along.clone().fold(f64::INFINITY, f64::min) - reach;
+                let upper = along.fold(f64::NEG_INFINITY, f64::max) + reach;
+                Fine { lower, upper, cell }
+            });
             let half = if cut { ", half of it modelled" } else { "" };
             let why = format!(
                 "{} cells across `{}` ({} m wide{half}), along its path and {} widths around it",
@@ -265,60 +261,59 @@ impl PresetScene<'_> {
                 brief(width),
                 preset.reach
             );
-            (cell > 0.0 && cell < size).then(|| Zone {
-                ranges: [range(0), range(1)],
-                why,
-                acts: true,
-            })
-        };
-        Some(self.segments().filter_map(zone).collect())
+            let acts = true;
+            zones.push(Zone { ranges, why, acts });
+        }
+        Some(zones)
     }
 
     /// Where holes and notches want cells smaller than `size` (m).
     fn at_openings(&self, preset: &Preset, size: f64) -> Vec<Zone> {
-        let zone = |opening: PresetOpening| {
-            let (cell, reach) = (opening.width / preset.opening, preset.reach * opening.width);
+        let mut zones = Vec::new();
+        for opening in self.openings() {
+            let cell = opening.width / preset.opening;
+            if !(cell > 0.0 && cell < size) {
+                continue;
+            }
+            let reach = preset.reach * opening.width;
             let [lower, upper] = opening.bounds;
-            let range = |axis: usize| Fine {
+            let ranges = [0, 1].map(|axis| Fine {
                 lower: lower[axis] - reach,
                 upper: upper[axis] + reach,
                 cell,
-            };
-            let (across, width) = (preset.opening, brief(opening.width));
+            });
+            let across = preset.opening;
+            let width = brief(opening.width);
             let why = format!(
                 "{across} cells across the hole or notch {} ({width} m), and {} widths around it",
                 opening.name, preset.reach
             );
-            (cell > 0.0 && cell < size).then(|| Zone {
-                ranges: [range(0), range(1)],
-                why,
-                acts: false,
-            })
-        };
-        self.openings().into_iter().filter_map(zone).collect()
+            let acts = false;
+            zones.push(Zone { ranges, why, acts });
+        }
+        zones
     }
 
     /// Where steep re-entrant corners want cells smaller than `size` (m).
     fn at_corners(&self, preset: &Preset, size: f64) -> Vec<Zone> {
-        let (cell, reach) = (size / preset.corner, AT_CORNER * size / preset.corner);
-        let zone = |at: [f64; 2]| {
-            let range = |axis: usize| Fine {
-                lower: at[axis] - reach,
-                upper: at[axis] + reach,
+        let cell = size / preset.corner;
+        let reach = AT_CORNER * size / preset.corner;
+        let mut zones = Vec::new();
+        for at in self.re_entrant_corners() {
+            let ranges = at.map(|at| Fine {
+                lower: at - reach,
+                upper: at + reach,
                 cell,
-            };
+            });
             let place = at.map(brief);
             let why = format!(
                 "1/{} of the other cells, at the re-entrant corner {place:?}",
                 preset.corner
             );
-            Zone {
-                ranges: [range(0), range(1)],
-                why,
-                acts: false,
-            }
-        };
-        self.re_entrant_corners().into_iter().map(zone).collect()
+            let acts = false;
+            zones.push(Zone { ranges, why, acts });
+        }
+        zones
     }
 
     /// m  Width of a strip, loaded segment or rigid body; whether it is twice what is there, which a roller cuts in its
@@ -326,23 +321,22 @@ impl PresetScene<'_> {
     fn width(&self, segment: &GradedSegment<'_>, ends: [[f64; 2]; 2]) -> (f64, bool) {
         let [from, to] = segment.ends;
         let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-        let at_roller = |axis: usize, side: usize| {
-            let support = self
-                .root
-                .record("boundary")
-                .and_then(|boundary| boundary.word(Side::ALL[axis][side].word()));
-            support == Some(Support::Roller) && segment.ends.iter().any(|end| end[axis] == ends[axis][side])
-        };
-        let cut = segment
-            .along()
-            .is_some_and(|axis| at_roller(axis, 0) != at_roller(axis, 1));
+        let boundary = self.root.record("boundary");
+        let cut = segment.along().is_some_and(|axis| {
+            let [lower, upper] = [0, 1].map(|side| {
+                let support = boundary.and_then(|boundary| boundary.word(Side::ALL[axis][side].word()));
+                support == Some(Support::Roller) && segment.ends.iter().any(|end| end[axis] == ends[axis][side])
+            });
+            lower != upper
+        });
         (if cut { 2.0 * length } else { length }, cut)
     }
 
     /// m  lower and upper end of the grid per axis
     pub(super) fn ends(&self) -> Option<[[f64; 2]; 2]> {
         let grid = self.root.record("grid")?;
-        let (lower, upper) = (grid.pair("lower")?, grid.pair("upper")?);
+        let lower = grid.pair("lower")?;
+        let upper = grid.pair("upper")?;
         Some([0, 1].map(|axis| [lower[axis], upper[axis]]))
     }
 
@@ -390,12 +384,11 @@ fn of_edges([x, y]: [f64; 2], why: String) -> Cells {
 
 /// Cells with these breakpoints (m).
 fn of_breakpoints(breakpoints: [Vec<f64>; 2], why: String) -> Option<Cells> {
-    let shortest = |of: &[f64]| {
-        of.windows(2)
-            .map(|pair| pair[1] - pair[0])
-            .fold(f64::INFINITY, f64::min)
-    };
-    let edge = shortest(&breakpoints[0]).min(shortest(&breakpoints[1]));
+    let [x, y] = breakpoints.each_ref().map(|along| {
+        let edges = along.windows(2).map(|pair| pair[1] - pair[0]);
+        edges.fold(f64::INFINITY, f64::min)
+    });
+    let edge = x.min(y);
     let value = format!("{{ x = {:?}, y = {:?} }}", breakpoints[0], breakpoints[1]);
     let cells = Cells {
         keys: ["knots", "cell"],

@@ -28,17 +28,18 @@ impl PresetScene<'_> {
     /// Holes and notches of the bodies.
     pub(super) fn openings(&self) -> Vec<PresetOpening> {
         let Some(faces) = self.faces() else { return Vec::new() };
-        let name = |body: usize, cut: Option<usize>| match cut {
-            Some(cut) => format!("body.{body}.subtract.{cut}"),
-            None => format!("body.{body}"),
-        };
-        let found = openings::in_plane(self.root, &faces).into_iter();
-        let opening = |of: openings::BodyOpening| PresetOpening {
-            name: name(of.body, of.cut),
-            width: of.opening.width,
-            bounds: of.opening.bounds.map(|[x, y, _]| [x, y]),
-        };
-        found.map(opening).collect()
+        let mut found = Vec::new();
+        for openings::BodyOpening { body, cut, opening } in openings::in_plane(self.root, &faces) {
+            found.push(PresetOpening {
+                name: match cut {
+                    Some(cut) => format!("body.{body}.subtract.{cut}"),
+                    None => format!("body.{body}"),
+                },
+                width: opening.width,
+                bounds: opening.bounds.map(|[x, y, _]| [x, y]),
+            });
+        }
+        found
     }
 
     /// m  Steep re-entrant corners of the material at the start and after every stage; none if there are too many.
@@ -56,16 +57,16 @@ impl PresetScene<'_> {
                 .collect();
             for body in &there {
                 let planes = faces.planes(body.bounds().map(|[x, y]| [x, y, 0.0]));
-                let is_material = |at: [f64; 2]| {
-                    let [x, y, _] = openings::folded(&planes, [at[0], at[1], 0.0]);
-                    there.iter().any(|body| body.contains([x, y]))
-                };
                 for (at, side) in body
                     .shapes()
                     .filter(|shape| !shape.is_round)
                     .flat_map(|shape| shape.vertices())
                 {
-                    let around = places(at, NEAR * side).filter(|at| is_material(*at)).count();
+                    let material = places(at, NEAR * side).filter(|at| {
+                        let [x, y, _] = openings::folded(&planes, [at[0], at[1], 0.0]);
+                        there.iter().any(|body| body.contains([x, y]))
+                    });
+                    let around = material.count();
                     let is_held = places(at, NEAR * side).any(|at| rigid.iter().any(|body| body.contains(at)));
                     if (RE_ENTRANT..DIRECTIONS).contains(&around) && !is_held && !found.contains(&at) {
                         found.push(at);

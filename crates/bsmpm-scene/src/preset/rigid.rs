@@ -43,7 +43,8 @@ impl Outline {
             });
         }
         let circle = rigid.record("circle")?;
-        let (center, radius) = (circle.pair("centre")?, circle.number("radius")?);
+        let center = circle.pair("centre")?;
+        let radius = circle.number("radius")?;
         Some(Self {
             corners: Vec::new(),
             bounds: [-radius, radius].map(|by| center.map(|at| at + by)),
@@ -62,14 +63,14 @@ impl Outline {
 
     /// Whether one of the rectangles lies at an edge when it has gone a way.
     fn meets(&self, (axis, upper): Edge, way: &[f64; 2], bodies: &[[[f64; 2]; 2]]) -> bool {
-        let ([from, to], [width, height]) = (self.edge((axis, upper)), self.size());
+        let [from, to] = self.edge((axis, upper));
+        let [width, height] = self.size();
         let beyond = BEYOND * width.min(height);
         let at = from[axis] + way[axis] + if upper { beyond } else { -beyond };
         let [from, to] = [from, to].map(|end| end[1 - axis] + way[1 - axis]);
-        let is_at = |[low, high]: &[[f64; 2]; 2]| {
-            (low[axis]..high[axis]).contains(&at) && from < high[1 - axis] && to > low[1 - axis]
-        };
-        bodies.iter().any(is_at)
+        bodies
+            .iter()
+            .any(|[low, high]| (low[axis]..high[axis]).contains(&at) && from < high[1 - axis] && to > low[1 - axis])
     }
 }
 
@@ -112,16 +113,11 @@ impl RigidExtent {
             .find(|(axis, _)| *axis == 1 - across)
             .copied()
             .unwrap_or((1 - across, false));
-        let between = |axis: &usize| {
-            [false, true]
-                .iter()
-                .all(|up| outline.meets((*axis, *up), &[0.0; 2], bodies))
-        };
-        let thickness = [0, 1]
-            .into_iter()
-            .filter(between)
-            .map(|axis| size[axis])
-            .fold(f64::INFINITY, f64::min);
+        let between = [0, 1].into_iter().filter(|axis| {
+            let mut edges = [(*axis, false), (*axis, true)].into_iter();
+            edges.all(|edge| outline.meets(edge, &[0.0; 2], bodies))
+        });
+        let thickness = between.map(|axis| size[axis]).fold(f64::INFINITY, f64::min);
         let is_on = |(axis, up): &Edge, corner: &[f64; 2]| corner[*axis] == outline.bounds[usize::from(*up)][*axis];
         let sides = outline.corners.iter().zip(outline.corners.iter().cycle().skip(1));
         let lines = sides.filter(|(a, b)| met.iter().any(|edge| is_on(edge, a) && is_on(edge, b)));

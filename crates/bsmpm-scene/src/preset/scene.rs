@@ -3,7 +3,7 @@
 
 use super::Preset;
 use super::rigid::{self, RigidExtent};
-use crate::record::{ListRow, Record};
+use crate::record::Record;
 use crate::region;
 use crate::schema::LawName;
 use crate::validate::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
@@ -89,18 +89,19 @@ impl<'a> PresetScene<'a> {
         let cell = self.shortest().or(chosen)?;
         let (steps, why) = match analysis.word("type")? {
             AnalysisType::Dynamic => {
-                let (crossed, way) = (preset.crossed, analysis.number("end")? * self.shear_wave()?);
+                let crossed = preset.crossed;
+                let way = analysis.number("end")? * self.shear_wave()?;
                 (
                     way / (crossed * cell),
                     format!("a shear wave travels {crossed} cells in a step"),
                 )
             }
             AnalysisType::QuasiStatic | AnalysisType::InTime => {
-                let steps = |moved: (f64, f64)| moved.0 / (moved.1 * cell);
                 let moved = self
                     .moved(preset)
-                    .reduce(|a, b| if steps(b) > steps(a) { b } else { a });
-                let (steps, advance) = moved.map_or((0.0, 0.0), |moved| (steps(moved), moved.1));
+                    .map(|(way, advance)| (way / (advance * cell), advance));
+                let most = moved.reduce(|a, b| if b.0 > a.0 { b } else { a });
+                let (steps, advance) = most.unwrap_or((0.0, 0.0));
                 if steps > preset.steps {
                     (
                         steps,
@@ -135,26 +136,20 @@ impl<'a> PresetScene<'a> {
         {
             return Some("prevents volumetric locking of plastic material");
         }
-        let stiff = |material: &Record| {
-            material
-                .number("poisson")
-                .is_some_and(|poisson| poisson > NEARLY_INCOMPRESSIBLE)
-        };
-        self.materials()
-            .any(stiff)
+        let mut poissons = self.materials().filter_map(|material| material.number("poisson"));
+        poissons
+            .any(|poisson| poisson > NEARLY_INCOMPRESSIBLE)
             .then_some("prevents volumetric locking of nearly incompressible material")
     }
 
     /// Whether a material of the bodies dilates as it yields.
     pub(super) fn dilates(&self) -> bool {
-        let is_positive = |angle: f64| angle > 0.0;
-        let dilates = |material: &Record| {
-            let profile = material
-                .record("dilation_angle")
-                .and_then(|profile| profile.number("value"));
-            material.number("dilation_angle").or(profile).is_some_and(is_positive)
-        };
-        self.materials().any(dilates)
+        let mut angles = self.materials().filter_map(|material| {
+            let profile = material.record("dilation_angle");
+            let of_profile = profile.and_then(|profile| profile.number("value"));
+            material.number("dilation_angle").or(of_profile)
+        });
+        angles.any(|angle| angle > 0.0)
     }
 
     pub(super) fn is_consolidation(&self) -> bool {
@@ -180,8 +175,8 @@ impl<'a> PresetScene<'a> {
     pub(super) fn segments(&self) -> impl Iterator<Item = GradedSegment<'a>> + '_ {
         let root = self.root;
         let listed = ["prescribed", "traction"].into_iter().flat_map(move |table| {
-            let named = move |(number, record)| (format!("{table}.{number}"), record);
-            root.records(table).iter().enumerate().map(named)
+            let records = root.records(table).iter().enumerate();
+            records.map(move |(number, record)| (format!("{table}.{number}"), record))
         });
         let footing = root.record("footing").map(|record| ("footing".to_owned(), record));
         let strips = footing.into_iter().chain(listed).filter_map(|(name, record)| {
@@ -227,21 +222,15 @@ impl<'a> PresetScene<'a> {
     /// in a step
     fn moved(&self, preset: &Preset) -> impl Iterator<Item = (f64, f64)> {
         let end = self.end();
-        let norm = |[x, y]: [f64; 2]| x.hypot(y);
-        let (of_strips, of_faces) = (STRIP_ADVANCE, preset.advance);
+        let of_strips = STRIP_ADVANCE;
+        let of_faces = preset.advance;
         let moved = self
             .root
             .record("footing")
             .into_iter()
             .chain(self.root.records("prescribed"));
         moved.chain(self.root.records("rigid")).map(move |record| {
-            let places = rows(record);
-            let speed = |pair: &[(f64, [f64; 2])]| {
-                let ([from, to], t) = ([pair[0], pair[1]], pair[1].0 - pair[0].0);
-                let way = [0, 1].map(|k| to.1[k] - from.1[k]);
-                if t > 0.0 && from.0 < end { norm(way) / t } else { 0.0 }
-            };
-            let path = places.windows(2).map(speed).fold(0.0, f64::max) * end;
+            let path = path_speed(record, end) * end;
             let steady = record.pair("velocity").map_or(0.0, norm) * end;
             let way = path + steady + record.pair("displacement").map_or(0.0, norm) + turned(record, end);
             (way, if record.gives("face") { of_faces } else { of_strips })
@@ -274,8 +263,9 @@ impl<'a> PresetScene<'a> {
             None => (&segment.ends[..], 0.0),
         };
         let ways = self.ways(segment.record);
-        let around = |way: &[f64; 2]| [-swing, swing].map(|by| way.map(|at| at + by));
-        let ways = ways.iter().flat_map(around);
+        let ways = ways
+            .iter()
+            .flat_map(|way| [-swing, swing].map(|by| way.map(|at| at + by)));
         ways.flat_map(|way| ends.iter().map(move |at| [at[0] + way[0], at[1] + way[1]]))
             .collect()
     }
@@ -314,20 +304,18 @@ impl<'a> PresetScene<'a> {
     /// Materials that bodies are made of.
     pub(super) fn materials(&self) -> impl Iterator<Item = &Record> {
         let bodies = self.root.records("body");
-        let is_used = move |name: &str| bodies.iter().any(|body| body.text("material") == Some(name));
         self.root
             .named("material")
             .iter()
-            .filter(move |(name, _)| is_used(name))
+            .filter(move |(name, _)| bodies.iter().any(|body| body.text("material") == Some(name.as_str())))
             .map(|(_, material)| material)
     }
 
     /// m/s  fastest shear wave in the bodies' materials, at the stiffest height
     fn shear_wave(&self) -> Option<f64> {
         let [lower, upper] = self.bounds()?;
-        let speed = |material: &Record| shear_wave(material, [lower[1], upper[1]]);
         self.materials()
-            .filter_map(speed)
+            .filter_map(|material| shear_wave(material, [lower[1], upper[1]]))
             .filter(|speed| speed.is_finite())
             .reduce(f64::max)
     }
@@ -364,7 +352,10 @@ fn turned(record: &Record, end: f64) -> f64 {
 fn sides(body: &Record) -> Vec<([f64; 2], [f64; 2])> {
     let corners: Vec<[f64; 2]> = match (body.record("box"), body.rows("polygon")) {
         (Some(shape), _) => {
-            let (Some(lower), Some(upper)) = (shape.pair("lower"), shape.pair("upper")) else {
+            let Some(lower) = shape.pair("lower") else {
+                return Vec::new();
+            };
+            let Some(upper) = shape.pair("upper") else {
                 return Vec::new();
             };
             vec![lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]]
@@ -383,7 +374,8 @@ pub(crate) fn around(body: &Record) -> Option<[[f64; 2]; 2]> {
         return Some([shape.pair("lower")?, shape.pair("upper")?]);
     }
     if let Some(circle) = body.record("circle") {
-        let (center, radius) = (circle.pair("centre")?, circle.number("radius")?);
+        let center = circle.pair("centre")?;
+        let radius = circle.number("radius")?;
         return Some([-radius, radius].map(|reach| center.map(|x| x + reach)));
     }
     let corners: Vec<[f64; 2]> = body
@@ -396,18 +388,32 @@ pub(crate) fn around(body: &Record) -> Option<[[f64; 2]; 2]> {
 
 /// s, m  Times and displacements of a path, from none at the start on.
 fn rows(record: &Record) -> Vec<(f64, [f64; 2])> {
-    let row = |row: &ListRow| (row.numbers[0], [row.numbers[1], row.numbers[2]]);
-    std::iter::once((0.0, [0.0; 2]))
-        .chain(record.rows("path").unwrap_or_default().iter().map(row))
-        .collect()
+    let rows = record.rows("path").unwrap_or_default().iter();
+    let rows = rows.map(|row| (row.numbers[0], [row.numbers[1], row.numbers[2]]));
+    std::iter::once((0.0, [0.0; 2])).chain(rows).collect()
+}
+
+/// m/s  the fastest that a path leads between two of its rows, of which the first is before `end` (s)
+fn path_speed(record: &Record, end: f64) -> f64 {
+    let places = rows(record);
+    let speeds = places.windows(2).map(|pair| {
+        let [from, to] = [pair[0], pair[1]];
+        let t = to.0 - from.0;
+        let way = [0, 1].map(|k| to.1[k] - from.1[k]);
+        if t > 0.0 && from.0 < end { norm(way) / t } else { 0.0 }
+    });
+    speeds.fold(0.0, f64::max)
+}
+
+/// Length of a vector.
+fn norm([x, y]: [f64; 2]) -> f64 {
+    x.hypot(y)
 }
 
 /// Pa  the largest value of a profile between two heights
 fn stiffest(profile: &Record, heights: [f64; 2]) -> Option<f64> {
-    let (value, at, growth) = (
-        profile.number("value")?,
-        profile.number("at_y")?,
-        profile.number("per_metre")?,
-    );
+    let value = profile.number("value")?;
+    let at = profile.number("at_y")?;
+    let growth = profile.number("per_metre")?;
     heights.map(|y| value + growth * (at - y)).into_iter().reduce(f64::max)
 }

@@ -1,7 +1,6 @@
 //! Limits the cell size of a preset (key `accuracy`), so that cells resolve waves.
 
 use super::scene::PresetScene;
-use crate::record::Record;
 use crate::schema::LawName;
 use crate::spectrum::SHARE;
 use crate::waves::{WaveInput, fewest_cells, inputs};
@@ -32,7 +31,8 @@ impl PresetScene<'_> {
         let (input, cell) = cells
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .filter(|(_, cell)| *cell < size)?;
-        let (part, frequency) = (100.0 * SHARE, input.frequency);
+        let part = 100.0 * SHARE;
+        let frequency = input.frequency;
         let why = format!(
             "{fewest} cells in the wavelength at {frequency:.3} Hz, below which {} has {part} % of its energy",
             input.name
@@ -54,8 +54,8 @@ impl PresetScene<'_> {
         if let Some(given) = self.root.record("analysis").and_then(|analysis| analysis.word("mass")) {
             return given;
         }
-        let is_elastic = |material: &Record| material.word("model") == Some(LawName::Hencky);
-        let waves = self.root.record("shaking").is_some() || self.materials().all(is_elastic);
+        let mut laws = self.materials().map(|material| material.word("model"));
+        let waves = self.root.record("shaking").is_some() || laws.all(|law| law == Some(LawName::Hencky));
         if waves && !self.touches() {
             MassMatrix::Consistent
         } else {
@@ -65,17 +65,17 @@ impl PresetScene<'_> {
 
     /// Whether a face of the grid, a strip or a rigid body is in contact with material.
     fn touches(&self) -> bool {
-        let in_contact = |boundary: &Record, side: Side| {
-            let is_table = boundary.record(side.word()).is_some();
-            is_table || boundary.word(side.word()) == Some(Support::Contact)
-        };
         let mut boundaries = self.root.record("boundary").into_iter();
         let strips = self
             .root
             .record("footing")
             .into_iter()
             .chain(self.root.records("prescribed"));
-        boundaries.any(|boundary| Side::ALL.as_flattened().iter().any(|side| in_contact(boundary, *side)))
+        let has_contact = boundaries.any(|boundary| {
+            let mut keys = Side::ALL.as_flattened().iter().map(|side| side.word());
+            keys.any(|key| boundary.record(key).is_some() || boundary.word(key) == Some(Support::Contact))
+        });
+        has_contact
             || !self.root.records("rigid").is_empty()
             || strips.into_iter().any(|strip| {
                 ["interface", "components"]

@@ -46,11 +46,11 @@ impl Record {
 
     /// What the key's word stands for; `T` is the choice that the schema names.
     pub(crate) fn word<T: Word>(&self, key: &str) -> Option<T> {
-        let is_of = |kind: &Kind| match kind {
+        let datum = self.datum(key, |kind| match kind {
             Kind::Choice(words) | Kind::ChoiceOr(words, _) => words.words().eq(T::WORDS.words()),
             _ => false,
-        };
-        if let Datum::Word(word) = self.datum(key, is_of)? {
+        });
+        if let Datum::Word(word) = datum? {
             T::of(word)
         } else {
             None
@@ -59,10 +59,11 @@ impl Record {
 
     /// What the words of a key's list stand for; `T` is the choice that the schema names.
     pub(crate) fn choices<T: Word>(&self, key: &str) -> Option<Vec<T>> {
-        let is_of = |kind: &Kind| matches!(kind, Kind::Choices(words) if words.words().eq(T::WORDS.words()));
-        let Datum::Names(words) = self.datum(key, is_of)? else {
-            return None;
-        };
+        let datum = self.datum(
+            key,
+            |kind| matches!(kind, Kind::Choices(words) if words.words().eq(T::WORDS.words())),
+        );
+        let Datum::Names(words) = datum? else { return None };
         words.iter().map(|word| T::of(word)).collect()
     }
 

@@ -20,12 +20,26 @@ pub(crate) const UNREAD: &str = "E0027: --set does not read data files. Name the
 /// Longest name of a material, column or check.
 const LONGEST_NAME: usize = 64;
 
+/// What the values in a column of rows are.
+#[derive(Clone, Copy)]
+struct ValueColumn {
+    dimension: Dimension,
+    range: Range,
+}
+
+impl ValueColumn {
+    fn new(dimension: Dimension, range: Range) -> Self {
+        Self { dimension, range }
+    }
+}
+
 /// The value of `node` as `kind` says; `None` after an error.
 pub(super) fn read(
     kind: &Kind,
     node: &Node,
     path: &str,
-    (pseudo_time, geometry): (bool, Geometry),
+    pseudo_time: bool,
+    geometry: Geometry,
     report: &mut Report<'_>,
 ) -> Option<Datum> {
     let name = path.rsplit('.').next().unwrap_or(path);
@@ -42,17 +56,14 @@ pub(super) fn read(
         Kind::Quantity(dimension, range) => reader.quantity(node, *dimension, range).map(Datum::Number),
         Kind::Profile(dimension, range, _) => reader.quantity(node, *dimension, range).map(Datum::Number),
         Kind::Gradient(dimension) => reader.gradient(node, *dimension).map(Datum::Number),
-        Kind::GradientVector(dimension) => match &node.value {
-            Value::List(items) if items.len() == dims => {
-                let read: Vec<Option<f64>> = items.iter().map(|item| reader.gradient(item, *dimension)).collect();
-                read.into_iter().collect::<Option<_>>().map(Datum::Numbers)
-            }
-            _ => reader.unexpected(node),
-        },
-        Kind::Rows(columns) => reader.rows(node, columns),
+        Kind::GradientVector(dimension) => reader.gradients(node, *dimension),
+        Kind::Rows(columns) => {
+            let columns = columns.iter().map(|(of, range)| ValueColumn::new(*of, *range));
+            reader.rows(node, &columns.collect::<Vec<_>>())
+        }
         Kind::Course(dimension) => {
-            let mut columns = vec![(*dimension, Range::ANY); dims + 1];
-            columns[0] = (Dimension::Time, Range::NOT_NEGATIVE);
+            let mut columns = vec![ValueColumn::new(*dimension, Range::ANY); dims + 1];
+            columns[0] = ValueColumn::new(Dimension::Time, Range::NOT_NEGATIVE);
             reader.rows(node, &columns)
         }
         Kind::Measure => reader.measure(node),
@@ -74,19 +85,7 @@ pub(super) fn read(
             Value::Text(text) if is_name(text) => Some(Datum::Text(text.clone())),
             _ => reader.unexpected(node),
         },
-        Kind::Names => match &node.value {
-            Value::List(items) => {
-                let name = |item: &Node| match &item.value {
-                    Value::Text(text) if is_name(text) => Some(text.clone()),
-                    _ => None,
-                };
-                match items.iter().map(name).collect() {
-                    Some(names) => Some(Datum::Names(names)),
-                    None => reader.unexpected(node),
-                }
-            }
-            _ => reader.unexpected(node),
-        },
+        Kind::Names => reader.names(node),
         Kind::Choices(words) => reader.choices(node, words),
         Kind::Flag => match node.value {
             Value::Flag(flag) => Some(Datum::Flag(flag)),
@@ -114,8 +113,10 @@ fn too_long(text: &str) -> String {
 
 /// Whether `text` is fit for a name that stands in files' headers and key paths.
 pub(super) fn is_name(text: &str) -> bool {
-    let fit = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
-    (1..=LONGEST_NAME).contains(&text.len()) && text.chars().all(fit)
+    (1..=LONGEST_NAME).contains(&text.len())
+        && text
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || matches!(c, '-' | '_'))
 }
 
 struct ValueReader<'a, 'r> {
@@ -202,7 +203,8 @@ impl ValueReader<'_, '_> {
         }
         let divides = dimension == Dimension::Time || !range.contains(0.0);
         if divides && value != 0.0 && value.abs() < dimension.least() {
-            let (least, unit) = (dimension.least(), self.si(dimension));
+            let least = dimension.least();
+            let unit = self.si(dimension);
             let found = node.show();
             let message = format!(
                 "E0010: {found} is too close to zero: the smallest allowed value of {dimension} is {least:e}{unit}. \
@@ -258,7 +260,8 @@ impl ValueReader<'_, '_> {
     fn bounded(&mut self, node: &Node, value: f64, dimension: Dimension) -> Option<f64> {
         let most = dimension.limit();
         if value.abs() > most {
-            let (found, unit) = (node.show(), self.si(dimension));
+            let found = node.show();
+            let unit = self.si(dimension);
             let message = format!(
                 "E0010: {found} is too large: the largest allowed value of {dimension} is {most:e}{unit}. Correct the \
                  value or its unit."
@@ -278,7 +281,31 @@ impl ValueReader<'_, '_> {
         }
     }
 
-    fn rows(&mut self, node: &Node, columns: &[(Dimension, Range)]) -> Option<Datum> {
+    fn gradients(&mut self, node: &Node, dimension: Dimension) -> Option<Datum> {
+        match &node.value {
+            Value::List(items) if items.len() == self.geometry.dims() => {
+                let read: Vec<Option<f64>> = items.iter().map(|item| self.gradient(item, dimension)).collect();
+                read.into_iter().collect::<Option<_>>().map(Datum::Numbers)
+            }
+            _ => self.unexpected(node),
+        }
+    }
+
+    fn names(&mut self, node: &Node) -> Option<Datum> {
+        let Value::List(items) = &node.value else {
+            return self.unexpected(node);
+        };
+        let names = items.iter().map(|item| match &item.value {
+            Value::Text(text) if is_name(text) => Some(text.clone()),
+            _ => None,
+        });
+        match names.collect() {
+            Some(names) => Some(Datum::Names(names)),
+            None => self.unexpected(node),
+        }
+    }
+
+    fn rows(&mut self, node: &Node, columns: &[ValueColumn]) -> Option<Datum> {
         let items = match &node.value {
             Value::List(items) => items,
             Value::Table(table) if table.get("file").is_some() => return self.unread(node),
@@ -287,7 +314,7 @@ impl ValueReader<'_, '_> {
         if let Some(message) = columns
             .iter()
             .enumerate()
-            .find_map(|(k, (of, _))| self.heading(items, k, *of))
+            .find_map(|(k, column)| self.heading(items, k, column.dimension))
         {
             return self.fail(node, message);
         }
@@ -309,23 +336,27 @@ impl ValueReader<'_, '_> {
 
     /// What is wrong with a unit that a column has in all of several rows, as the heading of a file gives it.
     fn heading(&self, rows: &[Node], column: usize, dimension: Dimension) -> Option<String> {
-        let unit_of = |row: &Node| {
-            let Value::List(cells) = &row.value else { return None };
-            let cell = cells.get(column)?;
-            let Value::Text(text) = &cell.value else { return None };
-            let unit = text.split_once(' ')?.1.to_owned();
-            self.worded(cell, text, dimension).err().map(|message| (unit, message))
-        };
-        let (unit, message) = unit_of(rows.first().filter(|_| rows.len() > 1)?)?;
-        let is_of_all = rows[1..]
-            .iter()
-            .all(|row| unit_of(row).is_some_and(|(other, _)| other == unit));
+        let first = rows.first().filter(|_| rows.len() > 1)?;
+        let (unit, message) = self.wrong_unit(first, column, dimension)?;
+        let is_of_all = rows[1..].iter().all(|row| {
+            let found = self.wrong_unit(row, column, dimension);
+            found.is_some_and(|(other, _)| other == unit)
+        });
         let number = column + 1;
         let all = with_context(&message, &format!("column {number} of all {} rows", rows.len()));
         is_of_all.then(|| all + " In a data file, change the unit in the heading.")
     }
 
-    fn row(&mut self, node: &Node, columns: &[(Dimension, Range)]) -> Option<ListRow> {
+    /// The unit of a row's cell, and what is wrong with it.
+    fn wrong_unit(&self, row: &Node, column: usize, dimension: Dimension) -> Option<(String, String)> {
+        let Value::List(cells) = &row.value else { return None };
+        let cell = cells.get(column)?;
+        let Value::Text(text) = &cell.value else { return None };
+        let unit = text.split_once(' ')?.1.to_owned();
+        self.worded(cell, text, dimension).err().map(|message| (unit, message))
+    }
+
+    fn row(&mut self, node: &Node, columns: &[ValueColumn]) -> Option<ListRow> {
         let items = match &node.value {
             Value::List(items) if items.len() == columns.len() => items,
             _ => return self.unexpected(node),
@@ -333,7 +364,7 @@ impl ValueReader<'_, '_> {
         let read = items
             .iter()
             .zip(columns)
-            .map(|(item, (dimension, range))| self.quantity(item, *dimension, range));
+            .map(|(item, column)| self.quantity(item, column.dimension, &column.range));
         let read: Vec<Option<f64>> = read.collect();
         Some(ListRow {
             origin: node.origin,
@@ -370,7 +401,8 @@ impl ValueReader<'_, '_> {
         match text.parse::<u64>() {
             Ok(count) if (least..=most).contains(&count) => Some(Datum::Count(count)),
             _ => {
-                let (found, name) = (shortened(text), self.name);
+                let found = shortened(text);
+                let name = self.name;
                 self.fail(
                     node,
                     format!(

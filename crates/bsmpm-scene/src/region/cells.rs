@@ -40,7 +40,8 @@ pub(crate) struct CellPlace<const D: usize = 2> {
 impl CellColumn {
     /// From the first to the last row with points.
     pub(crate) fn rows(&self) -> Option<Range<usize>> {
-        let (first, last) = (self.parts.first()?, self.parts.last()?);
+        let first = self.parts.first()?;
+        let last = self.parts.last()?;
         Some(first.rows().start..last.rows().end)
     }
 }
@@ -95,8 +96,9 @@ pub(crate) fn place([lower, upper]: [f64; 2], k: usize, n: usize) -> f64 {
 }
 
 /// What shape 0 less the others has in column `i` of the grid.
-pub(crate) fn column(edges: &[Edge], shapes: usize, (grid, lattice): (&GridSpec, Lattice), i: usize) -> CellColumn {
-    let (across, up) = (&grid.axes[0], &grid.axes[1]);
+pub(crate) fn column(edges: &[Edge], shapes: usize, grid: &GridSpec, lattice: Lattice, i: usize) -> CellColumn {
+    let across = &grid.axes[0];
+    let up = &grid.axes[1];
     let x = [across.breakpoint(i), across.breakpoint(i + 1)];
     let near: Vec<Near> = edges
         .iter()
@@ -173,7 +175,8 @@ struct SliceSum {
 
 impl SliceSum {
     fn add(&mut self, slice: &Slice) {
-        let (area, moment) = (slice.area(), slice.moment());
+        let area = slice.area();
+        let moment = slice.moment();
         self.area += area;
         self.moment = [self.moment[0] + moment[0], self.moment[1] + moment[1]];
         if area > self.largest {
@@ -207,7 +210,8 @@ impl CellStrip {
     fn cell(&self, y: [f64; 2]) -> (Vec<CellPlace>, f64, bool) {
         let size = (self.x[1] - self.x[0]).min(y[1] - y[0]);
         let sub = (self.x[1] - self.x[0]) * (y[1] - y[0]) / (self.n * self.n) as f64;
-        let (mut places, mut left) = (Vec::new(), Vec::new());
+        let mut places = Vec::new();
+        let mut left = Vec::new();
         let mut sum = SliceSum::default();
         for a in 0..self.n {
             let edges = self.edges(part(self.x, a, self.n), y[1]);
@@ -227,8 +231,8 @@ impl CellStrip {
                     continue;
                 };
                 let inside = covered && area > SLIVER * sub;
-                let clear = |near: &Near| near.span[1] < y[0] || near.edge.distance(x) > SLIVER * size;
-                if inside && edges.iter().all(clear) {
+                let mut near = edges.iter();
+                if inside && near.all(|near| near.span[1] < y[0] || near.edge.distance(x) > SLIVER * size) {
                     &mut places
                 } else {
                     &mut left
@@ -249,22 +253,23 @@ impl CellStrip {
 
     /// Edges at some x and not above a height.
     fn edges(&self, x: [f64; 2], top: f64) -> Vec<Near> {
-        let here = |near: &&Near| near.span[0] <= top && near.edge.b[0] >= x[0] && near.edge.a[0] <= x[1];
-        self.near.iter().filter(here).copied().collect()
+        let here = self
+            .near
+            .iter()
+            .filter(|near| near.span[0] <= top && near.edge.b[0] >= x[0] && near.edge.a[0] <= x[1]);
+        here.copied().collect()
     }
 
     /// Covered area of a window that an edge touches, added to the cell's; none if no edge does.
     fn covered(&self, near: &[Near], window: &Window, sum: &mut SliceSum) -> Option<f64> {
-        let touches = |near: &Near| {
-            let [low, high] = near.span;
-            low <= window.y[1]
-                && high >= window.y[0]
-                && near
-                    .edge
-                    .span(window.x)
-                    .is_some_and(|[low, high]| low <= window.y[1] && high >= window.y[0])
-        };
-        if !near.iter().any(touches) {
+        let mut level = near
+            .iter()
+            .filter(|near| near.span[0] <= window.y[1] && near.span[1] >= window.y[0]);
+        let is_touched = level.any(|near| {
+            let span = near.edge.span(window.x);
+            span.is_some_and(|[low, high]| low <= window.y[1] && high >= window.y[0])
+        });
+        if !is_touched {
             return None;
         }
         let edges: Vec<Edge> = near.iter().map(|near| near.edge).collect();

@@ -113,7 +113,8 @@ impl Edge {
         if self.b[0] < left || self.a[0] > right {
             return None;
         }
-        let (mut p, mut q) = (self.y(left.max(self.a[0])), self.y(right.min(self.b[0])));
+        let mut p = self.y(left.max(self.a[0]));
+        let mut q = self.y(right.min(self.b[0]));
         match self.arc {
             None if self.a[0] == self.b[0] => (p, q) = (self.a[1], self.b[1]),
             Some(Arc { center, radius, upper }) if (left..=right).contains(&center[0]) => {
@@ -222,6 +223,5 @@ fn circle_and_circle(one: &Arc, other: &Arc) -> [Option<f64>; 2] {
     }
     let along = 0.5 * (distance + (one.radius - other.radius) * (one.radius + other.radius) / distance);
     let [minus, plus] = both(0.0, (one.radius - along) * (one.radius + along));
-    let place = |aside: f64| one.center[0] + (along * d[0] - aside * d[1]) / distance;
-    [minus.map(place), plus.map(place)]
+    [minus, plus].map(|aside| aside.map(|aside| one.center[0] + (along * d[0] - aside * d[1]) / distance))
 }

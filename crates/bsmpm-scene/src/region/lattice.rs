@@ -45,10 +45,13 @@ struct VerticalLine {
 pub(super) fn column(lines: &Lines<'_>, sides: [[f64; 2]; 2], up: &GridAxis, n: usize) -> Vec<LatticeCell> {
     let parts = (0..n * n).map(|k| lines.of([part(sides[0], k / n, n), part(sides[1], k % n, n)]));
     let parts: Vec<Vec<VerticalLine>> = parts.collect();
-    let centre = |k: usize| [place(sides[0], k / n, n), place(sides[1], k % n, n)];
-    let centres: Vec<Centre> = (0..n * n).map(|k| (centre(k), (lines.covers)(centre(k)))).collect();
+    let centres = (0..n * n).map(|k| {
+        let at = [place(sides[0], k / n, n), place(sides[1], k % n, n)];
+        (at, (lines.covers)(at))
+    });
+    let centres: Vec<Centre> = centres.collect();
     let rows = rows(&parts, up);
-    let cells = rows.map(|row| cell((&parts, &centres), [up.breakpoint(row), up.breakpoint(row + 1)], n, row));
+    let cells = rows.map(|row| cell(&parts, &centres, [up.breakpoint(row), up.breakpoint(row + 1)], n, row));
     cells.filter(|cell| !cell.places.is_empty()).collect()
 }
 
@@ -56,15 +59,17 @@ impl Lines<'_> {
     /// Those of a part of a cell.
     fn of(&self, sides: [[f64; 2]; 2]) -> Vec<VerticalLine> {
         let [along_x, along_y] = [0, 1].map(|axis| shares(sides[axis], &self.ends[axis], LINES));
-        let at = |x: f64, y: f64, area: f64| VerticalLine {
-            x: [x, y],
-            area,
-            covered: (self.covers)([x, y]),
-        };
-        along_x
-            .iter()
-            .flat_map(|&(x, width)| along_y.iter().map(move |&(y, depth)| at(x, y, width * depth)))
-            .collect()
+        let mut lines = Vec::with_capacity(along_x.len() * along_y.len());
+        for (x, width) in along_x {
+            for (y, depth) in &along_y {
+                lines.push(VerticalLine {
+                    x: [x, *y],
+                    area: width * depth,
+                    covered: (self.covers)([x, *y]),
+                });
+            }
+        }
+        lines
     }
 }
 
@@ -73,18 +78,18 @@ pub(super) fn shares([lower, upper]: [f64; 2], ends: &[f64], lines: usize) -> Ve
     let mut pieces = vec![lower];
     pieces.extend(ends.iter().filter(|end| lower < **end && **end < upper));
     pieces.push(upper);
-    let of = |piece: &[f64]| {
+    let places = pieces.windows(2).flat_map(|piece| {
         let [from, to] = [piece[0], piece[1]];
         (0..lines).map(move |k| (place([from, to], k, lines), (to - from) / lines as f64))
-    };
-    pieces.windows(2).flat_map(of).collect()
+    });
+    places.collect()
 }
 
 /// Rows of cells that the lines reach.
 fn rows(parts: &[Vec<VerticalLine>], up: &GridAxis) -> Range<usize> {
-    let covered = || parts.iter().flatten().flat_map(|line| &line.covered);
-    let lower = covered().map(|line| line[0]).fold(f64::INFINITY, f64::min);
-    let upper = covered().map(|line| line[1]).fold(f64::NEG_INFINITY, f64::max);
+    let covered = parts.iter().flatten().flat_map(|line| &line.covered);
+    let lower = covered.clone().map(|line| line[0]).fold(f64::INFINITY, f64::min);
+    let upper = covered.map(|line| line[1]).fold(f64::NEG_INFINITY, f64::max);
     if lower < upper {
         reached(up, [lower, upper])
     } else {
@@ -94,13 +99,16 @@ fn rows(parts: &[Vec<VerticalLine>], up: &GridAxis) -> Range<usize> {
 
 type Centre = ([f64; 2], Vec<[f64; 2]>);
 
-fn cell((parts, centres): (&[Vec<VerticalLine>], &[Centre]), z: [f64; 2], n: usize, row: usize) -> LatticeCell {
-    let (mut places, mut left) = (Vec::new(), Vec::new());
-    let (mut sum, mut whole) = (VolumeMoments::default(), true);
+fn cell(parts: &[Vec<VerticalLine>], centres: &[Centre], z: [f64; 2], n: usize, row: usize) -> LatticeCell {
+    let mut places = Vec::new();
+    let mut left = Vec::new();
+    let mut sum = VolumeMoments::default();
+    let mut whole = true;
     for (lines, ([x, y], middle)) in parts.iter().zip(centres) {
         for c in 0..n {
             let height = part(z, c, n);
-            let (mut volume, mut full) = (0.0, 0.0);
+            let mut volume = 0.0;
+            let mut full = 0.0;
             for line in lines {
                 full += line.area * (height[1] - height[0]);
                 volume += line.within(height).map(|ends| sum.add(line, ends)).sum::<f64>();
@@ -176,19 +184,14 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 /// The place inside, on a line of a cell between two heights, that is nearest to `to`, the first of several: at its
 /// height or in the middle of what a line has.
 fn nearest_inside(parts: &[Vec<VerticalLine>], z: [f64; 2], to: [f64; 3]) -> [f64; 3] {
-    let on = |line: &VerticalLine, [lower, upper]: [f64; 2]| {
-        let height = if lower < to[2] && to[2] < upper {
-            to[2]
-        } else {
-            0.5 * (lower + upper)
-        };
-        [line.x[0], line.x[1], height]
-    };
-    let pieces = parts
-        .iter()
-        .flatten()
-        .flat_map(|line| line.within(z).map(move |ends| on(line, ends)));
-    pieces
+    let places = parts.iter().flatten().flat_map(|line| {
+        line.within(z).map(move |[lower, upper]| {
+            let is_within = lower < to[2] && to[2] < upper;
+            let height = if is_within { to[2] } else { 0.5 * (lower + upper) };
+            [line.x[0], line.x[1], height]
+        })
+    });
+    places
         .min_by(|a, b| distance(*a, to).total_cmp(&distance(*b, to)))
         .unwrap_or(to)
 }
@@ -201,12 +204,12 @@ fn share(places: &mut [CellPlace<3>], left: &[CellPlace<3>]) {
             .iter()
             .map(|place| distance(place.x, of.x))
             .fold(f64::INFINITY, f64::min);
-        let near = |place: &&mut CellPlace<3>| distance(place.x, of.x) <= nearest * (1.0 + SLIVER);
-        let count = places.iter_mut().filter(near).count() as f64;
-        places
+        let near = places
             .iter_mut()
-            .filter(near)
-            .for_each(|place| place.area += of.area / count);
+            .filter(|place| distance(place.x, of.x) <= nearest * (1.0 + SLIVER));
+        let near: Vec<&mut CellPlace<3>> = near.collect();
+        let share = of.area / near.len() as f64;
+        near.into_iter().for_each(|place| place.area += share);
     }
 }
 
@@ -222,8 +225,8 @@ fn balance(places: &mut [CellPlace<3>], to: [f64; 3], least: f64) {
     let halves: Vec<f64> = places.iter().map(|place| 0.5 * place.area).collect();
     for axis in (0..ROUNDS).flat_map(|_| 0..3) {
         let mean = places.iter().map(|place| place.area * place.x[axis]).sum::<f64>() / volume;
-        let square = |place: &CellPlace<3>| place.area * (place.x[axis] - mean).powi(2);
-        let variance = places.iter().map(square).sum::<f64>() / volume;
+        let squares = places.iter().map(|place| place.area * (place.x[axis] - mean).powi(2));
+        let variance = squares.sum::<f64>() / volume;
         let reach = places
             .iter()
             .map(|place| (place.x[axis] - mean).abs())
@@ -233,7 +236,8 @@ fn balance(places: &mut [CellPlace<3>], to: [f64; 3], least: f64) {
         }
         let mut slope = ((to[axis] - mean) / variance).clamp(-0.5 / reach, 0.5 / reach);
         for (place, half) in places.iter().zip(&halves) {
-            let (arm, most) = (place.x[axis] - mean, (1.0 - half / place.area).max(0.0));
+            let arm = place.x[axis] - mean;
+            let most = (1.0 - half / place.area).max(0.0);
             if slope * arm < -most {
                 slope = -most / arm;
             }

@@ -96,11 +96,11 @@ impl Raster {
 
     /// On the heights of another one with the same posts.
     pub(crate) fn on(self, base: Self) -> Result<Self, String> {
-        let near = |axis: usize| {
+        let has_same_posts = (0..2).all(|axis| {
             let off = (self.lower[axis] - base.lower[axis]).abs() + (self.spacing[axis] - base.spacing[axis]).abs();
             off <= ROUNDING * self.spacing[axis]
-        };
-        if self.count != base.count || !near(0) || !near(1) {
+        });
+        if self.count != base.count || !has_same_posts {
             return Err(
                 "E0032: `base` and `top` give heights at different points. Interpolate both to the same regular grid \
                  of points."
@@ -139,33 +139,31 @@ impl Raster {
         }
     }
 
-    pub(crate) fn moved(self, by: [f64; 3]) -> Self {
-        let up = |heights: Vec<f64>| heights.into_iter().map(|height| height + by[2]).collect();
-        Self {
-            lower: [0, 1].map(|axis| self.lower[axis] + by[axis]),
-            top: up(self.top),
-            base: up(self.base),
-            ..self
-        }
+    pub(crate) fn moved(mut self, by: [f64; 3]) -> Self {
+        (0..2).for_each(|axis| self.lower[axis] += by[axis]);
+        let heights = self.top.iter_mut().chain(&mut self.base);
+        heights.for_each(|height| *height += by[2]);
+        self
     }
 
     /// Lower and upper corner of the cuboid around it.
     pub(crate) fn bounds(&self) -> [[f64; 3]; 2] {
-        let far = |axis: usize| self.lower[axis] + (self.count[axis] - 1) as f64 * self.spacing[axis];
+        let [x, y] = [0, 1].map(|axis| self.lower[axis] + (self.count[axis] - 1) as f64 * self.spacing[axis]);
         let low = self.base.iter().copied().fold(f64::INFINITY, f64::min);
         let high = self.top.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        [[self.lower[0], self.lower[1], low], [far(0), far(1), high]]
+        [[self.lower[0], self.lower[1], low], [x, y, high]]
     }
 
     /// m³, exact of what is bilinear
     pub(crate) fn volume(&self) -> f64 {
         let [columns, rows] = self.count;
         let thick = |x: usize, y: usize| self.top[y * columns + x] - self.base[y * columns + x];
-        let cell = |x: usize, y: usize| 0.25 * (thick(x, y) + thick(x + 1, y) + thick(x, y + 1) + thick(x + 1, y + 1));
-        let sum: f64 = (0..rows - 1)
-            .map(|y| (0..columns - 1).map(|x| cell(x, y)).sum::<f64>())
-            .sum();
-        sum * self.spacing[0] * self.spacing[1]
+        let sums = (0..rows - 1).map(|y| {
+            let cells = (0..columns - 1)
+                .map(|x| 0.25 * (thick(x, y) + thick(x + 1, y) + thick(x, y + 1) + thick(x + 1, y + 1)));
+            cells.sum::<f64>()
+        });
+        sums.sum::<f64>() * self.spacing[0] * self.spacing[1]
     }
 
     /// What it covers of the vertical line at a place.
@@ -176,12 +174,13 @@ impl Raster {
         }
         let [x, y] = part.map(|part| part.floor() as usize);
         let [s, t] = [part[0] - x as f64, part[1] - y as f64];
-        let height = |of: &[f64]| {
-            let post = |x: usize, y: usize| of[y * self.count[0] + x];
-            let row = |y: usize| (1.0 - s) * post(x, y) + s * post(x + 1, y);
-            (1.0 - t) * row(y) + t * row(y + 1)
-        };
-        let ends = [height(&self.base), height(&self.top)];
+        let ends = [&self.base, &self.top].map(|heights| {
+            let [south, north] = [y, y + 1].map(|y| {
+                let posts = &heights[y * self.count[0] + x..];
+                (1.0 - s) * posts[0] + s * posts[1]
+            });
+            (1.0 - t) * south + t * north
+        });
         (ends[0] < ends[1]).then_some(ends)
     }
 }

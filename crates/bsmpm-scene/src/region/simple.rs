@@ -19,39 +19,46 @@ pub(crate) fn fault(corners: &[[f64; 2]]) -> Option<PolygonFault> {
     if n < 3 {
         return Some(PolygonFault::TooFew);
     }
-    let next = |k: usize| (k + 1) % n;
-    if let Some(k) = (0..n).find(|&k| corners[k] == corners[next(k)]) {
-        return Some(PolygonFault::Repeated(k, next(k)));
+    if let Some(k) = (0..n).find(|&k| corners[k] == corners[(k + 1) % n]) {
+        return Some(PolygonFault::Repeated(k, (k + 1) % n));
     }
     let [lower, upper] = bounds(corners);
     let thinnest = 1e-12 * (upper[0] - lower[0]).hypot(upper[1] - lower[1]);
-    let (p, q) = (
-        corners[0],
-        *corners
-            .iter()
-            .max_by(|a, b| far(corners[0], a).total_cmp(&far(corners[0], b)))?,
-    );
+    let p = corners[0];
+    let q = *corners
+        .iter()
+        .max_by(|a, b| far(corners[0], a).total_cmp(&far(corners[0], b)))?;
     if corners.iter().all(|r| turn(p, q, *r).abs() <= thinnest * far(p, &q)) {
         return Some(PolygonFault::Flat);
     }
-    let crossing = |i: usize, j: usize| {
-        let (p, q, r, s) = (corners[i], corners[next(i)], corners[j], corners[next(j)]);
-        match (next(i) == j, next(j) == i) {
-            (true, _) => turns_back(p, q, s),
-            (_, true) => turns_back(r, s, q),
-            _ => meet([p, q], [r, s]),
-        }
-    };
     let mut pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
     pairs
-        .find(|(i, j)| crossing(*i, *j))
+        .find(|(i, j)| cross(corners, *i, *j))
         .map(|(i, j)| PolygonFault::Crossing(i, j))
+}
+
+/// Whether two sides of a polygon, by the numbers of their first corners, have more in common than a corner.
+fn cross(corners: &[[f64; 2]], i: usize, j: usize) -> bool {
+    let [after_i, after_j] = [i, j].map(|k| (k + 1) % corners.len());
+    let [p, q] = [corners[i], corners[after_i]];
+    let [r, s] = [corners[j], corners[after_j]];
+    match (after_i == j, after_j == i) {
+        (true, _) => turns_back(p, q, s),
+        (_, true) => turns_back(r, s, q),
+        _ => meet([p, q], [r, s]),
+    }
 }
 
 /// Lower and upper corner of the rectangle around places.
 pub(crate) fn bounds(corners: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    let reduce = |start: f64, f: fn(f64, f64) -> f64| [0, 1].map(|axis| corners.iter().map(|c| c[axis]).fold(start, f));
-    [reduce(f64::INFINITY, f64::min), reduce(f64::NEG_INFINITY, f64::max)]
+    let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for corner in corners {
+        for axis in 0..2 {
+            bounds[0][axis] = bounds[0][axis].min(corner[axis]);
+            bounds[1][axis] = bounds[1][axis].max(corner[axis]);
+        }
+    }
+    bounds
 }
 
 /// Area, whatever the orientation: `½ |Σ (x_k - x_0)(y_(k+1) - y_0) - (x_(k+1) - x_0)(y_k - y_0)|`.
@@ -77,8 +84,8 @@ fn turns_back(p: [f64; 2], q: [f64; 2], r: [f64; 2]) -> bool {
 
 /// Whether two segments have a place in common.
 fn meet([p, q]: [[f64; 2]; 2], [r, s]: [[f64; 2]; 2]) -> bool {
-    let apart =
-        |axis: usize| p[axis].max(q[axis]) < r[axis].min(s[axis]) || r[axis].max(s[axis]) < p[axis].min(q[axis]);
+    let are_apart =
+        (0..2).any(|axis| p[axis].max(q[axis]) < r[axis].min(s[axis]) || r[axis].max(s[axis]) < p[axis].min(q[axis]));
     let aside = |a: f64, b: f64| (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0);
-    !apart(0) && !apart(1) && !aside(turn(p, q, r), turn(p, q, s)) && !aside(turn(r, s, p), turn(r, s, q))
+    !are_apart && !aside(turn(p, q, r), turn(p, q, s)) && !aside(turn(r, s, p), turn(r, s, q))
 }

@@ -56,9 +56,12 @@ impl Section {
     /// A polygon.
     pub(crate) fn polygon(corners: &[[f64; 2]]) -> Self {
         // Pappus: 2 pi times the first moment, a sum of trapezoids beside the axis.
-        let pair = |k: usize| (corners[k], corners[(k + 1) % corners.len()]);
-        let beside = |([r, z], [s, w]): ([f64; 2], [f64; 2])| (w - z) * (r * r + r * s + s * s);
-        let turned = PI / 3.0 * (0..corners.len()).map(|k| beside(pair(k))).sum::<f64>().abs();
+        let beside = (0..corners.len()).map(|k| {
+            let [r, z] = corners[k];
+            let [s, w] = corners[(k + 1) % corners.len()];
+            (w - z) * (r * r + r * s + s * s)
+        });
+        let turned = PI / 3.0 * beside.sum::<f64>().abs();
         Self {
             edges: super::polygon(corners, [0.0; 2], 0),
             bounds: bounds(corners),
@@ -79,11 +82,10 @@ impl Section {
     }
 
     fn moved(self, by: [f64; 2]) -> Self {
-        let moved = |at: [f64; 2]| [at[0] + by[0], at[1] + by[1]];
         let edges = self.edges.into_iter().map(|edge| edge.moved(by)).collect();
         Self {
             edges,
-            bounds: self.bounds.map(moved),
+            bounds: self.bounds.map(|at| [at[0] + by[0], at[1] + by[1]]),
             ..self
         }
     }
@@ -207,7 +209,8 @@ impl SolidShape {
                 corners: [lower, upper],
             } => {
                 let [across, up] = plane(axis);
-                let ([a, b], [c, d]) = ([lower[across], lower[up]], [upper[across], upper[up]]);
+                let [a, b] = [lower[across], lower[up]];
+                let [c, d] = [upper[across], upper[up]];
                 Some((
                     Section::polygon(&[[a, b], [c, b], [c, d], [a, d]]),
                     [lower[axis], upper[axis]],

@@ -30,9 +30,8 @@ impl Surface {
     /// is wrong with them.
     pub(crate) fn new(rows: impl Iterator<Item = [f64; 9]>) -> Result<Self, String> {
         // -0 and 0 are one place.
-        let corner = |row: &[f64; 9], k: usize| [0, 1, 2].map(|axis| row[3 * k + axis] + 0.0);
         let mut triangles: Vec<[[f64; 3]; 3]> = rows
-            .map(|row| [0, 1, 2].map(|k| corner(&row, k)))
+            .map(|row| [0, 1, 2].map(|k| [0, 1, 2].map(|axis| row[3 * k + axis] + 0.0)))
             .filter(|[a, b, c]| a != b && b != c && c != a)
             .collect();
         if triangles.is_empty() {
@@ -76,12 +75,12 @@ impl Surface {
         let [along, across] = made.cuts.each_ref().map(|cuts| cuts.len() + 1);
         let mut bins = vec![Vec::new(); along * across];
         for (number, triangle) in (0_u32..).zip(&made.triangles) {
-            let reach = |axis: usize| {
+            let [columns, rows] = [0, 1].map(|axis| {
                 let ends = triangle.map(|corner| made.bin(axis, corner[axis]));
                 ends.iter().min().copied().unwrap_or(0)..=ends.iter().max().copied().unwrap_or(0)
-            };
-            for y in reach(1) {
-                reach(0).for_each(|x| bins[y * along + x].push(number));
+            });
+            for y in rows {
+                columns.clone().for_each(|x| bins[y * along + x].push(number));
             }
         }
         Self { bins, ..made }
@@ -93,8 +92,9 @@ impl Surface {
     }
 
     pub(crate) fn moved(mut self, by: [f64; 3]) -> Self {
-        let moved = |at: &mut [f64; 3]| (0..3).for_each(|axis| at[axis] += by[axis]);
-        self.triangles.iter_mut().flatten().for_each(moved);
+        for corner in self.triangles.iter_mut().flatten() {
+            (0..3).for_each(|axis| corner[axis] += by[axis]);
+        }
         Self::binned(self.triangles)
     }
 
@@ -115,7 +115,9 @@ impl Surface {
 
     /// What it encloses of the vertical line at a place, upwards: where the line has entered more often than left.
     pub(crate) fn vertical(&self, at: [f64; 2]) -> Vec<[f64; 2]> {
-        let (mut inside, mut depth, mut from) = (Vec::new(), 0, 0.0);
+        let mut inside = Vec::new();
+        let mut depth = 0;
+        let mut from = 0.0;
         for (z, crossing) in self.crossings(at) {
             let before = depth;
             depth -= crossing;
@@ -179,7 +181,8 @@ impl Surface {
     /// Whether the line at a place enters and leaves in turns.
     fn is_simple(&self, at: [f64; 2]) -> Result<(), String> {
         let height = self.bounds[1][2] - self.bounds[0][2];
-        let (mut depth, mut last) = (0, f64::NEG_INFINITY);
+        let mut depth = 0;
+        let mut last = f64::NEG_INFINITY;
         for (z, crossing) in self.crossings(at) {
             if !(0..=1).contains(&depth) && z - last > ROUNDING * height {
                 let [x, y] = at;
@@ -204,27 +207,30 @@ fn edges(triangle: &[[f64; 3]; 3]) -> impl Iterator<Item = [[f64; 2]; 2]> {
 
 /// Pairs of edges whose rectangles meet, swept along the axis along which they lie farther apart.
 fn near(mut edges: Vec<[[f64; 2]; 2]>) -> impl Iterator<Item = ([[f64; 2]; 2], [[f64; 2]; 2])> {
-    let from = |edge: &[[f64; 2]; 2], axis: usize| edge[0][axis].min(edge[1][axis]);
-    let to = |edge: &[[f64; 2]; 2], axis: usize| edge[0][axis].max(edge[1][axis]);
-    let spread = |axis: usize| {
-        let least = edges.iter().map(|edge| from(edge, axis)).fold(f64::INFINITY, f64::min);
-        edges.iter().map(|edge| from(edge, axis) - least).fold(0.0, f64::max)
-    };
-    let axis = usize::from(spread(1) > spread(0));
-    edges.sort_by(|one, other| from(one, axis).total_cmp(&from(other, axis)));
-    let meet = move |one: &[[f64; 2]; 2], other: &[[f64; 2]; 2]| {
-        from(other, 1 - axis) <= to(one, 1 - axis) && from(one, 1 - axis) <= to(other, 1 - axis)
-    };
+    let [along, across] = [0, 1].map(|axis| {
+        let first = edges.iter().map(|edge| least(edge, axis)).fold(f64::INFINITY, f64::min);
+        let off = edges.iter().map(|edge| least(edge, axis) - first);
+        off.fold(0.0, f64::max)
+    });
+    let axis = usize::from(across > along);
+    let other = 1 - axis;
+    edges.sort_by(|a, b| least(a, axis).total_cmp(&least(b, axis)));
     (0..edges.len()).flat_map(move |k| {
-        let one = edges[k];
-        let after = edges[k + 1..]
-            .iter()
-            .take_while(|other| from(other, axis) <= to(&one, axis));
-        after
-            .filter(|other| meet(&one, other))
-            .map(|other| (one, *other))
-            .collect::<Vec<_>>()
+        let a = edges[k];
+        let after = edges[k + 1..].iter().take_while(|b| least(b, axis) <= most(&a, axis));
+        let near = after.filter(|b| least(b, other) <= most(&a, other) && least(&a, other) <= most(b, other));
+        near.map(|b| (a, *b)).collect::<Vec<_>>()
     })
+}
+
+/// The lower end of an edge along an axis.
+fn least(edge: &[[f64; 2]; 2], axis: usize) -> f64 {
+    edge[0][axis].min(edge[1][axis])
+}
+
+/// The upper end of an edge along an axis.
+fn most(edge: &[[f64; 2]; 2], axis: usize) -> f64 {
+    edge[0][axis].max(edge[1][axis])
 }
 
 /// The place in the middle of the angle of two ways from another, so far from both; none where it is beyond their ends.
@@ -240,29 +246,40 @@ fn between(at: [f64; 2], ways: [[f64; 2]; 2], far: f64) -> Option<[f64; 2]> {
 /// Where two edges cross between their ends, and the ways from there to the ends of both.
 #[allow(clippy::type_complexity)]
 fn crossing(one: [[f64; 2]; 2], other: [[f64; 2]; 2]) -> Option<([f64; 2], [[[f64; 2]; 2]; 2])> {
-    let way = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
-    let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
-    let (u, v, apart) = (way(one[0], one[1]), way(other[0], other[1]), way(one[0], other[0]));
+    let u = way(one[0], one[1]);
+    let v = way(other[0], other[1]);
+    let apart = way(one[0], other[0]);
     let sine = cross(u, v);
-    let inside = |part: f64| ROUNDING < part && part < 1.0 - ROUNDING;
-    let [s, t] = [cross(apart, v) / sine, cross(apart, u) / sine];
-    let at = [0, 1].map(|axis| one[0][axis] + s * u[axis]);
-    (inside(s) && inside(t)).then(|| (at, [one, other].map(|edge| edge.map(|end| way(at, end)))))
+    let parts = [cross(apart, v) / sine, cross(apart, u) / sine];
+    let at = [0, 1].map(|axis| one[0][axis] + parts[0] * u[axis]);
+    let are_inside = parts.iter().all(|part| ROUNDING < *part && *part < 1.0 - ROUNDING);
+    are_inside.then(|| (at, [one, other].map(|edge| edge.map(|end| way(at, end)))))
+}
+
+/// The vector from a place to another one.
+fn way(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
+    [to[0] - from[0], to[1] - from[1]]
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
 }
 
 /// Whether every edge has as many triangles on one side as on the other.
 fn closed(triangles: &[[[f64; 3]; 3]]) -> Result<(), String> {
-    let sum = |sides: &Vec<EdgeSide>| sides.iter().map(|side| if side.upwards { 1 } else { -1 }).sum::<i64>();
     let edges = edges_of(triangles);
-    let open = edges.values().filter(|sides| sum(sides) != 0).count();
-    match edges.values().find(|sides| sum(sides) != 0) {
-        None => Ok(()),
-        Some(sides) => Err(format!(
-            "E0034: the surface is not closed at {open} edges, first at the edge from {:?} to {:?} m. Weld vertices, \
-             fill holes and make normals consistent with a mesh tool.",
-            sides[0].ends[0], sides[0].ends[1]
-        )),
-    }
+    let open = edges.values().filter(|sides| {
+        let signs = sides.iter().map(|side| if side.upwards { 1 } else { -1 });
+        signs.sum::<i64>() != 0
+    });
+    let open: Vec<&Vec<EdgeSide>> = open.collect();
+    let Some(sides) = open.first() else { return Ok(()) };
+    let open = open.len();
+    Err(format!(
+        "E0034: the surface is not closed at {open} edges, first at the edge from {:?} to {:?} m. Weld vertices, \
+         fill holes and make normals consistent with a mesh tool.",
+        sides[0].ends[0], sides[0].ends[1]
+    ))
 }
 
 /// A triangle at an edge.
@@ -278,15 +295,14 @@ pub(crate) struct EdgeSide {
 /// Edges by the numbers of their corners, with the triangles at them.
 pub(crate) fn edges_of(triangles: &[[[f64; 3]; 3]]) -> BTreeMap<[usize; 2], Vec<EdgeSide>> {
     let mut numbers = HashMap::new();
-    let mut number = |at: [f64; 3]| {
-        let next = numbers.len();
-        *numbers.entry(at.map(f64::to_bits)).or_insert(next)
-    };
     let mut edges: BTreeMap<[usize; 2], Vec<EdgeSide>> = BTreeMap::new();
     for (triangle, corners) in triangles.iter().enumerate() {
         for k in 0..3 {
             let ends = [corners[k], corners[(k + 1) % 3]];
-            let [from, to] = ends.map(&mut number);
+            let [from, to] = ends.map(|at| {
+                let next = numbers.len();
+                *numbers.entry(at.map(f64::to_bits)).or_insert(next)
+            });
             let sides = edges.entry([from.min(to), from.max(to)]).or_default();
             sides.push(EdgeSide {
                 triangle,
@@ -299,38 +315,42 @@ pub(crate) fn edges_of(triangles: &[[[f64; 3]; 3]]) -> BTreeMap<[usize; 2], Vec<
 }
 
 fn bounds(triangles: &[[[f64; 3]; 3]]) -> [[f64; 3]; 2] {
-    let corners = || triangles.iter().flatten();
-    let least = |axis: usize| corners().map(|corner| corner[axis]).fold(f64::INFINITY, f64::min);
-    let most = |axis: usize| corners().map(|corner| corner[axis]).fold(f64::NEG_INFINITY, f64::max);
-    [[0, 1, 2].map(least), [0, 1, 2].map(most)]
+    let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for corner in triangles.iter().flatten() {
+        for axis in 0..3 {
+            bounds[0][axis] = bounds[0][axis].min(corner[axis]);
+            bounds[1][axis] = bounds[1][axis].max(corner[axis]);
+        }
+    }
+    bounds
 }
 
 /// The sum of the tetrahedra below the triangles, m³.
 fn volume(triangles: &[[[f64; 3]; 3]], from: [f64; 3]) -> f64 {
-    let six = |triangle: &[[f64; 3]; 3]| {
+    let six = triangles.iter().map(|triangle| {
         let [a, b, c] = triangle.map(|corner| [0, 1, 2].map(|axis| corner[axis] - from[axis]));
         a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
-    };
-    triangles.iter().map(six).sum::<f64>() / 6.0
+    });
+    six.sum::<f64>() / 6.0
 }
 
 /// How often a triangle turns around a place, seen from above. Which side of an edge a place lies on is computed alike
 /// for both of its triangles, so that over a closed surface the turns sum to zero whatever the rounding.
 fn around(triangle: &[[f64; 3]; 3], [x, y]: [f64; 2]) -> i32 {
-    let across = |from: [f64; 3], to: [f64; 3]| {
+    let mut turns = 0;
+    for k in 0..3 {
+        let [from, to] = [triangle[k], triangle[(k + 1) % 3]];
         let (low, high, sign) = if from[1] < to[1] { (from, to, 1) } else { (to, from, -1) };
         if !(low[1] <= y && y < high[1]) {
-            return 0;
+            continue;
         }
         let meets = low[0] + (y - low[1]) / (high[1] - low[1]) * (high[0] - low[0]);
         // Within the edge, so that no place is found whose bin the triangle does not reach.
         if x < meets.clamp(from[0].min(to[0]), from[0].max(to[0])) {
-            sign
-        } else {
-            0
+            turns += sign;
         }
-    };
-    (0..3).map(|k| across(triangle[k], triangle[(k + 1) % 3])).sum()
+    }
+    turns
 }
 
 /// Whether a triangle stands upright but for rounding: where a line cuts it is arbitrary.
@@ -349,10 +369,8 @@ fn height([a, b, c]: &[[f64; 3]; 3], at: [f64; 2]) -> f64 {
     let [u, v] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
     let way = [at[0] - a[0], at[1] - a[1]];
     let twice = u[0] * v[1] - u[1] * v[0];
-    let (s, t) = (
-        (way[0] * v[1] - way[1] * v[0]) / twice,
-        (u[0] * way[1] - u[1] * way[0]) / twice,
-    );
+    let s = (way[0] * v[1] - way[1] * v[0]) / twice;
+    let t = (u[0] * way[1] - u[1] * way[0]) / twice;
     let z = a[2] + s * u[2] + t * v[2];
     // Of a wall, whose plane has no height, the clamp is all.
     let ends = [a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2])];
@@ -418,12 +436,11 @@ mod tests {
     #[test]
     fn lines_through_corners_and_edges_of_any_surface_enter_as_often_as_they_leave() {
         // A bumpy sphere whose corners have no round numbers.
-        let (around_it, up) = (24, 12);
+        let around_it = 24;
+        let up = 12;
         let at = |i: usize, j: usize| {
-            let (phi, theta) = (
-                std::f64::consts::TAU * (i % around_it) as f64 / around_it as f64,
-                std::f64::consts::PI * j as f64 / up as f64,
-            );
+            let phi = std::f64::consts::TAU * (i % around_it) as f64 / around_it as f64;
+            let theta = std::f64::consts::PI * j as f64 / up as f64;
             let r = if j.is_multiple_of(up) {
                 1.3
             } else {
@@ -452,7 +469,8 @@ mod tests {
     #[test]
     fn shells_that_touch_but_for_rounding_are_one_body_and_those_that_overlap_are_none() {
         for (k, overlap) in (0..400).flat_map(|k| [0.0, 1e-3].map(|overlap| (k, overlap))) {
-            let (angle, thick) = (0.0157 * f64::from(k) + 0.01, if k % 2 == 0 { 0.05 } else { 0.5 });
+            let angle = 0.0157 * f64::from(k) + 0.01;
+            let thick = if k % 2 == 0 { 0.05 } else { 0.5 };
             let (sin, cos) = angle.sin_cos();
             let placed = |row: [f64; 9]| {
                 let corner = |k: usize| {

@@ -37,12 +37,9 @@ impl Slice {
         let width = self.x[1] - self.x[0];
         let heights = [self.top[0] - self.bottom[0], self.top[1] - self.bottom[1]];
         let about_left = width * width * (heights[0] + 2.0 * heights[1]) / 6.0;
-        let squares = |[p, q]: [f64; 2]| p * p + p * q + q * q;
+        let [top, bottom] = [self.top, self.bottom].map(|[p, q]| p * p + p * q + q * q);
         let area = 0.5 * (heights[0] + heights[1]) * width;
-        let chords = [
-            self.x[0] * area + about_left,
-            width * (squares(self.top) - squares(self.bottom)) / 6.0,
-        ];
+        let chords = [self.x[0] * area + about_left, width * (top - bottom) / 6.0];
         [chords[0] + self.bulge.moment[0], chords[1] + self.bulge.moment[1]]
     }
 }
@@ -85,7 +82,8 @@ pub(crate) fn sweep(
     filled: &dyn Fn(&[bool]) -> bool,
     visit: &mut dyn FnMut(Slice),
 ) {
-    let (mut below, mut within) = (Vec::new(), Vec::new());
+    let mut below = Vec::new();
+    let mut within = Vec::new();
     for edge in edges {
         match edge.span(window.x) {
             Some([_, high]) if high < window.y[0] => below.push(edge),
@@ -96,7 +94,8 @@ pub(crate) fn sweep(
     let mut inside = vec![false; shapes];
     let mut crossed: Vec<(f64, &Edge)> = Vec::new();
     for pair in events(&within, window).windows(2) {
-        let (x, middle) = ([pair[0], pair[1]], 0.5 * (pair[0] + pair[1]));
+        let x = [pair[0], pair[1]];
+        let middle = 0.5 * (pair[0] + pair[1]);
         let here = |edge: &&&Edge| edge.a[0] <= middle && middle < edge.b[0];
         inside.fill(false);
         below
@@ -139,26 +138,15 @@ pub(crate) fn sweep(
 
 /// Increasing x from one side of the window to the other, between which edges neither end nor cross anything.
 fn events(edges: &[&Edge], window: &Window) -> Vec<f64> {
-    let mut events = window.x.to_vec();
-    let mut add = |x: f64| {
-        if window.x[0] < x && x < window.x[1] {
-            events.push(x);
-        }
-    };
+    let mut events = Vec::new();
     for (number, edge) in edges.iter().enumerate() {
-        [edge.a[0], edge.b[0]].into_iter().for_each(&mut add);
-        window
-            .y
-            .into_iter()
-            .flat_map(|y| edge.levels(y))
-            .flatten()
-            .for_each(&mut add);
+        events.extend([edge.a[0], edge.b[0]]);
+        events.extend(window.y.into_iter().flat_map(|y| edge.levels(y)).flatten());
         let others = edges[number + 1..].iter().filter(|other| other.shape != edge.shape);
-        others
-            .flat_map(|other| edge.crossings(other))
-            .flatten()
-            .for_each(&mut add);
+        events.extend(others.flat_map(|other| edge.crossings(other)).flatten());
     }
+    events.retain(|x| window.x[0] < *x && *x < window.x[1]);
+    events.extend(window.x);
     events.sort_by(f64::total_cmp);
     events.dedup();
     events

@@ -59,7 +59,7 @@ impl Volume {
     pub(crate) fn new(whole: SolidShape, cut: Vec<SolidShape>, axes: &[GridAxis], n: usize) -> Result<Self, String> {
         let origin = [0, 1, 2].map(|axis| axes[axis].lower());
         let bounds = bounds(&whole, &cut);
-        let filling = Filling::of((&whole, &cut, bounds), axes, n)?;
+        let filling = Filling::of(&whole, &cut, bounds, axes, n)?;
         let volume = whole.volume();
         let mut made = Self {
             origin,
@@ -152,17 +152,18 @@ impl Volume {
                 ends,
             } => {
                 let extent = AxisExtent::between(&axes[*along], *ends);
-                prism_slab((outline, plane), (*along, &extent), n, i)
+                prism_slab(outline, plane, *along, &extent, n, i)
             }
             Filling::Lattice { scale } => {
-                let scaled = |(_, cell): (usize, lattice::LatticeCell)| {
+                let cells = self.lattice_slab(axes, n, i).into_iter();
+                let places = cells.flat_map(|(_, cell)| {
                     let by = if cell.whole { 1.0 } else { *scale };
                     cell.places.into_iter().map(move |at| CellPlace {
                         area: by * at.area,
                         ..at
                     })
-                };
-                self.lattice_slab(axes, n, i).into_iter().flat_map(scaled).collect()
+                });
+                places.collect()
             }
         }
     }
@@ -179,9 +180,11 @@ impl Volume {
             for k in of_z.cells.clone() {
                 let parts = [of_x.part(i), of_y.part(j), of_z.part(k)];
                 let area = parts.iter().map(|part| part[1] - part[0]).product::<f64>() / n.pow(3) as f64;
-                let number = |point: usize| [point / (n * n), point / n % n, point % n];
-                let at = |point: usize| [0, 1, 2].map(|axis| place(parts[axis], number(point)[axis], n));
-                places.extend((0..n.pow(3)).map(|point| CellPlace { x: at(point), area }));
+                places.extend((0..n.pow(3)).map(|point| {
+                    let numbers = [point / (n * n), point / n % n, point % n];
+                    let x = [0, 1, 2].map(|axis| place(parts[axis], numbers[axis], n));
+                    CellPlace { x, area }
+                }));
             }
         }
         places
@@ -190,16 +193,16 @@ impl Volume {
     /// Cells of slab `i`, each with its number along axis 1.
     fn lattice_slab(&self, axes: &[GridAxis], n: usize, i: usize) -> Vec<(usize, lattice::LatticeCell)> {
         let [lower, upper] = self.bounds;
-        let sides = |axis: usize, cell: usize| [axes[axis].breakpoint(cell), axes[axis].breakpoint(cell + 1)];
         let ends = self.ends();
         let lines = lattice::Lines {
             covers: &|at| self.vertical(at),
             ends: &ends,
         };
-        let column = |j: usize| lattice::column(&lines, [sides(0, i), sides(1, j)], &axes[2], n);
-        reached(&axes[1], [lower[1], upper[1]])
-            .flat_map(|j| column(j).into_iter().map(move |cell| (j, cell)))
-            .collect()
+        let cells = reached(&axes[1], [lower[1], upper[1]]).flat_map(|j| {
+            let column = lattice::column(&lines, [sides(&axes[0], i), sides(&axes[1], j)], &axes[2], n);
+            column.into_iter().map(move |cell| (j, cell))
+        });
+        cells.collect()
     }
 
     fn count(&mut self, axes: &[GridAxis], n: usize) {
@@ -222,7 +225,7 @@ impl Volume {
             Filling::Prism {
                 outline, along, ends, ..
             } => {
-                self.tally = prism_tally(outline, (*along, extent(*along), ends[1] - ends[0]), n);
+                self.tally = prism_tally(outline, *along, extent(*along), ends[1] - ends[0], n);
                 self.volume = outline.area * (ends[1] - ends[0]);
             }
             Filling::Lattice { .. } => self.count_lattice(axes, n),
@@ -232,7 +235,9 @@ impl Volume {
     /// Counts, and scales the cells that are cut where the volume is known.
     fn count_lattice(&mut self, axes: &[GridAxis], n: usize) {
         let [lower, upper] = self.bounds;
-        let (mut tally, mut total, mut sums) = (SlabTally::default(), 0_u64, [0.0; 2]);
+        let mut tally = SlabTally::default();
+        let mut total = 0_u64;
+        let mut sums = [0.0; 2];
         for i in reached(&axes[0], [lower[0], upper[0]]) {
             let cells = self.lattice_slab(axes, n, i);
             if cells.is_empty() {
@@ -262,8 +267,9 @@ impl Volume {
         let [partly, wholly] = sums;
         if !self.cut.is_empty() {
             let shapes: Vec<&SolidShape> = std::iter::once(&self.whole).chain(&self.cut).collect();
-            let covered = |at: [f64; 2]| self.vertical(at).iter().map(|[from, to]| to - from).sum();
-            self.volume = measure::volume(&shapes, self.bounds, covered);
+            self.volume = measure::volume(&shapes, self.bounds, |at| {
+                self.vertical(at).iter().map(|[from, to]| to - from).sum()
+            });
         }
         if partly > 0.0 {
             let scale = (self.volume - wholly) / partly;
@@ -290,7 +296,9 @@ impl Volume {
 
 impl Filling {
     fn of(
-        (whole, cut, bounds): (&SolidShape, &[SolidShape], [[f64; 3]; 2]),
+        whole: &SolidShape,
+        cut: &[SolidShape],
+        bounds: [[f64; 3]; 2],
         axes: &[GridAxis],
         n: usize,
     ) -> Result<Self, String> {
@@ -308,12 +316,7 @@ impl Filling {
             let lower = plane.lower();
             let ends = bounds.map(|corner| corner[along]);
             let bounds = bounds.map(|corner| [corner[across] + lower[0], corner[up] + lower[1]]);
-            let outline = Outline::new(
-                edges,
-                1 + cut.len(),
-                (bounds, section.area),
-                (&plane, Geometry::Solid, n),
-            )?;
+            let outline = Outline::new(edges, 1 + cut.len(), bounds, section.area, &plane, Geometry::Solid, n)?;
             return Ok(Self::Prism {
                 outline: Box::new(outline),
                 plane,
@@ -350,10 +353,9 @@ pub(crate) fn bounds(whole: &SolidShape, cut: &[SolidShape]) -> [[f64; 3]; 2] {
 pub(crate) fn left<const D: usize>([mut lower, mut upper]: [[f64; D]; 2], cut: &[[[f64; D]; 2]]) -> [[f64; D]; 2] {
     for _ in cut {
         for [from, to] in cut {
-            let covers =
-                |axis: usize, lower: &[f64; D], upper: &[f64; D]| from[axis] <= lower[axis] && upper[axis] <= to[axis];
             for axis in 0..D {
-                if (0..D).any(|other| other != axis && !covers(other, &lower, &upper)) {
+                let mut others = (0..D).filter(|other| *other != axis);
+                if !others.all(|other| from[other] <= lower[other] && upper[other] <= to[other]) {
                     continue;
                 }
                 if from[axis] <= lower[axis] && lower[axis] < to[axis] {
@@ -393,8 +395,10 @@ fn through(whole: &SolidShape, cut: &[SolidShape], along: usize) -> Option<(Vec<
 
 /// Points of slab `i` along axis 0 of a prism.
 fn prism_slab(
-    (outline, plane): (&Outline, &GridSpec),
-    (along, extent): (usize, &AxisExtent<'_>),
+    outline: &Outline,
+    plane: &GridSpec,
+    along: usize,
+    extent: &AxisExtent<'_>,
     n: usize,
     i: usize,
 ) -> Vec<CellPlace<3>> {
@@ -424,19 +428,20 @@ fn prism_slab(
 
 /// Points of a column of an outline.
 fn section(outline: &Outline, plane: &GridSpec, n: usize, column: usize) -> Vec<CellPlace> {
-    let sides = |axis: usize, cell: usize| [plane.axes[axis].breakpoint(cell), plane.axes[axis].breakpoint(cell + 1)];
-    let of_part = |part: RegionPart| match part {
+    let x = sides(&plane.axes[0], column);
+    let parts = outline.column(plane, n, column).parts.into_iter();
+    let places = parts.flat_map(|part| match part {
         RegionPart::Whole(rows) => rows
-            .flat_map(|row| of_cell(outline.lattice(n), [sides(0, column), sides(1, row)]))
+            .flat_map(|row| of_cell(outline.lattice(n), [x, sides(&plane.axes[1], row)]))
             .collect(),
         RegionPart::Cut(_, places) => places,
-    };
-    outline
-        .column(plane, n, column)
-        .parts
-        .into_iter()
-        .flat_map(of_part)
-        .collect()
+    });
+    places.collect()
+}
+
+/// Lower and upper side of a cell along an axis, m from the grid's lower corner.
+fn sides(axis: &GridAxis, cell: usize) -> [f64; 2] {
+    [axis.breakpoint(cell), axis.breakpoint(cell + 1)]
 }
 
 /// A place by that along an axis and those beside it.
@@ -447,7 +452,7 @@ fn beside(along: usize, at: f64, others: [f64; 2]) -> [f64; 3] {
     place
 }
 
-fn prism_tally(outline: &Outline, (along, cells, length): (usize, Range<usize>, f64), n: usize) -> SlabTally {
+fn prism_tally(outline: &Outline, along: usize, cells: Range<usize>, length: f64, n: usize) -> SlabTally {
     let of_plane = outline.tally();
     let in_plane = of_plane.before.last().copied().unwrap_or(0);
     let thick = (cells.len() * n) as u64;

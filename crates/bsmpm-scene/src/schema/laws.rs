@@ -1,6 +1,7 @@
 //! Constitutive laws in the case file: the name of each law, its keys, and its conversion to a Rust type.
 
 use crate::record::Record;
+use bsmpm::material::Strength;
 use bsmpm::material::{
     CamClay, Decay, DruckerPrager, Elastic, Hencky, Match, Material, MohrCoulomb, MuI, Rate, Separation,
     SofteningMohrCoulomb, VonMises,
@@ -113,10 +114,10 @@ impl LawName {
             }
             Self::DruckerPrager => {
                 let fit = record.word("fit").unwrap_or_default();
-                Material::DruckerPrager(DruckerPrager::new(elastic, (0.0, 0.0, 0.0), fit))
+                Material::DruckerPrager(DruckerPrager::new(elastic, 0.0, 0.0, 0.0, fit))
             }
             Self::SensitiveClay => {
-                let none = (0.0, 0.0, 0.0);
+                let none = Strength::default();
                 let law = SofteningMohrCoulomb::new(elastic, none, none, 1.0, Decay::Exponential);
                 let rate = record.number("rate_parameter").zip(record.number("reference_rate"));
                 let rate = rate.map(|(per_decade, reference)| Rate { per_decade, reference });
@@ -129,7 +130,8 @@ impl LawName {
             Self::MuI => Material::MuI(MuI::new(elastic, [0.0; 5])),
             Self::VonMises => Material::VonMises(VonMises::new(elastic, 0.0, 0.0)),
             Self::Softening => {
-                let (decay, none) = (record.word("softening").unwrap_or_default(), (0.0, 0.0, 0.0));
+                let decay = record.word("softening").unwrap_or_default();
+                let none = Strength::default();
                 Material::SofteningMohrCoulomb(SofteningMohrCoulomb::new(elastic, none, none, 1.0, decay))
             }
         }

@@ -1,11 +1,14 @@
 //! Reads rows of numbers from files that a case names: `{ file = "record.csv" }`.
 
-use super::{LIMIT, MAX_BYTES, bounded, stl};
+use super::{LIMIT, MAX_BYTES, bounded, invalid, stl};
 use crate::words::{Geometry, Word};
 use bsmpm_messages::with_context;
-use std::io::{self, Error, ErrorKind};
+use std::collections::BTreeMap;
+use std::io::{self, Error};
+use std::iter::Peekable;
 use std::ops::Range;
 use std::path::Path;
+use std::str::SplitWhitespace;
 use toml::de::{DeTable, DeValue};
 
 /// A table in the place of rows, as it is written.
@@ -19,7 +22,7 @@ struct FileReference<'a> {
 /// from then on. Files are looked for beside the case, in `folder`.
 ///
 /// # Errors
-/// Those of reading; [`ErrorKind::InvalidData`] where a file does not hold rows of numbers.
+/// Those of reading; [`io::ErrorKind::InvalidData`] where a file does not hold rows of numbers.
 pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
     let (table, _) = DeTable::parse_recoverable(text);
     let geometry = table
@@ -36,12 +39,13 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
         collect(value, text, &mut references);
     }
     references.sort_by_key(|reference: &FileReference<'_>| reference.span.start);
-    let (mut whole, mut from) = (String::with_capacity(text.len()), 0);
+    let mut whole = String::with_capacity(text.len());
+    let mut from = 0;
     for FileReference { span, file, along } in references {
         let in_file = |error: Error| Error::new(error.kind(), with_context(&error.to_string(), file));
         whole.push_str(&text[from..span.start]);
         let bytes = read(&folder.join(file)).map_err(in_file)?;
-        let found = rows_of(file, bytes, (along, axes));
+        let found = rows_of(file, bytes, along, axes);
         whole.push_str(&found.map_err(in_file)?);
         from = span.end;
     }
@@ -49,49 +53,46 @@ pub(super) fn inlined(text: &str, folder: &Path) -> io::Result<String> {
     Ok(whole)
 }
 
-/// The axis that a file names, if it does, and those that the geometry has.
-type AxisNames<'a> = (Option<&'a str>, &'a [&'a str]);
-
-/// Rows of a file, whose format follows from its name and its bytes.
-fn rows_of(file: &str, bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
-    let has_ending = |ending: &str| file.to_ascii_lowercase().ends_with(ending);
-    if has_ending(".at2") {
-        Err(Error::new(ErrorKind::InvalidData, PEER))
+/// Rows of a file, whose format follows from its name and its bytes: `along` the axis that the case names for it, of
+/// the `axes` of the geometry.
+fn rows_of(file: &str, bytes: Vec<u8>, along: Option<&str>, axes: &[&str]) -> io::Result<String> {
+    let name = file.to_ascii_lowercase();
+    if name.ends_with(".at2") {
+        Err(invalid(PEER))
     } else if stl::is_binary(&bytes) {
         stl::triangles(&bytes)
-    } else if has_ending(".stl") && bytes.contains(&0) {
+    } else if name.ends_with(".stl") && bytes.contains(&0) {
         Err(stl::broken(&bytes))
     } else {
-        text_rows(bytes, along)
+        text_rows(bytes, along, axes)
     }
 }
 
 /// Rows of whatever text holds them.
-fn text_rows(bytes: Vec<u8>, along: AxisNames<'_>) -> io::Result<String> {
-    let text = String::from_utf8(bytes).map_err(|_| {
-        Error::new(
-            ErrorKind::InvalidData,
-            "E0002: the file is not UTF-8 text. Save it as UTF-8.",
-        )
-    })?;
-    let begins = |word: &str| {
-        text.trim_start()
-            .get(..word.len())
-            .is_some_and(|of| of.eq_ignore_ascii_case(word))
-    };
-    if begins("PEER")
+fn text_rows(bytes: Vec<u8>, along: Option<&str>, axes: &[&str]) -> io::Result<String> {
+    let text = String::from_utf8(bytes);
+    let text = text.map_err(|_| invalid("E0002: the file is not UTF-8 text. Save it as UTF-8."))?;
+    if begins(&text, "PEER")
         || text
             .lines()
             .take(4)
             .any(|line| line.trim_start().to_ascii_uppercase().starts_with("NPTS"))
     {
-        return Err(Error::new(ErrorKind::InvalidData, PEER));
+        return Err(invalid(PEER));
     }
-    match (begins("ncols"), begins("solid")) {
-        (true, _) => grid(&text),
-        (_, true) => stl::facets(&text),
-        _ => rows(&text, along),
+    if begins(&text, "ncols") {
+        grid(&text)
+    } else if begins(&text, "solid") {
+        stl::facets(&text)
+    } else {
+        rows(&text, along, axes)
     }
+}
+
+/// Whether a text begins with a word, in capital or small letters.
+fn begins(text: &str, word: &str) -> bool {
+    let beginning = text.trim_start().get(..word.len());
+    beginning.is_some_and(|beginning| beginning.eq_ignore_ascii_case(word))
 }
 
 /// Of a record as the databases of ground motions write it.
@@ -104,7 +105,7 @@ fn read(path: &Path) -> io::Result<Vec<u8>> {
     let bytes = bounded(path)?;
     if bytes.len() > MAX_BYTES {
         let message = format!("E0004: the data file is larger than {LIMIT} MiB, the limit. Reduce the number of rows.");
-        return Err(Error::new(ErrorKind::InvalidData, message));
+        return Err(invalid(message));
     }
     Ok(bytes)
 }
@@ -133,22 +134,23 @@ fn collect<'a>(value: &'a toml::Spanned<DeValue<'_>>, text: &str, references: &m
 
 /// Rows as TOML: numbers, with the units of a header if there is one. Cells stand between commas, semicolons or blanks;
 /// `#` starts a comment. Rows of two, a time and a number `along` an axis, get zeros along the others.
-fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
-    let bad = |message: String| Error::new(ErrorKind::InvalidData, message);
+fn rows(text: &str, along: Option<&str>, axes: &[&str]) -> io::Result<String> {
     if let Some(other) = along.filter(|along| !axes.contains(along)) {
         let axes = axes.join("\", \"");
-        return Err(bad(format!(
+        return Err(invalid(format!(
             "E0028: along = \"{other}\" is not an axis of this case. Use one of \"{axes}\"."
         )));
     }
     if let Some(heading) = hidden(text) {
-        return Err(bad(format!(
+        return Err(invalid(format!(
             "E0029: the units in `{heading}` are not read, because `#` makes the line a comment. Delete the `#`."
         )));
     }
     let lines = text.trim_start_matches('\u{feff}').lines().enumerate();
     let lines = lines.map(|(number, line)| (number + 1, line.split('#').next().unwrap_or_default().trim()));
-    let (mut units, mut width, mut whole) = (Vec::new(), None, String::from("["));
+    let mut units = Vec::new();
+    let mut width = None;
+    let mut whole = String::from("[");
     for (number, line) in lines.filter(|(_, line)| !line.is_empty()) {
         let cells = cells(line);
         if width.is_none() && units.is_empty() && cells.iter().all(|cell| cell.parse::<f64>().is_err()) {
@@ -158,93 +160,121 @@ fn rows(text: &str, (along, axes): AxisNames<'_>) -> io::Result<String> {
         let expected = *width.get_or_insert(if units.is_empty() { cells.len() } else { units.len() });
         if cells.len() != expected {
             let found = cells.len();
-            return Err(bad(format!(
+            return Err(invalid(format!(
                 "E0028: the number of columns in line {number} is {found}, but in the first line it is {expected}. \
                  Give all lines the same number of columns."
             )));
         }
         if along.is_some() && expected != 2 {
-            return Err(bad(format!(
+            return Err(invalid(format!(
                 "E0028: with `along` each row has two columns, a time and a value, but line {number} has {expected} \
                  columns. Delete `along`, or reduce the columns to two."
             )));
         }
-        let mut row = Vec::with_capacity(cells.len() + 1);
-        for (column, cell) in cells.iter().enumerate() {
-            let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
-            let value = value.ok_or_else(|| {
-                bad(format!(
-                    "E0028: `{cell}` in line {number} of the data file is not a number. Correct the line."
-                ))
-            })?;
-            row.push(match units.get(column) {
-                Some(Some(unit)) => format!("\"{value:?} {unit}\""),
-                _ => format!("{value:?}"),
-            });
-        }
-        if let (Some(along), Some(number)) = (along, row.get(1).cloned()) {
+        let mut row = values(number, &cells, &units)?;
+        if let Some(along) = along
+            && let Some(value) = row.get(1).cloned()
+        {
             row.truncate(1);
-            row.extend(axes.iter().map(|axis| {
-                if *axis == along {
-                    number.clone()
+            for axis in axes {
+                row.push(if *axis == along {
+                    value.clone()
                 } else {
                     "0.0".to_owned()
-                }
-            }));
+                });
+            }
         }
         whole.push_str(&format!("[{}],", row.join(",")));
     }
     if width.is_none() {
-        return Err(bad(
-            "E0028: the data file has no row of numbers. Check the name of the file.".to_owned(),
+        return Err(invalid(
+            "E0028: the data file has no row of numbers. Check the name of the file.",
         ));
     }
     whole.push(']');
     Ok(whole)
 }
 
-/// Rows [x, y, z] as TOML of an ASCII grid: a header of ncols, nrows, xllcorner or xllcenter, the same along y,
-/// cellsize and perhaps nodata_value, then heights row by row from the north. Posts are the middles of the cells.
-fn grid(text: &str) -> io::Result<String> {
-    let bad = |message: String| Error::new(ErrorKind::InvalidData, message);
-    let mut words = text.split_whitespace().peekable();
-    let mut header = std::collections::BTreeMap::new();
-    while let Some(key) = words.next_if(|word| word.parse::<f64>().is_err()) {
-        let value = words
-            .next()
-            .and_then(|word| word.parse::<f64>().ok())
-            .filter(|value| value.is_finite());
-        header.insert(
-            key.to_ascii_lowercase(),
-            value.ok_or_else(|| {
-                bad(format!(
-                    "E0030: `{key}` in the header of the ASCII grid has no number. Correct the header."
-                ))
-            })?,
-        );
+/// Values of the line with a number as TOML, with the units of their columns.
+fn values(number: usize, cells: &[&str], units: &[Option<String>]) -> io::Result<Vec<String>> {
+    let mut values = Vec::with_capacity(cells.len() + 1);
+    for (column, cell) in cells.iter().enumerate() {
+        let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
+        let Some(value) = value else {
+            return Err(invalid(format!(
+                "E0028: `{cell}` in line {number} of the data file is not a number. Correct the line."
+            )));
+        };
+        values.push(match units.get(column) {
+            Some(Some(unit)) => format!("\"{value:?} {unit}\""),
+            _ => format!("{value:?}"),
+        });
     }
-    let given = |key: &str| header.get(key).copied();
-    let needed = |key: &str| {
-        given(key).ok_or_else(|| {
-            bad(format!(
+    Ok(values)
+}
+
+/// Header of an ASCII grid: numbers by their keys in small letters.
+struct GridHeader(BTreeMap<String, f64>);
+
+impl GridHeader {
+    /// Takes the header from the beginning of a grid's words.
+    fn of(words: &mut Peekable<SplitWhitespace<'_>>) -> io::Result<Self> {
+        let mut header = BTreeMap::new();
+        while let Some(key) = words.next_if(|word| word.parse::<f64>().is_err()) {
+            let value = words.next().and_then(|word| word.parse::<f64>().ok());
+            let Some(value) = value.filter(|value| value.is_finite()) else {
+                return Err(invalid(format!(
+                    "E0030: `{key}` in the header of the ASCII grid has no number. Correct the header."
+                )));
+            };
+            header.insert(key.to_ascii_lowercase(), value);
+        }
+        Ok(Self(header))
+    }
+
+    /// The number of a key, if the header has it.
+    fn number(&self, key: &str) -> Option<f64> {
+        self.0.get(key).copied()
+    }
+
+    /// The number of a key that must be there.
+    fn needed(&self, key: &str) -> io::Result<f64> {
+        self.number(key).ok_or_else(|| {
+            invalid(format!(
                 "E0030: the header of the ASCII grid has no `{key}`. Add a line with `{key}` and its value."
             ))
         })
-    };
-    let (columns, lines, cell) = (needed("ncols")?, needed("nrows")?, needed("cellsize")?);
-    let first = |axis: &str| match given(&format!("{axis}llcenter")) {
-        Some(center) => Ok(center),
-        None => needed(&format!("{axis}llcorner")).map(|corner| corner + 0.5 * cell),
-    };
-    let (x, y) = (first("x")?, first("y")?);
+    }
+
+    /// Middle of the first cell (m) along the axis with a name, for cells of an edge (m).
+    fn first(&self, axis: &str, cell: f64) -> io::Result<f64> {
+        match self.number(&format!("{axis}llcenter")) {
+            Some(center) => Ok(center),
+            None => self
+                .needed(&format!("{axis}llcorner"))
+                .map(|corner| corner + 0.5 * cell),
+        }
+    }
+}
+
+/// Rows [x, y, z] as TOML of an ASCII grid: a header of ncols, nrows, xllcorner or xllcenter, the same along y,
+/// cellsize and perhaps nodata_value, then heights row by row from the north. Posts are the middles of the cells.
+fn grid(text: &str) -> io::Result<String> {
+    let mut words = text.split_whitespace().peekable();
+    let header = GridHeader::of(&mut words)?;
+    let columns = header.needed("ncols")?;
+    let lines = header.needed("nrows")?;
+    let cell = header.needed("cellsize")?;
+    let x = header.first("x", cell)?;
+    let y = header.first("y", cell)?;
     let heights: Vec<&str> = words.collect();
     if columns < 2.0 || lines < 2.0 || columns.fract() + lines.fract() != 0.0 || cell <= 0.0 {
         let message = "E0030: in the header of the ASCII grid, ncols and nrows must be whole numbers above 1, and \
                        cellsize must be above 0. Correct the header.";
-        return Err(bad(message.to_owned()));
+        return Err(invalid(message));
     }
     if heights.len() as f64 != columns * lines {
-        return Err(bad(format!(
+        return Err(invalid(format!(
             "E0030: the ASCII grid has {} heights, but ncols times nrows is {}. Export the grid again.",
             heights.len(),
             columns * lines
@@ -252,16 +282,17 @@ fn grid(text: &str) -> io::Result<String> {
     }
     let mut whole = String::from("[");
     for (number, height) in heights.iter().enumerate() {
-        let (row, column) = (number / columns as usize, number % columns as usize);
+        let row = number / columns as usize;
+        let column = number % columns as usize;
         let value = height.parse::<f64>().ok().filter(|value| value.is_finite());
         let place = format!("row {}, column {}", row + 1, column + 1);
         let value = value.ok_or_else(|| {
-            bad(format!(
+            invalid(format!(
                 "E0030: `{height}` in {place} of the ASCII grid is not a number. Correct the height."
             ))
         })?;
-        if given("nodata_value") == Some(value) {
-            return Err(bad(format!(
+        if header.number("nodata_value") == Some(value) {
+            return Err(invalid(format!(
                 "E0030: {place} of the ASCII grid has no data. Fill in a height, or cut the grid to the part that has \
                  data."
             )));
@@ -349,17 +380,17 @@ mod tests {
             "# a record\n0,1.5\n\n.1, -2.0 # end\n",
             "\u{feff}0;1.5\r\n1e-1;-2\r\n",
         ] {
-            assert_eq!(rows(text, (None, PLANE)).unwrap(), plain);
+            assert_eq!(rows(text, None, PLANE).unwrap(), plain);
         }
-        let parsed = rows("t [s], a (cm/s2)\n0.02, 3\n", (Some("x"), PLANE)).unwrap();
+        let parsed = rows("t [s], a (cm/s2)\n0.02, 3\n", Some("x"), PLANE).unwrap();
         assert_eq!(parsed, "[[\"0.02 s\",\"3.0 cm/s2\",0.0],]");
         assert_eq!(
-            rows("t / s, a / g\n0.02, 3\n", (Some("x"), PLANE)).unwrap(),
+            rows("t / s, a / g\n0.02, 3\n", Some("x"), PLANE).unwrap(),
             "[[\"0.02 s\",\"3.0 g\",0.0],]"
         );
-        assert_eq!(rows("t a\n1 2", (Some("y"), PLANE)).unwrap(), "[[1.0,0.0,2.0],]");
+        assert_eq!(rows("t a\n1 2", Some("y"), PLANE).unwrap(), "[[1.0,0.0,2.0],]");
         assert_eq!(
-            rows("1 2", (Some("y"), &["x", "y", "z"])).unwrap(),
+            rows("1 2", Some("y"), &["x", "y", "z"]).unwrap(),
             "[[1.0,0.0,2.0,0.0],]"
         );
     }
@@ -367,7 +398,7 @@ mod tests {
     #[test]
     fn a_peer_record_is_refused_with_what_to_do() {
         let record = b"PEER\nKOBE\nACCELERATION\nNPTS= 2, DT= .01 SEC\n 1.0E-3 2.0E-3\n".to_vec();
-        let message = rows_of("kobe.AT2", record, (None, PLANE)).unwrap_err().to_string();
+        let message = rows_of("kobe.AT2", record, None, PLANE).unwrap_err().to_string();
         assert!(
             message.starts_with("E0049: ") && message.contains("t [s], a [g]"),
             "{message}"
@@ -376,7 +407,7 @@ mod tests {
 
     #[test]
     fn what_is_no_row_of_numbers_is_refused_with_its_line() {
-        let message = |text: &str, along| rows(text, (along, PLANE)).unwrap_err().to_string();
+        let message = |text: &str, along| rows(text, along, PLANE).unwrap_err().to_string();
         assert_eq!(
             message("0,1\n2,x", None),
             "E0028: `x` in line 2 of the data file is not a number. Correct the line."

@@ -1,6 +1,7 @@
 //! Reads triangles from STL files.
 
-use std::io::{self, Error, ErrorKind};
+use super::invalid;
+use std::io::{self, Error};
 
 /// Bytes of a binary STL before its triangles: a heading, and their number.
 const STL_HEADING: usize = 84;
@@ -41,7 +42,7 @@ pub(super) fn broken(bytes: &[u8]) -> Error {
             bytes.len()
         ),
     };
-    Error::new(ErrorKind::InvalidData, message)
+    invalid(message)
 }
 
 /// Rows of three corners as TOML of binary STL.
@@ -61,7 +62,7 @@ pub(super) fn triangles(bytes: &[u8]) -> io::Result<String> {
                  the file again.",
                 number + 1
             );
-            return Err(Error::new(ErrorKind::InvalidData, message));
+            return Err(invalid(message));
         }
         whole.push_str(&format!("[{}],", corners.join(",")));
     }
@@ -72,8 +73,8 @@ pub(super) fn triangles(bytes: &[u8]) -> io::Result<String> {
 /// Rows of three corners as TOML of STL as text. A library's reader would round its numbers to singles, by which
 /// places in a country's coordinates lie centimetres beside.
 pub(super) fn facets(text: &str) -> io::Result<String> {
-    let bad = |message: String| Error::new(ErrorKind::InvalidData, message);
-    let (mut whole, mut corners) = (String::from("["), Vec::with_capacity(9));
+    let mut whole = String::from("[");
+    let mut corners = Vec::with_capacity(9);
     for (number, line) in text.lines().enumerate() {
         let mut words = line.split_whitespace();
         match words.next().map(str::to_ascii_lowercase).as_deref() {
@@ -83,7 +84,7 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
                     .filter(|at: &f64| at.is_finite())
                     .collect();
                 if numbers.len() != 3 {
-                    return Err(bad(format!(
+                    return Err(invalid(format!(
                         "E0031: the vertex in line {} of the STL file does not have three numbers. Export the file \
                          again.",
                         number + 1
@@ -96,7 +97,7 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
                 corners.clear();
             }
             Some("endfacet") => {
-                return Err(bad(format!(
+                return Err(invalid(format!(
                     "E0031: the facet that ends in line {} of the STL file does not have three vertices. Export the \
                      file again.",
                     number + 1
@@ -106,9 +107,8 @@ pub(super) fn facets(text: &str) -> io::Result<String> {
         }
     }
     if !corners.is_empty() || whole.len() == 1 {
-        return Err(bad(
-            "E0031: the STL file has no triangle, or its last triangle is incomplete. Export the file again."
-                .to_owned(),
+        return Err(invalid(
+            "E0031: the STL file has no triangle, or its last triangle is incomplete. Export the file again.",
         ));
     }
     whole.push(']');

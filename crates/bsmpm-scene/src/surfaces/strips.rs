@@ -27,15 +27,22 @@ pub fn penalty(young: f64, edge: f64) -> f64 {
 
 /// Rigid strips once the stages until the time `t` have begun: the footing first, then the prescribed motions in the
 /// order of the file.
-pub fn strips<K: Kinematics<D>, const D: usize>(
-    case: &Case,
-    grid: &Grid<D>,
-    (penalty, t): (f64, f64),
-) -> Vec<Strip<D>> {
-    type Hold<const D: usize> = (Base, Option<StripContact<D>>);
-    let strip = |site: &Site, path: &crate::MotionPath, (base, contact): Hold<D>| {
+pub fn strips<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, penalty: f64, t: f64) -> Vec<Strip<D>> {
+    let divided = case.divided_at(t);
+    let footing = case.footing.iter();
+    let footing = footing.map(|of| (&of.site, &of.path, of.base, of.contact));
+    let prescribed = case.prescribed.iter();
+    let prescribed = prescribed.map(|of| (&of.site, &of.path, of.base, of.contact));
+    let mut strips = Vec::new();
+    for (number, (site, path, base, contact)) in footing.chain(prescribed).enumerate() {
         let (points, normal) = held::<K, D>(case, grid, site);
-        Strip {
+        let contact = contact.map(|StripContact { mut law, inward }| {
+            law.friction /= divided;
+            let inward = vector::<D, 3>(inward.into());
+            StripContact { law, inward }
+        });
+        let acts = case.acts_since(Acting::Strip(number), t).is_some();
+        strips.push(Strip {
             points,
             normal: (base == Base::Smooth && contact.is_none()).then_some(normal),
             contact,
@@ -43,34 +50,13 @@ pub fn strips<K: Kinematics<D>, const D: usize>(
                 rows: path.rows.iter().map(|(time, moved)| (*time, vector(*moved))).collect(),
             },
             transitions: std::collections::BTreeMap::new(),
-            penalty: if contact.is_some() { RUBBING * penalty } else { penalty },
-        }
-    };
-    let divided = case.divided_at(t);
-    let with_divided_friction = |contact: Option<StripContact<3>>| {
-        contact.map(|StripContact { mut law, inward }| {
-            law.friction /= divided;
-            StripContact {
-                law,
-                inward: vector::<D, 3>(inward.into()),
-            }
-        })
-    };
-    let footing = case.footing.iter();
-    let footing = footing.map(|of| strip(&of.site, &of.path, (of.base, with_divided_friction(of.contact))));
-    let prescribed = case
-        .prescribed
-        .iter()
-        .map(|of| strip(&of.site, &of.path, (of.base, with_divided_friction(of.contact))));
-    let acts = |number: usize| case.acts_since(Acting::Strip(number), t).is_some();
-    let held = |(number, strip): (usize, Strip<D>)| {
-        if acts(number) {
-            strip
-        } else {
-            Strip { penalty: 0.0, ..strip }
-        }
-    };
-    let mut strips: Vec<Strip<D>> = footing.chain(prescribed).enumerate().map(held).collect();
+            penalty: match contact {
+                _ if !acts => 0.0,
+                Some(_) => RUBBING * penalty,
+                None => penalty,
+            },
+        });
+    }
     transition::connect(&mut strips, &neighbours(case, t), grid);
     strips
 }
@@ -79,11 +65,11 @@ pub fn strips<K: Kinematics<D>, const D: usize>(
 pub(crate) fn neighbours<const D: usize>(case: &Case, t: f64) -> Vec<Neighbour<D>> {
     let footing = case.footing.iter().map(|footing| footing.site);
     let sites = footing.chain(case.prescribed.iter().map(|prescribed| prescribed.site));
-    let neighbour = |(number, site): (usize, Site)| Neighbour {
+    let neighbours = sites.enumerate().map(|(number, site)| Neighbour {
         normal: vector(normal_of_site(site)),
         since: case.acts_since(Acting::Strip(number), t),
-    };
-    sites.enumerate().map(neighbour).collect()
+    });
+    neighbours.collect()
 }
 
 /// Points of what is held, and the unit normal of it; a face is where the knots end.

@@ -41,12 +41,13 @@ fn transitions<const D: usize>(
     neighbours: &[Neighbour<D>],
     grid: &Grid<D>,
 ) -> BTreeMap<usize, Vec<MotionShare<D>>> {
-    let (strip, own) = (&strips[number], &neighbours[number]);
-    let is_met = |other: &usize| {
+    let strip = &strips[number];
+    let own = &neighbours[number];
+    let others = (0..strips.len()).filter(|other| {
         let is_alike = neighbours[*other].since == own.since && own.since.is_some();
         *other != number && is_alike && meet(strip, &strips[*other], [own, &neighbours[*other]], grid)
-    };
-    let others: Vec<usize> = (0..strips.len()).filter(is_met).collect();
+    });
+    let others: Vec<usize> = others.collect();
     let mut transitions = BTreeMap::new();
     let reach = grid.order() as f64 + 1.0;
     for (point, SurfacePoint { x, .. }) in strip.points.iter().enumerate() {
@@ -79,21 +80,21 @@ pub(crate) fn apart_at_corner<const D: usize>(
     let [own_normal, other_normal] = neighbours.map(|neighbour| neighbour.normal);
     let is_at_angle = own_normal.dot(&other_normal).abs() <= 1.0 - PARALLEL;
     let edge = grid.smallest_edge();
-    let share_corner = || corners(strip).any(|corner| distance_in_cells(&corner, other, grid) < ROUNDING);
-    if !is_at_angle || !share_corner() {
+    let mut corners = corners(strip);
+    if !is_at_angle || !corners.any(|corner| distance_in_cells(&corner, other, grid) < ROUNDING) {
         return None;
     }
-    let both = |t: f64| {
-        let difference = strip.path.at(t) - other.path.at(t);
-        match (holds_all(strip), holds_all(other)) {
+    let mut apart = 0.0_f64;
+    for (t, _) in strip.path.rows.iter().chain(&other.path.rows) {
+        let difference = strip.path.at(*t) - other.path.at(*t);
+        apart = apart.max(match (holds_all(strip), holds_all(other)) {
             (true, true) => difference.norm(),
             (true, false) => difference.dot(&other_normal).abs(),
             (false, true) => difference.dot(&own_normal).abs(),
             (false, false) => 0.0,
-        }
-    };
-    let times = strip.path.rows.iter().chain(&other.path.rows).map(|(t, _)| *t);
-    Some(times.map(both).fold(0.0, f64::max)).filter(|apart| *apart > ROUNDING * edge)
+        });
+    }
+    (apart > ROUNDING * edge).then_some(apart)
 }
 
 /// Whether a strip holds all components of the soil's motion.
@@ -113,17 +114,10 @@ pub(crate) fn meet<const D: usize>(
     let edge = grid.smallest_edge();
     let is_one_plane = is_parallel && (strip.points[0].x - other.points[0].x).dot(&normal).abs() < ROUNDING * edge;
     let all = holds_all(strip) && holds_all(other);
-    let apart = |t: f64| {
-        let difference = strip.path.at(t) - other.path.at(t);
-        if all {
-            difference.norm()
-        } else {
-            difference.dot(&normal).abs()
-        }
-    };
-    let mut times = strip.path.rows.iter().chain(&other.path.rows).map(|(t, _)| *t);
+    let times = strip.path.rows.iter().chain(&other.path.rows).map(|(t, _)| *t);
+    let mut differences = times.map(|t| strip.path.at(t) - other.path.at(t));
     is_one_plane
-        && times.any(|t| apart(t) > ROUNDING * edge)
+        && differences.any(|by| if all { by.norm() } else { by.dot(&normal).abs() } > ROUNDING * edge)
         && corners(strip).any(|corner| distance_in_cells(&corner, other, grid) < NEAR)
 }
 

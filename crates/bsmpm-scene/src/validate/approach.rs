@@ -76,7 +76,8 @@ impl Piece {
 
 /// Whether a box lies at a face of the grid that holds material.
 fn is_supported(case: &Case, bounds: &[[f64; 3]; 2]) -> bool {
-    let (lower, cell) = (case.grid.lower(), case.grid.shortest());
+    let lower = case.grid.lower();
+    let cell = case.grid.shortest();
     (0..case.grid.dims()).any(|axis| {
         let upper = lower[axis] + case.grid.axes[axis].length();
         let at_lower = bounds[0][axis] - lower[axis] < cell && case.boundary[axis][0] != Support::Free;
@@ -85,19 +86,22 @@ fn is_supported(case: &Case, bounds: &[[f64; 3]; 2]) -> bool {
     })
 }
 
+/// Distance (m) of two pieces at time `t`: that along the axis along which they are farthest apart.
+fn distance(one: &Piece, other: &Piece, case: &Case, t: f64) -> f64 {
+    let [one_moved, other_moved] = [one, other].map(|piece| piece.moved(t));
+    let along = (0..case.grid.dims()).map(|axis| {
+        let a = one.bounds.map(|corner| corner[axis] + one_moved[axis]);
+        let b = other.bounds.map(|corner| corner[axis] + other_moved[axis]);
+        a[0].max(b[0]) - a[1].min(b[1])
+    });
+    along.fold(f64::NEG_INFINITY, f64::max)
+}
+
 /// s  when two pieces that start more than a cell apart come within a cell of each other first.
 fn meeting(one: &Piece, other: &Piece, cell: f64, case: &Case) -> Option<f64> {
-    let distance = |t: f64| {
-        let [a, b] = [one, other].map(|piece| (piece, piece.moved(t)));
-        let along = (0..case.grid.dims()).map(|axis| {
-            let [a, b] = [&a, &b].map(|(piece, moved)| piece.bounds.map(|corner| corner[axis] + moved[axis]));
-            a[0].max(b[0]) - a[1].min(b[1])
-        });
-        along.fold(f64::NEG_INFINITY, f64::max)
-    };
-    if distance(0.0) < cell {
+    if distance(one, other, case, 0.0) < cell {
         return None;
     }
-    let times = (1..=SAMPLES).map(|k| case.analysis.end * k as f64 / SAMPLES as f64);
-    times.into_iter().find(|&t| distance(t) < cell)
+    let mut times = (1..=SAMPLES).map(|k| case.analysis.end * k as f64 / SAMPLES as f64);
+    times.find(|&t| distance(one, other, case, t) < cell)
 }

@@ -1,6 +1,6 @@
 //! Checks rules of axisymmetric cases.
 
-use crate::case::{Body, Case, DrainSite, Face, Geometry, LoadedLine, Quantity, Support};
+use crate::case::{Case, DrainSite, Face, Geometry, LoadedLine, Quantity, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Measurement, Side, Word};
@@ -17,6 +17,7 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         return;
     }
     axis(case, record, report);
+    water_on_axis(case, record, report);
     sideways(case, record, report);
     rigid(case, record, report);
     quantities(case, record, report);
@@ -25,8 +26,8 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
 
 /// Cubic splines at the axis, where points lie so that they integrate linear and quadratic ones.
 fn cubic(case: &Case, report: &mut Report<'_>) {
-    let meets_axis = |body: &Body| body.occupied(&case.grid)[0].start == 0;
-    if case.grid.order == 3 && case.bodies.iter().any(meets_axis) {
+    let grid = &case.grid;
+    if grid.order == 3 && case.bodies.iter().any(|body| body.occupied(grid)[0].start == 0) {
         report.warn(
             "W0234: grid.degree: with cubic splines, a uniform stress is up to 2 % off at the axis of symmetry. Use \
              \"quadratic\" splines, whose error is below 0.2 %.",
@@ -49,7 +50,8 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
         .filter_map(|table| table.record("boundary"));
     for boundary in tables {
         for side in Side::ALL.into_iter().flatten() {
-            let (found, word) = (super::support(boundary, side), side.word());
+            let found = super::support(boundary, side);
+            let word = side.word();
             if Face::of(side, Geometry::Axisymmetric) == Some(AXIS) {
                 if found.is_some_and(|found| found != Support::Roller) {
                     boundary.error(
@@ -65,6 +67,10 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
             }
         }
     }
+}
+
+/// Drains and inflows, none of which lies on the axis alone.
+fn water_on_axis(case: &Case, record: &Record, report: &mut Report<'_>) {
     let drains = case
         .flow
         .iter()

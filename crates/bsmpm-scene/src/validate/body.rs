@@ -1,5 +1,6 @@
 //! Validates bodies: material, position and material points.
 
+use super::gap::are_together;
 use super::shape;
 use crate::case::{Body, Case};
 use crate::estimate::MOST_POINTS;
@@ -67,7 +68,8 @@ pub(super) fn read_all(
 
 /// rad/s along the axis, and the place about which, m.
 fn turning(spin: &Record, geometry: Geometry, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
-    let (rate, about) = (spin.number("rate")?, spin.vector("about")?);
+    let rate = spin.number("rate")?;
+    let about = spin.vector("about")?;
     let axis = if spin.gives("axis") {
         spin.vector("axis")?
     } else {
@@ -113,12 +115,7 @@ fn read(
         ));
     }
     let boundary = super::boundary(root);
-    let region = shape::region(
-        (record, root.word("geometry")?),
-        (grid, points_per_cell),
-        boundary,
-        report,
-    );
+    let region = shape::region(record, root.word("geometry")?, grid, points_per_cell, boundary, report);
     let velocity = record.vector("velocity");
     let spin = match record.record("spin") {
         Some(spin) => Some(turning(spin, root.word("geometry")?, report)?),
@@ -146,21 +143,17 @@ fn read(
 
 /// Warns of bodies whose points integrate too coarsely, each cause in one line.
 fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: &mut Report<'_>) {
-    let paths = |is_meant: &dyn Fn(&Body) -> bool| -> Vec<String> {
-        let meant = records.iter().zip(bodies).filter(|(_, body)| is_meant(body));
-        meant.map(|(record, _)| record.path.clone()).collect()
-    };
-    let single = paths(&|body| body.points_per_cell == 1 && is_coarse(body, grid));
+    let single = paths(records, bodies, |body| {
+        body.points_per_cell == 1 && is_coarse(body, grid)
+    });
     if !single.is_empty() {
         report.warn(format!(
             "W0210: {}: points_per_cell = 1 is too small for accurate stresses. Increase points_per_cell to 2 or more.",
             listed(&single)
         ));
     }
-    let several = |body: &Body| body.points_per_cell > 1;
-    let alone = |body: &Body| Some(body.region.alone()).filter(|part| several(body) && *part > ALONE);
     if let Some(most) = bodies.iter().filter_map(alone).reduce(f64::max) {
-        let paths = paths(&|body| alone(body).is_some());
+        let paths = paths(records, bodies, |body| alone(body).is_some());
         let up_to = if paths.len() > 1 { "up to " } else { "" };
         report.warn(format!(
             "W0211: {}: {up_to}{:.0} % of the body is thinner than the spacing of its material points. The bending of \
@@ -169,49 +162,62 @@ fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: 
             1e2 * most
         ));
     }
-    let thin = |body: &Body| thinnest(body, grid).filter(|_| several(body));
-    if let Some((axis, part)) = bodies.iter().filter_map(thin).min_by(|a, b| a.1.total_cmp(&b.1)) {
+    let thinnest_of = bodies.iter().filter_map(|body| thinnest(body, grid));
+    if let Some((axis, part)) = thinnest_of.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        let paths = paths(records, bodies, |body| thinnest(body, grid).is_some());
         report.warn(format!(
             "W0212: {}: the body is only {part:.2} cells thick along {}, less than the spacing of material points. \
              Bending and strains there are unreliable. Use smaller cells at the body.",
-            listed(&paths(&|body| thin(body).is_some())),
+            listed(&paths),
             ["x", "y", "z"][axis]
         ));
     }
+}
+
+/// Paths of the bodies that are meant, in the order of the file.
+fn paths(records: &[Record], bodies: &[Body], is_meant: impl Fn(&Body) -> bool) -> Vec<String> {
+    let meant = records.iter().zip(bodies).filter(|(_, body)| is_meant(body));
+    meant.map(|(record, _)| record.path.clone()).collect()
+}
+
+/// Part of a body of several points per cell that is thinner than their spacing, if it is more than [`ALONE`].
+fn alone(body: &Body) -> Option<f64> {
+    let part = (body.points_per_cell > 1).then(|| body.region.alone());
+    part.filter(|part| *part > ALONE)
 }
 
 /// Whether points lie farther apart than half a cell if the body has one of them per cell: its bounds contain more than
 /// half of a cell along some axis. Bodies of half a cell, side by side, have as many points as others with two.
 fn is_coarse(body: &Body, grid: &GridSpec) -> bool {
     let [lower, upper] = body.region.corners();
-    (0..grid.dims()).any(|axis| {
-        let along = &grid.axes[axis];
+    for (axis, along) in grid.axes.iter().enumerate() {
         let extent = AxisExtent::new(along, lower[axis], upper[axis]);
-        let is_long = |cell: usize| {
-            let [from, to] = extent.part(cell);
-            to - from > (0.5 + ROUNDING) * along.cell(cell)
-        };
-        extent.cells.len() > 2 || extent.cells.clone().any(is_long)
-    })
+        let mut lengths = extent.cells.clone().map(|cell| (cell, extent.part(cell)));
+        if extent.cells.len() > 2 || lengths.any(|(cell, [from, to])| to - from > (0.5 + ROUNDING) * along.cell(cell)) {
+            return true;
+        }
+    }
+    false
 }
 
-/// The axis along which a box is thinner than points lie apart in a cell, and the part of a cell that it has there: its
-/// own points stand as close as it is thin, so that none is alone.
+/// The axis along which a box of several points per cell is thinner than they lie apart in a cell, and the part of a
+/// cell that it has there: its own points stand as close as it is thin, so that none is alone.
 fn thinnest(body: &Body, grid: &GridSpec) -> Option<(usize, f64)> {
+    if body.points_per_cell <= 1 {
+        return None;
+    }
     let [lower, upper] = match &body.region {
         Region::Box { lower, upper } => [*lower, *upper].map(|[x, y]| [x, y, 0.0]),
         Region::Solid(volume) if volume.is_box() => volume.bounds(),
         Region::Solid(_) | Region::Outline(_) => return None,
     };
-    let part = |axis: usize| {
+    let parts = (0..grid.dims()).map(|axis| {
         let along = &grid.axes[axis];
         let cell = along.first_cell(|cell| along.lower() + along.breakpoint(cell + 1) > lower[axis]);
-        (
-            axis,
-            (upper[axis] - lower[axis]) / along.cell(cell.min(along.cells() - 1)),
-        )
-    };
-    let least = (0..grid.dims()).map(part).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let length = along.cell(cell.min(along.cells() - 1));
+        (axis, (upper[axis] - lower[axis]) / length)
+    });
+    let least = parts.min_by(|a, b| a.1.total_cmp(&b.1))?;
     (least.1 < (1.0 - ROUNDING) / body.points_per_cell as f64).then_some(least)
 }
 
@@ -232,14 +238,13 @@ fn material(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<u
 
 /// Warns of the first pair of bodies that have an area in common, and are there at the same time.
 pub(super) fn warn_of_overlap(case: &Case, report: &mut Report<'_>) {
-    let (bodies, grid) = (&case.bodies, &case.grid);
-    let times = || std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
-    let together = |i: usize, j: usize| times().any(|t| case.is_there(i, t) && case.is_there(j, t));
+    let bodies = &case.bodies;
     let mut work = 0;
-    let mut pairs = (0..bodies.len()).flat_map(|i| (i + 1..bodies.len()).map(move |j| (i, j)));
-    let both = |(i, j): &(usize, usize)| overlap(&bodies[*i], &bodies[*j], grid, &mut work) && together(*i, *j);
-    if let Some((i, j)) = pairs.find(both) {
-        let [lower, upper] = common_box(&bodies[i], &bodies[j], grid.dims());
+    let mut pairs = (0..bodies.len()).flat_map(|i| (i + 1..bodies.len()).map(move |j| [i, j]));
+    let found =
+        pairs.find(|&[i, j]| overlap(&bodies[i], &bodies[j], &case.grid, &mut work) && are_together(case, [i, j]));
+    if let Some([i, j]) = found {
+        let [lower, upper] = common_box(&bodies[i], &bodies[j], case.grid.dims());
         report.warn(format!(
             "W0213: body.{i} and body.{j} overlap between {lower:.3?} and {upper:.3?} m, so this soil is counted \
              twice. Correct the corners of one body, or `subtract` its shape from the other body."
@@ -249,10 +254,23 @@ pub(super) fn warn_of_overlap(case: &Case, report: &mut Report<'_>) {
 
 /// m  Lower and upper corner of the box that the boxes around two bodies have in common.
 fn common_box(a: &Body, b: &Body, dims: usize) -> [Vec<f64>; 2] {
-    let ([a_lower, a_upper], [b_lower, b_upper]) = (a.region.corners(), b.region.corners());
-    let lower = (0..dims).map(|axis| a_lower[axis].max(b_lower[axis])).collect();
-    let upper = (0..dims).map(|axis| a_upper[axis].min(b_upper[axis])).collect();
+    let a = a.region.corners();
+    let b = b.region.corners();
+    let lower = (0..dims).map(|axis| common(&a, &b, axis)[0]).collect();
+    let upper = (0..dims).map(|axis| common(&a, &b, axis)[1]).collect();
     [lower, upper]
+}
+
+/// Lower and upper end (m) of what two boxes have in common along an axis.
+fn common<const D: usize>(a: &[[f64; D]; 2], b: &[[f64; D]; 2], axis: usize) -> [f64; 2] {
+    [a[0][axis].max(b[0][axis]), a[1][axis].min(b[1][axis])]
+}
+
+/// Whether two boxes have nothing but rounding in common along an axis.
+fn are_apart<const D: usize>(a: &[[f64; D]; 2], b: &[[f64; D]; 2], axis: usize) -> bool {
+    let [from, to] = common(a, b, axis);
+    let smaller = (a[1][axis] - a[0][axis]).min(b[1][axis] - b[0][axis]);
+    to - from <= 1e-9 * smaller
 }
 
 /// Whether two bodies overlap by more than rounding; for shapes only as long as the `work` so far is bearable.
@@ -260,31 +278,31 @@ fn overlap(a: &Body, b: &Body, grid: &GridSpec, work: &mut usize) -> bool {
     if let (Region::Solid(a), Region::Solid(b)) = (&a.region, &b.region) {
         return overlap_in_space(a, b);
     }
-    let ([a_lower, a_upper], [b_lower, b_upper]) = (a.bounds(), b.bounds());
-    let origin = grid.lower();
-    let common = [0, 1].map(|axis| [a_lower[axis].max(b_lower[axis]), a_upper[axis].min(b_upper[axis])]);
-    let apart = |axis: usize| {
-        let smaller = (a_upper[axis] - a_lower[axis]).min(b_upper[axis] - b_lower[axis]);
-        common[axis][1] - common[axis][0] <= 1e-9 * smaller
-    };
-    if apart(0) || apart(1) {
+    let a_bounds = a.bounds();
+    let b_bounds = b.bounds();
+    if are_apart(&a_bounds, &b_bounds, 0) || are_apart(&a_bounds, &b_bounds, 1) {
         return false;
     }
     if matches!((&a.region, &b.region), (Region::Box { .. }, Region::Box { .. })) {
         return true;
     }
-    let ((mut edges, of_a), (others, of_b)) = (a.region.edges(grid), b.region.edges(grid));
+    let (mut edges, of_a) = a.region.edges(grid);
+    let (others, of_b) = b.region.edges(grid);
     edges.extend(others.into_iter().map(|edge| edge.of(edge.shape + of_a)));
     *work += edges.len() * edges.len();
     if *work > MOST_WORK {
         return false;
     }
-    let [x, y] = [0, 1].map(|axis| common[axis].map(|end| end - origin[axis]));
-    let both = |inside: &[bool]| region::solid(&inside[..of_a]) && region::solid(&inside[of_a..]);
+    let origin = grid.lower();
+    let [x, y] = [0, 1].map(|axis| common(&a_bounds, &b_bounds, axis).map(|end| end - origin[axis]));
     let mut area = 0.0;
-    region::sweep(&edges, of_a + of_b, &Window { x, y }, &both, &mut |slice| {
-        area += slice.area()
-    });
+    region::sweep(
+        &edges,
+        of_a + of_b,
+        &Window { x, y },
+        &|inside| region::solid(&inside[..of_a]) && region::solid(&inside[of_a..]),
+        &mut |slice| area += slice.area(),
+    );
     area > 1e-9 * a.area().min(b.area())
 }
 
@@ -293,25 +311,21 @@ const SAMPLES: usize = 16;
 
 /// Whether two shapes in space have more than a sixteenth of the extent of the smaller in common.
 fn overlap_in_space(a: &Volume, b: &Volume) -> bool {
-    let ([a_lower, a_upper], [b_lower, b_upper]) = (a.bounds(), b.bounds());
-    let common = [0, 1, 2].map(|axis| [a_lower[axis].max(b_lower[axis]), a_upper[axis].min(b_upper[axis])]);
-    let apart = |axis: usize| {
-        let smaller = (a_upper[axis] - a_lower[axis]).min(b_upper[axis] - b_lower[axis]);
-        common[axis][1] - common[axis][0] <= 1e-9 * smaller
-    };
-    if (0..3).any(apart) || a.is_box() && b.is_box() {
-        return !(0..3).any(apart);
+    let a_bounds = a.bounds();
+    let b_bounds = b.bounds();
+    let is_apart = (0..3).any(|axis| are_apart(&a_bounds, &b_bounds, axis));
+    if is_apart || a.is_box() && b.is_box() {
+        return !is_apart;
     }
-    let place = |axis: usize, k: usize| {
-        let [lower, upper] = common[axis];
-        lower + (upper - lower) * (k as f64 + 0.5) / SAMPLES as f64
-    };
-    let at = |k: usize| {
-        [
-            place(0, k / (SAMPLES * SAMPLES)),
-            place(1, k / SAMPLES % SAMPLES),
-            place(2, k % SAMPLES),
-        ]
-    };
-    (0..SAMPLES.pow(3)).map(at).any(|at| a.contains(at) && b.contains(at))
+    let common = [0, 1, 2].map(|axis| common(&a_bounds, &b_bounds, axis));
+    (0..SAMPLES.pow(3)).any(|k| {
+        let number = [k / (SAMPLES * SAMPLES), k / SAMPLES % SAMPLES, k % SAMPLES];
+        let at = [0, 1, 2].map(|axis| sample(common[axis], number[axis]));
+        a.contains(at) && b.contains(at)
+    })
+}
+
+/// Middle (m) of the `k`-th of [`SAMPLES`] pieces of an interval.
+fn sample([lower, upper]: [f64; 2], k: usize) -> f64 {
+    lower + (upper - lower) * (k as f64 + 0.5) / SAMPLES as f64
 }

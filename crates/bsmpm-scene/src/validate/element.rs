@@ -31,19 +31,21 @@ const MIXED: [[&str; 2]; 3] = [
 /// All tests in the order of the file, without those that have an error.
 pub(super) fn read_all(
     root: &Record,
-    (materials, grid): (Option<&[NamedMaterial]>, Option<&GridSpec>),
+    materials: Option<&[NamedMaterial]>,
+    grid: Option<&GridSpec>,
     report: &mut Report<'_>,
 ) -> Vec<ElementTest> {
     let named = root.named("element").iter();
     named
-        .filter_map(|(name, record)| read(name, record, (materials?, grid?), report))
+        .filter_map(|(name, record)| read(name, record, materials?, grid?, report))
         .collect()
 }
 
 fn read(
     name: &str,
     record: &Record,
-    (materials, grid): (&[NamedMaterial], &GridSpec),
+    materials: &[NamedMaterial],
+    grid: &GridSpec,
     report: &mut Report<'_>,
 ) -> Option<ElementTest> {
     let material = material(record, materials, report);
@@ -66,29 +68,9 @@ fn read(
         undrained = now;
     }
     let material = material?;
-    let graded = materials[material].material.is_graded();
-    if graded && !record.gives("height") {
-        let message = format!(
-            "E0692: the parameters of material.{} vary with height, but the test does not give the height of its \
-             material point. Add `height`.",
-            materials[material].name
-        );
-        report.error(record.origin, &record.path_of("height"), message);
-        return None;
-    }
-    if !graded && record.gives("height") {
-        let message = format!(
-            "E0692: the parameters of material.{} do not vary with height, so `height` has no effect. Remove `height`.",
-            materials[material].name
-        );
-        record.error("height", message, report);
-    }
-    let height = if graded {
-        Some(record.number("height")? - grid.lower()[grid.dims() - 1])
-    } else {
-        None
-    };
-    let (pressure, k0) = (record.number("pressure")?, record.number("k0")?);
+    let height = height(record, &materials[material], grid, report)?;
+    let pressure = record.number("pressure")?;
+    let k0 = record.number("k0")?;
     let stages: Option<Vec<_>> = read.into_iter().collect();
     Some(ElementTest {
         name: name.to_owned(),
@@ -98,6 +80,32 @@ fn read(
         k0,
         stages: stages?,
     })
+}
+
+/// Height (m) of the material point above the lower end of the grid, if parameters of the material vary with height;
+/// the outer option is `None` after an error.
+fn height(record: &Record, named: &NamedMaterial, grid: &GridSpec, report: &mut Report<'_>) -> Option<Option<f64>> {
+    if !named.material.is_graded() {
+        if record.gives("height") {
+            let message = format!(
+                "E0692: the parameters of material.{} do not vary with height, so `height` has no effect. Remove \
+                 `height`.",
+                named.name
+            );
+            record.error("height", message, report);
+        }
+        return Some(None);
+    }
+    if !record.gives("height") {
+        let message = format!(
+            "E0692: the parameters of material.{} vary with height, but the test does not give the height of its \
+             material point. Add `height`.",
+            named.name
+        );
+        report.error(record.origin, &record.path_of("height"), message);
+        return None;
+    }
+    Some(Some(record.number("height")? - grid.lower()[grid.dims() - 1]))
 }
 
 /// The number of its material.
@@ -124,7 +132,7 @@ fn material(record: &Record, materials: &[NamedMaterial], report: &mut Report<'_
 
 fn stage(record: &Record, report: &mut Report<'_>) -> Option<ElementStage> {
     let path: Path = record.word("test")?;
-    let known: &[&str] = match path {
+    let known: &[&'static str] = match path {
         Path::Triaxial | Path::Biaxial | Path::Oedometer | Path::Isotropic => &DRIVES[..2],
         Path::SimpleShear => &DRIVES[2..4],
         Path::Mixed => &DRIVES[2..],
@@ -133,52 +141,12 @@ fn stage(record: &Record, report: &mut Report<'_>) -> Option<ElementStage> {
         let message = format!("E0694: the key `{key}` has no effect in the test \"{path}\". Remove `{key}`.");
         record.error(key, message, report);
     }
-    let missing = |keys: &[&str], report: &mut Report<'_>| {
-        let message = format!(
-            "E0694: the test \"{path}\" does not say which strain or stress is applied. Add `{}`.",
-            keys.join("` or `")
-        );
-        report.error(record.origin, &record.path, message);
-    };
-    let given = |keys: &[&'static str]| keys.iter().copied().find(|key| record.gives(key));
-    let driven = match path {
-        Path::Mixed => None,
-        _ => match given(known) {
-            None => {
-                missing(known, report);
-                return None;
-            }
-            Some(key) => Some(target(record, key)?),
-        },
-    };
-    let held = Some(Target::Strain(0.0));
-    let targets = match (path, driven) {
-        (Path::Triaxial, yy) => [None, yy, None, held],
-        (Path::Biaxial, yy) => [None, yy, held, held],
-        (Path::Oedometer, yy) => [held, yy, held, held],
-        (Path::Isotropic, Some(Target::Strain(volume))) => {
-            let each = Some(Target::Strain(volume / 3.0));
-            [each, each, each, held]
-        }
-        (Path::Isotropic, stress) => [stress, stress, stress, held],
-        (Path::SimpleShear, xy) => [held, None, held, xy],
-        (Path::Mixed, _) => {
-            let mut targets = [None, None, None, held];
-            for (axis, keys) in MIXED.iter().enumerate() {
-                match given(keys) {
-                    Some(key) => targets[axis] = Some(target(record, key)?),
-                    None => missing(keys, report),
-                }
-            }
-            if let Some(key) = given(&DRIVES[2..4]) {
-                targets[3] = Some(target(record, key)?);
-            }
-            targets
-        }
-    };
+    let targets = targets(record, path, known, report)?;
     let undrained = record.flag("undrained")?;
-    let is_held = |target: &Option<Target>| matches!(target, Some(Target::Strain(_)));
-    if undrained && (path == Path::Isotropic || targets[..3].iter().all(is_held) || path == Path::Oedometer) {
+    let is_held = targets[..3]
+        .iter()
+        .all(|target| matches!(target, Some(Target::Strain(_))));
+    if undrained && (path == Path::Isotropic || is_held || path == Path::Oedometer) {
         let message = format!(
             "E0695: the test \"{path}\" prescribes the volume change, so it cannot be undrained. Remove `undrained`, \
              or use another test."
@@ -197,6 +165,64 @@ fn stage(record: &Record, report: &mut Report<'_>) -> Option<ElementStage> {
         steps: record.count("steps")?,
         duration,
     })
+}
+
+/// Targets of the components xx, yy, zz and xy of a stage that knows the `known` keys; `None` after an error.
+fn targets(
+    record: &Record,
+    path: Path,
+    known: &[&'static str],
+    report: &mut Report<'_>,
+) -> Option<[Option<Target>; 4]> {
+    let driven = match path {
+        Path::Mixed => None,
+        _ => match given(record, known) {
+            None => {
+                refuse_missing(record, path, known, report);
+                return None;
+            }
+            Some(key) => Some(target(record, key)?),
+        },
+    };
+    let held = Some(Target::Strain(0.0));
+    Some(match (path, driven) {
+        (Path::Triaxial, yy) => [None, yy, None, held],
+        (Path::Biaxial, yy) => [None, yy, held, held],
+        (Path::Oedometer, yy) => [held, yy, held, held],
+        (Path::Isotropic, Some(Target::Strain(volume))) => {
+            let each = Some(Target::Strain(volume / 3.0));
+            [each, each, each, held]
+        }
+        (Path::Isotropic, stress) => [stress, stress, stress, held],
+        (Path::SimpleShear, xy) => [held, None, held, xy],
+        (Path::Mixed, _) => {
+            let mut targets = [None, None, None, held];
+            for (axis, keys) in MIXED.iter().enumerate() {
+                match given(record, keys) {
+                    Some(key) => targets[axis] = Some(target(record, key)?),
+                    None => refuse_missing(record, path, keys, report),
+                }
+            }
+            if let Some(key) = given(record, &DRIVES[2..4]) {
+                targets[3] = Some(target(record, key)?);
+            }
+            targets
+        }
+    })
+}
+
+/// The first of the keys that a stage gives.
+fn given(record: &Record, keys: &[&'static str]) -> Option<&'static str> {
+    keys.iter().copied().find(|key| record.gives(key))
+}
+
+/// Refuses a stage that gives none of the keys, one of which it needs.
+fn refuse_missing(record: &Record, path: Path, keys: &[&str], report: &mut Report<'_>) {
+    let message = format!(
+        "E0694: the test \"{path}\" does not say which strain or stress is applied. Add `{}`.",
+        keys.join("` or `")
+    );
+    report.error(record.origin, &record.path, message);
 }
 
 /// What a key drives its component to, positive in tension.

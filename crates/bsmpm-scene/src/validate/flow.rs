@@ -14,6 +14,7 @@ use super::load::{circle, increasing};
 use super::place;
 use super::site::{AroundStrip, places, plate, segment};
 use crate::case::{Acting, Body, Drain, DrainSite, Face, Flow, Inflow, NamedMaterial, Plate, Site, Stage, Support};
+use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::region::{Region, skin};
@@ -36,10 +37,8 @@ const WITHOUT_FLOW: &str = "E0501: no material has pore-water flow, so this entr
 
 /// Drainage that the case gives a material.
 fn drainage(root: &Record, material: &Record) -> Option<Drainage> {
-    let says = |record: &&Record| record.gives("drainage");
-    let record = Some(material)
-        .filter(says)
-        .or_else(|| root.record("water").filter(says));
+    let tables = [Some(material), root.record("water")];
+    let record = tables.into_iter().flatten().find(|record| record.gives("drainage"));
     record.map_or(Some(Drainage::Given), |record| record.word("drainage"))
 }
 
@@ -47,7 +46,8 @@ fn drainage(root: &Record, material: &Record) -> Option<Drainage> {
 pub(super) fn read(
     root: &Record,
     materials: Option<&[NamedMaterial]>,
-    (around, stages): (AroundStrip<'_>, Option<&[Stage]>),
+    around: AroundStrip<'_>,
+    stages: Option<&[Stage]>,
     report: &mut Report<'_>,
 ) -> Option<Option<Flow>> {
     let soils: Vec<Option<Option<Soil<3>>>> = root
@@ -55,69 +55,36 @@ pub(super) fn read(
         .iter()
         .map(|(_, record)| soil(root, record, report))
         .collect();
-    let flows = soils.iter().any(|soil| !matches!(soil, Some(None)));
-    for key in ["drain", "inflow"] {
-        if let Some(record) = root.records(key).first().filter(|_| !flows) {
-            report.error(record.origin, &record.path, WITHOUT_FLOW);
-        }
-    }
-    if let Some(water) = root.record("water").filter(|water| !flows && water.gives("bulk")) {
-        water.error("bulk", WITHOUT_FLOW, report);
-    }
-    if !flows {
+    if soils.iter().all(|soil| matches!(soil, Some(None))) {
+        refuse_without_flow(root, report);
         return Some(None);
     }
     let soils: Vec<Option<Soil<3>>> = soils.into_iter().collect::<Option<_>>()?;
-    let (materials, bodies, stages) = (
-        materials?,
-        around.bodies.unwrap_or_default(),
-        stages.unwrap_or_default(),
-    );
-    let there = |what: Acting| there(what, stages, bodies);
-    let drains = root.records("drain").iter().enumerate();
-    let read: Vec<Option<Drain>> = drains
-        .map(|(number, record)| {
-            let there = &there(Acting::Drain(number));
-            drain(
-                record,
-                Ground {
-                    soils: &soils,
-                    materials,
-                    around,
-                    there,
-                },
-                report,
-            )
-        })
-        .collect();
+    let bodies = around.bodies.unwrap_or_default();
+    let stages = stages.unwrap_or_default();
+    let ground = Ground {
+        soils: &soils,
+        materials: materials?,
+        around,
+        there: &[],
+    };
+    let mut drains = Vec::new();
+    for (number, record) in root.records("drain").iter().enumerate() {
+        let there = &there(Acting::Drain(number), stages, bodies);
+        drains.push(drain(record, Ground { there, ..ground }, report));
+    }
     named(root, report);
-    let inflows = root.records("inflow").iter().enumerate();
-    let put: Vec<Option<Inflow>> = inflows
-        .map(|(number, record)| {
-            let there = &there(Acting::Inflow(number));
-            inflow(
-                record,
-                Ground {
-                    soils: &soils,
-                    materials,
-                    around,
-                    there,
-                },
-                report,
-            )
-        })
-        .collect();
-    let (drains, inflows) = (
-        read.into_iter().collect::<Option<_>>()?,
-        put.into_iter().collect::<Option<_>>()?,
-    );
+    let mut inflows = Vec::new();
+    for (number, record) in root.records("inflow").iter().enumerate() {
+        let there = &there(Acting::Inflow(number), stages, bodies);
+        inflows.push(inflow(record, Ground { there, ..ground }, report));
+    }
+    let drains = drains.into_iter().collect::<Option<_>>()?;
+    let inflows = inflows.into_iter().collect::<Option<_>>()?;
     let bulk = root.record("water").filter(|water| water.gives("bulk"));
     let bulk = bulk.map_or(Some(f64::INFINITY), |water| water.number("bulk"))?;
-    let suction = suction(
-        root,
-        soils.iter().flatten().any(|soil| soil.retention.is_some()),
-        report,
-    )?;
+    let retains = soils.iter().flatten().any(|soil| soil.retention.is_some());
+    let suction = suction(root, retains, report)?;
     Some(Some(Flow {
         unit_weight: unit_weight(root)?,
         bulk,
@@ -128,6 +95,23 @@ pub(super) fn read(
         motion: Motion::Flows,
         at_rest: Motion::Held,
     }))
+}
+
+/// Refuses what only pore-water flow uses, in a case without it.
+fn refuse_without_flow(root: &Record, report: &mut Report<'_>) {
+    for key in ["drain", "inflow"] {
+        if let Some(record) = root.records(key).first() {
+            report.error(record.origin, &record.path, WITHOUT_FLOW);
+        }
+    }
+    if let Some(water) = root.record("water").filter(|water| water.gives("bulk")) {
+        water.error("bulk", WITHOUT_FLOW, report);
+    }
+}
+
+/// Whether water flows through a material.
+fn is_permeable(soils: &[Option<Soil<3>>], material: usize) -> bool {
+    soils[material].as_ref().is_some_and(|soil| soil.permeability.is_some())
 }
 
 /// Pa  the largest suction at the start.
@@ -251,7 +235,7 @@ fn measured(of: &Record, residual: f64, report: &mut Report<'_>) -> Option<Vec<[
     let rows: Vec<[f64; 3]> = increasing(of, KEY, report)?
         .map(|row| [row[0], row[1], row[2]])
         .collect();
-    let rises = |pair: &[[f64; 3]]| pair[1][1] > pair[0][1] || pair[1][2] > pair[0][2];
+    let mut pairs = rows.windows(2);
     let last = rows[rows.len() - 1];
     let wrong = if rows[0] != [0.0, 1.0, 1.0] {
         Some(
@@ -263,8 +247,9 @@ fn measured(of: &Record, residual: f64, report: &mut Report<'_>) -> Option<Vec<[
         let message = "E0509: the curve has one row, but needs at least two. Add rows [suction head, saturation, \
                        relative permeability].";
         Some(message.into())
-    } else if let Some(pair) = rows.windows(2).find(|pair| rises(pair)) {
-        let (to, from) = (pair[1][0], pair[0][0]);
+    } else if let Some(pair) = pairs.find(|pair| pair[1][1] > pair[0][1] || pair[1][2] > pair[0][2]) {
+        let to = pair[1][0];
+        let from = pair[0][0];
         Some(format!(
             "E0509: from a suction head of {from} m to {to} m the saturation or relative permeability increases. Give \
              values that decrease or stay constant."
@@ -294,14 +279,16 @@ fn there(what: Acting, stages: &[Stage], bodies: &[Body]) -> Vec<Body> {
     let first = stages.iter().position(|stage| stage.switches(what) != [false; 2]);
     let applied = first.filter(|&first| stages[first].switches(what)[1]);
     let begun = &stages[..applied.map_or(0, |first| first + 1)];
-    let is_there = |number: &usize| {
-        let comes = |stages: &[Stage]| stages.iter().any(|stage| stage.add.contains(number));
-        (comes(begun) || !comes(stages)) && !begun.iter().any(|stage| stage.remove.contains(number))
-    };
-    (0..bodies.len())
-        .filter(is_there)
-        .map(|number| bodies[number].clone())
-        .collect()
+    let there = (0..bodies.len()).filter(|number| {
+        let comes = adds(begun, *number) || !adds(stages, *number);
+        comes && !begun.iter().any(|stage| stage.remove.contains(number))
+    });
+    there.map(|number| bodies[number].clone()).collect()
+}
+
+/// Whether one of the stages adds a body.
+fn adds(stages: &[Stage], body: usize) -> bool {
+    stages.iter().any(|stage| stage.add.contains(&body))
 }
 
 /// What a drain or an inflow lies at.
@@ -314,17 +301,11 @@ struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    fn lets_through(&self, body: &Body) -> bool {
-        self.soils[body.material]
-            .as_ref()
-            .is_some_and(|soil| soil.permeability.is_some())
-    }
-
     /// Bodies of soil that lets water through.
     fn permeable(&self) -> Vec<Body> {
-        self.there
-            .iter()
-            .filter(|body| self.lets_through(body))
+        let bodies = self.there.iter();
+        bodies
+            .filter(|body| is_permeable(self.soils, body.material))
             .cloned()
             .collect()
     }
@@ -339,8 +320,9 @@ impl Ground<'_> {
                 ("from", Site::Segment { from, to })
             }
         };
-        let inside = |at: &[f64; 3]| place::is_beyond(grid, *at).is_none();
-        self.lies_at(record, (key, places(site, grid).into_iter().filter(inside)), report)?;
+        let mut places = places(site, grid);
+        places.retain(|at| place::is_beyond(grid, *at).is_none());
+        self.lies_at(record, key, places.into_iter(), report)?;
         Some(site)
     }
 
@@ -348,10 +330,12 @@ impl Ground<'_> {
     fn lies_at(
         &self,
         record: &Record,
-        (key, mut places): (&str, impl Iterator<Item = [f64; 3]>),
+        key: &str,
+        mut places: impl Iterator<Item = [f64; 3]>,
         report: &mut Report<'_>,
     ) -> Option<()> {
-        let (grid, permeable) = (self.around.grid?, self.permeable());
+        let grid = self.around.grid?;
+        let permeable = self.permeable();
         if let Some(at) = places.find(|at| !place::is_at(&permeable, grid, *at)) {
             let under = self
                 .there
@@ -412,7 +396,7 @@ fn drain(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option
         DrainSite::Lines(surface(record, ground, report)?)
     } else if record.gives("circle") {
         let (center, radius, places) = circle(record, ground.around, report)?;
-        ground.lies_at(record, ("circle", places.into_iter().map(|[x, y]| [x, y, 0.0])), report)?;
+        ground.lies_at(record, "circle", places.into_iter().map(|[x, y]| [x, y, 0.0]), report)?;
         DrainSite::Circle { center, radius }
     } else {
         match ground.site(record, report)? {
@@ -436,12 +420,11 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Given> {
     if record.gives("pressure_path") {
         return Some(Given::Pressure(course(record, "pressure_path", report)?));
     }
-    let constant = |key: &str| Some(Course(vec![(0.0, record.number(key)?)]));
     if record.gives("head") {
-        return constant("head").map(Given::Head);
+        return constant(record, "head").map(Given::Head);
     }
     if record.gives("pressure") {
-        return constant("pressure").map(Given::Pressure);
+        return constant(record, "pressure").map(Given::Pressure);
     }
     if record.gives("seepage") {
         if !record.flag("seepage")? {
@@ -466,15 +449,18 @@ fn course(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Course>
     ))
 }
 
+/// A number that does not change in time.
+fn constant(record: &Record, key: &str) -> Option<Course> {
+    Some(Course(vec![(0.0, record.number(key)?)]))
+}
+
 /// A face of the grid at which a body of permeable soil lies.
 fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Face> {
     let grid = ground.around.grid?;
     let face = place::face(record, grid, report)?;
     let slack = AT * grid.axes[face.axis].shortest();
-    let (at, side) = (
-        [grid.lower(), grid.upper()][usize::from(face.upper)][face.axis],
-        usize::from(face.upper),
-    );
+    let at = [grid.lower(), grid.upper()][usize::from(face.upper)][face.axis];
+    let side = usize::from(face.upper);
     if !ground
         .permeable()
         .iter()
@@ -493,25 +479,19 @@ fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<
 
 /// The surface of bodies of permeable soil, but for what lies at faces of the grid that hold it.
 fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Vec<[[f64; 2]; 2]>> {
-    let (grid, bodies, boundary) = (ground.around.grid?, ground.there, ground.around.boundary?);
+    let grid = ground.around.grid?;
+    let bodies = ground.there;
+    let boundary = ground.around.boundary?;
     let all: Vec<&Region> = bodies.iter().map(|body| &body.region).collect();
-    let (lower, length) = (grid.lower(), [0, 1].map(|axis| grid.axes[axis].length()));
-    let is_held = |piece: &[[f64; 2]; 2]| {
-        [(0, false), (0, true), (1, false), (1, true)]
-            .into_iter()
-            .any(|(axis, upper)| {
-                let (at, slack) = (if upper { length[axis] } else { 0.0 }, AT * grid.axes[axis].shortest());
-                let lies = piece.iter().all(|end| (end[axis] - at).abs() <= slack);
-                lies && boundary[axis][usize::from(upper)] != Support::Free
-            })
-    };
+    let lower = grid.lower();
     let pieces = bodies
         .iter()
-        .filter(|body| ground.lets_through(body))
+        .filter(|body| is_permeable(ground.soils, body.material))
         .flat_map(|body| skin(&body.region, &all, grid));
-    let pieces: Vec<[[f64; 2]; 2]> = pieces.filter(|piece| !is_held(piece)).collect();
-    let shift = |at: [f64; 2]| [0, 1].map(|axis| lower[axis] + at[axis]);
-    let pieces: Vec<[[f64; 2]; 2]> = pieces.into_iter().map(|piece| piece.map(shift)).collect();
+    let free = pieces.filter(|piece| !is_held(piece, grid, &boundary));
+    let pieces: Vec<[[f64; 2]; 2]> = free
+        .map(|piece| piece.map(|at| [0, 1].map(|axis| lower[axis] + at[axis])))
+        .collect();
     if pieces.is_empty() {
         let message = "E0517: `surface = true` needs a free surface, but the soil with pore-water flow has only edges \
              at restrained boundaries or other bodies. Replace `surface` by `face`, or by `from` and `to`.";
@@ -528,10 +508,24 @@ fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Opti
     Some(pieces)
 }
 
+/// Whether a piece of a surface, in coordinates from the grid's lower corner (m), lies at a face that holds it.
+fn is_held(piece: &[[f64; 2]; 2], grid: &GridSpec, boundary: &[[Support; 2]; 3]) -> bool {
+    for axis in 0..2 {
+        let slack = AT * grid.axes[axis].shortest();
+        for (support, at) in boundary[axis].iter().zip([0.0, grid.axes[axis].length()]) {
+            let lies = piece.iter().all(|end| (end[axis] - at).abs() <= slack);
+            if lies && *support != Support::Free {
+                return true;
+            }
+        }
+    }
+    false
+}
+
 fn inflow(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Inflow> {
     let rate = match record.gives("rate_path") {
         true => course(record, "rate_path", report),
-        false => record.number("rate").map(|rate| Course(vec![(0.0, rate)])),
+        false => constant(record, "rate"),
     };
     let runs_off = record.flag("runoff")?;
     let site = if record.gives("face") {
@@ -548,7 +542,8 @@ fn inflow(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Optio
 
 /// What of a face of the grid lies between the ends of the permeable bodies there.
 fn along_face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Site> {
-    let (grid, face) = (ground.around.grid?, face(record, ground, report)?);
+    let grid = ground.around.grid?;
+    let face = face(record, ground, report)?;
     let slack = AT * grid.axes[face.axis].shortest();
     let at = if face.upper { grid.upper() } else { grid.lower() }[face.axis];
     let there = ground.permeable().into_iter().map(|body| body.region.corners());
@@ -603,8 +598,8 @@ pub(super) fn drain_of(record: &Record, root: &Record, report: &mut Report<'_>) 
         return Some(None);
     };
     if found.is_none() {
-        let names = || drains.iter().filter_map(|drain| drain.text("name"));
-        let near = record.text("drain").map(|name| hint(name, names())).unwrap_or_default();
+        let names = drains.iter().filter_map(|drain| drain.text("name"));
+        let near = record.text("drain").map(|name| hint(name, names)).unwrap_or_default();
         let end = if near.is_empty() { "." } else { &near };
         let message = format!(
             "E0518: no [[drain]] of the case has this name or face. Correct the name or face, or \

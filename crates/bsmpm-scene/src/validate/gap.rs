@@ -36,12 +36,9 @@ pub(super) fn check(case: &Case, report: &mut Report<'_>) {
     for (number, piece) in pieces.iter().enumerate() {
         piece.iter().for_each(|&body| piece_of[body] = number);
     }
-    let are_separate =
-        |gap: &&Gap| piece_of[gap.bodies[0]] != piece_of[gap.bodies[1]] && are_together(case, gap.bodies);
-    let narrow: Vec<&Gap> = apart
-        .iter()
-        .filter(|gap| gap.distance < gap.cell)
-        .filter(are_separate)
+    let narrow = apart.iter().filter(|gap| gap.distance < gap.cell);
+    let narrow: Vec<&Gap> = narrow
+        .filter(|gap| piece_of[gap.bodies[0]] != piece_of[gap.bodies[1]] && are_together(case, gap.bodies))
         .collect();
     let Some(gap) = narrow.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
         return;
@@ -63,7 +60,7 @@ pub(super) fn check(case: &Case, report: &mut Report<'_>) {
 }
 
 /// Whether two bodies are there at the same time.
-fn are_together(case: &Case, [i, j]: [usize; 2]) -> bool {
+pub(super) fn are_together(case: &Case, [i, j]: [usize; 2]) -> bool {
     let mut times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
     times.any(|t| case.is_there(i, t) && case.is_there(j, t))
 }
@@ -85,37 +82,20 @@ fn gap(case: &Case, bodies: [usize; 2], work: &mut usize) -> Option<Gap> {
     if let (Some(a_bounds), Some(b_bounds)) = (cuboid(a), cuboid(b)) {
         return Some(of_boxes(&case.grid, bodies, &a_bounds, &b_bounds));
     }
-    let ([a_edges, b_edges], lower) = ([a, b].map(|body| body.region.edges(&case.grid).0), case.grid.lower());
+    let [a_edges, b_edges] = [a, b].map(|body| body.region.edges(&case.grid).0);
+    let lower = case.grid.lower();
     *work += SAMPLES * a_edges.len() * b_edges.len();
     if a_edges.is_empty() || b_edges.is_empty() || *work > MOST_WORK {
         return None;
     }
-    let from = |ones: &[Edge], others: &[Edge]| {
-        let places = ones.iter().flat_map(places);
-        let nearest = places.map(|at| {
-            (
-                others
-                    .iter()
-                    .map(|other| other.distance(at))
-                    .fold(f64::INFINITY, f64::min),
-                at,
-            )
-        });
-        nearest.min_by(|a, b| a.0.total_cmp(&b.0))
-    };
-    let nearest = [from(&a_edges, &b_edges)?, from(&b_edges, &a_edges)?];
+    let nearest = [nearest(&a_edges, &b_edges)?, nearest(&b_edges, &a_edges)?];
     let (distance, at) = if nearest[0].0 <= nearest[1].0 {
         nearest[0]
     } else {
         nearest[1]
     };
     // A place of one inside of the other: they overlap, of which there is another warning.
-    let is_inside = |edges: &[Edge], of: &Body| {
-        edges
-            .iter()
-            .any(|edge| of.region.contains([edge.a[0] + lower[0], edge.a[1] + lower[1]]))
-    };
-    let overlaps = is_inside(&a_edges, b) || is_inside(&b_edges, a);
+    let overlaps = has_place_in(&a_edges, b, lower) || has_place_in(&b_edges, a, lower);
     let cell = (0..2)
         .map(|axis| cell_at(&case.grid, axis, at[axis]))
         .fold(f64::INFINITY, f64::min);
@@ -124,6 +104,23 @@ fn gap(case: &Case, bodies: [usize; 2], work: &mut usize) -> Option<Gap> {
         distance: if overlaps { 0.0 } else { distance },
         cell,
     })
+}
+
+/// Distance (m) of the place on some edges that is nearest to others, and the place.
+fn nearest(ones: &[Edge], others: &[Edge]) -> Option<(f64, [f64; 2])> {
+    let places = ones.iter().flat_map(places);
+    let distances = places.map(|at| {
+        let distances = others.iter().map(|other| other.distance(at));
+        (distances.fold(f64::INFINITY, f64::min), at)
+    });
+    distances.min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// Whether an end of some edges, which are in coordinates from `lower` (m), is inside a body.
+fn has_place_in(edges: &[Edge], body: &Body, lower: [f64; 3]) -> bool {
+    edges
+        .iter()
+        .any(|edge| body.region.contains([edge.a[0] + lower[0], edge.a[1] + lower[1]]))
 }
 
 /// Bounds of a body that is a box.
@@ -158,13 +155,15 @@ fn places(edge: &Edge) -> Vec<[f64; 2]> {
     if edge.is_straight() {
         return vec![edge.a, edge.b];
     }
-    let (middle, half) = (0.5 * (edge.a[0] + edge.b[0]), 0.5 * (edge.b[0] - edge.a[0]));
-    let along = |k: usize| middle - half * (std::f64::consts::PI * k as f64 / (SAMPLES - 1) as f64).cos();
-    (0..SAMPLES).map(along).map(|x| [x, edge.y(x)]).collect()
+    let middle = 0.5 * (edge.a[0] + edge.b[0]);
+    let half = 0.5 * (edge.b[0] - edge.a[0]);
+    let angles = (0..SAMPLES).map(|k| std::f64::consts::PI * k as f64 / (SAMPLES - 1) as f64);
+    let along = angles.map(|angle| middle - half * angle.cos());
+    along.map(|x| [x, edge.y(x)]).collect()
 }
 
 /// Edge, m, of the cell at a place from the grid's lower corner along an axis.
-fn cell_at(grid: &GridSpec, axis: usize, at: f64) -> f64 {
+pub(super) fn cell_at(grid: &GridSpec, axis: usize, at: f64) -> f64 {
     let along = &grid.axes[axis];
     along.cell(
         along

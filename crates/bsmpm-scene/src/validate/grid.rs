@@ -25,7 +25,8 @@ pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 3]>, report: &
         (uniform(grid, boundary?, dims, report)?, <[Vec<Line>; 3]>::default())
     };
     let spec = GridSpec { axes, order, lines };
-    let (cells, unknowns) = (estimate::cells(&spec), dims as u128 * estimate::nodes(&spec));
+    let cells = estimate::cells(&spec);
+    let unknowns = dims as u128 * estimate::nodes(&spec);
     if cells > MOST_UNKNOWNS || unknowns > MOST_UNKNOWNS {
         let message = format!(
             "E0204: the grid has {cells} cells and {unknowns} unknowns (at most {MOST_UNKNOWNS} of each). Use larger \
@@ -41,7 +42,7 @@ pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 3]>, report: &
 
 /// An error for corners in the wrong order, whatever the cells are.
 fn corners(grid: &Record, dims: usize, report: &mut Report<'_>) -> Option<()> {
-    let (Some(lower), Some(upper)) = (grid.vector("lower"), grid.vector("upper")) else {
+    let Some((lower, upper)) = grid.vector("lower").zip(grid.vector("upper")) else {
         return Some(());
     };
     let wrong: Vec<&str> = (0..dims)
@@ -95,55 +96,65 @@ fn graded(
         knots.error("z", message, report);
         return None;
     }
-    let mut axis = |number: usize| {
-        let name = NAMES[number];
-        let copies: Vec<&[f64]> = knots.numbers(name)?.chunk_by(|a, b| a == b).collect();
-        let breakpoints: Vec<f64> = copies.iter().map(|copies| copies[0]).collect();
-        if breakpoints.len() < 2 || breakpoints.windows(2).any(|pair| pair[1] <= pair[0]) {
-            let message = "E0208: the ends of the cells in [grid.knots] are not in increasing order, or fewer than \
-                 two of them differ. Sort the numbers, and add missing ones.";
-            knots.error(name, message, report);
-            return None;
-        }
-        let (last, most) = (copies.len() - 1, |i: usize| {
-            if i == 0 || i == copies.len() - 1 { 1 } else { order }
-        });
-        if let Some(torn) = (0..=last).find(|&i| copies[i].len() > most(i)) {
-            let message = format!(
-                "E0209: the cell end {} is given {} times in [grid.knots], but is allowed at most {} times. Delete \
-                 some of the repetitions.",
-                breakpoints[torn],
-                copies[torn].len(),
-                most(torn)
-            );
-            knots.error(name, message, report);
-            return None;
-        }
-        let repeated = copies.iter().enumerate().filter(|(_, copies)| copies.len() > 1);
-        let lines = repeated
-            .map(|(breakpoint, copies)| Line {
-                breakpoint,
-                multiplicity: copies.len(),
-            })
-            .collect();
-        for (key, end) in [("lower", breakpoints[0]), ("upper", breakpoints[breakpoints.len() - 1])] {
-            if let Some(corner) = grid.vector(key).filter(|corner| corner[number] != end) {
-                let message = format!(
-                    "E0210: the grid has a corner at {name} = {} m, but the first or last value in [grid.knots] is \
-                     {name} = {end} m. Delete `{key}`, or make both equal.",
-                    corner[number]
-                );
-                grid.error(key, message, report);
-            }
-        }
-        Some((GridAxis::Graded(breakpoints), lines))
-    };
-    let read: Vec<_> = (0..dims).map(&mut axis).collect();
+    let read: Vec<_> = (0..dims)
+        .map(|number| graded_axis(grid, knots, order, number, report))
+        .collect();
     let (axes, found): (Vec<GridAxis>, Vec<Vec<Line>>) =
         read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
     let mut lines = <[Vec<Line>; 3]>::default();
     lines.iter_mut().zip(found).for_each(|(own, found)| *own = found);
     Some((axes, lines))
+}
+
+/// Breakpoints of one axis, and those of them that are repeated; `None` after an error.
+fn graded_axis(
+    grid: &Record,
+    knots: &Record,
+    order: usize,
+    number: usize,
+    report: &mut Report<'_>,
+) -> Option<(GridAxis, Vec<Line>)> {
+    let name = NAMES[number];
+    let copies: Vec<&[f64]> = knots.numbers(name)?.chunk_by(|a, b| a == b).collect();
+    let breakpoints: Vec<f64> = copies.iter().map(|copies| copies[0]).collect();
+    if breakpoints.len() < 2 || breakpoints.windows(2).any(|pair| pair[1] <= pair[0]) {
+        let message = "E0208: the ends of the cells in [grid.knots] are not in increasing order, or fewer than \
+             two of them differ. Sort the numbers, and add missing ones.";
+        knots.error(name, message, report);
+        return None;
+    }
+    for (i, copies_of_one) in copies.iter().enumerate() {
+        let most = if i == 0 || i == copies.len() - 1 { 1 } else { order };
+        if copies_of_one.len() > most {
+            let message = format!(
+                "E0209: the cell end {} is given {} times in [grid.knots], but is allowed at most {} times. Delete \
+                 some of the repetitions.",
+                breakpoints[i],
+                copies_of_one.len(),
+                most
+            );
+            knots.error(name, message, report);
+            return None;
+        }
+    }
+    let repeated = copies.iter().enumerate().filter(|(_, copies)| copies.len() > 1);
+    let lines = repeated
+        .map(|(breakpoint, copies)| Line {
+            breakpoint,
+            multiplicity: copies.len(),
+        })
+        .collect();
+    for (key, end) in [("lower", breakpoints[0]), ("upper", breakpoints[breakpoints.len() - 1])] {
+        if let Some(corner) = grid.vector(key).filter(|corner| corner[number] != end) {
+            let message = format!(
+                "E0210: the grid has a corner at {name} = {} m, but the first or last value in [grid.knots] is \
+                 {name} = {end} m. Delete `{key}`, or make both equal.",
+                corner[number]
+            );
+            grid.error(key, message, report);
+        }
+    }
+    Some((GridAxis::Graded(breakpoints), lines))
 }
 
 fn uniform(grid: &Record, boundary: [[Support; 2]; 3], dims: usize, report: &mut Report<'_>) -> Option<Vec<GridAxis>> {
@@ -154,22 +165,21 @@ fn uniform(grid: &Record, boundary: [[Support; 2]; 3], dims: usize, report: &mut
             report.error(grid.origin, &grid.path_of(key), message);
         }
     }
-    let (lower, upper) = (grid.vector("lower")?, grid.vector("upper")?);
+    let lower = grid.vector("lower")?;
+    let upper = grid.vector("upper")?;
     let cell = match *grid.numbers("cell")? {
         [all] => [all; 3],
         [x, y] => [x, y, y],
         [x, y, z] => [x, y, z],
         _ => return None,
     };
-    let mut axis = |number: usize| {
-        Faces {
-            grid,
-            number,
-            supports: boundary[number],
-        }
-        .cells(lower[number], upper[number], cell[number], report)
-    };
-    let read: Vec<Option<GridAxis>> = (0..dims).map(&mut axis).collect();
+    let read: Vec<Option<GridAxis>> = (0..dims)
+        .map(|number| {
+            let supports = boundary[number];
+            let faces = Faces { grid, number, supports };
+            faces.cells(lower[number], upper[number], cell[number], report)
+        })
+        .collect();
     read.into_iter().collect()
 }
 

@@ -5,7 +5,7 @@ mod location;
 pub(super) use location::ends;
 
 use super::flow;
-use crate::case::{Body, Check, Column, Counted, History, Made, NamedMaterial, Quantity, Support};
+use crate::case::{Body, Check, Column, Counted, Face, History, Made, NamedMaterial, Quantity, Support};
 use crate::grid::GridSpec;
 use crate::nearest::{nearest, unknown_name};
 use crate::record::Record;
@@ -23,12 +23,18 @@ const MOST: usize = 1000;
 pub(super) const NAMELESS: &str = "footing";
 
 /// Materials and bodies of the case, without errors.
-type CaseBodies<'a> = Option<(&'a [NamedMaterial], &'a [Body])>;
+#[derive(Clone, Copy)]
+pub(super) struct CaseBodies<'a> {
+    pub(super) materials: &'a [NamedMaterial],
+    pub(super) bodies: &'a [Body],
+}
 
 /// All histories in the order of the file, without those that have an error.
 pub(super) fn read_all(
     root: &Record,
-    (regime, grid, made): (Option<Regime>, Option<&GridSpec>, CaseBodies<'_>),
+    regime: Option<Regime>,
+    grid: Option<&GridSpec>,
+    made: Option<CaseBodies<'_>>,
     report: &mut Report<'_>,
 ) -> Vec<History> {
     let records = root.records("history");
@@ -39,7 +45,7 @@ pub(super) fn read_all(
     let mut taken = HashSet::from(["step".to_owned(), "time".to_owned()]);
     let mut histories = Vec::new();
     for record in records {
-        let Some(history) = read((root, record), (regime, grid, made), report) else {
+        let Some(history) = read(root, record, regime, grid, made, report) else {
             continue;
         };
         if let Some(column) = history
@@ -60,15 +66,53 @@ pub(super) fn read_all(
 }
 
 fn read(
-    (root, record): (&Record, &Record),
-    (regime, grid, made): (Option<Regime>, Option<&GridSpec>, CaseBodies<'_>),
+    root: &Record,
+    record: &Record,
+    regime: Option<Regime>,
+    grid: Option<&GridSpec>,
+    made: Option<CaseBodies<'_>>,
     report: &mut Report<'_>,
 ) -> Option<History> {
     let measured: Measurement = record.word("quantity")?;
     let of_strip = record.gives("of") && measured.is_of_strip();
-    let (own, needed) = own_keys(measured, root.word("geometry"));
-    let belongs = |key: &&str| own.contains(key) || needed.contains(key) || (*key == "of" && of_strip);
-    for key in KEYS.into_iter().filter(|key| !belongs(key) && record.gives(key)) {
+    check_keys(record, measured, of_strip, root.word("geometry"), report);
+    check_case(root, record, measured, regime, report);
+    let quantity = match of_strip {
+        true => Quantity::Strip {
+            number: strip(root, record, measured, report)?,
+            measured,
+        },
+        false => quantity(measured, record, root, grid, made, report)?,
+    };
+    let name = if record.gives("name") {
+        record.text("name")?
+    } else {
+        measured.word()
+    };
+    let scale = record.number("scale")?;
+    let geometry = root.word("geometry")?;
+    Some(History {
+        quantity,
+        name: name.to_owned(),
+        scale,
+        geometry,
+        lasts: false,
+    })
+}
+
+/// Refuses keys that have no effect on the quantity, and reports those that it needs and does not have.
+fn check_keys(
+    record: &Record,
+    measured: Measurement,
+    of_strip: bool,
+    geometry: Option<Geometry>,
+    report: &mut Report<'_>,
+) {
+    let (own, needed) = own_keys(measured, geometry);
+    for key in KEYS.into_iter().filter(|key| record.gives(key)) {
+        if own.contains(&key) || needed.contains(&key) || (key == "of" && of_strip) {
+            continue;
+        }
         let message = format!("E0642: the key `{key}` has no effect on the quantity \"{measured}\". Remove `{key}`.");
         record.error(key, message, report);
     }
@@ -81,6 +125,10 @@ fn read(
         let message = format!("E0644: the quantity \"{measured}\" cannot be measured without `{key}`. Add `{key}`.");
         report.error(record.origin, &record.path_of(key), message);
     }
+}
+
+/// Refuses a quantity that is zero, or has no meaning, in the case.
+fn check_case(root: &Record, record: &Record, measured: Measurement, regime: Option<Regime>, report: &mut Report<'_>) {
     if regime == Some(Regime::QuasiStatic) && is_of_motion(measured) {
         record.error("quantity", needs_dynamics(measured.word()), report);
     }
@@ -121,36 +169,16 @@ fn read(
         );
         record.consequence("face", message, &["boundary", "prescribed", "stage"], report);
     }
-    let is_outlet = |side: Side| supports(root, side).contains(&Support::Outflow);
-    if measured == Measurement::Outflow && !Side::ALL.into_iter().flatten().any(is_outlet) {
+    let mut sides = Side::ALL.into_iter().flatten();
+    if measured == Measurement::Outflow && !sides.any(|side| supports(root, side).contains(&Support::Outflow)) {
         let message = "E0646: no boundary has the condition \"outflow\", so no material can leave the grid. Set a \
              side in [boundary] to \"outflow\".";
         record.error("quantity", message, report);
     }
-    let quantity = match of_strip {
-        true => Quantity::Strip {
-            number: strip((root, record), measured, report)?,
-            measured,
-        },
-        false => quantity(measured, record, (root, grid, made), report)?,
-    };
-    let name = if record.gives("name") {
-        record.text("name")?
-    } else {
-        measured.word()
-    };
-    let (scale, geometry) = (record.number("scale")?, root.word("geometry")?);
-    Some(History {
-        quantity,
-        name: name.to_owned(),
-        scale,
-        geometry,
-        lasts: false,
-    })
 }
 
 /// Number of the strip that a history is of, if the history has a meaning for it; `None` after an error.
-fn strip((root, record): (&Record, &Record), measured: Measurement, report: &mut Report<'_>) -> Option<usize> {
+fn strip(root: &Record, record: &Record, measured: Measurement, report: &mut Report<'_>) -> Option<usize> {
     let wanted = record.text("of")?;
     let footing = root
         .records("footing")
@@ -195,10 +223,13 @@ fn supports(root: &Record, side: Side) -> Vec<Support> {
 
 /// Whether nothing ever holds material at a face.
 fn is_never_held(root: &Record, side: Side) -> bool {
-    let moves = |motion: &Record| motion.gives("face") && motion.word::<Side>("face") == Some(side);
-    let lets_go = |support: &Support| matches!(support, Support::Free | Support::Outflow);
     let is_axis = root.word("geometry") == Some(Geometry::Axisymmetric) && side == Side::Left;
-    !is_axis && supports(root, side).iter().all(lets_go) && !root.records("prescribed").iter().any(moves)
+    let mut motions = root.records("prescribed").iter();
+    !is_axis
+        && supports(root, side)
+            .iter()
+            .all(|support| matches!(support, Support::Free | Support::Outflow))
+        && !motions.any(|motion| motion.gives("face") && motion.word::<Side>("face") == Some(side))
 }
 
 /// The error of a time after the end of the run.
@@ -279,119 +310,131 @@ fn own_keys(measured: Measurement, geometry: Option<Geometry>) -> (&'static [&'s
 fn quantity(
     measured: Measurement,
     record: &Record,
-    (root, grid, made): (&Record, Option<&GridSpec>, CaseBodies<'_>),
+    root: &Record,
+    grid: Option<&GridSpec>,
+    made: Option<CaseBodies<'_>>,
     report: &mut Report<'_>,
 ) -> Option<Quantity> {
-    // Once, so that an error in what counts is reported once.
-    let counts = if measured.is_of_part() {
-        counted(record, (grid, made), report)?
-    } else {
-        Counted::default()
-    };
+    use Measurement::*;
     Some(match measured {
-        Measurement::Runout => {
-            let given = record.gives("percentile");
-            Quantity::Runout {
-                percentile: if given { record.number("percentile")? } else { 100.0 },
-                of: counts,
-            }
+        Runout | Height | MaxDisplacement | Mass | Momentum | CentreOfMass | AngularMomentum | KineticEnergy
+        | MeanStress | MeanDisplacement | MeanVelocity | PlasticStrain | PorePressures | PressureNoise | Heave => {
+            of_part(measured, record, grid, made, report)?
         }
-        Measurement::Front => Quantity::Front,
-        Measurement::Height => Quantity::Height {
-            at_x: at_x(record, grid, report)?,
-            of: counts,
-        },
-        Measurement::MaxDisplacement => Quantity::MaxDisplacement { of: counts },
-        Measurement::Mass => Quantity::Mass { of: counts },
-        Measurement::Outflow => Quantity::Outflow,
-        Measurement::Momentum => Quantity::Momentum { of: counts },
-        Measurement::CentreOfMass => Quantity::CentreOfMass {
-            of: weighing(counts, record, made, report)?,
-        },
-        Measurement::AngularMomentum => Quantity::AngularMomentum { of: counts },
-        Measurement::KineticEnergy => Quantity::KineticEnergy { of: counts },
-        Measurement::MeanStress => Quantity::MeanStress { of: counts },
-        Measurement::MeanDisplacement => Quantity::MeanDisplacement { of: counts },
-        Measurement::MeanVelocity => Quantity::MeanVelocity { of: counts },
-        Measurement::PlasticStrain => Quantity::PlasticStrain { of: counts },
-        Measurement::SectionForces => {
-            let (lines, round) = section((root, record), grid, report)?;
+        Displacement | Velocity | Stress | PorePressure | ExcessPressure | Porosity | Flux => {
+            of_place(measured, record, grid, report)?
+        }
+        Reaction | Contact | Gap | SlipRate | FrictionPower => of_face(measured, face(record, root, report)?),
+        SectionForces => {
+            let (lines, round) = section(root, record, grid, report)?;
             Quantity::SectionForces {
                 lines,
                 round,
                 fixed: record.gives("fixed") && record.flag("fixed")?,
             }
         }
-        Measurement::Moment | Measurement::Work => return None,
-        Measurement::Reaction => Quantity::Reaction {
-            face: face(record, root, report)?,
-        },
-        Measurement::Displacement => Quantity::Displacement {
-            at: at(record, grid, report)?,
-        },
-        Measurement::Velocity => Quantity::Velocity {
-            at: at(record, grid, report)?,
-            surface: at_surface(record)?,
-        },
-        Measurement::Stress => Quantity::Stress {
-            at: at(record, grid, report)?,
-            surface: at_surface(record)?,
-        },
-        Measurement::PorePressure => Quantity::PorePressure {
-            at: at(record, grid, report)?,
-            surface: at_surface(record)?,
-        },
-        Measurement::PorePressures => Quantity::PorePressures { of: counts },
-        Measurement::ExcessPressure | Measurement::Porosity | Measurement::Flux => Quantity::Pore {
-            what: measured,
-            at: at(record, grid, report)?,
-            surface: at_surface(record)?,
-        },
-        Measurement::WaterOutflow => Quantity::WaterOutflow {
-            drain: flow::drain_of(record, root, report)?,
-        },
-        Measurement::WaterBalance => Quantity::WaterBalance,
-        Measurement::StressNoise => Quantity::StressNoise,
-        Measurement::PressureNoise => Quantity::PressureNoise { of: counts },
-        Measurement::Heave => Quantity::Heave { of: counts },
-        Measurement::FootingPressure => Quantity::FootingPressure,
-        Measurement::FootingForce => Quantity::FootingForce,
-        Measurement::Penetration => Quantity::Penetration,
-        Measurement::Slip => Quantity::Slip,
-        Measurement::Contact => Quantity::Contact {
-            face: face(record, root, report)?,
-        },
-        Measurement::Gap => Quantity::Gap {
-            face: face(record, root, report)?,
-        },
-        Measurement::SlipRate => Quantity::SlipRate {
-            face: face(record, root, report)?,
-        },
-        Measurement::FrictionPower => Quantity::FrictionPower {
-            face: face(record, root, report)?,
-        },
-        Measurement::Energy => Quantity::Energy,
-        Measurement::RigidForce
-        | Measurement::RigidMoment
-        | Measurement::RigidDisplacement
-        | Measurement::RigidRotation
-        | Measurement::RigidVelocity
-        | Measurement::RigidSlip
-        | Measurement::RigidGap
-        | Measurement::RigidWork => Quantity::Rigid {
+        RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity | RigidSlip | RigidGap
+        | RigidWork => Quantity::Rigid {
             what: measured,
             body: rigid(record, root, report)?,
         },
+        WaterOutflow => Quantity::WaterOutflow {
+            drain: flow::drain_of(record, root, report)?,
+        },
+        Front => Quantity::Front,
+        Outflow => Quantity::Outflow,
+        WaterBalance => Quantity::WaterBalance,
+        StressNoise => Quantity::StressNoise,
+        FootingPressure => Quantity::FootingPressure,
+        FootingForce => Quantity::FootingForce,
+        Penetration => Quantity::Penetration,
+        Slip => Quantity::Slip,
+        Energy => Quantity::Energy,
+        Moment | Work => return None,
     })
+}
+
+/// A quantity of the points that count.
+fn of_part(
+    measured: Measurement,
+    record: &Record,
+    grid: Option<&GridSpec>,
+    made: Option<CaseBodies<'_>>,
+    report: &mut Report<'_>,
+) -> Option<Quantity> {
+    use Measurement::*;
+    let of = counted(record, grid, made, report)?;
+    Some(match measured {
+        Runout => {
+            let given = record.gives("percentile");
+            let percentile = if given { record.number("percentile")? } else { 100.0 };
+            Quantity::Runout { percentile, of }
+        }
+        Height => Quantity::Height {
+            at_x: at_x(record, grid, report)?,
+            of,
+        },
+        MaxDisplacement => Quantity::MaxDisplacement { of },
+        Mass => Quantity::Mass { of },
+        Momentum => Quantity::Momentum { of },
+        CentreOfMass => Quantity::CentreOfMass {
+            of: weighing(of, record, made, report)?,
+        },
+        AngularMomentum => Quantity::AngularMomentum { of },
+        KineticEnergy => Quantity::KineticEnergy { of },
+        MeanStress => Quantity::MeanStress { of },
+        MeanDisplacement => Quantity::MeanDisplacement { of },
+        MeanVelocity => Quantity::MeanVelocity { of },
+        PlasticStrain => Quantity::PlasticStrain { of },
+        PorePressures => Quantity::PorePressures { of },
+        PressureNoise => Quantity::PressureNoise { of },
+        Heave => Quantity::Heave { of },
+        _ => return None,
+    })
+}
+
+/// A quantity at a place.
+fn of_place(
+    measured: Measurement,
+    record: &Record,
+    grid: Option<&GridSpec>,
+    report: &mut Report<'_>,
+) -> Option<Quantity> {
+    let at = at(record, grid, report)?;
+    if measured == Measurement::Displacement {
+        return Some(Quantity::Displacement { at });
+    }
+    let surface = at_surface(record)?;
+    Some(match measured {
+        Measurement::Velocity => Quantity::Velocity { at, surface },
+        Measurement::Stress => Quantity::Stress { at, surface },
+        Measurement::PorePressure => Quantity::PorePressure { at, surface },
+        what => Quantity::Pore { what, at, surface },
+    })
+}
+
+/// A quantity of a face of the grid.
+fn of_face(measured: Measurement, face: Face) -> Quantity {
+    match measured {
+        Measurement::Contact => Quantity::Contact { face },
+        Measurement::Gap => Quantity::Gap { face },
+        Measurement::SlipRate => Quantity::SlipRate { face },
+        Measurement::FrictionPower => Quantity::FrictionPower { face },
+        _ => Quantity::Reaction { face },
+    }
 }
 
 /// Number of the rigid body that a history is of.
 fn rigid(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<usize> {
     let name = record.text("rigid")?;
-    let names = || root.records("rigid").iter().filter_map(|rigid| rigid.text("name"));
-    let found = names().position(|known| known == name);
+    let names: Vec<&str> = root
+        .records("rigid")
+        .iter()
+        .filter_map(|rigid| rigid.text("name"))
+        .collect();
+    let found = names.iter().position(|known| *known == name);
     if found.is_none() {
-        record.consequence("rigid", unknown_name("[[rigid]]", name, names()), &["rigid"], report);
+        record.consequence("rigid", unknown_name("[[rigid]]", name, names), &["rigid"], report);
     }
     found
 }
@@ -399,7 +442,8 @@ fn rigid(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<usiz
 /// The points that count: of a material that a body is made of, of a body, or all; of those all, or those in a box.
 fn counted(
     record: &Record,
-    (grid, made): (Option<&GridSpec>, CaseBodies<'_>),
+    grid: Option<&GridSpec>,
+    made: Option<CaseBodies<'_>>,
     report: &mut Report<'_>,
 ) -> Option<Counted> {
     let within = if record.gives("box") {
@@ -409,15 +453,16 @@ fn counted(
     };
     let made = match (record.gives("material"), record.gives("body")) {
         (true, _) => Made::Material(material(record, made, report)?),
-        (_, true) => Made::Body(body(record, made?.1, report)?),
+        (_, true) => Made::Body(body(record, made?.bodies, report)?),
         _ => Made::All,
     };
     Some(Counted { made, within })
 }
 
 /// Number of the history's material, which a body is made of.
-fn material(record: &Record, made: CaseBodies<'_>, report: &mut Report<'_>) -> Option<u16> {
-    let (name, (materials, bodies)) = (record.text("material")?, made?);
+fn material(record: &Record, made: Option<CaseBodies<'_>>, report: &mut Report<'_>) -> Option<u16> {
+    let name = record.text("material")?;
+    let CaseBodies { materials, bodies } = made?;
     let Some(number) = materials.iter().position(|material| material.name == name) else {
         let names = materials.iter().map(|material| &*material.name);
         record.error("material", unknown_name("material", name, names), report);
@@ -446,14 +491,13 @@ fn body(record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<usi
 }
 
 /// The points that count, if they have mass.
-fn weighing(of: Counted, record: &Record, made: CaseBodies<'_>, report: &mut Report<'_>) -> Option<Counted> {
-    let (materials, bodies) = made?;
-    let counts = |number: usize, body: &Body| match of.made {
+fn weighing(of: Counted, record: &Record, made: Option<CaseBodies<'_>>, report: &mut Report<'_>) -> Option<Counted> {
+    let CaseBodies { materials, bodies } = made?;
+    let mut counted = bodies.iter().enumerate().filter(|(number, body)| match of.made {
         Made::All => true,
         Made::Material(of) => usize::from(of) == body.material,
-        Made::Body(of) => of == number,
-    };
-    let mut counted = bodies.iter().enumerate().filter(|(number, body)| counts(*number, body));
+        Made::Body(of) => of == *number,
+    });
     if !counted.any(|(_, body)| materials[body.material].density.is_some()) {
         let message = "E0646: this quantity needs the mass of the soil, but the material of this part of the ground has no \
              weight. Add `unit_weight` to the material.";
@@ -473,14 +517,10 @@ pub(super) fn checks(root: &Record, histories: &[History], end: Option<f64>, rep
 
 fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut Report<'_>) -> Option<Check> {
     let quantity = record.text("quantity")?;
-    let columns = || {
-        histories
-            .iter()
-            .flat_map(|history| history.columns().into_iter().map(move |column| (history, column)))
-    };
-    let Some((_, column)) = columns().find(|(_, column)| column.name == quantity) else {
-        let names: Vec<String> = columns().map(|(_, column)| column.name).collect();
-        let known = match nearest(quantity, names.iter().map(String::as_str)) {
+    let columns: Vec<Column> = histories.iter().flat_map(History::columns).collect();
+    let Some(column) = columns.iter().find(|column| column.name == quantity) else {
+        let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+        let known = match nearest(quantity, names.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),
             None if names.is_empty() => "the case has no history".to_owned(),
             None => format!("known columns: {}", names.join(", ")),
@@ -496,10 +536,8 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
     if end.is_some_and(|end| at > end) {
         record.error("at", after_the_end(at), report);
     }
-    let (min, max) = (
-        bound("min", record, &column, report)?,
-        bound("max", record, &column, report)?,
-    );
+    let min = bound("min", record, column, report)?;
+    let max = bound("max", record, column, report)?;
     match (min, max) {
         (None, None) => {
             let message = "E0661: the check has no limit, so it can never fail. Add `min`, `max` or both.";

@@ -37,25 +37,21 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
 /// Tractions and point loads that last along an axis.
 fn loads(case: &Case, axis: usize) -> impl Iterator<Item = String> {
     let tractions = case.tractions.iter().enumerate().map(move |(k, of)| {
-        (
-            format!("traction.{k}"),
-            of.ramp,
-            &of.amplitude,
-            net(case, of, axis).abs() > ALONG * of.largest(),
-        )
+        let pushes = net(case, of, axis).abs() > ALONG * of.largest();
+        (format!("traction.{k}"), of.ramp, &of.amplitude, pushes)
     });
     let forces = case.point_loads.iter().enumerate();
     let forces = forces.map(move |(k, of)| (format!("point_load.{k}"), of.ramp, &of.amplitude, of.force[axis] != 0.0));
     let all = tractions.chain(forces).enumerate();
     let lasting = all.filter(move |(number, (_, ramp, amplitude, pushes))| {
         let acts = case.acts_since(Acting::Load(*number), 0.0) == Some(0.0);
-        *pushes && lasts(case, (*ramp, amplitude), axis, acts)
+        *pushes && lasts(case, *ramp, amplitude, axis, acts)
     });
     lasting.map(|(_, (name, ..))| name)
 }
 
 /// Whether the share of a load at the end is not the one that `[initial]` has found.
-fn lasts(case: &Case, (ramp, amplitude): (f64, &Shares), axis: usize, acts_at_start: bool) -> bool {
+fn lasts(case: &Case, ramp: f64, amplitude: &Shares, axis: usize, acts_at_start: bool) -> bool {
     let is_found = acts_at_start && (case.settles || case.initial == Some(Initial::Elastic));
     let first = match amplitude.first() {
         Some((t, share)) if *t == 0.0 => share[axis],
@@ -78,34 +74,25 @@ fn stays_away(path: &MotionPath, axis: usize) -> bool {
 
 /// Pa  what a traction pushes with along an axis, in the mean over its places.
 fn net(case: &Case, traction: &Traction, axis: usize) -> f64 {
-    let (lower, upper) = (case.grid.lower(), case.grid.upper());
+    let lower = case.grid.lower();
+    let upper = case.grid.upper();
     let places: Vec<([f64; 2], [f64; 2])> = match traction.line {
         LoadedLine::Segment { from, to } => along([from, to]).map(|at| (at, normal(from, to))).collect(),
-        LoadedLine::Circle { center, radius } => {
-            let inside = |at: &[f64; 2]| (0..2).all(|k| lower[k] <= at[k] && at[k] <= upper[k]);
-            ring(center, radius)
-                .filter(inside)
-                .map(|at| (at, [0, 1].map(|k| (center[k] - at[k]) / radius)))
-                .collect()
-        }
+        LoadedLine::Circle { center, radius } => ring(center, radius)
+            .filter(|at| (0..2).all(|k| lower[k] <= at[k] && at[k] <= upper[k]))
+            .map(|at| (at, [0, 1].map(|k| (center[k] - at[k]) / radius)))
+            .collect(),
         LoadedLine::Plate(_) | LoadedLine::Triangles(_) => Vec::new(), // of a solid, of which no face absorbs
     };
-    let pushed = |([_, y], normal): &([f64; 2], [f64; 2])| match traction.push {
+    let pushed = places.iter().map(|([_, y], normal)| match traction.push {
         Push::Stress(stress) => stress[axis].at(*y),
         Push::Pressure { profile, side } => side * profile.at(*y) * normal[axis],
-    };
-    places.iter().map(pushed).sum::<f64>() / places.len().max(1) as f64
+    });
+    pushed.sum::<f64>() / places.len().max(1) as f64
 }
 
 /// Rigid bodies that push along an axis, or stay away from where they began.
 fn rigid(case: &Case, root: &Record, axis: usize) -> impl Iterator<Item = String> {
-    let pushes = move |(number, of): (usize, &Rigid)| {
-        let moves = stays_away(&of.path, axis);
-        let acting = Acting::Rigid(number);
-        let acts = case.acts_since(acting, 0.0) == Some(0.0);
-        let pushes = moves || of.force[axis] != 0.0 && lasts(case, (of.ramp, &of.amplitude), axis, acts);
-        pushes && !holds_at_rest(case, axis, Some(acting))
-    };
     // With gravity all of them are warned of.
     let all = case
         .rigid
@@ -113,8 +100,18 @@ fn rigid(case: &Case, root: &Record, axis: usize) -> impl Iterator<Item = String
         .enumerate()
         .zip(root.records("rigid"))
         .filter(|_| case.gravity.is_none());
-    all.filter(move |(rigid, _)| pushes(*rigid))
+    all.filter(move |((number, of), _)| pushes(case, *number, of, axis))
         .map(|(_, record)| record.path.clone())
+}
+
+/// Whether a rigid body with a number pushes along an axis, or stays away from where it began, and nothing else holds
+/// the ground there.
+fn pushes(case: &Case, number: usize, of: &Rigid, axis: usize) -> bool {
+    let moves = stays_away(&of.path, axis);
+    let acting = Acting::Rigid(number);
+    let acts = case.acts_since(acting, 0.0) == Some(0.0);
+    let pushes = moves || of.force[axis] != 0.0 && lasts(case, of.ramp, &of.amplitude, axis, acts);
+    pushes && !holds_at_rest(case, axis, Some(acting))
 }
 
 /// The footing and prescribed motions whose last place along an axis is not the first, and beside which nothing holds.
@@ -123,10 +120,10 @@ fn strips(case: &Case, axis: usize) -> impl Iterator<Item = String> {
     let all = footing
         .chain(case.prescribed.iter().map(|of| (of.site, &of.path)))
         .enumerate();
-    let lasting = move |(number, (site, path)): &(usize, (Site, &MotionPath))| {
+    let lasting = all.filter(move |(number, (site, path))| {
         // What is stuck to a face goes along with it, and what lies before it is pushed.
         let pushes = !matches!(site, Site::Face(_)) || normal_of(*site)[axis] != 0.0;
         pushes && stays_away(path, axis) && !holds_at_rest(case, axis, Some(Acting::Strip(*number)))
-    };
-    all.filter(lasting).map(move |(number, _)| name_of_strip(case, number))
+    });
+    lasting.map(move |(number, _)| name_of_strip(case, number))
 }

@@ -1,7 +1,7 @@
 //! Warns of bodies that leave the grid through a free face.
 
 use super::physics;
-use crate::case::{Body, Case, Face, Geometry, Rigid, RigidShape, RigidSolid, Support};
+use crate::case::{Body, Case, Face, Geometry, RigidShape, RigidSolid, Support};
 use crate::record::Record;
 use crate::region::Region;
 use crate::report::Report;
@@ -33,12 +33,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         return;
     }
     let faces = (0..case.grid.dims()).flat_map(|axis| [false, true].map(|upper| Face { axis, upper }));
-    let is_open = |face: &Face| {
-        let is_axis = case.geometry == Geometry::Axisymmetric && face.axis == 0;
-        let is_free = case.boundary[face.axis][usize::from(face.upper)] == Support::Free;
-        !is_axis && is_free && !has_terrain_above(case, *face) && !physics::holds_at_rest(case, face.axis, None)
-    };
-    let open: Vec<Face> = faces.filter(is_open).collect();
+    let open: Vec<Face> = faces.filter(|face| is_open(case, *face)).collect();
     for (body, record) in case.bodies.iter().zip(root.records("body")) {
         let motion = FreeMotion::of(case, body);
         for &face in &open {
@@ -60,18 +55,26 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     }
 }
 
+/// Whether a body can leave through a face: it is free, nothing holds along its normal, and no terrain lies above it.
+fn is_open(case: &Case, face: Face) -> bool {
+    let is_axis = case.geometry == Geometry::Axisymmetric && face.axis == 0;
+    let is_free = case.boundary[face.axis][usize::from(face.upper)] == Support::Free;
+    !is_axis && is_free && !has_terrain_above(case, face) && !physics::holds_at_rest(case, face.axis, None)
+}
+
 /// Whether a face is the bottom of the grid and the case has rigid terrain, which lies above it: the terrain is level beyond its
 /// raster, so that every body comes to rest on it.
 fn has_terrain_above(case: &Case, face: Face) -> bool {
     let is_bottom = face.axis == case.grid.dims() - 1 && !face.upper;
-    let is_terrain = |rigid: &Rigid| matches!(rigid.shape, RigidShape::InSpace(RigidSolid::Terrain(_)));
-    is_bottom && case.rigid.iter().any(is_terrain)
+    let mut shapes = case.rigid.iter().map(|rigid| &rigid.shape);
+    is_bottom && shapes.any(|shape| matches!(shape, RigidShape::InSpace(RigidSolid::Terrain(_))))
 }
 
 impl<'a> FreeMotion<'a> {
     fn of(case: &Case, body: &'a Body) -> Self {
         let acceleration = case.gravity.as_ref().map_or([0.0; 3], |gravity| gravity.acceleration);
-        let (lower, bounds) = (case.grid.lower(), body.region.corners());
+        let lower = case.grid.lower();
+        let bounds = body.region.corners();
         let corners: Vec<[f64; 3]> = match &body.region {
             // Of a solid the bounds move without turning.
             Region::Solid(_) => bounds.to_vec(),
@@ -85,16 +88,16 @@ impl<'a> FreeMotion<'a> {
             }
         };
         let inset = 0.5 * case.grid.shortest() / body.points_per_cell as f64;
-        let inside = |at: [f64; 3]| {
+        let points = corners.into_iter().map(|at| {
             std::array::from_fn(|axis| {
                 let middle = 0.5 * (bounds[0][axis] + bounds[1][axis]);
                 at[axis] - (at[axis] - middle).clamp(-inset, inset)
             })
-        };
+        });
         Self {
             body,
             acceleration,
-            points: corners.into_iter().map(inside).collect(),
+            points: points.collect(),
         }
     }
 
@@ -110,35 +113,37 @@ impl<'a> FreeMotion<'a> {
         let velocity = self.body.velocity.map_or(0.0, |velocity| velocity[axis]);
         let path = velocity * t + 0.5 * self.acceleration[axis] * t * t;
         let spin = self.body.spin.filter(|_| case.grid.dims() == 2);
-        let turned = |at: &[f64; 3]| match spin {
-            Some([rate, about]) => {
-                let arm = [at[0] - about[0], at[1] - about[1]];
-                let (sin, cos) = (rate[2] * t).sin_cos();
-                [
-                    about[0] + cos * arm[0] - sin * arm[1],
-                    about[1] + sin * arm[0] + cos * arm[1],
-                    at[2],
-                ]
-            }
-            None => *at,
-        };
         let reach = self
             .points
             .iter()
-            .map(|at| outward(case, face, turned(at)[axis] + path));
+            .map(|at| outward(case, face, turned(*at, spin, t)[axis] + path));
         reach.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// When a point is beyond the face, and how far the farthest comes, if that is before the end.
     fn exit(&self, case: &Case, face: Face) -> Option<Exit> {
-        let time = |k: usize| case.analysis.end * k as f64 / SAMPLES as f64;
-        let beyond: Vec<f64> = (1..=SAMPLES).map(|k| self.beyond(case, face, time(k))).collect();
+        let times: Vec<f64> = (1..=SAMPLES)
+            .map(|k| case.analysis.end * k as f64 / SAMPLES as f64)
+            .collect();
+        let beyond: Vec<f64> = times.iter().map(|t| self.beyond(case, face, *t)).collect();
         let first = beyond.iter().position(|beyond| *beyond > 0.0)?;
         Some(Exit {
-            time: time(first + 1),
+            time: times[first],
             overshoot: beyond.into_iter().fold(0.0, f64::max),
         })
     }
+}
+
+/// A place after the time `t` with a spin in the plane: its angular velocity (rad/s), and the place that it is about.
+fn turned(at: [f64; 3], spin: Option<[[f64; 3]; 2]>, t: f64) -> [f64; 3] {
+    let Some([rate, about]) = spin else { return at };
+    let arm = [at[0] - about[0], at[1] - about[1]];
+    let (sin, cos) = (rate[2] * t).sin_cos();
+    [
+        about[0] + cos * arm[0] - sin * arm[1],
+        about[1] + sin * arm[0] + cos * arm[1],
+        at[2],
+    ]
 }
 
 /// Distance, m, by which a place along the normal of a face is beyond it.

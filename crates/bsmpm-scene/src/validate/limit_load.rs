@@ -1,10 +1,10 @@
 //! Validates a limit load analysis. Multiplies stiffness and divides displacements by a factor, theory-manual equation
 //! (T9.8), to keep strains small.
 
+use super::place::flat;
 use super::site;
 use crate::case::{
-    Case, Footing, History, LimitLoad, LoadWidth, MotionPath, NamedMaterial, Prescribed, Quantity, Rigid, RigidShape,
-    Site, SoughtLoad,
+    Case, Footing, History, LimitLoad, LoadWidth, MotionPath, Prescribed, Quantity, Rigid, RigidShape, Site, SoughtLoad,
 };
 use crate::grid::GridSpec;
 use crate::record::Record;
@@ -148,7 +148,6 @@ fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
                        stiffness. Delete analysis.purpose, or the strength reduction.";
         analysis.error(KEY, message, report);
     }
-    let follows_strain = |material: &Material| material.softens() || material.hardens() || !material.is_linear();
     if let Some(named) = case.materials.iter().find(|named| follows_strain(&named.material)) {
         let message = format!(
             "E0446: the strength or stiffness of material `{}` changes with strain, so it has no unique limit load. \
@@ -157,6 +156,11 @@ fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
         );
         analysis.error(KEY, message, report);
     }
+}
+
+/// Whether the strength or stiffness of a material changes with strain.
+fn follows_strain(material: &Material) -> bool {
+    material.softens() || material.hardens() || !material.is_linear()
 }
 
 /// Refuses motions along which no limit load is found.
@@ -203,9 +207,9 @@ fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], repor
 
 /// Whether a path leads farther from the start all the time until the end of the run.
 fn goes_on(path: &MotionPath, end: f64) -> bool {
-    let distance = |t: f64| path.at(t).iter().fold(0.0, |length: f64, along| length.hypot(*along));
-    let rows = path.rows.iter().map(|(t, _)| *t).filter(|t| *t < end).chain([end]);
-    let distances: Vec<f64> = std::iter::once(0.0).chain(rows.map(distance)).collect();
+    let times = path.rows.iter().map(|(t, _)| *t).filter(|t| *t < end).chain([end]);
+    let moved = times.map(|t| path.at(t).iter().fold(0.0, |length: f64, along| length.hypot(*along)));
+    let distances: Vec<f64> = std::iter::once(0.0).chain(moved).collect();
     distances.windows(2).all(|pair| pair[1] > pair[0])
 }
 
@@ -214,16 +218,20 @@ fn opposed(case: &Case, site: Site, path: &MotionPath) -> Option<&'static str> {
     if matches!(site, Site::Face(_)) {
         return None; // refused where it is read
     }
-    let (corners, lower, upper) = (site::corners(site, &case.grid), case.grid.lower(), case.grid.upper());
-    let sides = Side::of(case.geometry).iter().enumerate();
-    let faces = sides.flat_map(|(axis, sides)| [(axis, 0, sides[0]), (axis, 1, sides[1])]);
-    let holds = |(axis, end, _): &(usize, usize, Side)| {
-        let at = [lower, upper][*end][*axis];
-        let lies = corners.iter().all(|corner| corner[*axis] == at);
-        let moves = path.rows.iter().any(|(_, moved)| moved[*axis] != 0.0);
-        lies && moves && matches!(case.boundary[*axis][*end], Support::Roller | Support::Fixed)
-    };
-    faces.into_iter().find(holds).map(|(.., side)| side.word())
+    let corners = site::corners(site, &case.grid);
+    let lower = case.grid.lower();
+    let upper = case.grid.upper();
+    for (axis, sides) in Side::of(case.geometry).iter().enumerate() {
+        let moves = path.rows.iter().any(|(_, moved)| moved[axis] != 0.0);
+        for (end, side) in sides.iter().enumerate() {
+            let at = [lower, upper][end][axis];
+            let lies = corners.iter().all(|corner| corner[axis] == at);
+            if lies && moves && matches!(case.boundary[axis][end], Support::Roller | Support::Fixed) {
+                return Some(side.word());
+            }
+        }
+    }
+    None
 }
 
 /// Warns of points, and of flow rules, with which limit loads were shown to be off.
@@ -247,11 +255,12 @@ fn warn_of_settings(case: &Case, report: &mut Report<'_>) {
              extrapolated load is unknown. Use grid.degree = \"quadratic\".",
         );
     }
-    let is_far_off = |named: &&NamedMaterial| {
-        let (friction, dilation) = (friction(&named.material), named.material.dilation());
+    let far_off = case.materials.iter().find(|named| {
+        let friction = friction(&named.material);
+        let dilation = named.material.dilation();
         friction > 0.0 && dilation < ASSOCIATED * friction
-    };
-    if let Some(named) = case.materials.iter().find(is_far_off) {
+    });
+    if let Some(named) = far_off {
         report.warn(format!(
             "W0425: material.{}: with a dilation angle below half the friction angle, limit loads vary by some per \
              cent with the grid. Compare the upper bound (dilation_angle = friction_angle).",
@@ -280,11 +289,11 @@ fn warn_of_averages(case: &Case, report: &mut Report<'_>) {
         .as_ref()
         .map_or(0.0, |gravity| gravity.acceleration[case.grid.dims() - 1].abs());
     let cell = case.grid.shortest();
-    let is_loose = |named: &&NamedMaterial| {
+    let loose = case.materials.iter().find(|named| {
         let weight = named.density.unwrap_or(0.0) * gravity * cell;
         named.material.dilation() > DILATES && cohesion(&named.material).is_some_and(|cohesion| cohesion < weight)
-    };
-    if let Some(named) = case.materials.iter().find(is_loose) {
+    });
+    if let Some(named) = loose {
         report.warn(format!(
             "W0426: stabilisation.method: limit loads on material `{}`, which dilates and has little cohesion, are up \
              to 42 % wrong with this method. Use method = \"none\" with points_per_cell = 2.",
@@ -310,14 +319,17 @@ fn small_cohesions(case: &Case, loads: &[SoughtLoad], report: &mut Report<'_>) -
         .filter_map(|load| load.width)
         .map(|width| width.length)
         .reduce(f64::min);
-    let (Some(gravity), Some(width)) = (&case.gravity, width) else {
+    let Some(gravity) = &case.gravity else {
         return Vec::new();
     };
+    let Some(width) = width else { return Vec::new() };
     let g = gravity.acceleration[case.grid.dims() - 1].abs();
-    let share = |named: &NamedMaterial| Some(cohesion(&named.material)? / (named.density? * g * width));
     let mut small = Vec::new();
     for named in case.materials.iter().filter(|named| friction(&named.material) > 0.0) {
-        let Some(share) = share(named).filter(|share| (0.0..SMALL_COHESION).contains(share) && *share > 0.0) else {
+        let share = cohesion(&named.material)
+            .zip(named.density)
+            .map(|(cohesion, density)| cohesion / (density * g * width));
+        let Some(share) = share.filter(|share| (0.0..SMALL_COHESION).contains(share) && *share > 0.0) else {
             continue;
         };
         report.warn(format!(
@@ -338,7 +350,7 @@ fn sought(case: &mut Case) -> Vec<SoughtLoad> {
     let mut loads = Vec::new();
     for (number, (site, path)) in strips {
         let name = name_of_strip(case, number);
-        let moved = Moved {
+        let moved = MovedObject {
             name,
             path,
             width: width_of_strip(case, site),
@@ -360,7 +372,7 @@ fn sought(case: &mut Case) -> Vec<SoughtLoad> {
         }
         let name = rigid.name.clone();
         let path = rigid.path.clone();
-        let moved = Moved {
+        let moved = MovedObject {
             name,
             path,
             width: width_of(case, rigid),
@@ -376,7 +388,7 @@ fn sought(case: &mut Case) -> Vec<SoughtLoad> {
 }
 
 /// What is moved.
-struct Moved {
+struct MovedObject {
     name: String,
     path: MotionPath,
     width: Option<LoadWidth>,
@@ -384,7 +396,7 @@ struct Moved {
 
 /// The footing's load: the case's own column of its pressure or force, or one more of the pressure; of a footing that
 /// does not move along its normal the force along its motion.
-fn of_footing(case: &mut Case, moved: Moved) -> SoughtLoad {
+fn of_footing(case: &mut Case, moved: MovedObject) -> SoughtLoad {
     let normal = case
         .footing
         .as_ref()
@@ -398,15 +410,18 @@ fn of_footing(case: &mut Case, moved: Moved) -> SoughtLoad {
         };
         return recorded(case, quantity, direction, moved);
     }
-    let is_own = |history: &&History| matches!(history.quantity, Quantity::FootingPressure | Quantity::FootingForce);
-    match case.histories.iter().find(is_own) {
+    let own = case
+        .histories
+        .iter()
+        .find(|history| matches!(history.quantity, Quantity::FootingPressure | Quantity::FootingForce));
+    match own {
         Some(own) => of_history(&own.clone(), &[1.0], moved),
         None => recorded(case, Quantity::FootingPressure, vec![1.0], moved),
     }
 }
 
 /// Records a force, one component of it times each of the weights.
-fn recorded(case: &mut Case, quantity: Quantity, weights: Vec<f64>, moved: Moved) -> SoughtLoad {
+fn recorded(case: &mut Case, quantity: Quantity, weights: Vec<f64>, moved: MovedObject) -> SoughtLoad {
     if let Some(own) = case
         .histories
         .iter()
@@ -414,14 +429,8 @@ fn recorded(case: &mut Case, quantity: Quantity, weights: Vec<f64>, moved: Moved
     {
         return of_history(&own.clone(), &weights, moved);
     }
-    let columns = |name: &str| -> bool {
-        let beginning = format!("{name}-");
-        case.histories
-            .iter()
-            .any(|history| history.name == *name || history.name.starts_with(&beginning))
-    };
     let mut name = format!("{}-load", moved.name);
-    while columns(&name) {
+    while has_columns(case, &name) {
         name.push_str("-of-all");
     }
     let history = History {
@@ -436,7 +445,15 @@ fn recorded(case: &mut Case, quantity: Quantity, weights: Vec<f64>, moved: Moved
     load
 }
 
-fn of_history(history: &History, weights: &[f64], moved: Moved) -> SoughtLoad {
+/// Whether a history of the case has columns of a name.
+fn has_columns(case: &Case, name: &str) -> bool {
+    let beginning = format!("{name}-");
+    case.histories
+        .iter()
+        .any(|history| history.name == *name || history.name.starts_with(&beginning))
+}
+
+fn of_history(history: &History, weights: &[f64], moved: MovedObject) -> SoughtLoad {
     let columns = history.columns();
     let unit = columns[0].unit.clone();
     let columns = columns
@@ -455,15 +472,19 @@ fn of_history(history: &History, weights: &[f64], moved: Moved) -> SoughtLoad {
 
 /// Unit vector from the start to the farthest place of a path, times a sign.
 fn along(path: &MotionPath, sign: f64) -> Vec<f64> {
-    let size = |along: &[f64; 3]| along[0].hypot(along[1]).hypot(along[2]);
     let places = path.rows.iter().map(|(_, moved)| *moved);
     let farthest = places
-        .reduce(|a, b| if size(&b) > size(&a) { b } else { a })
+        .reduce(|a, b| if length(b) > length(a) { b } else { a })
         .unwrap_or_default();
     farthest
         .iter()
-        .map(|component| sign * component / size(&farthest))
+        .map(|component| sign * component / length(farthest))
         .collect()
+}
+
+/// Length of a vector.
+fn length(along: [f64; 3]) -> f64 {
+    along[0].hypot(along[1]).hypot(along[2])
 }
 
 /// Width of a strip; of a plate that of its shorter side.
@@ -478,7 +499,6 @@ fn width_of_strip(case: &Case, site: Site) -> Option<LoadWidth> {
 
 /// Width of the box around a rigid body, across its direction of motion.
 fn width_of(case: &Case, rigid: &Rigid) -> Option<LoadWidth> {
-    let flat = |[x, y]: [f64; 2]| [x, y, 0.0];
     let [lower, upper] = match &rigid.shape {
         RigidShape::Circle { center, radius } => [-radius, *radius].map(|by| flat(center.map(|at| at + by))),
         RigidShape::Polygon(corners) => crate::region::bounds(corners).map(flat),
@@ -505,19 +525,20 @@ fn narrowest(sides: impl Iterator<Item = LoadWidth>) -> Option<LoadWidth> {
 fn side(case: &Case, axis: usize, lower: f64, upper: f64) -> LoadWidth {
     let cells = &case.grid.axes[axis];
     let faces = [case.grid.lower()[axis], case.grid.upper()[axis]];
-    let is_cut = |side: usize, is_beyond: bool| {
-        let holds = case.boundary[axis][side] == Support::Roller;
-        let is_axis = case.geometry == Geometry::Axisymmetric && (axis, side) == (0, 0);
-        (holds || is_axis) && is_beyond
-    };
-    let cut = [is_cut(0, lower <= faces[0]), is_cut(1, upper >= faces[1])];
-    let (first, last) = (lower.max(faces[0]), upper.min(faces[1]));
-    let inside = |i: usize| {
+    let rolls = case.boundary[axis].map(|support| support == Support::Roller);
+    let is_axis = case.geometry == Geometry::Axisymmetric && axis == 0;
+    let is_cut = [
+        (rolls[0] || is_axis) && lower <= faces[0],
+        rolls[1] && upper >= faces[1],
+    ];
+    let first = lower.max(faces[0]);
+    let last = upper.min(faces[1]);
+    let parts = (0..cells.cells()).map(|i| {
         let [from, to] = [i, i + 1].map(|i| cells.lower() + cells.breakpoint(i));
         (to.min(last) - from.max(first)).max(0.0) / (to - from)
-    };
-    let count: f64 = (0..cells.cells()).map(inside).sum();
-    let whole = if cut[0] != cut[1] { 2.0 } else { 1.0 };
+    });
+    let count: f64 = parts.sum();
+    let whole = if is_cut[0] != is_cut[1] { 2.0 } else { 1.0 };
     LoadWidth {
         length: whole * (last - first),
         cells: whole * count,

@@ -10,7 +10,6 @@ use crate::record::Record;
 use crate::region::Edge;
 use crate::report::{Report, brief};
 use crate::words::C0Lines;
-use bsmpm::water::flow::Soil;
 use std::collections::BTreeMap;
 
 /// Parts of a cell by which a place may miss a grid line: rounding.
@@ -55,22 +54,11 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
         .and_then(|grid| grid.word("c0_lines"))
         .unwrap_or(C0Lines::Automatic);
     // Where water flows, ground loses volume as it moves through them: they are at the ends of strips only.
-    let is_placed = |place: &(usize, usize)| {
+    let (placed, left): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(place, _)| {
         chosen == C0Lines::Automatic && (case.flow.is_none() || found.held.contains_key(place))
-    };
-    let (placed, left): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(place, _)| is_placed(place));
+    });
     if let Some(((axis, line), reason)) = left.iter().find(|((axis, line), _)| !has(case, *axis, *line)) {
-        let place = place_of(case, *axis, *line);
-        report.warn(match chosen {
-            C0Lines::None => format!(
-                "W0216: {reason}, at {place}. Without a C0 line the grid smooths this, so stresses within three cells \
-                 can be off by tens of per cent. Set grid.c0_lines = \"automatic\"."
-            ),
-            C0Lines::Automatic => format!(
-                "W0217: {reason}, at {place}. In an analysis with pore-water flow the grid smooths this, so stresses \
-                 nearby can be off by tens of per cent. Use smaller cells there."
-            ),
-        });
+        warn_of_smoothing(&place_of(case, *axis, *line), reason, chosen, report);
     }
     let mut crossed = own(case);
     let jumps = crossed.or(placed.first().map(|(place, _)| *place));
@@ -103,25 +91,39 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     found.inside
 }
 
+/// Warns that strains jump at a place where no line is placed.
+fn warn_of_smoothing(place: &str, reason: &str, chosen: C0Lines, report: &mut Report<'_>) {
+    report.warn(match chosen {
+        C0Lines::None => format!(
+            "W0216: {reason}, at {place}. Without a C0 line the grid smooths this, so stresses within three cells \
+             can be off by tens of per cent. Set grid.c0_lines = \"automatic\"."
+        ),
+        C0Lines::Automatic => format!(
+            "W0217: {reason}, at {place}. In an analysis with pore-water flow the grid smooths this, so stresses \
+             nearby can be off by tens of per cent. Use smaller cells there."
+        ),
+    });
+}
+
 /// Soil whose strength friction makes, and in which no water flows although it fills it.
 fn undrained_with_friction<'a>(case: &Case, record: &'a Record) -> Option<&'a str> {
     let soils = &case.flow.as_ref()?.soils;
-    let has_friction = |of: &Record| of.number("friction_angle").is_some_and(|friction| friction > 0.0);
-    let is_made = |number: usize| case.bodies.iter().any(|body| body.material == number);
-    let mut named = record.named("material").iter().zip(soils).enumerate();
-    let undrained = |soil: &Option<Soil<3>>| soil.as_ref().is_some_and(|soil| soil.permeability.is_none());
-    named
-        .find(|(number, ((_, of), soil))| is_made(*number) && undrained(soil) && has_friction(of))
-        .map(|(_, ((name, _), _))| name.as_str())
+    for (number, ((name, of), soil)) in record.named("material").iter().zip(soils).enumerate() {
+        let is_made = case.bodies.iter().any(|body| body.material == number);
+        let is_undrained = soil.as_ref().is_some_and(|soil| soil.permeability.is_none());
+        let has_friction = of.number("friction_angle").is_some_and(|friction| friction > 0.0);
+        if is_made && is_undrained && has_friction {
+            return Some(name);
+        }
+    }
+    None
 }
 
 /// The first line of the grid's own knots across which strains may jump.
 fn own(case: &Case) -> Option<(usize, usize)> {
-    let along = |axis: usize| case.grid.lines[axis].iter().map(move |line| (axis, line));
-    let found = (0..case.grid.dims())
-        .flat_map(along)
-        .find(|(_, line)| line.multiplicity >= case.grid.order)?;
-    Some((found.0, found.1.breakpoint))
+    let mut lines = (0..case.grid.dims()).flat_map(|axis| case.grid.lines[axis].iter().map(move |line| (axis, line)));
+    let (axis, line) = lines.find(|(_, line)| line.multiplicity >= case.grid.order)?;
+    Some((axis, line.breakpoint))
 }
 
 /// Lines by axis and breakpoint with their reasons, and what cannot be on one.
@@ -148,11 +150,10 @@ impl FoundLine {
 
 /// Whether strains may jump on a grid line on which unlike materials meet: a C0 line, as of linear splines all are.
 pub(super) fn has_interface(case: &Case) -> bool {
-    let is_c0 = |axis: usize, line: usize| case.grid.order == 1 || has(case, axis, line);
     FoundLine::at_interfaces(case)
         .lines
         .keys()
-        .any(|(axis, line)| is_c0(*axis, *line))
+        .any(|(axis, line)| case.grid.order == 1 || has(case, *axis, *line))
 }
 
 /// Where the grid line of an axis with a number is, in words.
@@ -168,7 +169,8 @@ fn has(case: &Case, axis: usize, line: usize) -> bool {
 }
 
 fn insert(case: &mut Case, axis: usize, breakpoint: usize) {
-    let (lines, multiplicity) = (&mut case.grid.lines[axis], case.grid.order);
+    let lines = &mut case.grid.lines[axis];
+    let multiplicity = case.grid.order;
     match lines.binary_search_by_key(&breakpoint, |line| line.breakpoint) {
         Ok(at) => lines[at].multiplicity = multiplicity,
         Err(at) => lines.insert(
@@ -191,8 +193,8 @@ pub(super) fn line_of(case: &Case, edge: &Edge) -> Option<(usize, usize)> {
 fn grid_line(case: &Case, axis: usize, x: f64) -> Option<usize> {
     let axis = &case.grid.axes[axis];
     let after = axis.first_cell(|i| axis.breakpoint(i + 1) >= x);
-    let near = |i: &usize| (axis.breakpoint(*i) - x).abs() <= ROUNDING * axis.shortest();
-    [after, after + 1].into_iter().filter(|i| *i <= axis.cells()).find(near)
+    let mut lines = [after, after + 1].into_iter().filter(|i| *i <= axis.cells());
+    lines.find(|i| (axis.breakpoint(*i) - x).abs() <= ROUNDING * axis.shortest())
 }
 
 /// Where bodies of unlike stiffness or density meet.
@@ -200,7 +202,7 @@ fn interfaces(case: &Case, found: &mut FoundLine) {
     let used: Vec<usize> = case.bodies.iter().map(|body| body.material).collect();
     if used
         .iter()
-        .all(|material| differ(case, (used[0], *material), None).is_none())
+        .all(|material| differ(case, used[0], *material, None).is_none())
     {
         return;
     }
@@ -210,15 +212,15 @@ fn interfaces(case: &Case, found: &mut FoundLine) {
             if line.is_some_and(|(axis, line)| line == 0 || line == case.grid.axes[axis].cells()) {
                 continue;
             }
-            let Some((at, pair, ratios)) = unlike(case, &edge) else {
+            let Some(Interface { at, materials, ratios }) = unlike(case, &edge) else {
                 continue;
             };
-            let [a, b] = [pair.0, pair.1].map(|material| &case.materials[material]);
+            let [a, b] = materials.map(|material| &case.materials[material]);
             if let Some(line) = line {
                 found.lines.entry(line).or_insert_with(|| interface_of(a, b));
             }
             let averages = case.stabilisation.averages();
-            if let Some(doubt) = doubt([a, b], (line.is_some(), averages), (&at, ratios)) {
+            if let Some(doubt) = doubt([a, b], line.is_some(), averages, &at, ratios) {
                 found.doubts.entry(format!("{} {}", a.name, b.name)).or_insert(doubt);
             }
         }
@@ -232,58 +234,74 @@ fn interface_of(a: &NamedMaterial, b: &NamedMaterial) -> String {
 /// What is doubtful about an interface of two materials whose moduli and densities have these ratios.
 fn doubt(
     [a, b]: [&NamedMaterial; 2],
-    (on_line, averages): (bool, bool),
-    (at, [moduli, densities]): (&[f64], [f64; 2]),
+    on_line: bool,
+    averages: bool,
+    at: &[f64],
+    [moduli, densities]: [f64; 2],
 ) -> Option<String> {
-    let (a, b, yields) = (&a.name, &b.name, [a, b].iter().any(|named| named.material.yields()));
-    if on_line {
-        let stiffer = || {
-            format!(
-                "W0220: the stiffness of material.{a} and material.{b} differs by a factor of {} (limit {SHOWN}). \
-                 Stresses in the stiffer one are wrong after yielding. Reduce the larger `young`.",
-                brief(moduli)
-            )
-        };
-        let denser = || {
-            format!(
-                "W0221: the density of material.{a} and material.{b} differs by a factor of {}. Stresses in the cells \
-                 next to their interface at {} are inaccurate. Use smaller cells at the interface.",
-                brief(densities),
-                coordinates(at)
-            )
-        };
-        return match yields && moduli > SHOWN {
-            true => Some(stiffer()),
-            false => (averages && densities >= DENSER).then(denser),
-        };
+    let yields = [a, b].iter().any(|named| named.material.yields());
+    let [a, b] = [&a.name, &b.name];
+    if on_line && yields && moduli > SHOWN {
+        return Some(format!(
+            "W0220: the stiffness of material.{a} and material.{b} differs by a factor of {} (limit {SHOWN}). \
+             Stresses in the stiffer one are wrong after yielding. Reduce the larger `young`.",
+            brief(moduli)
+        ));
     }
-    let unfitted = || {
-        format!(
+    if on_line && averages && densities >= DENSER {
+        return Some(format!(
+            "W0221: the density of material.{a} and material.{b} differs by a factor of {}. Stresses in the cells \
+             next to their interface at {} are inaccurate. Use smaller cells at the interface.",
+            brief(densities),
+            coordinates(at)
+        ));
+    }
+    if !on_line && moduli.max(densities) >= UNLIKE {
+        return Some(format!(
             "W0222: the interface of material.{a} and material.{b} is not on a grid line, first at {at:.3?} m. Stresses \
              within three cells are off by tens of per cent. Put a grid line there (grid.knots)."
-        )
-    };
-    (moduli.max(densities) >= UNLIKE).then(unfitted)
+        ));
+    }
+    None
 }
 
 /// The coordinates of a place in words.
 fn coordinates(at: &[f64]) -> String {
-    let named = |(axis, value): (&str, &f64)| format!("{axis} = {value:.3} m");
-    let all: Vec<String> = ["x", "y", "z"].into_iter().zip(at).map(named).collect();
+    let all: Vec<String> = NAMES
+        .iter()
+        .zip(at)
+        .map(|(axis, value)| format!("{axis} = {value:.3} m"))
+        .collect();
     all.join(", ")
 }
 
-/// An interface: a place on it, the materials on both sides, the ratios of their moduli and densities.
-type Interface = ([f64; 2], (usize, usize), [f64; 2]);
+/// An interface: a place on it (m), the materials on both sides, the ratios of their moduli and densities.
+struct Interface {
+    at: [f64; 2],
+    materials: [usize; 2],
+    ratios: [f64; 2],
+}
+
+impl Interface {
+    /// The larger of its ratios.
+    fn largest_ratio(&self) -> f64 {
+        self.ratios[0].max(self.ratios[1])
+    }
+}
 
 /// The place along an edge where the materials on both sides are least alike, if they are not.
 fn unlike(case: &Case, edge: &Edge) -> Option<Interface> {
     let lower = case.grid.lower()[1];
-    let unlike = beside(case, edge)
-        .filter_map(|(at, pair)| differ(case, pair, Some(at[1] - lower)).map(|ratios| (at, pair, ratios)));
-    // Of equal ones the first.
-    let most = |(.., ratios): &Interface| ratios[0].max(ratios[1]);
-    unlike.reduce(|worst, next| if most(&next) > most(&worst) { next } else { worst })
+    let unlike = beside(case, edge).filter_map(|(at, (a, b))| {
+        let ratios = differ(case, a, b, Some(at[1] - lower))?;
+        let materials = [a, b];
+        Some(Interface { at, materials, ratios })
+    });
+    unlike.reduce(|worst, next| {
+        // Of equal ones the first.
+        let is_worse = next.largest_ratio() > worst.largest_ratio();
+        if is_worse { next } else { worst }
+    })
 }
 
 /// Places along an edge that has ground on both sides, and the materials there.
@@ -292,40 +310,50 @@ pub(super) fn beside(case: &Case, edge: &Edge) -> impl Iterator<Item = ([f64; 2]
     let aside = BESIDE * case.grid.shortest();
     let normal = usize::from(!edge.is_along(1)); // aside along x of a vertical edge, else along y
     (0..SAMPLES).filter_map(move |k| {
-        let part = (k as f64 + 0.5) / SAMPLES as f64;
-        let x = edge.a[0] + part * (edge.b[0] - edge.a[0]);
-        let y = if normal == 0 {
-            edge.a[1] + part * (edge.b[1] - edge.a[1])
-        } else {
-            edge.y(x)
-        };
+        let [x, y] = sample(edge, k);
         let at = [lower[0] + x, lower[1] + y];
-        let beside = |shift: f64| {
-            let mut place = at;
-            place[normal] += shift;
-            case.bodies
-                .iter()
-                .find(|body| body.region.contains(place))
-                .map(|body| body.material)
-        };
-        Some((at, (beside(-aside)?, beside(aside)?)))
+        let before = material_beside(case, at, normal, -aside)?;
+        let beyond = material_beside(case, at, normal, aside)?;
+        Some((at, (before, beyond)))
     })
+}
+
+/// The place along an edge with a number, m from the grid's lower corner.
+fn sample(edge: &Edge, k: usize) -> [f64; 2] {
+    let part = (k as f64 + 0.5) / SAMPLES as f64;
+    let x = edge.a[0] + part * (edge.b[0] - edge.a[0]);
+    let y = if edge.is_along(1) {
+        edge.a[1] + part * (edge.b[1] - edge.a[1])
+    } else {
+        edge.y(x)
+    };
+    [x, y]
+}
+
+/// The material at a place that is shifted along an axis (m), if there is any.
+fn material_beside(case: &Case, mut at: [f64; 2], axis: usize, shift: f64) -> Option<usize> {
+    at[axis] += shift;
+    case.bodies
+        .iter()
+        .find(|body| body.region.contains(at))
+        .map(|body| body.material)
 }
 
 /// Whether two materials differ in stiffness or density, at a height (m from the grid's lower corner) or anywhere: the
 /// ratios of their moduli and densities.
-fn differ(case: &Case, (a, b): (usize, usize), height: Option<f64>) -> Option<[f64; 2]> {
+fn differ(case: &Case, a: usize, b: usize, height: Option<f64>) -> Option<[f64; 2]> {
     if a == b {
         return None;
     }
     let [a, b] = [a, b].map(|material| &case.materials[material]);
-    let apart = |a: f64, b: f64| (a - b).abs() > EQUAL * a.abs().max(b.abs());
     let young =
         [a, b].map(|named| height.map_or(named.material.elastic().young, |height| named.material.young_at(height)));
     let graded = height.is_none() && [a, b].iter().any(|named| named.material.is_graded());
     let poisson = [a, b].map(|named| named.material.elastic().poisson);
     let density = [a, b].map(|named| named.density.unwrap_or(0.0));
-    let differs = graded || [young, poisson, density].iter().any(|pair| apart(pair[0], pair[1]));
-    let ratio = |[a, b]: [f64; 2]| if a.min(b) > 0.0 { a.max(b) / a.min(b) } else { 1.0 };
-    differs.then(|| [ratio(young), ratio(density)])
+    let differs = graded
+        || [young, poisson, density]
+            .iter()
+            .any(|[a, b]| (a - b).abs() > EQUAL * a.abs().max(b.abs()));
+    differs.then(|| [young, density].map(|[a, b]| if a.min(b) > 0.0 { a.max(b) / a.min(b) } else { 1.0 }))
 }

@@ -17,22 +17,26 @@ use bsmpm::tensor::Vector;
 
 /// All tractions in the order of the file, without those that have an error.
 pub(super) fn tractions(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<Traction> {
-    let mut read = |record: &Record| {
-        let line = line(record, around, report);
-        let push = push(record, around, report);
-        let (line, (push, (ramp, amplitude))) = (line?, push?);
-        let traction = Traction {
-            line,
-            push,
-            ramp,
-            amplitude,
-        };
-        let keys = ["pressure", "stress_path", "pressure_path"];
-        let key = keys.into_iter().find(|key| record.gives(key)).unwrap_or("stress");
-        warn_of_nothing(record, key, [traction.largest(); 3], report);
-        Some(traction)
+    let records = root.records("traction").iter();
+    records.filter_map(|record| traction(record, around, report)).collect()
+}
+
+/// A traction; `None` after an error.
+fn traction(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Traction> {
+    let line = line(record, around, report);
+    let push = push(record, around, report);
+    let line = line?;
+    let (push, (ramp, amplitude)) = push?;
+    let traction = Traction {
+        line,
+        push,
+        ramp,
+        amplitude,
     };
-    root.records("traction").iter().filter_map(&mut read).collect()
+    let keys = ["pressure", "stress_path", "pressure_path"];
+    let key = keys.into_iter().find(|key| record.gives(key)).unwrap_or("stress");
+    warn_of_nothing(record, key, [traction.largest(); 3], report);
+    Some(traction)
 }
 
 /// Where a traction acts: on a body everywhere.
@@ -43,7 +47,8 @@ fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
         return Some(LoadedLine::Circle { center, radius });
     }
     if let Some(key) = ["rectangle", "disc"].into_iter().find(|key| record.gives(key)) {
-        let (grid, bodies) = (around.grid?, around.bodies?);
+        let grid = around.grid?;
+        let bodies = around.bodies?;
         let plate = plate(record, grid, report)?;
         let mut places = places(Site::Plate(plate), grid).into_iter();
         if let Some(at) = places.find(|at| beyond(grid, *at).is_none() && !at_volume(bodies, grid, *at)) {
@@ -67,10 +72,13 @@ pub(super) fn circle(
     report: &mut Report<'_>,
 ) -> Option<([f64; 2], f64, Vec<[f64; 2]>)> {
     let circle = record.record("circle")?;
-    let (center, radius) = (circle.pair("centre")?, circle.number("radius")?);
-    let (lower, upper) = (around.grid?.lower(), around.grid?.upper());
-    let inside = |at: &[f64; 2]| (0..2).all(|axis| lower[axis] <= at[axis] && at[axis] <= upper[axis]);
-    let places: Vec<[f64; 2]> = ring(center, radius).filter(inside).collect();
+    let center = circle.pair("centre")?;
+    let radius = circle.number("radius")?;
+    let lower = around.grid?.lower();
+    let upper = around.grid?.upper();
+    let places: Vec<[f64; 2]> = ring(center, radius)
+        .filter(|at| (0..2).all(|axis| lower[axis] <= at[axis] && at[axis] <= upper[axis]))
+        .collect();
     if places.is_empty() {
         let message =
             "E0201: no part of the circle is inside the grid. Move the circle into the grid, or enlarge the grid.";
@@ -85,11 +93,9 @@ fn stresses(record: &Record) -> Option<[Profile; 3]> {
     let Some(table) = record.record("stress") else {
         return record.vector("stress").map(|of| of.map(Profile::constant));
     };
-    let (value, at, growth) = (
-        table.vector("value")?,
-        table.number("at_y")?,
-        table.vector("per_metre")?,
-    );
+    let value = table.vector("value")?;
+    let at = table.number("at_y")?;
+    let growth = table.vector("per_metre")?;
     Some([0, 1, 2].map(|axis| Profile {
         value: value[axis],
         at,
@@ -99,10 +105,11 @@ fn stresses(record: &Record) -> Option<[Profile; 3]> {
 
 /// What a traction is; on which side of a pressure bodies lie follows from the whole case only ([`super::side`]).
 fn push(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<(Push, (f64, Shares))> {
-    let pressure = |profile: Profile| Push::Pressure { profile, side: 0.0 };
+    let side = 0.0;
     if record.gives("pressure_path") {
         let (largest, shares) = path(record, "pressure_path", around, report)?;
-        return Some((pressure(Profile::constant(largest[0])), (0.0, shares)));
+        let profile = Profile::constant(largest[0]);
+        return Some((Push::Pressure { profile, side }, (0.0, shares)));
     }
     if record.gives("stress_path") {
         let (largest, shares) = path(record, "stress_path", around, report)?;
@@ -110,7 +117,10 @@ fn push(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
     }
     let course = course(record, around, report);
     let push = match record.gives("pressure") {
-        true => pressure(profile(record, "pressure")?),
+        true => Push::Pressure {
+            profile: profile(record, "pressure")?,
+            side,
+        },
         false => Push::Stress(stresses(record)?),
     };
     Some((push, course?))
@@ -118,29 +128,36 @@ fn push(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
 
 /// All point loads in the order of the file, without those that have an error.
 pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<PointLoad> {
-    let mut read = |record: &Record| {
-        let (at, force) = (record.vector("at")?, force(record, around, report));
-        let (grid, bodies) = (around.grid?, around.bodies?);
-        if let Some(message) = is_beyond(grid, at) {
-            record.error("at", message, report);
-        } else if !is_at(bodies, grid, at) {
-            record.consequence("at", no_body(&at[..grid.dims()]), &["body"], report);
-        }
-        let (force, (ramp, amplitude)) = force?;
-        let key = if record.gives("force_path") {
-            "force_path"
-        } else {
-            "force"
-        };
-        warn_of_nothing(record, key, force, report);
-        Some(PointLoad {
-            at,
-            force,
-            ramp,
-            amplitude,
-        })
+    let records = root.records("point_load").iter();
+    records
+        .filter_map(|record| point_load(record, around, report))
+        .collect()
+}
+
+/// A point load; `None` after an error.
+fn point_load(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<PointLoad> {
+    let at = record.vector("at")?;
+    let force = force(record, around, report);
+    let grid = around.grid?;
+    let bodies = around.bodies?;
+    if let Some(message) = is_beyond(grid, at) {
+        record.error("at", message, report);
+    } else if !is_at(bodies, grid, at) {
+        record.consequence("at", no_body(&at[..grid.dims()]), &["body"], report);
+    }
+    let (force, (ramp, amplitude)) = force?;
+    let key = if record.gives("force_path") {
+        "force_path"
+    } else {
+        "force"
     };
-    root.records("point_load").iter().filter_map(&mut read).collect()
+    warn_of_nothing(record, key, force, report);
+    Some(PointLoad {
+        at,
+        force,
+        ramp,
+        amplitude,
+    })
 }
 
 /// A force along the axes that exist, and what of it acts in time.
@@ -187,9 +204,8 @@ fn acts_on_body(
     around: AroundStrip<'_>,
     report: &mut Report<'_>,
 ) {
-    let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else {
-        return;
-    };
+    let Some(grid) = around.grid else { return };
+    let Some(bodies) = around.bodies else { return };
     if let Some(at) = places.find(|at| !at_body(bodies, grid, *at)) {
         record.consequence(key, no_body(&at), &["body"], report);
     }
@@ -224,7 +240,8 @@ fn in_time<'a>(
     around: AroundStrip<'_>,
     report: &mut Report<'_>,
 ) -> Option<Vec<&'a [f64]>> {
-    let (rows, path): (Vec<&[f64]>, _) = (increasing(record, key, report)?.collect(), record.path_of(key));
+    let rows: Vec<&[f64]> = increasing(record, key, report)?.collect();
+    let path = record.path_of(key);
     warn_of_late(&path, rows.iter().map(|row| row[0]), around.end, report);
     coarse(&path, rows.iter().map(|row| row[0]), around.dt, report);
     Some(rows)
@@ -234,24 +251,27 @@ fn in_time<'a>(
 /// those of one along which something does.
 fn path(record: &Record, key: &str, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<([f64; 3], Shares)> {
     let rows = in_time(record, key, around, report)?;
-    let along = |row: &[f64], axis: usize| row.get(1 + axis).copied().unwrap_or(0.0);
-    let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
-    let largest = [0, 1, 2].map(|axis| rows.iter().map(|row| along(row, axis)).fold(0.0, larger));
+    let largest = [0, 1, 2].map(|axis| {
+        let components = rows.iter().map(|row| component(row, axis));
+        components.fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a })
+    });
     let acting = [0, 1, 2].into_iter().find(|axis| largest[*axis] != 0.0).unwrap_or(0);
     let of = [0, 1, 2].map(|axis| if largest[axis] == 0.0 { acting } else { axis });
-    let share = |row: &[f64], axis: usize| {
-        if largest[axis] == 0.0 {
-            0.0
-        } else {
-            along(row, axis) / largest[axis]
-        }
-    };
-    Some((
-        largest,
-        rows.iter()
-            .map(|row| (row[0], Vector::from_fn(|axis, _| share(row, of[axis]))))
-            .collect(),
-    ))
+    let shares = rows.iter().map(|row| {
+        let shares = of.map(|axis| part_of(component(row, axis), largest[axis]));
+        (row[0], Vector::from(shares))
+    });
+    Some((largest, shares.collect()))
+}
+
+/// A value in parts of the largest one; 0 where that is 0.
+fn part_of(value: f64, largest: f64) -> f64 {
+    if largest == 0.0 { 0.0 } else { value / largest }
+}
+
+/// Component along an axis of a row with a time and a vector; 0 along an axis that it does not give.
+fn component(row: &[f64], axis: usize) -> f64 {
+    row.get(1 + axis).copied().unwrap_or(0.0)
 }
 
 /// Warns of the first time of rows that is after the end of the analysis.
@@ -321,7 +341,8 @@ pub(super) fn increasing<'a>(
 /// The stress at the start, if any: the whole gravity acts from time 0 then.
 pub(super) fn initial(
     root: &Record,
-    (materials, bodies): (Option<&[NamedMaterial]>, Option<&[Body]>),
+    materials: Option<&[NamedMaterial]>,
+    bodies: Option<&[Body]>,
     gravity: Option<&Gravity>,
     regime: Option<Regime>,
     report: &mut Report<'_>,
@@ -337,15 +358,17 @@ pub(super) fn initial(
             false => ("the case has no [initial]", "add a table [initial]"),
         };
         for (_, material) in root.named("material") {
-            let is_k0 = |key: &&str| material.gives(key) && (*key == "k0" || is_of_k0(material));
-            if let Some(key) = ["k0", "ocr"].into_iter().find(is_k0) {
+            let key = ["k0", "ocr"]
+                .into_iter()
+                .find(|key| material.gives(key) && (*key == "k0" || is_of_k0(material)));
+            if let Some(key) = key {
                 let message = format!("E0405: `{key}` has no effect, because {what}. Delete `{key}`, or {instead}.");
                 material.error(key, message, report);
             }
         }
     }
     let record = record?;
-    loaded(root, record, (materials, bodies), gravity, report);
+    loaded(root, record, materials, bodies, gravity, report);
     if elastic {
         return record.word("gravity").map(|start| match start {
             Start::Elastic => Initial::Elastic,
@@ -366,7 +389,8 @@ pub(super) fn initial(
 /// Rows of the ground's acceleration; none without it, or after an error. The run ends and steps by the second numbers.
 pub(super) fn shaking(
     root: &Record,
-    (regime, times): (Option<Regime>, Option<(f64, f64)>),
+    regime: Option<Regime>,
+    times: Option<(f64, f64)>,
     report: &mut Report<'_>,
 ) -> Vec<(f64, [f64; 3])> {
     const KEY: &str = "acceleration";
@@ -381,9 +405,8 @@ pub(super) fn shaking(
     let Some(rows) = increasing(record, KEY, report) else {
         return Vec::new();
     };
-    let along = |row: &[f64], axis: usize| row.get(1 + axis).copied().unwrap_or(0.0);
     let rows: Vec<(f64, [f64; 3])> = rows
-        .map(|row| (row[0], [0, 1, 2].map(|axis| along(row, axis))))
+        .map(|row| (row[0], [0, 1, 2].map(|axis| component(row, axis))))
         .collect();
     if rows.iter().all(|(_, ground)| *ground == [0.0; 3]) {
         record.error(
@@ -393,9 +416,8 @@ pub(super) fn shaking(
         );
         return Vec::new();
     }
-    let (Some((end, dt)), path) = (times, record.path_of(KEY)) else {
-        return rows;
-    };
+    let Some((end, dt)) = times else { return rows };
+    let path = record.path_of(KEY);
     warn_of_late(&path, rows.iter().map(|row| row.0), Some(end), report);
     coarse(&path, rows.iter().map(|row| row.0), Some(dt), report);
     rows
@@ -410,25 +432,29 @@ pub(super) fn is_unloaded(root: &Record) -> bool {
 
 /// Lets every load that acts at once grow until `end`.
 pub(super) fn grow(
-    (gravity, tractions, loads, rigid): (Option<&mut Gravity>, &mut [Traction], &mut [PointLoad], &mut [Rigid]),
+    gravity: Option<&mut Gravity>,
+    tractions: &mut [Traction],
+    loads: &mut [PointLoad],
+    rigid: &mut [Rigid],
     end: f64,
     report: &mut Report<'_>,
 ) {
     let gravity = gravity.map(|gravity| ("gravity.ramp".to_owned(), &mut gravity.ramp));
-    let named = |name, number| format!("{name}.{number}.ramp");
     let tractions = tractions
         .iter_mut()
         .enumerate()
         .filter(|(_, load)| load.amplitude.is_empty());
-    let tractions = tractions.map(|(k, load)| (named("traction", k), &mut load.ramp));
+    let tractions = tractions.map(|(k, load)| (format!("traction.{k}.ramp"), &mut load.ramp));
     let loads = loads
         .iter_mut()
         .enumerate()
         .filter(|(_, load)| load.amplitude.is_empty());
-    let loads = loads.map(|(k, load)| (named("point_load", k), &mut load.ramp));
-    let pushed = |of: &Rigid| of.force != [0.0; 3] && of.amplitude.is_empty();
-    let rigid = rigid.iter_mut().enumerate().filter(|(_, of)| pushed(of));
-    let rigid = rigid.map(|(k, of)| (named("rigid", k), &mut of.ramp));
+    let loads = loads.map(|(k, load)| (format!("point_load.{k}.ramp"), &mut load.ramp));
+    let rigid = rigid
+        .iter_mut()
+        .enumerate()
+        .filter(|(_, of)| of.force != [0.0; 3] && of.amplitude.is_empty());
+    let rigid = rigid.map(|(k, of)| (format!("rigid.{k}.ramp"), &mut of.ramp));
     let all = gravity.into_iter().chain(tractions).chain(loads).chain(rigid);
     for (key, ramp) in all.filter(|(_, ramp)| **ramp == 0.0) {
         *ramp = end;
@@ -454,7 +480,8 @@ pub(super) fn sudden(case: &Case, report: &mut Report<'_>) {
 fn loaded(
     root: &Record,
     record: &Record,
-    (materials, bodies): (Option<&[NamedMaterial]>, Option<&[Body]>),
+    materials: Option<&[NamedMaterial]>,
+    bodies: Option<&[Body]>,
     gravity: Option<&Gravity>,
     report: &mut Report<'_>,
 ) {
@@ -500,7 +527,8 @@ fn is_of_k0(material: &Record) -> bool {
 
 /// K0 = (1 - sin φ) OCR^sin φ (Mayne and Kulhawy, 1982), below passive pressure.
 fn overconsolidated(material: &Record, report: &mut Report<'_>) -> Option<f64> {
-    let (ocr, friction) = (material.number("ocr")?, profile(material, "friction_angle")?);
+    let ocr = material.number("ocr")?;
+    let friction = profile(material, "friction_angle")?;
     if friction.per_metre != 0.0 {
         let message = "E0410: k0 from `ocr` depends on the friction angle, which varies with depth here, but a \
              material has one k0. Give `k0`, or divide the soil into layers with a constant friction angle.";
@@ -508,7 +536,8 @@ fn overconsolidated(material: &Record, report: &mut Report<'_>) -> Option<f64> {
         return None;
     }
     let sine = friction.value.to_radians().sin();
-    let (k0, passive) = ((1.0 - sine) * ocr.powf(sine), (1.0 + sine) / (1.0 - sine));
+    let k0 = (1.0 - sine) * ocr.powf(sine);
+    let passive = (1.0 + sine) / (1.0 - sine);
     let cohesion = profile(material, "cohesion")?;
     if k0 > passive && cohesion.value == 0.0 && cohesion.per_metre == 0.0 {
         let message = format!(

@@ -45,14 +45,14 @@ impl Reduction {
     /// That of the case; without the table none. Young's moduli are multiplied by a further `stiffness`.
     pub(super) fn of(root: &Record, stiffness: f64) -> Self {
         let table = root.record("strength_reduction");
-        let number = |table: Option<&Record>, key| table.and_then(|table| table.number(key)).unwrap_or(1.0);
         let elastic = table.and_then(|table| table.flag("elastic")).unwrap_or(false);
-        let factor = number(reduction::at_start(root), "factor");
+        let factor = reduction::at_start(root).and_then(|table| table.number("factor"));
+        let own_stiffness = table.and_then(|table| table.number("stiffness"));
         let is_for_limit_load = limit_load::is_sought(root);
         Self {
-            factor,
+            factor: factor.unwrap_or(1.0),
             elastic,
-            stiffness: stiffness * number(table, "stiffness"),
+            stiffness: stiffness * own_stiffness.unwrap_or(1.0),
             is_for_limit_load,
         }
     }
@@ -77,48 +77,42 @@ pub(super) fn read_all(root: &Record, around: CaseFacts<'_>, report: &mut Report
     let read = named
         .iter()
         .enumerate()
-        .map(|(number, named)| read(number, named, around, report));
+        .map(|(number, (name, record))| read(number, name, record, around, report));
     let read: Vec<_> = read.collect();
     let materials = read.into_iter().collect::<Option<Vec<_>>>()?;
-    let is_limited = |named: &NamedMaterial| named.material.yields();
-    let is_frictional = |side: &Side| {
-        root.record("boundary")
-            .is_some_and(|faces| faces.record(side.word()).is_some())
-    };
-    let has_friction = Side::ALL.as_flattened().iter().any(is_frictional)
-        || root
-            .records("rigid")
-            .iter()
-            .chain(root.records("prescribed"))
-            .chain(root.record("footing"))
-            .any(is_frictional_record);
-    if root.gives("strength_reduction")
-        && !around.reduction.elastic
-        && !has_friction
-        && !materials.iter().any(is_limited)
-    {
+    let is_limited = has_friction(root) || materials.iter().any(|named| named.material.yields());
+    if root.gives("strength_reduction") && !around.reduction.elastic && !is_limited {
         report.warn(reduction::without_strength("strength_reduction"));
     }
     Some(materials)
 }
 
+/// Whether a face of the grid, a rigid body or a strip has friction, by what is written of it.
+fn has_friction(root: &Record) -> bool {
+    let faces = root.record("boundary");
+    let mut sides = Side::ALL.as_flattened().iter();
+    let mut bodies = root
+        .records("rigid")
+        .iter()
+        .chain(root.records("prescribed"))
+        .chain(root.record("footing"));
+    sides.any(|side| faces.is_some_and(|faces| faces.record(side.word()).is_some())) || bodies.any(is_frictional)
+}
+
 /// Whether a rigid body or strip has friction, by what is written of it.
-fn is_frictional_record(record: &Record) -> bool {
-    let given = |record: &Record| {
-        record
-            .number("friction_coefficient")
-            .is_some_and(|friction| friction > 0.0)
-    };
-    given(record)
-        || record
-            .record("components")
-            .or(record.record("interface"))
-            .is_some_and(given)
+fn is_frictional(record: &Record) -> bool {
+    let contact = record.record("components").or(record.record("interface"));
+    [Some(record), contact]
+        .into_iter()
+        .flatten()
+        .filter_map(|record| record.number("friction_coefficient"))
+        .any(|friction| friction > 0.0)
 }
 
 fn read(
     number: usize,
-    (name, record): &(String, Record),
+    name: &str,
+    record: &Record,
     around: CaseFacts<'_>,
     report: &mut Report<'_>,
 ) -> Option<NamedMaterial> {
@@ -130,54 +124,70 @@ fn read(
         Some(0.0)
     };
     let layer = Layer::of(number, around);
-    let law = law(record, (layer.as_ref(), around.grid, around.geometry), report);
+    let law = law(record, layer.as_ref(), around.grid, around.geometry, report);
     let retardation = retardation(record, around.regime, report);
-    let (young, poisson) = (profile(record, "young"), record.number("poisson"));
+    let young = profile(record, "young");
+    let poisson = record.number("poisson");
     if let (Some(young), Some(layer)) = (&young, &layer) {
-        layer.check(record, ("young", &Range::POSITIVE), young, report);
+        layer.check(record, "young", &Range::POSITIVE, young, report);
     }
     warn_of_stiffness(record, young.map(|young| young.value), poisson, report);
     let Reduction {
         factor,
         elastic,
         stiffness,
-        is_for_limit_load,
+        ..
     } = around.reduction;
-    let of_yield = record.gives("ocr") && record.word("model") == Some(LawName::CamClay);
-    if factor != 1.0 && !elastic && of_yield {
-        let message = "E0312: `ocr` sets the yield surface relative to the initial stress, so a lower strength \
-             (strength_reduction.factor) would enlarge it. Give `preconsolidation` instead of `ocr`.";
-        record.error("ocr", message, report);
-    }
-    let (young, poisson, law) = (young?, poisson?, law?);
+    refuse_reduced_yield(record, around.reduction, report);
+    let young = young?;
+    let poisson = poisson?;
+    let law = law?;
     let law = if elastic { Parameters::elastic() } else { law };
     let young = Profile {
         value: stiffness * young.value,
         per_metre: stiffness * young.per_metre,
         ..young
     };
-    if elastic || stiffness != 1.0 {
-        let value = format!("young x {stiffness}{}", if elastic { ", elastic" } else { "" });
-        let reason = if is_for_limit_load {
-            "analysis.purpose"
-        } else {
-            "strength_reduction.elastic and .stiffness"
-        };
-        report.note(&record.path, value, reason);
-    }
-    let material = law.material(record, (young, poisson), (layer.as_ref(), factor))?;
+    note_stiffness(record, around.reduction, report);
+    let material = law.material(record, young, poisson, layer.as_ref(), factor)?;
     if let Some(layer) = layer.filter(|_| factor != 1.0) {
         note_reduction(record, &material, &layer, factor, report);
     }
-    let (density, saturated, retardation) = (density?, saturated?, retardation?);
+    let density = density?;
+    let saturated = saturated?;
+    let retardation = retardation?;
     Some(NamedMaterial {
-        name: name.clone(),
+        name: name.to_owned(),
         material,
         density,
         saturated,
         ratio: ratio?,
         retardation,
     })
+}
+
+/// Refuses a reduced strength of clay whose yield surface follows from its `ocr`.
+fn refuse_reduced_yield(record: &Record, reduction: Reduction, report: &mut Report<'_>) {
+    let of_yield = record.gives("ocr") && record.word("model") == Some(LawName::CamClay);
+    if reduction.factor != 1.0 && !reduction.elastic && of_yield {
+        let message = "E0312: `ocr` sets the yield surface relative to the initial stress, so a lower strength \
+             (strength_reduction.factor) would enlarge it. Give `preconsolidation` instead of `ocr`.";
+        record.error("ocr", message, report);
+    }
+}
+
+/// Notes a changed stiffness, and strength that is left out.
+fn note_stiffness(record: &Record, reduction: Reduction, report: &mut Report<'_>) {
+    let Reduction { elastic, stiffness, .. } = reduction;
+    if elastic || stiffness != 1.0 {
+        let value = format!("young x {stiffness}{}", if elastic { ", elastic" } else { "" });
+        let reason = if reduction.is_for_limit_load {
+            "analysis.purpose"
+        } else {
+            "strength_reduction.elastic and .stiffness"
+        };
+        report.note(&record.path, value, reason);
+    }
 }
 
 /// Heights (m, in the case's coordinates) between which bodies of a material lie; the grid's if there are none.
@@ -188,19 +198,18 @@ struct Layer {
 
 impl Layer {
     fn of(number: usize, around: CaseFacts<'_>) -> Option<Self> {
-        let (grid, bodies) = (around.grid?, around.bodies?);
-        let exchanges = || {
-            around
-                .stages
-                .unwrap_or_default()
-                .iter()
-                .flat_map(|stage| &stage.materials)
-        };
-        let follows = |own: usize| own == number || exchanges().any(|exchange| *exchange == (own, number));
+        let grid = around.grid?;
+        let bodies = around.bodies?;
+        let exchanges = around.stages.unwrap_or_default().iter();
+        let exchanges = exchanges.flat_map(|stage| &stage.materials);
+        let replaced: Vec<usize> = exchanges
+            .filter(|(_, to)| *to == number)
+            .map(|(from, _)| *from)
+            .collect();
         let up = grid.dims() - 1;
         let made = bodies
             .iter()
-            .filter(|body| follows(body.material))
+            .filter(|body| body.material == number || replaced.contains(&body.material))
             .map(|body| body.region.corners());
         let made = made.map(|corners| corners.map(|corner| corner[up]));
         let found = made.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
@@ -212,7 +221,7 @@ impl Layer {
     }
 
     /// Reports a parameter that varies with height and leaves its range; a constant has been compared with it before.
-    fn check(&self, record: &Record, (key, range): (&str, &Range), profile: &Profile, report: &mut Report<'_>) {
+    fn check(&self, record: &Record, key: &str, range: &Range, profile: &Profile, report: &mut Report<'_>) {
         if profile.per_metre == 0.0 && range.contains(profile.value) {
             return;
         }
@@ -245,23 +254,8 @@ pub(super) fn profile(record: &Record, key: &str) -> Option<Profile> {
 
 /// Notes the reduced strength, at the lowest and the highest place if it differs there.
 fn note_reduction(record: &Record, material: &Material, layer: &Layer, factor: f64, report: &mut Report<'_>) {
-    let at = |y: f64| {
-        let law = material.at(y - layer.base);
-        let written = law
-            .parameter_names()
-            .iter()
-            .zip(law.parameters())
-            .map(|(parameter, value)| {
-                let (value, unit) = if parameter.unit == "rad" {
-                    (value.to_degrees(), "deg")
-                } else {
-                    (value, parameter.unit)
-                };
-                format!("{} = {value:.6} {unit}", parameter.name)
-            });
-        written.collect::<Vec<_>>().join(", ")
-    };
-    let (low, high) = (at(layer.heights.start), at(layer.heights.end));
+    let low = parameters_at(material, layer.heights.start - layer.base);
+    let high = parameters_at(material, layer.heights.end - layer.base);
     if low.is_empty() {
         return;
     }
@@ -274,6 +268,17 @@ fn note_reduction(record: &Record, material: &Material, layer: &Layer, factor: f
         )
     };
     report.note(&record.path, value, format!("strength_reduction.factor = {factor}"));
+}
+
+/// The parameters of a material at a height (m, above the grid's base) in words.
+fn parameters_at(material: &Material, height: f64) -> String {
+    let law = material.at(height);
+    let named = law.parameter_names().iter().zip(law.parameters());
+    let written = named.map(|(parameter, value)| match parameter.unit {
+        "rad" => format!("{} = {:.6} deg", parameter.name, value.to_degrees()),
+        unit => format!("{} = {value:.6} {unit}", parameter.name),
+    });
+    written.collect::<Vec<_>>().join(", ")
 }
 
 /// kg/m3; the outer option is `None` after an error.
@@ -349,7 +354,8 @@ fn retardation(record: &Record, regime: Option<Regime>, report: &mut Report<'_>)
                        use analysis.type = \"dynamic\".";
         record.error("damping", message, report);
     }
-    let (ratio, frequency) = (damping.number("ratio")?, damping.number("frequency")?);
+    let ratio = damping.number("ratio")?;
+    let frequency = damping.number("frequency")?;
     let time = ratio / (std::f64::consts::PI * frequency);
     report.note(
         &damping.path,
@@ -378,10 +384,8 @@ fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, 
     let Some(model) = record.word::<LawName>("model") else {
         return;
     };
-    let is_nearly = |poisson: &f64| *poisson > STIFF || model != LawName::Hencky && *poisson >= STIFF_TO_FLOW;
-    let Some(poisson) = poisson.filter(is_nearly) else {
-        return;
-    };
+    let poisson = poisson.filter(|of| *of > STIFF || model != LawName::Hencky && *of >= STIFF_TO_FLOW);
+    let Some(poisson) = poisson else { return };
     let by_itself =
         [LawName::SensitiveClay, LawName::MuI, LawName::CamClay].contains(&model) || record.gives("drainage");
     let instead = young.filter(|_| !by_itself).map(|young| as_undrained(young, poisson));
@@ -407,8 +411,13 @@ const POROSITY: f64 = 0.5;
 /// of `young` and `poisson`.
 fn as_undrained(young: f64, poisson: f64) -> (f64, f64) {
     let skeleton = young * (1.0 + DRAINED) / (1.0 + poisson);
-    let bulk = |young: f64, poisson: f64| young / (3.0 * (1.0 - 2.0 * poisson));
-    (skeleton, POROSITY * (bulk(young, poisson) - bulk(skeleton, DRAINED)))
+    let water = bulk_modulus(young, poisson) - bulk_modulus(skeleton, DRAINED);
+    (skeleton, POROSITY * water)
+}
+
+/// Bulk modulus of an elastic material, Pa.
+fn bulk_modulus(young: f64, poisson: f64) -> f64 {
+    young / (3.0 * (1.0 - 2.0 * poisson))
 }
 
 #[cfg(test)]

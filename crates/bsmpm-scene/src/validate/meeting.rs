@@ -23,7 +23,7 @@ const APART: f64 = 1.0;
 const BESIDE: f64 = 0.1;
 
 /// A strip, and what it meets.
-struct Meeting {
+struct StripMeeting {
     strip: usize,
     other: Other,
 }
@@ -79,7 +79,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
 }
 
 /// Refuses a meeting, or notes it and warns of it.
-fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mut Report<'_>) {
+fn judge(case: &Case, root: &Record, meeting: &StripMeeting, other: &str, report: &mut Report<'_>) {
     let name = name_of_strip(case, meeting.strip);
     let record = match meeting.strip.checked_sub(usize::from(case.footing.is_some())) {
         None => root.record("footing"),
@@ -127,28 +127,32 @@ fn judge(case: &Case, root: &Record, meeting: &Meeting, other: &str, report: &mu
             );
             record.error("from", message, report);
         }
-        Other::Strip { apart, edge, .. } => {
-            let value = format!("shares its end with `{other}`");
-            let reason = "their motions differ: the displacement changes from one to the other over about one cell, \
-                          and its reaction is divided between them";
-            report.note(&name, &value, reason);
-            if apart > APART * edge {
-                report.warn(format!(
-                    "W0233: `{name}` and `{other}` are adjacent, and their displacements differ by {apart:.3} m \
-                     ({:.1} cells). Stresses in the cell between the two are inaccurate. Reduce the difference.",
-                    apart / edge
-                ));
-            }
-        }
+        Other::Strip { apart, edge, .. } => note_transition(&name, other, apart, edge, report),
+    }
+}
+
+/// Notes that two strips share an end and that their motions differ (by `apart`, m), and warns of it if they differ by
+/// more than a cell with this `edge`, m.
+fn note_transition(name: &str, other: &str, apart: f64, edge: f64, report: &mut Report<'_>) {
+    let value = format!("shares its end with `{other}`");
+    let reason = "their motions differ: the displacement changes from one to the other over about one cell, \
+                  and its reaction is divided between them";
+    report.note(name, &value, reason);
+    if apart > APART * edge {
+        report.warn(format!(
+            "W0233: `{name}` and `{other}` are adjacent, and their displacements differ by {apart:.3} m \
+             ({:.1} cells). Stresses in the cell between the two are inaccurate. Reduce the difference.",
+            apart / edge
+        ));
     }
 }
 
 /// What meets once the stages until the time `t` have begun.
-fn meetings<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Vec<Meeting> {
+fn meetings<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Vec<StripMeeting> {
     let Ok(grid) = crate::model::grid::<D>(case) else {
         return Vec::new();
     };
-    let strips = surfaces::strips::<K, D>(case, &grid, (1.0, t));
+    let strips = surfaces::strips::<K, D>(case, &grid, 1.0, t);
     let neighbours = surfaces::neighbours::<D>(case, t);
     let bodies = surfaces::rigid::<D>(case, t);
     let mut found = Vec::new();
@@ -159,7 +163,7 @@ fn meetings<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Vec<Meetin
         for &number in acting.iter().filter(|&&number| number > strip) {
             let both = [&neighbours[strip], &neighbours[number]];
             if let Some(apart) = apart_at_corner(of, &strips[number], both, &grid) {
-                found.push(Meeting {
+                found.push(StripMeeting {
                     strip,
                     other: Other::Corner { number, apart },
                 });
@@ -169,14 +173,15 @@ fn meetings<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Vec<Meetin
             }
             let other = &strips[number];
             let apart = largest(&[of, other], |t| of.path.at(t) - other.path.at(t));
-            let in_plane = |motion: Vector<D>| motion - both[0].normal * both[0].normal.dot(&motion);
-            let along = [of, other].map(|strip| largest(&[strip], |t| in_plane(strip.path.at(t))));
+            let normal = &both[0].normal;
+            let along = [of, other].map(|strip| largest(&[strip], |t| in_plane(strip.path.at(t), normal)));
             let sliding = match holds_all(of) && holds_all(other) {
-                true => largest(&[of, other], |t| in_plane(of.path.at(t) - other.path.at(t))),
+                true => largest(&[of, other], |t| in_plane(of.path.at(t) - other.path.at(t), normal)),
                 false => 0.0,
             };
             let act_together = both[0].since == both[1].since;
-            let (along, edge) = (along[0].max(along[1]), edge(&of.points[0].x, &grid));
+            let along = along[0].max(along[1]);
+            let edge = edge(&of.points[0].x, &grid);
             let other = Other::Strip {
                 number,
                 act_together,
@@ -185,7 +190,7 @@ fn meetings<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Vec<Meetin
                 sliding,
                 edge,
             };
-            found.push(Meeting { strip, other });
+            found.push(StripMeeting { strip, other });
         }
         for (number, body) in bodies.iter().enumerate() {
             let acts = case.acts_since(Acting::Rigid(number), t).is_some();
@@ -193,7 +198,7 @@ fn meetings<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Vec<Meetin
                 continue;
             };
             if acts && !body.is_free() && continues(of, &inward, body, &grid) {
-                found.push(Meeting {
+                found.push(StripMeeting {
                     strip,
                     other: Other::Rigid(number),
                 });
@@ -203,15 +208,21 @@ fn meetings<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Vec<Meetin
     found
 }
 
+/// The part of a motion that is not along a unit normal.
+fn in_plane<const D: usize>(motion: Vector<D>, normal: &Vector<D>) -> Vector<D> {
+    motion - normal * normal.dot(&motion)
+}
+
 /// The normal of a strip towards the soil; `None` where soil lies on both sides of its middle, or on none.
 fn inward<const D: usize>(case: &Case, strip: &Strip<D>, normal: &Vector<D>, grid: &Grid<D>) -> Option<Vector<D>> {
-    let (middle, lower) = (strip.points[strip.points.len() / 2].x, case.grid.lower());
-    let has_soil = |side: f64| {
+    let middle = strip.points[strip.points.len() / 2].x;
+    let lower = case.grid.lower();
+    let has_soil = [-1.0, 1.0].map(|side| {
         let x = middle + normal * (side * BESIDE * edge(&middle, grid));
         let at = std::array::from_fn(|axis| if axis < D { x[axis] + lower[axis] } else { 0.0 });
         case.bodies.iter().any(|body| is_in(body, &case.grid, at))
-    };
-    match [has_soil(-1.0), has_soil(1.0)] {
+    });
+    match has_soil {
         [false, true] => Some(*normal),
         [true, false] => Some(-normal),
         _ => None,
@@ -239,27 +250,28 @@ fn continues<const D: usize>(strip: &Strip<D>, normal: &Vector<D>, body: &RigidB
         .iter()
         .map(|(t, _)| *t)
         .chain(body.path.iter().map(|(t, _)| *t));
-    let difference = |t: f64| strip.path.at(t) - Vector::from_fn(|axis, _| body.on_path(t)[axis]);
-    if times.map(|t| difference(t).dot(normal).abs()).fold(0.0, f64::max) == 0.0 {
+    let differences = times.map(|t| {
+        let difference = strip.path.at(t) - Vector::from_fn(|axis, _| body.on_path(t)[axis]);
+        difference.dot(normal).abs()
+    });
+    if differences.fold(0.0, f64::max) == 0.0 {
         return false;
     }
     let pose = body.pose(&Vector::zeros());
-    let distance = |x: &Vector<D>| body.outline.nearest(&pose.seen(x)).distance;
-    let is_beyond = |x: &Vector<D>, edge: f64| {
-        strip
-            .points
-            .iter()
-            .flat_map(|point| point.corners)
-            .all(|corner| (corner - x).norm() > 0.25 * edge)
-    };
     for corner in strip.points.iter().flat_map(|point| point.corners) {
-        let (edge, middle) = (edge(&corner, grid), strip.points[strip.points.len() / 2].x);
+        let edge = edge(&corner, grid);
+        let middle = strip.points[strip.points.len() / 2].x;
         let Some(outward) = (corner - middle).try_normalize(0.0) else {
             continue;
         };
         let x = corner + (outward - normal * normal.dot(&outward)) * (0.5 * edge);
-        let [behind, ahead] = [-BESIDE, BESIDE].map(|off| distance(&(x + normal * (off * edge))));
-        if is_beyond(&x, edge) && behind < 0.0 && ahead > 0.0 && ahead - behind <= 2.2 * BESIDE * edge {
+        let mut corners = strip.points.iter().flat_map(|point| point.corners);
+        let is_beyond = corners.all(|corner| (corner - x).norm() > 0.25 * edge);
+        let [behind, ahead] = [-BESIDE, BESIDE].map(|off| {
+            let seen = pose.seen(&(x + normal * (off * edge)));
+            body.outline.nearest(&seen).distance
+        });
+        if is_beyond && behind < 0.0 && ahead > 0.0 && ahead - behind <= 2.2 * BESIDE * edge {
             return true;
         }
     }

@@ -62,17 +62,12 @@ fn path(root: &Record, opening: &BodyOpening) -> String {
 fn cells(case: &Case, faces: &GridFaces, opening: &BodyOpening) -> f64 {
     let planes = faces.planes(case.bodies[opening.body].region.corners());
     let within = WITHIN * case.grid.shortest();
-    let across = |wall: &openings::OpeningWall| {
+    let across = opening.opening.walls.iter().map(|wall| {
         let at = openings::folded(&planes, (wall.at - wall.normal * within).into());
-        let along = |axis: usize| wall.normal[axis] / edge(case, axis, at[axis]);
-        let slope = (0..case.grid.dims())
-            .map(along)
-            .map(|part| part * part)
-            .sum::<f64>()
-            .sqrt();
-        wall.width * slope
-    };
-    opening.opening.walls.iter().map(across).fold(f64::INFINITY, f64::min)
+        let parts = (0..case.grid.dims()).map(|axis| wall.normal[axis] / edge(case, axis, at[axis]));
+        wall.width * parts.map(|part| part * part).sum::<f64>().sqrt()
+    });
+    across.fold(f64::INFINITY, f64::min)
 }
 
 /// m  edge of the cell at a place along an axis

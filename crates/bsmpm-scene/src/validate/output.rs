@@ -16,20 +16,7 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
         _ => None,
     };
     if let (Some(Every::Time(every)), Some(end)) = (every, end) {
-        if every > end {
-            report.warn(format!(
-                "W0661: output.every: the interval of {every} is longer than the run of {end}, so only the first and \
-                 last frames are written. Reduce `every`."
-            ));
-        }
-        if end / every > super::MOST_STEPS {
-            let message = format!(
-                "E0662: with this interval the run would write {:.3e} frames (limit: {:e}). Increase `every`.",
-                end / every,
-                super::MOST_STEPS
-            );
-            output.error("every", message, report);
-        }
+        check_interval(output, every, end, report);
     }
     let mut times = if output.gives("times") {
         output.numbers("times")?.to_vec()
@@ -65,6 +52,24 @@ pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> 
         },
         checkpoint,
     })
+}
+
+/// Warns of an interval of frames that is longer than the run until `end`, and refuses one that is far too short.
+fn check_interval(output: &Record, every: f64, end: f64, report: &mut Report<'_>) {
+    if every > end {
+        report.warn(format!(
+            "W0661: output.every: the interval of {every} is longer than the run of {end}, so only the first and \
+             last frames are written. Reduce `every`."
+        ));
+    }
+    if end / every > super::MOST_STEPS {
+        let message = format!(
+            "E0662: with this interval the run would write {:.3e} frames (limit: {:e}). Increase `every`.",
+            end / every,
+            super::MOST_STEPS
+        );
+        output.error("every", message, report);
+    }
 }
 
 fn nothing() -> Output {

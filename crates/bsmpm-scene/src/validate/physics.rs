@@ -5,7 +5,7 @@ use super::place;
 use super::rigid;
 use super::site::{normal_of, places};
 use super::strip::{moves, with_body};
-use crate::case::{Acting, Base, Body, Case, Drain, Geometry, History, Initial, Quantity, Site, Support};
+use crate::case::{Acting, Base, Body, Case, Geometry, Initial, Quantity, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{AnalysisType, Measurement, Side, Word};
@@ -43,30 +43,32 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
 /// Times that lie so near to the start that no step ends there.
 fn too_soon(case: &Case, record: &Record, report: &mut Report<'_>) {
     let least = 1e-6 * case.analysis.dt;
-    let message = |time: f64| {
-        format!(
-            "E0664: the time t = {time:e} is too close to the start (t = 0), so no step ends there. Use a time above \
-             {least:e}."
-        )
-    };
     if let (Some(time), Some(output)) = (case.output.times.first(), record.record("output"))
         && *time <= least
     {
-        output.error("times", message(*time), report);
+        output.error("times", too_close_to_start(*time, least), report);
     }
     for (check, record) in case.checks.iter().zip(record.records("check")) {
         if check.at <= least {
-            record.error("at", message(check.at), report);
+            record.error("at", too_close_to_start(check.at, least), report);
         }
     }
 }
 
+/// Says that a time is below the `least` one at which a step ends.
+fn too_close_to_start(time: f64, least: f64) -> String {
+    format!(
+        "E0664: the time t = {time:e} is too close to the start (t = 0), so no step ends there. Use a time above \
+         {least:e}."
+    )
+}
+
 /// Material that has no state without stress begins with one, and the weight above it gives that.
 fn stressed(case: &Case, record: &Record, report: &mut Report<'_>) {
-    let made = |number: usize| case.bodies.iter().any(|body| body.material == number);
     for (number, (name, written)) in record.named("material").iter().enumerate() {
         let named = &case.materials[number];
-        if named.material.is_linear() || !made(number) {
+        let is_made = case.bodies.iter().any(|body| body.material == number);
+        if named.material.is_linear() || !is_made {
             continue;
         }
         if !matches!(case.initial, Some(Initial::AtRest(_))) {
@@ -89,9 +91,9 @@ const DIGITS: f64 = 5e-14;
 /// A rate needs real time, which a quasi-static analysis does not have.
 fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
     let named = case.materials.iter().zip(record.named("material")).enumerate();
-    let made = |number: usize| case.is_followed(number);
-    for (_, (named, (_, written))) in named.filter(|(number, _)| made(*number)) {
-        let (kind, is_of_clay) = (case.analysis.kind, written.gives("rate_parameter"));
+    for (_, (named, (_, written))) in named.filter(|(number, _)| case.is_followed(*number)) {
+        let kind = case.analysis.kind;
+        let is_of_clay = written.gives("rate_parameter");
         let is_timed = kind == AnalysisType::Dynamic || kind == AnalysisType::InTime && is_of_clay;
         if !is_timed && named.material.over(1.0).is_some() {
             let message = match (kind, is_of_clay) {
@@ -216,24 +218,11 @@ const MOST_CROSSINGS: f64 = 2.0;
 fn thrown_back(case: &Case, report: &mut Report<'_>) {
     let meets = case.is_ever(Support::Contact);
     let dynamic = case.analysis.regime == Regime::Dynamic;
-    let crossing = |body: &Body| {
-        let named = &case.materials[body.material];
-        let ([lower, upper], dims) = (body.region.corners(), case.grid.dims());
-        let thickness = (0..dims)
-            .map(|axis| upper[axis] - lower[axis])
-            .fold(f64::INFINITY, f64::min);
-        let vertical = dims - 1;
-        let heights =
-            [lower, upper].map(|corner| named.material.young_at(corner[vertical] - case.grid.lower()[vertical]));
-        let poisson = named.material.elastic().poisson;
-        let stiffness = heights[0].max(heights[1]) * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
-        Some((thickness * (named.density? / stiffness).sqrt(), named.name.clone()))
-    };
-    let shortest = case
+    let times = case
         .bodies
         .iter()
-        .filter_map(crossing)
-        .min_by(|a, b| a.0.total_cmp(&b.0));
+        .filter_map(|body| Some((crossing_time(case, body)?, &case.materials[body.material].name)));
+    let shortest = times.min_by(|a, b| a.0.total_cmp(&b.0));
     let Some((time, name)) = shortest.filter(|(time, _)| meets && dynamic && MOST_CROSSINGS * *time < case.analysis.dt)
     else {
         return;
@@ -249,13 +238,30 @@ fn thrown_back(case: &Case, report: &mut Report<'_>) {
     ));
 }
 
+/// Time in which a wave crosses a body where it is thinnest, s; `None` without density.
+fn crossing_time(case: &Case, body: &Body) -> Option<f64> {
+    let named = &case.materials[body.material];
+    let [lower, upper] = body.region.corners();
+    let dims = case.grid.dims();
+    let thickness = (0..dims)
+        .map(|axis| upper[axis] - lower[axis])
+        .fold(f64::INFINITY, f64::min);
+    let vertical = dims - 1;
+    let heights = [lower, upper].map(|corner| named.material.young_at(corner[vertical] - case.grid.lower()[vertical]));
+    let poisson = named.material.elastic().poisson;
+    let stiffness = heights[0].max(heights[1]) * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+    Some(thickness * (named.density? / stiffness).sqrt())
+}
+
 /// Whether a face, a strip or a prescribed motion holds a component of a body.
 fn holds(case: &Case, component: usize) -> bool {
-    let absorbs = |axis: usize, upper: bool| {
-        let support = case.boundary[axis][usize::from(upper)];
-        matches!(support, Support::Absorbing | Support::FreeField) && reached(case, axis, upper)
-    };
-    holds_at_rest(case, component, None) || (0..2).any(|axis| absorbs(axis, false) || absorbs(axis, true))
+    holds_at_rest(case, component, None) || (0..2).any(|axis| absorbs(case, axis, false) || absorbs(case, axis, true))
+}
+
+/// Whether a face that a body reaches absorbs its waves.
+fn absorbs(case: &Case, axis: usize, upper: bool) -> bool {
+    let support = case.boundary[axis][usize::from(upper)];
+    matches!(support, Support::Absorbing | Support::FreeField) && reached(case, axis, upper)
 }
 
 /// Finds what lies on the ground at the start: the footing, and what material comes off, have no part in an equilibrium
@@ -265,14 +271,15 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         return;
     };
     let bodies: Vec<&Body> = case.bodies_at_start().collect();
-    let lies = |site: Site| {
-        let along = Vector::<3>::from(normal_of(site)).dot(&down) / down.norm();
-        let with_body = |off: f64| with_body(site, along.signum() * off, (&case.grid, &bodies));
-        along.abs() > LEVEL
-            && place::beside(&case.grid, with_body).is_some_and(|[below, above]| 2 * below >= above.max(1))
-    };
-    let footing = case.footing.as_ref().is_some_and(|footing| lies(footing.site));
-    let prescribed: Vec<bool> = case.prescribed.iter().map(|of| lies(of.site)).collect();
+    let footing = case
+        .footing
+        .as_ref()
+        .is_some_and(|footing| lies_on_ground(case, footing.site, down, &bodies));
+    let prescribed: Vec<bool> = case
+        .prescribed
+        .iter()
+        .map(|of| lies_on_ground(case, of.site, down, &bodies))
+        .collect();
     // What else would not stand it holds at the start, too.
     let stands = (0..case.grid.dims()).all(|axis| holds_at_rest(case, axis, Some(Acting::Strip(0))));
     case.footing.iter_mut().for_each(|of| of.rests = footing && stands);
@@ -283,14 +290,11 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
              else supports the ground. Fix a side, or activate the footing in a [[stage]].",
         );
     }
-    let since_start = |case: &Case, number: usize| {
-        case.acts_since(Acting::Strip(number + usize::from(case.footing.is_some())), 0.0)
-            .is_some()
-    };
     for (number, (record, lies)) in root.records("prescribed").iter().zip(prescribed).enumerate() {
         let lifts = case.prescribed[number].contact.is_some_and(|contact| contact.law.lifts);
         case.prescribed[number].rests = lies && lifts;
-        if lies && !lifts && is_sought && since_start(case, number) {
+        let strip = Acting::Strip(number + usize::from(case.footing.is_some()));
+        if lies && !lifts && is_sought && case.acts_since(strip, 0.0).is_some() {
             report.warn(format!(
                 "W0672: {}: in the initial equilibrium this prescribed motion carries a part of the ground in \
                  tension, so the initial stresses are wrong. Activate the motion in a [[stage]], or use [footing].",
@@ -300,9 +304,30 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     }
 }
 
+/// Whether a strip lies level on one of the bodies, seen along gravity (m/s2), and not beneath them.
+fn lies_on_ground(case: &Case, site: Site, gravity: Vector<3>, bodies: &[&Body]) -> bool {
+    let along = Vector::<3>::from(normal_of(site)).dot(&gravity) / gravity.norm();
+    let side = along.signum();
+    along.abs() > LEVEL
+        && place::beside(&case.grid, |off| with_body(site, side * off, &case.grid, bodies))
+            .is_some_and(|[below, above]| 2 * below >= above.max(1))
+}
+
 /// Whether something other than `except` holds a component of a body for as long as that takes.
 pub(super) fn holds_at_rest(case: &Case, component: usize, except: Option<Acting>) -> bool {
-    let holds = |axis: usize, upper: bool| match case.boundary[axis][usize::from(upper)] {
+    // All around an axis no body goes along the radius as a whole.
+    if case.geometry == Geometry::Axisymmetric && component == 0 {
+        return true;
+    }
+    let mut faces = (0..case.grid.dims()).flat_map(|axis| [(axis, false), (axis, true)]);
+    faces.any(|(axis, upper)| face_holds(case, axis, upper, component) && reached(case, axis, upper))
+        || held_by_strip(case, component, except)
+        || rigid::hold(case, component, except)
+}
+
+/// Whether a face holds a component of a body at it for as long as that takes.
+fn face_holds(case: &Case, axis: usize, upper: bool, component: usize) -> bool {
+    match case.boundary[axis][usize::from(upper)] {
         Support::Fixed => true,
         Support::Roller => axis == component,
         Support::Contact => {
@@ -310,28 +335,11 @@ pub(super) fn holds_at_rest(case: &Case, component: usize, except: Option<Acting
             axis == component || has_friction
         }
         Support::Absorbing | Support::FreeField | Support::Free | Support::Outflow => false,
-    };
-    // All around an axis no body goes along the radius as a whole.
-    if case.geometry == Geometry::Axisymmetric && component == 0 {
-        return true;
     }
-    let mut faces = (0..case.grid.dims()).flat_map(|axis| [(axis, false), (axis, true)]);
-    faces.any(|(axis, upper)| holds(axis, upper) && reached(case, axis, upper))
-        || held_by_strip(case, component, except)
-        || rigid::hold(case, component, except)
 }
 
 /// Whether the footing or a prescribed motion other than `except` holds a component of a body.
 fn held_by_strip(case: &Case, component: usize, except: Option<Acting>) -> bool {
-    let by_strip = |(base, site): (Base, Site)| {
-        let holds = base == Base::Rough || normal_of(site)[component].abs() > ALONG;
-        let at_body = |at: [f64; 3]| place::is_at(&case.bodies, &case.grid, at);
-        holds
-            && match site {
-                Site::Face(face) => reached(case, face.axis, face.upper),
-                Site::Segment { .. } | Site::Plate(_) => places(site, &case.grid).into_iter().any(at_body),
-            }
-    };
     let footing = case.footing.iter().map(|footing| (footing.base, footing.site));
     let all = footing.chain(
         case.prescribed
@@ -339,21 +347,34 @@ fn held_by_strip(case: &Case, component: usize, except: Option<Acting>) -> bool 
             .map(|prescribed| (prescribed.base, prescribed.site)),
     );
     all.enumerate()
-        .any(|(number, strip)| Some(Acting::Strip(number)) != except && by_strip(strip))
+        .any(|(number, (base, site))| Some(Acting::Strip(number)) != except && strip_holds(case, base, site, component))
+}
+
+/// Whether a strip holds a component of a body at it.
+fn strip_holds(case: &Case, base: Base, site: Site, component: usize) -> bool {
+    let holds = base == Base::Rough || normal_of(site)[component].abs() > ALONG;
+    holds
+        && match site {
+            Site::Face(face) => reached(case, face.axis, face.upper),
+            Site::Segment { .. } | Site::Plate(_) => places(site, &case.grid)
+                .into_iter()
+                .any(|at| place::is_at(&case.bodies, &case.grid, at)),
+        }
 }
 
 /// Chooses the velocities near fixed faces of material that flows, where they are not given, and recommends a measure
 /// of its run-out. With the points' own velocities and lumped mass the front runs out a third too far.
 pub(super) fn walls(case: &mut Case, record: &Record, report: &mut Report<'_>) {
-    let is_mu_i = |number: usize| matches!(case.materials[number].material, Material::MuI(_));
-    let flows = (0..case.materials.len()).any(|number| is_mu_i(number) && case.is_followed(number));
+    let mut named = case.materials.iter().enumerate();
+    let flows = named.any(|(number, named)| matches!(named.material, Material::MuI(_)) && case.is_followed(number));
     if !flows || case.analysis.regime != Regime::Dynamic || !case.boundary.as_flattened().contains(&Support::Fixed) {
         return;
     }
-    let is_percentile =
-        |history: &History| matches!(history.quantity, Quantity::Runout { percentile, .. } if percentile < 100.0);
+    let mut quantities = case.histories.iter().map(|history| &history.quantity);
+    let records_percentile =
+        quantities.any(|of| matches!(of, Quantity::Runout { percentile, .. } if *percentile < 100.0));
     let records_front = case.histories.iter().any(|history| history.quantity == Quantity::Front);
-    if records_front && !case.histories.iter().any(is_percentile) {
+    if records_front && !records_percentile {
         let reason = "a front thinner than a cell runs ahead by 10 to 20 % of the run-out; quantity = \"runout\" with \
                       percentile = 99 is more accurate";
         report.note("history", Measurement::Front.word(), reason);
@@ -371,13 +392,10 @@ pub(super) fn walls(case: &mut Case, record: &Record, report: &mut Report<'_>) {
 
 /// Whether a body reaches into the cells along a face, and so has nodes on it.
 pub(super) fn reached(case: &Case, axis: usize, upper: bool) -> bool {
+    let count = case.grid.axes[axis].cells();
     case.bodies.iter().any(|body| {
         let cells = &body.occupied(&case.grid)[axis];
-        if upper {
-            cells.end == case.grid.axes[axis].cells()
-        } else {
-            cells.start == 0
-        }
+        if upper { cells.end == count } else { cells.start == 0 }
     })
 }
 
@@ -420,8 +438,8 @@ fn warn_of_materials(case: &Case, report: &mut Report<'_>) {
 }
 
 fn loaded(case: &Case) -> bool {
-    let pulls = |load: [f64; 3]| load != [0.0; 3];
-    let presses = |drain: &Drain| !matches!(drain.given, Given::StillWater | Given::Seepage);
+    let mut flows = case.flow.iter();
+    let mut drains = case.flow.iter().flat_map(|flow| &flow.drains);
     case.gravity.is_some()
         || !case.shaking.is_empty()
         || case
@@ -431,11 +449,9 @@ fn loaded(case: &Case) -> bool {
         || case.footing.iter().any(|footing| moves(&footing.path))
         || case.prescribed.iter().any(|prescribed| moves(&prescribed.path))
         || case.tractions.iter().any(|traction| traction.largest() > 0.0)
-        || case.point_loads.iter().any(|load| pulls(load.force))
-        || case
-            .flow
-            .iter()
-            .any(|flow| !flow.inflows.is_empty() || flow.drains.iter().any(presses))
+        || case.point_loads.iter().any(|load| load.force != [0.0; 3])
+        || flows.any(|flow| !flow.inflows.is_empty())
+        || drains.any(|drain| !matches!(drain.given, Given::StillWater | Given::Seepage))
 }
 
 fn warn_of_locking(case: &Case, report: &mut Report<'_>) {

@@ -52,20 +52,23 @@ impl From<Outside> for String {
 
 /// The coordinate of a place that lies outside the grid, if there is one.
 pub(super) fn beyond<const D: usize>(grid: &GridSpec, at: [f64; D]) -> Option<Outside> {
-    let (lower, upper) = (grid.lower(), grid.upper());
-    (0..D).find_map(|axis| {
+    let lower = grid.lower();
+    let upper = grid.upper();
+    for axis in 0..D {
         let spacing = f64::EPSILON * lower[axis].abs().max(upper[axis].abs());
         let slack = ROUNDING * grid.axes[axis].shortest() + 4.0 * spacing;
         let is_past = at[axis] > upper[axis] + slack;
         let bound = if is_past { upper[axis] } else { lower[axis] };
-        let outside = Outside {
-            axis: ["x", "y", "z"][axis],
-            at: at[axis],
-            bound,
-            is_past,
-        };
-        (is_past || at[axis] < lower[axis] - slack).then_some(outside)
-    })
+        if is_past || at[axis] < lower[axis] - slack {
+            return Some(Outside {
+                axis: ["x", "y", "z"][axis],
+                at: at[axis],
+                bound,
+                is_past,
+            });
+        }
+    }
+    None
 }
 
 /// As [`beyond`], of a place that in a plane has nothing along its normal.
@@ -75,6 +78,11 @@ pub(super) fn is_beyond(grid: &GridSpec, at: [f64; 3]) -> Option<Outside> {
     } else {
         beyond(grid, at)
     }
+}
+
+/// A place of a plane.
+pub(super) fn flat([x, y]: [f64; 2]) -> [f64; 3] {
+    [x, y, 0.0]
 }
 
 /// Places in the middles of equal pieces of a line.
@@ -97,47 +105,56 @@ pub(super) fn ring(center: [f64; 2], radius: f64) -> impl Iterator<Item = [f64; 
 /// than a cell of empty room.
 pub(super) fn at_body(bodies: &[Body], grid: &GridSpec, at: [f64; 2]) -> bool {
     let shortest = grid.shortest();
-    bodies.iter().any(|body| {
+    for body in bodies {
         let half = 0.5 * shortest / body.points_per_cell as f64;
-        let around = |k: usize, part: f64| {
-            let (sin, cos) = (k as f64 * std::f64::consts::TAU / DIRECTIONS as f64).sin_cos();
-            [at[0] + part * half * cos, at[1] + part * half * sin]
-        };
         let [lower, upper] = body.bounds();
-        let near = (0..2).all(|axis| at[axis] >= lower[axis] - half && at[axis] <= upper[axis] + half);
-        near && DISTANCES
-            .iter()
-            .any(|part| (0..DIRECTIONS).any(|k| body.region.contains(around(k, *part))))
-    })
+        let is_near = (0..2).all(|axis| at[axis] >= lower[axis] - half && at[axis] <= upper[axis] + half);
+        let mut distances = DISTANCES.iter().map(|part| part * half);
+        if is_near && distances.any(|distance| (0..DIRECTIONS).any(|k| body.region.contains(around(at, k, distance)))) {
+            return true;
+        }
+    }
+    false
+}
+
+/// The place at a distance (m) from another in a direction, given by its number.
+fn around(at: [f64; 2], k: usize, distance: f64) -> [f64; 2] {
+    let (sin, cos) = (k as f64 * std::f64::consts::TAU / DIRECTIONS as f64).sin_cos();
+    [at[0] + distance * cos, at[1] + distance * sin]
 }
 
 /// Places in the middles of equal pieces of a rectangle in space.
 pub(super) fn over([lower, upper]: [[f64; 3]; 2]) -> impl Iterator<Item = [f64; 3]> {
-    let pieces = move |axis: usize| if lower[axis] == upper[axis] { 1 } else { RASTER };
-    let place = move |k: [usize; 3]| -> [f64; 3] {
+    let pieces = [0, 1, 2].map(|axis| if lower[axis] == upper[axis] { 1 } else { RASTER });
+    let [along_x, along_y, along_z] = pieces;
+    (0..along_x * along_y * along_z).map(move |n| {
+        let k = [n / along_z / along_y, n / along_z % along_y, n % along_z];
         std::array::from_fn(|axis| {
-            lower[axis] + (upper[axis] - lower[axis]) * (k[axis] as f64 + 0.5) / pieces(axis) as f64
+            lower[axis] + (upper[axis] - lower[axis]) * (k[axis] as f64 + 0.5) / pieces[axis] as f64
         })
-    };
-    let [along_x, along_y, along_z] = [0, 1, 2].map(pieces);
-    (0..along_x * along_y * along_z).map(move |n| place([n / along_z / along_y, n / along_z % along_y, n % along_z]))
+    })
 }
 
 /// As [`at_body`] of a solid.
 pub(super) fn at_volume(bodies: &[Body], grid: &GridSpec, at: [f64; 3]) -> bool {
     let shortest = grid.shortest();
-    bodies.iter().any(|body| {
+    for body in bodies {
         let half = 0.5 * shortest / body.points_per_cell as f64;
-        let place = |part: f64, n: usize| {
-            let off = |k: usize| (k as f64 - 1.0) * part * half;
-            [at[0] + off(n / 9), at[1] + off(n / 3 % 3), at[2] + off(n % 3)]
-        };
         let [lower, upper] = body.region.corners();
-        let near = (0..3).all(|axis| at[axis] >= lower[axis] - half && at[axis] <= upper[axis] + half);
-        near && DISTANCES
-            .iter()
-            .any(|part| (0..27).any(|n| body.region.contains_in_space(place(*part, n))))
-    })
+        let is_near = (0..3).all(|axis| at[axis] >= lower[axis] - half && at[axis] <= upper[axis] + half);
+        let mut distances = DISTANCES.iter().map(|part| part * half);
+        if is_near && distances.any(|distance| (0..27).any(|n| body.region.contains_in_space(of_cube(at, n, distance))))
+        {
+            return true;
+        }
+    }
+    false
+}
+
+/// A place of the 27 (corners and middles) of a cube about another one, given by its number and half the edge (m).
+fn of_cube(at: [f64; 3], n: usize, half_edge: f64) -> [f64; 3] {
+    let k = [n / 9, n / 3 % 3, n % 3];
+    std::array::from_fn(|axis| at[axis] + (k[axis] as f64 - 1.0) * half_edge)
 }
 
 /// Parts of the shortest cell beside a surface at which bodies are looked for, until one is there: nearer where they
@@ -146,8 +163,10 @@ const BESIDE: [f64; 4] = [0.25, 0.025, 0.0025, 0.51];
 
 /// Places along a surface's normal and against it at which bodies are, as near to it as there are any.
 pub(super) fn beside(grid: &GridSpec, count: impl Fn(f64) -> usize) -> Option<[usize; 2]> {
-    let counts = |part: &f64| [1.0, -1.0].map(|side| count(side * part * grid.shortest()));
-    BESIDE.iter().map(counts).find(|counts| *counts != [0; 2])
+    let mut counts = BESIDE
+        .iter()
+        .map(|part| [1.0, -1.0].map(|side| count(side * part * grid.shortest())));
+    counts.find(|counts| *counts != [0; 2])
 }
 
 /// On which side of a surface bodies lie: 1 along its normal, -1 against it; `None` on both, or on none. `count` has

@@ -37,9 +37,12 @@ struct Scale {
 impl Scale {
     fn of(case: &Case) -> Self {
         let up = case.grid.dims() - 1;
-        let corners = || case.bodies.iter().map(|body| body.region.corners());
-        let lowest = corners().map(|[lower, _]| lower[up]).fold(f64::INFINITY, f64::min);
-        let highest = corners().map(|[_, upper]| upper[up]).fold(f64::NEG_INFINITY, f64::max);
+        let corners = case.bodies.iter().map(|body| body.region.corners());
+        let lowest = corners
+            .clone()
+            .map(|[lower, _]| lower[up])
+            .fold(f64::INFINITY, f64::min);
+        let highest = corners.map(|[_, upper]| upper[up]).fold(f64::NEG_INFINITY, f64::max);
         let height = highest - lowest;
         let size = case
             .gravity

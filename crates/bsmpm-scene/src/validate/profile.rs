@@ -14,7 +14,9 @@ const MOST: usize = 100;
 /// All profiles in the order of the file, without those that have an error.
 pub(super) fn read_all(
     root: &Record,
-    (regime, grid, end): (Option<Regime>, Option<&GridSpec>, Option<f64>),
+    regime: Option<Regime>,
+    grid: Option<&GridSpec>,
+    end: Option<f64>,
     report: &mut Report<'_>,
 ) -> Vec<Profile> {
     let records = root.records("profile");
@@ -24,7 +26,7 @@ pub(super) fn read_all(
     }
     let mut profiles: Vec<Profile> = Vec::new();
     for record in records {
-        let Some(profile) = read((root, record), (regime, grid, end), report) else {
+        let Some(profile) = read(root, record, regime, grid, end, report) else {
             continue;
         };
         // Some file systems do not distinguish upper and lower case.
@@ -45,8 +47,11 @@ pub(super) fn read_all(
 }
 
 fn read(
-    (root, record): (&Record, &Record),
-    (regime, grid, end): (Option<Regime>, Option<&GridSpec>, Option<f64>),
+    root: &Record,
+    record: &Record,
+    regime: Option<Regime>,
+    grid: Option<&GridSpec>,
+    end: Option<f64>,
     report: &mut Report<'_>,
 ) -> Option<Profile> {
     let ends = history::ends(record, grid, report);

@@ -1,6 +1,6 @@
 //! Validates pore pressure ratios `ru`.
 
-use crate::case::{Body, Case, Support};
+use crate::case::{Case, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Side, Word};
@@ -9,17 +9,10 @@ const KEY: &str = "ru";
 
 /// What only the whole case shows.
 pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
-    let wet = |number: usize| case.materials[number].ratio > 0.0;
-    let bodies = || case.bodies.iter().map(|body| body.material);
-    let Some((_, material)) = root
-        .named("material")
-        .iter()
-        .enumerate()
-        .find(|(number, _)| wet(*number))
-    else {
+    let mut named = root.named("material").iter().zip(&case.materials);
+    let Some(((_, material), _)) = named.find(|(_, of)| of.ratio > 0.0) else {
         return;
     };
-    let material = &material.1;
     if !case.carries_pressure() {
         report.warn(format!(
             "W0313: {}: no body consists of this material, so `ru` has no effect. Assign the material to a body, or \
@@ -38,6 +31,33 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         };
         material.error(KEY, message, report);
     }
+    refuse_gravity(case, material, report);
+    refuse_changes(case, material, report);
+    if case.bodies.iter().any(|body| !is_wet(case, body.material)) {
+        report.note(
+            material.path_of(KEY),
+            "this material only",
+            "the other materials have no pore pressure",
+        );
+    }
+    warn_of_thin_bodies(case, report);
+    warn_of_cubic_splines(case, report);
+    if !case.tractions.is_empty() || !case.point_loads.is_empty() {
+        report.note(
+            material.path_of(KEY),
+            "from the weight alone",
+            "applied loads are drained and raise no pore pressure",
+        );
+    }
+}
+
+/// Whether a material has a pore pressure ratio.
+fn is_wet(case: &Case, material: usize) -> bool {
+    case.materials[material].ratio > 0.0
+}
+
+/// Refuses a case without gravity, or with one that is not vertical.
+fn refuse_gravity(case: &Case, material: &Record, report: &mut Report<'_>) {
     match &case.gravity {
         None => {
             let message = "E0321: `ru` relates the pore pressure to the weight of the soil, but the case has no \
@@ -54,9 +74,16 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         }
         Some(_) => {}
     }
-    let changes = |stage: &crate::case::Stage| !(stage.add.is_empty() && stage.remove.is_empty());
-    let exchanges = |stage: &crate::case::Stage| stage.materials.iter().any(|&(from, to)| wet(from) || wet(to));
-    if case.stages.iter().any(|stage| changes(stage) || exchanges(stage)) {
+}
+
+/// Refuses what would change the pore pressure in the run: stages, shaking, and boundaries that absorb.
+fn refuse_changes(case: &Case, material: &Record, report: &mut Report<'_>) {
+    let mut bodies = case
+        .stages
+        .iter()
+        .flat_map(|stage| stage.add.iter().chain(&stage.remove));
+    let mut exchanges = case.stages.iter().flat_map(|stage| &stage.materials);
+    if bodies.next().is_some() || exchanges.any(|(from, to)| is_wet(case, *from) || is_wet(case, *to)) {
         let message = "E0322: the pore pressure from `ru` follows from the initial weight, and is wrong after a stage \
              adds, removes or changes soil. Use [water] instead of `ru`, or delete these stages.";
         material.error(KEY, message, report);
@@ -80,22 +107,6 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
             material.error(KEY, message, report);
         }
     }
-    if bodies().any(|number| !wet(number)) {
-        report.note(
-            material.path_of(KEY),
-            "this material only",
-            "the other materials have no pore pressure",
-        );
-    }
-    warn_of_thin_bodies(case, report);
-    warn_of_cubic_splines(case, report);
-    if !case.tractions.is_empty() || !case.point_loads.is_empty() {
-        report.note(
-            material.path_of(KEY),
-            "from the weight alone",
-            "applied loads are drained and raise no pore pressure",
-        );
-    }
 }
 
 /// The normal force on a face is divided correctly where the material there is at least a cell thick: in a body of half
@@ -103,9 +114,9 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
 fn warn_of_thin_bodies(case: &Case, report: &mut Report<'_>) {
     for axis in (0..case.grid.dims()).filter(|axis| has_friction(case, *axis)) {
         let edge = case.grid.axes[axis].longest();
-        let thickness = |body: &Body| body.region.corners().map(|corner| corner[axis]);
-        let thickest = case.bodies.iter().map(thickness).map(|[lower, upper]| upper - lower);
-        let thickest = thickest.fold(0.0, f64::max);
+        let corners = case.bodies.iter().map(|body| body.region.corners());
+        let thicknesses = corners.map(|[lower, upper]| upper[axis] - lower[axis]);
+        let thickest = thicknesses.fold(0.0, f64::max);
         if thickest < edge {
             report.warn(format!(
                 "W0316: ru: bodies on a boundary with friction are thinner ({thickest:.3} m) than a cell ({edge:.3} \

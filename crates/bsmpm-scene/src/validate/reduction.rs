@@ -1,6 +1,6 @@
 //! Validates strength reduction.
 
-use crate::case::{Acting, Case, Counted, Gravity, PointLoad, Quantity, Rigid, Stage, Traction};
+use crate::case::{Acting, Case, Counted, Gravity, NamedMaterial, PointLoad, Quantity, Rigid, Stage, Traction};
 use crate::nearest::unknown_name;
 use crate::record::Record;
 use crate::report::Report;
@@ -25,8 +25,8 @@ pub(super) fn divisible(case: &Case, times: &[f64], record: &Record, report: &mu
     } else {
         "stage"
     };
-    let followed = || times.iter().flat_map(|t| case.followed_at(*t));
-    if let Some(named) = followed().find(|named| !named.material.is_linear()) {
+    let followed: Vec<NamedMaterial> = times.iter().flat_map(|t| case.followed_at(*t)).collect();
+    if let Some(named) = followed.iter().find(|named| !named.material.is_linear()) {
         let message = format!(
             "E0630: the strength of material.{} (modified Cam-clay) can be reduced from the start of the run only. \
              Use [strength_reduction] without `stage`.",
@@ -34,7 +34,7 @@ pub(super) fn divisible(case: &Case, times: &[f64], record: &Record, report: &mu
         );
         record.error(key, message, report);
     }
-    if !times.iter().any(|t| case.has_friction_at(*t)) && !followed().any(|named| named.material.yields()) {
+    if !times.iter().any(|t| case.has_friction_at(*t)) && !followed.iter().any(|named| named.material.yields()) {
         report.warn(without_strength(&record.path_of(key)));
     }
 }
@@ -59,12 +59,10 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
         of_stage.for_each(|key| table.error(key, message, report));
         return;
     }
-    let (Some(name), Some(factor)) = (table.text("stage"), table.number("factor")) else {
-        return;
-    };
-    let (Some(steps), Some(unloaded)) = (table.count("steps"), table.flag("unloaded")) else {
-        return;
-    };
+    let Some(name) = table.text("stage") else { return };
+    let Some(factor) = table.number("factor") else { return };
+    let Some(steps) = table.count("steps") else { return };
+    let Some(unloaded) = table.flag("unloaded") else { return };
     if case.analysis.regime == Regime::Dynamic {
         let message = "E0632: [strength_reduction] with `stage` needs a quasi-static analysis, but this analysis is \
                        dynamic. Set `strength_reduction` in a [[stage]] instead.";
@@ -87,7 +85,7 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
         table.error("stage", message, report);
     }
     divisible(case, &[case.just_before(until)], table, report);
-    rest(case, (table, unloaded), report);
+    rest(case, table, unloaded, report);
     if !case.checks.is_empty() {
         report.note(
             "check",
@@ -99,24 +97,31 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
     if unloaded {
         load_at_once(case, case.just_before(until), steps)
     } else {
-        if steps > 0 && case.still_grows(until) {
-            let message = "E0636: a load still changes when this stage ends, and would go on changing during the \
-                           strength reduction. End its `ramp` or `amplitude` before the stage ends.";
-            table.error("stage", message, report);
+        if steps > 0 {
+            refuse_changes(case, until, table, report);
         }
-        if steps > 0 && case.still_moves(until) {
-            let message = "E0636: a footing or prescribed motion still moves when this stage ends, and would go on \
-                           moving during the strength reduction. End its `path` before the stage ends.";
-            table.error("stage", message, report);
-        }
-        reduce(case, (until, steps), factor)
+        reduce(case, until, steps, factor)
     }
     let end = case.analysis.end;
     case.output.times.retain(|t| *t <= end);
 }
 
+/// Refuses loads and motions that still change at the time `until`.
+fn refuse_changes(case: &Case, until: f64, table: &Record, report: &mut Report<'_>) {
+    if case.still_grows(until) {
+        let message = "E0636: a load still changes when this stage ends, and would go on changing during the \
+                       strength reduction. End its `ramp` or `amplitude` before the stage ends.";
+        table.error("stage", message, report);
+    }
+    if case.still_moves(until) {
+        let message = "E0636: a footing or prescribed motion still moves when this stage ends, and would go on \
+                       moving during the strength reduction. End its `path` before the stage ends.";
+        table.error("stage", message, report);
+    }
+}
+
 /// What water that flows until then does; and what only ground in which none flows can have.
-fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report<'_>) {
+fn rest(case: &mut Case, table: &Record, unloaded: bool, report: &mut Report<'_>) {
     let made: Vec<bool> = (0..case.materials.len())
         .map(|number| case.is_followed(number))
         .collect();
@@ -154,7 +159,7 @@ fn rest(case: &mut Case, (table, unloaded): (&Record, bool), report: &mut Report
 }
 
 /// Goes on from `until` with one step more of whole strength, and then with so many of less and less.
-fn reduce(case: &mut Case, (until, steps): (f64, u64), factor: f64) {
+fn reduce(case: &mut Case, until: f64, steps: u64, factor: f64) {
     let dt = case.analysis.dt;
     let ahead = case
         .stages
@@ -206,17 +211,22 @@ fn reduce(case: &mut Case, (until, steps): (f64, u64), factor: f64) {
 fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     let strips = usize::from(case.footing.is_some());
     let tractions = case.tractions.len();
-    let acts = |what: Acting| case.acts_since(what, until).is_some();
-    let footing = case.footing.clone().filter(|_| acts(Acting::Strip(0)));
-    let kept = |acting: &dyn Fn(usize) -> Acting, count: usize| (0..count).map(|k| acts(acting(k))).collect::<Vec<_>>();
-    let prescribed = kept(&|k| Acting::Strip(strips + k), case.prescribed.len());
-    let loads = kept(&Acting::Load, tractions);
-    let points = kept(&|k| Acting::Load(tractions + k), case.point_loads.len());
-    let rigid = kept(&Acting::Rigid, case.rigid.len());
+    let loads = tractions + case.point_loads.len();
+    let has_footing = case.acts_since(Acting::Strip(0), until).is_some();
+    let footing = case.footing.clone().filter(|_| has_footing);
+    let prescribed = act_at(
+        case,
+        until,
+        (0..case.prescribed.len()).map(|k| Acting::Strip(strips + k)),
+    );
+    let points = act_at(case, until, (tractions..loads).map(Acting::Load));
+    let loads = act_at(case, until, (0..tractions).map(Acting::Load));
+    let rigid = act_at(case, until, (0..case.rigid.len()).map(Acting::Rigid));
     let bodies: Vec<bool> = (0..case.bodies.len()).map(|body| case.is_there(body, until)).collect();
     let end = steps.max(1) as f64 * case.analysis.dt;
     settle(case, until, end);
-    (case.materials, case.footing) = (case.materials_at(until), footing);
+    case.materials = case.materials_at(until);
+    case.footing = footing;
     for of in case.faces_at(until) {
         case.boundary[of.face.axis][usize::from(of.face.upper)] = of.support;
         case.contacts[of.face.axis][usize::from(of.face.upper)] = of.contact;
@@ -243,6 +253,11 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
         .chain(case.point_loads.iter_mut().map(|PointLoad { ramp, .. }| ramp))
         .chain(case.rigid.iter_mut().map(|Rigid { ramp, .. }| ramp));
     ramps.for_each(|ramp| *ramp = end);
+}
+
+/// Which of some loads, strips or rigid bodies act at a time.
+fn act_at(case: &Case, t: f64, all: impl Iterator<Item = Acting>) -> Vec<bool> {
+    all.map(|acting| case.acts_since(acting, t).is_some()).collect()
 }
 
 /// Lets the water's level stay where it is at the time `until`.

@@ -8,7 +8,7 @@ use self::outline::{sharpest, thickness};
 use super::site::{AroundStrip, normal};
 use super::strip;
 use super::{MOST_SHOWN_FRICTION, NO_INERTIA, load, place, shape};
-use crate::case::{Acting, Case, Initial, MotionPath, Rigid, RigidShape, Stage, Support};
+use crate::case::{Acting, Body, Case, Initial, MotionPath, Rigid, RigidShape, Stage, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces;
@@ -28,14 +28,15 @@ const ADVANCE: f64 = 0.5;
 /// of the strength.
 pub(super) fn read_all(
     root: &Record,
-    around: (AroundStrip<'_>, Option<Regime>),
+    around: AroundStrip<'_>,
+    regime: Option<Regime>,
     factor: Option<f64>,
     report: &mut Report<'_>,
 ) -> Vec<Rigid> {
     let mut found: Vec<Rigid> = Vec::new();
     let geometry = root.word::<Geometry>("geometry").unwrap_or(Geometry::PlaneStrain);
     for record in root.records("rigid") {
-        let Some(rigid) = read((record, geometry), around, factor, report) else {
+        let Some(rigid) = read(record, geometry, around, regime, factor, report) else {
             continue;
         };
         if found.iter().any(|other| other.name == rigid.name) {
@@ -52,14 +53,16 @@ pub(super) fn read_all(
 }
 
 fn read(
-    (record, geometry): (&Record, Geometry),
-    (around, regime): (AroundStrip<'_>, Option<Regime>),
+    record: &Record,
+    geometry: Geometry,
+    around: AroundStrip<'_>,
+    regime: Option<Regime>,
     factor: Option<f64>,
     report: &mut Report<'_>,
 ) -> Option<Rigid> {
     if geometry == Geometry::Solid {
         let rigid = solid::read(record, around, factor, report)?;
-        fine_enough(record, (&rigid, geometry), around, report);
+        fine_enough(record, &rigid, geometry, around, report);
         return Some(rigid);
     }
     let shape = shape::rigid(record, report);
@@ -67,59 +70,63 @@ fn read(
     let path = way(record, around.end, report);
     let rotation = rotation(record, report);
     let force = load::force(record, around, report);
-    let (name, shape, free, path, rotation, ([fx, fy, _], (ramp, amplitude))) =
-        (record.text("name")?.to_owned(), shape?, free?, path?, rotation?, force?);
+    let name = record.text("name")?.to_owned();
+    let shape = shape?;
+    let free = free?;
+    let path = path?;
+    let rotation = rotation?;
+    let ([fx, fy, _], (ramp, amplitude)) = force?;
     let sizes = surfaces::outline(&shape, [0.0; 2]).sizes();
     let centroid = match &shape {
         RigidShape::Polygon(_) => [sizes.centroid[0], sizes.centroid[1]],
         RigidShape::Circle { center, .. } => *center,
         RigidShape::InSpace(_) => return None,
     };
-    let about = if record.gives("about") {
-        record.pair("about")?
-    } else {
-        centroid
-    };
+    let about = pair_or(record, "about", centroid)?;
     let volume = match geometry {
         Geometry::Axisymmetric => geometry.whole() * surfaces::outline(&shape, centroid).swept(-centroid[0]),
         Geometry::PlaneStrain | Geometry::Solid => sizes.area,
     };
     let mass = mass(record, volume, &sizes)?;
-    let moment = if record.gives("moment") {
-        record.number("moment")?
-    } else {
-        0.0
-    };
-    let [vx, vy] = if record.gives("start_velocity") {
-        record.pair("start_velocity")?
-    } else {
-        [0.0; 2]
-    };
-    let spin = if record.gives("start_spin") {
-        record.number("start_spin")?
-    } else {
-        0.0
-    };
-    let friction = friction(record, factor, report)?;
-    let (force, velocity) = ([fx, fy, moment], [vx, vy, spin]);
+    let moment = number_or(record, "moment", 0.0)?;
+    let [vx, vy] = pair_or(record, "start_velocity", [0.0; 2])?;
+    let spin = number_or(record, "start_spin", 0.0)?;
     let rigid = Rigid {
         name,
         shape,
         about,
-        friction,
+        friction: friction(record, factor, report)?,
         path,
         rotation,
         free,
         mass,
-        force,
+        force: [fx, fy, moment],
         ramp,
         amplitude,
-        velocity,
+        velocity: [vx, vy, spin],
     };
     moves_as_given(record, &rigid, report);
     of_free_motions(record, &rigid, regime, report);
-    fine_enough(record, (&rigid, geometry), around, report);
+    fine_enough(record, &rigid, geometry, around, report);
     Some(rigid)
+}
+
+/// The number of a key, or a default without the key; `None` after an error.
+fn number_or(record: &Record, key: &str, default: f64) -> Option<f64> {
+    if record.gives(key) {
+        record.number(key)
+    } else {
+        Some(default)
+    }
+}
+
+/// The pair of a key, or a default without the key; `None` after an error.
+fn pair_or(record: &Record, key: &str, default: [f64; 2]) -> Option<[f64; 2]> {
+    if record.gives(key) {
+        record.pair(key)
+    } else {
+        Some(default)
+    }
 }
 
 /// Which motions follow from forces; `None` after an error.
@@ -182,11 +189,7 @@ fn mass(record: &Record, volume: f64, sizes: &Sizes) -> Option<[f64; 2]> {
         (_, true) => record.number("density")? * volume,
         _ => 0.0,
     };
-    let inertia = if record.gives("inertia") {
-        record.number("inertia")?
-    } else {
-        mass * sizes.polar / sizes.area
-    };
+    let inertia = number_or(record, "inertia", mass * sizes.polar / sizes.area)?;
     Some([mass, inertia])
 }
 
@@ -308,15 +311,9 @@ fn of_free_motions(record: &Record, rigid: &Rigid, regime: Option<Regime>, repor
 }
 
 /// Cells and steps resolve it.
-fn fine_enough(
-    record: &Record,
-    (rigid, geometry): (&Rigid, Geometry),
-    around: AroundStrip<'_>,
-    report: &mut Report<'_>,
-) {
-    let (Some(grid), Some(dt)) = (around.grid, around.dt) else {
-        return;
-    };
+fn fine_enough(record: &Record, rigid: &Rigid, geometry: Geometry, around: AroundStrip<'_>, report: &mut Report<'_>) {
+    let Some(grid) = around.grid else { return };
+    let Some(dt) = around.dt else { return };
     let cell = grid.shortest();
     let Solidity {
         outline,
@@ -330,16 +327,14 @@ fn fine_enough(
         false => surfaces::rigid_body::<3>(rigid, [0.0; 3], geometry).path,
     };
     let before = std::iter::once((0.0, Vector::zeros())).chain(path.iter().copied());
-    let steps = before.zip(&path).filter(|(from, row)| row.0 > from.0);
-    let fastest = steps.map(|(from, row)| {
+    let mut most: f64 = 0.0;
+    for (from, row) in before.zip(&path).filter(|(from, row)| row.0 > from.0) {
         let moved = (row.1 - from.1) * ((dt / (row.0 - from.0)).min(1.0));
-        if turns {
-            moved[0].hypot(moved[1]) + moved[2].abs() * radius
-        } else {
-            moved.norm()
-        }
-    });
-    let most = fastest.fold(0.0, f64::max);
+        most = most.max(match turns {
+            true => moved[0].hypot(moved[1]) + moved[2].abs() * radius,
+            false => moved.norm(),
+        });
+    }
     if most > ADVANCE * cell {
         report.warn(format!(
             "W0411: {}: the rigid body moves up to {:.2} cells in a step (limit {ADVANCE}), so it may pass through \
@@ -395,7 +390,9 @@ impl Solidity {
 
 /// Whether a body has left its place before a time on the way that it is given.
 pub(super) fn has_moved(rigid: &Rigid, t: f64) -> bool {
-    strip::begins_before(&rigid.path.rows, [0.0; 3], t) || strip::begins_before(&rigid.rotation, 0.0, t)
+    let times = rigid.rotation.iter().map(|row| row.0);
+    let is_turned = rigid.rotation.iter().map(|row| row.1 != 0.0);
+    strip::path_begins_before(&rigid.path, t) || strip::begins_before(times, is_turned, t)
 }
 
 /// What the rest of the case says to rigid bodies.
@@ -428,26 +425,26 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         }
         beyond::check(case, rigid, record, report);
         if let RigidShape::InSpace(solid) = &rigid.shape {
-            solid::check(case, (number, rigid, solid), record, report);
-            joined(case, (number, rigid), record, report);
+            solid::check(case, number, rigid, solid, record, report);
+            joined(case, number, rigid, record, report);
         } else if let Some((at, body)) = overlap(case, rigid, |body| together(case, number, body).is_some()) {
-            let message = inside(case, (number, body), &format!("{:.4}, {:.4}", at[0], at[1]));
+            let message = inside(case, number, body, &format!("{:.4}, {:.4}", at[0], at[1]));
             record.error(shape::key(record), message, report);
         } else {
-            joined(case, (number, rigid), record, report);
+            joined(case, number, rigid, record, report);
         }
     }
 }
 
 /// The stage with which a body and a rigid one are there together first; `Some(None)`: from the start on.
 fn together(case: &Case, rigid: usize, body: usize) -> Option<Option<&Stage>> {
-    let times = std::iter::once((0.0, None)).chain(case.stages.iter().map(|stage| (stage.at, Some(stage))));
-    let both = |t: f64| case.is_there(body, t) && case.acts_since(Acting::Rigid(rigid), t).is_some();
-    times.into_iter().find(|(t, _)| both(*t)).map(|(_, stage)| stage)
+    let mut times = std::iter::once((0.0, None)).chain(case.stages.iter().map(|stage| (stage.at, Some(stage))));
+    let first = times.find(|(t, _)| case.is_there(body, *t) && case.acts_since(Acting::Rigid(rigid), *t).is_some());
+    first.map(|(_, stage)| stage)
 }
 
 /// What is said where a body is in a rigid one when they are there together first.
-fn inside(case: &Case, (rigid, body): (usize, usize), at: &str) -> String {
+fn inside(case: &Case, rigid: usize, body: usize, at: &str) -> String {
     let stage = together(case, rigid, body).flatten();
     let (when, or) = match stage {
         None => ("at the start".to_owned(), String::new()),
@@ -467,102 +464,120 @@ fn inside(case: &Case, (rigid, body): (usize, usize), at: &str) -> String {
 }
 
 /// What stages place at a rigid body, or where one is that they apply, may lie nearer than it reaches.
-fn joined(case: &Case, (number, rigid): (usize, &Rigid), record: &Record, report: &mut Report<'_>) {
-    let (outline, cell) = (surfaces::outline(&rigid.shape, rigid.about), longest(case));
+fn joined(case: &Case, number: usize, rigid: &Rigid, record: &Record, report: &mut Report<'_>) {
+    let reach = surfaces::outline(&rigid.shape, rigid.about).radius() + longest(case);
     let moves = rigid.free.contains(&true) || !rigid.path.rows.is_empty() || !rigid.rotation.is_empty();
-    let is_near = |body: usize, moves: bool| {
-        let [lower, upper] = case.bodies[body].bounds();
-        let reach = outline.radius() + cell;
-        moves || (0..2).all(|k| lower[k] < rigid.about[k] + reach && upper[k] > rigid.about[k] - reach)
-    };
-    let joins = |body: usize| Some((body, together(case, number, body).flatten()?));
-    let mut joined = (0..case.bodies.len()).filter_map(joins);
-    let found = joined.find(|(body, stage)| is_near(*body, moves && stage.add.contains(body)));
-    let Some((body, stage)) = found else { return };
-    let added = if stage.add.contains(&body) {
-        format!("body.{body} next to this rigid body")
-    } else {
-        format!("this rigid body next to body.{body}")
-    };
-    report.warn(format!(
-        "W0416: {}: a stage adds {added}. Material points closer than half their spacing to the rigid body are pushed \
-         away in one step, and strained. Leave a gap of half a spacing of material points.",
-        record.path
-    ));
+    for (body, of) in case.bodies.iter().enumerate() {
+        let Some(stage) = together(case, number, body).flatten() else {
+            continue;
+        };
+        let [lower, upper] = of.bounds();
+        let is_near = (0..2).all(|k| lower[k] < rigid.about[k] + reach && upper[k] > rigid.about[k] - reach);
+        let is_added = stage.add.contains(&body);
+        if !(is_near || moves && is_added) {
+            continue;
+        }
+        let added = if is_added {
+            format!("body.{body} next to this rigid body")
+        } else {
+            format!("this rigid body next to body.{body}")
+        };
+        report.warn(format!(
+            "W0416: {}: a stage adds {added}. Material points closer than half their spacing to the rigid body are pushed \
+             away in one step, and strained. Leave a gap of half a spacing of material points.",
+            record.path
+        ));
+        return;
+    }
 }
 
 /// m  longest edge of all cells.
 fn longest(case: &Case) -> f64 {
-    let edges = |axis: usize| {
-        let knots = &case.grid.axes[axis];
-        (0..knots.cells())
-            .map(|cell| knots.breakpoint(cell + 1) - knots.breakpoint(cell))
-            .fold(0.0, f64::max)
-    };
-    edges(0).max(edges(1))
+    let mut longest: f64 = 0.0;
+    for knots in &case.grid.axes[..2] {
+        let edges = (0..knots.cells()).map(|cell| knots.breakpoint(cell + 1) - knots.breakpoint(cell));
+        longest = edges.fold(longest, f64::max);
+    }
+    longest
 }
 
 /// Whether a rigid body other than `except` that rests or is moved holds a component of a body that lies at it from the
 /// start on.
 pub(super) fn hold(case: &Case, component: usize, except: Option<Acting>) -> bool {
-    let at_body = |at: [f64; 2]| case.bodies.iter().any(|body| body.region.contains(at));
-    let out = OVERLAP * case.grid.shortest();
-    let holds = |(number, rigid): (usize, &Rigid)| {
+    case.rigid.iter().enumerate().any(|(number, rigid)| {
         let acting = Acting::Rigid(number);
-        if rigid.free.contains(&true) || Some(acting) == except || case.acts_since(acting, 0.0).is_none() {
-            return false;
+        let may_hold = !rigid.free.contains(&true) && Some(acting) != except;
+        may_hold && case.acts_since(acting, 0.0).is_some() && holds(case, rigid, component)
+    })
+}
+
+/// Whether a rigid body that rests holds a component of a body that lies at it.
+fn holds(case: &Case, rigid: &Rigid, component: usize) -> bool {
+    let out = OVERLAP * case.grid.shortest();
+    let has_friction = rigid.friction > 0.0;
+    match &rigid.shape {
+        RigidShape::Circle { center, radius } => {
+            has_friction && place::ring(*center, radius + out).any(|at| is_body_at(case, at))
         }
-        let has_friction = rigid.friction > 0.0;
-        match &rigid.shape {
-            RigidShape::Circle { center, radius } => has_friction && place::ring(*center, radius + out).any(at_body),
-            RigidShape::Polygon(corners) => corners.iter().zip(corners.iter().cycle().skip(1)).any(|(from, to)| {
-                let normal = normal(*from, *to); // to the left, inside
-                let beside = |at: [f64; 2]| [at[0] - out * normal[0], at[1] - out * normal[1]];
-                let pushes = has_friction || normal[component].abs() > OVERLAP;
-                pushes && place::along([*from, *to]).any(|at| at_body(beside(at)))
-            }),
-            RigidShape::InSpace(_) => false,
-        }
-    };
-    case.rigid.iter().enumerate().any(holds)
+        RigidShape::Polygon(corners) => corners.iter().zip(corners.iter().cycle().skip(1)).any(|(from, to)| {
+            let normal = normal(*from, *to); // to the left, inside
+            let pushes = has_friction || normal[component].abs() > OVERLAP;
+            let places = place::along([*from, *to]);
+            let mut beside = places.map(|at| [at[0] - out * normal[0], at[1] - out * normal[1]]);
+            pushes && beside.any(|at| is_body_at(case, at))
+        }),
+        RigidShape::InSpace(_) => false,
+    }
+}
+
+/// Whether some body of a plane is at a place.
+fn is_body_at(case: &Case, at: [f64; 2]) -> bool {
+    case.bodies.iter().any(|body| body.region.contains(at))
 }
 
 /// A place of a body among those that are `there` that is inside a rigid one as it is at the start, if there is one.
 fn overlap(case: &Case, rigid: &Rigid, there: impl Fn(usize) -> bool) -> Option<([f64; 2], usize)> {
-    let cell = case.grid.shortest();
-    let inset = OVERLAP * cell;
-    let places: Vec<[f64; 2]> = match &rigid.shape {
+    let inset = OVERLAP * case.grid.shortest();
+    let outline = surfaces::outline(&rigid.shape, rigid.about);
+    let bodies = case.bodies.iter().enumerate();
+    let bodies: Vec<(usize, &Body)> = bodies.filter(|(number, _)| there(*number)).collect();
+    for at in places_inside(rigid, inset) {
+        if !is_inside(&outline, rigid.about, at, inset) {
+            continue;
+        }
+        if let Some((number, _)) = bodies.iter().find(|(_, body)| body.region.contains(at)) {
+            return Some((at, *number));
+        }
+    }
+    // A small body may lie in it whole.
+    for (number, body) in bodies {
+        let [lower, upper] = body.bounds();
+        let middle = [0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis]));
+        if is_inside(&outline, rigid.about, middle, inset) && body.region.contains(middle) {
+            return Some((middle, number));
+        }
+    }
+    None
+}
+
+/// Places along a rigid body in the plane, at a distance (m) from its surface; corners may be nearer.
+fn places_inside(rigid: &Rigid, inset: f64) -> Vec<[f64; 2]> {
+    match &rigid.shape {
         RigidShape::Circle { center, radius } => place::ring(*center, (radius - inset).max(0.0)).collect(),
         RigidShape::Polygon(corners) => {
             let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-            let inside = |(from, to): (&[f64; 2], &[f64; 2])| {
+            let places = edges.flat_map(|(from, to)| {
                 let normal = normal(*from, *to); // to the left, inside
-                let into = move |at: [f64; 2]| [at[0] + inset * normal[0], at[1] + inset * normal[1]];
-                place::along([*from, *to]).map(into)
-            };
-            edges.flat_map(inside).collect()
+                place::along([*from, *to]).map(move |at| [at[0] + inset * normal[0], at[1] + inset * normal[1]])
+            });
+            places.collect()
         }
         RigidShape::InSpace(_) => Vec::new(),
-    };
-    let outline = surfaces::outline(&rigid.shape, rigid.about);
-    let is_in = |at: &[f64; 2]| {
-        let seen = bsmpm::tensor::Vector::<2>::new(at[0] - rigid.about[0], at[1] - rigid.about[1]);
-        outline.nearest(&seen).distance < -0.5 * inset
-    };
-    let bodies = || case.bodies.iter().enumerate().filter(|(number, _)| there(*number));
-    let holds = |at: &[f64; 2]| {
-        bodies()
-            .find(|(_, body)| body.region.contains(*at))
-            .map(|(number, _)| (*at, number))
-    };
-    let found = places.iter().filter(|at| is_in(at)).find_map(holds);
-    // A small body may lie in it whole.
-    let whole = || {
-        bodies().find_map(|(number, body)| {
-            let [lower, upper] = body.bounds();
-            let middle = [0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis]));
-            (is_in(&middle) && body.region.contains(middle)).then_some((middle, number))
-        })
-    };
-    found.or_else(whole)
+    }
+}
+
+/// Whether a place is deeper than half of `inset` (m) in an outline about a reference point.
+fn is_inside(outline: &Outline, about: [f64; 2], at: [f64; 2], inset: f64) -> bool {
+    let seen = Vector::<2>::new(at[0] - about[0], at[1] - about[1]);
+    outline.nearest(&seen).distance < -0.5 * inset
 }

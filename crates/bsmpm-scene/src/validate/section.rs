@@ -23,7 +23,8 @@ struct Cut {
 impl Cut {
     fn of(case: &Case, lines: &[[[f64; 3]; 2]]) -> Option<Self> {
         let ends = lines.iter().map(|line| line.map(Vector::<3>::from));
-        let (mut middle, mut along) = (Vector::zeros(), Vec::new());
+        let mut middle = Vector::zeros();
+        let mut along = Vec::new();
         for [from, to] in ends {
             middle += (from + to) / (2.0 * lines.len() as f64);
             along.push(((to - from).try_normalize(0.0)?, 0.5 * (to - from).norm()));
@@ -65,19 +66,24 @@ impl Cut {
 
     /// m  from the section along (1) or against (-1) its normal to the end of the material between its ends
     fn room(&self, case: &Case, side: f64) -> f64 {
-        let across = |k: usize| {
-            let part = |of: usize| (2 * of + 1) as f64 / PLACES as f64 - 1.0;
-            let lines = self.along.iter().enumerate();
-            let off = lines.map(|(line, (along, half))| along * (part(k / PLACES.pow(line as u32) % PLACES) * *half));
-            self.middle + off.sum::<Vector<3>>()
-        };
         let steps = 0..=(2.0 * self.reach / (STEP * self.cell)) as usize;
         let away = steps.rev().map(|step| step as f64 * STEP * self.cell).find(|away| {
             let count = PLACES.pow(self.along.len() as u32);
-            let place = |k: usize| (across(k) + self.across * (side * away)).into();
-            (0..count).any(|k| case.bodies.iter().any(|body| place::is_in(body, &case.grid, place(k))))
+            let mut places = (0..count).map(|k| (self.place(k) + self.across * (side * away)).into());
+            places.any(|at| case.bodies.iter().any(|body| place::is_in(body, &case.grid, at)))
         });
         away.unwrap_or(0.0)
+    }
+
+    /// The place on it with a number, in the middle of one of equal pieces.
+    fn place(&self, k: usize) -> Vector<3> {
+        let lines = self.along.iter().enumerate();
+        let off = lines.map(|(line, (along, half))| {
+            let of = k / PLACES.pow(line as u32) % PLACES;
+            let part = (2 * of + 1) as f64 / PLACES as f64 - 1.0;
+            along * (part * *half)
+        });
+        self.middle + off.sum::<Vector<3>>()
     }
 
     /// Whether it has a part of the force of what acts at these places, and not all of it. What crosses it far to both
@@ -86,19 +92,22 @@ impl Cut {
         if least >= self.reach || most <= -self.reach {
             return false;
         }
-        let slack = 1.01 * STEP * self.cell;
-        let beside = |side: f64, [nearest, farthest]: [f64; 2]| {
-            let room = self.room(case, side);
-            Beside {
-                goes_on: farthest >= self.reach || room <= farthest + slack,
-                ends: nearest > -slack && room <= nearest + slack,
-                deep: room >= self.reach,
-            }
-        };
-        let [before, beyond] = [beside(-1.0, [-most, -least]), beside(1.0, [least, most])];
+        let before = self.beside(case, -1.0, [-most, -least]);
+        let beyond = self.beside(case, 1.0, [least, most]);
         let crosses = before.goes_on && beyond.goes_on;
         let is_evaded = before.ends && beyond.deep || beyond.ends && before.deep;
         !(crosses || is_evaded)
+    }
+
+    /// What acts between two distances (m) along (1) or against (-1) its normal, and the material there.
+    fn beside(&self, case: &Case, side: f64, [nearest, farthest]: [f64; 2]) -> Beside {
+        let slack = 1.01 * STEP * self.cell;
+        let room = self.room(case, side);
+        Beside {
+            goes_on: farthest >= self.reach || room <= farthest + slack,
+            ends: nearest > -slack && room <= nearest + slack,
+            deep: room >= self.reach,
+        }
     }
 }
 
@@ -136,13 +145,12 @@ pub(super) fn warn_of_neighbours(case: &Case, root: &Record, report: &mut Report
 
 /// Places on a rigid body; of terrain none.
 fn outline(case: &Case, number: usize) -> Vec<[f64; 3]> {
-    let flat = |[x, y]: [f64; 2]| [x, y, 0.0];
     match &case.rigid[number].shape {
         RigidShape::Polygon(corners) => {
             let sides = (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]]);
-            sides.flat_map(place::along).map(flat).collect()
+            sides.flat_map(place::along).map(place::flat).collect()
         }
-        RigidShape::Circle { center, radius } => place::ring(*center, *radius).map(flat).collect(),
+        RigidShape::Circle { center, radius } => place::ring(*center, *radius).map(place::flat).collect(),
         RigidShape::InSpace(RigidSolid::Terrain(_)) => Vec::new(),
         RigidShape::InSpace(solid) => place::over(solid.corners()).collect(),
     }

@@ -105,15 +105,27 @@ impl<const D: usize> BeyondSymmetry<D> {
     }
 }
 
+impl BeyondSymmetry<2> {
+    /// Makes a box smaller; of another shape the boxes become further cut-outs.
+    fn cut_off(&self, whole: &mut BodyShape, cut: &mut Vec<BodyShape>) {
+        match whole {
+            BodyShape::Box { lower, upper } => [*lower, *upper] = region::left_of_box([*lower, *upper], &self.boxes),
+            _ => cut.extend(self.boxes.iter().map(|&[lower, upper]| BodyShape::Box { lower, upper })),
+        }
+    }
+}
+
 /// What a body fills, with `points_per_cell` along an axis; place and size are checked only if the grid is valid.
 pub(super) fn region(
-    (body, geometry): (&Record, Geometry),
-    (grid, points_per_cell): (Option<&GridSpec>, Option<usize>),
+    body: &Record,
+    geometry: Geometry,
+    grid: Option<&GridSpec>,
+    points_per_cell: Option<usize>,
     boundary: Option<[[Support; 2]; 3]>,
     report: &mut Report<'_>,
 ) -> Option<Region> {
     if geometry == Geometry::Solid {
-        return solid::region(body, (grid, points_per_cell), boundary, report);
+        return solid::region(body, grid, points_per_cell, boundary, report);
     }
     let whole = read(body, report);
     let cut: Option<Vec<BodyShape>> = body
@@ -121,7 +133,8 @@ pub(super) fn region(
         .iter()
         .map(|record| read(record, report))
         .collect();
-    let (mut whole, mut cut) = (whole?, cut?);
+    let mut whole = whole?;
+    let mut cut = cut?;
     if body.gives("subtract") && cut.len() != body.records("subtract").len() {
         return None;
     }
@@ -129,19 +142,11 @@ pub(super) fn region(
     let left = region::left_of_box(whole.bounds(), &boxes_of(&cut));
     let beyond = BeyondSymmetry::of(whole.bounds(), left, boundary?, grid);
     if !beyond.boxes.is_empty() {
-        match &mut whole {
-            BodyShape::Box { lower, upper } => [*lower, *upper] = region::left_of_box([*lower, *upper], &beyond.boxes),
-            _ => cut.extend(
-                beyond
-                    .boxes
-                    .iter()
-                    .map(|&[lower, upper]| BodyShape::Box { lower, upper }),
-            ),
-        }
+        beyond.cut_off(&mut whole, &mut cut);
         beyond.note(body, geometry, report);
     }
     let bounds = region::left_of_box(whole.bounds(), &boxes_of(&cut));
-    inside((&whole, bounds), body, grid, report)?;
+    inside(&whole, bounds, body, grid, report)?;
     if let (BodyShape::Box { lower, upper }, true) = (&whole, cut.is_empty()) {
         return Some(Region::Box {
             lower: *lower,
@@ -155,8 +160,11 @@ pub(super) fn region(
     match Outline::new(
         edges,
         1 + cut.len(),
-        (bounds, whole.area()),
-        (grid, geometry, points_per_cell?),
+        bounds,
+        whole.area(),
+        grid,
+        geometry,
+        points_per_cell?,
     ) {
         Ok(outline) => Some(Region::Outline(outline)),
         Err(message) => {
@@ -168,11 +176,11 @@ pub(super) fn region(
 
 /// Lower and upper corners of the boxes among shapes.
 fn boxes_of(shapes: &[BodyShape]) -> Vec<[[f64; 2]; 2]> {
-    let corners = |shape: &BodyShape| match shape {
+    let boxes = shapes.iter().filter_map(|shape| match shape {
         BodyShape::Box { lower, upper } => Some([*lower, *upper]),
         BodyShape::Polygon(_) | BodyShape::Circle { .. } => None,
-    };
-    shapes.iter().filter_map(corners).collect()
+    });
+    boxes.collect()
 }
 
 /// The shape of a rigid body, which may reach beyond the grid.
@@ -244,7 +252,6 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
     let Some(fault) = region::fault(&corners) else {
         return Some(BodyShape::Polygon(corners));
     };
-    let row = |k: usize| rows[k].origin;
     let (origin, message): (Origin, String) = match fault {
         PolygonFault::TooFew => {
             let message = format!(
@@ -258,7 +265,7 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
                 "E0223: the polygon has the corner {:?} twice in a row. Delete one of them.",
                 corners[one]
             );
-            (row(one.max(other)), message)
+            (rows[one.max(other)].origin, message)
         }
         PolygonFault::Flat => {
             let message =
@@ -266,13 +273,12 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
             (record.place("polygon"), message.to_owned())
         }
         PolygonFault::Crossing(i, j) => {
-            let edge = |k: usize| format!("{:?} to {:?}", corners[k], corners[(k + 1) % corners.len()]);
+            let edges = [j, i].map(|k| format!("{:?} to {:?}", corners[k], corners[(k + 1) % corners.len()]));
             let message = format!(
                 "E0223: the edge from {} crosses or touches the edge from {}. Correct the corners or their order.",
-                edge(j),
-                edge(i)
+                edges[0], edges[1]
             );
-            (row(j), message)
+            (rows[j].origin, message)
         }
     };
     report.error(origin, &record.path_of("polygon"), message);
@@ -281,7 +287,8 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
 
 /// Errors about what lies outside the grid: of a shape with what is left of its bounds.
 fn inside(
-    (shape, [lower, upper]): (&BodyShape, [[f64; 2]; 2]),
+    shape: &BodyShape,
+    [lower, upper]: [[f64; 2]; 2],
     body: &Record,
     grid: &GridSpec,
     report: &mut Report<'_>,
@@ -302,8 +309,9 @@ fn inside(
             }
         }
         BodyShape::Polygon(corners) => {
-            let outside = |(k, corner): (usize, &[f64; 2])| Some((k, place::beyond(grid, *corner)?));
-            if let Some((k, message)) = corners.iter().enumerate().find_map(outside) {
+            let mut corners = corners.iter().enumerate();
+            let outside = corners.find_map(|(k, corner)| Some((k, place::beyond(grid, *corner)?)));
+            if let Some((k, message)) = outside {
                 let origin = body
                     .rows("polygon")
                     .map_or(body.place("polygon"), |rows| rows[k].origin);

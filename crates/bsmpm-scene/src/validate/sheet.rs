@@ -2,7 +2,7 @@
 
 use super::place::{at_volume, beyond};
 use super::site::AroundStrip;
-use crate::case::Triangle;
+use crate::case::{Body, Triangle};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::region::edges_of;
@@ -23,18 +23,17 @@ const LARGEST: f64 = 2e5;
 /// The surface that a traction's `surface` or `sphere` gives, in pieces as small as the spacing of points: inside the
 /// grid, at bodies everywhere, in one piece, turned alike.
 pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Arc<[Triangle]>> {
-    let (grid, bodies) = (around.grid.filter(|grid| grid.dims() == 3)?, around.bodies?);
+    let grid = around.grid.filter(|grid| grid.dims() == 3)?;
+    let bodies = around.bodies?;
     let spacing = grid.shortest() / bodies.iter().map(|body| body.points_per_cell).max()? as f64;
     let (key, found) = if record.gives("sphere") {
         let sphere = record.record("sphere")?;
-        let (center, radius) = (sphere.vector("centre")?, sphere.number("radius")?);
-        let part = |_| {
-            sphere_of(center, radius, spacing)
-                .into_iter()
-                .flat_map(|of| inside(grid, of))
-                .collect()
-        };
-        ("sphere", countable(2.0 * TAU * radius * radius, spacing).map(part))
+        let center = sphere.vector("centre")?;
+        let radius = sphere.number("radius")?;
+        let sound = countable(2.0 * TAU * radius * radius, spacing);
+        let pieces = sound.map(|()| sphere_of(center, radius, spacing).into_iter());
+        let kept = pieces.map(|pieces| pieces.flat_map(|of| inside(grid, of)).collect());
+        ("sphere", kept)
     } else {
         let all = given(record, report)?;
         let wrong = all.iter().flatten().find_map(|corner| beyond(grid, *corner));
@@ -46,7 +45,16 @@ pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Repo
             sound.map(|()| all.iter().flat_map(|of| split(*of, spacing)).collect::<Vec<_>>()),
         )
     };
-    let at_bodies = |all: Vec<Triangle>| match all.iter().map(middle).find(|at| !at_volume(bodies, grid, *at)) {
+    let found = found.and_then(|all| at_bodies(all, bodies, grid));
+    found
+        .map_err(|message| record.consequence(key, message, &["body"], report))
+        .ok()
+        .map(Arc::from)
+}
+
+/// The pieces of a surface if there are some, and all of them at bodies.
+fn at_bodies(all: Vec<Triangle>, bodies: &[Body], grid: &GridSpec) -> Result<Vec<Triangle>, String> {
+    match all.iter().map(middle).find(|at| !at_volume(bodies, grid, *at)) {
         Some(at) => Err(format!(
             "E0401: at the start of the analysis no body exists at the point {at:.3?} m of the loaded surface. Move \
              the loaded surface to the surface of a body."
@@ -56,35 +64,29 @@ pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Repo
                 .into(),
         ),
         None => Ok(all),
-    };
-    found
-        .and_then(at_bodies)
-        .map_err(|message| record.consequence(key, message, &["body"], report))
-        .ok()
-        .map(Arc::from)
+    }
 }
 
 /// Whether an area, m², is not too large for the spacing of points, m.
 fn countable(area: f64, spacing: f64) -> Result<(), String> {
     let squares = area / spacing.powi(2);
-    let message = || {
-        format!(
+    if squares > LARGEST {
+        return Err(format!(
             "E0216: the loaded surface is so large that it needs about {squares:.0} loaded points (at most \
              {LARGEST}). Use larger cells, or reduce points_per_cell."
-        )
-    };
-    if squares > LARGEST { Err(message()) } else { Ok(()) }
+        ));
+    }
+    Ok(())
 }
 
 /// The triangles of a record's table, m, without those that are a line or a place.
 fn given(record: &Record, report: &mut Report<'_>) -> Option<Vec<Triangle>> {
     let table = record.record("surface")?;
     let scale = table.number("scale")?;
-    let corner = |row: &[f64], k: usize| [0, 1, 2].map(|axis| scale * row[3 * k + axis] + 0.0);
     let rows = table
         .rows("triangles")?
         .iter()
-        .map(|row| [0, 1, 2].map(|k| corner(&row.numbers, k)));
+        .map(|row| [0, 1, 2].map(|k| [0, 1, 2].map(|axis| scale * row.numbers[3 * k + axis] + 0.0)));
     let all: Vec<Triangle> = rows.filter(|triangle| normal_of(triangle) != [0.0; 3]).collect();
     if all.is_empty() {
         table.error(
@@ -110,15 +112,18 @@ fn area(triangle: &Triangle) -> f64 {
 /// A triangle in pieces without a longer edge than this, m, that turn as it does; those of triangles that have an edge
 /// in common have theirs in common.
 fn split(triangle: Triangle, longest: f64) -> Vec<Triangle> {
-    let (mut whole, mut pieces) = (vec![triangle], Vec::new());
+    let mut whole = vec![triangle];
+    let mut pieces = Vec::new();
     while let Some([a, b, c]) = whole.pop() {
-        let length = |edge: &Triangle| (Vector::<3>::from(edge[1]) - Vector::from(edge[0])).norm();
         let turned = [[b, c, a], [c, a, b]].into_iter();
-        let [a, b, c] = turned.fold(
-            [a, b, c],
-            |most, edge| if length(&edge) > length(&most) { edge } else { most },
-        );
-        if length(&[a, b, c]) > longest {
+        let [a, b, c] = turned.fold([a, b, c], |most, edge| {
+            if edge_length(&edge) > edge_length(&most) {
+                edge
+            } else {
+                most
+            }
+        });
+        if edge_length(&[a, b, c]) > longest {
             let middle = [0, 1, 2].map(|axis| 0.5 * (a[axis] + b[axis]));
             whole.extend([[a, middle, c], [middle, b, c]]);
         } else {
@@ -128,22 +133,31 @@ fn split(triangle: Triangle, longest: f64) -> Vec<Triangle> {
     pieces
 }
 
+/// Length of the edge between the first two corners, m.
+fn edge_length(triangle: &Triangle) -> f64 {
+    (Vector::<3>::from(triangle[1]) - Vector::from(triangle[0])).norm()
+}
+
 /// What of a triangle is inside the grid, in triangles that turn as it does.
 fn inside(grid: &GridSpec, triangle: Triangle) -> Vec<Triangle> {
     let mut corners = triangle.to_vec();
     for (axis, sign, face) in
         (0..3).flat_map(|axis| [(axis, 1.0, grid.lower()[axis]), (axis, -1.0, grid.upper()[axis])])
     {
-        let depth = |at: [f64; 3]| sign * (at[axis] - face);
-        let next = |k: usize| (corners[k], corners[(k + 1) % corners.len()]);
-        let kept = |(from, to): ([f64; 3], [f64; 3])| {
-            let (before, after) = (depth(from), depth(to));
-            let cut = (before < 0.0) != (after < 0.0) && before != 0.0 && after != 0.0;
-            let mut at = [0, 1, 2].map(|k| from[k] + (to[k] - from[k]) * before / (before - after));
-            at[axis] = face;
-            (before >= 0.0).then_some(from).into_iter().chain(cut.then_some(at))
-        };
-        corners = (0..corners.len()).map(next).flat_map(kept).collect();
+        let mut kept = Vec::new();
+        for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+            let before = sign * (from[axis] - face);
+            let after = sign * (to[axis] - face);
+            if before >= 0.0 {
+                kept.push(*from);
+            }
+            if (before < 0.0) != (after < 0.0) && before != 0.0 && after != 0.0 {
+                let mut at = [0, 1, 2].map(|k| from[k] + (to[k] - from[k]) * before / (before - after));
+                at[axis] = face;
+                kept.push(at);
+            }
+        }
+        corners = kept;
     }
     (2..corners.len())
         .map(|k| [corners[0], corners[k - 1], corners[k]])
@@ -194,11 +208,6 @@ fn in_one_piece(all: &[Triangle]) -> Result<(), String> {
 /// an octant has its own.
 fn sphere_of(center: [f64; 3], radius: f64, longest: f64) -> Vec<Triangle> {
     let parts = ((STRETCHED * radius / longest).ceil() as usize).max(FEWEST);
-    let corner = |sign: [f64; 3], i: usize, j: usize| {
-        let flat = [i, j, parts - i - j].map(|part| part as f64);
-        let length = flat.iter().map(|part| part * part).sum::<f64>().sqrt();
-        [0, 1, 2].map(|axis| sign[axis] * flat[axis] / length)
-    };
     let mut unit: Vec<Triangle> = Vec::new();
     for octant in 0..8_u8 {
         let sign = [0, 1, 2].map(|axis| if octant >> axis & 1 == 0 { 1.0 } else { -1.0 });
@@ -211,7 +220,7 @@ fn sphere_of(center: [f64; 3], radius: f64, longest: f64) -> Vec<Triangle> {
                     if !outwards {
                         places.swap(1, 2);
                     }
-                    unit.push(places.map(|(i, j)| corner(sign, i, j)));
+                    unit.push(places.map(|(i, j)| on_octant(sign, [i, j, parts - i - j])));
                 }
             }
         }
@@ -220,6 +229,13 @@ fn sphere_of(center: [f64; 3], radius: f64, longest: f64) -> Vec<Triangle> {
     unit.iter()
         .map(|triangle| triangle.map(|at| [0, 1, 2].map(|axis| center[axis] + scale * at[axis])))
         .collect()
+}
+
+/// A place on the unit sphere in an octant, given by its signs: above the place of the flat octant with these parts.
+fn on_octant(sign: [f64; 3], parts: [usize; 3]) -> [f64; 3] {
+    let flat = parts.map(|part| part as f64);
+    let length = flat.iter().map(|part| part * part).sum::<f64>().sqrt();
+    [0, 1, 2].map(|axis| sign[axis] * flat[axis] / length)
 }
 
 #[cfg(test)]
@@ -231,7 +247,8 @@ mod tests {
         let all = sphere_of([1.0, 2.0, 3.0], 0.5, 0.1);
         assert!(in_one_piece(&all).is_ok() && edges_of(&all).values().all(|sides| sides.len() == 2));
         let normals = all.iter().map(|triangle| {
-            let (at, normal) = (middle(triangle), normal_of(triangle));
+            let at = middle(triangle);
+            let normal = normal_of(triangle);
             (at[0] - 1.0) * normal[0] + (at[1] - 2.0) * normal[1] + (at[2] - 3.0) * normal[2]
         });
         assert!(normals.into_iter().all(|outwards| (outwards - 0.5).abs() < 5e-3));
@@ -255,7 +272,8 @@ mod tests {
             order: 2,
             lines: Default::default(),
         };
-        let (center, radius) = ([0.03, -0.02, 1.0], 0.5_f64);
+        let center = [0.03, -0.02, 1.0];
+        let radius = 0.5_f64;
         let all = sphere_of(center, radius, 0.05)
             .into_iter()
             .flat_map(|of| inside(&grid, of));

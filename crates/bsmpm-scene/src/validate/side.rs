@@ -3,7 +3,7 @@
 use super::place::{along, beside, ring, side_of_bodies};
 use super::sheet::middle;
 use super::site::places;
-use crate::case::{Acting, Body, Case, LoadedLine, Push, Site, Triangle};
+use crate::case::{Acting, Body, Case, LoadedLine, Push, Site};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
@@ -16,39 +16,54 @@ const ASTRAY: usize = 20;
 /// plate's axis, where triangles are seen to turn counter-clockwise from, else -1; `None` of both, or none.
 pub(super) fn side<'a>(line: &LoadedLine, grid: &GridSpec, bodies: impl Iterator<Item = &'a Body>) -> Option<f64> {
     let bodies: Vec<&Body> = bodies.collect();
-    let holds = |at: [f64; 2]| bodies.iter().any(|body| body.region.contains(at));
-    let count = |off: f64| match line {
-        &LoadedLine::Segment { from, to } => {
-            let (x, y) = (to[0] - from[0], to[1] - from[1]);
-            let (x, y) = (-y / x.hypot(y) * off, x / x.hypot(y) * off);
-            along([from, to]).filter(|at| holds([at[0] + x, at[1] + y])).count()
-        }
-        &LoadedLine::Circle { center, radius } => ring(center, radius - off).filter(|at| holds(*at)).count(),
-        LoadedLine::Plate(plate) => {
-            let inside = |mut at: [f64; 3]| {
-                at[plate.normal()] += off;
-                bodies.iter().any(|body| body.region.contains_in_space(at))
-            };
-            places(Site::Plate(*plate), grid)
-                .into_iter()
-                .filter(|at| inside(*at))
-                .count()
-        }
-        LoadedLine::Triangles(all) => {
-            let inside = |triangle: &&Triangle| {
-                let (at, normal) = (middle(triangle), normal_of(triangle));
-                let off_it = [0, 1, 2].map(|axis| at[axis] + off * normal[axis]);
-                bodies.iter().any(|body| body.region.contains_in_space(off_it))
-            };
-            all.iter().filter(inside).count()
-        }
-    };
     let LoadedLine::Triangles(all) = line else {
-        return side_of_bodies(grid, count);
+        return side_of_bodies(grid, |off| count_at_bodies(line, grid, &bodies, off));
     };
-    let [along, against] = beside(grid, count)?;
+    let [along, against] = beside(grid, |off| count_at_bodies(line, grid, &bodies, off))?;
     let is_one = ASTRAY * along.min(against) <= all.len();
     is_one.then_some(if along > against { 1.0 } else { -1.0 })
+}
+
+/// Number of the places along a line that lie in bodies once they are moved along its normal, by `off` m.
+fn count_at_bodies(line: &LoadedLine, grid: &GridSpec, bodies: &[&Body], off: f64) -> usize {
+    match line {
+        &LoadedLine::Segment { from, to } => {
+            let x = to[0] - from[0];
+            let y = to[1] - from[1];
+            let shift = [-y / x.hypot(y) * off, x / x.hypot(y) * off];
+            let places = along([from, to]).map(|at| [at[0] + shift[0], at[1] + shift[1]]);
+            places.filter(|at| is_in_plane(bodies, *at)).count()
+        }
+        &LoadedLine::Circle { center, radius } => {
+            let places = ring(center, radius - off);
+            places.filter(|at| is_in_plane(bodies, *at)).count()
+        }
+        LoadedLine::Plate(plate) => {
+            let places = places(Site::Plate(*plate), grid).into_iter().map(|mut at| {
+                at[plate.normal()] += off;
+                at
+            });
+            places.filter(|at| is_in_space(bodies, *at)).count()
+        }
+        LoadedLine::Triangles(all) => {
+            let places = all.iter().map(|triangle| {
+                let at = middle(triangle);
+                let normal = normal_of(triangle);
+                [0, 1, 2].map(|axis| at[axis] + off * normal[axis])
+            });
+            places.filter(|at| is_in_space(bodies, *at)).count()
+        }
+    }
+}
+
+/// Whether a place of a plane lies in one of the bodies.
+fn is_in_plane(bodies: &[&Body], at: [f64; 2]) -> bool {
+    bodies.iter().any(|body| body.region.contains(at))
+}
+
+/// Whether a place lies in one of the bodies of a solid.
+fn is_in_space(bodies: &[&Body], at: [f64; 3]) -> bool {
+    bodies.iter().any(|body| body.region.contains_in_space(at))
 }
 
 /// Finds on which side of every pressure bodies lie: the same of all that are there at any time at which it acts.
@@ -60,15 +75,12 @@ pub(super) fn of_pressures(case: &mut Case, root: &Record, report: &mut Report<'
         };
         let times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
         let acting = times.filter(|t| case.acts_since(Acting::Load(number), *t).is_some());
-        let at = |t: f64| {
-            let there = case
-                .bodies
-                .iter()
-                .enumerate()
-                .filter(|(body, _)| case.is_there(*body, t));
-            side(&traction.line, &case.grid, there.map(|(_, body)| body))
-        };
-        let sides: Vec<(f64, Option<f64>)> = acting.map(|t| (t, at(t))).collect();
+        let sides = acting.map(|t| {
+            let bodies = case.bodies.iter().enumerate();
+            let there = bodies.filter(|(body, _)| case.is_there(*body, t));
+            (t, side(&traction.line, &case.grid, there.map(|(_, body)| body)))
+        });
+        let sides: Vec<(f64, Option<f64>)> = sides.collect();
         let first = sides.first().and_then(|(_, side)| *side);
         if let Some((t, _)) = sides.iter().find(|(_, side)| side.is_none() || *side != first) {
             let key = if record.gives("pressure_path") {

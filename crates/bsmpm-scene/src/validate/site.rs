@@ -1,6 +1,6 @@
 //! Validates positions of footings, plates and loads.
 
-use super::place::{along, beyond, face, is_at, over};
+use super::place::{along, beyond, face, flat, is_at, over};
 use crate::case::{Body, Plate, Site, Support};
 use crate::grid::GridSpec;
 use crate::record::Record;
@@ -22,7 +22,8 @@ pub(super) struct AroundStrip<'a> {
 
 /// A segment's ends inside the grid.
 pub(super) fn segment(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
-    let (from, to) = (record.pair("from")?, record.pair("to")?);
+    let from = record.pair("from")?;
+    let to = record.pair("to")?;
     if from == to {
         record.error(
             "to",
@@ -44,9 +45,8 @@ pub(super) fn segment(record: &Record, around: AroundStrip<'_>, report: &mut Rep
 
 /// A strip starts at a body, if only with a part of it.
 fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_>, report: &mut Report<'_>) {
-    let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else {
-        return;
-    };
+    let Some(grid) = around.grid else { return };
+    let Some(bodies) = around.bodies else { return };
     if !places(site, grid).into_iter().any(|at| is_at(bodies, grid, at)) {
         let [from, to] = corners(site, grid).map(|at| at[..grid.dims()].to_vec());
         let message = format!(
@@ -60,12 +60,14 @@ fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_
 /// m  two opposite corners of what is held
 pub(super) fn corners(site: Site, grid: &GridSpec) -> [[f64; 3]; 2] {
     match site {
-        Site::Segment { from, to } => [from, to].map(|[x, y]| [x, y, 0.0]),
+        Site::Segment { from, to } => [from, to].map(flat),
         Site::Plate(plate) => [plate.lower, plate.upper],
         Site::Face(face) => {
-            let (mut lower, mut upper) = (grid.lower(), grid.upper());
+            let mut lower = grid.lower();
+            let mut upper = grid.upper();
             let at = if face.upper { upper[face.axis] } else { lower[face.axis] };
-            (lower[face.axis], upper[face.axis]) = (at, at);
+            lower[face.axis] = at;
+            upper[face.axis] = at;
             [lower, upper]
         }
     }
@@ -75,7 +77,7 @@ pub(super) fn corners(site: Site, grid: &GridSpec) -> [[f64; 3]; 2] {
 pub(super) fn places(site: Site, grid: &GridSpec) -> Vec<[f64; 3]> {
     let ends = corners(site, grid);
     if grid.dims() == 2 {
-        return along(ends.map(|[x, y, _]| [x, y])).map(|[x, y]| [x, y, 0.0]).collect();
+        return along(ends.map(|[x, y, _]| [x, y])).map(flat).collect();
     }
     over(ends)
         .filter(|at| !matches!(site, Site::Plate(plate) if !plate.covers(*at)))
@@ -84,31 +86,30 @@ pub(super) fn places(site: Site, grid: &GridSpec) -> Vec<[f64; 3]> {
 
 /// Unit normal of what is held.
 pub(crate) fn normal_of(site: Site) -> [f64; 3] {
-    let along = |axis: usize| std::array::from_fn(|k| f64::from(u8::from(k == axis)));
-    match site {
-        Site::Segment { from, to } => {
-            let [x, y] = normal(from, to);
-            [x, y, 0.0]
-        }
-        Site::Plate(plate) => along(plate.normal()),
-        Site::Face(face) => along(face.axis),
-    }
+    let axis = match site {
+        Site::Segment { from, to } => return flat(normal(from, to)),
+        Site::Plate(plate) => plate.normal(),
+        Site::Face(face) => face.axis,
+    };
+    std::array::from_fn(|k| f64::from(u8::from(k == axis)))
 }
 
 /// A plate inside the grid; of a disc a part of it.
 pub(super) fn plate(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -> Option<Plate> {
     if let Some(disc) = record.record("disc") {
-        let (center, radius) = (disc.vector("centre")?, disc.number("radius")?);
+        let center = disc.vector("centre")?;
+        let radius = disc.number("radius")?;
         let normal = disc.word::<Axis>("normal")? as usize;
-        let corner = |side: f64| std::array::from_fn(|k| center[k] + if k == normal { 0.0 } else { side * radius });
+        let [lower, upper] =
+            [-1.0, 1.0].map(|side| std::array::from_fn(|k| center[k] + if k == normal { 0.0 } else { side * radius }));
         let plate = Plate {
-            lower: corner(-1.0),
-            upper: corner(1.0),
+            lower,
+            upper,
             round: true,
         };
-        let (lower, upper) = (grid.lower(), grid.upper());
-        let inside = |axis: usize| lower[axis] <= plate.upper[axis] && plate.lower[axis] <= upper[axis];
-        if !(0..3).all(inside) || plate.area([lower, upper]) == 0.0 {
+        let bounds = [grid.lower(), grid.upper()];
+        let is_inside = (0..3).all(|axis| bounds[0][axis] <= upper[axis] && lower[axis] <= bounds[1][axis]);
+        if !is_inside || plate.area(bounds) == 0.0 {
             record.error(
                 "disc",
                 "E0201: no part of the disc is inside the grid. Move the disc into the grid, or enlarge the grid.",
@@ -119,7 +120,8 @@ pub(super) fn plate(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -
         return Some(plate);
     }
     let table = record.record("rectangle")?;
-    let (lower, upper) = (table.vector("lower")?, table.vector("upper")?);
+    let lower = table.vector("lower")?;
+    let upper = table.vector("upper")?;
     let flat = (0..3).filter(|&axis| lower[axis] == upper[axis]).count();
     if flat != 1 || (0..3).any(|axis| lower[axis] > upper[axis]) {
         let message = format!(
@@ -152,7 +154,8 @@ pub(super) fn site(record: &Record, around: AroundStrip<'_>, report: &mut Report
         starts_at_body(record, "from", Site::Segment { from, to }, around, report);
         return Some(Site::Segment { from, to });
     }
-    let (side, face) = (record.word::<Side>("face")?, face(record, around.grid?, report)?);
+    let side = record.word::<Side>("face")?;
+    let face = face(record, around.grid?, report)?;
     let support = around.boundary?[face.axis][usize::from(face.upper)];
     if support != Support::Free {
         let message = format!(

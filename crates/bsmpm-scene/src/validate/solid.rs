@@ -121,30 +121,31 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
 
 /// Errors about what the faces of a solid do, of which a table says some.
 fn faces(all: &[FaceSupport], boundary: &Record, report: &mut Report<'_>) {
-    let side = |of: &FaceSupport| of.face.side(Geometry::Solid);
-    for of in all.iter().filter(|of| boundary.gives(side(of).word())) {
+    for of in all.iter().filter(|of| boundary.gives(side(of))) {
         if !matches!(
             of.support,
             Support::Fixed | Support::Roller | Support::Free | Support::Contact | Support::Outflow
         ) {
             let message = "E0226: this support is not available in 3-D. Use one of: \"fixed\", \"roller\", \"free\", \
                  \"outflow\", \"contact\", { friction_coefficient = ... }.";
-            boundary.error(side(of).word(), message, report);
+            boundary.error(side(of), message, report);
         }
     }
-    let with_friction = || {
-        all.iter()
-            .filter(|of| of.contact.is_some_and(|contact| contact.friction > 0.0))
-    };
-    let meets = |of: &&FaceSupport| with_friction().any(|other| other.face.axis != of.face.axis);
-    if let Some(of) = with_friction()
-        .filter(|of| boundary.gives(side(of).word()))
-        .rfind(meets)
-    {
+    let with_friction: Vec<&FaceSupport> = all
+        .iter()
+        .filter(|of| of.contact.is_some_and(|contact| contact.friction > 0.0))
+        .collect();
+    let mut given = with_friction.iter().filter(|of| boundary.gives(side(of)));
+    if let Some(of) = given.rfind(|of| with_friction.iter().any(|other| other.face.axis != of.face.axis)) {
         let message = "E0226: friction on two faces that share an edge is not available in 3-D. Set one of the two \
                        faces to \"contact\" or \"roller\".";
-        boundary.error(side(of).word(), message, report);
+        boundary.error(side(of), message, report);
     }
+}
+
+/// The key of a face of a solid.
+fn side(of: &FaceSupport) -> &'static str {
+    of.face.side(Geometry::Solid).word()
 }
 
 /// Errors and warnings about a whole case in three dimensions.
@@ -175,15 +176,15 @@ impl Case {
     pub fn warnings_on(&self, ranks: usize) -> Vec<String> {
         let estimate = self.estimate(ranks);
         let is_factored = self.geometry == Geometry::Solid && self.solver.linear_on(ranks).factor.is_some();
-        let warning = || {
-            format!(
+        let mut warnings = self.warnings.clone();
+        if is_factored && estimate.active > MANY {
+            warnings.push(format!(
                 "W0235: solver.linear: the direct solution of {} unknowns needs about {:.1} GB of memory. If poisson \
                  <= 0.4, use \"incomplete-cholesky\"; otherwise use \"spline-multigrid\" on one MPI rank.",
                 estimate.active,
                 estimate.bytes as f64 / 1e9
-            )
-        };
-        let large = (is_factored && estimate.active > MANY).then(warning);
-        self.warnings.iter().cloned().chain(large).collect()
+            ));
+        }
+        warnings
     }
 }

@@ -15,7 +15,8 @@ use bsmpm::quadrature::Quadrature;
 pub(super) fn read(
     root: &Record,
     regime: Option<Regime>,
-    (grid, materials): (Option<&GridSpec>, Option<&[NamedMaterial]>),
+    grid: Option<&GridSpec>,
+    materials: Option<&[NamedMaterial]>,
     report: &mut Report<'_>,
 ) -> Option<Solver> {
     let solver = root.record("solver")?;
@@ -189,13 +190,6 @@ impl Size {
 
 /// What a word for the linear solver stands for.
 fn in_a_word(solver: LinearSolver) -> Linear {
-    let iterative = |ksp, pc, applications| Linear {
-        ksp,
-        pc,
-        factor: None,
-        applications,
-        by_size: false,
-    };
     match solver {
         LinearSolver::Direct => Linear {
             factor: Some(Factor::Dissection),
@@ -205,6 +199,17 @@ fn in_a_word(solver: LinearSolver) -> Linear {
         LinearSolver::IncompleteCholesky => iterative(Ksp::Preonly, Pc::Bjacobi, 1),
         LinearSolver::MultigridCycles => iterative(Ksp::Preonly, Pc::Gamg, 2),
         LinearSolver::SplineMultigrid => iterative(Ksp::Preonly, Pc::SplineMultigrid, 2),
+    }
+}
+
+/// A solver without a factor, whose preconditioner is applied so many times on its own (0: within `ksp`).
+fn iterative(ksp: Ksp, pc: Pc, applications: usize) -> Linear {
+    Linear {
+        ksp,
+        pc,
+        factor: None,
+        applications,
+        by_size: false,
     }
 }
 
@@ -222,33 +227,17 @@ const FEW_INCOMPRESSIBLE: u64 = 100_000;
 pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     let Some(solver) = root.record("solver") else { return };
     let condenses = case.rigid.iter().any(|rigid| rigid.free.contains(&true));
-    let is_own = case.solver.linear.pc == Pc::SplineMultigrid;
-    if (is_own || case.solver.linear.applications > 0) && (case.flow.is_some() || condenses) {
-        let what = if condenses {
-            "freely moving rigid bodies"
-        } else {
-            "flow of water"
-        };
-        let message = format!(
-            "E0604: the chosen linear solver is iterative and is not verified for a case with {what}. Use linear = \
-             \"direct\"."
-        );
+    if let Some(message) = against_iterations(case, condenses) {
         solver.error("linear", message, report);
         return;
     }
-    let (dims, active) = (case.grid.dims(), case.estimate(1).active);
-    if dims < 3 && is_own {
-        let message =
-            "E0604: the linear solver \"spline-multigrid\" is available in 3-D only. Use linear = \"direct\".";
-        solver.error("linear", message, report);
+    if case.grid.dims() < 3 || solver.gives("linear") {
         return;
     }
+    let active = case.estimate(1).active;
+    let so_many = format!("up to {active} unknowns in 3-D");
     // Near failure the preconditioner alone may give up before the ground does, and whether it does is the answer.
     let fails = case.strength_reduction.is_some();
-    if dims < 3 || solver.gives("linear") {
-        return;
-    }
-    let so_many = format!("up to {active} unknowns in 3-D");
     let by_factor = match () {
         () if active <= FEW_IN_SPACE => Some(format!(": up to {FEW_IN_SPACE} a direct solver is fastest")),
         () if fails => Some(": near failure an iterative solver may fail before the ground does".into()),
@@ -261,45 +250,60 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         }
         return;
     }
-    if case.is_nearly_incompressible() {
-        let what = "with nearly incompressible material";
-        if case.solver.linear.factor.is_some() && active <= FEW_INCOMPRESSIBLE {
-            chosen(
-                LinearSolver::Direct,
-                format!("{so_many} {what}: a direct solver is faster than multigrid"),
-                report,
-            );
-        } else if case.solver.linear.factor.is_some() {
-            case.solver.linear = Linear {
-                by_size: true,
-                ..in_a_word(LinearSolver::SplineMultigrid)
-            };
-            let reason = format!(
-                "{so_many} {what}: above {FEW_INCOMPRESSIBLE} faster than a direct solver; several ranks use the direct \
-                 one"
-            );
-            chosen(LinearSolver::SplineMultigrid, reason, report);
-        }
-        return;
-    }
-    let many = active > MANY_IN_SPACE;
-    let word = if many {
-        LinearSolver::MultigridCycles
-    } else {
-        LinearSolver::IncompleteCholesky
-    };
-    case.solver.linear = Linear {
-        by_size: true,
-        ..in_a_word(word)
-    };
-    let reason = match many {
-        true => format!(
-            "{so_many}: above {MANY_IN_SPACE} faster than other solvers; on several ranks only with \
-             solver.reproducible = false, as it is not bitwise reproducible there"
+    let (word, reason) = match case.is_nearly_incompressible() {
+        true if case.solver.linear.factor.is_none() => return,
+        true => of_incompressible(active, &so_many),
+        false if active > MANY_IN_SPACE => (
+            LinearSolver::MultigridCycles,
+            format!(
+                "{so_many}: above {MANY_IN_SPACE} faster than other solvers; on several ranks only with \
+                 solver.reproducible = false, as it is not bitwise reproducible there"
+            ),
         ),
-        false => format!("{so_many}: above {FEW_IN_SPACE} faster than a direct solver, with less memory"),
+        false => (
+            LinearSolver::IncompleteCholesky,
+            format!("{so_many}: above {FEW_IN_SPACE} faster than a direct solver, with less memory"),
+        ),
     };
+    if word != LinearSolver::Direct {
+        case.solver.linear = Linear {
+            by_size: true,
+            ..in_a_word(word)
+        };
+    }
     chosen(word, reason, report);
+}
+
+/// Says why the iterative solver of a case is not available for it, if it is not.
+fn against_iterations(case: &Case, condenses: bool) -> Option<String> {
+    let is_own = case.solver.linear.pc == Pc::SplineMultigrid;
+    if (is_own || case.solver.linear.applications > 0) && (case.flow.is_some() || condenses) {
+        let what = if condenses {
+            "freely moving rigid bodies"
+        } else {
+            "flow of water"
+        };
+        return Some(format!(
+            "E0604: the chosen linear solver is iterative and is not verified for a case with {what}. Use linear = \
+             \"direct\"."
+        ));
+    }
+    let message = "E0604: the linear solver \"spline-multigrid\" is available in 3-D only. Use linear = \"direct\".";
+    (case.grid.dims() < 3 && is_own).then(|| message.to_owned())
+}
+
+/// The solver of a 3-D case with so many unknowns and nearly incompressible material, and why it is chosen.
+fn of_incompressible(active: u64, so_many: &str) -> (LinearSolver, String) {
+    let what = "with nearly incompressible material";
+    if active <= FEW_INCOMPRESSIBLE {
+        let reason = format!("{so_many} {what}: a direct solver is faster than multigrid");
+        return (LinearSolver::Direct, reason);
+    }
+    let reason = format!(
+        "{so_many} {what}: above {FEW_INCOMPRESSIBLE} faster than a direct solver; several ranks use the direct \
+         one"
+    );
+    (LinearSolver::SplineMultigrid, reason)
 }
 
 /// Notes what is taken, in place of what was before the case was known.
@@ -362,24 +366,20 @@ fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<L
         applications: 0,
         by_size: false,
     };
-    explain(linear, (&asked, &found), size, report);
+    explain(linear, &asked, &found, size, report);
     Some(found)
 }
 
 /// Notes what the case has left open, and why it is what it is.
-fn explain(linear: &Record, (asked, found): (&PetscNames, &Linear), size: Size, report: &mut Report<'_>) {
+fn explain(linear: &Record, asked: &PetscNames, found: &Linear, size: Size, report: &mut Report<'_>) {
     if asked.pc.is_none() {
-        let many = || {
-            format!(
+        let reason = match (found.pc, size.against_multigrid()) {
+            (Pc::Gamg, _) => format!(
                 "up to {} unknowns: above {MANY} multigrid is faster than a direct solver",
                 size.unknowns
-            )
-        };
-        let wanted = || "`ksp` or `factor` asks for a direct solver".to_owned();
-        let reason = match (found.pc, size.against_multigrid()) {
-            (Pc::Gamg, _) => many(),
+            ),
             (_, Some(reason)) => reason,
-            (_, None) => wanted(),
+            (_, None) => "`ksp` or `factor` asks for a direct solver".to_owned(),
         };
         report.note(linear.path_of("pc"), found.pc.word(), reason);
     }

@@ -25,12 +25,14 @@ const MAY_ACT: &[&str] = &[
 
 /// All stages in the order of the file, which must be that of time; `time` is the end of the run and the nominal step.
 pub(super) fn read_all(
-    (root, factor): (&Record, Option<f64>),
+    root: &Record,
+    factor: Option<f64>,
     bodies: Option<&[Body]>,
     time: Option<(f64, f64)>,
     report: &mut Report<'_>,
 ) -> Option<Vec<Stage>> {
-    let (bodies, (end, dt)) = (bodies?, time?);
+    let bodies = bodies?;
+    let (end, dt) = time?;
     let acting = acting(root, report);
     for (number, record) in root.records("body").iter().enumerate() {
         let name = &bodies[number].name;
@@ -45,9 +47,9 @@ pub(super) fn read_all(
     let mut before = 0.0;
     let mut read = Vec::new();
     for record in root.records("stage") {
-        let stage = stage((record, factor), (root, bodies, &acting), report);
+        let stage = stage(record, factor, root, bodies, &acting, report);
         if let Some(stage) = &stage {
-            timed(stage.at, (before, end, dt), record, report);
+            timed(stage.at, before, end, dt, record, report);
             before = stage.at;
         }
         read.push(stage);
@@ -58,11 +60,14 @@ pub(super) fn read_all(
     Some(stages)
 }
 
-/// Something with a name that stages apply and release.
-type Named<'a> = (&'a str, Acting);
+/// Something with a name that stages apply and release, or place and remove.
+struct NamedItem<'a, T> {
+    name: &'a str,
+    what: T,
+}
 
 /// Strips and loads with names, which are unique, rigid bodies, and what water crosses.
-fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
+fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<NamedItem<'a, Acting>> {
     let strips = root
         .records("footing")
         .iter()
@@ -92,7 +97,7 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
         found.push((name, acting, record));
     }
     let rigid = root.records("rigid").iter().enumerate();
-    let rigid = rigid.filter_map(|(number, record)| Some((record.text("name")?, Acting::Rigid(number))));
+    let rigid = rigid.map(|(number, record)| (record, Acting::Rigid(number)));
     let drains = root
         .records("drain")
         .iter()
@@ -103,48 +108,52 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<Named<'a>> {
         .iter()
         .zip(0..)
         .map(|(record, number)| (record, Acting::Inflow(number)));
-    let water = drains
-        .chain(inflows)
-        .filter_map(|(record, acting)| Some((record.text("name")?, acting)));
-    let named = found
-        .into_iter()
-        .map(|(name, acting, _)| (name, acting))
-        .chain(rigid)
-        .chain(water);
-    let mut all: Vec<Named<'_>> = named.collect();
+    let others = rigid.chain(drains).chain(inflows).filter_map(|(record, what)| {
+        let name = record.text("name")?;
+        Some(NamedItem { name, what })
+    });
+    let unique = found.into_iter().map(|(name, what, _)| NamedItem { name, what });
+    let mut all: Vec<NamedItem<'_, Acting>> = unique.chain(others).collect();
     // As histories call one without a name.
     let is_nameless = root
         .record("footing")
         .is_some_and(|footing| footing.text("name").is_none());
-    if is_nameless && all.iter().all(|(name, _)| *name != NAMELESS) {
-        all.push((NAMELESS, Acting::Strip(0)));
+    if is_nameless && all.iter().all(|named| named.name != NAMELESS) {
+        all.push(NamedItem {
+            name: NAMELESS,
+            what: Acting::Strip(0),
+        });
     }
     all
 }
 
 fn stage(
-    (record, factor): (&Record, Option<f64>),
-    (root, bodies, acting): (&Record, &[Body], &[Named<'_>]),
+    record: &Record,
+    factor: Option<f64>,
+    root: &Record,
+    bodies: &[Body],
+    acting: &[NamedItem<'_, Acting>],
     report: &mut Report<'_>,
 ) -> Option<Stage> {
-    let bodies: Vec<_> = bodies
-        .iter()
-        .zip(0..)
-        .filter_map(|(body, k)| Some((body.name.as_deref()?, k)))
-        .collect();
-    let (remove, add) = (
-        named("remove", record, &bodies, report),
-        named("add", record, &bodies, report),
-    );
-    let (apply, release) = (
-        named("activate", record, acting, report),
-        named("deactivate", record, acting, report),
-    );
-    let (materials, faces) = (exchanges(record, root, report), faces((record, factor), root, report));
-    let (at, resets_displacements) = (record.number("at")?, record.flag("reset_displacements")?);
-    let of_bodies = |named: Vec<(String, usize)>| named.into_iter().map(|(_, body)| body).collect::<Vec<_>>();
-    let (remove, add) = (of_bodies(remove?), of_bodies(add?));
-    let (apply, release, faces, materials) = (apply?, release?, faces?, materials?);
+    let bodies = bodies.iter().enumerate().filter_map(|(what, body)| {
+        let name = body.name.as_deref()?;
+        Some(NamedItem { name, what })
+    });
+    let bodies: Vec<NamedItem<'_, usize>> = bodies.collect();
+    let remove = named("remove", record, &bodies, report);
+    let add = named("add", record, &bodies, report);
+    let apply = named("activate", record, acting, report);
+    let release = named("deactivate", record, acting, report);
+    let materials = exchanges(record, root, report);
+    let faces = faces(record, factor, root, report);
+    let at = record.number("at")?;
+    let resets_displacements = record.flag("reset_displacements")?;
+    let remove: Vec<usize> = remove?.into_iter().map(|(_, body)| body).collect();
+    let add: Vec<usize> = add?.into_iter().map(|(_, body)| body).collect();
+    let apply = apply?;
+    let release = release?;
+    let faces = faces?;
+    let materials = materials?;
     let is_still = remove.is_empty() && add.is_empty() && apply.is_empty() && release.is_empty();
     let strength_reduction = record.number("strength_reduction");
     let is_still = is_still && strength_reduction.is_none() && !record.gives("strength_reduction");
@@ -174,7 +183,7 @@ fn stage(
 fn named<T: Copy>(
     key: &str,
     record: &Record,
-    known: &[(&str, T)],
+    known: &[NamedItem<'_, T>],
     report: &mut Report<'_>,
 ) -> Option<Vec<(String, T)>> {
     if !record.gives(key) {
@@ -186,9 +195,10 @@ fn named<T: Copy>(
     } else {
         "load, motion, footing, rigid body, drain or inflow"
     };
-    let mut find = |name: &String| {
-        let mut all = known.iter().filter(|(other, _)| other == name);
-        let found = all.next().map(|(_, what)| (name.clone(), *what));
+    let mut found = Vec::new();
+    for name in record.names(key)? {
+        let mut all = known.iter().filter(|known| known.name == name);
+        let first = all.next().map(|known| (name.clone(), known.what));
         if !bodies && all.next().is_some() {
             let message = format!(
                 "E0610: several loads, motions or rigid bodies have the name `{}`, so the stage cannot tell which one \
@@ -197,18 +207,17 @@ fn named<T: Copy>(
             );
             record.error(key, message, report);
         }
-        if found.is_none() {
-            let message = unknown_name(kind, name, known.iter().map(|(name, _)| *name));
+        if first.is_none() {
+            let message = unknown_name(kind, name, known.iter().map(|known| known.name));
             record.consequence(key, message, if bodies { &["body"] } else { MAY_ACT }, report);
         }
-        found
-    };
-    let found: Vec<Option<(String, T)>> = record.names(key)?.iter().map(&mut find).collect();
+        found.push(first);
+    }
     found.into_iter().collect()
 }
 
 /// The faces of the grid that a stage changes.
-fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut Report<'_>) -> Option<Vec<FaceSupport>> {
+fn faces(record: &Record, factor: Option<f64>, root: &Record, report: &mut Report<'_>) -> Option<Vec<FaceSupport>> {
     let Some(boundary) = record.record("boundary") else {
         return Some(Vec::new());
     };
@@ -216,10 +225,8 @@ fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut R
     let axes = Side::of(root.word("geometry")?).iter().enumerate();
     let sides = axes.flat_map(|(axis, sides)| [(sides[0], axis, false), (sides[1], axis, true)]);
     for (side, axis, upper) in sides.filter(|(side, ..)| boundary.gives(side.word())) {
-        let (support, contact) = (
-            super::support(boundary, side)?,
-            super::contact(boundary, side, factor, report)?,
-        );
+        let support = super::support(boundary, side)?;
+        let contact = super::contact(boundary, side, factor, report)?;
         if support == Support::FreeField {
             let message = "E0614: a stage cannot create a free-field boundary, which must exist from the start. Move \
                            this side from the stage to [boundary].";
@@ -232,12 +239,9 @@ fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut R
                  water. Move this side from the stage to [boundary], and add [initial].";
             boundary.error(side.word(), message, report);
         }
-        let moves = |motion: &Record| motion.word::<Side>("face") == Some(side);
-        if let Some(motion) = root
-            .records("prescribed")
-            .iter()
-            .find(|motion| support != Support::Free && moves(motion))
-        {
+        let mut motions = root.records("prescribed").iter();
+        let moving = motions.find(|motion| motion.word::<Side>("face") == Some(side));
+        if let Some(motion) = moving.filter(|_| support != Support::Free) {
             let message = format!(
                 "E0615: {} already prescribes the motion of this boundary, so the stage cannot restrain the same \
                  boundary. Remove this side from the stage.",
@@ -256,20 +260,12 @@ fn faces((record, factor): (&Record, Option<f64>), root: &Record, report: &mut R
 
 /// Numbers of the materials that a stage exchanges.
 fn exchanges(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<Vec<(usize, usize)>> {
-    let materials = root.named("material");
     let mut found: Vec<(usize, usize)> = Vec::new();
     for pair in record.records("materials") {
-        let mut number = |key: &str| {
-            let name = pair.text(key)?;
-            let found = materials.iter().position(|(other, _)| other == name);
-            if found.is_none() {
-                let names = materials.iter().map(|(name, _)| name.as_str());
-                pair.consequence(key, unknown_name("material", name, names), &["material"], report);
-            }
-            found
-        };
-        let (from, to) = (number("from"), number("to"));
-        let (from, to) = (from?, to?);
+        let from = number_of_material(pair, "from", root, report);
+        let to = number_of_material(pair, "to", root, report);
+        let from = from?;
+        let to = to?;
         if found.iter().any(|(other, _)| *other == from) {
             let message = "E0617: the stage already replaces this material by another one. Remove one of the two \
                 entries of `materials`.";
@@ -280,11 +276,24 @@ fn exchanges(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<
     Some(found)
 }
 
+/// Number of the material that a key names; `None` after an error.
+fn number_of_material(pair: &Record, key: &str, root: &Record, report: &mut Report<'_>) -> Option<usize> {
+    let name = pair.text(key)?;
+    let materials = root.named("material");
+    let found = materials.iter().position(|(other, _)| other == name);
+    if found.is_none() {
+        let names = materials.iter().map(|(name, _)| name.as_str());
+        pair.consequence(key, unknown_name("material", name, names), &["material"], report);
+    }
+    found
+}
+
 /// Only what is active is deactivated, and only what is inactive is activated.
-fn in_turn((name, what): &Named<'_>, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
+fn in_turn(named: &NamedItem<'_, Acting>, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
+    let name = named.name;
     let mut acts: Option<bool> = None;
     for (stage, record) in stages.iter().zip(root.records("stage")) {
-        let [releases, applies] = stage.switches(*what);
+        let [releases, applies] = stage.switches(named.what);
         if releases && applies {
             let message = format!(
                 "E0618: the stage both activates and deactivates `{name}`. Remove `{name}` from one of the \
@@ -307,7 +316,7 @@ fn in_turn((name, what): &Named<'_>, stages: &[Stage], root: &Record, report: &m
     }
 }
 
-fn timed(at: f64, (before, end, dt): (f64, f64, f64), record: &Record, report: &mut Report<'_>) {
+fn timed(at: f64, before: f64, end: f64, dt: f64, record: &Record, report: &mut Report<'_>) {
     if at >= end {
         let message = format!(
             "E0620: the stage begins at t = {at}, but the run ends at t = {end}. Use an earlier time, or increase \
@@ -326,14 +335,12 @@ fn timed(at: f64, (before, end, dt): (f64, f64, f64), record: &Record, report: &
 /// A body is placed once at most, and removed once at most, after that.
 fn once(body: usize, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
     let records = root.records("stage");
-    let all = |list: fn(&Stage) -> &Vec<usize>| {
-        let times = |(number, stage): (usize, &Stage)| {
-            let count = list(stage).iter().filter(|&&own| own == body).count();
-            std::iter::repeat_n(number, count)
-        };
-        stages.iter().enumerate().flat_map(times).collect::<Vec<usize>>()
-    };
-    let (added, removed) = (all(|stage| &stage.add), all(|stage| &stage.remove));
+    let mut added = Vec::new();
+    let mut removed = Vec::new();
+    for (number, stage) in stages.iter().enumerate() {
+        added.extend(stage.add.iter().filter(|&&own| own == body).map(|_| number));
+        removed.extend(stage.remove.iter().filter(|&&own| own == body).map(|_| number));
+    }
     if let Some(&again) = added.get(1) {
         let message = format!(
             "E0622: body.{body} is already added by stage.{}, and a body can be added only once. Remove one of the \
@@ -395,7 +402,7 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             }
         }
         for (&(from, to), pair) in stage.materials.iter().zip(record.records("materials")) {
-            exchanged(case, (from, to), pair, report);
+            exchanged(case, from, to, pair, report);
         }
         if stage.strength_reduction.is_some() {
             let later = case.stages.iter().map(|later| later.at).filter(|at| *at >= stage.at);
@@ -414,23 +421,31 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
             }
         }
     }
-    let of = |wanted: &dyn Fn(usize) -> bool| {
-        let numbers = (0..case.bodies.len()).filter(|&body| wanted(body));
-        numbers.map(|body| case.bodies[body].clone()).collect::<Vec<Body>>()
-    };
-    let lasting = of(&|body| case.lasts(body));
+    let lasting: Vec<Body> = (0..case.bodies.len())
+        .filter(|&body| case.lasts(body))
+        .map(|body| case.bodies[body].clone())
+        .collect();
     follow(case, &lasting);
+    check_surfaces(case, &lasting, root, report);
+}
+
+/// Refuses strips, loads and drains that lose the body at one of their places; strips need one of those that are
+/// `lasting`.
+fn check_surfaces(case: &Case, lasting: &[Body], root: &Record, report: &mut Report<'_>) {
+    let grid = &case.grid;
     for (what, record, key, places) in surfaces(case, root) {
-        let at = |bodies: &[Body], place: &[f64; 3]| place::is_at(bodies, &case.grid, *place);
-        let held = |place: &[f64; 3]| match what {
-            Acting::Strip(_) => at(&lasting, place),
-            _ => case.is_held(what, |body| at(std::slice::from_ref(body), place)),
+        let mut at_bodies = places.into_iter().filter(|at| place::is_at(&case.bodies, grid, *at));
+        let (lost, duration) = match what {
+            Acting::Strip(_) => (
+                at_bodies.find(|at| !place::is_at(lasting, grid, *at)),
+                "during the whole run",
+            ),
+            _ => (
+                at_bodies.find(|at| !case.is_held(what, |body| place::is_at(std::slice::from_ref(body), grid, *at))),
+                "while it is active",
+            ),
         };
-        let duration = match what {
-            Acting::Strip(_) => "during the whole run",
-            _ => "while it is active",
-        };
-        if let Some(at) = places.into_iter().find(|place| at(&case.bodies, place) && !held(place)) {
+        if let Some(at) = lost {
             let message = format!(
                 "E0626: this load, footing or drain needs the body at {:?} m {duration}, but a stage adds or removes \
                  that body. Use another position, or keep the body.",
@@ -442,7 +457,7 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
 }
 
 /// A law can go on from the stress that another one has left, with the mass that is there.
-fn exchanged(case: &Case, (from, to): (usize, usize), pair: &Record, report: &mut Report<'_>) {
+fn exchanged(case: &Case, from: usize, to: usize, pair: &Record, report: &mut Report<'_>) {
     let [from, to] = [from, to].map(|number| (number, &case.materials[number]));
     if !case.bodies.iter().any(|body| body.material == from.0) {
         let message = format!(
@@ -517,7 +532,7 @@ pub(super) fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(Acting, &'a Re
     for (number, (traction, record)) in case.tractions.iter().zip(root.records("traction")).enumerate() {
         let places = match &traction.line {
             &LoadedLine::Segment { from, to } => site::places(Site::Segment { from, to }, &case.grid),
-            &LoadedLine::Circle { center, radius } => place::ring(center, radius).map(|[x, y]| [x, y, 0.0]).collect(),
+            &LoadedLine::Circle { center, radius } => place::ring(center, radius).map(place::flat).collect(),
             LoadedLine::Plate(plate) => site::places(Site::Plate(*plate), &case.grid),
             LoadedLine::Triangles(all) => all.iter().map(sheet::middle).collect(),
         };

@@ -21,9 +21,10 @@ pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Repor
     let record = root.record("footing")?;
     let path = path(record, around.end, report);
     let site = site(record, around, report);
-    let (path, site) = (path?, site?);
+    let path = path?;
+    let site = site?;
     stays_inside(record, site, &path, around, report);
-    let (base, contact) = match contact_of((root, record), "interface", site, around, report) {
+    let (base, contact) = match contact_of(root, record, "interface", site, around, report) {
         Some(found) => found?,
         None => (record.word("interface")?, None),
     };
@@ -47,9 +48,8 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
     for record in root.records("prescribed") {
         let path = path(record, around.end, report);
         let site = site(record, around, report);
-        let (Some(path), Some(site)) = (path, site) else {
-            continue;
-        };
+        let Some(path) = path else { continue };
+        let Some(site) = site else { continue };
         match site {
             Site::Face(face) => {
                 inward(record, face, &path, report);
@@ -62,7 +62,7 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
             Site::Segment { .. } | Site::Plate(_) => stays_inside(record, site, &path, around, report),
         }
         let given = match site {
-            Site::Segment { .. } | Site::Plate(_) => contact_of((root, record), "components", site, around, report),
+            Site::Segment { .. } | Site::Plate(_) => contact_of(root, record, "components", site, around, report),
             Site::Face(_) => {
                 if record.record("components").is_some() {
                     let message = "E0418: contact is not available on a moving face of the grid. Replace `face` by a \
@@ -91,7 +91,8 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
 /// The frictional contact of a strip, and the components that it may prescribe so; `None` where the key is a word,
 /// `Some(None)` after an error.
 fn contact_of(
-    (root, record): (&Record, &Record),
+    root: &Record,
+    record: &Record,
     key: &str,
     site: Site,
     around: AroundStrip<'_>,
@@ -101,11 +102,10 @@ fn contact_of(
     let Some(law) = super::law(table, around.factor, report) else {
         return Some(None);
     };
-    let (Some(grid), Some(bodies)) = (around.grid, around.bodies) else {
-        return Some(None);
-    };
+    let Some(grid) = around.grid else { return Some(None) };
+    let Some(bodies) = around.bodies else { return Some(None) };
     let bodies: Vec<&Body> = bodies.iter().collect();
-    let Some(side) = side_of_bodies(grid, |off| with_body(site, off, (grid, &bodies))) else {
+    let Some(side) = side_of_bodies(grid, |off| with_body(site, off, grid, &bodies)) else {
         let message = "E0404: contact needs soil on exactly one side of this surface, but bodies lie on both sides \
                        or on neither. Move this surface to the free surface of a body.";
         record.error(key, message, report);
@@ -130,12 +130,13 @@ fn contact_of(
 }
 
 /// Places of a strip at which one of the bodies is so many metres along its normal.
-pub(super) fn with_body(site: Site, off: f64, (grid, bodies): (&GridSpec, &[&Body])) -> usize {
+pub(super) fn with_body(site: Site, off: f64, grid: &GridSpec, bodies: &[&Body]) -> usize {
     let normal = normal_of(site);
-    let beside = |at: [f64; 3]| std::array::from_fn(|axis| at[axis] + off * normal[axis]);
-    places(site, grid)
+    let beside = places(site, grid)
         .into_iter()
-        .filter(|at| bodies.iter().any(|body| is_in(body, grid, beside(*at))))
+        .map(|at| std::array::from_fn(|axis| at[axis] + off * normal[axis]));
+    beside
+        .filter(|at| bodies.iter().any(|body| is_in(body, grid, *at)))
         .count()
 }
 
@@ -162,7 +163,8 @@ fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Ve
     let written = record.rows("path")?;
     let mut rows: Vec<(f64, [f64; 3])> = Vec::with_capacity(written.len());
     for (k, row) in written.iter().enumerate() {
-        let (t, along) = (row.numbers[0], &row.numbers[1..]);
+        let t = row.numbers[0];
+        let along = &row.numbers[1..];
         let u: [f64; 3] = std::array::from_fn(|axis| along.get(axis).copied().unwrap_or(0.0));
         let key = record.path_of("path");
         match rows.last() {
@@ -206,10 +208,13 @@ fn stays_inside(record: &Record, site: Site, path: &MotionPath, around: AroundSt
         Site::Plate(plate) if plate.round => [plate.middle(); 2],
         site => corners(site, grid),
     };
-    let at = |end: [f64; 3], u: [f64; 3]| std::array::from_fn(|axis| end[axis] + u[axis]);
-    let beyond =
-        |(t, u): &(f64, [f64; 3])| Some((*t, corners.into_iter().find_map(|end| is_beyond(grid, at(end, *u)))?));
-    if let Some((t, outside)) = path.rows.iter().find_map(beyond) {
+    let beyond = path.rows.iter().find_map(|(t, u)| {
+        let mut ends = corners
+            .iter()
+            .map(|end| std::array::from_fn(|axis| end[axis] + u[axis]));
+        Some((t, ends.find_map(|end| is_beyond(grid, end))?))
+    });
+    if let Some((t, outside)) = beyond {
         let message = format!(
             "E0419: at t = {t} this motion leaves the grid: {outside}. Reduce the motion, or enlarge the grid."
         );
@@ -218,12 +223,12 @@ fn stays_inside(record: &Record, site: Site, path: &MotionPath, around: AroundSt
 }
 
 fn inward(record: &Record, face: Face, path: &MotionPath, report: &mut Report<'_>) {
-    let outward = |u: f64| if face.upper { u > 0.0 } else { u < 0.0 };
-    if let Some((t, u)) = path.rows.iter().find(|(_, u)| outward(u[face.axis])) {
+    let mut rows = path.rows.iter().map(|(t, u)| (t, u[face.axis]));
+    if let Some((t, u)) = rows.find(|(_, u)| if face.upper { *u > 0.0 } else { *u < 0.0 }) {
         let message = format!(
             "E0420: at t = {t} the face would be {} m outside the grid, but a face of the grid can move only inwards \
              or parallel to itself. Reverse the motion.",
-            u[face.axis].abs()
+            u.abs()
         );
         record.error(motion(record), message, report);
     }
@@ -232,8 +237,11 @@ fn inward(record: &Record, face: Face, path: &MotionPath, report: &mut Report<'_
 /// The largest motion normal to a base, m.
 fn normal_part(path: &MotionPath, site: Site) -> f64 {
     let normal = normal_of(site);
-    let along = |u: &[f64; 3]| u[0] * normal[0] + u[1] * normal[1] + u[2] * normal[2];
-    path.rows.iter().map(|(_, u)| along(u).abs()).fold(0.0, f64::max)
+    let along = path
+        .rows
+        .iter()
+        .map(|(_, u)| u[0] * normal[0] + u[1] * normal[1] + u[2] * normal[2]);
+    along.map(f64::abs).fold(0.0, f64::max)
 }
 
 /// Warns of forces of strips that meet a face which holds, at the edge, a part of them: a fixed one, or a roller that
@@ -252,7 +260,8 @@ pub(super) fn beside_fixed(case: &Case, report: &mut Report<'_>) {
         let Some((side, support)) = met(case, site) else {
             continue;
         };
-        let (name, history) = (name_of_strip(case, number), &history.name);
+        let name = name_of_strip(case, number);
+        let history = &history.name;
         report.warn(match support {
             Support::Roller => format!(
                 "W0407: `{name}` is inclined and ends at roller boundary `{side}`, which carries a part of its force. \
@@ -278,38 +287,49 @@ fn is_of_force(history: &History, number: usize, case: &Case) -> bool {
 
 /// The face that what is held there meets, on which it does not lie, and which holds a part of what it presses with.
 fn met(case: &Case, site: Site) -> Option<(&'static str, Support)> {
-    let (corners, lower, upper) = (corners(site, &case.grid), case.grid.lower(), case.grid.upper());
+    let corners = corners(site, &case.grid);
+    let lower = case.grid.lower();
+    let upper = case.grid.upper();
     let normal = normal_of(site);
-    Side::of(case.geometry).iter().enumerate().find_map(|(axis, sides)| {
-        let met = |upper_one: bool| {
-            let at = if upper_one { upper[axis] } else { lower[axis] };
+    for (axis, sides) in Side::of(case.geometry).iter().enumerate() {
+        for (end, side) in sides.iter().enumerate() {
+            let at = [lower, upper][end][axis];
             let on = corners.map(|corner| (corner[axis] - at).abs() <= ON * (upper[axis] - lower[axis]));
-            let support = case.boundary[axis][usize::from(upper_one)];
+            let support = case.boundary[axis][end];
             let holds = match support {
                 Support::Fixed => true,
                 Support::Roller => (ON..1.0 - ON).contains(&normal[axis].abs()),
                 _ => false,
             };
-            (holds && on[0] != on[1]).then(|| (sides[usize::from(upper_one)].word(), support))
-        };
-        met(false).or_else(|| met(true))
-    })
+            if holds && on[0] != on[1] {
+                return Some((side.word(), support));
+            }
+        }
+    }
+    None
 }
 
 /// Whether the strip of that number (the footing, then prescribed motions) has moved before the time `t`.
 pub(super) fn has_moved(case: &Case, number: usize, t: f64) -> bool {
     let footing = case.footing.iter().map(|footing| &footing.path);
     let mut paths = footing.chain(case.prescribed.iter().map(|prescribed| &prescribed.path));
-    paths
-        .nth(number)
-        .is_some_and(|path| begins_before(&path.rows, [0.0; 3], t))
+    paths.nth(number).is_some_and(|path| path_begins_before(path, t))
 }
 
-/// Whether something that rests at the value `rest` goes away from it before a time.
-pub(super) fn begins_before<T: PartialEq>(rows: &[(f64, T)], rest: T, t: f64) -> bool {
-    let begin = rows.iter().position(|(_, value)| *value != rest);
+/// Whether a path leads away from the start before a time.
+pub(super) fn path_begins_before(path: &MotionPath, t: f64) -> bool {
+    let times = path.rows.iter().map(|row| row.0);
+    let is_away = path.rows.iter().map(|row| row.1 != [0.0; 3]);
+    begins_before(times, is_away, t)
+}
+
+/// Whether something that rests at the start moves before the time `t`: given are the times of its rows, and whether it
+/// is away from its place there.
+pub(super) fn begins_before(times: impl Iterator<Item = f64>, mut is_away: impl Iterator<Item = bool>, t: f64) -> bool {
+    let begin = is_away.position(|is_away| is_away);
     // It moves from the row before the first one that is not at rest on.
-    begin.is_some_and(|row| row.checked_sub(1).map_or(0.0, |before| rows[before].0) < t)
+    let mut times = std::iter::once(0.0).chain(times);
+    begin.and_then(|row| times.nth(row)).is_some_and(|from| from < t)
 }
 
 /// Whether a path moves at all.

@@ -76,16 +76,14 @@ fn first_overlap<const D: usize>(pair: [&RigidBody<D>; 2], begin: f64, end: f64)
     let rows = pair.iter().flat_map(|body| body.path.iter().map(|(t, _)| *t));
     let mut times: Vec<f64> = rows.filter(|t| (begin..end).contains(t)).chain([begin, end]).collect();
     times.sort_by(f64::total_cmp);
-    let between = |ends: &[f64]| {
-        let (from, length) = (ends[0], ends[1] - ends[0]);
-        (1..=PLACES)
-            .map(move |k| from + length * k as f64 / PLACES as f64)
-            .collect::<Vec<f64>>()
-    };
-    times.windows(2).flat_map(between).find(|&t| {
+    let mut places = times.windows(2).flat_map(|ends| {
+        let from = ends[0];
+        let length = ends[1] - ends[0];
+        (1..=PLACES).map(move |k| from + length * k as f64 / PLACES as f64)
+    });
+    places.find(|&t| {
         let [one, other] = pair.map(|body| (body, body.on_path(t)));
-        let overlap =
-            one.0.reaches_into(&one.1, (other.0, &other.1)) || other.0.reaches_into(&other.1, (one.0, &one.1));
+        let overlap = one.0.reaches_into(&one.1, other.0, &other.1) || other.0.reaches_into(&other.1, one.0, &one.1);
         one.1 != other.1 && overlap
     })
 }
@@ -127,17 +125,16 @@ fn meeting(case: &Case, body: &RigidBody<2>, other: &RigidBody<2>) -> Option<f64
     let Outline::Polygon(corners) = &body.outline else {
         return None;
     };
-    let still = Vector::zeros();
-    let (pose, edge) = (body.pose(&still), case.grid.shortest());
-    let distance = |of: &RigidBody<2>, x: &Vector<2>| of.outline.nearest(&of.pose(&still).seen(x)).distance;
+    let pose = body.pose(&Vector::zeros());
+    let edge = case.grid.shortest();
     let places: Vec<Vector<2>> = corners.iter().map(|corner| pose.place(corner)).collect();
     for (number, &from) in places.iter().enumerate() {
         let to = places[(number + 1) % places.len()];
         for [end, far] in [[from, to], [to, from]] {
             let along = (end - far).normalize();
             let across = Vector::from([-along[1], along[0]]);
-            let ahead = |normal: &Vector<2>| distance(body, &((end + far) * 0.5 + normal * (BESIDE * edge))) > 0.0;
-            let normal = if ahead(&across) { across } else { -across };
+            let is_outward = distance(body, &((end + far) * 0.5 + across * (BESIDE * edge))) > 0.0;
+            let normal = if is_outward { across } else { -across };
             let [behind, before] = [-BESIDE, BESIDE].map(|off| end + along * (0.5 * edge) + normal * (off * edge));
             let continues = distance(other, &behind) < 0.0 && distance(other, &before) > 0.0;
             let is_flush = distance(other, &before) - distance(other, &behind) <= 2.2 * BESIDE * edge;
@@ -152,11 +149,16 @@ fn meeting(case: &Case, body: &RigidBody<2>, other: &RigidBody<2>) -> Option<f64
     None
 }
 
+/// Distance of a place from the surface of a body that has not moved, m; negative inside.
+fn distance(body: &RigidBody<2>, x: &Vector<2>) -> f64 {
+    body.outline.nearest(&body.pose(&Vector::zeros()).seen(x)).distance
+}
+
 /// m  width of a face between two ends: twice that up to a side of the grid, about which all is symmetric.
 fn width(case: &Case, end: &Vector<2>, far: &Vector<2>) -> f64 {
-    let length = |axis: usize| case.grid.axes[axis].length();
-    let inside = Vector::from_fn(|axis, _| far[axis].clamp(0.0, length(axis)));
-    let is_cut = (0..2).any(|axis| far[axis] != end[axis] && (far[axis] <= 0.0 || far[axis] >= length(axis)));
+    let lengths = [0, 1].map(|axis| case.grid.axes[axis].length());
+    let inside = Vector::from_fn(|axis, _| far[axis].clamp(0.0, lengths[axis]));
+    let is_cut = (0..2).any(|axis| far[axis] != end[axis] && (far[axis] <= 0.0 || far[axis] >= lengths[axis]));
     (end - inside).norm() * if is_cut { 2.0 } else { 1.0 }
 }
 
@@ -170,6 +172,6 @@ fn is_soil(case: &Case, x: &Vector<2>) -> bool {
 /// Whether two bodies move differently along a normal.
 fn parts(one: &RigidBody<2>, other: &RigidBody<2>, normal: &Vector<2>) -> bool {
     let times = one.path.iter().chain(&other.path).map(|(t, _)| *t);
-    let differ = |t: f64| (one.on_path(t) - other.on_path(t)).fixed_rows::<2>(0).dot(normal) != 0.0;
-    one.is_free() || other.is_free() || times.into_iter().any(differ)
+    let mut differences = times.map(|t| one.on_path(t) - other.on_path(t));
+    one.is_free() || other.is_free() || differences.any(|of| of.fixed_rows::<2>(0).dot(normal) != 0.0)
 }

@@ -1,6 +1,6 @@
 //! Warns of rigid bodies below the water table, because the program does not compute their buoyancy.
 
-use crate::case::{Case, Rigid, RigidShape, Water};
+use crate::case::{Case, RigidShape, Water};
 use crate::report::Report;
 use crate::words::Geometry;
 use bsmpm::boundary::rigid::Outline;
@@ -17,15 +17,14 @@ pub(super) fn warn(case: &Case, water: &Water, report: &mut Report<'_>) {
     }
     let heights = water.table.levels().into_iter().flatten().map(|row| row.1);
     let level = heights.fold(f64::NEG_INFINITY, f64::max);
-    let lacking = |rigid: &Rigid| {
-        let area = if case.geometry == Geometry::PlaneStrain {
-            wet_area(&rigid.shape, level)
-        } else {
-            0.0
+    let lacking = case.rigid.iter().filter_map(|rigid| {
+        let area = match case.geometry {
+            Geometry::PlaneStrain => wet_area(&rigid.shape, level),
+            Geometry::Axisymmetric | Geometry::Solid => 0.0,
         };
         (area > 0.0).then(|| format!("`{}` {:.4} kN/m", rigid.name, water.unit_weight * area * 1e-3))
-    };
-    let lacking: Vec<String> = case.rigid.iter().filter_map(lacking).collect();
+    });
+    let lacking: Vec<String> = lacking.collect();
     let missing = match lacking.is_empty() {
         true => String::new(),
         false => format!(" (at the start: {})", lacking.join(", ")),
@@ -41,9 +40,10 @@ fn wet_area(shape: &RigidShape, level: f64) -> f64 {
     let corners: Vec<[f64; 2]> = match shape {
         RigidShape::Polygon(corners) => corners.clone(),
         RigidShape::Circle { center, radius } => {
-            let angle = |k: usize| TAU * k as f64 / CORNERS as f64;
-            let at = |k: usize| [center[0] + radius * angle(k).cos(), center[1] + radius * angle(k).sin()];
-            (0..CORNERS).map(at).collect()
+            let angles = (0..CORNERS).map(|k| TAU * k as f64 / CORNERS as f64);
+            angles
+                .map(|angle| [center[0] + radius * angle.cos(), center[1] + radius * angle.sin()])
+                .collect()
         }
         RigidShape::InSpace(_) => return 0.0,
     };

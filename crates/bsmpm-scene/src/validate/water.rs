@@ -3,7 +3,7 @@
 use super::STANDARD_GRAVITY;
 use super::load::increasing;
 use super::uplift;
-use crate::case::{Body, Case, Gravity, Support, Water};
+use crate::case::{Case, Gravity, Support, Water};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
@@ -18,19 +18,14 @@ const GENTLE: f64 = 0.25;
 /// Water, if any; none after an error.
 pub(super) fn read(
     root: &Record,
-    (grid, gravity): (Option<&GridSpec>, Option<&Gravity>),
+    grid: Option<&GridSpec>,
+    gravity: Option<&Gravity>,
     regime: Option<Regime>,
     end: Option<f64>,
     report: &mut Report<'_>,
 ) -> Option<Water> {
     let Some(record) = root.record("water") else {
-        for (_, material) in root.named("material") {
-            if material.gives("saturated_unit_weight") {
-                let message = "E0520: `saturated_unit_weight` has no effect, because the case has no water table. \
-                               Give `water.level`, or remove `saturated_unit_weight`.";
-                material.error("saturated_unit_weight", message, report);
-            }
-        }
+        refuse_saturated_weights(root, report);
         return None;
     };
     if ["level", "level_path", "line", "line_path"]
@@ -44,14 +39,15 @@ pub(super) fn read(
         }
         return None;
     }
-    let table = table(record, (grid?, end), report)?;
+    let table = table(record, grid?, end, report)?;
     let given = record.number("unit_weight")?;
     if !root.gives("gravity") {
         let message = "E0522: hydrostatic pressure requires gravity, and the case has none. Add [gravity], or \
                        remove the water table.";
         report.error(record.origin, &record.path, message);
     }
-    let (acceleration, axes) = (gravity?.acceleration, grid?.dims());
+    let acceleration = gravity?.acceleration;
+    let axes = grid?.dims();
     if !gravity?.acts_down(axes, regime) {
         let message = format!(
             "E0523: gravity of {:?} m/s2 does not point vertically downwards, but hydrostatic pore pressure requires \
@@ -76,29 +72,42 @@ pub(super) fn read(
     Some(Water { unit_weight, table })
 }
 
+/// Refuses unit weights of soil below the water table in a case without one.
+fn refuse_saturated_weights(root: &Record, report: &mut Report<'_>) {
+    for (_, material) in root.named("material") {
+        if material.gives("saturated_unit_weight") {
+            let message = "E0520: `saturated_unit_weight` has no effect, because the case has no water table. \
+                           Give `water.level`, or remove `saturated_unit_weight`.";
+            material.error("saturated_unit_weight", message, report);
+        }
+    }
+}
+
 /// The water table, somewhere above the grid's base.
-fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Report<'_>) -> Option<Ambient> {
+fn table(record: &Record, grid: &GridSpec, end: Option<f64>, report: &mut Report<'_>) -> Option<Ambient> {
     let key = ["level", "level_path", "line", "line_path"]
         .into_iter()
         .find(|key| record.gives(key))?;
-    let rows = |report: &mut Report<'_>| Some(increasing(record, key, report)?.map(|row| (row[0], row[1])));
     let table = match key {
         "level" => Ambient::Level(vec![(0.0, record.number("level")?)]),
-        "level_path" => Ambient::Level(rows(report)?.collect()),
-        "line" => Ambient::Line(
-            rows(report)?
-                .map(|(x, y)| LevelAt {
-                    x,
-                    rows: vec![(0.0, y)],
-                })
-                .collect(),
-        ),
+        "level_path" => {
+            let rows = increasing(record, key, report)?;
+            Ambient::Level(rows.map(|row| (row[0], row[1])).collect())
+        }
+        "line" => {
+            let places = increasing(record, key, report)?.map(|row| LevelAt {
+                x: row[0],
+                rows: vec![(0.0, row[1])],
+            });
+            Ambient::Line(places.collect())
+        }
         _ => Ambient::Line(lines(record, key, report)?),
     };
     // Ground may have suction above a table that is below it.
-    let (base, axis) = (grid.lower()[grid.dims() - 1], ["x", "y", "z"][grid.dims() - 1]);
-    let heights = || table.levels().into_iter().flatten();
-    if !record.gives("suction") && heights().all(|row| row.1 <= base) {
+    let base = grid.lower()[grid.dims() - 1];
+    let axis = ["x", "y", "z"][grid.dims() - 1];
+    let heights: Vec<(f64, f64)> = table.levels().concat();
+    if !record.gives("suction") && heights.iter().all(|row| row.1 <= base) {
         let message = format!(
             "E0524: the water table never rises above the bottom of the grid ({axis} = {base} m), so it has no \
              effect. Raise the water table, remove [water], or give `suction` for unsaturated soil."
@@ -106,14 +115,14 @@ fn table(record: &Record, (grid, end): (&GridSpec, Option<f64>), report: &mut Re
         record.error(key, message, report);
         return None;
     }
-    if let Some((t, _)) = heights().find(|(t, _)| end.is_some_and(|end| *t > end)) {
+    if let Some((t, _)) = heights.iter().find(|(t, _)| end.is_some_and(|end| *t > end)) {
         report.warn(format!(
             "W0521: {}: the row at t = {t} s is after the end of the analysis, so its water level is never reached. \
              Increase `analysis.end`, or remove the row.",
             record.path_of(key)
         ));
     }
-    steep((&table, grid), (record, key), report);
+    steep(&table, grid, record, key, report);
     Some(table)
 }
 
@@ -129,13 +138,13 @@ fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<Leve
         let [t, x, y] = [0, 1, 2].map(|k| row.numbers[k]);
         let at = number % count;
         let wrong = if number < count {
-            let message = || {
+            let is_behind = at > 0 && places[at - 1].x >= x;
+            is_behind.then(|| {
                 format!(
                     "E0525: x = {x} m is not greater than x of the previous row. Sort the points of the phreatic \
                      line by x."
                 )
-            };
-            (at > 0 && places[at - 1].x >= x).then(message)
+            })
         } else if places[at].x != x || (at > 0 && rows[number - 1].numbers[0] != t) {
             Some(format!(
                 "E0525: the point at x = {x} m of the phreatic line at t = {t} s does not match the line at the \
@@ -170,26 +179,21 @@ fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<Leve
 
 /// A line so steep that the depth below it is not the pressure, where water flows along it, or that points do not see
 /// its step.
-fn steep((table, grid): (&Ambient, &GridSpec), (record, key): (&Record, &str), report: &mut Report<'_>) {
+fn steep(table: &Ambient, grid: &GridSpec, record: &Record, key: &str, report: &mut Report<'_>) {
     let Ambient::Line(places) = table else { return };
-    let slope = |pair: &[LevelAt]| {
-        let heights = pair[0].rows.iter().zip(&pair[1].rows);
-        heights.map(|(from, to)| (to.1 - from.1).abs()).fold(0.0, f64::max) / (pair[1].x - pair[0].x)
-    };
-    let (key, cell) = (record.path_of(key), grid.axes[0].shortest());
-    let is_step = |pair: &&[LevelAt]| slope(pair) > 1.0 && pair[1].x - pair[0].x < cell;
-    if let Some(step) = places.windows(2).find(is_step) {
+    let key = record.path_of(key);
+    let cell = grid.axes[0].shortest();
+    let (steps, slopes): (Vec<_>, Vec<_>) = places
+        .windows(2)
+        .partition(|pair| slope(pair) > 1.0 && pair[1].x - pair[0].x < cell);
+    if let Some(step) = steps.first() {
         let [from, to] = [step[0].x, step[1].x];
         report.warn(format!(
             "W0522: {key}: the water table drops between x = {from} and {to} m, in less than a cell ({cell} m), so \
              the water thrust is too small. Extend the drop over at least one cell."
         ));
     }
-    let steepest = places
-        .windows(2)
-        .filter(|pair| !is_step(pair))
-        .map(slope)
-        .fold(0.0, f64::max);
+    let steepest = slopes.into_iter().map(slope).fold(0.0, f64::max);
     if steepest > GENTLE {
         report.warn(format!(
             "W0523: {key}: the line has a slope of {steepest:.3} (limit {GENTLE}). If water flows along it, pore \
@@ -199,11 +203,16 @@ fn steep((table, grid): (&Ambient, &GridSpec), (record, key): (&Record, &str), r
     }
 }
 
+/// The largest slope of a line between two of its places.
+fn slope(pair: &[LevelAt]) -> f64 {
+    let heights = pair[0].rows.iter().zip(&pair[1].rows);
+    heights.map(|(from, to)| (to.1 - from.1).abs()).fold(0.0, f64::max) / (pair[1].x - pair[0].x)
+}
+
 /// What only the whole case shows.
 pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
-    let (Some(water), Some(written)) = (&case.water, record.record("water")) else {
-        return;
-    };
+    let Some(water) = &case.water else { return };
+    let Some(written) = record.record("water") else { return };
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
         let message = "E0526: [water] and [shaking] cannot be combined, because the pore pressures of [water] stay \
              hydrostatic during an earthquake. Remove [water], and use undrained strengths.";
@@ -247,8 +256,9 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         let reason = "water pressure on submerged surfaces is applied automatically; do not include it in the loads";
         report.note("water", "in addition to loads", reason);
     }
-    let wets = |body: &usize| case.materials[case.bodies[*body].material].saturated.is_some();
-    if water.table.moves() && case.stages.iter().any(|stage| stage.add.iter().any(wets)) {
+    let mut added = case.stages.iter().flat_map(|stage| &stage.add);
+    let is_wetted = added.any(|body| case.materials[case.bodies[*body].material].saturated.is_some());
+    if water.table.moves() && is_wetted {
         report.warn(
             "W0525: water: bodies that a stage adds get the saturated unit weight below the water level of t = 0, \
              although the level moves. Give such bodies a material with the unit weight at their stage.",
@@ -259,10 +269,6 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
 /// Ground that the water lifts.
 fn floating(case: &Case, water: &Water, record: &Record, report: &mut Report<'_>) {
     let Some(gravity) = &case.gravity else { return };
-    let weight = |number: usize| {
-        let named = &case.materials[number];
-        named.saturated.or(named.density).unwrap_or(0.0) * gravity.acceleration[case.grid.dims() - 1].abs()
-    };
     let up = case.grid.dims() - 1;
     let highest = water
         .table
@@ -271,10 +277,11 @@ fn floating(case: &Case, water: &Water, record: &Record, report: &mut Report<'_>
         .flatten()
         .map(|row| row.1)
         .fold(f64::NEG_INFINITY, f64::max);
-    let is_wet = |body: &Body| body.region.corners()[0][up] < highest;
     for (number, (_, written)) in record.named("material").iter().enumerate() {
-        if weight(number) < water.unit_weight && case.bodies.iter().any(|body| body.material == number && is_wet(body))
-        {
+        let named = &case.materials[number];
+        let weight = named.saturated.or(named.density).unwrap_or(0.0) * gravity.acceleration[up].abs();
+        let mut bodies = case.bodies.iter().filter(|body| body.material == number);
+        if weight < water.unit_weight && bodies.any(|body| body.region.corners()[0][up] < highest) {
             let message = format!(
                 "E0528: the unit weight of this soil below the water table is missing or below that of water ({:.2} \
                  kN/m3), so the soil would float. Set `saturated_unit_weight`, for example to \"20 kN/m3\".",

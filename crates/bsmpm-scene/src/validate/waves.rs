@@ -68,16 +68,19 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
 
 /// Cells in the wavelength of an input in the body where it has fewest.
 fn cells(case: &Case, input: &WaveInput) -> Option<f64> {
-    let of_body = |body: &Body| {
-        let occupied = body.occupied(&case.grid);
-        let axes = (0..case.grid.dims()).filter(|axis| input.axis.is_none_or(|along| along == *axis));
-        let edges = axes.flat_map(|axis| occupied[axis].clone().map(move |cell| (axis, cell)));
-        let longest = edges
-            .map(|(axis, cell)| case.grid.axes[axis].cell(cell))
-            .fold(0.0, f64::max);
-        Some(speed(case, body, input.axis.is_some())? / (input.frequency * longest))
-    };
-    case.bodies.iter().filter_map(of_body).reduce(f64::min)
+    let cells = case.bodies.iter().filter_map(|body| cells_in_body(case, input, body));
+    cells.reduce(f64::min)
+}
+
+/// Cells in the wavelength of an input in a body.
+fn cells_in_body(case: &Case, input: &WaveInput, body: &Body) -> Option<f64> {
+    let occupied = body.occupied(&case.grid);
+    let axes = (0..case.grid.dims()).filter(|axis| input.axis.is_none_or(|along| along == *axis));
+    let edges = axes.flat_map(|axis| occupied[axis].clone().map(move |cell| (axis, cell)));
+    let longest = edges
+        .map(|(axis, cell)| case.grid.axes[axis].cell(cell))
+        .fold(0.0, f64::max);
+    Some(speed(case, body, input.axis.is_some())? / (input.frequency * longest))
 }
 
 /// m/s  speed of elastic waves of shear or compression in a body, at the middle of its height; with the water in its

@@ -429,7 +429,9 @@ fn rain_that_lifts_and_walls_that_leak_are_warned_of() {
             .warnings
     };
     let has = |warnings: &[String], words: &str| warnings.iter().any(|warning| warning.contains(words));
-    let (lifts, gap, wall) = ("W0531: inflow.0: 2.7", "W0535: the gap", "W0535: the wall of `tight`");
+    let lifts = "W0531: inflow.0: 2.7";
+    let gap = "W0535: the gap";
+    let wall = "W0535: the wall of `tight`";
     let whole = case(&[]);
     assert!(![lifts, gap, wall].into_iter().any(|of| has(&whole, of)), "{whole:?}");
     assert!(has(&case(&[("runoff = true\n", "")]), lifts));

@@ -468,7 +468,7 @@ fn i01_to_i26_every_row_of_the_matrix() {
     for input in MATRIX {
         let refused = input.refused.iter().map(|row| verify(DYNAMIC, row));
         let refused = refused.chain(input.refused_static.iter().map(|row| verify(STATIC, row)));
-        let taken = input.taken.iter().map(|taken| take(*taken));
+        let taken = input.taken.iter().map(|(part, by, says)| take(part, by, says));
         failed.extend(
             refused
                 .chain(taken)
@@ -479,7 +479,7 @@ fn i01_to_i26_every_row_of_the_matrix() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
-fn take((part, by, says): (&str, &str, &str)) -> Result<(), String> {
+fn take(part: &str, by: &str, says: &str) -> Result<(), String> {
     if DYNAMIC.matches(part).count() == 0 {
         return Err(format!("`{part}` is not in the base"));
     }

@@ -660,7 +660,8 @@ fn thin_walls_are_warned_of() {
             .warnings;
         warnings.iter().any(|warning| warning.starts_with(of))
     };
-    let (factor, alone) = ("W0214: body.3.", "W0211: body.3");
+    let factor = "W0214: body.3.";
+    let alone = "W0211: body.3";
     assert!(warned([0.8, 0.803], factor) && !warned([0.8, 0.95], factor));
     assert!(warned([0.8, 0.85], alone) && !warned([0.8, 0.99], alone));
 }

@@ -86,8 +86,10 @@ fn refuses(text: &str, path: &str, says: &str, line: Option<usize>) {
 
 /// The text without an entry, and without the comma that it leaves in an inline table.
 fn without(text: &str, written: &Written) -> String {
-    let (start, end) = (written.name.as_ref().unwrap().start, written.value.end);
-    let (before, after) = (&text[..start], &text[end..]);
+    let start = written.name.as_ref().unwrap().start;
+    let end = written.value.end;
+    let before = &text[..start];
+    let after = &text[end..];
     match (after.strip_prefix(','), before.trim_end().strip_suffix(',')) {
         (Some(after), _) => format!("{before}{after}"),
         (None, Some(before)) => format!("{before}{after}"),
@@ -145,7 +147,8 @@ fn every_key_renamed_is_unknown_and_every_key_removed_is_missed_if_it_must_be_th
 
 #[test]
 fn i02_i07_every_value_that_the_schema_refuses_is_refused_at_its_place() {
-    let (bases, mut seen) = (bases(), HashSet::new());
+    let bases = bases();
+    let mut seen = HashSet::new();
     let mut entries = Vec::new();
     for base in &bases {
         for written in written::all(base).into_iter().filter(|written| written.is_entry) {
@@ -157,7 +160,9 @@ fn i02_i07_every_value_that_the_schema_refuses_is_refused_at_its_place() {
         }
     }
     // On all cores: it is the longest of these tests.
-    let (next, accepted, refused) = (AtomicUsize::new(0), AtomicUsize::new(0), AtomicUsize::new(0));
+    let next = AtomicUsize::new(0);
+    let accepted = AtomicUsize::new(0);
+    let refused = AtomicUsize::new(0);
     let change = || {
         while let Some((base, written)) = entries.get(next.fetch_add(1, Relaxed)) {
             let span = &written.value;

@@ -34,7 +34,8 @@ fn slips(base: &str) -> Vec<Slip> {
     let mut slips = Vec::new();
     for written in written::all(base) {
         let Some(name) = &written.name else { continue };
-        let (path, value) = (&written.path, &written.value);
+        let path = &written.path;
+        let value = &written.value;
         let mut slip = |kind, text: String| {
             slips.push(Slip {
                 kind,
@@ -135,7 +136,8 @@ const MOST_WITH_SEVERAL: [(&str, usize); 6] = [
 #[test]
 fn one_slip_gives_one_error() {
     let mut counts: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
-    let (mut several, mut elsewhere) = (Vec::new(), Vec::new());
+    let mut several = Vec::new();
+    let mut elsewhere = Vec::new();
     for base in bases() {
         for slip in slips(&base).into_iter().chain(brackets(&base)) {
             let errors = errors(&slip.text);

@@ -45,7 +45,8 @@ fn table(schema: &'static Table, written: &DeTable<'_>, path: &str, text: &str, 
         let key = schema
             .key(name.get_ref())
             .unwrap_or_else(|| panic!("{path} is not in the schema"));
-        let (name, span) = (name.span(), value.span());
+        let name = name.span();
+        let span = value.span();
         let is_entry = span.start > name.end && text[name.end..span.start].trim() == "=";
         found.push(Written {
             path: path.clone(),

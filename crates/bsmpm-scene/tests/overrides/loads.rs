@@ -337,7 +337,8 @@ fn loads_by_rows_of_forces_are_these_forces() {
 /// foot to the midpoint rule's error, growth times piece^2 times height/12.
 #[test]
 fn stress_that_grows_with_depth_has_the_resultant_of_a_trapezium() {
-    let (value, growth) = ([-2e3, 1e3], [-8e3, 500.0]);
+    let value = [-2e3, 1e3];
+    let growth = [-8e3, 500.0];
     let traction = "traction.0={ from = [1.0, 0.25], to = [1.0, 1.25], ramp = 0.5, \
                     stress = { value = [-2e3, \"1 kPa\"], at_y = 1.25, per_metre = [\"-8 kPa/m\", 500] } }";
     let case = set(FULL, &[traction]).expect("a valid case");
@@ -453,10 +454,8 @@ fn what_lasts_where_only_absorbing_faces_hold_is_warned_of() {
         !found.is_empty()
     };
     let strip = |push: &str| format!("traction.0={{ from = [0, 3], to = [2, 3], {push} }}");
-    let (lasting, shear) = (
-        strip("stress = [0, \"-20 kPa\"]"),
-        strip("stress = [1e3, 0], ramp = 0.1"),
-    );
+    let lasting = strip("stress = [0, \"-20 kPa\"]");
+    let shear = strip("stress = [1e3, 0], ramp = 0.1");
     let back = strip("stress = [0, -1e3], amplitude = [[0.1, 1], [0.2, 0]]");
     assert!(reports(&[&lasting], "traction.0") && !reports(&[&shear], "") && !reports(&[&back], ""));
     assert!(reports(&[&strip("pressure = 1e3")], "traction.0") && !reports(&[&lasting, "boundary.bottom=fixed"], ""));
@@ -464,7 +463,8 @@ fn what_lasts_where_only_absorbing_faces_hold_is_warned_of() {
         &[&shear, "boundary.left=absorbing", "boundary.right=absorbing"],
         "traction.0"
     ));
-    let (whole, half) = ("centre = [2, 2], radius = 0.5", "centre = [2, 3], radius = 0.5");
+    let whole = "centre = [2, 2], radius = 0.5";
+    let half = "centre = [2, 3], radius = 0.5";
     let hole = "body.0.subtract=[{ circle = { centre = [2, 2], radius = 0.5 } }, { circle = { centre = [2, 3], radius \
     = 0.5 } }]";
     let round = |circle: &str| format!("traction.0={{ circle = {{ {circle} }}, pressure = 1e3, ramp = 0.1 }}");

@@ -358,7 +358,8 @@ fn the_full_case_in_si() {
         (0.5, Some(4.0), 1.0)
     );
     let count = |code: &str| case.warnings.iter().filter(|warning| warning.starts_with(code)).count();
-    let (thin, placed) = (count("W0413: rigid."), count("W0416: rigid."));
+    let thin = count("W0413: rigid.");
+    let placed = count("W0416: rigid.");
     let cut = case.warnings.iter().filter(|warning| warning.contains("W0428")).count();
     let coarse = case
         .warnings
@@ -684,7 +685,8 @@ fn drains_that_feed_the_ground_are_warned_of() {
             .collect::<Vec<_>>()
     };
     let full = SEEPING.replace("retention        = { alpha = 2.0, n = 1.5, residual = 0.1 }", "");
-    let (permeable, quick) = ("material.clay.permeability=1e-5", "analysis.dt_max=3600");
+    let permeable = "material.clay.permeability=1e-5";
+    let quick = "analysis.dt_max=3600";
     let found = warned(&full, &[permeable]);
     assert!(
         found.len() == 1 && found[0].starts_with("W0552: drain.4: ") && found[0].contains("51.8 cells"),

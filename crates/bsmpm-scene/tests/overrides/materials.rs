@@ -215,7 +215,8 @@ fn layers_by_height_and_reduced_strength() {
         let [angle, dilation, strength] = law.parameters()[..] else {
             panic!()
         };
-        let (tan, expected): (f64, f64) = (angle.tan(), f64::to_radians(friction).tan() / 1.25);
+        let tan: f64 = angle.tan();
+        let expected: f64 = f64::to_radians(friction).tan() / 1.25;
         assert!(
             (law.elastic().young / young - 1.0).abs() < 1e-14 && (tan / expected - 1.0).abs() < 1e-14,
             "y = {y}"
@@ -265,7 +266,8 @@ fn strength_that_falls_in_a_stage_takes_the_friction_of_rigid_bodies_and_strips_
             boundary.strips[0].contact.expect("it has friction").law.friction,
         ]
     };
-    let (start, later) = (friction(0.0), friction(0.3));
+    let start = friction(0.0);
+    let later = friction(0.3);
     assert!(
         (start[0] - 0.4 / 1.25).abs() < 1e-15 && (start[1] - 0.5 / 1.25).abs() < 1e-15,
         "{start:?}"
@@ -279,13 +281,16 @@ fn strength_that_falls_in_a_stage_takes_the_friction_of_rigid_bodies_and_strips_
 #[test]
 fn strength_reduction_makes_every_material_elastic_and_stiffer() {
     let set = ["strength_reduction.elastic=true", "strength_reduction.stiffness=20"];
-    let (own, case) = (valid(FULL, &[]), valid(FULL, &set));
+    let own = valid(FULL, &[]);
+    let case = valid(FULL, &set);
     let is_elastic = |material: &Material| matches!(material, Material::Hencky(_));
     for (own, made) in own.materials.iter().zip(&case.materials) {
         for height in [2.5, 3.0, 4.0] {
-            let (own, made) = (own.material.at(height), made.material.at(height));
+            let own = own.material.at(height);
+            let made = made.material.at(height);
             assert!(is_elastic(&made), "{made:?}");
-            let (own, made) = (own.elastic(), made.elastic());
+            let own = own.elastic();
+            let made = made.elastic();
             assert!((made.young / (20.0 * own.young) - 1.0).abs() < 1e-14 && made.poisson == own.poisson);
         }
     }
@@ -393,7 +398,8 @@ fn cam_clay_and_its_start() {
     // Under the weight of others, but with none of its own.
     let weightless = "material.soil={ young = 1e7, poisson = 0.3, model = \"modified-cam-clay\", kappa_star = 0.02, \
                       lambda_star = 0.1, critical_state_ratio = 1.2, ocr = 2 }";
-    let (weight, start) = ("gravity.acceleration=[0.0, -9.81]", "initial.k0=0.5");
+    let weight = "gravity.acceleration=[0.0, -9.81]";
+    let start = "initial.k0=0.5";
     let fill = "material.fill={ model = \"elastic\", young = 1e7, poisson = 0.3, density = 2e3 }";
     let body = "body.1={ material = \"fill\", box = { lower = [0.0, 1.0], upper = [2.0, 2.0] }, points_per_cell = 3 }";
     let message = format!(
@@ -437,10 +443,8 @@ fn sensitive_clay_softens_by_its_sensitivity_and_follows_the_rate() {
         let message = format!("{:?}", with(text).expect_err("refused"));
         assert!(message.contains(reported), "{text}: {message}");
     }
-    let (clay, time) = (
-        format!("material.soil={{ {keys}, {rate} }}"),
-        "analysis.type=quasi-static-rate",
-    );
+    let clay = format!("material.soil={{ {keys}, {rate} }}");
+    let time = "analysis.type=quasi-static-rate";
     let case = set(STATIC, &[&clay, time]).expect("in real time");
     assert!(!case.analysis.kind.is_timeless() && case.analysis.regime == Regime::QuasiStatic);
 }

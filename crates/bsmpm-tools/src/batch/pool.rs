@@ -64,15 +64,15 @@ fn next(waiting: &[usize], running: &[usize], loads: &[PoolLoad], limits: Limits
     if running.is_empty() {
         return (!waiting.is_empty()).then_some(0);
     }
+    if running.len() >= limits.jobs {
+        return None;
+    }
     let used = running
         .iter()
         .fold(0_u64, |sum, &index| sum.saturating_add(loads[index].memory));
-    let fits = |index: &usize| used.saturating_add(loads[*index].memory) <= limits.memory;
-    if running.len() < limits.jobs {
-        waiting.iter().position(fits)
-    } else {
-        None
-    }
+    waiting
+        .iter()
+        .position(|&index| used.saturating_add(loads[index].memory) <= limits.memory)
 }
 
 #[cfg(test)]

@@ -7,11 +7,11 @@ use bsmpm_io::residuals::{self, Iterate, RESIDUALS, ResidualMethod};
 
 use super::{CompareArguments, ComparedFiles, runs};
 use crate::Error;
-use crate::picture::axes::{BELOW, ChartAxes, LEFT, NUMBER, title};
+use crate::picture::axes::{BELOW, ChartAxes, LEFT, Label, NUMBER, title};
 use crate::picture::canvas::{Canvas, TextAlign, width};
 use crate::picture::colour::{self, INK};
 use crate::picture::legend::{self, LegendEntry, Mark};
-use crate::picture::ticks::{Scale, range};
+use crate::picture::ticks::{Scale, ValueRange, range};
 use crate::record::{RunRecord, present};
 
 const SHEET: (f64, f64) = (1600.0, 1250.0);
@@ -57,22 +57,21 @@ struct ResidualCourse {
 pub(super) fn run(arguments: &CompareArguments, step: u64) -> Result<ComparedFiles, Error> {
     let records = runs::records(arguments)?;
     let labels = runs::labels(arguments, &records);
-    let course = |(label, record): (String, &RunRecord)| ResidualCourse::read(label, record, step);
-    let courses = labels
-        .into_iter()
-        .zip(&records)
-        .map(course)
-        .collect::<Result<Vec<_>, _>>()?;
-    let moment = |index: usize| records[index].moment(courses[index].iterates[0].time);
-    let shared = (1..records.len()).all(|index| moment(index) == moment(0));
-    let below = if shared {
-        format!("Step {step}, {}", moment(0))
+    let mut courses = Vec::new();
+    let mut moments = Vec::new();
+    for (label, record) in labels.into_iter().zip(&records) {
+        let course = ResidualCourse::read(label, record, step)?;
+        moments.push(record.moment(course.iterates[0].time));
+        courses.push(course);
+    }
+    let below = if moments.iter().all(|moment| *moment == moments[0]) {
+        format!("Step {step}, {}", moments[0])
     } else {
         format!("Step {step}")
     };
     let picture = arguments.picture();
     if let Some(path) = &picture {
-        draw(&courses, (&runs::title(arguments, &records), &below), path)?;
+        draw(&courses, &runs::title(arguments, &records), &below, path)?;
     }
     Ok(ComparedFiles {
         picture,
@@ -84,19 +83,19 @@ pub(super) fn run(arguments: &CompareArguments, step: u64) -> Result<ComparedFil
 impl ResidualCourse {
     fn read(label: String, record: &RunRecord, step: u64) -> Result<Self, Error> {
         let directory = record.directory.display();
-        let missing = |reason: String| Error::Missing { reason };
-        let all = present(residuals::read(&record.directory.join(RESIDUALS)))?;
-        let all = all.ok_or_else(|| {
-            missing(format!(
+        let Some(all) = present(residuals::read(&record.directory.join(RESIDUALS)))? else {
+            let reason = format!(
                 "E0806: {directory} has no residuals.csv. Set `output.residuals = true`, and run the case again."
-            ))
-        })?;
+            );
+            return Err(Error::Missing { reason });
+        };
         let last = all.last().map_or(0, |iterate| iterate.step);
         let iterates: Vec<Iterate> = all.into_iter().filter(|iterate| iterate.step == step).collect();
         if iterates.is_empty() {
-            return Err(missing(format!(
+            let reason = format!(
                 "E0806: residuals.csv of {directory} has no step {step}; its last step is {last}. Give another step."
-            )));
+            );
+            return Err(Error::Missing { reason });
         }
         let case = bsmpm_scene::Case::from_text("case", &record.manifest.case.text, &[]).ok();
         let tolerances = case.map(|case| [case.solver.tolerance, case.solver.force_tolerance]);
@@ -108,16 +107,12 @@ impl ResidualCourse {
     }
 
     /// Places on a logarithmic axis, where what is not positive breaks the line.
-    fn places(&self, measure: &Measure) -> Vec<(f64, f64)> {
-        let up = |iterate: &Iterate| {
-            Some((measure.of)(iterate))
-                .filter(|value| *value > 0.0)
-                .unwrap_or(f64::NAN)
-        };
-        self.iterates
-            .iter()
-            .map(|iterate| (iterate.iteration as f64, up(iterate)))
-            .collect()
+    fn places(&self, measure: &Measure) -> Vec<[f64; 2]> {
+        let places = self.iterates.iter().map(|iterate| {
+            let value = (measure.of)(iterate);
+            [iterate.iteration as f64, if value > 0.0 { value } else { f64::NAN }]
+        });
+        places.collect()
     }
 }
 
@@ -132,46 +127,50 @@ fn tolerances(courses: &[ResidualCourse], measure: usize) -> Vec<f64> {
     all
 }
 
-fn draw(courses: &[ResidualCourse], (above, below): (&str, &str), path: &Path) -> Result<(), Error> {
-    let entry = |(index, course): (usize, &ResidualCourse)| LegendEntry {
+fn draw(courses: &[ResidualCourse], above: &str, below: &str, path: &Path) -> Result<(), Error> {
+    let entries = courses.iter().enumerate().map(|(index, course)| LegendEntry {
         name: course.label.clone(),
         colour: colour::line(index, courses.len()),
         mark: Mark::Both,
-    };
-    let entries: Vec<LegendEntry> = courses.iter().enumerate().map(entry).collect();
+    });
+    let entries: Vec<LegendEntry> = entries.collect();
     let legend: Vec<&LegendEntry> = entries.iter().collect();
     let room = SHEET.0 - 80.0;
     let mut canvas = Canvas::new(SHEET.0, SHEET.1);
     title(&mut canvas, SHEET.0, above, below);
     legend::draw(&mut canvas, &legend, 40.0, ABOVE, room);
-    let (top, bottom) = (ABOVE + legend::height(&legend, room) + 20.0, SHEET.1 - BELOW);
+    let top = ABOVE + legend::height(&legend, room) + 20.0;
+    let bottom = SHEET.1 - BELOW;
     let half = (bottom - top - BETWEEN) / 2.0;
-    draw_measure(&mut canvas, (courses, &entries), 0, (top, top + half));
-    draw_measure(&mut canvas, (courses, &entries), 1, (bottom - half, bottom));
+    draw_measure(&mut canvas, courses, &entries, 0, top, top + half);
+    draw_measure(&mut canvas, courses, &entries, 1, bottom - half, bottom);
     canvas.save(path)
 }
 
 /// The axes of one measure, between two heights of the sheet; the last ones bear the numbers of the iterations.
 fn draw_measure(
     canvas: &mut Canvas,
-    (courses, entries): (&[ResidualCourse], &[LegendEntry]),
+    courses: &[ResidualCourse],
+    entries: &[LegendEntry],
     index: usize,
-    upright: (f64, f64),
+    top: f64,
+    bottom: f64,
 ) {
-    let (measure, levels) = (&MEASURES[index], tolerances(courses, index));
-    let places: Vec<Vec<(f64, f64)>> = courses.iter().map(|course| course.places(measure)).collect();
+    let measure = &MEASURES[index];
+    let levels = tolerances(courses, index);
+    let places: Vec<Vec<[f64; 2]>> = courses.iter().map(|course| course.places(measure)).collect();
     let most = (places.iter().map(Vec::len).max().unwrap_or(0) as f64).max(FEWEST);
     let axes = ChartAxes {
         left: LEFT,
-        top: upright.0,
+        top,
         right: SHEET.0 - width(TOLERANCE, NUMBER) - 40.0,
-        bottom: upright.1,
-        x: (1.0 - BESIDE * most, most + BESIDE * most),
+        bottom,
+        x: ValueRange::of(1.0 - BESIDE * most, most + BESIDE * most),
         y: decades(
             places
                 .iter()
                 .flatten()
-                .map(|place| place.1)
+                .map(|place| place[1])
                 .chain(levels.iter().copied()),
         ),
         scales: [Scale::Whole, Scale::Logarithmic],
@@ -179,24 +178,25 @@ fn draw_measure(
     axes.rules(canvas);
     for level in levels {
         let at = axes.level(canvas, level);
-        canvas.text(TOLERANCE, (axes.right + 14.0, at), NUMBER, TextAlign::Left, INK);
+        canvas.text(TOLERANCE, [axes.right + 14.0, at], NUMBER, TextAlign::Left, INK);
     }
     for (places, entry) in places.iter().zip(entries) {
-        for run in places.split(|place| place.1.is_nan()) {
+        for run in places.split(|place| place[1].is_nan()) {
             let places: Vec<_> = run.iter().map(|&place| axes.place(place)).collect();
             entry.mark.draw(canvas, &places, LINE, entry.colour);
         }
     }
-    let across = (index + 1 == MEASURES.len()).then_some(("Iteration", "-"));
-    axes.draw(canvas, across, (measure.name, "-"));
+    let across = (index + 1 == MEASURES.len()).then_some(Label::of("Iteration", "-"));
+    axes.draw(canvas, across, Label::of(measure.name, "-"));
 }
 
 /// Whole powers of ten about positive numbers, with room for discs at the ends.
-fn decades(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = range(values).unwrap_or((0.1, 1.0));
-    let (low, high) = (low.log10().floor(), high.log10().ceil());
+fn decades(values: impl IntoIterator<Item = f64>) -> ValueRange {
+    let range = range(values).unwrap_or(ValueRange::of(0.1, 1.0));
+    let low = range.low.log10().floor();
+    let high = range.high.log10().ceil();
     let room = 0.04 * (high - low).max(1.0);
-    (10_f64.powf(low - room), 10_f64.powf(high + room))
+    ValueRange::of(10_f64.powf(low - room), 10_f64.powf(high + room))
 }
 
 /// A block of rows for every run: both measures, and the order of convergence.
@@ -231,7 +231,8 @@ fn text(courses: &[ResidualCourse], below: &str) -> String {
 /// None where it has not fallen by [`LEAST`] twice: what is left then is noise.
 fn order(iterates: &[Iterate]) -> Option<f64> {
     let [.., before, last, now] = iterates else { return None };
-    let (first, second) = ((last.force / before.force).ln(), (now.force / last.force).ln());
+    let first = (last.force / before.force).ln();
+    let second = (now.force / last.force).ln();
     (first.max(second) < LEAST.ln() && second.is_finite()).then_some(second / first)
 }
 
@@ -270,12 +271,12 @@ mod tests {
 
     #[test]
     fn axes_hold_whole_decades_and_a_little_more() {
-        let (low, high) = decades([3e-7, 0.4, f64::NAN]);
+        let ValueRange { low, high } = decades([3e-7, 0.4, f64::NAN]);
         assert!(
             (3e-8..1e-7).contains(&low) && (1.0..3.0).contains(&high),
             "{low} {high}"
         );
-        assert!(decades([]).0 < decades([]).1);
-        assert!(decades([1.0]).0 < 1.0);
+        assert!(decades([]).low < decades([]).high);
+        assert!(decades([1.0]).low < 1.0);
     }
 }

@@ -7,6 +7,7 @@ use bsmpm_scene::words::Word;
 
 use super::CompareArguments;
 use crate::Error;
+use crate::picture::axes::Label;
 use crate::record::{Recorded, RunRecord};
 
 /// The curves in the order of the command line.
@@ -16,7 +17,7 @@ pub(super) struct Runs {
     pub x: (String, String),
     pub y: (String, String),
     /// The label and the places of every curve.
-    pub curves: Vec<(String, Vec<(f64, f64)>)>,
+    pub curves: Vec<(String, Vec<[f64; 2]>)>,
     /// Whether every place is a run of its own.
     pub last: bool,
     /// Which runs have not come to their end.
@@ -27,17 +28,11 @@ impl Runs {
     pub fn read(arguments: &CompareArguments) -> Result<Self, Error> {
         fits("--x-value", arguments.x_values.len(), arguments.directories.len())?;
         let records = records(arguments)?;
-        let columns = |name: &str| {
-            records
-                .iter()
-                .map(|record| column(record, name))
-                .collect::<Result<Vec<_>, _>>()
-        };
-        let up = columns(arguments.y.as_deref().unwrap_or_default())?;
+        let up = columns(&records, arguments.y.as_deref().unwrap_or_default())?;
         let y = axis(&records, &up, arguments.y_label.as_deref(), arguments.y_scale)?;
         let labels = labels(arguments, &records);
         let (x, across) = if arguments.x_values.is_empty() {
-            let across = columns(&arguments.x)?;
+            let across = columns(&records, &arguments.x)?;
             (
                 axis(&records, &across, arguments.x_label.as_deref(), arguments.x_scale)?,
                 Some(across),
@@ -45,14 +40,14 @@ impl Runs {
         } else {
             ((arguments.x_label.clone().unwrap_or_default(), String::new()), None)
         };
-        let mut curves: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
+        let mut curves: Vec<(String, Vec<[f64; 2]>)> = Vec::new();
         for (index, label) in labels.into_iter().enumerate() {
             let up: Vec<f64> = up[index].values.iter().map(|y| y * arguments.y_scale).collect();
             let across = match &across {
                 Some(columns) => columns[index].values.iter().map(|x| x * arguments.x_scale).collect(),
                 None => vec![arguments.x_values[index]; up.len()],
             };
-            let places: Vec<(f64, f64)> = across.into_iter().zip(up).collect();
+            let places: Vec<[f64; 2]> = across.into_iter().zip(up).map(<[f64; 2]>::from).collect();
             if !arguments.last {
                 curves.push((label, places));
                 continue;
@@ -66,7 +61,7 @@ impl Runs {
         if arguments.last {
             curves
                 .iter_mut()
-                .for_each(|curve| curve.1.sort_by(|a, b| a.0.total_cmp(&b.0)));
+                .for_each(|curve| curve.1.sort_by(|a, b| a[0].total_cmp(&b[0])));
         }
         let notes = records.iter().filter_map(note).collect();
         Ok(Self {
@@ -113,32 +108,34 @@ fn fits(option: &str, given: usize, runs: usize) -> Result<(), Error> {
     Err(Error::Usage { reason })
 }
 
+/// The column of each run, as [`column`].
+fn columns<'a>(records: &'a [RunRecord], name: &str) -> Result<Vec<Recorded<'a>>, Error> {
+    records.iter().map(|record| column(record, name)).collect()
+}
+
 /// The column `name` of a run's history, or the only one that records the quantity of that name.
 fn column<'a>(record: &'a RunRecord, name: &str) -> Result<Recorded<'a>, Error> {
     let directory = record.directory.display();
-    let missing = |reason| Error::Missing { reason };
     let history = record
         .history
         .as_ref()
         .filter(|history| history.values.iter().any(|values| !values.is_empty()));
-    let history = history.ok_or_else(|| {
-        missing(format!(
-            "E0803: history.csv of {directory} has no rows yet. Wait for the run's first output."
-        ))
-    })?;
+    let Some(history) = history else {
+        let reason = format!("E0803: history.csv of {directory} has no rows yet. Wait for the run's first output.");
+        return Err(Error::Missing { reason });
+    };
     if let Some(column) = record.column(name) {
         return Ok(column);
     }
-    match record.columns(name)[..] {
-        [only] => Ok(only),
-        _ => {
-            let known: Vec<_> = history.headings.iter().map(|heading| heading.name.as_str()).collect();
-            Err(missing(format!(
-                "E0803: history.csv of {directory} has no column `{name}`. Choose one of: {}.",
-                known.join(", ")
-            )))
-        }
+    if let [only] = record.columns(name)[..] {
+        return Ok(only);
     }
+    let known: Vec<_> = history.headings.iter().map(|heading| heading.name.as_str()).collect();
+    let reason = format!(
+        "E0803: history.csv of {directory} has no column `{name}`. Choose one of: {}.",
+        known.join(", ")
+    );
+    Err(Error::Missing { reason })
 }
 
 /// The label and unit of an axis: as given, else those of the runs' columns, which must then share a unit.
@@ -157,8 +154,9 @@ fn axis(
         .zip(columns)
         .find(|(_, column)| column.unit != first.unit)
     {
-        let (name, unit) = (first.name, first.unit);
-        let (here, there) = (records[0].directory.display(), record.directory.display());
+        let Recorded { name, unit, .. } = first;
+        let here = records[0].directory.display();
+        let there = record.directory.display();
         let reason = format!(
             "E0804: `{name}` has the unit {unit} in {here}, but `{}` has the unit {} in {there}. Both share an axis. \
              Choose another column, or give an axis label (--x-label, --y-label).",
@@ -166,14 +164,15 @@ fn axis(
         );
         return Err(Error::Usage { reason });
     }
-    let (label, unit) = match first.name {
+    let of_column = first.label();
+    let Label { quantity, unit } = match first.name {
         "time" => records[0].time_label(),
-        _ => (&*first.label(), first.shown_unit()),
+        _ => Label::of(&of_column, first.shown_unit()),
     };
     let label = if factor == 1.0 {
-        label.to_owned()
+        quantity.to_owned()
     } else {
-        format!("{label} × {factor}").replace("× -", "× −")
+        format!("{quantity} × {factor}").replace("× -", "× −")
     };
     Ok((label, unit.to_owned()))
 }
@@ -237,7 +236,10 @@ fn note(record: &RunRecord) -> Option<String> {
 
 /// The title of the picture: as given, else that of the cases if they share one.
 pub(super) fn title(arguments: &CompareArguments, records: &[RunRecord]) -> String {
-    let titles = || records.iter().map(|record| &record.manifest.case.title);
-    let shared = titles().next().filter(|first| titles().all(|title| title == *first));
+    let titles: Vec<&String> = records.iter().map(|record| &record.manifest.case.title).collect();
+    let shared = titles
+        .first()
+        .copied()
+        .filter(|first| titles.iter().all(|title| title == first));
     arguments.title.clone().or(shared.cloned()).unwrap_or_default()
 }

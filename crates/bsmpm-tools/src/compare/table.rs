@@ -2,7 +2,7 @@
 
 use super::runs::Runs;
 use crate::picture::axes::label;
-use crate::picture::ticks::{Ticks, range};
+use crate::picture::ticks::{Ticks, ValueRange, range};
 use crate::record::short;
 use crate::report::{ReportTable, or_dash};
 
@@ -35,30 +35,30 @@ pub(super) fn text(runs: &Runs, at: &[f64]) -> String {
 
 /// As many rows as the curve with the most values at `x` has; of curves along which there are rows of a run, one.
 fn rows(runs: &Runs, x: f64) -> impl Iterator<Item = TableRow> {
-    let count = |places: &Vec<(f64, f64)>| places.iter().filter(|place| is_at(places, place.0, x)).count();
-    let most = if runs.last {
-        runs.curves.iter().map(|curve| count(&curve.1)).max().unwrap_or(0)
-    } else {
-        1
-    };
-    (0..most.max(1)).map(move |number| TableRow { x, number })
+    let mut most = 1;
+    if runs.last {
+        for (_, places) in &runs.curves {
+            most = most.max(places.iter().filter(|place| is_at(places, place[0], x)).count());
+        }
+    }
+    (0..most).map(move |number| TableRow { x, number })
 }
 
 /// The value of a curve in a row: of several at its x that of its number, else the one of the curve.
-fn value(places: &[(f64, f64)], row: TableRow) -> Option<f64> {
+fn value(places: &[[f64; 2]], row: TableRow) -> Option<f64> {
     if row.number == 0 {
         return interpolated(places, row.x);
     }
     places
         .iter()
-        .filter(|place| is_at(places, place.0, row.x))
+        .filter(|place| is_at(places, place[0], row.x))
         .nth(row.number)
-        .map(|place| place.1)
+        .map(|place| place[1])
 }
 
 /// Whether the x of a place of a curve is `x`, but for rounding.
-fn is_at(places: &[(f64, f64)], of_place: f64, x: f64) -> bool {
-    let length = range(places.iter().map(|place| place.0)).map_or(0.0, |(low, high)| high - low);
+fn is_at(places: &[[f64; 2]], of_place: f64, x: f64) -> bool {
+    let length = range(places.iter().map(|place| place[0])).map_or(0.0, ValueRange::length);
     (of_place - x).abs() <= NEAR * length.max(x.abs())
 }
 
@@ -68,7 +68,7 @@ fn places(runs: &Runs) -> Vec<f64> {
         .curves
         .iter()
         .flat_map(|curve| &curve.1)
-        .map(|place| place.0)
+        .map(|place| place[0])
         .collect();
     if runs.last {
         all.sort_by(f64::total_cmp);
@@ -77,21 +77,19 @@ fn places(runs: &Runs) -> Vec<f64> {
         return all;
     }
     match range(all.iter().copied()) {
-        Some((low, high)) if high > low => Ticks::between(low, high, ROWS).values,
-        ends => ends.iter().map(|ends| ends.0).collect(),
+        Some(ValueRange { low, high }) if high > low => Ticks::between(low, high, ROWS).values,
+        ends => ends.iter().map(|ends| ends.low).collect(),
     }
 }
 
 /// The curve at `x`, where it comes there first: linear between its places.
-fn interpolated(places: &[(f64, f64)], x: f64) -> Option<f64> {
-    if let Some(place) = places.iter().find(|place| is_at(places, place.0, x)) {
-        return Some(place.1);
+fn interpolated(places: &[[f64; 2]], x: f64) -> Option<f64> {
+    if let Some(place) = places.iter().find(|place| is_at(places, place[0], x)) {
+        return Some(place[1]);
     }
-    let pairs = places.windows(2).map(|pair| (pair[0], pair[1]));
-    let (from, to) = pairs
-        .into_iter()
-        .find(|(from, to)| from.0.min(to.0) <= x && x <= from.0.max(to.0))?;
-    Some(from.1 + (to.1 - from.1) * (x - from.0) / (to.0 - from.0))
+    let mut pairs = places.windows(2).map(|pair| [pair[0], pair[1]]);
+    let [from, to] = pairs.find(|[from, to]| from[0].min(to[0]) <= x && x <= from[0].max(to[0]))?;
+    Some(from[1] + (to[1] - from[1]) * (x - from[0]) / (to[0] - from[0]))
 }
 
 /// A number to six digits.
@@ -108,7 +106,7 @@ fn written(value: f64) -> String {
 mod tests {
     use super::*;
 
-    fn runs(curves: &[(&str, &[(f64, f64)])], last: bool) -> Runs {
+    fn runs(curves: &[(&str, &[[f64; 2]])], last: bool) -> Runs {
         let curves = curves
             .iter()
             .map(|(name, places)| ((*name).to_owned(), places.to_vec()))
@@ -128,8 +126,8 @@ mod tests {
     fn curves_are_interpolated_as_far_as_they_reach() {
         let curves = runs(
             &[
-                ("long", &[(0.0, 1.0), (1.0, 3.0)]),
-                ("short", &[(0.0, 0.0), (0.3, 1e-6)]),
+                ("long", &[[0.0, 1.0], [1.0, 3.0]]),
+                ("short", &[[0.0, 0.0], [0.3, 1e-6]]),
             ],
             false,
         );
@@ -137,13 +135,13 @@ mod tests {
             "Runout (m)\nTime (s)  long  short\n       0     1      0\n     0.3   1.6   1e-6\n       1     3      -\n";
         assert_eq!(text(&curves, &[0.0, 0.1 + 0.2, 1.0]), expected);
         assert_eq!(text(&curves, &[]).lines().count(), 2 + 11);
-        let back = [(0.0, 0.0), (2.0, 2.0), (1.0, 5.0)];
+        let back = [[0.0, 0.0], [2.0, 2.0], [1.0, 5.0]];
         assert_eq!((interpolated(&back, 1.5), interpolated(&back, 2.5)), (Some(1.5), None));
     }
 
     #[test]
     fn single_places_make_a_row_each() {
-        let curves = runs(&[("a", &[(1.0, 2.0), (1.4, 4.0)]), ("b", &[(1.2, 7.0)])], true);
+        let curves = runs(&[("a", &[[1.0, 2.0], [1.4, 4.0]]), ("b", &[[1.2, 7.0]])], true);
         let rows: Vec<String> = text(&curves, &[]).lines().skip(2).map(str::to_owned).collect();
         assert_eq!(rows, ["       1  2  -", "     1.2  3  7", "     1.4  4  -"]);
     }
@@ -153,8 +151,8 @@ mod tests {
     fn runs_that_end_at_the_same_x_have_a_row_each() {
         let curves = runs(
             &[
-                ("a", &[(1.0, 2.0), (1.0, 3.0), (1.0, 5.0), (2.0, 7.0)]),
-                ("b", &[(1.0, 4.0)]),
+                ("a", &[[1.0, 2.0], [1.0, 3.0], [1.0, 5.0], [2.0, 7.0]]),
+                ("b", &[[1.0, 4.0]]),
             ],
             true,
         );

@@ -74,17 +74,18 @@ impl StressPath {
     pub fn of(case: &Case, test: &ElementTest) -> Result<Self, Error> {
         let named = &case.materials[test.material];
         let law = named.material.at(test.height.unwrap_or(0.0)).into_owned();
-        let (vertical, lateral) = (-test.pressure, -test.k0 * test.pressure);
+        let vertical = -test.pressure;
+        let lateral = -test.k0 * test.pressure;
         let sigma = Symmetric([lateral, vertical, lateral, 0.0, 0.0, 0.0]);
         let state = law
             .state()
             .iter()
             .map(|variable| (variable.name, variable.unit))
             .collect();
-        let start = |error: ElementError| Error::Element {
+        let point = Element::new(law, sigma);
+        let mut point = point.map_err(|error: ElementError| Error::Element {
             failed: vec![format!("{}: {error}", test.name)],
-        };
-        let mut point = Element::new(law, sigma).map_err(start)?;
+        })?;
         let mut course = Self {
             name: test.name.clone(),
             material: named.name.clone(),
@@ -114,8 +115,8 @@ impl StressPath {
 
     /// The row of the largest deviator.
     pub fn peak(&self) -> &PathRow {
-        let largest = |a: &&PathRow, b: &&PathRow| a.deviator.total_cmp(&b.deviator);
-        self.rows.iter().max_by(largest).unwrap_or(&self.rows[0])
+        let largest = self.rows.iter().max_by(|a, b| a.deviator.total_cmp(&b.deviator));
+        largest.unwrap_or(&self.rows[0])
     }
 
     /// The row of the end.
@@ -128,13 +129,13 @@ impl StressPath {
         let fixed = "step,stage,strain-xx,strain-yy,strain-zz,shear-xy,volume-strain,stress-xx,stress-yy,stress-zz,stress-xy,\
                      pressure,deviator,pore-pressure,plastic-strain";
         let units = "-,-,-,-,-,-,-,Pa,Pa,Pa,Pa,Pa,Pa,Pa,-";
-        let named = |name: fn(&(&'static str, &'static str)) -> &'static str| {
-            self.state
-                .iter()
-                .map(|variable| format!(",{}", name(variable)))
-                .collect::<String>()
-        };
-        let mut text = format!("{fixed}{}\n# {units}{}\n", named(|v| v.0), named(|v| v.1));
+        let mut state_names = String::new();
+        let mut state_units = String::new();
+        for (name, unit) in &self.state {
+            state_names += &format!(",{name}");
+            state_units += &format!(",{unit}");
+        }
+        let mut text = format!("{fixed}{state_names}\n# {units}{state_units}\n");
         for (step, row) in self.rows.iter().enumerate() {
             let [xx, yy, zz, xy, ..] = row.sigma.0;
             let [x, y, z, shear] = row.strain;

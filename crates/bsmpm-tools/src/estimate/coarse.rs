@@ -12,12 +12,15 @@ pub(super) const FACTORS: [usize; 4] = [16, 8, 4, 2];
 
 /// The text of a form with cells that many times as long; none where it would be too coarse, or no valid case.
 pub(super) fn text(case: &Case, factor: usize) -> Option<String> {
-    let cells = |body: &bsmpm_scene::Body| {
+    let mut fewest = f64::INFINITY;
+    for body in &case.bodies {
         let [lower, upper] = body.bounds();
-        let across = |axis: usize| (upper[axis] - lower[axis]) / (factor as f64 * case.grid.axes[axis].longest());
-        across(0).min(across(1))
-    };
-    if case.bodies.iter().map(cells).fold(f64::INFINITY, f64::min) < FEWEST {
+        for axis in 0..2 {
+            let length = factor as f64 * case.grid.axes[axis].longest();
+            fewest = fewest.min((upper[axis] - lower[axis]) / length);
+        }
+    }
+    if fewest < FEWEST {
         return None;
     }
     let mut table: Table = case.text.parse().ok()?;
@@ -28,16 +31,12 @@ pub(super) fn text(case: &Case, factor: usize) -> Option<String> {
     for key in ["lower", "upper", "cell"] {
         grid.remove(key);
     }
-    let of = |axis: usize| {
+    let mut of_axes = Table::new();
+    for (axis, name) in (0..case.grid.dims()).zip(["x", "y", "z"]) {
         let lines: Vec<usize> = case.grid.lines[axis].iter().map(|line| line.breakpoint).collect();
-        knots(&case.grid.axes[axis], &lines, factor)
-    };
-    let axes = (0..case.grid.dims()).map(of);
-    let knots = ["x", "y", "z"]
-        .into_iter()
-        .zip(axes)
-        .map(|(name, knots)| (name.to_owned(), knots));
-    grid.insert("knots".to_owned(), Value::Table(knots.collect()));
+        of_axes.insert(name.to_owned(), knots(&case.grid.axes[axis], &lines, factor));
+    }
+    grid.insert("knots".to_owned(), Value::Table(of_axes));
     for body in table.get_mut("body")?.as_array_mut()? {
         let points = body.get_mut("points_per_cell")?;
         *points = Value::Integer(points.as_integer()?.min(POINTS));

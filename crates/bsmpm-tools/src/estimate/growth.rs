@@ -38,7 +38,8 @@ pub(super) fn extrapolate(levels: &[GrowthLevel], regime: Regime, early: f64) ->
         .map(|before| &levels[before])
         .filter(|_| regime == Regime::Dynamic);
     let trend = coarser.map_or(1.0, |coarser| {
-        let (fine, coarse) = (finest.work.iterations(), coarser.work.iterations());
+        let fine = finest.work.iterations();
+        let coarse = coarser.work.iterations();
         // The line through both in 1/factor, at 1.
         let slope = (fine - coarse) / (1.0 / factor - 1.0 / coarser.factor as f64);
         bounded(1.0 + slope * (1.0 - 1.0 / factor) / fine.max(1.0), MOST[0])

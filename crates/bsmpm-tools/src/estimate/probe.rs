@@ -113,7 +113,7 @@ pub(super) fn estimate(
     let wanted = FIRST[0] * probes.left() * guess.work.steps / (guess.unit * guess.work.units());
     let most = (FIRST[1] * guess.work.steps).max(LEAST);
     let first = probes.of_case("first", wanted.min(most).max(1.0).floor())?;
-    let measured = measured(guess, (&start, &first));
+    let measured = measured(guess, &start, &first);
     let made = first.work();
     report(&format!(
         "first steps: {} with {} evaluations on {} rank(s), {:.2} CPU s besides {:.2} of the start",
@@ -167,9 +167,10 @@ pub(super) fn estimate(
 }
 
 /// What the case's own start and first steps tell of what a unit of work, a frame and the files cost.
-fn measured(guess: &StoredEstimate, (start, first): (&ProbeRun, &ProbeRun)) -> StoredEstimate {
+fn measured(guess: &StoredEstimate, start: &ProbeRun, first: &ProbeRun) -> StoredEstimate {
     let frame = guess.frame.min(start.clock(&["frames"]));
-    let (taken, units) = (first.cpu() - start.cpu() - frame, first.work().units());
+    let taken = first.cpu() - start.cpu() - frame;
+    let units = first.work().units();
     let clock = first.clock(&["step", "migration", "histories"]);
     let unit = match units > 0.0 {
         true if taken >= TRUSTED => taken / units,
@@ -241,7 +242,7 @@ impl Probes<'_> {
             let begin = Instant::now();
             let run = self.run(&format!("cells{factor}"), &text, &[], 1)?;
             taken = Some(begin.elapsed().as_secs_f64());
-            let level = level(factor, &run, (until, self.plan.case.analysis.end));
+            let level = level(factor, &run, until, self.plan.case.analysis.end);
             report(&match &level {
                 Some(level) => format!(
                     "cells {factor} times as large: {:.0} evaluations in {:.0} steps, {:.2} CPU s",
@@ -271,10 +272,8 @@ impl Probes<'_> {
             return Ok(None);
         }
         let run = self.run("whole", &case.text, &[], self.plan.ranks)?;
-        let (work, taken) = (
-            run.work(),
-            run.cpu() - expected.start - expected.frame * frames.saturating_sub(1) as f64,
-        );
+        let work = run.work();
+        let taken = run.cpu() - expected.start - expected.frame * frames.saturating_sub(1) as f64;
         if run.outcome.state != RunState::Done || work.units() <= 0.0 {
             report(&format!(
                 "the whole case: not used, because this run ended early ({})",
@@ -301,7 +300,8 @@ impl Probes<'_> {
     /// A run on so many ranks, to the deadline at most.
     fn run(&self, name: &str, text: &str, further: &[&str], ranks: usize) -> Result<ProbeRun, Error> {
         let folder = self.folder.path();
-        let (case, directory) = (folder.join(format!("{name}.toml")), folder.join(format!("{name}.out")));
+        let case = folder.join(format!("{name}.toml"));
+        let directory = folder.join(format!("{name}.out"));
         fs::write(&case, text).map_err(bsmpm_io::Error::file("write", &case))?;
         // A start takes a second or two of what may be the whole time.
         let wall = clock(self.left().ceil().max(2.0) as u64);
@@ -321,16 +321,15 @@ impl Probes<'_> {
             side_by_side: true,
         };
         solver.check()?;
-        let (origin, force, resume) = (None, true, false);
         let task = LaunchTask {
             case: &case,
             set: &[],
             further,
             directory: directory.clone(),
-            origin,
+            origin: None,
             from: None,
-            force,
-            resume,
+            force: true,
+            resume: false,
         };
         let outcome = solver.outcome(&task, |_| false)?;
         Ok(ProbeRun {
@@ -351,7 +350,6 @@ fn rows(directory: &Path) -> Vec<ProbeRow> {
     let Ok(columns) = table::read(&directory.join(STEPS)) else {
         return Vec::new();
     };
-    let column = |name: &str| columns.get(name).unwrap_or_default();
     let names = [
         "time",
         "active_nodes",
@@ -360,32 +358,33 @@ fn rows(directory: &Path) -> Vec<ProbeRow> {
         "factorisations",
         "cutbacks",
     ];
-    let columns = names.map(column);
+    let columns = names.map(|name| columns.get(name).unwrap_or_default());
     let length = columns.iter().map(|column| column.len()).min().unwrap_or(0);
-    let row = |k: usize| {
+    let mut rows = Vec::new();
+    for k in 0..length {
         let [time, active_nodes, evaluations, products, factorisations, cutbacks] = columns.map(|column| column[k]);
-        let newton = (factorisations - 1.0 - cutbacks).max(0.0);
-        ProbeRow {
+        let work = Effort {
+            steps: 1.0,
+            evaluations,
+            products,
+            newton: (factorisations - 1.0 - cutbacks).max(0.0),
+        };
+        rows.push(ProbeRow {
             time,
             active_nodes,
-            work: Effort {
-                steps: 1.0,
-                evaluations,
-                products,
-                newton,
-            },
-        }
-    };
-    (0..length).map(row).collect()
+            work,
+        });
+    }
+    rows
 }
 
 /// What a coarse form reports, if it came far enough; the work of what it did not reach is taken as even.
-fn level(factor: usize, run: &ProbeRun, (until, end): (f64, f64)) -> Option<GrowthLevel> {
+fn level(factor: usize, run: &ProbeRun, until: f64, end: f64) -> Option<GrowthLevel> {
     let reached = run.rows.last()?.time / end;
     let first = run.rows.partition_point(|row| row.time <= until * (1.0 + 1e-9));
     let early = run.rows[..first].iter().map(|row| row.work.iterations()).sum();
-    let mean = |rows: &[ProbeRow]| rows.iter().map(|row| row.active_nodes).sum::<f64>() / rows.len() as f64;
-    let (all, before) = (mean(&run.rows), mean(&run.rows[..first.max(1)]));
+    let all = mean_nodes(&run.rows);
+    let before = mean_nodes(&run.rows[..first.max(1)]);
     let spread = if before > 0.0 { all / before } else { 1.0 };
     (reached >= REACHED).then(|| GrowthLevel {
         factor,
@@ -393,4 +392,9 @@ fn level(factor: usize, run: &ProbeRun, (until, end): (f64, f64)) -> Option<Grow
         early,
         spread,
     })
+}
+
+/// The mean number of active nodes.
+fn mean_nodes(rows: &[ProbeRow]) -> f64 {
+    rows.iter().map(|row| row.active_nodes).sum::<f64>() / rows.len() as f64
 }

@@ -69,7 +69,7 @@ impl EstimateBand {
 
 impl EstimateReport {
     /// Of a run of a case on so many ranks; `speed` is that of this machine.
-    pub fn of(path: &Path, case: &Case, ranks: usize, (speed, found): (f64, &StoredEstimate)) -> Self {
+    pub fn of(path: &Path, case: &Case, ranks: usize, speed: f64, found: &StoredEstimate) -> Self {
         let estimate = case.estimate(ranks);
         let steps = found.work.steps;
         let frames = sizes::frames(case, steps);
@@ -124,7 +124,6 @@ impl EstimateReport {
     }
 
     fn rows(&self) -> Vec<[String; 3]> {
-        let beside = |number: fn(&Actual) -> String| self.actual.as_ref().map_or_else(String::new, number);
         let [memory, newton] = self.memory_per_rank;
         let memory = match newton > memory {
             true => format!(
@@ -145,39 +144,39 @@ impl EstimateReport {
             row(
                 "points",
                 &self.points.to_string(),
-                beside(|actual| actual.points.to_string()),
+                self.beside(|actual| actual.points.to_string()),
             ),
             row(
                 "unknowns",
                 &self.unknowns.to_string(),
-                beside(|actual| actual.unknowns.to_string()),
+                self.beside(|actual| actual.unknowns.to_string()),
             ),
             row("non-zeros of the stiffness", &self.non_zeros.to_string(), String::new()),
             row(
                 "memory of each rank",
                 &memory,
-                beside(|actual| in_mebibytes(actual.memory)),
+                self.beside(|actual| in_mebibytes(actual.memory)),
             ),
-            row("disk", &disk, beside(|actual| in_mebibytes(actual.disk))),
+            row("disk", &disk, self.beside(|actual| in_mebibytes(actual.disk))),
             row(
                 "steps",
                 &format!("{:.0}", self.work.steps),
-                beside(|actual| actual.steps.to_string()),
+                self.beside(|actual| actual.steps.to_string()),
             ),
             row(
                 "evaluations",
                 &format!("{:.0}", self.work.evaluations),
-                beside(|actual| actual.evaluations.to_string()),
+                self.beside(|actual| actual.evaluations.to_string()),
             ),
             row(
                 "processor time",
                 &reports(self.cpu_seconds),
-                beside(|actual| seconds(actual.cpu_seconds)),
+                self.beside(|actual| seconds(actual.cpu_seconds)),
             ),
             row(
                 &format!("time on {} rank(s)", self.ranks),
                 &reports(self.seconds),
-                beside(|actual| seconds(actual.seconds)),
+                self.beside(|actual| seconds(actual.seconds)),
             ),
             row("ranks of use", &format!("up to {}", self.useful_ranks), String::new()),
         ];
@@ -196,11 +195,15 @@ impl EstimateReport {
 
     /// The heading of the column of the run.
     fn title(&self) -> String {
-        let title = |actual: &Actual| match actual.complete {
+        self.beside(|actual| match actual.complete {
             true => format!("actual, {} rank(s)", actual.ranks),
             false => format!("actual, {} rank(s), ended early", actual.ranks),
-        };
-        self.actual.as_ref().map_or_else(String::new, title)
+        })
+    }
+
+    /// What stands in the column of the run, which is empty without one.
+    fn beside(&self, number: fn(&Actual) -> String) -> String {
+        self.actual.as_ref().map_or_else(String::new, number)
     }
 }
 
@@ -240,7 +243,7 @@ mod tests {
 
     fn report() -> EstimateReport {
         let case = Case::from_text("column", COLUMN, &[]).unwrap();
-        EstimateReport::of(Path::new("column.toml"), &case, 2, (1.0, &stored::guess(&case, 2, 1.0)))
+        EstimateReport::of(Path::new("column.toml"), &case, 2, 1.0, &stored::guess(&case, 2, 1.0))
     }
 
     #[test]

@@ -29,7 +29,8 @@ pub(super) struct Bytes {
 impl Bytes {
     /// As they are known before anything was written.
     pub fn of(case: &Case) -> Self {
-        let (dynamic, points) = (usize::from(case.analysis.regime == Regime::Dynamic), case.points());
+        let dynamic = usize::from(case.analysis.regime == Regime::Dynamic);
+        let points = case.points();
         let numbers: u64 = case
             .histories
             .iter()

@@ -64,13 +64,14 @@ pub(super) fn guess(case: &Case, ranks: usize, speed: f64) -> StoredEstimate {
         (true, Regime::Dynamic) => 1,
         (true, Regime::QuasiStatic) => 2,
     };
-    let (sizes, steps) = (case.estimate(ranks), sizes::steps(case));
+    let sizes = case.estimate(ranks);
+    let steps = sizes::steps(case);
     let points = case.points() as f64;
     let evaluations = in_space(case, ranks).map_or(EVALUATIONS, |solver| EVALUATIONS_IN_SPACE[solver])[kind];
     let [more, dearer] = if case.flow.is_some() { FLOWING } else { [1.0; 2] };
     StoredEstimate {
         work: Effort { steps, evaluations: more * evaluations * steps, ..Effort::default() },
-        unit: speed * dearer * unit((case, ranks), sizes.active as f64),
+        unit: speed * dearer * unit(case, ranks, sizes.active as f64),
         start: speed * START,
         frame: speed * (FRAME[0] + FRAME[1] * points),
         bytes: Bytes::of(case),
@@ -94,7 +95,7 @@ fn in_space(case: &Case, ranks: usize) -> Option<usize> {
 }
 
 /// s  of a unit of work with so many unknowns.
-fn unit((case, ranks): (&Case, usize), unknowns: f64) -> f64 {
+fn unit(case: &Case, ranks: usize, unknowns: f64) -> f64 {
     let points = case.points() as f64;
     let Some(solver) = in_space(case, ranks) else {
         return POINT * points + UNKNOWN * unknowns;
@@ -111,7 +112,7 @@ fn unit((case, ranks): (&Case, usize), unknowns: f64) -> f64 {
 /// not.
 pub(super) fn spread(case: &Case, ranks: usize, unknowns: Option<u64>, nodes: f64) -> f64 {
     let unknowns = unknowns.unwrap_or(case.estimate(ranks).active) as f64;
-    unit((case, ranks), nodes * unknowns) / unit((case, ranks), unknowns)
+    unit(case, ranks, nodes * unknowns) / unit(case, ranks, unknowns)
 }
 
 #[cfg(test)]

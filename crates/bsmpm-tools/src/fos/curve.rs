@@ -123,10 +123,8 @@ impl FactorCurve {
     /// none.
     pub fn reaches(&self, level: f64) -> Option<f64> {
         let band = self.crossing(level);
-        let (low, high) = (
-            self.at(band.last_stable?)?,
-            self.at(band.first_failed?).filter(|state| state.whole)?,
-        );
+        let low = self.at(band.last_stable?)?;
+        let high = self.at(band.first_failed?).filter(|state| state.whole)?;
         let share = (level * self.elastic - low.displacement) / (high.displacement - low.displacement);
         Some(low.factor + share * (high.factor - low.factor))
     }
@@ -137,34 +135,32 @@ impl FactorCurve {
         if !self.has_branch {
             return None;
         }
-        let begin = (self.reaches(BENT)?, BENT * self.elastic);
-        let farthest = || {
-            let mut known = self
-                .states
-                .iter()
-                .filter(|state| state.whole && self.growth(state) <= FALLEN);
-            let last = known
-                .next_back()
-                .filter(|state| self.growth(state) >= SHORTEST * BENT)?;
-            Some((last.factor, last.displacement))
+        let begin = [self.reaches(BENT)?, BENT * self.elastic];
+        let end = match self.reaches(FALLEN) {
+            Some(factor) => [factor, FALLEN * self.elastic],
+            None => self.end_of_branch()?,
         };
-        let end = self
-            .reaches(FALLEN)
-            .map(|factor| (factor, FALLEN * self.elastic))
-            .or_else(farthest)?;
         let after = FittedLine::through(begin, end);
         let straight = self
             .states
             .iter()
             .filter(|state| state.whole && self.growth(state) <= STRAIGHT);
-        let places: Vec<(f64, f64)> = straight.map(|state| (state.factor, state.displacement)).collect();
+        let places: Vec<[f64; 2]> = straight.map(|state| [state.factor, state.displacement]).collect();
         let before = FittedLine::fitted(&places).unwrap_or(FittedLine {
             at_zero: self.elastic,
             slope: 0.0,
         });
         let factor = (before.at_zero - after.at_zero) / (after.slope - before.slope);
-        let is_one = end.0 > begin.0 && after.slope > before.slope && factor >= self.states.first()?.factor;
+        let is_one = end[0] > begin[0] && after.slope > before.slope && factor >= self.states.first()?.factor;
         is_one.then_some(Kink { factor, before, after })
+    }
+
+    /// Factor and displacement of the last trial on a branch after failure that ends before [`FALLEN`], if this branch
+    /// is long enough.
+    fn end_of_branch(&self) -> Option<[f64; 2]> {
+        let mut known = self.states.iter().rev();
+        let last = known.find(|state| state.whole && self.growth(state) <= FALLEN)?;
+        (self.growth(last) >= SHORTEST * BENT).then_some([last.factor, last.displacement])
     }
 
     /// Whether a trial lies beyond the kink. Without a branch after failure: whether it found no equilibrium, or has

@@ -34,8 +34,8 @@ pub(super) fn ahead(plan: SearchPlan, known: &dyn Fn(f64) -> Option<CurveState>,
         };
         let mut states = Vec::new();
         let halt = search(plan, &mut |factor| {
-            let guessed = || path.guesses.iter().find(|state| state.factor == factor).copied();
-            known(factor).or_else(guessed).inspect(|&state| states.push(state))
+            let guessed = path.guesses.iter().find(|state| state.factor == factor).copied();
+            known(factor).or(guessed).inspect(|&state| states.push(state))
         });
         let Err(Halt::Needs(factor)) = halt else { continue };
         if !factors.contains(&factor) {

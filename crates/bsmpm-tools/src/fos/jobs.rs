@@ -62,14 +62,13 @@ pub(super) fn find<S: JobSource>(
     mut report: impl FnMut(&S::Trial),
 ) -> Result<(FactorCurve, Vec<S::Trial>), Error> {
     let (sender, receiver) = mpsc::channel();
-    let (running, made, asked) = (Vec::new(), Vec::new(), Vec::new());
     let mut jobs = Jobs {
         plan,
         most,
         source,
-        running,
-        made,
-        asked,
+        running: Vec::new(),
+        made: Vec::new(),
+        asked: Vec::new(),
         sender,
         receiver,
     };
@@ -173,7 +172,8 @@ impl<'a, S: JobSource> Jobs<'a, S> {
             factor,
             stop: Arc::clone(&stop),
         });
-        let (source, sender) = (self.source, self.sender.clone());
+        let source = self.source;
+        let sender = self.sender.clone();
         scope.spawn(move || {
             // Nobody listens once the search is over.
             let _ = sender.send((factor, source.make(factor, &stop)));

@@ -78,11 +78,10 @@ impl CountedPoints {
 
     fn counts(&self, point: &MovedPoint) -> bool {
         let Some([lower, upper]) = self.region else { return true };
-        let is_within = |axis: usize| {
+        (0..self.dims).all(|axis| {
             let start = point.place[axis] - point.displacement[axis];
             lower[axis] <= start && start <= upper[axis]
-        };
-        (0..self.dims).all(is_within)
+        })
     }
 }
 
@@ -92,14 +91,18 @@ impl MovedGround {
         let displacements = frame.real("displacement", 3)?;
         let stresses = frame.real("stress", 6);
         let ids = frame.numbers("id");
-        let point = |number: usize| MovedPoint {
-            id: ids.map_or(number as u64, |ids| ids[number]),
-            place: frame.position[number],
-            displacement: std::array::from_fn(|axis| displacements[3 * number + axis]),
-            stress: std::array::from_fn(|axis| stresses.map_or(0.0, |stresses| stresses[6 * number + axis])),
-        };
-        let mut points: Vec<MovedPoint> = (0..frame.position.len()).map(point).collect();
-        points.retain(|point| counted.counts(point));
+        let mut points = Vec::new();
+        for (number, &place) in frame.position.iter().enumerate() {
+            let point = MovedPoint {
+                id: ids.map_or(number as u64, |ids| ids[number]),
+                place,
+                displacement: std::array::from_fn(|axis| displacements[3 * number + axis]),
+                stress: std::array::from_fn(|axis| stresses.map_or(0.0, |stresses| stresses[6 * number + axis])),
+            };
+            if counted.counts(&point) {
+                points.push(point);
+            }
+        }
         let block = counted.block();
         (!points.is_empty()).then_some(Self { points, block })
     }
@@ -125,26 +128,26 @@ impl MovedGround {
     pub fn mechanism(&self, dims: usize, sides: &[HoldingSide]) -> Mechanism {
         let least = MOVING * self.displacement();
         let moving: Vec<&MovedPoint> = self.points.iter().filter(|point| point.size() >= least).collect();
-        let along = |axis: usize| moving.iter().map(move |point| point.place[axis]);
-        let pulled = |side: &HoldingSide| {
-            let [from, to] = side.cells;
-            let at_it = moving
-                .iter()
-                .filter(|point| from <= point.place[side.axis] && point.place[side.axis] <= to);
-            let stresses: Vec<f64> = at_it.map(|point| point.stress[side.axis]).collect();
-            let tension: f64 = stresses.iter().map(|stress| stress.max(0.0)).sum();
-            let share = tension / stresses.iter().map(|stress| stress.abs()).sum::<f64>();
-            (share > TENSION).then_some(PulledSide { side: side.name, share })
-        };
+        let mut lower = vec![f64::INFINITY; dims];
+        let mut upper = vec![f64::NEG_INFINITY; dims];
+        for point in &moving {
+            for axis in 0..dims {
+                lower[axis] = lower[axis].min(point.place[axis]);
+                upper[axis] = upper[axis].max(point.place[axis]);
+            }
+        }
+        let mut pulled = Vec::new();
+        for side in sides {
+            let share = tension(&moving, side);
+            if share > TENSION {
+                pulled.push(PulledSide { side: side.name, share });
+            }
+        }
         Mechanism {
-            lower: (0..dims)
-                .map(|axis| along(axis).fold(f64::INFINITY, f64::min))
-                .collect(),
-            upper: (0..dims)
-                .map(|axis| along(axis).fold(f64::NEG_INFINITY, f64::max))
-                .collect(),
+            lower,
+            upper,
             share: moving.len() as f64 / self.points.len() as f64,
-            pulled: sides.iter().filter_map(pulled).collect(),
+            pulled,
         }
     }
 
@@ -152,22 +155,28 @@ impl MovedGround {
     pub fn superposed(&self, other: &Self, times: f64) -> Self {
         let mut sorted: Vec<&MovedPoint> = other.points.iter().collect();
         sorted.sort_by_key(|point| point.id);
-        let superposed = |point: &MovedPoint| {
-            let found = sorted
-                .binary_search_by_key(&point.id, |other| other.id)
-                .map_or(point, |index| sorted[index]);
-            let along =
-                |axis: usize| point.displacement[axis] + times * (found.displacement[axis] - point.displacement[axis]);
-            MovedPoint {
-                displacement: std::array::from_fn(along),
-                ..point.clone()
+        let mut points = self.points.clone();
+        for point in &mut points {
+            let found = sorted.binary_search_by_key(&point.id, |other| other.id);
+            let others = found.map_or(point.displacement, |index| sorted[index].displacement);
+            for (u, other) in point.displacement.iter_mut().zip(others) {
+                *u += times * (other - *u);
             }
-        };
-        Self {
-            points: self.points.iter().map(superposed).collect(),
-            block: self.block,
         }
+        let block = self.block;
+        Self { points, block }
     }
+}
+
+/// Tension over the whole normal stress of the points that lie in the cells at a side of the grid.
+fn tension(points: &[&MovedPoint], side: &HoldingSide) -> f64 {
+    let [from, to] = side.cells;
+    let at_it = points
+        .iter()
+        .filter(|point| from <= point.place[side.axis] && point.place[side.axis] <= to);
+    let stresses: Vec<f64> = at_it.map(|point| point.stress[side.axis]).collect();
+    let tension: f64 = stresses.iter().map(|stress| stress.max(0.0)).sum();
+    tension / stresses.iter().map(|stress| stress.abs()).sum::<f64>()
 }
 
 impl MovedPoint {

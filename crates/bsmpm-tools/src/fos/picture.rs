@@ -1,18 +1,18 @@
 //! Draws displacement against factor, and the failure mechanism.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::curve::DOUBLED;
 use super::report::{FosReport, FosRow, Verdict};
 use super::subject::Subject;
 use crate::Error;
 use crate::line::FALLEN;
-use crate::picture::axes::{BELOW, ChartAxes, LEFT, LINEAR, title};
+use crate::picture::axes::{BELOW, ChartAxes, LEFT, LINEAR, Label, title};
 use crate::picture::canvas::Canvas;
 use crate::picture::colour::{self, INK, OUTLINE, Rgb};
 use crate::picture::legend::{self, LegendEntry, Mark};
-use crate::picture::ticks::{padded, range};
+use crate::picture::ticks::{ValueRange, range};
 use crate::plot::{self, FieldName, PlotArguments};
 use crate::record::RunRecord;
 
@@ -54,11 +54,11 @@ fn mechanism(directory: &Path, end: f64, output: &Path) -> Result<Vec<&'static s
             ..PlotArguments::of(directory.to_owned())
         };
         let drawn = plot::run(&arguments)?;
-        let is_body = |path: &&PathBuf| {
+        let body = drawn.iter().find(|path| {
             path.file_name()
                 .is_some_and(|name| name.to_string_lossy().starts_with(beginning))
-        };
-        if let Some(from) = drawn.iter().find(is_body) {
+        });
+        if let Some(from) = body {
             fs::copy(from, output.join(name)).map_err(bsmpm_io::Error::file("copy", from))?;
             names.push(name);
         }
@@ -83,7 +83,7 @@ struct FactorChart<'a> {
     /// of the vertical axis
     label: String,
     /// the trials that are seen, in groups
-    groups: Vec<(LegendEntry, Vec<(f64, f64)>)>,
+    groups: Vec<(LegendEntry, Vec<[f64; 2]>)>,
     /// the greatest factor that must be seen
     farthest: f64,
 }
@@ -100,40 +100,30 @@ impl<'a> FactorChart<'a> {
             report.kink.map(|kink| kink.after.reaches(fallen(report))),
         ];
         let farthest = ends.into_iter().flatten().fold(0.0, f64::max);
-        // Far beyond failure the displacements would leave no room for those before it.
-        let is_seen = |row: &&FosRow| {
-            farthest == 0.0
-                || (row.growth <= 1.05 * FALLEN && (row.verdict == Verdict::Stable || row.trial.factor <= farthest))
-        };
-        let places = |verdict: Verdict| {
-            let rows = report
-                .trials
-                .iter()
-                .filter(|row| row.verdict == verdict)
-                .filter(is_seen);
-            rows.map(|row| (row.trial.factor, scale * row.growth * report.elastic_displacement))
-                .collect::<Vec<_>>()
-        };
-        let group = |name: &str, verdict: Verdict, colour: Rgb| {
+        let mut groups = Vec::new();
+        for (name, verdict, colour) in [
+            ("stable", Verdict::Stable, colour::line(0, 3)),
+            ("failed", Verdict::Failed, colour::line(1, 3)),
             (
-                LegendEntry {
-                    name: name.to_owned(),
-                    colour,
-                    mark: Mark::Points,
-                },
-                places(verdict),
-            )
-        };
-        let mut groups = vec![
-            group("stable", Verdict::Stable, colour::line(0, 3)),
-            group("failed", Verdict::Failed, colour::line(1, 3)),
-            group(
                 "no equilibrium: the last one that was found",
                 Verdict::NoEquilibrium,
                 INK,
             ),
-        ];
-        groups.retain(|(_, places)| !places.is_empty());
+        ] {
+            let rows = report.trials.iter().filter(|row| row.verdict == verdict);
+            let places: Vec<[f64; 2]> = rows
+                .filter(|row| is_seen(row, farthest))
+                .map(|row| [row.trial.factor, scale * row.growth * report.elastic_displacement])
+                .collect();
+            let entry = LegendEntry {
+                name: name.to_owned(),
+                colour,
+                mark: Mark::Points,
+            };
+            if !places.is_empty() {
+                groups.push((entry, places));
+            }
+        }
         Self {
             report,
             scale,
@@ -177,17 +167,13 @@ impl<'a> FactorChart<'a> {
         title(&mut canvas, SHEET.0, &self.report.title, &below);
         legend::draw(&mut canvas, &entries, 40.0, ABOVE, SHEET.0 - 80.0);
         if let (Some(low), Some(high)) = (band.last_stable, band.first_failed) {
-            canvas.fill(
-                (axes.place((low, 0.0)).0, axes.top),
-                (axes.place((high, 0.0)).0, axes.bottom),
-                SHADE,
-            );
+            canvas.fill([axes.across(low), axes.top], [axes.across(high), axes.bottom], SHADE);
         }
         axes.rules(&mut canvas);
         let doubled = DOUBLED * self.elastic();
         axes.line(
             &mut canvas,
-            &[(axes.x.0, doubled), (axes.x.1, doubled)],
+            &[[axes.x.low, doubled], [axes.x.high, doubled]],
             LINE / 2.0,
             level.colour,
         );
@@ -198,8 +184,8 @@ impl<'a> FactorChart<'a> {
         }
         axes.draw(
             &mut canvas,
-            Some((self.report.plan.sought.label(), "-")),
-            (&self.label, "-"),
+            Some(Label::of(self.report.plan.sought.label(), "-")),
+            Label::of(&self.label, "-"),
         );
         canvas
     }
@@ -210,18 +196,17 @@ impl<'a> FactorChart<'a> {
     }
 
     fn axes(&self, top: f64) -> ChartAxes {
-        let places = || self.groups.iter().flat_map(|(_, places)| places);
+        let places = self.groups.iter().flat_map(|(_, places)| places);
         let farthest = Some(self.farthest).filter(|factor| *factor > 0.0);
-        let x = range(places().map(|place| place.0).chain(farthest)).unwrap_or((0.0, 1.0));
-        let high = places().map(|place| place.1).fold(DOUBLED * self.elastic(), f64::max);
-        let (x, y) = (padded(x.0, x.1, 0.03), (0.0, 1.06 * high));
+        let x = range(places.clone().map(|place| place[0]).chain(farthest)).unwrap_or(ValueRange::UNIT);
+        let high = places.map(|place| place[1]).fold(DOUBLED * self.elastic(), f64::max);
         ChartAxes {
             left: LEFT,
             top,
             right: SHEET.0 - RIGHT,
             bottom: SHEET.1 - BELOW,
-            x,
-            y,
+            x: x.padded(0.03),
+            y: ValueRange::of(0.0, 1.06 * high),
             scales: LINEAR,
         }
     }
@@ -229,11 +214,16 @@ impl<'a> FactorChart<'a> {
     /// Both branches, from the left to where they meet, and up to the end of what is seen.
     fn draw_branches(&self, canvas: &mut Canvas, axes: &ChartAxes) {
         let Some(kink) = &self.report.kink else { return };
-        let end = kink.after.reaches(fallen(self.report).min(axes.y.1 / self.scale));
-        let before = [axes.x.0, kink.factor].map(|factor| (factor, self.scale * kink.before.at(factor)));
-        let after = (end, self.scale * kink.after.at(end));
+        let end = kink.after.reaches(fallen(self.report).min(axes.y.high / self.scale));
+        let before = [axes.x.low, kink.factor].map(|factor| [factor, self.scale * kink.before.at(factor)]);
+        let after = [end, self.scale * kink.after.at(end)];
         axes.line(canvas, &[before[0], before[1], after], LINE, OUTLINE);
     }
+}
+
+/// Whether a trial is seen; far beyond failure the displacements would leave no room for those before it.
+fn is_seen(row: &FosRow, farthest: f64) -> bool {
+    farthest == 0.0 || (row.growth <= 1.05 * FALLEN && (row.verdict == Verdict::Stable || row.trial.factor <= farthest))
 }
 
 /// The displacement at the end of the branch after failure.

@@ -2,7 +2,7 @@
 
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
-use bsmpm_scene::{Case, MotionPath, NamedMaterial, Rigid, Shares};
+use bsmpm_scene::{Case, NamedMaterial, Rigid, Shares};
 
 /// The loosest tolerances with which a factor means anything: a study by finite elements found it 45.6 % too high with
 /// residuals of 1e-1, 2 % with 1e-2, and no difference from 1e-3 on.
@@ -125,11 +125,10 @@ fn loose_tolerances(case: &Case) -> impl Iterator<Item = String> {
 }
 
 pub(super) fn is_moved(case: &Case) -> bool {
-    let moves = |path: &MotionPath| path.rows.iter().any(|(_, by)| *by != [0.0; 3]);
     let footing = case.footing.iter().map(|footing| &footing.path);
-    footing
-        .chain(case.prescribed.iter().map(|prescribed| &prescribed.path))
-        .any(moves)
+    let prescribed = case.prescribed.iter().map(|prescribed| &prescribed.path);
+    let mut rows = footing.chain(prescribed).flat_map(|path| &path.rows);
+    rows.any(|(_, by)| *by != [0.0; 3])
 }
 
 fn is_loaded(case: &Case) -> bool {

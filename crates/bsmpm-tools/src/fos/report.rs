@@ -143,28 +143,30 @@ impl FosReport {
         let by = if plan.softens { "first-failure" } else { "kink" };
         let by_kink = Finding::of(by, curve.kinked(), kink.map(|kink| kink.factor));
         let doubled = Finding::of("doubled", curve.crossing(DOUBLED), curve.reaches(DOUBLED));
-        let verdict = |trial: &FosTrial| match trial.state() {
-            state if state.factor == ELASTIC => Verdict::Elastic,
-            state if !state.whole => Verdict::NoEquilibrium,
-            state if curve.is_failed(kink.as_ref(), &state) => Verdict::Failed,
-            _ => Verdict::Stable,
-        };
-        let row = |trial: FosTrial| FosRow {
-            verdict: verdict(&trial),
-            growth: curve.growth(&trial.state()),
-            trial,
-        };
-        let mut rows: Vec<FosRow> = trials.into_iter().map(row).collect();
+        let mut rows = Vec::new();
+        for trial in trials {
+            let state = trial.state();
+            let verdict = if state.factor == ELASTIC {
+                Verdict::Elastic
+            } else if !state.whole {
+                Verdict::NoEquilibrium
+            } else if curve.is_failed(kink.as_ref(), &state) {
+                Verdict::Failed
+            } else {
+                Verdict::Stable
+            };
+            let growth = curve.growth(&state);
+            rows.push(FosRow { verdict, growth, trial });
+        }
         rows.sort_by(|a, b| a.trial.factor.total_cmp(&b.trial.factor));
-        let at = |value: Option<f64>| {
-            rows.iter()
-                .find(|row| Some(row.trial.factor) == value)
-                .map(|row| &row.trial)
-        };
-        let mechanism = at(by_kink.first_failed).map(|trial| trial.mechanism.clone());
+        let [last_stable, first_failed] = [by_kink.last_stable, by_kink.first_failed].map(|factor| {
+            let row = rows.iter().find(|row| Some(row.trial.factor) == factor);
+            row.map(|row| &row.trial)
+        });
+        let mechanism = first_failed.map(|trial| trial.mechanism.clone());
         let of_ground = [
-            at(by_kink.last_stable).and_then(loose_points),
-            at(by_kink.last_stable).and_then(untrusted),
+            last_stable.and_then(loose_points),
+            last_stable.and_then(untrusted),
             mechanism
                 .as_ref()
                 .and_then(|mechanism| pulled_sides(mechanism, plan.sought)),
@@ -262,7 +264,9 @@ impl FosReport {
             .right("cuts", |row| row.trial.cuts)
             .right("CPU s", |row| format!("{:.2}", row.trial.cpu_seconds))
             .right("s", |row| format!("{:.2}", row.trial.seconds))
-            .column("", |row| some(row.trial.end.early().map(|early| row.early(early))))
+            .column("", |row| {
+                some(row.trial.end.early().map(|(load, reason)| row.early(load, reason)))
+            })
             .text("")
     }
 
@@ -288,7 +292,7 @@ impl FosReport {
 
 impl FosRow {
     /// What ended a trial early, at a share of its load.
-    fn early(&self, (load, reason): (f64, &str)) -> String {
+    fn early(&self, load: f64, reason: &str) -> String {
         let what = if matches!(self.trial.end, End::Left { .. }) {
             "left"
         } else {
@@ -325,8 +329,10 @@ fn untrusted(trial: &FosTrial) -> Option<String> {
 
 /// That the mechanism reaches sides of the grid which hold it by tension.
 fn pulled_sides(mechanism: &Mechanism, sought: Sought) -> Option<String> {
-    let side = |side: &PulledSide| format!("{} ({:.0} % of the normal stress)", side.side, 100.0 * side.share);
-    let sides: Vec<String> = mechanism.pulled.iter().map(side).collect();
+    let pulled = mechanism.pulled.iter();
+    let sides: Vec<String> = pulled
+        .map(|PulledSide { side, share }| format!("{side} ({:.0} % of the normal stress)", 100.0 * share))
+        .collect();
     (!sides.is_empty()).then(|| {
         format!(
             "W0803: the failure mechanism reaches sides of the grid that pull on the soil (tension): {}. The {} may \

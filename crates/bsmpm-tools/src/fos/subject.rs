@@ -158,8 +158,10 @@ impl Subject {
             });
         }
         let case = parsed(path, &bytes, &[&set[..], &from_the_start].concat())?;
-        let until = |name: &str| until(&case, name).map(|until| (name.to_owned(), until));
-        let stage = stage.map(until).transpose()?;
+        let stage = match stage {
+            Some(name) => Some((name.to_owned(), until(&case, name)?)),
+            None => None,
+        };
         let until = stage.as_ref().map(|(_, until)| *until);
         let reasons = refusals(&case, until);
         if !reasons.is_empty() {
@@ -185,7 +187,7 @@ impl Subject {
             .filter(|rigid| rigid.free.contains(&true))
             .map(|rigid| rigid.name.clone())
             .collect();
-        let (title, mut conditions) = (case.title.clone(), Conditions::of(&case, until));
+        let mut conditions = Conditions::of(&case, until);
         let is_whole = stage.is_none();
         let is_grown = is_whole && ramps(&case).any(|ramp| ramp == 0.0);
         if is_grown {
@@ -197,20 +199,20 @@ impl Subject {
         if undrained {
             set.push(UNDRAINED.to_owned());
         }
-        let trial = |value: f64| [&set[..], &sought.overrides(&as_it_is, value, conditions.stiffness)].concat();
-        let parsed = |factor: f64, further: &[String]| parsed(path, &bytes, &[&trial(factor)[..], further].concat());
+        let [of_first, of_elastic] =
+            [from, ELASTIC].map(|value| sought.overrides(&as_it_is, value, conditions.stiffness));
         let unloaded = if is_whole {
             Vec::new()
         } else {
             vec![format!("{UNLOADED}=true")]
         };
-        let (first, elastic_end) = (parsed(from, &[])?, parsed(ELASTIC, &unloaded)?.analysis.end);
+        let first = parsed(path, &bytes, &[&set[..], &of_first].concat())?;
+        let elastic = parsed(path, &bytes, &[&set[..], &of_elastic, &unloaded].concat())?;
         let end = first.analysis.end;
         if let Some((_, until)) = &stage {
             // The first one is of the whole strength.
             conditions.steps = ((end - until) / case.analysis.dt).round() as u64 - 1;
         }
-        let (path, is_stressed) = (path.to_owned(), is_whole && case.initial.is_some());
         let has_friction = case.has_interface_friction();
         let has_rigid = [
             !case.rigid.is_empty(),
@@ -219,13 +221,13 @@ impl Subject {
         let softens = followed(&case, until).iter().any(|named| named.material.softens());
         let holds_water = first.flow.is_some_and(|flow| flow.at_rest == Motion::Held);
         Ok(Self {
-            path,
+            path: path.to_owned(),
             bytes,
             set,
             stage,
-            title,
+            title: case.title.clone(),
             end,
-            elastic_end,
+            elastic_end: elastic.analysis.end,
             column,
             scale,
             sought,
@@ -235,7 +237,7 @@ impl Subject {
             free_bodies,
             case: as_it_is,
             is_grown,
-            is_stressed,
+            is_stressed: is_whole && case.initial.is_some(),
             has_friction,
             has_rigid,
             holds_water,
@@ -376,9 +378,9 @@ fn counted(case: &Case, region: &[f64]) -> Result<CountedPoints, Error> {
         );
         return Err(Error::Usage { reason });
     }
-    let corner = |numbers: &[f64]| std::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(0.0));
+    let corners = [lower, upper].map(|corner| std::array::from_fn(|axis| corner.get(axis).copied().unwrap_or(0.0)));
     Ok(CountedPoints {
-        region: Some([corner(lower), corner(upper)]),
+        region: Some(corners),
         ..whole
     })
 }
@@ -386,22 +388,24 @@ fn counted(case: &Case, region: &[f64]) -> Result<CountedPoints, Error> {
 /// The sides of the grid that hold the ground in both directions once the stages until the time `until` have begun.
 fn holding_sides(case: &Case, until: Option<f64>) -> Vec<HoldingSide> {
     let names = Side::of(case.geometry);
-    let is_axis = |axis: usize, upper: bool| case.geometry == Geometry::Axisymmetric && axis == 0 && !upper;
     let faces = case.faces_at(acting(case, until)).into_iter();
-    let holding = faces.filter(|of| matches!(of.support, Support::Fixed | Support::Roller));
-    let holding = holding.filter(|of| !is_axis(of.face.axis, of.face.upper));
-    let side = |axis: usize, upper: bool| {
+    let mut sides = Vec::new();
+    for of in faces.filter(|of| matches!(of.support, Support::Fixed | Support::Roller)) {
+        let axis = of.face.axis;
+        let upper = of.face.upper;
+        if case.geometry == Geometry::Axisymmetric && axis == 0 && !upper {
+            continue; // the axis of symmetry
+        }
         let line = &case.grid.axes[axis];
         let cells = line.cells();
-        let [from, to] = if upper { [cells - 1, cells] } else { [0, 1] };
-        let cells = [line.breakpoint(from), line.breakpoint(to)];
-        HoldingSide {
+        let ends = if upper { [cells - 1, cells] } else { [0, 1] };
+        sides.push(HoldingSide {
             name: names[axis][usize::from(upper)].word(),
             axis,
-            cells,
-        }
-    };
-    holding.map(|of| side(of.face.axis, of.face.upper)).collect()
+            cells: ends.map(|number| line.breakpoint(number)),
+        });
+    }
+    sides
 }
 
 /// What Young's moduli must be multiplied with so that the load strains no body by more than [`SMALL`], to three
@@ -421,12 +425,13 @@ fn stiffness(case: &Case, materials: &[NamedMaterial]) -> f64 {
         [a.min(c), b.max(d)]
     });
     let base = case.grid.lower()[up];
-    let of_body = |body: &bsmpm_scene::Body| {
+    let mut softest = f64::INFINITY;
+    for body in &case.bodies {
         let material = &materials[body.material].material;
-        let at = |y: f64| material.at(y - base).elastic().young;
-        at(body.region.corners()[0][up]).min(at(body.region.corners()[1][up]))
-    };
-    let softest = case.bodies.iter().map(of_body).fold(f64::INFINITY, f64::min);
+        for corner in body.region.corners() {
+            softest = softest.min(material.at(corner[up] - base).elastic().young);
+        }
+    }
     let densities = case.bodies.iter().filter_map(|body| {
         let named = &case.materials[body.material];
         named.saturated.or(named.density)
@@ -451,17 +456,11 @@ fn pressure(rigid: &Rigid, geometry: Geometry, gravity: f64) -> f64 {
     let half = match &rigid.shape {
         RigidShape::Circle { radius, .. } => *radius,
         RigidShape::Polygon(corners) => {
-            let most = |side: f64| {
-                corners
-                    .iter()
-                    .map(|corner| side * corner[0])
-                    .fold(f64::NEG_INFINITY, f64::max)
-            };
-            if is_round {
-                most(1.0)
-            } else {
-                0.5 * (most(1.0) + most(-1.0))
-            }
+            let [right, left] = [1.0, -1.0].map(|side| {
+                let places = corners.iter().map(|corner| side * corner[0]);
+                places.fold(f64::NEG_INFINITY, f64::max)
+            });
+            if is_round { right } else { 0.5 * (right + left) }
         }
         // Nothing moves freely in space.
         RigidShape::InSpace(_) => return 0.0,
@@ -519,8 +518,10 @@ impl Conditions {
         let mut sizes: Vec<String> = self.cell.iter().map(|size| format!("{} m", shown(*size))).collect();
         sizes.dedup();
         let cell = format!("h = {}", sizes.join(" x "));
-        let along = |points: &usize| vec![points.to_string(); self.cell.len()].join(" x ");
-        let points: Vec<String> = self.points_per_cell.iter().map(along).collect();
+        let points = self.points_per_cell.iter();
+        let points: Vec<String> = points
+            .map(|points| vec![points.to_string(); self.cell.len()].join(" x "))
+            .collect();
         format!("{cell}, {} points a cell, order {}", points.join(" and "), self.order)
     }
 

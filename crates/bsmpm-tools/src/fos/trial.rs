@@ -136,7 +136,8 @@ impl JobSource for Trials<'_> {
     type Trial = FosTrial;
 
     fn kept(&self, factor: f64) -> Result<Option<FosTrial>, Error> {
-        let (set, text) = (self.subject.overrides(factor), self.subject.text(factor)?);
+        let set = self.subject.overrides(factor);
+        let text = self.subject.text(factor)?;
         let task = self.task(factor, &set, &text);
         if !task.is_there(|manifest| manifest.case.text == text) {
             return Ok(None);
@@ -148,7 +149,8 @@ impl JobSource for Trials<'_> {
     /// [`Error::Run`] for one that ended neither in equilibrium nor for the want of it; [`Error::Launch`], and the
     /// errors of files.
     fn make(&self, factor: f64, stop: &Stop) -> Result<FosTrial, Error> {
-        let (set, text) = (self.subject.overrides(factor), self.subject.text(factor)?);
+        let set = self.subject.overrides(factor);
+        let text = self.subject.text(factor)?;
         let task = self.task(factor, &set, &text);
         self.read(factor, &task.directory, &self.solver.make(&task, stop)?)
     }
@@ -294,25 +296,23 @@ impl Trials<'_> {
     }
 
     fn read(&self, factor: f64, directory: &Path, outcome: &Outcome) -> Result<FosTrial, Error> {
-        let code = outcome.code.unwrap_or(u8::MAX);
-        let broken = |reason: String| Error::Run {
-            what: format!("the trial of the factor {factor}"),
-            code,
-            reason: format!("{reason} (whole in {})", launch::beside(directory, "log").display()),
-        };
         let [begin, whole] = self.subject.times(factor);
-        let carried = |manifest: &Manifest| {
-            manifest
-                .failure
-                .as_ref()
-                .map_or(0.0, |it| (it.time - begin).max(0.0) / (whole - begin))
-        };
-        let (reason, load) = (outcome.reason.clone(), outcome.manifest.as_ref().map(carried));
+        let load = outcome.manifest.as_ref().map(|manifest| match &manifest.failure {
+            Some(failure) => (failure.time - begin).max(0.0) / (whole - begin),
+            None => 0.0,
+        });
+        let reason = outcome.reason.clone();
         let end = match (outcome.state, load) {
             (RunState::Done, Some(_)) => End::Equilibrium,
             (RunState::NoConvergence, Some(load)) => End::NoEquilibrium { load, reason },
             (RunState::Left, Some(load)) => End::Left { load, reason },
-            _ => return Err(broken(reason)),
+            _ => {
+                return Err(Error::Run {
+                    what: format!("the trial of the factor {factor}"),
+                    code: outcome.code.unwrap_or(u8::MAX),
+                    reason: format!("{reason} (whole in {})", launch::beside(directory, "log").display()),
+                });
+            }
         };
         let loose = outcome
             .manifest

@@ -33,13 +33,10 @@ pub(crate) fn ranks(command: &[String]) -> usize {
         .windows(2)
         .find(|pair| options.contains(&&*pair[0]))
         .map(|pair| &*pair[1]);
-    let joined = || {
-        launcher
-            .iter()
-            .find_map(|word| word.strip_prefix("--ntasks=").or(word.strip_prefix("-n")))
-    };
+    let mut words = launcher.iter();
+    let joined = words.find_map(|word| word.strip_prefix("--ntasks=").or(word.strip_prefix("-n")));
     after
-        .or_else(joined)
+        .or(joined)
         .and_then(|number| number.parse().ok())
         .filter(|&ranks| ranks > 0)
         .unwrap_or(1)

@@ -116,16 +116,15 @@ impl Outcome {
         let reason = failure.map_or_else(|| last_line(directory), |failure| failure.reason.clone());
         let history = table::read(&directory.join(HISTORY)).ok();
         let cost = manifest.as_ref().map_or_else(RunCost::default, RunCost::of);
-        let (code, directory) = (Some(code), Some(directory.to_owned()));
         Self {
             state,
-            code,
+            code: Some(code),
             reason,
             manifest,
             history,
             cost,
             kept,
-            directory,
+            directory: Some(directory.to_owned()),
         }
     }
 

@@ -145,8 +145,8 @@ impl Stop {
         drop(state);
         // It is waited for in two steps: until nobody can send it a signal any more, no other process may get its
         // number.
-        let ended = || waitid(WaitId::Pid(process), WaitIdOptions::EXITED | WaitIdOptions::NOWAIT);
-        while ended().is_err_and(|error| error == Errno::INTR) {}
+        let options = WaitIdOptions::EXITED | WaitIdOptions::NOWAIT;
+        while waitid(WaitId::Pid(process), options).is_err_and(|error| error == Errno::INTR) {}
         self.state().process = None;
         UNDER_WAY.end(process, || child.wait())
     }

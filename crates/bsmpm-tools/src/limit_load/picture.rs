@@ -8,6 +8,7 @@ use super::report::LimitLoadReport;
 use crate::Error;
 use crate::batch::RunOrder;
 use crate::launch::Outcome;
+use crate::picture::axes::Label;
 use crate::picture::chart::{Chart, ChartCurve, ChartLevel};
 use crate::picture::colour;
 use crate::picture::legend::{LegendEntry, Mark};
@@ -50,8 +51,8 @@ fn draw_unit(report: &LimitLoadReport, unit: &str, curves: &[ChartCurve]) -> cra
     Chart {
         title: &report.title,
         below: &below,
-        x: ("Displacement", "m"),
-        y: ("Load", unit),
+        x: Label::of("Displacement", "m"),
+        y: Label::of("Load", unit),
         curves,
         levels: &levels,
         legend: curves.iter().map(|curve| &curve.entry).collect(),
@@ -82,19 +83,22 @@ fn curves(unit: &str, orders: &[RunOrder], outcomes: &[Outcome]) -> Vec<ChartCur
 }
 
 /// m and the load's unit: displacement, multiplied by the stiffness factor, and load of every step.
-fn places(load: &SoughtLoad, order: &RunOrder, outcome: &Outcome) -> Vec<(f64, f64)> {
+fn places(load: &SoughtLoad, order: &RunOrder, outcome: &Outcome) -> Vec<[f64; 2]> {
     let Some(history) = &outcome.history else {
         return Vec::new();
     };
     let stiffness = order.case.limit_load.as_ref().map_or(1.0, |sought| sought.stiffness);
     let times = history.get("time").unwrap_or_default();
-    let place = |(row, time): (usize, &f64)| {
+    let mut places = Vec::new();
+    for (row, time) in times.iter().enumerate() {
         let [x, y, z] = load.path.at(*time);
         let parts = load
             .columns
             .iter()
             .map(|(column, weight)| Some(weight * history.get(column)?.get(row)?));
-        Some((stiffness * x.hypot(y).hypot(z), parts.sum::<Option<f64>>()?))
-    };
-    times.iter().enumerate().filter_map(place).collect()
+        if let Some(load) = parts.sum::<Option<f64>>() {
+            places.push([stiffness * x.hypot(y).hypot(z), load]);
+        }
+    }
+    places
 }

@@ -93,12 +93,13 @@ impl LimitLoadReport {
         }
         let own = &orders[0].case;
         let names = loads(&outcomes[0]).iter().map(|load| &load.name);
-        let without = |name: &str| without_cohesion.and_then(|outcome| value(outcome, name));
-        let is_reached = |name: &&String| grids.iter().all(|grid| grid.name != **name || grid.is_reached);
-        let names: Vec<&String> = names.filter(is_reached).collect();
-        let extrapolated = names
-            .into_iter()
-            .map(|name| ExtrapolatedLoad::of(name, &grids, without(name)));
+        let mut extrapolated = Vec::new();
+        for name in names {
+            if grids.iter().all(|grid| grid.name != *name || grid.is_reached) {
+                let without_cohesion = without_cohesion.and_then(|outcome| value(outcome, name));
+                extrapolated.push(ExtrapolatedLoad::of(name, &grids, without_cohesion));
+            }
+        }
         let mut warnings: Vec<String> = Vec::new();
         for warning in orders.iter().flat_map(|order| &order.case.warnings) {
             if !warnings.contains(warning) {
@@ -115,7 +116,7 @@ impl LimitLoadReport {
             stabilisation: bsmpm_scene::words::Word::word(own.stabilisation).to_owned(),
             points_per_cell: own.bodies.iter().map(|body| body.points_per_cell).collect(),
             steps: (own.analysis.end / own.analysis.dt).round() as u64,
-            loads: extrapolated.collect(),
+            loads: extrapolated,
             grids,
             warnings,
         })

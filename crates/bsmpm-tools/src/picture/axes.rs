@@ -2,7 +2,7 @@
 
 use super::canvas::{Canvas, TextAlign, fitting, width};
 use super::colour::{INK, OUTLINE, RULE, Rgb};
-use super::ticks::{Scale, Ticks};
+use super::ticks::{Scale, Ticks, ValueRange};
 
 /// Sizes of letters in pixels, for a picture 1600 wide.
 pub(crate) const TITLE: f64 = 34.0;
@@ -20,7 +20,18 @@ const DASH: (f64, f64) = (16.0, 10.0);
 const DOT: f64 = 2.5;
 
 /// A quantity and its unit.
-pub(crate) type Label<'a> = (&'a str, &'a str);
+#[derive(Clone, Copy)]
+pub(crate) struct Label<'a> {
+    pub quantity: &'a str,
+    pub unit: &'a str,
+}
+
+impl<'a> Label<'a> {
+    /// The label of a quantity in a unit, which is `-` if it has none.
+    pub const fn of(quantity: &'a str, unit: &'a str) -> Self {
+        Self { quantity, unit }
+    }
+}
 
 /// A box of the sheet and the region of the plane that it shows.
 #[derive(Clone, Copy)]
@@ -30,8 +41,8 @@ pub(crate) struct ChartAxes {
     pub top: f64,
     pub right: f64,
     pub bottom: f64,
-    pub x: (f64, f64),
-    pub y: (f64, f64),
+    pub x: ValueRange,
+    pub y: ValueRange,
     /// Of x and y.
     pub scales: [Scale; 2],
 }
@@ -41,12 +52,18 @@ pub(crate) const LINEAR: [Scale; 2] = [Scale::Linear; 2];
 
 impl ChartAxes {
     /// Where a place of the region lies on the sheet.
-    pub fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
-        let (across, up) = (self.scales[0].share(x, self.x), self.scales[1].share(y, self.y));
-        (
-            self.left + across * (self.right - self.left),
-            self.bottom - up * (self.bottom - self.top),
-        )
+    pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [self.across(x), self.upward(y)]
+    }
+
+    /// Where a number of the horizontal axis lies on the sheet.
+    pub fn across(&self, x: f64) -> f64 {
+        self.left + self.scales[0].share(x, self.x) * (self.right - self.left)
+    }
+
+    /// Where a number of the vertical axis lies on the sheet.
+    pub fn upward(&self, y: f64) -> f64 {
+        self.bottom - self.scales[1].share(y, self.y) * (self.bottom - self.top)
     }
 
     fn x_ticks(&self) -> Ticks {
@@ -60,12 +77,12 @@ impl ChartAxes {
     /// Faint lines across the box at each tick, to be drawn first.
     pub fn rules(&self, canvas: &mut Canvas) {
         for x in self.x_ticks().values {
-            let x = self.place((x, self.y.0)).0;
-            canvas.fill((x - THIN / 2.0, self.top), (x + THIN / 2.0, self.bottom), RULE);
+            let x = self.across(x);
+            canvas.fill([x - THIN / 2.0, self.top], [x + THIN / 2.0, self.bottom], RULE);
         }
         for y in self.y_ticks().values {
-            let y = self.place((self.x.0, y)).1;
-            canvas.fill((self.left, y - THIN / 2.0), (self.right, y + THIN / 2.0), RULE);
+            let y = self.upward(y);
+            canvas.fill([self.left, y - THIN / 2.0], [self.right, y + THIN / 2.0], RULE);
         }
     }
 
@@ -73,23 +90,23 @@ impl ChartAxes {
     ///
     /// Without a label for `x` its ticks have no numbers: for axes above others that share it.
     pub fn draw(&self, canvas: &mut Canvas, x: Option<Label>, y: Label) {
-        canvas.frame((self.left, self.top), (self.right, self.bottom), THIN, INK);
+        canvas.frame([self.left, self.top], [self.right, self.bottom], THIN, INK);
         self.draw_x(canvas, x);
         let ticks = self.y_ticks();
         let mut widest: f64 = 0.0;
         for &value in &ticks.values {
-            let at = self.place((self.x.0, value)).1;
+            let at = self.upward(value);
             let text = ticks.text(value);
             widest = widest.max(width(&text, NUMBER));
-            canvas.fill((self.left - TICK, at - THIN / 2.0), (self.left, at + THIN / 2.0), INK);
-            canvas.text(&text, (self.left - TICK - 8.0, at), NUMBER, TextAlign::Right, INK);
+            canvas.fill([self.left - TICK, at - THIN / 2.0], [self.left, at + THIN / 2.0], INK);
+            canvas.text(&text, [self.left - TICK - 8.0, at], NUMBER, TextAlign::Right, INK);
         }
-        let label = ticks.label(y.0, y.1);
+        let label = ticks.label(y.quantity, y.unit);
         let size = fitting(&label, LABEL, self.bottom - self.top + 90.0);
-        let at = (
+        let at = [
             self.left - TICK - 8.0 - widest - 36.0,
             f64::midpoint(self.top, self.bottom),
-        );
+        ];
         canvas.upward(&label, at, size, INK);
     }
 
@@ -97,27 +114,27 @@ impl ChartAxes {
     fn draw_x(&self, canvas: &mut Canvas, label: Option<Label>) {
         let ticks = self.x_ticks();
         for &value in &ticks.values {
-            let at = self.place((value, self.y.0)).0;
+            let at = self.across(value);
             canvas.fill(
-                (at - THIN / 2.0, self.bottom),
-                (at + THIN / 2.0, self.bottom + TICK),
+                [at - THIN / 2.0, self.bottom],
+                [at + THIN / 2.0, self.bottom + TICK],
                 INK,
             );
             if label.is_some() {
                 canvas.text(
                     &ticks.text(value),
-                    (at, self.bottom + TICK + 22.0),
+                    [at, self.bottom + TICK + 22.0],
                     NUMBER,
                     TextAlign::Centre,
                     INK,
                 );
             }
         }
-        if let Some((quantity, unit)) = label {
+        if let Some(label) = label {
             let centre = f64::midpoint(self.left, self.right);
             canvas.text(
-                &ticks.label(quantity, unit),
-                (centre, self.bottom + 72.0),
+                &ticks.label(label.quantity, label.unit),
+                [centre, self.bottom + 72.0],
                 LABEL,
                 TextAlign::Centre,
                 INK,
@@ -127,18 +144,18 @@ impl ChartAxes {
 
     /// A dashed line across the box; returns its height on the sheet.
     pub fn level(&self, canvas: &mut Canvas, value: f64) -> f64 {
-        let at = self.place((self.x.0, value)).1;
+        let at = self.upward(value);
         let mut x = self.left;
         while x < self.right {
-            canvas.fill((x, at - 1.3), ((x + DASH.0).min(self.right), at + 1.3), OUTLINE);
+            canvas.fill([x, at - 1.3], [(x + DASH.0).min(self.right), at + 1.3], OUTLINE);
             x += DASH.0 + DASH.1;
         }
         at
     }
 
     /// A line through places of the region; a place that is not finite breaks it, and a place alone is a disc.
-    pub fn line(&self, canvas: &mut Canvas, places: &[(f64, f64)], width: f64, colour: Rgb) {
-        for run in places.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
+    pub fn line(&self, canvas: &mut Canvas, places: &[[f64; 2]], width: f64, colour: Rgb) {
+        for run in places.split(|[x, y]| !(x.is_finite() && y.is_finite())) {
             match run {
                 &[alone] => canvas.disc(self.place(alone), DOT * width, colour),
                 _ => canvas.line(run.iter().map(|&place| self.place(place)), width, colour),
@@ -159,7 +176,7 @@ pub(crate) fn label(quantity: &str, unit: &str) -> String {
 /// The title of a picture: what was solved and, smaller, what is seen.
 pub(crate) fn title(canvas: &mut Canvas, sheet: f64, text: &str, below: &str) {
     let size = fitting(text, TITLE, sheet - 60.0);
-    canvas.text(text, (sheet / 2.0, 42.0), size, TextAlign::Centre, INK);
+    canvas.text(text, [sheet / 2.0, 42.0], size, TextAlign::Centre, INK);
     let size = fitting(below, LABEL, sheet - 60.0);
-    canvas.text(below, (sheet / 2.0, 88.0), size, TextAlign::Centre, INK);
+    canvas.text(below, [sheet / 2.0, 88.0], size, TextAlign::Centre, INK);
 }

@@ -3,7 +3,7 @@
 use super::axes::{self, ChartAxes, LABEL, Label, NUMBER, THIN, TICK};
 use super::canvas::{Canvas, TextAlign, fitting, width};
 use super::colour::{self, INK};
-use super::ticks::Ticks;
+use super::ticks::{Ticks, ValueRange};
 
 /// Room for an upright bar right of the axes, with its numbers and label.
 pub(crate) const BESIDE: f64 = 240.0;
@@ -16,31 +16,30 @@ const SHADES: usize = 512;
 
 /// A range of numbers that colours stand for.
 pub(crate) struct Bar<'a> {
-    pub range: (f64, f64),
+    pub range: ValueRange,
     pub label: Label<'a>,
 }
 
 impl Bar<'_> {
     /// Draws the bar lying below the axes, its label on the left.
     pub fn lying(&self, canvas: &mut Canvas, axes: &ChartAxes) {
-        let ticks = Ticks::between(self.range.0, self.range.1, 8.0);
-        let label = ticks.label(self.label.0, self.label.1);
+        let ticks = Ticks::between(self.range.low, self.range.high, 8.0);
+        let label = ticks.label(self.label.quantity, self.label.unit);
         let size = fitting(&label, LABEL, 0.5 * (axes.right - axes.left));
-        let (left, right) = (axes.left + width(&label, size) + 28.0, axes.right);
-        let (top, bottom) = (
-            axes.bottom + axes::BELOW + 20.0,
-            axes.bottom + axes::BELOW + 20.0 + THICK,
-        );
+        let left = axes.left + width(&label, size) + 28.0;
+        let right = axes.right;
+        let top = axes.bottom + axes::BELOW + 20.0;
+        let bottom = top + THICK;
         for (from, to, shade) in shades(left, right) {
-            canvas.fill((from, top), (to, bottom), shade);
+            canvas.fill([from, top], [to, bottom], shade);
         }
-        canvas.frame((left, top), (right, bottom), THIN, INK);
+        canvas.frame([left, top], [right, bottom], THIN, INK);
         for &value in &ticks.values {
             let at = left + (right - left) * self.share(value);
-            canvas.fill((at - THIN / 2.0, bottom), (at + THIN / 2.0, bottom + TICK), INK);
+            canvas.fill([at - THIN / 2.0, bottom], [at + THIN / 2.0, bottom + TICK], INK);
             canvas.text(
                 &ticks.text(value),
-                (at, bottom + TICK + 22.0),
+                [at, bottom + TICK + 22.0],
                 NUMBER,
                 TextAlign::Centre,
                 INK,
@@ -48,7 +47,7 @@ impl Bar<'_> {
         }
         canvas.text(
             &label,
-            (axes.left, f64::midpoint(top, bottom)),
+            [axes.left, f64::midpoint(top, bottom)],
             size,
             TextAlign::Left,
             INK,
@@ -58,37 +57,37 @@ impl Bar<'_> {
     /// Draws the bar standing right of the axes, its label reading upward.
     pub fn upright(&self, canvas: &mut Canvas, axes: &ChartAxes) {
         let ChartAxes { top, bottom, .. } = *axes;
-        let ticks = Ticks::between(self.range.0, self.range.1, (bottom - top) / 90.0);
-        let (left, right) = (axes.right + 50.0, axes.right + 50.0 + THICK);
+        let ticks = Ticks::between(self.range.low, self.range.high, (bottom - top) / 90.0);
+        let left = axes.right + 50.0;
+        let right = left + THICK;
         for (from, to, shade) in shades(bottom, top) {
-            canvas.fill((left, to), (right, from), shade);
+            canvas.fill([left, to], [right, from], shade);
         }
-        canvas.frame((left, top), (right, bottom), THIN, INK);
+        canvas.frame([left, top], [right, bottom], THIN, INK);
         let mut widest: f64 = 0.0;
         for &value in &ticks.values {
-            let (at, text) = (bottom - (bottom - top) * self.share(value), ticks.text(value));
+            let at = bottom - (bottom - top) * self.share(value);
+            let text = ticks.text(value);
             widest = widest.max(width(&text, NUMBER));
-            canvas.fill((right, at - THIN / 2.0), (right + TICK, at + THIN / 2.0), INK);
-            canvas.text(&text, (right + TICK + 8.0, at), NUMBER, TextAlign::Left, INK);
+            canvas.fill([right, at - THIN / 2.0], [right + TICK, at + THIN / 2.0], INK);
+            canvas.text(&text, [right + TICK + 8.0, at], NUMBER, TextAlign::Left, INK);
         }
-        let label = ticks.label(self.label.0, self.label.1);
+        let label = ticks.label(self.label.quantity, self.label.unit);
         let size = fitting(&label, LABEL, bottom - top + 80.0);
-        canvas.upward(
-            &label,
-            (right + TICK + 8.0 + widest + 36.0, f64::midpoint(top, bottom)),
-            size,
-            INK,
-        );
+        let at = [right + TICK + 8.0 + widest + 36.0, f64::midpoint(top, bottom)];
+        canvas.upward(&label, at, size, INK);
     }
 
     /// Where a number lies in the range: 0 at its lower, 1 at its upper end.
     pub fn share(&self, value: f64) -> f64 {
-        (value - self.range.0) / (self.range.1 - self.range.0)
+        (value - self.range.low) / self.range.length()
     }
 }
 
 /// The colours in strips along the way between two edges.
 fn shades(from: f64, to: f64) -> impl Iterator<Item = (f64, f64, colour::Rgb)> {
-    let edge = move |i: usize| from + (to - from) * i as f64 / SHADES as f64;
-    (0..SHADES).map(move |i| (edge(i), edge(i + 1), colour::map(i as f64 / (SHADES - 1) as f64)))
+    (0..SHADES).map(move |i| {
+        let [from, to] = [i, i + 1].map(|edge| from + (to - from) * edge as f64 / SHADES as f64);
+        (from, to, colour::map(i as f64 / (SHADES - 1) as f64))
+    })
 }

@@ -38,7 +38,8 @@ pub(crate) struct Canvas {
 impl Canvas {
     /// A white sheet.
     pub fn new(width: f64, height: f64) -> Self {
-        let (width, height) = (width.round() as usize, height.round() as usize);
+        let width = width.round() as usize;
+        let height = height.round() as usize;
         let pixels = vec![WHITE[0]; 3 * FINE * FINE * width * height];
         Self {
             width,
@@ -54,38 +55,38 @@ impl Canvas {
         self.failure = self.failure.take().or(drawn.err());
     }
 
-    /// A text whose capitals are centred upright on `(x, y)`.
-    pub fn text(&mut self, text: &str, (x, y): (f64, f64), size: f64, align: TextAlign, colour: Rgb) {
-        let place = fine((x, y - CAPITAL_CENTRE * size));
+    /// A text whose capitals are centred upright on a place.
+    pub fn text(&mut self, text: &str, [x, y]: [f64; 2], size: f64, align: TextAlign, colour: Rgb) {
+        let place = fine([x, y - CAPITAL_CENTRE * size]).into();
         let style = style(size, align, colour, FontTransform::None);
         self.draw(|sheet| sheet.draw_text(text, &style, place).map_err(|error| error.to_string()));
     }
 
-    /// A text that reads upward, centred on `(x, y)`.
-    pub fn upward(&mut self, text: &str, (x, y): (f64, f64), size: f64, colour: Rgb) {
-        let place = fine((x - CAPITAL_CENTRE * size, y));
+    /// A text that reads upward, centred on a place.
+    pub fn upward(&mut self, text: &str, [x, y]: [f64; 2], size: f64, colour: Rgb) {
+        let place = fine([x - CAPITAL_CENTRE * size, y]).into();
         let style = style(size, TextAlign::Centre, colour, FontTransform::Rotate270);
         self.draw(|sheet| sheet.draw_text(text, &style, place).map_err(|error| error.to_string()));
     }
 
     /// A line through `points` with round joints. Points nearer than half a pixel to the one before add nothing.
-    pub fn line(&mut self, points: impl IntoIterator<Item = (f64, f64)>, width: f64, colour: Rgb) {
+    pub fn line(&mut self, points: impl IntoIterator<Item = [f64; 2]>, width: f64, colour: Rgb) {
         let style = filled(colour, width);
         let radius = (width * FINE as f64 / 2.0) as u32;
         self.draw(|sheet| {
-            let mut from: Option<(f64, f64)> = None;
+            let mut from: Option<[f64; 2]> = None;
             for to in points {
                 if let Some(last) = from {
-                    if (to.0 - last.0).hypot(to.1 - last.1) < 0.5 {
+                    if (to[0] - last[0]).hypot(to[1] - last[1]) < 0.5 {
                         continue;
                     }
                     sheet
-                        .draw_line(fine(last), fine(to), &style)
+                        .draw_line(fine(last).into(), fine(to).into(), &style)
                         .map_err(|error| error.to_string())?;
                 }
                 if radius > 2 {
                     sheet
-                        .draw_circle(fine(to), radius, &style, true)
+                        .draw_circle(fine(to).into(), radius, &style, true)
                         .map_err(|error| error.to_string())?;
                 }
                 from = Some(to);
@@ -95,40 +96,41 @@ impl Canvas {
     }
 
     /// A filled disc.
-    pub fn disc(&mut self, centre: (f64, f64), radius: f64, colour: Rgb) {
+    pub fn disc(&mut self, centre: [f64; 2], radius: f64, colour: Rgb) {
         let radius = (radius * FINE as f64).round() as u32;
         self.draw(|sheet| {
             let style = filled(colour, 1.0);
             sheet
-                .draw_circle(fine(centre), radius, &style, true)
+                .draw_circle(fine(centre).into(), radius, &style, true)
                 .map_err(|error| error.to_string())
         });
     }
 
-    /// A filled rectangle between two corners.
-    pub fn fill(&mut self, (left, top): (f64, f64), (right, bottom): (f64, f64), colour: Rgb) {
-        let ((left, top), (right, bottom)) = (fine((left, top)), fine((right, bottom)));
+    /// A filled rectangle between its upper left and lower right corners.
+    pub fn fill(&mut self, upper_left: [f64; 2], lower_right: [f64; 2], colour: Rgb) {
+        let [left, top] = fine(upper_left);
+        let [right, bottom] = fine(lower_right);
         for y in top..bottom {
             for x in left..right {
-                self.dot((x, y), colour);
+                self.dot([x, y], colour);
             }
         }
     }
 
-    /// The outline of a rectangle between two corners.
-    pub fn frame(&mut self, (left, top): (f64, f64), (right, bottom): (f64, f64), width: f64, colour: Rgb) {
+    /// The outline of a rectangle between its upper left and lower right corners.
+    pub fn frame(&mut self, [left, top]: [f64; 2], [right, bottom]: [f64; 2], width: f64, colour: Rgb) {
         let half = width / 2.0;
         for y in [top, bottom] {
-            self.fill((left - half, y - half), (right + half, y + half), colour);
+            self.fill([left - half, y - half], [right + half, y + half], colour);
         }
         for x in [left, right] {
-            self.fill((x - half, top - half), (x + half, bottom + half), colour);
+            self.fill([x - half, top - half], [x + half, bottom + half], colour);
         }
     }
 
     /// Colours one dot of the fine drawing; those outside the sheet are left out.
-    pub fn dot(&mut self, (x, y): (i32, i32), colour: Rgb) {
-        let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else {
+    pub fn dot(&mut self, place: [i32; 2], colour: Rgb) {
+        let [Ok(x), Ok(y)] = place.map(usize::try_from) else {
             return;
         };
         if x < FINE * self.width && y < FINE * self.height {
@@ -164,10 +166,13 @@ impl Canvas {
         let mut averaged = Vec::with_capacity(3 * self.width * self.height);
         for y in 0..self.height {
             for x in 0..3 * self.width {
-                let (column, channel) = (x / 3, x % 3);
-                let dot =
-                    |i: usize| 3 * ((FINE * y + i / FINE) * FINE * self.width + FINE * column + i % FINE) + channel;
-                let sum: usize = (0..FINE * FINE).map(|i| usize::from(self.pixels[dot(i)])).sum();
+                let column = x / 3;
+                let channel = x % 3;
+                let mut sum = 0;
+                for i in 0..FINE * FINE {
+                    let dot = (FINE * y + i / FINE) * FINE * self.width + FINE * column + i % FINE;
+                    sum += usize::from(self.pixels[3 * dot + channel]);
+                }
                 averaged.push(((sum + FINE * FINE / 2) / (FINE * FINE)) as u8);
             }
         }
@@ -221,6 +226,6 @@ fn rgb([red, green, blue]: Rgb) -> RGBColor {
 }
 
 /// A place of the picture in dots of the fine drawing.
-pub(crate) fn fine((x, y): (f64, f64)) -> (i32, i32) {
-    ((x * FINE as f64).round() as i32, (y * FINE as f64).round() as i32)
+pub(crate) fn fine(place: [f64; 2]) -> [i32; 2] {
+    place.map(|pixels| (pixels * FINE as f64).round() as i32)
 }

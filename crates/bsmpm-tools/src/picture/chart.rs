@@ -4,7 +4,7 @@ use super::axes::{BELOW, ChartAxes, LEFT, LINEAR, Label, NUMBER, title};
 use super::canvas::{Canvas, TextAlign, fitting, width};
 use super::colour::INK;
 use super::legend::{self, LegendEntry};
-use super::ticks::{padded, range};
+use super::ticks::{ValueRange, range};
 
 const SHEET: (f64, f64) = (1600.0, 1000.0);
 /// Room above the legend: without a title, with one, and with a line below it.
@@ -17,7 +17,7 @@ const WIDEST: f64 = 420.0;
 /// Places, and how they are drawn and named.
 pub(crate) struct ChartCurve {
     pub entry: LegendEntry,
-    pub places: Vec<(f64, f64)>,
+    pub places: Vec<[f64; 2]>,
 }
 
 /// A number on the vertical axis with a meaning of its own; the text may be empty.
@@ -58,7 +58,7 @@ impl Chart<'_> {
             .fold(0.0, f64::max)
             .min(WIDEST);
         let right = if texts > 0.0 { texts + 40.0 } else { RIGHT };
-        let (x, y) = self.ranges();
+        let [x, y] = self.ranges();
         let top = above + legend::height(&self.legend, room) + 20.0;
         let axes = ChartAxes {
             left: LEFT,
@@ -75,7 +75,7 @@ impl Chart<'_> {
         axes.rules(&mut canvas);
         self.draw_levels(&mut canvas, &axes);
         for ChartCurve { entry, places } in self.curves {
-            for run in places.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
+            for run in places.split(|[x, y]| !(x.is_finite() && y.is_finite())) {
                 let places: Vec<_> = run.iter().map(|&place| axes.place(place)).collect();
                 entry.mark.draw(&mut canvas, &places, LINE, entry.colour);
             }
@@ -85,26 +85,23 @@ impl Chart<'_> {
     }
 
     /// What the axes show: all places and levels, and zero upward, from which lengths and pressures are read.
-    fn ranges(&self) -> ((f64, f64), (f64, f64)) {
-        let places = || self.curves.iter().flat_map(|curve| &curve.places);
-        let upward = || {
-            places()
-                .map(|place| place.1)
-                .chain(self.levels.iter().map(|level| level.value))
-        };
-        let x = range(places().map(|place| place.0)).unwrap_or((0.0, 1.0));
+    fn ranges(&self) -> [ValueRange; 2] {
+        let places = self.curves.iter().flat_map(|curve| &curve.places);
+        let (across, mut upward): (Vec<f64>, Vec<f64>) = places.map(|&[x, y]| (x, y)).unzip();
+        upward.extend(self.levels.iter().map(|level| level.value));
+        let x = range(across).unwrap_or(ValueRange::UNIT);
         // What is zero all the time is none of a billionth's parts.
-        let y = range(upward().chain([0.0])).filter(|y| y.1 > y.0).unwrap_or((0.0, 1.0));
-        let y = padded(y.0, y.1, 0.06);
-        let y = if y.1 > 0.0 && upward().all(|value| value >= 0.0) {
-            (0.0, y.1)
-        } else {
-            y
-        };
+        let y = range(upward.iter().copied().chain([0.0]))
+            .filter(|y| y.high > y.low)
+            .unwrap_or(ValueRange::UNIT);
+        let mut y = y.padded(0.06);
+        if y.high > 0.0 && upward.iter().all(|value| *value >= 0.0) {
+            y.low = 0.0;
+        }
         // Discs at the ends are whole.
         let discs = self.curves.iter().any(|curve| curve.entry.mark != legend::Mark::Line);
-        let x = if x.1 > x.0 && !discs { x } else { padded(x.0, x.1, 0.03) };
-        (x, y)
+        let x = if x.high > x.low && !discs { x } else { x.padded(0.03) };
+        [x, y]
     }
 
     /// Dashed lines with their texts right of the axes, moved apart where they are too close.
@@ -119,7 +116,7 @@ impl Chart<'_> {
         for (at, (_, text)) in apart(&places, 1.3 * NUMBER).into_iter().zip(texts) {
             canvas.text(
                 text,
-                (axes.right + 14.0, at),
+                [axes.right + 14.0, at],
                 fitting(text, NUMBER, WIDEST),
                 TextAlign::Left,
                 INK,
@@ -128,22 +125,34 @@ impl Chart<'_> {
     }
 }
 
+/// Neighbours that are too close: the sum of their places and their number.
+struct PlaceGroup {
+    sum: f64,
+    count: usize,
+}
+
+impl PlaceGroup {
+    /// Where the one at `index` goes, when they are centred about their mean with `gap` between them.
+    fn place(&self, index: usize, gap: f64) -> f64 {
+        self.sum / self.count as f64 - gap * (self.count - 1) as f64 / 2.0 + gap * index as f64
+    }
+}
+
 /// Sorted places moved as little as it takes for each to be `gap` from the next: those that are too close are centred
 /// about their mean.
 fn apart(places: &[f64], gap: f64) -> Vec<f64> {
-    // Groups of neighbours: the sum of their places and their number.
-    let mut groups: Vec<(f64, usize)> = Vec::new();
-    let first = |&(sum, count): &(f64, usize)| sum / count as f64 - gap * (count - 1) as f64 / 2.0;
+    let mut groups: Vec<PlaceGroup> = Vec::new();
     for &place in places {
-        let mut group = (place, 1);
-        while let Some(above) = groups.pop_if(|above| first(above) + gap * above.1 as f64 > first(&group)) {
-            group = (above.0 + group.0, above.1 + group.1);
+        let mut group = PlaceGroup { sum: place, count: 1 };
+        while let Some(above) = groups.pop_if(|above| above.place(above.count, gap) > group.place(0, gap)) {
+            group.sum += above.sum;
+            group.count += above.count;
         }
         groups.push(group);
     }
     groups
         .iter()
-        .flat_map(|group| (0..group.1).map(move |index| first(group) + gap * index as f64))
+        .flat_map(|group| (0..group.count).map(|index| group.place(index, gap)))
         .collect()
 }
 

@@ -73,12 +73,9 @@ pub(crate) fn map(share: f64) -> Rgb {
     let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
     let below = (place as usize).min(VIRIDIS.len() - 2);
     let rest = place - below as f64;
-    let blend = |channel: usize| {
-        let (low, high) = (
-            f64::from(VIRIDIS[below][channel]),
-            f64::from(VIRIDIS[below + 1][channel]),
-        );
+    [0, 1, 2].map(|channel| {
+        let low = f64::from(VIRIDIS[below][channel]);
+        let high = f64::from(VIRIDIS[below + 1][channel]);
         (low + rest * (high - low)).round() as u8
-    };
-    [blend(0), blend(1), blend(2)]
+    })
 }

@@ -1,6 +1,7 @@
 //! Positions axes with equal scales.
 
 use super::axes::{ChartAxes, LEFT, LINEAR};
+use super::ticks::ValueRange;
 
 const WIDEST: f64 = 1600.0;
 const NARROWEST: f64 = 1000.0;
@@ -16,13 +17,13 @@ pub(crate) struct Layout {
     high: f64,
     /// How much longer a metre upward is than one across: 1, unless the region is lower than what was allowed.
     pub stretch: f64,
-    region: [(f64, f64); 2],
+    region: [ValueRange; 2],
 }
 
 impl Layout {
     /// A layout for the region of x and y, with `beside` pixels right of the axes. A region whose height is less than
     /// `lowest` of its width is stretched to that.
-    pub fn of(region: [(f64, f64); 2], beside: f64, lowest: f64) -> Self {
+    pub fn of(region: [ValueRange; 2], beside: f64, lowest: f64) -> Self {
         let aspect = aspect(region);
         let stretch = (lowest / aspect).max(1.0);
         let wide = (WIDEST - LEFT - beside).min(HIGHEST / aspect);
@@ -54,6 +55,6 @@ impl Layout {
 }
 
 /// The height of a region over its width.
-pub(crate) fn aspect([x, y]: [(f64, f64); 2]) -> f64 {
-    (y.1 - y.0) / (x.1 - x.0)
+pub(crate) fn aspect([x, y]: [ValueRange; 2]) -> f64 {
+    y.length() / x.length()
 }

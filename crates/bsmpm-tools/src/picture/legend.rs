@@ -32,7 +32,7 @@ const DISC: f64 = 7.0;
 
 impl Mark {
     /// Draws places of the sheet in this way.
-    pub fn draw(self, canvas: &mut Canvas, places: &[(f64, f64)], line: f64, colour: Rgb) {
+    pub fn draw(self, canvas: &mut Canvas, places: &[[f64; 2]], line: f64, colour: Rgb) {
         if self != Self::Points {
             canvas.line(places.iter().copied(), line, colour);
         }
@@ -79,17 +79,17 @@ pub(crate) fn draw(canvas: &mut Canvas, entries: &[&LegendEntry], left: f64, top
         let y = top + ROW * (index as f64 + 0.5);
         let mut x = left + (room - whole) / 2.0;
         for (entry, size) in row {
-            let middle = [(x + SAMPLE / 2.0, y)];
+            let middle = [[x + SAMPLE / 2.0, y]];
             match entry.mark {
                 Mark::Points => Mark::Points.draw(canvas, &middle, 0.0, entry.colour),
                 mark => {
-                    canvas.line([(x, y), (x + SAMPLE, y)], 4.0, entry.colour);
+                    canvas.line([[x, y], [x + SAMPLE, y]], 4.0, entry.colour);
                     mark.draw(canvas, &middle, 0.0, entry.colour);
                 }
             }
             canvas.text(
                 &entry.name,
-                (x + SAMPLE + SPACE, y),
+                [x + SAMPLE + SPACE, y],
                 sizes(entry, room).0,
                 TextAlign::Left,
                 INK,

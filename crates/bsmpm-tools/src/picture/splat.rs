@@ -1,12 +1,14 @@
 //! Draws a body: each pixel has the colour of the nearest material point.
 
 use std::collections::HashSet;
+use std::ops::Range;
 
 use bsmpm_io::frame::Frame;
 
 use super::axes::ChartAxes;
 use super::canvas::{Canvas, FINE, fine};
 use super::colour::Rgb;
+use super::ticks::ValueRange;
 
 /// How far a point's colour reaches, in its own size: enough to close a body that is stretched to four times its
 /// length.
@@ -25,8 +27,9 @@ pub(crate) fn sizes(frame: &Frame, geometry: &str) -> Vec<f64> {
             volumes.iter().map(|volume| volume.abs().cbrt()).collect()
         }
         Some(volumes) if geometry == "axisymmetric" => {
-            let area = |(volume, x): (&f64, &[f64; 3])| if x[0] > 0.0 { volume.abs() / x[0] } else { 0.0 };
-            volumes.iter().zip(&frame.position).map(area).map(f64::sqrt).collect()
+            let volumes = volumes.iter().zip(&frame.position);
+            let areas = volumes.map(|(volume, x)| if x[0] > 0.0 { volume.abs() / x[0] } else { 0.0 });
+            areas.map(f64::sqrt).collect()
         }
         _ => vec![spacing(&frame.position); frame.position.len()],
     }
@@ -49,8 +52,10 @@ fn spacing(points: &[[f64; 3]]) -> f64 {
         return (high[0] - low[0]).max(high[1] - low[1]).max(0.0) / count.max(1.0);
     }
     let net = 4.0 * first;
-    let square = |point: &[f64; 3]| [0, 1].map(|axis| ((point[axis] - low[axis]) / net) as u32);
-    let covered: HashSet<_> = points.iter().map(square).collect();
+    let covered: HashSet<_> = points
+        .iter()
+        .map(|point| [0, 1].map(|axis| ((point[axis] - low[axis]) / net) as u32))
+        .collect();
     net * (covered.len() as f64 / count).sqrt()
 }
 
@@ -68,7 +73,7 @@ const NOBODY: u32 = u32::MAX;
 /// The part of the plane where a body is drawn.
 pub(crate) struct SplatWindow {
     /// m  the ranges of x and y
-    pub ranges: [(f64, f64); 2],
+    pub ranges: [ValueRange; 2],
     /// Whether the body is held at the lower and upper ends of the ranges: what comes near to such an end goes up to
     /// it.
     pub walls: [[bool; 2]; 2],
@@ -81,45 +86,44 @@ pub(crate) fn draw(
     canvas: &mut Canvas,
     axes: &ChartAxes,
     window: &SplatWindow,
-    (points, sizes): (&[[f64; 3]], &[f64]),
+    points: &[[f64; 3]],
+    sizes: &[f64],
     colours: &[Rgb],
 ) {
-    for (place, point) in covered(axes, window, (points, sizes)) {
+    for (place, point) in covered(axes, window, points, sizes) {
         canvas.dot(place, colours[point]);
     }
 }
 
 /// The dots of the sheet that a body covers, each with the point whose colour it takes.
-fn covered(axes: &ChartAxes, window: &SplatWindow, (points, sizes): (&[[f64; 3]], &[f64])) -> Vec<((i32, i32), usize)> {
+fn covered(axes: &ChartAxes, window: &SplatWindow, points: &[[f64; 3]], sizes: &[f64]) -> Vec<([i32; 2], usize)> {
     let [x, y] = window.ranges;
-    let dots_per_metre = FINE as f64 * (axes.right - axes.left) / (axes.x.1 - axes.x.0);
-    let dots = |size: &f64| (size * dots_per_metre).max(1.0);
+    let dots_per_metre = FINE as f64 * (axes.right - axes.left) / axes.x.length();
+    let dots: Vec<f64> = sizes.iter().map(|size| (size * dots_per_metre).max(1.0)).collect();
     // Where the body is cut its points are small, but not their distances.
-    let usual = dots(&median(sizes));
-    let reach = |size: &f64| window.reach * dots(size).max(usual);
-    let largest = sizes.iter().map(reach).fold(0.0, f64::max);
-    let (lower, upper) = (fine(axes.place((x.0, y.1))), fine(axes.place((x.1, y.0))));
-    let mut nearest = NearestPoints::about(lower, upper, largest.min(MARGIN));
-    for (index, (point, size)) in points.iter().zip(sizes).enumerate() {
-        let reach = reach(size);
+    let usual = (median(sizes) * dots_per_metre).max(1.0);
+    let reaches: Vec<f64> = dots.iter().map(|size| window.reach * size.max(usual)).collect();
+    let largest = reaches.iter().copied().fold(0.0, f64::max);
+    let upper_left = fine(axes.place([x.low, y.high]));
+    let lower_right = fine(axes.place([x.high, y.low]));
+    let mut nearest = NearestPoints::about(upper_left, lower_right, largest.min(MARGIN));
+    for (index, (point, &reach)) in points.iter().zip(&reaches).enumerate() {
         for place in window.images([point[0], point[1]], reach / dots_per_metre) {
-            let (x, y) = axes.place(place);
+            let [x, y] = axes.place(place);
             nearest.add(index as u32, FINE as f64 * x, FINE as f64 * y, reach);
         }
     }
     let outside = nearest.distance_to_nobody();
     let mut found = Vec::new();
     for (at, (&(_, point), outside)) in nearest.dots.iter().zip(outside).enumerate() {
-        let Some(size) = sizes.get(point as usize) else {
-            continue;
-        };
-        if f64::from(outside) > reach(size) - SKIN * dots(size) {
-            let place = (
+        let point = point as usize;
+        if point < sizes.len() && f64::from(outside) > reaches[point] - SKIN * dots[point] {
+            let place = [
                 nearest.left + (at % nearest.width) as i32,
                 nearest.top + (at / nearest.width) as i32,
-            );
-            if (lower.0..upper.0).contains(&place.0) && (lower.1..upper.1).contains(&place.1) {
-                found.push((place, point as usize));
+            ];
+            if (0..2).all(|axis| (upper_left[axis]..lower_right[axis]).contains(&place[axis])) {
+                found.push((place, point));
             }
         }
     }
@@ -135,29 +139,31 @@ pub(crate) fn median(sizes: &[f64]) -> f64 {
 
 impl SplatWindow {
     /// A place and its mirror images behind the walls that it is nearer to than `reach`, m.
-    fn images(&self, place: [f64; 2], reach: f64) -> impl Iterator<Item = (f64, f64)> {
-        let along = |axis: usize| {
-            let (range, walls, at) = (self.ranges[axis], self.walls[axis], place[axis]);
-            let lower = (walls[0] && at - range.0 < reach).then_some(2.0 * range.0 - at);
-            let upper = (walls[1] && range.1 - at < reach).then_some(2.0 * range.1 - at);
-            [Some(at), lower, upper].into_iter().flatten()
-        };
-        let rows = along(1);
-        along(0).flat_map(move |x| rows.clone().map(move |y| (x, y)))
+    fn images(&self, place: [f64; 2], reach: f64) -> impl Iterator<Item = [f64; 2]> {
+        let [columns, rows] = [0, 1].map(|axis| self.images_along(axis, place[axis], reach));
+        columns.flat_map(move |x| rows.clone().map(move |y| [x, y]))
+    }
+
+    /// A coordinate along an axis and its mirror images, as [`SplatWindow::images`].
+    fn images_along(&self, axis: usize, at: f64, reach: f64) -> impl Iterator<Item = f64> + Clone {
+        let ValueRange { low, high } = self.ranges[axis];
+        let walls = self.walls[axis];
+        let lower = (walls[0] && at - low < reach).then_some(2.0 * low - at);
+        let upper = (walls[1] && high - at < reach).then_some(2.0 * high - at);
+        [Some(at), lower, upper].into_iter().flatten()
     }
 }
 
 impl NearestPoints {
     /// The dots between two corners and `margin` more on each side: a body that goes on beyond the window does not
     /// end there.
-    fn about(lower: (i32, i32), upper: (i32, i32), margin: f64) -> Self {
+    fn about(upper_left: [i32; 2], lower_right: [i32; 2], margin: f64) -> Self {
         let margin = margin.ceil() as i32;
-        let span = |from: i32, to: i32| (to - from + 2 * margin).max(1) as usize;
-        let (width, height) = (span(lower.0, upper.0), span(lower.1, upper.1));
+        let [width, height] = [0, 1].map(|axis| (lower_right[axis] - upper_left[axis] + 2 * margin).max(1) as usize);
         let dots = vec![(f32::INFINITY, NOBODY); width * height];
         Self {
-            left: lower.0 - margin,
-            top: lower.1 - margin,
+            left: upper_left[0] - margin,
+            top: upper_left[1] - margin,
             width,
             dots,
         }
@@ -165,14 +171,11 @@ impl NearestPoints {
 
     /// A point at `(x, y)` whose colour reaches `reach`, all in dots of the sheet.
     fn add(&mut self, point: u32, x: f64, y: f64, reach: f64) {
-        let (x, y) = (x - f64::from(self.left), y - f64::from(self.top));
+        let x = x - f64::from(self.left);
+        let y = y - f64::from(self.top);
         let height = self.dots.len() / self.width;
-        let span = |centre: f64, end: usize| {
-            let first = (centre - reach).ceil().max(0.0) as usize;
-            first..((centre + reach).floor() + 1.0).clamp(0.0, end as f64) as usize
-        };
-        for row in span(y, height) {
-            for column in span(x, self.width) {
+        for row in dots_within(y, reach, height) {
+            for column in dots_within(x, reach, self.width) {
                 let distance = ((column as f64 - x).powi(2) + (row as f64 - y).powi(2)) as f32;
                 let dot = &mut self.dots[row * self.width + column];
                 if distance <= (reach * reach) as f32 && distance < dot.0 {
@@ -190,10 +193,12 @@ impl NearestPoints {
             .iter()
             .map(|&(_, point)| if point == NOBODY { 0.0 } else { f32::INFINITY })
             .collect();
-        let (width, count) = (self.width, way.len());
+        let width = self.width;
+        let count = way.len();
         let diagonal = std::f32::consts::SQRT_2;
         for at in 0..count {
-            let (column, above) = (at % width, at.checked_sub(width));
+            let column = at % width;
+            let above = at.checked_sub(width);
             let left = (column > 0).then(|| way[at - 1] + 1.0);
             let up = above.map(|above| way[above] + 1.0);
             let up_left = above.filter(|_| column > 0).map(|above| way[above - 1] + diagonal);
@@ -206,7 +211,8 @@ impl NearestPoints {
                 .fold(way[at], f32::min);
         }
         for at in (0..count).rev() {
-            let (column, below) = (at % width, Some(at + width).filter(|&below| below < count));
+            let column = at % width;
+            let below = Some(at + width).filter(|&below| below < count);
             let right = (column + 1 < width).then(|| way[at + 1] + 1.0);
             let down = below.map(|below| way[below] + 1.0);
             let down_left = below.filter(|_| column > 0).map(|below| way[below - 1] + diagonal);
@@ -220,6 +226,12 @@ impl NearestPoints {
         }
         way
     }
+}
+
+/// The dots, of `count` along an axis, that are no farther than `reach` from a centre.
+fn dots_within(centre: f64, reach: f64, count: usize) -> Range<usize> {
+    let first = (centre - reach).ceil().max(0.0) as usize;
+    first..((centre + reach).floor() + 1.0).clamp(0.0, count as f64) as usize
 }
 
 #[cfg(test)]
@@ -238,18 +250,18 @@ mod tests {
             top: 0.0,
             right: 60.0,
             bottom: 60.0,
-            x: (0.0, 6.0),
-            y: (0.0, 6.0),
+            x: ValueRange::of(0.0, 6.0),
+            y: ValueRange::of(0.0, 6.0),
             scales: LINEAR,
         };
         let at = |reach: f64, x: f64| {
             let window = SplatWindow {
-                ranges: [(0.0, 6.0); 2],
+                ranges: [ValueRange::of(0.0, 6.0); 2],
                 walls: Default::default(),
                 reach,
             };
-            let wanted = fine(axes.place((x, 3.0)));
-            covered(&axes, &window, (&points, &vec![1.0; points.len()]))
+            let wanted = fine(axes.place([x, 3.0]));
+            covered(&axes, &window, &points, &vec![1.0; points.len()])
                 .iter()
                 .any(|(place, _)| *place == wanted)
         };

@@ -1,5 +1,46 @@
 //! Chooses round numbers for axes.
 
+/// A range of numbers, such as that which an axis shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ValueRange {
+    /// The smallest number.
+    pub low: f64,
+    /// The largest number.
+    pub high: f64,
+}
+
+impl ValueRange {
+    /// From 0 to 1, where there is nothing to be shown.
+    pub(crate) const UNIT: Self = Self::of(0.0, 1.0);
+
+    /// The range between two numbers.
+    pub const fn of(low: f64, high: f64) -> Self {
+        Self { low, high }
+    }
+
+    /// Returns the largest number less the smallest one.
+    pub fn length(self) -> f64 {
+        self.high - self.low
+    }
+
+    /// Returns whether a number lies in the range, its ends included.
+    pub fn contains(self, value: f64) -> bool {
+        (self.low..=self.high).contains(&value)
+    }
+
+    /// The range with `share` of its length added at both ends; one of no length gets some.
+    pub(crate) fn padded(self, share: f64) -> Self {
+        let Self { low, high } = self;
+        let length = self.length();
+        let room = if length > 1e-12 * high.abs().max(low.abs()) {
+            share * length
+        } else {
+            high.abs().max(1e-9) / 2.0
+        };
+        Self::of(low - room, high + room)
+    }
+}
+
 /// How numbers are spread along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scale {
@@ -12,16 +53,18 @@ pub(crate) enum Scale {
 }
 
 impl Scale {
-    /// Where a number lies between two others: 0 at `low`, 1 at `high`.
-    pub fn share(self, value: f64, (low, high): (f64, f64)) -> f64 {
+    /// Where a number lies in a range: 0 at its lower, 1 at its upper end.
+    pub fn share(self, value: f64, range: ValueRange) -> f64 {
+        let ValueRange { low, high } = range;
         match self {
             Self::Linear | Self::Whole => (value - low) / (high - low),
             Self::Logarithmic => (value / low).ln() / (high / low).ln(),
         }
     }
 
-    /// At most `count` ticks between two numbers, but at least two where so many are.
-    pub fn ticks(self, (low, high): (f64, f64), count: f64) -> Ticks {
+    /// At most `count` ticks in a range, but at least two where so many are.
+    pub fn ticks(self, range: ValueRange, count: f64) -> Ticks {
+        let ValueRange { low, high } = range;
         match self {
             Self::Linear => Ticks::between(low, high, count),
             Self::Whole => Ticks::between(low, high, count.min(high - low)),
@@ -83,7 +126,8 @@ impl Ticks {
 
     /// At most `count` powers of ten between two positive numbers, whose exponents are multiples of 1, 2, 3, ..
     pub fn powers(low: f64, high: f64, count: f64) -> Self {
-        let (first, last) = ((low.log10() - 1e-6).ceil() as i32, (high.log10() + 1e-6).floor() as i32);
+        let first = (low.log10() - 1e-6).ceil() as i32;
+        let last = (high.log10() + 1e-6).floor() as i32;
         let stride = (f64::from(last - first) / count.max(1.0)).ceil().max(1.0) as i32;
         let exponents = (first..=last).filter(|exponent| exponent % stride == 0);
         Self {
@@ -136,7 +180,17 @@ impl Ticks {
 
 /// A power of ten as such: `10⁻⁸`.
 fn power_text(value: f64) -> String {
-    let raised = |digit: char| match digit {
+    let exponent = format!("{:.0}", value.log10());
+    if exponent == "0" {
+        "1".to_owned()
+    } else {
+        "10".chars().chain(exponent.chars().map(superscript)).collect()
+    }
+}
+
+/// Returns a digit or a minus as a superscript.
+fn superscript(digit: char) -> char {
+    match digit {
         '-' => '⁻',
         '1' => '¹',
         '2' => '²',
@@ -145,12 +199,6 @@ fn power_text(value: f64) -> String {
             .to_digit(10)
             .and_then(|digit| char::from_u32('⁰' as u32 + digit))
             .unwrap_or(other),
-    };
-    let exponent = format!("{:.0}", value.log10());
-    if exponent == "0" {
-        "1".to_owned()
-    } else {
-        "10".chars().chain(exponent.chars().map(raised)).collect()
     }
 }
 
@@ -165,26 +213,16 @@ fn power_of(largest: f64) -> i32 {
     (((largest.log10() + lift) / 3.0).floor() as i32 * 3).clamp(-last, last)
 }
 
-/// A range with `share` of its length added at both ends; one of no length gets some.
-pub(crate) fn padded(low: f64, high: f64, share: f64) -> (f64, f64) {
-    let length = high - low;
-    let room = if length > 1e-12 * high.abs().max(low.abs()) {
-        share * length
-    } else {
-        high.abs().max(1e-9) / 2.0
-    };
-    (low - room, high + room)
-}
-
 /// The smallest and largest of finite numbers, if there are any.
-pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
-    values
-        .into_iter()
-        .filter(|value| value.is_finite())
-        .fold(None, |range, value| match range {
-            None => Some((value, value)),
-            Some((low, high)) => Some((value.min(low), value.max(high))),
-        })
+pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> Option<ValueRange> {
+    let mut range: Option<ValueRange> = None;
+    for value in values.into_iter().filter(|value| value.is_finite()) {
+        range = Some(match range {
+            None => ValueRange::of(value, value),
+            Some(ValueRange { low, high }) => ValueRange::of(value.min(low), value.max(high)),
+        });
+    }
+    range
 }
 
 #[cfg(test)]
@@ -209,28 +247,28 @@ mod tests {
 
     #[test]
     fn logarithmic_axes_have_powers_of_ten_and_whole_ones_no_fractions() {
-        let texts = |scale: Scale, range, count| {
-            let ticks = scale.ticks(range, count);
+        let texts = |scale: Scale, low, high, count| {
+            let ticks = scale.ticks(ValueRange::of(low, high), count);
             ticks.values.iter().map(|&value| ticks.text(value)).collect::<Vec<_>>()
         };
         assert_eq!(
-            texts(Scale::Logarithmic, (3e-4, 20.0), 9.0),
+            texts(Scale::Logarithmic, 3e-4, 20.0, 9.0),
             ["10⁻³", "10⁻²", "10⁻¹", "1", "10¹"]
         );
         assert_eq!(
-            texts(Scale::Logarithmic, (1e-17, 3.0), 6.0),
+            texts(Scale::Logarithmic, 1e-17, 3.0, 6.0),
             ["10⁻¹⁵", "10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "1"]
         );
-        assert_eq!(texts(Scale::Whole, (0.8, 4.2), 9.0), ["1", "2", "3", "4"]);
-        assert_eq!(texts(Scale::Linear, (0.8, 2.2), 9.0)[0], "0.8");
-        let share = Scale::Logarithmic.share(1e-4, (1e-8, 1.0));
+        assert_eq!(texts(Scale::Whole, 0.8, 4.2, 9.0), ["1", "2", "3", "4"]);
+        assert_eq!(texts(Scale::Linear, 0.8, 2.2, 9.0)[0], "0.8");
+        let share = Scale::Logarithmic.share(1e-4, ValueRange::of(1e-8, 1.0));
         assert!((share - 0.5).abs() < 1e-14, "{share}");
     }
 
     #[test]
     fn a_range_of_no_length_still_makes_an_axis() {
         for value in [0.0, 1e-30, -5.0, 1e12] {
-            let (low, high) = padded(value, value, 0.05);
+            let ValueRange { low, high } = ValueRange::of(value, value).padded(0.05);
             assert!(low < value && value < high);
             assert!(Ticks::between(low, high, 5.0).values.len() >= 2, "{value}");
         }

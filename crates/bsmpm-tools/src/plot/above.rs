@@ -5,14 +5,15 @@ use std::collections::HashMap;
 
 use super::body::region_of;
 use super::section;
+use super::space::slope;
 use crate::Error;
-use crate::picture::axes::{self, title};
+use crate::picture::axes::{self, Label, title};
 use crate::picture::bar::{self, Bar};
 use crate::picture::canvas::Canvas;
 use crate::picture::colour::{self, Rgb};
 use crate::picture::layout::{Layout, aspect};
 use crate::picture::splat;
-use crate::picture::ticks::range;
+use crate::picture::ticks::{ValueRange, range};
 use crate::record::{RunRecord, short};
 
 const ABOVE: f64 = 130.0;
@@ -41,7 +42,7 @@ struct Heights {
 
 impl Heights {
     /// Of a body that goes on so far `above` its highest points, m.
-    fn of(frame: &Frame, (lower, part): ([f64; 2], [f64; 2]), above: f64) -> Self {
+    fn of(frame: &Frame, lower: [f64; 2], part: [f64; 2], above: f64) -> Self {
         let mut highest: HashMap<[i64; 2], f64> = HashMap::new();
         for at in &frame.position {
             let of = [0, 1].map(|axis| ((at[axis] - lower[axis]) / part[axis]).floor() as i64);
@@ -50,19 +51,13 @@ impl Heights {
         }
         // Where points were pulled apart one of a layer below is the highest: no pit, but a trench is deeper than that.
         let deepest = part[0].max(part[1]);
-        let joined = |at: [i64; 2], by: &[i64; 2]| {
-            let beside = |sign: i64| highest.get(&[0, 1].map(|axis| at[axis] + sign * by[axis]));
-            Some(beside(-1)?.min(*beside(1)?))
-        };
-        let closed = |(at, top): (&[i64; 2], &f64)| {
-            let raised = ACROSS.iter().filter_map(|by| joined(*at, by)).fold(*top, f64::max);
-            (*at, if raised - top <= deepest { raised } else { *top })
-        };
-        Self {
-            part,
-            lower,
-            top: highest.iter().map(closed).collect(),
+        let mut top = HashMap::new();
+        for (&at, &height) in &highest {
+            let beside = ACROSS.iter().filter_map(|by| lower_neighbour(&highest, at, *by));
+            let raised = beside.fold(height, f64::max);
+            top.insert(at, if raised - height <= deepest { raised } else { height });
         }
+        Self { part, lower, top }
     }
 
     /// m  the middle of a part
@@ -73,18 +68,12 @@ impl Heights {
 
     /// Slope along an axis, by the neighbours that there are.
     fn slope(&self, at: [i64; 2], axis: usize) -> f64 {
-        let beside = |by: i64| {
+        let [before, after] = [-1, 1].map(|by| {
             let mut place = at;
             place[axis] += by;
             self.top.get(&place).copied()
-        };
-        let (here, length) = (self.top[&at], self.part[axis]);
-        match (beside(-1), beside(1)) {
-            (Some(before), Some(after)) => (after - before) / (2.0 * length),
-            (Some(before), None) => (here - before) / length,
-            (None, Some(after)) => (after - here) / length,
-            (None, None) => 0.0,
-        }
+        });
+        slope(before, self.top[&at], after, self.part[axis])
     }
 
     /// Share of the light that falls on a part.
@@ -96,26 +85,35 @@ impl Heights {
     }
 }
 
+/// Height (m) of the lower one of the two neighbours of a part along `by`; none where one of them is missing.
+fn lower_neighbour(highest: &HashMap<[i64; 2], f64>, at: [i64; 2], by: [i64; 2]) -> Option<f64> {
+    let before = highest.get(&[at[0] - by[0], at[1] - by[1]])?;
+    let after = highest.get(&[at[0] + by[0], at[1] + by[1]])?;
+    Some(before.min(*after))
+}
+
 /// Draws a picture for every frame of a solid, and returns their names; of a plane none.
 pub(super) fn draw(record: &RunRecord, frames: &[Frame]) -> Result<Vec<String>, Error> {
     let grid = record.manifest.grid.as_ref().filter(|_| record.is_solid());
     let Some((&[from_x, from_y, ..], &[x, y, ..])) = grid.map(|grid| (&grid.lower[..], &grid.cell[..])) else {
         return Ok(Vec::new());
     };
-    let parts = ([from_x, from_y], [x, y]);
-    let of = |frame: &Frame| Heights::of(frame, parts, section::above(record, frame));
-    let heights: Vec<Heights> = frames.iter().map(of).collect();
-    let ends = range(heights.iter().flat_map(|of| of.top.values()).copied());
-    let Some((low, high)) = ends else { return Ok(Vec::new()) };
+    let heights: Vec<Heights> = frames
+        .iter()
+        .map(|frame| Heights::of(frame, [from_x, from_y], [x, y], section::above(record, frame)))
+        .collect();
+    let Some(ends) = range(heights.iter().flat_map(|of| of.top.values()).copied()) else {
+        return Ok(Vec::new());
+    };
     // A level surface is no relief of rounding.
-    let room = (FLAT * x.min(y) - (high - low)).max(0.0) / 2.0;
-    let ends = (low - room, high + room);
+    let room = (FLAT * x.min(y) - ends.length()).max(0.0) / 2.0;
+    let ends = ValueRange::of(ends.low - room, ends.high + room);
     let mut names = Vec::new();
     for (frame, heights) in frames.iter().zip(&heights) {
         let name = format!("height_{}.png", short(frame.time));
         let bar = Bar {
             range: ends,
-            label: ("Height of the surface", "m"),
+            label: Label::of("Height of the surface", "m"),
         };
         picture(record, frame, heights, bar).save(&record.directory.join(&name))?;
         names.push(name);
@@ -136,11 +134,12 @@ fn picture(record: &RunRecord, frame: &Frame, heights: &Heights, bar: Bar) -> Ca
     title(&mut canvas, layout.width, &record.manifest.case.title, &below);
     let mut parts: Vec<[i64; 2]> = heights.top.keys().copied().collect();
     parts.sort_unstable();
-    let shade = |at: &[i64; 2]| -> Rgb {
+    let mut shades: Vec<Rgb> = Vec::new();
+    for at in &parts {
         let lit = heights.lit(*at);
-        colour::map(bar.share(heights.top[at])).map(|part| (f64::from(part) * lit).round() as u8)
-    };
-    let shades: Vec<Rgb> = parts.iter().map(shade).collect();
+        let colour = colour::map(bar.share(heights.top[at]));
+        shades.push(colour.map(|part| (f64::from(part) * lit).round() as u8));
+    }
     let places: Vec<[f64; 3]> = parts.iter().map(|at| heights.middle(*at)).collect();
     let sizes = vec![heights.part[0].max(heights.part[1]); places.len()];
     let inside = splat::SplatWindow {
@@ -148,8 +147,8 @@ fn picture(record: &RunRecord, frame: &Frame, heights: &Heights, bar: Bar) -> Ca
         walls: Default::default(),
         reach: REACH,
     };
-    splat::draw(&mut canvas, &axes, &inside, (&places, &sizes), &shades);
-    axes.draw(&mut canvas, Some(("x", "m")), ("y", "m"));
+    splat::draw(&mut canvas, &axes, &inside, &places, &sizes, &shades);
+    axes.draw(&mut canvas, Some(Label::of("x", "m")), Label::of("y", "m"));
     if lying {
         bar.lying(&mut canvas, &axes);
     } else {
@@ -172,7 +171,7 @@ mod tests {
             position,
             fields: Vec::new(),
         };
-        let heights = Heights::of(&frame, ([0.0, 0.0], [1.0, 1.0]), 0.25);
+        let heights = Heights::of(&frame, [0.0, 0.0], [1.0, 1.0], 0.25);
         assert_eq!(heights.top.len(), 3);
         assert_eq!(heights.middle([1, 0]), [1.5, 0.5, 3.25]);
         assert_eq!(
@@ -197,7 +196,7 @@ mod tests {
             position,
             fields: Vec::new(),
         };
-        let heights = Heights::of(&frame, ([-3.0, 0.0], [1.0, 1.0]), 0.0);
+        let heights = Heights::of(&frame, [-3.0, 0.0], [1.0, 1.0], 0.0);
         assert_eq!(
             [0, 1, 2, 3, 4, 5].map(|x| heights.top[&[x, 0]]),
             [2.0, 2.0, 3.0, 1.0, 3.0, 1.0]

@@ -3,6 +3,7 @@
 use bsmpm_io::table::Columns;
 
 use crate::Error;
+use crate::picture::axes::Label;
 use crate::picture::chart::{Chart, ChartCurve};
 use crate::picture::colour::{self, INK};
 use crate::picture::legend::{LegendEntry, Mark};
@@ -126,20 +127,20 @@ pub(super) fn draw(record: &RunRecord, reference: Option<&Columns>) -> Result<Ve
 impl Across {
     fn axis(self, record: &RunRecord) -> Option<Axis<'_>> {
         if self == Time {
-            let (label, unit) = record.time_label();
+            let Label { quantity, unit } = record.time_label();
             let values = record.history.as_ref()?.get("time")?;
             return Some(Axis {
                 column: "time",
                 values,
                 factor: 1.0,
-                label: label.to_owned(),
+                label: quantity.to_owned(),
                 unit,
                 note: String::new(),
             });
         }
         let column = *record.columns("penetration").first()?;
         // A strip that stays where it is has no such curve.
-        range(column.values.iter().copied()).filter(|range| range.1 > range.0)?;
+        range(column.values.iter().copied()).filter(|range| range.high > range.low)?;
         let width = record.footing_width().filter(|_| column.unit == "m");
         let (label, unit) = match width {
             Some(_) => ("Penetration z/B".to_owned(), "-"),
@@ -173,26 +174,28 @@ impl Picture {
 
     /// The columns that there are, those of one unit and scale together.
     fn groups<'a>(&self, record: &'a RunRecord) -> Vec<Vec<Recorded<'a>>> {
-        let recorded = |quantities: &[&str]| -> Vec<Recorded<'a>> {
-            let columns = quantities.iter().flat_map(|quantity| record.columns(quantity));
-            columns
-                .filter(|column| !column.values.is_empty() && self.is_about(column))
-                .collect()
-        };
-        let mut columns = recorded(self.up);
+        let mut columns = self.recorded(record, self.up);
         if !columns.is_empty() {
-            columns.extend(recorded(self.beside));
+            columns.extend(self.recorded(record, self.beside));
         }
         let mut groups: Vec<Vec<Recorded>> = Vec::new();
         for column in columns {
-            let is_alike = |group: &&mut Vec<Recorded>| (group[0].unit, group[0].scale) == (column.unit, column.scale);
-            match groups.iter_mut().find(is_alike) {
+            let mut known = groups.iter_mut();
+            match known.find(|group| (group[0].unit, group[0].scale) == (column.unit, column.scale)) {
                 Some(group) => group.push(column),
                 None => groups.push(vec![column]),
             }
         }
         groups.sort_by_key(|group| group[0].scale != 1.0);
         groups
+    }
+
+    /// The columns of these quantities that have rows and that the picture is about.
+    fn recorded<'a>(&self, record: &'a RunRecord, quantities: &[&str]) -> Vec<Recorded<'a>> {
+        let columns = quantities.iter().flat_map(|quantity| record.columns(quantity));
+        columns
+            .filter(|column| !column.values.is_empty() && self.is_about(column))
+            .collect()
     }
 
     fn is_about(&self, column: &Recorded) -> bool {
@@ -221,9 +224,9 @@ impl Picture {
             });
         }
         // The points of a reference whose columns bear the names of ours.
-        let referred = |name: &str| Some((reference?.get(axis.column)?, reference?.get(name)?));
         for column in columns {
-            if let Some((across, values)) = referred(column.name) {
+            let referred = reference.and_then(|table| Some((table.get(axis.column)?, table.get(column.name)?)));
+            if let Some((across, values)) = referred {
                 let name = format!("reference, {}", column.name);
                 let entry = LegendEntry {
                     name,
@@ -252,8 +255,8 @@ impl Picture {
         let chart = Chart {
             title,
             below: &below,
-            x: (&axis.label, axis.unit),
-            y: (&label, columns[0].shown_unit()),
+            x: Label::of(&axis.label, axis.unit),
+            y: Label::of(&label, columns[0].shown_unit()),
             curves: &curves,
             levels: &[],
             legend,
@@ -263,7 +266,7 @@ impl Picture {
 }
 
 impl Axis<'_> {
-    fn places(&self, across: &[f64], up: &[f64]) -> Vec<(f64, f64)> {
-        across.iter().map(|x| x * self.factor).zip(up.iter().copied()).collect()
+    fn places(&self, across: &[f64], up: &[f64]) -> Vec<[f64; 2]> {
+        across.iter().zip(up).map(|(x, &y)| [x * self.factor, y]).collect()
     }
 }

@@ -3,7 +3,8 @@
 use bsmpm_io::frame::{FieldValues, Frame};
 use clap::ValueEnum;
 
-use crate::picture::ticks::padded;
+use crate::picture::axes::Label;
+use crate::picture::ticks::ValueRange;
 
 /// The share of points whose values lie beyond each end of the range of colours, so that a few wild ones do not set it.
 const BEYOND: f64 = 0.005;
@@ -66,62 +67,74 @@ struct PlotSource {
     unit: &'static str,
 }
 
-impl FieldName {
-    fn source(self) -> PlotSource {
-        let stress = |component, quantity| PlotSource {
+impl PlotSource {
+    /// A component of the Cauchy stress.
+    fn stress(component: usize, quantity: &'static str) -> Self {
+        Self {
             field: "stress",
             components: 6,
             component: Some(component),
             scale: 1e-3,
             quantity,
             unit: "kPa",
-        };
-        let principal = |component, quantity| PlotSource {
+        }
+    }
+
+    /// A principal stress.
+    fn principal(component: usize, quantity: &'static str) -> Self {
+        Self {
             field: "principal_stresses",
             components: 3,
-            component: Some(component),
-            scale: 1e-3,
-            quantity,
-            unit: "kPa",
-        };
-        let vector = |field, quantity, unit| PlotSource {
-            field,
-            components: 3,
-            component: None,
-            scale: 1.0,
-            quantity,
-            unit,
-        };
-        let scalar = |field, scale, quantity, unit| PlotSource {
+            ..Self::stress(component, quantity)
+        }
+    }
+
+    /// A field of one component.
+    fn scalar(field: &'static str, scale: f64, quantity: &'static str, unit: &'static str) -> Self {
+        Self {
             field,
             components: 1,
             component: Some(0),
             scale,
             quantity,
             unit,
-        };
+        }
+    }
+
+    /// The length of a vector.
+    fn vector(field: &'static str, quantity: &'static str, unit: &'static str) -> Self {
+        Self {
+            components: 3,
+            component: None,
+            ..Self::scalar(field, 1.0, quantity, unit)
+        }
+    }
+}
+
+impl FieldName {
+    fn source(self) -> PlotSource {
         match self {
-            Self::StressXx => stress(0, "Horizontal stress σxx"),
-            Self::StressYy => stress(1, "Vertical stress σyy"),
-            Self::StressZz => stress(2, "Out-of-plane stress σzz"),
-            Self::StressXy => stress(3, "Shear stress σxy"),
-            Self::Pressure => scalar("pressure", 1e-3, "Pressure", "kPa"),
-            Self::PlasticStrain => scalar("plastic_strain", 1.0, "Accumulated plastic strain", "-"),
-            Self::Displacement => vector("displacement", "Displacement", "m"),
-            Self::Velocity => vector("velocity", "Velocity", "m/s"),
-            Self::Q => scalar("q", 1e-3, "Deviatoric stress", "kPa"),
-            Self::PrincipalLargest => principal(0, "Largest principal stress"),
-            Self::PrincipalSmallest => principal(2, "Smallest principal stress"),
-            Self::MobilisedStrength => scalar("mobilised_strength", 1.0, "Mobilised strength", "-"),
-            Self::DeviatoricStrain => scalar("deviatoric_strain", 1.0, "Deviatoric strain", "-"),
-            Self::Yielding => scalar("yielding", 1.0, "Yielding", "-"),
-            Self::Density => scalar("density", 1.0, "Density", "kg/m3"),
-            Self::Body => scalar("body", 1.0, "Body", "-"),
-            Self::PorePressure => scalar("pore_pressure", 1e-3, "Pore pressure", "kPa"),
-            Self::ExcessPressure => scalar("excess_pressure", 1e-3, "Excess pore pressure", "kPa"),
-            Self::Saturation => scalar("saturation", 1.0, "Saturation", "-"),
-            Self::Porosity => scalar("porosity", 1.0, "Porosity", "-"),
-            Self::Flux => vector("flux", "Flux of water", "m/s"),
+            Self::StressXx => PlotSource::stress(0, "Horizontal stress σxx"),
+            Self::StressYy => PlotSource::stress(1, "Vertical stress σyy"),
+            Self::StressZz => PlotSource::stress(2, "Out-of-plane stress σzz"),
+            Self::StressXy => PlotSource::stress(3, "Shear stress σxy"),
+            Self::Pressure => PlotSource::scalar("pressure", 1e-3, "Pressure", "kPa"),
+            Self::PlasticStrain => PlotSource::scalar("plastic_strain", 1.0, "Accumulated plastic strain", "-"),
+            Self::Displacement => PlotSource::vector("displacement", "Displacement", "m"),
+            Self::Velocity => PlotSource::vector("velocity", "Velocity", "m/s"),
+            Self::Q => PlotSource::scalar("q", 1e-3, "Deviatoric stress", "kPa"),
+            Self::PrincipalLargest => PlotSource::principal(0, "Largest principal stress"),
+            Self::PrincipalSmallest => PlotSource::principal(2, "Smallest principal stress"),
+            Self::MobilisedStrength => PlotSource::scalar("mobilised_strength", 1.0, "Mobilised strength", "-"),
+            Self::DeviatoricStrain => PlotSource::scalar("deviatoric_strain", 1.0, "Deviatoric strain", "-"),
+            Self::Yielding => PlotSource::scalar("yielding", 1.0, "Yielding", "-"),
+            Self::Density => PlotSource::scalar("density", 1.0, "Density", "kg/m3"),
+            Self::Body => PlotSource::scalar("body", 1.0, "Body", "-"),
+            Self::PorePressure => PlotSource::scalar("pore_pressure", 1e-3, "Pore pressure", "kPa"),
+            Self::ExcessPressure => PlotSource::scalar("excess_pressure", 1e-3, "Excess pore pressure", "kPa"),
+            Self::Saturation => PlotSource::scalar("saturation", 1.0, "Saturation", "-"),
+            Self::Porosity => PlotSource::scalar("porosity", 1.0, "Porosity", "-"),
+            Self::Flux => PlotSource::vector("flux", "Flux of water", "m/s"),
         }
     }
 
@@ -137,7 +150,7 @@ impl FieldName {
     }
 
     /// The label of the colour bar, of a plane or of a section of a solid across an axis.
-    pub(super) fn label(self, across: Option<usize>) -> (&'static str, &'static str) {
+    pub(super) fn label(self, across: Option<usize>) -> Label<'static> {
         let source = self.source();
         let quantity = match (self, across) {
             (Self::StressXx, Some(0)) => "Stress σxx across the section",
@@ -146,7 +159,7 @@ impl FieldName {
             (Self::StressZz, Some(_)) => "Vertical stress σzz",
             _ => source.quantity,
         };
-        (quantity, source.unit)
+        Label::of(quantity, source.unit)
     }
 
     /// The quantity at every point of a frame, in the unit of [`FieldName::label`].
@@ -175,7 +188,7 @@ impl FieldName {
     }
 
     /// The range of colours: all values but the most extreme; lengths and strains begin at zero.
-    pub(super) fn range(self, values: &[Vec<f64>]) -> (f64, f64) {
+    pub(super) fn range(self, values: &[Vec<f64>]) -> ValueRange {
         let mut all: Vec<f64> = values
             .iter()
             .flatten()
@@ -183,46 +196,43 @@ impl FieldName {
             .filter(|value| value.is_finite())
             .collect();
         all.sort_unstable_by(f64::total_cmp);
-        let at = |share: f64| {
-            all.get((share * all.len().saturating_sub(1) as f64).round() as usize)
-                .copied()
-                .unwrap_or(0.0)
-        };
-        let (low, high) = (at(BEYOND), at(1.0 - BEYOND));
+        let last = all.len().saturating_sub(1) as f64;
+        let [low, high] = [BEYOND, 1.0 - BEYOND].map(|share| {
+            let at = (share * last).round() as usize;
+            all.get(at).copied().unwrap_or(0.0)
+        });
         match self {
-            _ if self.begins_at_zero() && high > 0.0 => (0.0, high),
-            _ if self.begins_at_zero() => (0.0, 1.0),
-            _ if high > low => (low, high),
-            _ => padded(low, high, 0.0),
+            _ if self.begins_at_zero() && high > 0.0 => ValueRange::of(0.0, high),
+            _ if self.begins_at_zero() => ValueRange::UNIT,
+            _ if high > low => ValueRange::of(low, high),
+            _ => ValueRange::of(low, high).padded(0.0),
         }
     }
 
     /// What lies beyond the range of colours by more than a twentieth of it, to be said below a title.
-    pub(super) fn beyond(self, values: &[f64], (low, high): (f64, f64)) -> String {
-        let (least, largest) = values
-            .iter()
-            .fold((high, low), |(least, most), &x| (x.min(least), x.max(most)));
-        let room = 0.05 * (high - low);
-        let end = |word: &str, value: f64| {
-            let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-            let unit = if self.source().unit == "-" {
-                ""
-            } else {
-                self.source().unit
-            };
-            format!(", {word} {rounded} {unit}").trim_end().to_owned()
+    pub(super) fn beyond(self, values: &[f64], range: ValueRange) -> String {
+        let ValueRange { low, high } = range;
+        let least = values.iter().fold(high, |least, &x| x.min(least));
+        let largest = values.iter().fold(low, |largest, &x| x.max(largest));
+        let room = 0.05 * range.length();
+        let mut text = String::new();
+        if least < low - room {
+            text += &self.extreme("least", least);
+        }
+        if largest > high + room {
+            text += &self.extreme("largest", largest);
+        }
+        text
+    }
+
+    /// An extreme value, to three digits and with its unit.
+    fn extreme(self, word: &str, value: f64) -> String {
+        let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+        let unit = match self.source().unit {
+            "-" => "",
+            unit => unit,
         };
-        let below = if least < low - room {
-            end("least", least)
-        } else {
-            String::new()
-        };
-        below
-            + &if largest > high + room {
-                end("largest", largest)
-            } else {
-                String::new()
-            }
+        format!(", {word} {rounded} {unit}").trim_end().to_owned()
     }
 
     /// Whether it is never negative, and 0 is where nothing is.

@@ -11,6 +11,7 @@ use std::f64::consts::TAU;
 use crate::picture::axes::ChartAxes;
 use crate::picture::canvas::Canvas;
 use crate::picture::colour::Rgb;
+use crate::picture::ticks::ValueRange;
 use crate::record::RunRecord;
 
 const RIGID: Rgb = [60, 60, 60];
@@ -20,85 +21,79 @@ const PIECES: usize = 60;
 /// Draws all outlines within the `region` of the picture.
 pub(super) fn draw(
     canvas: &mut Canvas,
-    (axes, region): (&ChartAxes, [(f64, f64); 2]),
-    (record, case): (&RunRecord, &Case),
+    axes: &ChartAxes,
+    region: [ValueRange; 2],
+    record: &RunRecord,
+    case: &Case,
     frame: &Frame,
 ) {
     if record.is_solid() {
         return;
     }
-    let there = |(_, body): &(usize, &RigidBody)| body.acts;
-    for (number, body) in surfaces::rigid::<2>(case, case.just_before(frame.time))
-        .iter()
-        .enumerate()
-        .filter(there)
-    {
-        let Some(moved) = moved((record, case), (number, body), frame) else {
+    let lower = case.grid.lower();
+    let bodies = surfaces::rigid::<2>(case, case.just_before(frame.time));
+    for (number, body) in bodies.iter().enumerate().filter(|(_, body)| body.acts) {
+        let Some(moved) = moved(record, case, number, body, frame) else {
             continue;
         };
-        let lower = case.grid.lower();
-        let place = |x: &Vector<2>| {
-            let (sin, cos) = moved[2].sin_cos();
+        let (sin, cos) = moved[2].sin_cos();
+        let mut line: Vec<[f64; 2]> = Vec::new();
+        for x in places(&body.outline) {
             let turned = [cos * x[0] - sin * x[1], sin * x[0] + cos * x[1]];
-            (
-                lower[0] + body.center[0] + moved[0] + turned[0],
-                lower[1] + body.center[1] + moved[1] + turned[1],
-            )
-        };
-        let seen =
-            |&(x, y): &(f64, f64)| (region[0].0..=region[0].1).contains(&x) && (region[1].0..=region[1].1).contains(&y);
-        let line: Vec<(f64, f64)> = places(&body.outline).iter().map(place).collect();
-        for part in line.split(|at| !seen(at)).filter(|part| part.len() > 1) {
+            line.push([0, 1].map(|axis| lower[axis] + body.center[axis] + moved[axis] + turned[axis]));
+        }
+        let parts = line.split(|[x, y]| !(region[0].contains(*x) && region[1].contains(*y)));
+        for part in parts.filter(|part| part.len() > 1) {
             canvas.line(part.iter().map(|at| axes.place(*at)), 2.0, RIGID);
         }
     }
 }
 
 /// m, m and rad  of a body since the start, if it is known.
-fn moved((record, case): (&RunRecord, &Case), (number, body): (usize, &RigidBody), frame: &Frame) -> Option<Vector<3>> {
-    let on_path = body.on_path(frame.time);
+fn moved(record: &RunRecord, case: &Case, number: usize, body: &RigidBody, frame: &Frame) -> Option<Vector<3>> {
+    let mut moved = body.on_path(frame.time);
     if !body.is_free() {
-        return Some(on_path);
+        return Some(moved);
     }
     let steps = record.column("step")?.values;
     let row = steps.iter().position(|&step| step == frame.step as f64)?;
-    let recorded = |what: Measurement, end: &str| {
+    for (axis, end) in ["-x", "-y", ""].into_iter().enumerate() {
+        if !body.free[axis] {
+            continue;
+        }
+        let what = match axis {
+            2 => Measurement::RigidRotation,
+            _ => Measurement::RigidDisplacement,
+        };
         let wanted = Quantity::Rigid { what, body: number };
         let history = case.histories.iter().find(|history| history.quantity == wanted)?;
-        Some(record.column(&format!("{}{end}", history.name))?.values.get(row)? / history.scale)
-    };
-    let either = |k: usize, what, end| {
-        if body.free[k] {
-            recorded(what, end)
-        } else {
-            Some(on_path[k])
-        }
-    };
-    let rotation = match body.free[2] {
-        true => recorded(Measurement::RigidRotation, "")?.to_radians(),
-        false => on_path[2],
-    };
-    let along = |k, end| either(k, Measurement::RigidDisplacement, end);
-    Some(Vector::<3>::new(along(0, "-x")?, along(1, "-y")?, rotation))
+        let values = record.column(&format!("{}{end}", history.name))?.values;
+        moved[axis] = values.get(row)? / history.scale;
+    }
+    if body.free[2] {
+        moved[2] = moved[2].to_radians();
+    }
+    Some(moved)
 }
 
 /// Places along a closed outline, m from the reference point.
 fn places(outline: &Outline) -> Vec<Vector<2>> {
     match outline {
         Outline::Circle(radius) => {
-            let at = |k: usize| (k as f64 * TAU / PIECES as f64).sin_cos();
-            let turn = |k: usize| Vector::<2>::new(radius * at(k).1, radius * at(k).0);
+            let circle = (0..=PIECES).map(|k| {
+                let (sin, cos) = (k as f64 * TAU / PIECES as f64).sin_cos();
+                Vector::<2>::new(radius * cos, radius * sin)
+            });
             // The radius that is drawn shows how it has turned.
-            (0..=PIECES).map(turn).chain([Vector::<2>::zeros()]).collect()
+            circle.chain([Vector::<2>::zeros()]).collect()
         }
         Outline::Box(_) | Outline::Revolved(_) | Outline::Terrain(_) => Vec::new(),
         Outline::Polygon(corners) => {
-            let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-            let pieces = |(a, b): (&Vector<2>, &Vector<2>)| {
-                let (a, b) = (*a, *b);
-                (0..=PIECES).map(move |k| a + (b - a) * (k as f64 / PIECES as f64))
-            };
-            edges.flat_map(pieces).collect()
+            let mut places = Vec::new();
+            for (&a, &b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+                places.extend((0..=PIECES).map(|k| a + (b - a) * (k as f64 / PIECES as f64)));
+            }
+            places
         }
     }
 }

@@ -54,17 +54,21 @@ pub(super) fn of(
     let ends = frames
         .first()
         .and_then(|frame| range(frame.position.iter().map(|point| point[across])));
-    let Some((low, high)) = ends else {
+    let Some(ends) = ends else {
         return Ok((frames, None));
     };
+    let middle = 0.5 * (ends.low + ends.high);
     let of_grid = record.manifest.grid.as_ref().and_then(|grid| {
         let ends = [&grid.lower, &grid.upper, &grid.cell].map(|of| of.get(across).copied());
         Some((0.5 * (ends[0]? + ends[1]?), 0.5 * ends[2]?))
     });
-    let (middle, reach) = of_grid.unwrap_or((0.5 * (low + high), 0.5 * (high - low)));
-    let at = wanted.map_or(middle, |wanted| wanted.at);
-    let is_near = |point: &[f64; 3]| (point[across] - at).abs() <= reach;
-    let at = match frames.iter().all(|frame| frame.position.iter().any(is_near)) {
+    let (grid_middle, reach) = of_grid.unwrap_or((middle, 0.5 * ends.length()));
+    let at = wanted.map_or(grid_middle, |wanted| wanted.at);
+    let is_near = frames.iter().all(|frame| {
+        let mut points = frame.position.iter();
+        points.any(|point| (point[across] - at).abs() <= reach)
+    });
+    let at = match is_near {
         true => at,
         false if wanted.is_some() => {
             let reason = format!(
@@ -75,13 +79,13 @@ pub(super) fn of(
             );
             return Err(Error::Missing { reason });
         }
-        false => 0.5 * (low + high),
+        false => middle,
     };
     let found = Section { axis: across, at };
     Ok((
         frames
             .iter()
-            .map(|frame| section(frame, (found, record.plane()), reach))
+            .map(|frame| section(frame, found, record.plane(), reach))
             .collect(),
         Some(found),
     ))
@@ -108,10 +112,9 @@ pub(super) fn named(section: Option<Section>) -> String {
     })
 }
 
-fn section(frame: &Frame, (of, plane): (Section, [usize; 2]), reach: f64) -> Frame {
-    let near = |point: &[f64; 3]| (point[of.axis] - of.at).abs() <= reach;
+fn section(frame: &Frame, of: Section, plane: [usize; 2], reach: f64) -> Frame {
     let kept: Vec<usize> = (0..frame.position.len())
-        .filter(|&p| near(&frame.position[p]))
+        .filter(|&p| (frame.position[p][of.axis] - of.at).abs() <= reach)
         .collect();
     let mut section = frame.without_points();
     section.position = kept
@@ -164,16 +167,15 @@ mod tests {
             values: FieldValues::U64(vec![4, 5, 6]),
         };
         let fields = vec![ids, Field::real("v", 3, (0..9).map(f64::from).collect())];
-        let across_y = (Section { axis: 1, at: 0.75 }, [0, 2]);
         let whole = Frame {
             step: 1,
             time: 2.0,
             position,
             fields,
         };
-        let level = section(&whole, (Section { axis: 2, at: 6.6 }, [0, 1]), 0.5);
+        let level = section(&whole, Section { axis: 2, at: 6.6 }, [0, 1], 0.5);
         assert_eq!(level.position, vec![[3.0, 1.4, 7.0]]);
-        let found = section(&whole, across_y, 0.25);
+        let found = section(&whole, Section { axis: 1, at: 0.75 }, [0, 2], 0.25);
         assert_eq!((found.position, found.time), (vec![[2.0, 6.0, 0.6]], 2.0));
         assert_eq!(found.fields[0].values, FieldValues::U64(vec![5]));
         assert_eq!(found.fields[1].values, FieldValues::F64(vec![3.0, 4.0, 5.0]));

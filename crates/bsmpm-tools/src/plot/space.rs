@@ -4,15 +4,17 @@ use bsmpm::boundary::rigid::Outline;
 use bsmpm_io::frame::Frame;
 use bsmpm_scene::{Case, surfaces};
 use std::iter::repeat;
+use std::ops::Range;
 
 use super::field::FieldName;
 use crate::Error;
-use crate::picture::axes::{self, LABEL, THIN, title};
+use crate::picture::axes::{self, ChartAxes, LABEL, THIN, title};
 use crate::picture::bar::{self, Bar};
 use crate::picture::canvas::{Canvas, FINE, TextAlign, fine, width};
 use crate::picture::colour::{self, INK, OUTLINE, Rgb};
 use crate::picture::layout::{Layout, aspect};
 use crate::picture::splat;
+use crate::picture::ticks::ValueRange;
 use crate::record::{RunRecord, short};
 
 const ABOVE: f64 = 130.0;
@@ -41,11 +43,10 @@ struct View {
 }
 
 impl View {
-    fn new([turned, raised]: [f64; 2]) -> Self {
-        let ([sin, cos], [low, high]) = ([turned.to_radians().sin(), turned.to_radians().cos()], {
-            let raised = raised.to_radians();
-            [raised.sin(), raised.cos()]
-        });
+    fn new(angles: [f64; 2]) -> Self {
+        let [turned, raised] = angles.map(f64::to_radians);
+        let [sin, cos] = [turned.sin(), turned.cos()];
+        let [low, high] = [raised.sin(), raised.cos()];
         Self {
             right: [cos, sin, 0.0],
             up: [-sin * low, cos * low, high],
@@ -53,9 +54,23 @@ impl View {
         }
     }
 
-    fn place(&self, at: &[f64; 3]) -> [f64; 3] {
-        let along = |axis: &[f64; 3]| axis.iter().zip(at).map(|(axis, at)| axis * at).sum();
-        [along(&self.right), along(&self.up), along(&self.eye)]
+    fn place(&self, at: [f64; 3]) -> [f64; 3] {
+        [self.right, self.up, self.eye].map(|axis| product(axis, at))
+    }
+}
+
+/// The scalar product of two vectors.
+fn product(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|axis| a[axis] * b[axis]).sum()
+}
+
+/// The slope at a place between its neighbours at a distance of `length`, by those that there are.
+pub(super) fn slope(before: Option<f64>, here: f64, after: Option<f64>, length: f64) -> f64 {
+    match (before, after) {
+        (Some(before), Some(after)) => (after - before) / (2.0 * length),
+        (Some(before), None) => (here - before) / length,
+        (None, Some(after)) => (after - here) / length,
+        (None, None) => 0.0,
     }
 }
 
@@ -76,16 +91,12 @@ impl NearestBalls {
         }
     }
 
-    /// A ball about `(x, y)`, dots, and `depth`, m, with so many dots a metre.
-    fn add(&mut self, point: u32, ([x, y], depth): ([f64; 2], f64), radius: f64, scale: f64) {
+    /// A ball about `[x, y]`, dots, and `depth`, m, with so many dots a metre.
+    fn add(&mut self, point: u32, [x, y]: [f64; 2], depth: f64, radius: f64, scale: f64) {
         let reach = (radius * scale).max(1.0);
         let height = self.dots.len() / self.width;
-        let span = |centre: f64, end: usize| {
-            (centre - reach).ceil().clamp(0.0, end as f64) as usize
-                ..(centre + reach + 1.0).clamp(0.0, end as f64) as usize
-        };
-        for row in span(y, height) {
-            for column in span(x, self.width) {
+        for row in dots_within(y, reach, height) {
+            for column in dots_within(x, reach, self.width) {
                 let away = (column as f64 - x).powi(2) + (row as f64 - y).powi(2);
                 let depth = (depth + (reach * reach - away).max(0.0).sqrt() / scale) as f32;
                 let dot = &mut self.dots[row * self.width + column];
@@ -98,40 +109,42 @@ impl NearestBalls {
 
     /// Share of the light that falls on a dot, by the depths `step` dots around it that are no farther off than that.
     fn lit(&self, at: usize, step: usize, scale: f64) -> f64 {
-        let (row, column, height) = (at / self.width, at % self.width, self.dots.len() / self.width);
+        let row = at / self.width;
+        let column = at % self.width;
         let here = self.dots[at].0;
-        let depth = |row: Option<usize>, column: Option<usize>| {
-            let (row, column) = (
-                row.filter(|row| *row < height)?,
-                column.filter(|column| *column < self.width)?,
-            );
-            let depth = self.dots[row * self.width + column].0;
-            (f64::from((depth - here).abs()) * scale <= 3.0 * step as f64).then_some(f64::from(depth))
-        };
-        let slope = |before: Option<f64>, after: Option<f64>| {
-            let here = f64::from(here);
-            let length = step as f64 / scale;
-            match (before, after) {
-                (Some(before), Some(after)) => (after - before) / (2.0 * length),
-                (Some(before), None) => (here - before) / length,
-                (None, Some(after)) => (after - here) / length,
-                (None, None) => 0.0,
-            }
-        };
-        let across = slope(
-            depth(Some(row), column.checked_sub(step)),
-            depth(Some(row), Some(column + step)),
-        );
         // Rows count downward.
-        let up = slope(
-            depth(Some(row + step), Some(column)),
-            depth(row.checked_sub(step), Some(column)),
-        );
+        let around = [
+            self.depth(Some(row), column.checked_sub(step)),
+            self.depth(Some(row), Some(column + step)),
+            self.depth(Some(row + step), Some(column)),
+            self.depth(row.checked_sub(step), Some(column)),
+        ];
+        let farthest = 3.0 * step as f64;
+        let [left, right, below, above] = around.map(|depth| {
+            depth
+                .filter(|depth| f64::from((depth - here).abs()) * scale <= farthest)
+                .map(f64::from)
+        });
+        let length = step as f64 / scale;
+        let across = slope(left, f64::from(here), right, length);
+        let up = slope(below, f64::from(here), above, length);
         let normal = [-across, -up, 1.0];
-        let product = |a: [f64; 3], b: [f64; 3]| (0..3).map(|axis| a[axis] * b[axis]).sum::<f64>();
         let falls = product(normal, LIGHT) / (product(normal, normal) * product(LIGHT, LIGHT)).sqrt();
         AMBIENT + (1.0 - AMBIENT) * falls.max(0.0)
     }
+
+    /// Depth of a dot (m); none where there is no such row or column.
+    fn depth(&self, row: Option<usize>, column: Option<usize>) -> Option<f32> {
+        let row = row.filter(|row| *row < self.dots.len() / self.width)?;
+        let column = column.filter(|column| *column < self.width)?;
+        Some(self.dots[row * self.width + column].0)
+    }
+}
+
+/// The dots, of `count` along an axis, that a ball covers.
+fn dots_within(centre: f64, reach: f64, count: usize) -> Range<usize> {
+    let first = (centre - reach).ceil().clamp(0.0, count as f64) as usize;
+    first..(centre + reach + 1.0).clamp(0.0, count as f64) as usize
 }
 
 /// Draws a picture for every frame of a solid in the colours of a field, and returns their names; of a plane none.
@@ -139,12 +152,12 @@ pub(super) fn draw(
     record: &RunRecord,
     frames: &[Frame],
     field: FieldName,
-    ends: Option<(f64, f64)>,
+    ends: Option<ValueRange>,
 ) -> Result<Vec<String>, Error> {
     let Some(grid) = record.manifest.grid.as_ref().filter(|_| record.is_solid()) else {
         return Ok(Vec::new());
     };
-    let (Ok(lower), Ok(upper)) = (grid.lower[..].try_into(), grid.upper[..].try_into()) else {
+    let [Ok(lower), Ok(upper)] = [&grid.lower, &grid.upper].map(|corner| corner[..].try_into()) else {
         return Ok(Vec::new());
     };
     let Some(values) = frames
@@ -163,30 +176,22 @@ pub(super) fn draw(
             label: field.label(Some(2)),
         };
         let beyond = field.beyond(values, range);
-        picture((record, [lower, upper]), frame, (values, &beyond), bar).save(&record.directory.join(&name))?;
+        picture(record, [lower, upper], frame, values, &beyond, bar).save(&record.directory.join(&name))?;
         names.push(name);
     }
     Ok(names)
 }
 
-fn picture(
-    (record, grid): (&RunRecord, [[f64; 3]; 2]),
-    frame: &Frame,
-    (values, beyond): (&[f64], &str),
-    bar: Bar,
-) -> Canvas {
+fn picture(record: &RunRecord, grid: [[f64; 3]; 2], frame: &Frame, values: &[f64], beyond: &str, bar: Bar) -> Canvas {
     let view = View::new(VIEW);
-    let corners = std::array::from_fn::<_, 8, _>(|k| view.place(&corner(grid, k)));
-    let ends = |axis: usize| {
+    let corners = std::array::from_fn::<_, 8, _>(|k| view.place(corner(grid, k)));
+    let region = [0, 1].map(|axis| {
         let along = corners.iter().map(|corner| corner[axis]);
-        let [low, high] = [
-            along.clone().fold(f64::INFINITY, f64::min),
-            along.fold(f64::NEG_INFINITY, f64::max),
-        ];
+        let low = along.clone().fold(f64::INFINITY, f64::min);
+        let high = along.fold(f64::NEG_INFINITY, f64::max);
         let room = 0.06 * (high - low);
-        (low - room, high + room)
-    };
-    let region = [ends(0), ends(1)];
+        ValueRange::of(low - room, high + room)
+    });
     let lying = aspect(region) < bar::LYING;
     let layout = Layout::of(region, if lying { RIGHT } else { bar::BESIDE }, 0.0);
     let axes = layout.axes(ABOVE);
@@ -198,23 +203,24 @@ fn picture(
         &record.manifest.case.title,
         &(record.moment(frame.time) + beyond),
     );
-    let place = |k: usize| axes.place((corners[k][0], corners[k][1]));
+    let places = corners.map(|[x, y, _]| axes.place([x, y]));
     // The edges at the nearest corner would hide what is inside.
     for (from, to) in edges().filter(|(from, to)| *from != NEAREST && *to != NEAREST) {
-        canvas.line([place(from), place(to)], THIN, OUTLINE);
+        canvas.line([places[from], places[to]], THIN, OUTLINE);
     }
-    let scale = FINE as f64 * (axes.right - axes.left) / (region[0].1 - region[0].0);
-    let ((left, top), (right, bottom)) = (fine((axes.left, axes.top)), fine((axes.right, axes.bottom)));
+    let scale = FINE as f64 * (axes.right - axes.left) / region[0].length();
+    let [left, top] = fine([axes.left, axes.top]);
+    let [right, bottom] = fine([axes.right, axes.bottom]);
     let mut nearest = NearestBalls::new([(right - left).max(1) as usize, (bottom - top).max(1) as usize]);
     let sizes = splat::sizes(frame, &record.manifest.case.geometry);
     let usual = splat::median(&sizes);
-    let ground = terrain(record, grid, (usual, frame.time));
+    let ground = terrain(record, grid, usual, frame.time);
     let stones = ground.iter().zip(repeat(&usual)).zip(repeat(RIGID));
     for ((point, size), number) in frame.position.iter().zip(&sizes).zip(0_u32..).chain(stones) {
-        let [across, up, depth] = view.place(point);
-        let (x, y) = axes.place((across, up));
+        let [across, up, depth] = view.place(*point);
+        let [x, y] = axes.place([across, up]);
         let at = [FINE as f64 * x - f64::from(left), FINE as f64 * y - f64::from(top)];
-        nearest.add(number, (at, depth), RADIUS * size, scale);
+        nearest.add(number, at, depth, RADIUS * size, scale);
     }
     let step = (0.7 * usual * scale).round().max(1.0) as usize;
     for (at, &(_, point)) in nearest.dots.iter().enumerate().filter(|(_, dot)| dot.1 != NOBODY.1) {
@@ -224,28 +230,11 @@ fn picture(
             .map_or(STONE, |value| colour::map(bar.share(*value)));
         let shade = colour.map(|part| (f64::from(part) * lit).round() as u8);
         canvas.dot(
-            (left + (at % nearest.width) as i32, top + (at / nearest.width) as i32),
+            [left + (at % nearest.width) as i32, top + (at / nearest.width) as i32],
             shade,
         );
     }
-    let label = |name: &str, axis: usize| format!("{name} = {} to {} m", short(grid[0][axis]), short(grid[1][axis]));
-    let middle = |from: usize, to: usize| {
-        let (from, to) = (place(from), place(to));
-        (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1))
-    };
-    let ((x, below_x), (y, below_y), (left, z)) = (middle(0, 1), middle(1, 3), middle(0, 4));
-    canvas.text(
-        &label("x", 0),
-        (x - 14.0, below_x + BESIDE),
-        LABEL,
-        TextAlign::Right,
-        INK,
-    );
-    // Not into the bar beside the axes.
-    let text = label("y", 1);
-    let y = (y + 14.0).min(axes.right + 40.0 - width(&text, LABEL));
-    canvas.text(&text, (y, below_y + BESIDE), LABEL, TextAlign::Left, INK);
-    canvas.upward(&label("z", 2), (left - BESIDE, z), LABEL, INK);
+    name_edges(&mut canvas, &axes, grid, &places);
     if lying {
         bar.lying(&mut canvas, &axes);
     } else {
@@ -254,29 +243,43 @@ fn picture(
     canvas
 }
 
+/// Writes the names and ends of the axes beside three edges of the grid, whose corners lie at these places.
+fn name_edges(canvas: &mut Canvas, axes: &ChartAxes, grid: [[f64; 3]; 2], places: &[[f64; 2]; 8]) {
+    let [x, y, z] = [("x", 0), ("y", 1), ("z", 2)]
+        .map(|(name, axis)| format!("{name} = {} to {} m", short(grid[0][axis]), short(grid[1][axis])));
+    let [along_x, along_y, along_z] = [(0, 1), (1, 3), (0, 4)]
+        .map(|(from, to): (usize, usize)| [0, 1].map(|axis| f64::midpoint(places[from][axis], places[to][axis])));
+    let at = [along_x[0] - 14.0, along_x[1] + BESIDE];
+    canvas.text(&x, at, LABEL, TextAlign::Right, INK);
+    // Not into the bar beside the axes.
+    let left = (along_y[0] + 14.0).min(axes.right + 40.0 - width(&y, LABEL));
+    canvas.text(&y, [left, along_y[1] + BESIDE], LABEL, TextAlign::Left, INK);
+    canvas.upward(&z, [along_z[0] - BESIDE, along_z[1]], LABEL, INK);
+}
+
 /// Places of rigid terrain inside the grid at a time, half of `apart` (m) from each other.
-fn terrain(record: &RunRecord, [lower, upper]: [[f64; 3]; 2], (apart, time): (f64, f64)) -> Vec<[f64; 3]> {
+fn terrain(record: &RunRecord, [lower, upper]: [[f64; 3]; 2], apart: f64, time: f64) -> Vec<[f64; 3]> {
     let Ok(case) = Case::from_text("case", &record.manifest.case.text, &[]) else {
         return Vec::new();
     };
     let mut places = Vec::new();
-    let count = |axis: usize| {
-        ((upper[axis] - lower[axis]) / (0.5 * apart))
-            .ceil()
-            .clamp(1.0, MOST_PLACES) as usize
-    };
-    for body in surfaces::rigid::<3>(&case, case.just_before(time))
-        .iter()
-        .filter(|body| body.acts)
-    {
+    let counts = [0, 1].map(|axis| {
+        let count = ((upper[axis] - lower[axis]) / (0.5 * apart)).ceil();
+        count.clamp(1.0, MOST_PLACES) as usize
+    });
+    let bodies = surfaces::rigid::<3>(&case, case.just_before(time));
+    for body in bodies.iter().filter(|body| body.acts) {
         let Outline::Terrain(terrain) = &body.outline else {
             continue;
         };
         let moved = body.on_path(time);
-        for (i, j) in (0..=count(0)).flat_map(|i| (0..=count(1)).map(move |j| (i, j))) {
-            let at = [(0, i), (1, j)].map(|(axis, k)| k as f64 / count(axis) as f64 * (upper[axis] - lower[axis]));
-            let height = terrain.height([at[0] - moved[0], at[1] - moved[1]]) + moved[2];
-            places.push([lower[0] + at[0], lower[1] + at[1], lower[2] + height]);
+        for i in 0..=counts[0] {
+            for j in 0..=counts[1] {
+                let at = [(0, i), (1, j)]
+                    .map(|(axis, k): (usize, usize)| k as f64 / counts[axis] as f64 * (upper[axis] - lower[axis]));
+                let height = terrain.height([at[0] - moved[0], at[1] - moved[1]]) + moved[2];
+                places.push([lower[0] + at[0], lower[1] + at[1], lower[2] + height]);
+            }
         }
     }
     places
@@ -305,7 +308,6 @@ mod tests {
     #[test]
     fn the_view_is_orthonormal_and_looks_from_the_front_the_right_and_above() {
         let View { right, up, eye } = View::new(VIEW);
-        let product = |a: [f64; 3], b: [f64; 3]| (0..3).map(|axis| a[axis] * b[axis]).sum::<f64>();
         for (a, b, expected) in [
             (right, right, 1.0),
             (up, up, 1.0),
@@ -316,7 +318,7 @@ mod tests {
             assert!((product(a, b) - expected).abs() < 1e-15);
         }
         assert!(eye[0] > 0.0 && eye[1] < 0.0 && eye[2] > 0.0 && up[2] > 0.0);
-        let depths = (0..8).map(|k| View::new(VIEW).place(&corner([[0.0; 3], [1.0; 3]], k))[2]);
+        let depths = (0..8).map(|k| View::new(VIEW).place(corner([[0.0; 3], [1.0; 3]], k))[2]);
         let nearest = depths.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
         assert_eq!(nearest.0, NEAREST);
     }
@@ -324,8 +326,8 @@ mod tests {
     #[test]
     fn near_balls_hide_far_ones_and_slopes_towards_the_light_are_brighter() {
         let mut nearest = NearestBalls::new([40, 40]);
-        nearest.add(0, ([20.0, 20.0], 0.0), 10.0, 1.0);
-        nearest.add(1, ([20.0, 20.0], -5.0), 12.0, 1.0);
+        nearest.add(0, [20.0, 20.0], 0.0, 10.0, 1.0);
+        nearest.add(1, [20.0, 20.0], -5.0, 12.0, 1.0);
         let at = |column: usize, row: usize| row * 40 + column;
         assert_eq!(
             (

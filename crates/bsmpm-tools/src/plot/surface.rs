@@ -12,7 +12,7 @@ use crate::picture::colour::{self, INK, WHITE};
 use crate::picture::layout::Layout;
 use crate::picture::legend::{self, LegendEntry, Mark};
 use crate::picture::splat;
-use crate::picture::ticks::range;
+use crate::picture::ticks::{ValueRange, range};
 use crate::record::RunRecord;
 
 const ABOVE: f64 = 115.0;
@@ -25,7 +25,8 @@ const LOWEST: f64 = 0.16;
 /// name.
 pub(super) fn draw(
     record: &RunRecord,
-    (frames, section): (&[Frame], Option<Section>),
+    frames: &[Frame],
+    section: Option<Section>,
     reference: Option<&Columns>,
 ) -> Result<String, Error> {
     let reference = reference.map(|table| places(record, frames, table)).unwrap_or_default();
@@ -66,40 +67,44 @@ pub(super) fn draw(
 
 /// The highest point, of a solid the top of its material, of every column of cells from left to right; an empty column
 /// breaks the line.
-fn surface(record: &RunRecord, frame: &Frame) -> Vec<(f64, f64)> {
-    let Some((low, high)) = range(frame.position.iter().map(|point| point[0])) else {
+fn surface(record: &RunRecord, frame: &Frame) -> Vec<[f64; 2]> {
+    let Some(ValueRange { low, high }) = range(frame.position.iter().map(|point| point[0])) else {
         return Vec::new();
     };
     let grid = record.manifest.grid.as_ref();
     let cell = grid.and_then(|grid| Some((*grid.lower.first()?, *grid.cell.first()?)));
-    let sizes = || splat::sizes(frame, &record.manifest.case.geometry);
-    let (origin, width) = cell.unwrap_or_else(|| (low, 2.0 * range(sizes()).map_or(1.0, |(_, largest)| largest)));
+    let (origin, width) = cell.unwrap_or_else(|| {
+        let sizes = splat::sizes(frame, &record.manifest.case.geometry);
+        (low, 2.0 * range(sizes).map_or(1.0, |sizes| sizes.high))
+    });
     // A hundred thousand columns are more than a picture can show, and bound the memory whatever the numbers are.
     let width = if width > 0.0 { width } else { high - low }.max((high - low) / 1e5);
-    let column = |x: f64| {
-        if width > 0.0 {
-            ((x - origin) / width).floor()
-        } else {
-            0.0
-        }
-    };
-    let first = column(low);
-    let mut highest = vec![(f64::NAN, f64::NAN); (column(high) - first) as usize + 1];
+    let first = column(low, origin, width);
+    let mut highest = vec![[f64::NAN; 2]; (column(high, origin, width) - first) as usize + 1];
     for &[x, y, _] in &frame.position {
-        let top = &mut highest[(column(x) - first) as usize];
-        if top.1.is_nan() || top.1 < y {
-            *top = (x, y);
+        let top = &mut highest[(column(x, origin, width) - first) as usize];
+        if top[1].is_nan() || top[1] < y {
+            *top = [x, y];
         }
     }
     let above = section::above(record, frame);
-    highest.iter_mut().for_each(|top| top.1 += above);
+    highest.iter_mut().for_each(|top| top[1] += above);
     highest
+}
+
+/// The number of the column of cells of this width, counted from `origin`, that a place lies in.
+fn column(x: f64, origin: f64, width: f64) -> f64 {
+    if width > 0.0 {
+        ((x - origin) / width).floor()
+    } else {
+        0.0
+    }
 }
 
 /// Reference points of one time.
 struct SurfaceGroup {
     time: f64,
-    places: Vec<(f64, f64)>,
+    places: Vec<[f64; 2]>,
     colour: colour::Rgb,
 }
 
@@ -112,17 +117,14 @@ fn places(record: &RunRecord, frames: &[Frame], table: &Columns) -> Vec<SurfaceG
     let mut groups: Vec<SurfaceGroup> = Vec::new();
     for ((&time, &x), &y) in times.iter().zip(x).zip(y) {
         if let Some(group) = groups.iter_mut().find(|group| group.time == time) {
-            group.places.push((x, y));
+            group.places.push([x, y]);
         } else {
-            let same = |frame: &Frame| record.moment(frame.time) == record.moment(time);
-            let colour = frames
-                .iter()
-                .position(same)
-                .map_or(INK, |index| colour::line(index, frames.len()));
+            let moment = record.moment(time);
+            let same = frames.iter().position(|frame| record.moment(frame.time) == moment);
             groups.push(SurfaceGroup {
                 time,
-                places: vec![(x, y)],
-                colour,
+                places: vec![[x, y]],
+                colour: same.map_or(INK, |index| colour::line(index, frames.len())),
             });
         }
     }
@@ -130,20 +132,20 @@ fn places(record: &RunRecord, frames: &[Frame], table: &Columns) -> Vec<SurfaceG
 }
 
 fn entries(record: &RunRecord, frames: &[Frame], reference: &[SurfaceGroup]) -> Vec<LegendEntry> {
-    let line = |(index, frame): (usize, &Frame)| LegendEntry {
-        name: record.moment(frame.time),
-        colour: colour::line(index, frames.len()),
-        mark: Mark::Line,
-    };
-    let group = |group: &SurfaceGroup| LegendEntry {
-        name: format!("reference, {}", record.moment(group.time)),
-        colour: group.colour,
-        mark: Mark::Points,
-    };
-    frames
-        .iter()
-        .enumerate()
-        .map(line)
-        .chain(reference.iter().map(group))
-        .collect()
+    let mut entries = Vec::new();
+    for (index, frame) in frames.iter().enumerate() {
+        entries.push(LegendEntry {
+            name: record.moment(frame.time),
+            colour: colour::line(index, frames.len()),
+            mark: Mark::Line,
+        });
+    }
+    for group in reference {
+        entries.push(LegendEntry {
+            name: format!("reference, {}", record.moment(group.time)),
+            colour: group.colour,
+            mark: Mark::Points,
+        });
+    }
+    entries
 }

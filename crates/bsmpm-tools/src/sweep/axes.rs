@@ -16,21 +16,24 @@ pub(super) type SweepSetting = Vec<Option<String>>;
 impl SweepAxis {
     /// `KEY=V1,V2,...`; a comma within brackets, braces or quotes belongs to a value.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let wrong = |why: &str| {
-            Err(format!(
+        Self::read(text).map_err(|why| {
+            format!(
                 "E0838: --vary {text} is invalid: {why}. Give a key and its values as KEY=V1,V2,..., each \
                 value once."
-            ))
-        };
-        let Some((key, values)) = text.split_once('=') else {
-            return wrong("`=` is missing");
-        };
-        let (key, values) = (key.trim().to_owned(), split(values));
+            )
+        })
+    }
+
+    /// As [`SweepAxis::parse`]; the error says in a few words what is wrong.
+    fn read(text: &str) -> Result<Self, String> {
+        let (key, values) = text.split_once('=').ok_or("`=` is missing")?;
+        let key = key.trim().to_owned();
+        let values = split(values);
         if key.is_empty() || values.iter().any(String::is_empty) {
-            return wrong("the key or a value is empty");
+            return Err("the key or a value is empty".to_owned());
         }
         match (1..values.len()).find(|&index| values[..index].contains(&values[index])) {
-            Some(twice) => wrong(&format!("the value {} occurs twice", values[twice])),
+            Some(twice) => Err(format!("the value {} occurs twice", values[twice])),
             None => Ok(Self { key, values }),
         }
     }
@@ -38,7 +41,9 @@ impl SweepAxis {
 
 /// The parts between the commas that stand in no bracket, brace or quote.
 pub(crate) fn split(text: &str) -> Vec<String> {
-    let (mut parts, mut depth, mut quote) = (vec![String::new()], 0_usize, None);
+    let mut parts = vec![String::new()];
+    let mut depth = 0_usize;
+    let mut quote = None;
     for c in text.chars() {
         match (c, quote) {
             ('"' | '\'', None) => quote = Some(c),
@@ -79,18 +84,17 @@ pub(super) fn settings(axes: &[SweepAxis], one_at_a_time: bool) -> Result<Vec<Sw
     let own: SweepSetting = vec![None; axes.len()];
     let mut settings = vec![own.clone()];
     for (index, axis) in axes.iter().enumerate() {
-        let with = |setting: &SweepSetting, value: &String| {
-            let mut setting = setting.clone();
-            setting[index] = Some(value.clone());
-            setting
-        };
-        if one_at_a_time {
-            settings.extend(axis.values.iter().map(|value| with(&own, value)));
+        let bases = if one_at_a_time {
+            vec![own.clone()]
         } else {
-            settings = settings
-                .iter()
-                .flat_map(|setting| axis.values.iter().map(|v| with(setting, v)))
-                .collect();
+            std::mem::take(&mut settings)
+        };
+        for base in &bases {
+            for value in &axis.values {
+                let mut setting = base.clone();
+                setting[index] = Some(value.clone());
+                settings.push(setting);
+            }
         }
     }
     Ok(settings)

@@ -1,52 +1,64 @@
 //! Pareto front of a sweep: settings for which no other setting is both cheaper and more accurate.
 
-/// Of pairs of cost and error those to which no other is better in one and as good in the other; of equal ones the
-/// first. None is no result, and neither is a number that is not finite.
-pub(super) fn front(places: &[Option<(f64, f64)>]) -> Vec<bool> {
-    let beats = |(index, one): (usize, (f64, f64)), (other_index, other): (usize, (f64, f64))| {
-        let no_worse = one.0 <= other.0 && one.1 <= other.1;
-        no_worse && (one != other || index < other_index)
-    };
-    let there = || {
-        places
-            .iter()
-            .enumerate()
-            .filter_map(|(index, place)| Some((index, counted(*place)?)))
-    };
-    let is_best = |(index, place): (usize, &Option<(f64, f64)>)| {
-        counted(*place).is_some_and(|place| !there().any(|other| beats(other, (index, place))))
-    };
-    places.iter().enumerate().map(is_best).collect()
+/// Where a run lies between being cheap and being accurate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct CostError {
+    /// s  of processor time
+    pub cost: f64,
+    /// relative
+    pub error: f64,
+}
+
+impl CostError {
+    /// Returns whether both numbers are finite.
+    fn is_finite(&self) -> bool {
+        self.cost.is_finite() && self.error.is_finite()
+    }
+}
+
+/// Of costs and errors those to which no other is better in one and as good in the other; of equal ones the first. None
+/// is no result, and neither is a number that is not finite.
+pub(super) fn front(places: &[Option<CostError>]) -> Vec<bool> {
+    let mut front = vec![false; places.len()];
+    for (index, place) in finite(places) {
+        front[index] = !finite(places).any(|(other_index, other)| {
+            let no_worse = other.cost <= place.cost && other.error <= place.error;
+            no_worse && (other != place || other_index < index)
+        });
+    }
+    front
 }
 
 /// The cheapest of those whose error is at most `within`.
-pub(super) fn cheapest(places: &[Option<(f64, f64)>], within: f64) -> Option<usize> {
-    let there = places
-        .iter()
-        .enumerate()
-        .filter_map(|(index, place)| Some((index, counted(*place)?)));
-    let good = there.filter(|(_, place)| place.1 <= within);
-    good.min_by(|(_, a), (_, b)| a.0.total_cmp(&b.0))
+pub(super) fn cheapest(places: &[Option<CostError>], within: f64) -> Option<usize> {
+    let good = finite(places).filter(|(_, place)| place.error <= within);
+    good.min_by(|(_, a), (_, b)| a.cost.total_cmp(&b.cost))
         .map(|(index, _)| index)
 }
 
-fn counted(place: Option<(f64, f64)>) -> Option<(f64, f64)> {
-    place.filter(|(cost, error)| cost.is_finite() && error.is_finite())
+/// Those whose numbers are finite, with their indices.
+fn finite(places: &[Option<CostError>]) -> impl Iterator<Item = (usize, CostError)> {
+    let places = places.iter().enumerate();
+    places.filter_map(|(index, place)| Some((index, place.filter(CostError::is_finite)?)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const PLACES: [Option<(f64, f64)>; 8] = [
-        Some((1.0, 0.5)),
-        Some((2.0, 0.5)),
-        Some((3.0, 0.1)),
+    const fn at(cost: f64, error: f64) -> Option<CostError> {
+        Some(CostError { cost, error })
+    }
+
+    const PLACES: [Option<CostError>; 8] = [
+        at(1.0, 0.5),
+        at(2.0, 0.5),
+        at(3.0, 0.1),
         None,
-        Some((4.0, 0.2)),
-        Some((5.0, f64::NAN)),
-        Some((9.0, 0.0)),
-        Some((9.0, 0.0)),
+        at(4.0, 0.2),
+        at(5.0, f64::NAN),
+        at(9.0, 0.0),
+        at(9.0, 0.0),
     ];
 
     #[test]

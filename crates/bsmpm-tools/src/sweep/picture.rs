@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
+use super::front::CostError;
 use super::report::{SweepReport, SweepRow};
 use crate::Error;
-use crate::picture::axes::{BELOW, ChartAxes, LEFT, NUMBER, title};
+use crate::picture::axes::{BELOW, ChartAxes, LEFT, Label, NUMBER, title};
 use crate::picture::canvas::{Canvas, TextAlign, fitting};
 use crate::picture::colour::{self, INK, OUTLINE};
 use crate::picture::legend::{self, LegendEntry, Mark};
-use crate::picture::ticks::{Scale, range};
+use crate::picture::ticks::{Scale, ValueRange, range};
+use crate::record::short;
 
 const SHEET: (f64, f64) = (1900.0, 1000.0);
 const ABOVE: f64 = 115.0;
@@ -20,21 +22,26 @@ const GAP: f64 = 1.9 * NUMBER;
 /// The least error that is drawn: what is smaller is rounding.
 const SMALLEST: f64 = 1e-12;
 
+/// A run that the picture shows.
+#[derive(Clone, Copy)]
+struct DrawnRun<'a> {
+    row: &'a SweepRow,
+    place: CostError,
+}
+
 /// Draws the errors of one quantity; nothing where no run has one.
 pub(super) fn draw(report: &SweepReport, quantity: usize, path: &Path) -> Result<bool, Error> {
-    let place = |row: &SweepRow| {
-        row.place(&[quantity])
-            .filter(|(cost, error)| *cost > 0.0 && *error > SMALLEST)
-    };
-    let front: Vec<(&SweepRow, (f64, f64))> = sorted(report, |row| place(row).filter(|_| row.on_front[quantity]));
-    let others: Vec<(&SweepRow, (f64, f64))> = sorted(report, |row| {
-        place(row).filter(|_| !row.on_front[quantity] && !row.is_reference)
-    });
-    let all = || front.iter().chain(&others).map(|(_, place)| *place);
-    let (Some(x), Some(y)) = (
-        range(all().map(|place| place.0)),
-        range(all().map(|place| 100.0 * place.1)),
-    ) else {
+    let runs = sorted(report, quantity);
+    let mut front = runs.clone();
+    front.retain(|run| run.row.on_front[quantity]);
+    let mut others = runs.clone();
+    others.retain(|run| !run.row.on_front[quantity] && !run.row.is_reference);
+    let mut own = runs;
+    own.retain(|run| run.row.is_baseline && !run.row.is_reference);
+    let all = front.iter().chain(&others);
+    let costs = range(all.clone().map(|run| run.place.cost));
+    let errors = range(all.map(|run| 100.0 * run.place.error));
+    let Some((x, y)) = costs.zip(errors) else {
         return Ok(false);
     };
     let [on_front, elsewhere, baseline] = [
@@ -47,12 +54,6 @@ pub(super) fn draw(report: &SweepReport, quantity: usize, path: &Path) -> Result
         colour,
         mark,
     });
-    let own: Vec<(f64, f64)> = sorted(report, |row| {
-        place(row).filter(|_| row.is_baseline && !row.is_reference)
-    })
-    .into_iter()
-    .map(|(_, place)| place)
-    .collect();
     let mut entries = vec![&on_front];
     entries.extend((!others.is_empty()).then_some(&elsewhere));
     entries.extend((!own.is_empty()).then_some(&baseline));
@@ -63,7 +64,10 @@ pub(super) fn draw(report: &SweepReport, quantity: usize, path: &Path) -> Result
         right: SHEET.0 - NAMES,
         bottom: SHEET.1 - BELOW,
         x: decades(x),
-        y: decades((y.0.min(100.0 * report.within), y.1.max(100.0 * report.within))),
+        y: decades(ValueRange {
+            low: y.low.min(100.0 * report.within),
+            high: y.high.max(100.0 * report.within),
+        }),
         scales: [Scale::Logarithmic; 2],
     };
     let mut canvas = Canvas::new(SHEET.0, SHEET.1);
@@ -75,34 +79,36 @@ pub(super) fn draw(report: &SweepReport, quantity: usize, path: &Path) -> Result
     let good = format!("{} %", 100.0 * report.within);
     canvas.text(
         &good,
-        (axes.left + 12.0, level - 20.0),
+        [axes.left + 12.0, level - 20.0],
         NUMBER,
         TextAlign::Left,
         OUTLINE,
     );
-    let on_sheet = |(cost, error): (f64, f64)| axes.place((cost, 100.0 * error));
-    let marked = |canvas: &mut Canvas, entry: &LegendEntry, places: Vec<(f64, f64)>| {
-        let places: Vec<_> = places.into_iter().map(on_sheet).collect();
-        entry.mark.draw(canvas, &places, LINE, entry.colour);
-    };
-    marked(
-        &mut canvas,
-        &elsewhere,
-        others.iter().map(|(_, place)| *place).collect(),
-    );
-    marked(&mut canvas, &on_front, front.iter().map(|(_, place)| *place).collect());
-    marked(&mut canvas, &baseline, own);
-    names(&mut canvas, &axes, &front, &on_sheet);
-    axes.draw(&mut canvas, Some(("Cost", "CPU s")), ("Error", "%"));
+    for (entry, runs) in [(&elsewhere, &others), (&on_front, &front), (&baseline, &own)] {
+        let places: Vec<_> = runs.iter().map(|run| on_sheet(&axes, run.place)).collect();
+        entry.mark.draw(&mut canvas, &places, LINE, entry.colour);
+    }
+    names(&mut canvas, &axes, &front);
+    axes.draw(&mut canvas, Some(Label::of("Cost", "CPU s")), Label::of("Error", "%"));
     canvas.save(path)?;
     Ok(true)
 }
 
-/// Runs that have a place, the cheapest first.
-fn sorted(report: &SweepReport, place: impl Fn(&SweepRow) -> Option<(f64, f64)>) -> Vec<(&SweepRow, (f64, f64))> {
-    let mut found: Vec<_> = report.runs.iter().filter_map(|row| Some((row, place(row)?))).collect();
-    found.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
+/// Runs that have a place on logarithmic axes, the cheapest first.
+fn sorted(report: &SweepReport, quantity: usize) -> Vec<DrawnRun<'_>> {
+    let mut found: Vec<DrawnRun> = Vec::new();
+    for row in &report.runs {
+        let place = row.place(&[quantity]);
+        let shown = place.filter(|place| place.cost > 0.0 && place.error > SMALLEST);
+        found.extend(shown.map(|place| DrawnRun { row, place }));
+    }
+    found.sort_by(|a, b| a.place.cost.total_cmp(&b.place.cost));
     found
+}
+
+/// Where a run lies on the sheet.
+fn on_sheet(axes: &ChartAxes, place: CostError) -> [f64; 2] {
+    axes.place([place.cost, 100.0 * place.error])
 }
 
 fn against(report: &SweepReport) -> &str {
@@ -110,26 +116,22 @@ fn against(report: &SweepReport) -> &str {
 }
 
 /// Numbers at the points of the front, lower left where nothing else can be, and what they mean beside the axes.
-fn names(
-    canvas: &mut Canvas,
-    axes: &ChartAxes,
-    front: &[(&SweepRow, (f64, f64))],
-    on_sheet: &dyn Fn((f64, f64)) -> (f64, f64),
-) {
-    let (left, wide) = (axes.right + 24.0, NAMES - 44.0);
+fn names(canvas: &mut Canvas, axes: &ChartAxes, front: &[DrawnRun]) {
+    let left = axes.right + 24.0;
+    let wide = NAMES - 44.0;
     let gap = GAP.min((axes.bottom - axes.top) / front.len().max(1) as f64);
-    for (index, (row, place)) in front.iter().enumerate() {
+    for (index, &DrawnRun { row, place }) in front.iter().enumerate() {
         let number = (index + 1).to_string();
-        let (x, y) = on_sheet(*place);
-        canvas.text(&number, (x - 14.0, y + 22.0), NUMBER, TextAlign::Right, INK);
+        let [x, y] = on_sheet(axes, place);
+        canvas.text(&number, [x - 14.0, y + 22.0], NUMBER, TextAlign::Right, INK);
         let text = format!("{number}  {}", row.name);
-        let cost = format!("     {:.3} %, {} CPU s", 100.0 * place.1, crate::record::short(place.0));
+        let cost = format!("     {:.3} %, {} CPU s", 100.0 * place.error, short(place.cost));
         let top = axes.top + gap * (index as f64 + 0.3);
         let size = (0.42 * gap).min(NUMBER * 0.85);
-        canvas.text(&text, (left, top), fitting(&text, size, wide), TextAlign::Left, INK);
+        canvas.text(&text, [left, top], fitting(&text, size, wide), TextAlign::Left, INK);
         canvas.text(
             &cost,
-            (left, top + 0.42 * gap),
+            [left, top + 0.42 * gap],
             fitting(&cost, size, wide),
             TextAlign::Left,
             OUTLINE,
@@ -138,24 +140,25 @@ fn names(
 }
 
 /// A range with room at its ends, and with two powers of ten in it at least, so that the axis has a scale.
-fn decades((low, high): (f64, f64)) -> (f64, f64) {
-    let (mut low, mut high) = (low / 1.6, high * 1.6);
-    let powers = |low: f64, high: f64| (high.log10() + 1e-9).floor() - (low.log10() - 1e-9).ceil();
-    while powers(low, high) < 1.0 {
+fn decades(range: ValueRange) -> ValueRange {
+    let mut low = range.low / 1.6;
+    let mut high = range.high * 1.6;
+    while (high.log10() + 1e-9).floor() - (low.log10() - 1e-9).ceil() < 1.0 {
         // Towards the nearer power.
-        let (down, up) = (low.log10() - low.log10().floor(), high.log10().ceil() - high.log10());
+        let down = low.log10() - low.log10().floor();
+        let up = high.log10().ceil() - high.log10();
         if (down > 1e-9 && down <= up) || up <= 1e-9 {
             low = 10_f64.powf(low.log10().floor() - if down <= 1e-9 { 1.0 } else { 0.0 });
         } else {
             high = 10_f64.powf(high.log10().ceil());
         }
     }
-    (low, high)
+    ValueRange { low, high }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::decades;
+    use super::{ValueRange, decades};
 
     #[test]
     fn an_axis_shows_two_powers_of_ten() {
@@ -167,13 +170,13 @@ mod tests {
             (1e-6, 1e-6),
             (95.0, 99.0),
         ] {
-            let (from, to) = decades((low, high));
+            let ValueRange { low: from, high: to } = decades(ValueRange { low, high });
             assert!(from < low && high < to, "{low} {high}: {from} {to}");
             let powers = (-9..9)
                 .filter(|power| (from..=to).contains(&10_f64.powi(*power)))
                 .count();
             assert!(powers >= 2, "{low} {high}: {from} {to}");
         }
-        assert!((decades((0.02, 40.0)).1 - 64.0).abs() < 1e-9);
+        assert!((decades(ValueRange::of(0.02, 40.0)).high - 64.0).abs() < 1e-9);
     }
 }

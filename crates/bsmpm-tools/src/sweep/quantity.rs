@@ -28,19 +28,23 @@ pub(crate) struct QuantityPart {
 impl SweepQuantity {
     /// `NAME[@TIME],...`; a name without a time takes that of the next one that has it.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let wrong = |why: &str| {
+        Self::read(text).map_err(|why| {
             format!(
                 "E0835: --quantity {text} is invalid: {why}. Give NAME or NAME@TIME, or several separated by commas."
             )
-        };
+        })
+    }
+
+    /// As [`SweepQuantity::parse`]; the error says in a few words what is wrong.
+    fn read(text: &str) -> Result<Self, String> {
         let mut parts = Vec::new();
         for part in text.split(',').rev() {
             let (column, at) = match part.split_once('@') {
-                Some((column, time)) => (column.trim(), Some(plot::time(time).map_err(|why| wrong(&why))?)),
+                Some((column, time)) => (column.trim(), Some(plot::time(time)?)),
                 None => (part.trim(), parts.last().and_then(|next: &QuantityPart| next.at)),
             };
             if column.is_empty() {
-                return Err(wrong("a name is empty"));
+                return Err("a name is empty".to_owned());
             }
             parts.push(QuantityPart {
                 column: column.to_owned(),
@@ -76,13 +80,9 @@ impl SweepQuantity {
 impl QuantityPart {
     /// Its number in a history: linear between rows.
     pub fn value(&self, history: &Columns) -> Result<f64, String> {
-        let column = |name: &str| {
-            history
-                .get(name)
-                .ok_or_else(|| format!("its history has no column {name}"))
-        };
-        let (times, values) = (column("time")?, column(&self.column)?);
-        let (Some(&end), Some(&last)) = (times.last(), values.last()) else {
+        let times = column(history, "time")?;
+        let values = column(history, &self.column)?;
+        let Some((&end, &last)) = times.last().zip(values.last()) else {
             return Err("its history has no row".to_owned());
         };
         let Some(at) = self.at else { return Ok(last) };
@@ -106,6 +106,12 @@ impl QuantityPart {
         self.at
             .map_or_else(|| self.column.clone(), |at| format!("{}@{at}", self.column))
     }
+}
+
+/// A column of a history, or that there is none.
+fn column<'a>(history: &'a Columns, name: &str) -> Result<&'a [f64], String> {
+    let column = history.get(name);
+    column.ok_or_else(|| format!("its history has no column {name}"))
 }
 
 #[cfg(test)]

@@ -97,11 +97,12 @@ impl Reference {
             }
             Self::Numbers(numbers) => {
                 let mut numbers = numbers.iter().copied();
-                let of = |quantity: &SweepQuantity| Some(numbers.by_ref().take(quantity.parts.len()).collect());
-                let values = quantities.iter().map(of).collect();
+                let values = quantities
+                    .iter()
+                    .map(|quantity| Some(numbers.by_ref().take(quantity.parts.len()).collect()));
                 Ok(FoundReference {
                     what: "the numbers given".to_owned(),
-                    values,
+                    values: values.collect(),
                     run: None,
                     notes: Vec::new(),
                 })
@@ -112,23 +113,24 @@ impl Reference {
 
 /// The quantities of a run that is not of the sweep.
 fn elsewhere(directory: &Path, quantities: &[SweepQuantity]) -> Result<Vec<Vec<f64>>, Error> {
-    let refused = |reason: &str| Error::Usage {
-        reason: format!(
-            "E0840: the reference {} cannot be used: {reason}. Give the directory of a completed run.",
-            directory.display()
-        ),
-    };
-    let manifest = Manifest::read(directory).map_err(|error| refused(&error.to_string()))?;
+    let manifest = Manifest::read(directory).map_err(|error| refused(directory, &error.to_string()))?;
     if manifest.status == Status::Running || manifest.status == Status::Stopped {
-        return Err(refused("the run is not completed"));
+        return Err(refused(directory, "the run is not completed"));
     }
     let history = table::read(&directory.join(HISTORY))?;
-    let of = |quantity: &SweepQuantity| quantity.values(&history);
-    quantities
-        .iter()
-        .map(of)
+    let values = quantities.iter().map(|quantity| quantity.values(&history));
+    values
         .collect::<Result<_, _>>()
-        .map_err(|reason| refused(&reason))
+        .map_err(|reason| refused(directory, &reason))
+}
+
+/// The error of a run that is no reference.
+fn refused(directory: &Path, reason: &str) -> Error {
+    let reason = format!(
+        "E0840: the reference {} cannot be used: {reason}. Give the directory of a completed run.",
+        directory.display()
+    );
+    Error::Usage { reason }
 }
 
 /// The finest run that has finished.
@@ -186,11 +188,12 @@ fn of_run(
 fn extrapolated(quantities: &[SweepQuantity], points: &[Point], values: &[Option<ReferenceValues>]) -> FoundReference {
     let mut found = finest(quantities, points, values);
     let Some(run) = found.run else { return found };
-    let same = |index: &usize| points[*index].differs_in_cells_only(&points[run]);
-    let mut series: Vec<(f64, &ReferenceValues)> = (0..points.len())
-        .filter(same)
-        .filter_map(|index| Some((points[index].cell()?, values[index].as_ref()?)))
-        .collect();
+    let mut series: Vec<(f64, &ReferenceValues)> = Vec::new();
+    for (point, values) in points.iter().zip(values) {
+        if point.differs_in_cells_only(&points[run]) {
+            series.extend(point.cell().zip(values.as_ref()));
+        }
+    }
     series.sort_by(|a, b| a.0.total_cmp(&b.0));
     series.dedup_by(|a, b| a.0 == b.0);
     let [first, second, third, ..] = series[..] else {
@@ -205,10 +208,12 @@ fn extrapolated(quantities: &[SweepQuantity], points: &[Point], values: &[Option
     found.what = format!("extrapolated from cells of {} m, {} m and {} m", h[0], h[1], h[2]);
     let finest = found.run.take();
     for (index, quantity) in quantities.iter().enumerate() {
-        let of = |values: &ReferenceValues, part: usize| values[index].as_ref().map_or(f64::NAN, |values| values[part]);
         let mut limits = Vec::new();
         for part in 0..quantity.parts.len() {
-            let f = [of(first.1, part), of(second.1, part), of(third.1, part)];
+            let f = [first, second, third].map(|(_, values)| match &values[index] {
+                Some(values) => values[part],
+                None => f64::NAN,
+            });
             let limit = limit(h, f);
             found
                 .notes

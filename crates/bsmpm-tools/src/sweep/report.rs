@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::front::{cheapest, front};
+use super::front::{CostError, cheapest, front};
 use super::quantity::SweepQuantity;
 use super::reference::{FoundReference, ReferenceValues};
 use super::study::Point;
@@ -84,18 +84,13 @@ impl SweepReport {
             within,
             ..
         } = parts;
-        let row = |index: usize| {
-            row(
-                &points[index],
-                &outcomes[index],
-                values[index].as_ref(),
-                quantities,
-                &reference,
-            )
-        };
-        let mut runs: Vec<SweepRow> = (0..points.len()).map(row).collect();
-        for (index, row) in runs.iter_mut().enumerate() {
-            row.is_reference = reference.run == Some(index);
+        let mut runs: Vec<SweepRow> = Vec::new();
+        for (index, point) in points.iter().enumerate() {
+            let row = row(point, &outcomes[index], values[index].as_ref(), quantities, &reference);
+            runs.push(SweepRow {
+                is_reference: reference.run == Some(index),
+                ..row
+            });
         }
         let mut best = Vec::new();
         for (index, quantity) in quantities.iter().enumerate() {
@@ -119,15 +114,12 @@ impl SweepReport {
         }
         let baseline = runs.iter().find(|row| row.is_baseline && row.state == RunState::Done);
         let baseline = baseline.map(|row| row.cost.cpu_seconds).filter(|cost| *cost > 0.0);
-        let ratio = |run: Option<usize>| Some(runs[run?].cost.cpu_seconds / baseline?);
-        let cheapest = best
-            .into_iter()
-            .map(|(quantity, run)| Cheapest {
-                quantity,
-                run,
-                ratio: ratio(run),
-            })
-            .collect();
+        let cheapest = best.into_iter().map(|(quantity, run)| Cheapest {
+            quantity,
+            run,
+            ratio: run.and_then(|run| Some(runs[run].cost.cpu_seconds / baseline?)),
+        });
+        let cheapest = cheapest.collect();
         Self {
             case: parts.case,
             title: parts.title,
@@ -213,17 +205,15 @@ impl SweepReport {
             table.column(head, |row| &row.settings[axis]);
         }
         for (index, name) in self.quantities.iter().enumerate() {
-            let values = |row: &SweepRow| {
-                row.values[index]
-                    .iter()
-                    .flatten()
-                    .map(|v| format!("{v:.5}"))
-                    .collect::<Vec<_>>()
-            };
-            table.right(name, |row| values(row).join(" ")).right("error", |row| {
-                let mark = if row.on_front[index] { " *" } else { "" };
-                some(row.errors[index].map(|error| format!("{:.3} %{mark}", 100.0 * error)))
-            });
+            table
+                .right(name, |row| {
+                    let values = row.values[index].iter().flatten();
+                    values.map(|v| format!("{v:.5}")).collect::<Vec<_>>().join(" ")
+                })
+                .right("error", |row| {
+                    let mark = if row.on_front[index] { " *" } else { "" };
+                    some(row.errors[index].map(|error| format!("{:.3} %{mark}", 100.0 * error)))
+                });
         }
         table
             .right("CPU s", |row| format!("{:.2}", row.cost.cpu_seconds))
@@ -285,9 +275,12 @@ impl SweepReport {
 
 impl SweepRow {
     /// Cost and the largest error of some quantities; none without them.
-    pub fn place(&self, quantities: &[usize]) -> Option<(f64, f64)> {
+    pub fn place(&self, quantities: &[usize]) -> Option<CostError> {
         let errors: Option<Vec<f64>> = quantities.iter().map(|&index| self.errors[index]).collect();
-        Some((self.cost.cpu_seconds, errors?.into_iter().fold(0.0, f64::max)))
+        Some(CostError {
+            cost: self.cost.cpu_seconds,
+            error: errors?.into_iter().fold(0.0, f64::max),
+        })
     }
 
     fn remark(&self) -> String {
@@ -323,10 +316,8 @@ fn row(
 ) -> SweepRow {
     let none = vec![None; quantities.len()];
     let values = values.unwrap_or(&none).clone();
-    let error = |index: usize| {
-        let (values, reference) = (values[index].as_ref()?, found.values[index].as_ref()?);
-        quantities[index].error(values, reference)
-    };
+    let errors = quantities.iter().zip(values.iter().zip(&found.values));
+    let errors = errors.map(|(quantity, (values, reference))| quantity.error(values.as_ref()?, reference.as_ref()?));
     SweepRow {
         name: point.name(),
         settings: point.values.clone(),
@@ -337,7 +328,7 @@ fn row(
         state: outcome.state,
         code: outcome.code,
         reason: outcome.reason.lines().next().unwrap_or_default().to_owned(),
-        errors: (0..quantities.len()).map(error).collect(),
+        errors: errors.collect(),
         values,
         on_front: Vec::new(),
         is_baseline: point.is_baseline,

@@ -62,13 +62,12 @@ fn of(found: fos::FoundFactor, directory: PathBuf) -> Outcome {
         headings,
         values: vec![vec![1.0], vec![factor]],
     });
-    let (code, kept, directory) = (Some(DONE), found.kept, Some(directory));
     Outcome {
-        code,
+        code: Some(DONE),
         history,
         cost,
-        kept,
-        directory,
+        kept: found.kept,
+        directory: Some(directory),
         ..Outcome::never(RunState::Done, String::new())
     }
 }

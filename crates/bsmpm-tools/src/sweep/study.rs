@@ -41,27 +41,27 @@ impl Study<'_> {
         let document: Table = toml::from_str(&own.case.text).unwrap_or_default();
         let mut points: Vec<Point> = Vec::new();
         for setting in settings {
-            let set = |(axis, value): (&SweepAxis, &Option<String>)| Some(format!("{}={}", axis.key, value.as_ref()?));
-            let sets: Vec<String> = self.axes.iter().zip(setting).filter_map(set).collect();
-            let value = |(axis, value): (&SweepAxis, &Option<String>)| {
-                value.clone().unwrap_or_else(|| written(&document, &axis.key))
-            };
-            let values = self.axes.iter().zip(setting).map(value).collect();
+            let mut sets = Vec::new();
+            let mut values = Vec::new();
+            for (SweepAxis { key, .. }, value) in self.axes.iter().zip(setting) {
+                sets.extend(value.as_ref().map(|value| format!("{key}={value}")));
+                values.push(value.clone().unwrap_or_else(|| written(&document, key)));
+            }
             self.add(&mut points, self.point(values, &sets, Vec::new()));
         }
         let (of_axis, besides): (Vec<String>, Vec<String>) = baseline
             .iter()
             .cloned()
             .partition(|set| self.axes.iter().any(|axis| key(set) == axis.key));
-        let value = |axis: &SweepAxis| {
-            let given = of_axis
-                .iter()
-                .rev()
-                .find(|set| key(set) == axis.key)
-                .and_then(|set| set.split_once('='));
-            given.map_or_else(|| written(&document, &axis.key), |(_, value)| value.trim().to_owned())
-        };
-        let point = self.point(self.axes.iter().map(value).collect(), baseline, besides);
+        let mut values = Vec::new();
+        for axis in self.axes {
+            let given = of_axis.iter().rev().find(|set| key(set) == axis.key);
+            values.push(match given.and_then(|set| set.split_once('=')) {
+                Some((_, value)) => value.trim().to_owned(),
+                None => written(&document, &axis.key),
+            });
+        }
+        let point = self.point(values, baseline, besides);
         if let Err(errors) = &point.order {
             return Err(self.bad(errors.clone()));
         }
@@ -83,14 +83,14 @@ impl Study<'_> {
 
     /// The place of a point, which is added unless its case is there.
     fn add(&self, points: &mut Vec<Point>, point: Point) -> usize {
-        let is_same = |other: &Point| match (&other.order, &point.order) {
+        let same = points.iter().position(|other| match (&other.order, &point.order) {
             (Ok(other), Ok(order)) => {
                 bsmpm_scene::differences(&other.case.text, &order.case.text).is_ok_and(|found| found.is_empty())
             }
             _ => false,
-        };
-        points.iter().position(is_same).unwrap_or_else(|| {
-            points.push(point.clone());
+        });
+        same.unwrap_or_else(|| {
+            points.push(point);
             points.len() - 1
         })
     }
@@ -143,7 +143,7 @@ impl Point {
 
     /// Whether another run differs in the size of the cells at most.
     pub fn differs_in_cells_only(&self, other: &Self) -> bool {
-        let (Ok(one), Ok(other)) = (&self.order, &other.order) else {
+        let [Ok(one), Ok(other)] = [&self.order, &other.order] else {
             return false;
         };
         bsmpm_scene::differences(&one.case.text, &other.case.text)
@@ -167,22 +167,26 @@ pub(super) fn short<'a>(key: &'a str, keys: &[String]) -> &'a str {
 
 /// The value of a key as a case has it; `default` where it does not say.
 fn written(document: &Table, key: &str) -> String {
-    let mut parts = key.split('.');
-    let first = parts.next().and_then(|part| document.get(part.trim()));
-    let inner = |value: Option<&Value>, part: &str| -> Option<Value> {
-        match value? {
-            Value::Table(table) if part == "*" => table.values().next().cloned(),
-            Value::Table(table) => table.get(part).cloned(),
-            Value::Array(list) if part == "*" => list.first().cloned(),
-            Value::Array(list) => list.get(part.parse::<usize>().ok()?).cloned(),
-            _ => None,
-        }
-    };
-    let value = parts.fold(first.cloned(), |value, part| inner(value.as_ref(), part.trim()));
-    value.map_or_else(
-        || "default".to_owned(),
-        |value| value.to_string().trim_matches('"').to_owned(),
-    )
+    match inner(document, key) {
+        Some(value) => value.to_string().trim_matches('"').to_owned(),
+        None => "default".to_owned(),
+    }
+}
+
+/// The value of a key in a document, if it has one.
+fn inner<'a>(document: &'a Table, key: &str) -> Option<&'a Value> {
+    let mut parts = key.split('.').map(str::trim);
+    let mut value = document.get(parts.next()?)?;
+    for part in parts {
+        value = match value {
+            Value::Table(table) if part == "*" => table.values().next()?,
+            Value::Table(table) => table.get(part)?,
+            Value::Array(list) if part == "*" => list.first()?,
+            Value::Array(list) => list.get(part.parse::<usize>().ok()?)?,
+            _ => return None,
+        };
+    }
+    Some(value)
 }
 
 #[cfg(test)]

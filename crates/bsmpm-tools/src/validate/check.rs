@@ -89,12 +89,9 @@ impl MatrixStudy {
     fn check_row(&self, row: &MatrixRow) -> Result<(), String> {
         let names: Vec<String> = row.runs().into_iter().map(str::to_owned).collect();
         self.are_known(&names)?;
-        let full = |name: &&String| {
-            self.run
-                .iter()
-                .any(|run| run.name == **name && self.depth_of(run) == Depth::Full)
-        };
-        if let Some(name) = names.iter().find(full).filter(|_| row.depth == Some(Depth::Short)) {
+        let full = self.run.iter().filter(|run| self.depth_of(run) == Depth::Full);
+        let full = names.iter().find(|name| full.clone().any(|run| run.name == **name));
+        if let Some(name) = full.filter(|_| row.depth == Some(Depth::Short)) {
             return Err(format!("it is short, its run \"{name}\" is full"));
         }
         let ways = [

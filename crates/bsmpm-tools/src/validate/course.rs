@@ -39,31 +39,29 @@ pub(super) fn reached(across: &[f64], value: f64) -> Option<Spot> {
 }
 
 /// Both columns from one spot to another: the ends, and the rows between them.
-pub(super) fn window(across: &[f64], up: &[f64], from: Spot, to: Spot) -> Vec<(f64, f64)> {
+pub(super) fn window(across: &[f64], up: &[f64], from: Spot, to: Spot) -> Vec<[f64; 2]> {
     let last = if to.share == 0.0 { to.row } else { to.row + 1 };
-    let rows = (from.row + 1..last).map(|row| (across[row], up[row]));
-    let end = (to != from).then(|| (to.of(across), to.of(up)));
-    [(from.of(across), from.of(up))]
-        .into_iter()
-        .chain(rows)
-        .chain(end)
-        .collect()
+    let mut window = vec![[from.of(across), from.of(up)]];
+    window.extend((from.row + 1..last).map(|row| [across[row], up[row]]));
+    if to != from {
+        window.push([to.of(across), to.of(up)]);
+    }
+    window
 }
 
 /// The integral over a window, by trapezia, divided by its length; of a window without length its value.
-pub(super) fn mean(window: &[(f64, f64)]) -> f64 {
-    let (Some(first), Some(last)) = (window.first(), window.last()) else {
+pub(super) fn mean(window: &[[f64; 2]]) -> f64 {
+    let Some((first, last)) = window.first().zip(window.last()) else {
         return f64::NAN;
     };
-    let length = last.0 - first.0;
+    let length = last[0] - first[0];
     if length == 0.0 {
-        return first.1;
+        return first[1];
     }
-    window
+    let trapezia = window
         .windows(2)
-        .map(|pair| (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1) / 2.0)
-        .sum::<f64>()
-        / length
+        .map(|pair| (pair[1][0] - pair[0][0]) * (pair[0][1] + pair[1][1]) / 2.0);
+    trapezia.sum::<f64>() / length
 }
 
 #[cfg(test)]
@@ -93,14 +91,14 @@ mod tests {
         let (from, to) = ends(0.5, 3.5);
         assert_eq!(
             window(&across, &up, from, to),
-            [(0.5, 1.0), (1.0, 2.0), (3.0, 6.0), (3.5, 7.0)]
+            [[0.5, 1.0], [1.0, 2.0], [3.0, 6.0], [3.5, 7.0]]
         );
         assert_eq!(mean(&window(&across, &up, from, to)), 4.0);
         let (from, to) = ends(1.0, 3.0);
-        assert_eq!(window(&across, &up, from, to), [(1.0, 2.0), (3.0, 6.0)]);
+        assert_eq!(window(&across, &up, from, to), [[1.0, 2.0], [3.0, 6.0]]);
         let (from, to) = ends(1.0, 1.0);
         assert_eq!(mean(&window(&across, &up, from, to)), 2.0);
         let (from, to) = ends(1.5, 2.5);
-        assert_eq!(window(&across, &up, from, to), [(1.5, 3.0), (2.5, 5.0)]);
+        assert_eq!(window(&across, &up, from, to), [[1.5, 3.0], [2.5, 5.0]]);
     }
 }

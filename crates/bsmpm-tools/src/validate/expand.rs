@@ -45,8 +45,11 @@ fn copies(mut entry: Value) -> Result<Vec<Value>, String> {
         if !copies[0].to_string().contains(&key) {
             return Err(format!("each.{word}: no {key} in {}", copies[0]));
         }
-        let of_copy = |copy: &Value| values.iter().map(|value| filled(copy, &key, value)).collect::<Vec<_>>();
-        copies = copies.iter().flat_map(of_copy).collect();
+        let mut filled_copies = Vec::new();
+        for copy in &copies {
+            filled_copies.extend(values.iter().map(|value| filled(copy, &key, value)));
+        }
+        copies = filled_copies;
     }
     Ok(copies)
 }

@@ -17,7 +17,9 @@ pub(super) fn draw(
     output: &Path,
 ) -> Result<bool, Error> {
     let left = |name: &String| outcomes.get(name).filter(|outcome| outcome.run.has_rows());
-    let (mut directories, mut labels, mut x_values) = (Vec::new(), Vec::new(), Vec::new());
+    let mut directories = Vec::new();
+    let mut labels = Vec::new();
+    let mut x_values = Vec::new();
     for name in &figure.runs {
         if let Some(outcome) = left(name) {
             directories.extend(outcome.run.directory.clone());

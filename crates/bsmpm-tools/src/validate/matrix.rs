@@ -238,21 +238,23 @@ fn other() -> String {
 impl ValidationMatrix {
     pub fn read(path: &Path) -> Result<Self, Error> {
         let text = fs::read_to_string(path).map_err(Error::unread("reference", path))?;
-        let bad = |reason: String| Error::BadReference {
+        Self::parse(&text).map_err(|reason| Error::BadReference {
             path: path.to_owned(),
             reason,
-        };
-        let mut written: toml::Table = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
-        expand(&mut written).map_err(bad)?;
-        let mut matrix: Self = written
-            .try_into()
-            .map_err(|error: toml::de::Error| bad(error.to_string()))?;
+        })
+    }
+
+    /// The matrix in a text, expanded and checked.
+    fn parse(text: &str) -> Result<Self, String> {
+        let mut written: toml::Table = toml::from_str(text).map_err(|error| error.to_string())?;
+        expand(&mut written)?;
+        let mut matrix: Self = written.try_into().map_err(|error: toml::de::Error| error.to_string())?;
         matrix
             .study
             .iter_mut()
             .flat_map(|study| &mut study.figure)
             .for_each(Figure::name_runs);
-        matrix.check().map_err(bad)?;
+        matrix.check()?;
         Ok(matrix)
     }
 }
@@ -269,9 +271,9 @@ impl Figure {
     fn name_runs(&mut self) {
         let Some(alike) = self.alike.take() else { return };
         for curve in alike.curves {
-            let named = |x: &f64| alike.run.replace("{curve}", &curve).replace("{x}", &format!("{x:?}"));
-            let runs = self.x_values.iter().map(named).collect();
-            self.curves.insert(curve, runs);
+            let run = alike.run.replace("{curve}", &curve);
+            let runs = self.x_values.iter().map(|x| run.replace("{x}", &format!("{x:?}")));
+            self.curves.insert(curve, runs.collect());
         }
     }
 }
@@ -332,14 +334,12 @@ impl MatrixRow {
 
     /// Whether a number is within the bounds.
     pub fn holds(&self, ours: f64) -> bool {
-        let near = |tolerance: f64| {
-            self.reference
-                .is_some_and(|at| (ours - at).abs() <= tolerance * at.abs())
+        let is_near = match (self.tolerance, self.reference) {
+            (Some(tolerance), Some(at)) => (ours - at).abs() <= tolerance * at.abs(),
+            (Some(_), None) => false,
+            (None, _) => true,
         };
-        ours.is_finite()
-            && self.tolerance.is_none_or(near)
-            && self.min.is_none_or(|min| ours >= min)
-            && self.max.is_none_or(|max| ours <= max)
+        ours.is_finite() && is_near && self.min.is_none_or(|min| ours >= min) && self.max.is_none_or(|max| ours <= max)
     }
 
     /// The bounds in words.

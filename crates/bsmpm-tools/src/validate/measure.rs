@@ -58,11 +58,10 @@ fn column(outcomes: &BTreeMap<String, MatrixOutcome>, run: &str, name: &str) -> 
 }
 
 /// The load-displacement curve of a run.
-fn curve(outcomes: &BTreeMap<String, MatrixOutcome>, run: &str, kink: &MatrixKink) -> Result<Vec<(f64, f64)>, String> {
-    Ok(column(outcomes, run, &kink.x)?
-        .into_iter()
-        .zip(column(outcomes, run, &kink.y)?)
-        .collect())
+fn curve(outcomes: &BTreeMap<String, MatrixOutcome>, run: &str, kink: &MatrixKink) -> Result<Vec<[f64; 2]>, String> {
+    let across = column(outcomes, run, &kink.x)?;
+    let up = column(outcomes, run, &kink.y)?;
+    Ok(across.into_iter().zip(up).map(<[f64; 2]>::from).collect())
 }
 
 /// The last row of a run that stopped is not that of the others.
@@ -89,18 +88,20 @@ fn part(
     run: &str,
     values: &[f64],
     place: Option<&MatrixPlace>,
-) -> Result<Vec<(f64, f64)>, Lack> {
+) -> Result<Vec<[f64; 2]>, Lack> {
     let name = place.map_or("time", |place| &place.column);
-    let end = |value: Option<f64>, row: usize| match value {
-        Some(value) => spot(outcomes, run, name, value),
-        None => Ok(Spot { row, share: 0.0 }),
+    let from = match place.and_then(|place| place.from) {
+        Some(from) => spot(outcomes, run, name, from)?,
+        None => Spot { row: 0, share: 0.0 },
     };
-    let from = end(place.and_then(|place| place.from), 0)?;
-    let to = place.and_then(|place| place.to);
-    if to.is_none() {
-        ended(outcomes, run)?;
-    }
-    let to = end(to, values.len() - 1)?;
+    let to = match place.and_then(|place| place.to) {
+        Some(to) => spot(outcomes, run, name, to)?,
+        None => {
+            ended(outcomes, run)?;
+            let row = values.len() - 1;
+            Spot { row, share: 0.0 }
+        }
+    };
     if (to.row, to.share) < (from.row, from.share) {
         return Err(Lack::Other(format!("the window of {name} ends before it begins")));
     }
@@ -108,17 +109,13 @@ fn part(
 }
 
 /// The largest difference of a part of a history from that of the row's other run at the same place, relative to it.
-fn deviation(row: &MatrixRow, part: &[(f64, f64)], outcomes: &BTreeMap<String, MatrixOutcome>) -> Result<f64, Lack> {
-    let (other, name) = (
-        row.against.as_deref().unwrap_or_default(),
-        row.column.as_deref().unwrap_or_default(),
-    );
-    let (values, across) = (
-        column(outcomes, other, name)?,
-        row.place.as_ref().map_or("time", |place| &place.column),
-    );
+fn deviation(row: &MatrixRow, part: &[[f64; 2]], outcomes: &BTreeMap<String, MatrixOutcome>) -> Result<f64, Lack> {
+    let other = row.against.as_deref().unwrap_or_default();
+    let name = row.column.as_deref().unwrap_or_default();
+    let values = column(outcomes, other, name)?;
+    let across = row.place.as_ref().map_or("time", |place| &place.column);
     let mut largest: f64 = 0.0;
-    for (at, value) in part {
+    for [at, value] in part {
         let beside = spot(outcomes, other, across, *at)?.of(&values);
         let apart = (value / beside - 1.0).abs();
         if !apart.is_finite() {
@@ -130,20 +127,19 @@ fn deviation(row: &MatrixRow, part: &[(f64, f64)], outcomes: &BTreeMap<String, M
 }
 
 /// What an operation makes of a part of a history; no number of it may be missing.
-fn over(operation: Operation, part: &[(f64, f64)]) -> f64 {
-    let values = || part.iter().map(|(_, value)| *value);
-    if !values().all(f64::is_finite) {
+fn over(operation: Operation, part: &[[f64; 2]]) -> f64 {
+    let values = part.iter().map(|[_, value]| *value);
+    if !values.clone().all(f64::is_finite) {
         return f64::NAN;
     }
+    let largest = values.clone().fold(f64::NEG_INFINITY, f64::max);
+    let smallest = values.fold(f64::INFINITY, f64::min);
     match operation {
-        Operation::Max => values().fold(f64::NEG_INFINITY, f64::max),
-        Operation::Min => values().fold(f64::INFINITY, f64::min),
-        Operation::Spread => {
-            let largest = values().fold(f64::NEG_INFINITY, f64::max);
-            (largest - values().fold(f64::INFINITY, f64::min)) / mean(part).abs()
-        }
+        Operation::Max => largest,
+        Operation::Min => smallest,
+        Operation::Spread => (largest - smallest) / mean(part).abs(),
         Operation::Mean => mean(part),
-        Operation::Last | Operation::Reach | Operation::Deviation => part.last().map_or(f64::NAN, |(_, value)| *value),
+        Operation::Last | Operation::Reach | Operation::Deviation => part.last().map_or(f64::NAN, |[_, value]| *value),
     }
 }
 
@@ -165,31 +161,34 @@ fn at_time(
 
 /// What an order or an extrapolation takes of each of its runs.
 fn values(order: &MeasuredOrder, outcomes: &BTreeMap<String, MatrixOutcome>) -> Result<Vec<f64>, Lack> {
-    let of_run = |run: &String| match &order.kink {
-        Some(kink) => Ok(failure(kink, &curve(outcomes, run, kink)?)?.value),
-        None => {
-            let name = order.column.as_deref().unwrap_or_default();
-            at_time(outcomes, run, &column(outcomes, run, name)?, order.at)
-        }
-    };
-    order.runs.iter().map(of_run).collect()
+    let mut values = Vec::new();
+    for run in &order.runs {
+        values.push(match &order.kink {
+            Some(kink) => failure(kink, &curve(outcomes, run, kink)?)?.value,
+            None => {
+                let name = order.column.as_deref().unwrap_or_default();
+                at_time(outcomes, run, &column(outcomes, run, name)?, order.at)?
+            }
+        });
+    }
+    Ok(values)
 }
 
 /// Slope of log error over log size: least squares over all sizes; in the remark that of the last two, and the limit
 /// that the last three show.
 fn observed_order(order: &MeasuredOrder, values: &[f64]) -> Result<MeasuredNumber, String> {
     let exact = order.exact.ok_or("an order needs `exact`")?;
-    let places: Vec<(f64, f64)> = order
+    let places: Vec<[f64; 2]> = order
         .sizes
         .iter()
         .zip(values)
-        .map(|(size, value)| (size.ln(), (value - exact).abs().ln()))
+        .map(|(size, value)| [size.ln(), (value - exact).abs().ln()])
         .collect();
     let line = FittedLine::fitted(&places).ok_or("an order needs two sizes")?;
     let [.., before, last] = &places[..] else {
         return Err("an order needs two sizes".into());
     };
-    let pair = (before.1 - last.1) / (before.0 - last.0);
+    let pair = (before[1] - last[1]) / (before[0] - last[0]);
     let limit = extrapolated(order, values).map_or_else(|reason| reason, |limit| format!("{:.4}", limit.value));
     let remark = format!("last two sizes: {pair:.2}; limit of the last three: {limit}");
     Ok(MeasuredNumber {
@@ -207,7 +206,7 @@ fn extrapolated(order: &MeasuredOrder, values: &[f64]) -> Result<MeasuredNumber,
             remark: Some(format!("from {coarse:.4}, {fine:.4}: order 1 assumed")),
         });
     }
-    let ([.., a, b, c], [.., x, y, z]) = (values, &order.sizes[..]) else {
+    let [[.., a, b, c], [.., x, y, z]] = [values, &order.sizes] else {
         return Err("an extrapolation needs two or three sizes".into());
     };
     if ((x / y) / (y / z) - 1.0).abs() > 1e-6 {

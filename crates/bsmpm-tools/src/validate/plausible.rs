@@ -9,7 +9,8 @@ use std::path::Path;
 fn no_run_of_the_validation_looks_like_a_slip() {
     let base = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/validation");
     let matrix = ValidationMatrix::read(&base.join("matrix.toml")).expect("the matrix can be read");
-    let (mut read, mut found) = (0, Vec::new());
+    let mut read = 0;
+    let mut found = Vec::new();
     for study in &matrix.study {
         for run in &study.run {
             let path = base.join(run.case.as_ref().unwrap_or(&study.case));

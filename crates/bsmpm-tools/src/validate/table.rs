@@ -176,17 +176,12 @@ fn themes<'a>(rows: impl Iterator<Item = &'a TableRow>) -> Vec<&'a str> {
 
 /// How many rows of each theme passed, fail as known, and failed.
 fn counts(judged: &[&TableRow]) -> String {
-    let names = themes(judged.iter().copied());
-    let with = |theme: &&str| {
-        judged
-            .iter()
-            .copied()
-            .filter(|row| row.theme == *theme)
-            .collect::<Vec<_>>()
-    };
-    let mut parts: Vec<(&str, Vec<&TableRow>)> = names.iter().map(|theme| (*theme, with(theme))).collect();
+    let mut parts: Vec<(&str, Vec<&TableRow>)> = Vec::new();
+    for theme in themes(judged.iter().copied()) {
+        let rows = judged.iter().copied().filter(|row| row.theme == theme);
+        parts.push((theme, rows.collect()));
+    }
     parts.push(("all", judged.to_vec()));
-    let count = |rows: &[&TableRow], is: fn(RowVerdict) -> bool| rows.iter().filter(|row| is(row.verdict)).count();
     let mut table = ReportTable::of(&parts);
     table
         .column("theme", |(theme, _)| *theme)
@@ -202,13 +197,20 @@ fn counts(judged: &[&TableRow]) -> String {
     table.markdown()
 }
 
+/// Returns the number of rows with such a verdict.
+fn count(rows: &[&TableRow], is: fn(RowVerdict) -> bool) -> usize {
+    rows.iter().filter(|row| is(row.verdict)).count()
+}
+
 /// The table of a document.
 fn columns<'a>(rows: &'a [&TableRow]) -> ReportTable<'a, &'a TableRow> {
     let mut table = ReportTable::of(rows);
-    let file = |path: &str| path.rsplit('/').next().unwrap_or(path).to_owned();
     table
         .column("problem", |row| format!("{}: {}", row.study, row.quantity))
-        .column("case file", move |row| format!("[`{}`]({})", file(&row.case), row.case))
+        .column("case file", |row| {
+            let file = row.case.rsplit('/').next().unwrap_or(&row.case);
+            format!("[`{file}`]({})", row.case)
+        })
         .column("source", |row| &row.source)
         .column("published value", |row| or_dash(row.published.map(number)))
         .column("value of bsmpm", |row| or_dash(row.value.map(number)))

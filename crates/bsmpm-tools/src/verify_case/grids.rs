@@ -27,13 +27,14 @@ impl Grids {
     pub fn of(arguments: &VerifyArguments, bytes: &[u8]) -> Result<Self, Error> {
         let path = &arguments.case;
         let own = case::parsed(path, bytes, &arguments.options.set)?;
-        let (mut orders, mut errors) = (Vec::new(), Vec::new());
+        let mut orders = Vec::new();
+        let mut errors = Vec::new();
         for grid in arguments.grids(&own)? {
             let mut set = arguments.options.set.clone();
             let named = grid.len();
             set.extend(grid);
             match RunOrder::read(path, bytes, set.clone(), named) {
-                Ok(order) => orders.push(arguments.timed(order, (bytes, set), &own)?),
+                Ok(order) => orders.push(arguments.timed(order, bytes, set, &own)?),
                 Err(found) => errors.extend(found),
             }
         }
@@ -68,9 +69,8 @@ impl VerifyArguments {
         if let Some(cells) = &self.cells {
             let cells = split(cells);
             let count = cells.len();
-            let of = |cell: &String| vec![format!("grid.cell={cell}")];
             return if count == 3 {
-                Ok(cells.iter().map(of).collect())
+                Ok(cells.iter().map(|cell| vec![format!("grid.cell={cell}")]).collect())
             } else {
                 usage(format!(
                     "E0859: --cells gives {count} sizes, but three are needed. Give three sizes, such as 0.4,0.2,0.1."
@@ -104,18 +104,15 @@ impl VerifyArguments {
         }
         let coarsest = if self.refine_only { 1.0 } else { self.ratio };
         let factors = [coarsest, coarsest / self.ratio, coarsest / self.ratio / self.ratio];
-        let of = |factor: f64| {
-            vec![format!(
-                "grid.cell=[{:?}, {:?}]",
-                factor * x.cell(0),
-                factor * y.cell(0)
-            )]
-        };
-        Ok(factors.map(of).to_vec())
+        let settings = factors.map(|factor| {
+            let [wide, high] = [factor * x.cell(0), factor * y.cell(0)];
+            vec![format!("grid.cell=[{wide:?}, {high:?}]")]
+        });
+        Ok(settings.to_vec())
     }
 
     /// The order with the step that it gets.
-    fn timed(&self, order: RunOrder, (bytes, mut set): (&[u8], Vec<String>), own: &Case) -> Result<RunOrder, Error> {
+    fn timed(&self, order: RunOrder, bytes: &[u8], mut set: Vec<String>, own: &Case) -> Result<RunOrder, Error> {
         let step = match self.time_step {
             // Steps that a preset chooses would follow the cells.
             TimeStep::Kept if order.case.analysis.dt == own.analysis.dt => return Ok(order),
@@ -155,26 +152,29 @@ fn points(own: &Case) -> impl Iterator<Item = String> {
 /// m  the breakpoints along an axis, in the case's coordinates, between which each cell is divided into equal parts
 fn divided_knots(own: &Case, axis: usize, parts: usize) -> Vec<f64> {
     let cells = &own.grid.axes[axis];
-    let breakpoint = |number: usize| match cells {
+    let mut knots = Vec::new();
+    for number in 0..=cells.cells() * parts {
+        let cell = number / parts;
+        let knot = match number % parts {
+            0 => breakpoint(cells, cell),
+            part => {
+                let along = part as f64 / parts as f64;
+                breakpoint(cells, cell) * (1.0 - along) + breakpoint(cells, cell + 1) * along
+            }
+        };
+        let mut lines = own.grid.lines[axis].iter();
+        let line = lines.find(|line| line.breakpoint * parts == number);
+        knots.extend(std::iter::repeat_n(knot, line.map_or(1, |line| line.multiplicity)));
+    }
+    knots
+}
+
+/// Breakpoint (m) along an axis, in the case's coordinates.
+fn breakpoint(cells: &GridAxis, number: usize) -> f64 {
+    match cells {
         GridAxis::Uniform { lower, .. } => lower + cells.breakpoint(number),
         GridAxis::Graded(breakpoints) => breakpoints[number],
-    };
-    let at = |number: usize| match number % parts {
-        0 => breakpoint(number / parts),
-        part => {
-            let (cell, along) = (number / parts, part as f64 / parts as f64);
-            breakpoint(cell) * (1.0 - along) + breakpoint(cell + 1) * along
-        }
-    };
-    let copies = |number: usize| {
-        let line = own.grid.lines[axis]
-            .iter()
-            .find(|line| line.breakpoint * parts == number);
-        line.map_or(1, |line| line.multiplicity)
-    };
-    (0..=cells.cells() * parts)
-        .flat_map(|number| std::iter::repeat_n(at(number), copies(number)))
-        .collect()
+    }
 }
 
 /// The settings of cells of one size, divided into so many parts along each axis.

@@ -69,8 +69,10 @@ impl VerifyReport {
                     column: heading.name.clone(),
                     at: time,
                 };
-                let value = |history: &Columns| part.value(history).map_err(|reason| Error::Usage { reason });
-                let values = [value(fine)?, value(middle)?, value(coarse)?];
+                let mut values = [0.0; 3];
+                for (value, history) in values.iter_mut().zip([fine, middle, coarse]) {
+                    *value = part.value(history).map_err(|reason| Error::Usage { reason })?;
+                }
                 let index = Index::of(grids.sizes, values);
                 let verdict = verdict(&index, grids.own.grid.order);
                 rows.push(VerifyRow {
@@ -83,7 +85,6 @@ impl VerifyReport {
                 });
             }
         }
-        let step = |index: usize| grids.orders[index].case.analysis.dt;
         let directories = outcomes.iter().filter_map(|outcome| outcome.directory.as_ref());
         Ok(Self {
             case: arguments.case.display().to_string(),
@@ -95,7 +96,7 @@ impl VerifyReport {
             } else {
                 "refined"
             },
-            steps: [step(0), step(1), step(2)],
+            steps: [0, 1, 2].map(|index| grids.orders[index].case.analysis.dt),
             rows,
             costs: outcomes.iter().map(|outcome| outcome.cost).collect(),
             directories: directories.map(|directory| directory.display().to_string()).collect(),

@@ -85,18 +85,21 @@ pub fn entering(background: f64) -> Found {
 /// A block of 3 x 3 cells that falls freely and moves across a cell in 200 steps: largest acceleration of any node over
 /// g, and largest error of the momentum, relative.
 fn falling() -> (f64, f64) {
-    let (g, speed, steps) = (2.0, Vector::from([1.0, 0.3]), 200);
+    let g = 2.0;
+    let speed = Vector::from([1.0, 0.3]);
+    let steps = 200;
     let mut scene = Scene::<PlaneStrain, 2>::new([axis(H, 10, 2), axis(H, 10, 2)], hencky(100.0, 0.3), Regime::Dynamic)
         .body([2..5, 4..7], 2, 1.0, |_| speed)
         .gravity(g, 0.0);
     let dt = H / speed[0] / f64::from(steps);
-    let (halo, schedule) = (scene.halo(), Schedule::new(dt, dt * f64::from(steps), []));
-    let (mut solver, mut stepper) = (
-        Skyline::new(&scene.model.grid),
-        Stepper::new(scene.model.grid.nodes() * 2),
-    );
+    let halo = scene.halo();
+    let schedule = Schedule::new(dt, dt * f64::from(steps), []);
+    let mut solver = Skyline::new(&scene.model.grid);
+    let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     let mass: f64 = scene.points.mass.iter().sum();
-    let (mut acceleration, mut lost, mut before) = (0.0_f64, 0.0_f64, speed);
+    let mut acceleration = 0.0_f64;
+    let mut lost = 0.0_f64;
+    let mut before = speed;
     while let Some(step) = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
         let t = step.expect("a step").t;
         scene.points.sort_by_cell(&scene.model.grid);
@@ -124,11 +127,11 @@ pub fn lost_momentum() -> f64 {
 /// with `swapped` axes the wall is the floor.
 fn thrown(is_mirrored: bool, is_swapped: bool, method: Stabilisation) -> Points<2> {
     let sign = if is_mirrored { -1.0 } else { 1.0 };
-    let (mut cells, mut axes) = (
-        [if is_mirrored { 3..6 } else { 2..5 }, 0..3],
-        [axis(0.5, 8, 2), axis(0.5, 5, 2)],
-    );
-    let (mut v, mut g, mut shift) = ([-0.8 * sign, 0.1], [0.0, -2.0], [-0.05 * sign, 0.0]);
+    let mut cells = [if is_mirrored { 3..6 } else { 2..5 }, 0..3];
+    let mut axes = [axis(0.5, 8, 2), axis(0.5, 5, 2)];
+    let mut v = [-0.8 * sign, 0.1];
+    let mut g = [0.0, -2.0];
+    let mut shift = [-0.05 * sign, 0.0];
     if is_swapped {
         cells.reverse();
         axes.reverse();
@@ -247,7 +250,8 @@ fn flight(order: usize) -> (f64, f64) {
         Regime::Dynamic,
     )
     .body([1..4, 1..4], 2, 1.0, |_| velocity);
-    let (mut change, mut stress) = (0.0_f64, 0.0_f64);
+    let mut change = 0.0_f64;
+    let mut stress = 0.0_f64;
     let mut last = vec![velocity; scene.points.len()];
     scene.march(0.05, 100.0, |points, _| {
         for (p, v) in points.motion.as_ref().expect("dynamic").v.iter().enumerate() {
@@ -277,7 +281,8 @@ pub fn flight_stress() -> f64 {
 
 /// Mean stress error of a column shortened by 24 % over 16 cells, with splines of this order.
 fn shortened(order: usize) -> f64 {
-    let (cells, load) = (16, 0.8);
+    let cells = 16;
+    let load = 0.8;
     let h = 1.0 / f64::from(cells as u32);
     let young = 1.3 * 0.4 / 0.7;
     let mut scene = Scene::<PlaneStrain, 2>::new(
@@ -297,7 +302,8 @@ fn shortened(order: usize) -> f64 {
 
 /// Cell-crossing noise of quadratic splines over that of linear ones, the control.
 pub fn crossing_noise() -> Found {
-    let (linear, quadratic) = (shortened(1), shortened(2));
+    let linear = shortened(1);
+    let quadratic = shortened(2);
     Found::Figure(
         quadratic / linear,
         format!("stress error {quadratic:.1e}, linear {linear:.1e}"),
@@ -306,7 +312,8 @@ pub fn crossing_noise() -> Found {
 
 /// A square that spins ten times, 40 steps a turn: part of its angular momentum that is lost.
 pub fn spinning() -> f64 {
-    let (centre, omega) = (Vector::from([2.0, 2.0]), 1.0);
+    let centre = Vector::from([2.0, 2.0]);
+    let omega = 1.0;
     let mut scene = Scene::<PlaneStrain, 2>::new(
         [axis(0.25, 16, 2), axis(0.25, 16, 2)],
         hencky(1e3, 0.3),

@@ -42,7 +42,8 @@ pub fn confined_by_round_off(poisson: f64, method: Stabilisation, columns: i32) 
 
 /// A column with Young's modulus times `factor`.
 fn column(poisson: f64, method: Stabilisation, factor: f64) -> Found {
-    let (cells, h) = (20, 0.05);
+    let cells = 20;
+    let h = 0.05;
     let young = factor * (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson);
     let mut scene = Scene::<PlaneStrain, 2>::new(
         [axis(h, 1, 2), axis(h, cells, 2)],
@@ -73,11 +74,10 @@ fn column(poisson: f64, method: Stabilisation, factor: f64) -> Found {
 
 /// Ten steps; fails where the program would.
 fn march(scene: &mut Scene<PlaneStrain, 2>) -> Result<(), Failure> {
-    let (halo, schedule) = (scene.halo(), Schedule::new(1.0, 10.0, []));
-    let (mut solver, mut stepper) = (
-        Skyline::new(&scene.model.grid),
-        Stepper::new(scene.model.grid.nodes() * 2),
-    );
+    let halo = scene.halo();
+    let schedule = Schedule::new(1.0, 10.0, []);
+    let mut solver = Skyline::new(&scene.model.grid);
+    let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     while let Some(step) = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
         step?;
         scene.points.sort_by_cell(&scene.model.grid);

@@ -43,7 +43,8 @@ pub fn mass_in_bounce() -> Found {
 /// Largest drift of the momentum in free flight, relative.
 pub fn momentum() -> Found {
     flight().found(|run| {
-        let (x, y) = (run.column("momentum-x"), run.column("momentum-y"));
+        let x = run.column("momentum-x");
+        let y = run.column("momentum-y");
         x.iter()
             .zip(&y)
             .map(|(px, py)| (px - x[0]).hypot(*py))
@@ -77,7 +78,8 @@ fn growth(speed: f64) -> (f64, bool) {
         .stderr(Stdio::null());
     let mut child = command.spawn().expect("the program starts");
     let of_process = |name: &str| format!("/proc/{}/{name}", child.id());
-    let (status, files) = (of_process("status"), of_process("fd"));
+    let status = of_process("status");
+    let files = of_process("fd");
     let mut samples = Vec::new();
     let ended = loop {
         std::thread::sleep(Duration::from_millis(250));
@@ -98,7 +100,8 @@ fn growth(speed: f64) -> (f64, bool) {
     );
     // The last samples may be of the program's end.
     let steady = &samples[samples.len() / 5..samples.len() - samples.len() / 20 - 1];
-    let (first, last) = (steady[0].0, steady[steady.len() - 1].0);
+    let first = steady[0].0;
+    let last = steady[steady.len() - 1].0;
     let steps = STEPS as f64 * steady.len() as f64 / samples.len() as f64;
     (
         1e3 * (last - first) / steps,
@@ -125,7 +128,9 @@ fn bar_energy() -> (f64, f64) {
     *FOUND.get_or_init(|| {
         let mut scene = bar();
         let start = energy(&scene.points);
-        let (mut worst, mut middle, mut step) = (0.0_f64, 0.0, 0);
+        let mut worst = 0.0_f64;
+        let mut middle = 0.0;
+        let mut step = 0;
         scene.march(PERIOD / 80.0, STEPS as f64 * PERIOD / 80.0, |points, _| {
             step += 1;
             // Once a period: within it, the points' energies come and go with the phase.
@@ -154,7 +159,8 @@ pub fn bar_slope() -> f64 {
 
 /// Steps numbered around 2^31: largest error of their length.
 pub fn far_steps() -> f64 {
-    let (dt, before) = (1e-3, 2.0_f64.powi(31) - 2.0);
+    let dt = 1e-3;
+    let before = 2.0_f64.powi(31) - 2.0;
     let schedule = Schedule::new(dt, 1e-2 * 2.0_f64.powi(31), []);
     let mut t = schedule.next(before * dt).expect("a step");
     let mut worst = 0.0_f64;

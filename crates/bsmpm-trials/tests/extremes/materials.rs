@@ -13,7 +13,8 @@ const FRICTIONS: [f64; 6] = [0.0, 1e-9, 20.0, 45.0, 60.0, 89.9];
 
 /// Angles in degrees.
 fn mohr_coulomb(poisson: f64, friction: f64, dilation: f64, cohesion: f64) -> Material {
-    let (friction, dilation) = (friction.to_radians(), dilation.to_radians());
+    let friction = friction.to_radians();
+    let dilation = dilation.to_radians();
     Material::MohrCoulomb(MohrCoulomb::new(
         Elastic { young: YOUNG, poisson },
         friction,
@@ -77,7 +78,8 @@ fn excess(tau: [f64; 3], friction: f64, cohesion: f64) -> f64 {
 /// Without cohesion, or next to none: largest f / E over 1e5 trials for each, most of them beyond the apex.
 pub fn apex() -> Found {
     let mut random = Random::new(2);
-    let (mut worst, mut tips) = (0.0_f64, 0);
+    let mut worst = 0.0_f64;
+    let mut tips = 0;
     for cohesion in [0.0, 1e-6, 1e-3] {
         for _ in 0..100_000 {
             let friction = pick(&mut random, &[20.0, 45.0, 60.0]);
@@ -101,20 +103,16 @@ pub fn yielding(friction: f64) -> f64 {
     let mut worst = 0.0_f64;
     for _ in 0..1_000_000 {
         let dilation = friction * pick(&mut random, &[0.0, 0.5, 1.0]);
-        let (poisson, cohesion) = (
-            pick(&mut random, &[0.0, 0.3, 0.49, 0.49999]),
-            pick(&mut random, &[0.0, 1e-6, 1.0]),
-        );
+        let poisson = pick(&mut random, &[0.0, 0.3, 0.49, 0.49999]);
+        let cohesion = pick(&mut random, &[0.0, 1e-6, 1.0]);
         let found = respond(
             &mohr_coulomb(poisson, friction, dilation, cohesion),
             &trial(&mut random, -7.0, 0.3),
         );
         let tau = found.principal_tau();
         assert!(tau[0] >= tau[1] && tau[1] >= tau[2], "{tau:?} is out of order");
-        let (violation, size) = (
-            excess(tau, friction, cohesion),
-            cohesion + (tau[0] + tau[1] + tau[2]).abs() / 3.0,
-        );
+        let violation = excess(tau, friction, cohesion);
+        let size = cohesion + (tau[0] + tau[1] + tau[2]).abs() / 3.0;
         if violation > 0.0 {
             worst = worst.max(violation / size);
         }
@@ -125,7 +123,8 @@ pub fn yielding(friction: f64) -> f64 {
 /// Largest relative error of the tangent against fourth-order central differences that stay in one region.
 pub fn tangent() -> Found {
     let mut random = Random::new(4);
-    let (mut worst, mut tried) = (0.0_f64, 0);
+    let mut worst = 0.0_f64;
+    let mut tried = 0;
     for _ in 0..60_000 {
         let friction = pick(&mut random, &FRICTIONS);
         let dilation = friction * pick(&mut random, &[0.0, 0.5, 1.0]);
@@ -133,7 +132,8 @@ pub fn tangent() -> Found {
         let b = trial(&mut random, -2.5, -0.7);
         let l = Tensor::from_fn(|_, _| random.signed());
         let found = respond(&material, &b);
-        let (eps, tau) = (found.principal_eps_trial(), found.principal_tau());
+        let eps = found.principal_eps_trial();
+        let tau = found.principal_tau();
         let gaps = [(0, 1), (1, 2)]
             .into_iter()
             .filter(|(i, j)| tau[*i] != tau[*j])
@@ -160,12 +160,11 @@ pub fn tangent() -> Found {
 /// s = C (trial - tau), s . r_i <= 0 for all i and s . (tau - a) = 0 (Moreau). Largest violation, relative.
 pub fn projection() -> Found {
     let mut random = Random::new(5);
-    let (mut worst, mut returned) = (0.0_f64, 0);
+    let mut worst = 0.0_f64;
+    let mut returned = 0;
     while returned < 10_000 {
-        let (friction, poisson) = (
-            pick(&mut random, &[20.0, 45.0, 60.0]),
-            pick(&mut random, &[0.0, 0.3, 0.45]),
-        );
+        let friction = pick(&mut random, &[20.0, 45.0, 60.0]);
+        let poisson = pick(&mut random, &[0.0, 0.3, 0.45]);
         let found = respond(
             &mohr_coulomb(poisson, friction, friction, 1.0),
             &trial(&mut random, -3.0, -1.0),
@@ -174,11 +173,9 @@ pub fn projection() -> Found {
             continue;
         }
         returned += 1;
-        let (eps, eps_e, tau) = (
-            found.principal_eps_trial(),
-            found.principal_eps_e(),
-            found.principal_tau(),
-        );
+        let eps = found.principal_eps_trial();
+        let eps_e = found.principal_eps_e();
+        let tau = found.principal_tau();
         let s: [f64; 3] = std::array::from_fn(|i| eps[i] - eps_e[i]);
         let apex = 1.0 / friction.to_radians().tan();
         let along: f64 = (0..3).map(|i| s[i] * (tau[i] - apex)).sum();
@@ -208,11 +205,13 @@ pub fn tresca_limit() -> f64 {
 
 /// exp(2 tau) = b for E = 1, nu = 0: largest relative error for principal strains 1 to 1e-16 apart.
 pub fn nearly_equal() -> f64 {
-    let (material, mut random) = (hencky(1.0, 0.0), Random::new(7));
+    let material = hencky(1.0, 0.0);
+    let mut random = Random::new(7);
     let mut worst = 0.0_f64;
     for exponent in 0..=16 {
         for _ in 0..1_000 {
-            let (gap, base) = (10.0_f64.powi(-exponent), 0.5 * random.signed());
+            let gap = 10.0_f64.powi(-exponent);
+            let base = 0.5 * random.signed();
             let b = turned(
                 &rotation(&mut random),
                 &stretched([base + 0.1 * gap, base, base - 0.05 * gap * random.unit().round()]),
@@ -226,7 +225,9 @@ pub fn nearly_equal() -> f64 {
 
 /// Taylor series with scaling and squaring.
 fn exponential(a: &Tensor) -> Tensor {
-    let (small, mut term, mut sum) = (a / 64.0, Tensor::identity(), Tensor::identity());
+    let small = a / 64.0;
+    let mut term = Tensor::identity();
+    let mut sum = Tensor::identity();
     for k in 1..16 {
         term = term * small / f64::from(k);
         sum += term;
@@ -237,7 +238,8 @@ fn exponential(a: &Tensor) -> Tensor {
 /// Change of tau over that of b where principal strains come within 1e-16 to 1e-6, less what storing them costs; E = 1,
 /// nu = 0, b between 1/2 and 2, so that the exact Lipschitz constant is 1.
 pub fn no_jump() -> f64 {
-    let (material, mut random) = (hencky(1.0, 0.0), Random::new(8));
+    let material = hencky(1.0, 0.0);
+    let mut random = Random::new(8);
     let mut worst = 0.0_f64;
     for exponent in 6..=16 {
         for _ in 0..1_000 {
@@ -293,7 +295,8 @@ pub fn turning() -> f64 {
     );
     let material = hencky(YOUNG, 0.3);
     let start = respond(&material, &Symmetric([1.2, 0.9, 1.05, 0.1, 0.0, 0.0]));
-    let (mut b, mut worst) = (start.b_e(), 0.0_f64);
+    let mut b = start.b_e();
+    let mut worst = 0.0_f64;
     for _ in 0..7200 {
         let found = respond(&material, &PlaneStrain::push_forward(&q, &b));
         b = found.b_e();

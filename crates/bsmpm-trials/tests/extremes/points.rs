@@ -12,7 +12,8 @@ use std::time::Instant;
 /// A bar of 10 cells of 1 m is pulled to `stretch` times its length, 1 m tall between rollers, nu = 0, with so many
 /// points a cell and axis: error of its axial stress, E ln(l)/l, in its middle; or a warning that it has come apart.
 pub fn stretched(per_cell: usize, stretch: f64) -> Found {
-    let (pull, end) = (10.0 * (stretch - 1.0), 10.0 * stretch + 2.0);
+    let pull = 10.0 * (stretch - 1.0);
+    let end = 10.0 * stretch + 2.0;
     let text = format!(
         "geometry = \"plane-strain\"\n[analysis]\ntype = \"quasi-static\"\nsteps = 100\n\
          [grid]\nlower = [0.0, 0.0]\nupper = [{end}, 1.0]\ncell = 1.0\ndegree = \"quadratic\"\n\
@@ -69,7 +70,8 @@ pub fn collapse() -> Found {
 
 /// A column of four cells under a small weight with n x n points a cell: mean error of its stress, and seconds a point.
 fn column(per_cell: usize) -> (f64, f64) {
-    let (load, started) = (1e-7, Instant::now());
+    let load = 1e-7;
+    let started = Instant::now();
     let young = 1.3 * 0.4 / 0.7;
     let mut scene = Scene::<PlaneStrain, 2>::new(
         [axis(0.25, 1, 2), axis(0.25, 4, 2)],

@@ -60,7 +60,8 @@ pub struct Collapse {
 
 impl Default for Collapse {
     fn default() -> Self {
-        let (soil, units) = (RODS, SI);
+        let soil = RODS;
+        let units = SI;
         Self {
             soil,
             method: "modified-f-bar",
@@ -131,7 +132,8 @@ pub struct Footing {
 
 impl Default for Footing {
     fn default() -> Self {
-        let (depth, steps) = (0.2, 16);
+        let depth = 0.2;
+        let steps = 16;
         Self {
             poisson: 0.495,
             method: "modified-f-bar",
@@ -156,7 +158,8 @@ impl Footing {
             ..
         } = self;
         let [zero, one, five, top] = [0.0, 1.0, 5.0, self.top].map(|x| units.place(x));
-        let (depth, cell) = (self.depth * units.length, 0.5 * units.length);
+        let depth = self.depth * units.length;
+        let cell = 0.5 * units.length;
         format!(
             "geometry = \"plane-strain\"\n[analysis]\ntype = \"quasi-static\"\nsteps = {}\n\
              [grid]\nlower = [{zero}, {zero}]\nupper = [{five}, {top}]\ncell = {cell}\ndegree = \"quadratic\"\n\
@@ -184,7 +187,8 @@ impl Footing {
 /// Layers of elastic soil between smooth walls, from the bottom up, each with Young's modulus (Pa), density (kg/m3) and
 /// height (m), 2 m wide on cells of 1 m, under gravity that grows in `steps` steps.
 pub fn layers(layers: &[(f64, f64, f64)], further: &str, steps: usize, acceleration: f64) -> String {
-    let (mut materials, mut base) = (String::new(), 0.0);
+    let mut materials = String::new();
+    let mut base = 0.0;
     for (number, (young, density, height)) in layers.iter().enumerate() {
         let top = base + height;
         materials += &format!(

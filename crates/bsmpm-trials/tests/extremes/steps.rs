@@ -119,7 +119,8 @@ pub fn ringing(dt: f64) -> Found {
         away.push((0..points.len()).map(distance).fold(0.0, f64::max) / size);
     });
     let most = |part: &[f64]| part.iter().copied().fold(0.0, f64::max);
-    let (before, after) = (most(&away[1..100]), most(&away[100..]));
+    let before = most(&away[1..100]);
+    let after = most(&away[100..]);
     // Below this it is round-off that rings.
     Found::Figure(
         after / before.max(1e-10),
@@ -167,7 +168,8 @@ pub fn collapse(dt: f64, end: f64) -> Found {
 
 /// Broyden's update with steps of no length and with more steps than it keeps: non-finite numbers in its directions.
 pub fn degenerate_broyden() -> f64 {
-    let (halo, mut random) = (Alone { nodes: 10 }, Random::new(22));
+    let halo = Alone { nodes: 10 };
+    let mut random = Random::new(22);
     let mut broyden = Broyden::default();
     let mut broken = 0;
     for k in 0..250 {
@@ -235,7 +237,8 @@ pub fn in_equilibrium() -> Found {
 /// A block that flies with 1e-310 m/s: residual evaluations of 200 steps over those with 1 m/s.
 pub fn denormal() -> Found {
     let run = |speed: f64| Run::of(&block([speed, 0.0], 200, ""), 1, &[]);
-    let (usual, tiny) = (run(1.0), run(1e-310));
+    let usual = run(1.0);
+    let tiny = run(1e-310);
     tiny.found(|tiny| {
         let cost = |run: &Run| run.manifest().summary.residual_evaluations as f64;
         let seconds = |run: &Run| run.manifest().timers.get("wall").copied().unwrap_or(f64::NAN);

@@ -137,7 +137,9 @@ impl Row {
             .collect::<Vec<_>>()
             .join("; ");
         let refusal = if self.may_refuse { ", or a warning" } else { "" };
-        let (id, what, verdict) = (self.id.to_owned(), self.what.to_owned(), verdict.word().to_owned());
+        let id = self.id.to_owned();
+        let what = self.what.to_owned();
+        let verdict = verdict.word().to_owned();
         [
             id,
             what,

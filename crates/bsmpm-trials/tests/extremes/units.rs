@@ -33,7 +33,8 @@ fn state(run: &Run, units: &Units) -> Vec<f64> {
 /// Numbers whose bits differ in any of the other units.
 fn differing(text: impl Fn(Units) -> String) -> Found {
     let reference = state(&Run::of(&text(SI), 1, &[]), &SI);
-    let (mut count, mut total) = (0, 0);
+    let mut count = 0;
+    let mut total = 0;
     for [length, mass, time] in POWERS.map(|powers| powers.map(|power| 2.0_f64.powi(power))) {
         let units = Units {
             length,

@@ -61,7 +61,8 @@ pub fn beginning(poisson: f64, friction: f64, method: &'static str) -> Found {
             &[],
         )
     };
-    let (coarse, fine) = (run(0.5e-3), run(0.25e-3));
+    let coarse = run(0.5e-3);
+    let fine = run(0.25e-3);
     coarse.found(|coarse| {
         let change = |fine: &Run| (coarse.last("max-displacement") / fine.last("max-displacement") - 1.0).abs();
         fine.found(|fine| Found::Figure(change(fine), coarse.effort()))
@@ -70,7 +71,8 @@ pub fn beginning(poisson: f64, friction: f64, method: &'static str) -> Found {
 
 /// Four metres of soil on four metres `contrast` times as stiff.
 fn contrast(contrast: f64, is_airy: bool) -> (Arc<Run>, f64) {
-    let (soil, air) = ((1e6, 2e3, 4.0), (1e3, 1.0, 2.0));
+    let soil = (1e6, 2e3, 4.0);
+    let air = (1e3, 1.0, 2.0);
     let stack = [(1e6 * contrast, 2e3, 4.0), soil, air];
     let stack = if is_airy { &stack[..] } else { &stack[..2] };
     let weight: f64 = stack
@@ -105,10 +107,8 @@ pub fn interface(ratio: f64) -> Found {
     let (run, _) = contrast(ratio, false);
     run.found(|run| {
         let frame = run.frame();
-        let (stress, moved) = (
-            frame.real("stress", 6).expect("stress"),
-            frame.real("displacement", 3).expect("u"),
-        );
+        let stress = frame.real("stress", 6).expect("stress");
+        let moved = frame.real("displacement", 3).expect("u");
         let above = |depth: f64| 2e3 * 9.81 * depth;
         let near = frame.position.iter().enumerate().filter_map(|(p, x)| {
             let depth = 8.0 - (x[1] - moved[3 * p + 1]);
@@ -143,7 +143,8 @@ fn settled(gravity: f64, young: f64) -> Vec<f64> {
 
 /// Largest difference when gravity and stiffness are `factor` times as large, over the largest displacement.
 pub fn scaled_gravity(factor: f64) -> f64 {
-    let (reference, scaled) = (settled(2.0, 100.0), settled(2.0 * factor, 100.0 * factor));
+    let reference = settled(2.0, 100.0);
+    let scaled = settled(2.0 * factor, 100.0 * factor);
     let size = reference.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     reference
         .iter()

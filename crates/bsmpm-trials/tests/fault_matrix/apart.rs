@@ -10,7 +10,7 @@ use std::time::Duration;
 const SOON: f64 = 10.0;
 
 /// Runs on `ranks` ranks, of which one has an empty folder in the place of `folder`.
-fn start(trial: &Trial, (ranks, blind): (usize, usize), folder: &str, arguments: &[&str]) -> Output {
+fn start(trial: &Trial, ranks: usize, blind: usize, folder: &str, arguments: &[&str]) -> Output {
     let mut launcher = Command::new("mpirun");
     launcher
         .args(["-q", "--oversubscribe"])
@@ -80,7 +80,7 @@ pub fn files(ground: &Ground, _: usize) -> Tried {
             "--max-steps",
             "12",
         ];
-        let output = start(&trial, ranks, folder, &arguments).expect(code);
+        let output = start(&trial, ranks.0, ranks.1, folder, &arguments).expect(code);
         let seconds = output.elapsed.as_secs_f64();
         if !words.is_empty() {
             output.says_once(words);

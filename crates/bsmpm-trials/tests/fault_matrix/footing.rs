@@ -17,11 +17,9 @@ const TOLERATED: f64 = 1e-5;
 /// Both curves, for whoever wants to see them.
 fn write(whole: &Columns, killed: &Columns) {
     let column = |columns: &Columns, name: &str| columns.get(name).unwrap().to_vec();
-    let (at, one, other) = (
-        column(whole, "penetration"),
-        column(whole, "p_over_c"),
-        column(killed, "p_over_c"),
-    );
+    let at = column(whole, "penetration");
+    let one = column(whole, "p_over_c");
+    let other = column(killed, "p_over_c");
     let mut text = String::from("penetration,uninterrupted,killed\n# m,-,-\n");
     for ((at, one), other) in at.iter().zip(&one).zip(&other) {
         writeln!(text, "{at:?},{one:?},{other:?}").unwrap();

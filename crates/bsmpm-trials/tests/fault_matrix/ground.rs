@@ -207,7 +207,8 @@ impl Trial {
 fn copy_all(from: &Path, to: &Path) {
     std::fs::create_dir_all(to).unwrap();
     for name in entries(from) {
-        let (from, to) = (from.join(&name), to.join(&name));
+        let from = from.join(&name);
+        let to = to.join(&name);
         if from.is_dir() {
             copy_all(&from, &to);
         } else {

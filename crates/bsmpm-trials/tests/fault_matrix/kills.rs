@@ -9,7 +9,7 @@ use std::time::Instant;
 const GONE: f64 = 10.0;
 
 /// Kills, waits for the end, and lets the run go on: the seconds that the end took.
-fn killed(ground: &Ground, (index, code): (usize, Option<i32>), kill: impl Fn(&Running)) -> f64 {
+fn killed(ground: &Ground, index: usize, code: Option<i32>, kill: impl Fn(&Running)) -> f64 {
     let whole = ground.whole(2);
     let trial = ground.trial(2);
     let step = (spread(index, 1) * 0.95 * whole.steps as f64) as u64;
@@ -28,7 +28,7 @@ fn killed(ground: &Ground, (index, code): (usize, Option<i32>), kill: impl Fn(&R
 /// One of the ranks.
 pub fn rank(ground: &Ground, count: usize) -> Tried {
     let tried = trials(count, |index| {
-        killed(ground, (index, Some(137)), |running| {
+        killed(ground, index, Some(137), |running| {
             running.signal_rank("KILL", index % 2)
         })
     });
@@ -38,14 +38,14 @@ pub fn rank(ground: &Ground, count: usize) -> Tried {
 /// The launcher, whose ranks are on their own then.
 pub fn launcher(ground: &Ground, count: usize) -> Tried {
     let tried = trials(count, |index| {
-        killed(ground, (index, None), |running| running.signal("KILL"))
+        killed(ground, index, None, |running| running.signal("KILL"))
     });
     tried.figure(|seconds| format!("gone after {seconds} s at most"))
 }
 
 /// Launcher and ranks at once.
 pub fn all(ground: &Ground, count: usize) -> Tried {
-    let tried = trials(count, |index| killed(ground, (index, None), Running::kill));
+    let tried = trials(count, |index| killed(ground, index, None, Running::kill));
     tried.figure(|seconds| format!("gone after {seconds} s at most"))
 }
 
@@ -64,7 +64,8 @@ pub fn writer(ground: &Ground, count: usize) -> Tried {
     ];
     let whole = ground.whole(2);
     let tried = trials(count * phases.len(), |index| {
-        let (phase, round) = (phases[index % phases.len()], index / phases.len());
+        let phase = phases[index % phases.len()];
+        let round = index / phases.len();
         let step = INTERVAL * (2 + round as u64 % (whole.steps / INTERVAL - 1));
         let trial = ground.trial(2);
         let fault = format!("kill:phase={phase},step={step}");
@@ -85,7 +86,8 @@ pub fn writer(ground: &Ground, count: usize) -> Tried {
 pub fn panic(ground: &Ground, count: usize) -> Tried {
     let whole = ground.whole(2);
     let tried = trials(count, |index| {
-        let (rank, step) = (index % 2, 1 + (spread(index, 3) * 0.9 * whole.steps as f64) as u64);
+        let rank = index % 2;
+        let step = 1 + (spread(index, 3) * 0.9 * whole.steps as f64) as u64;
         let trial = ground.trial(2);
         let begun = Instant::now();
         let output = trial

@@ -237,7 +237,8 @@ pub fn clock(ground: &Ground, _: usize) -> Tried {
         let found = manifest(&trial.directory());
         let today = bsmpm_io::utc::now();
         assert_ne!(found.start[..10], today[..10], "the clock was set");
-        let (wall, elapsed) = (found.timers["wall"], output.elapsed.as_secs_f64());
+        let wall = found.timers["wall"];
+        let elapsed = output.elapsed.as_secs_f64();
         assert!(
             (0.0..=elapsed).contains(&wall),
             "run.json reports {wall} s of {elapsed}"

@@ -232,7 +232,8 @@ pub fn free_keys(ground: &Ground, _: usize) -> Tried {
     ];
     let stopped = ground.stopped(1, 10);
     let tried = trials(free.len(), |index| {
-        let (trial, (set, key)) = (stopped.copy(), free[index]);
+        let trial = stopped.copy();
+        let (set, key) = free[index];
         trial.start(&["--set", set, "--max-steps", "12"], &[]).end().expect(75);
         let changed = &manifest(&trial.directory()).restarts[0].changed;
         assert!(changed.len() == 1 && changed[0].starts_with(key), "{changed:?}");

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 /// Sends something that is to stop the run with that code; the seconds until it has stopped. No step is made twice
 /// then.
-fn stopped(ground: &Ground, (step, code): (u64, i32), send: impl Fn(&Running), variables: &[(&str, &str)]) -> f64 {
+fn stopped(ground: &Ground, step: u64, code: i32, send: impl Fn(&Running), variables: &[(&str, &str)]) -> f64 {
     let whole = ground.whole(2);
     let trial = ground.trial(2);
     let running = trial.under_way(step, spread(step as usize, 5), variables);
@@ -34,7 +34,8 @@ pub fn usr1(ground: &Ground, count: usize) -> Tried {
     let one = |index| {
         stopped(
             ground,
-            (any_step(ground, index), 75),
+            any_step(ground, index),
+            75,
             |running: &Running| running.signal("USR1"),
             &[],
         )
@@ -47,7 +48,7 @@ pub fn usr1(ground: &Ground, count: usize) -> Tried {
 pub fn usr1_to_a_rank(ground: &Ground, count: usize) -> Tried {
     let one = |index| {
         let send = |running: &Running| running.signal_rank("USR1", index % 2);
-        stopped(ground, (any_step(ground, index), 75), send, &[])
+        stopped(ground, any_step(ground, index), 75, send, &[])
     };
     trials(count, one).figure(|seconds| format!("stopped after {seconds} s at most"))
 }
@@ -75,7 +76,7 @@ pub fn term(ground: &Ground, count: usize) -> Tried {
     let patient = [("OMPI_MCA_odls_base_sigkill_timeout", "1")];
     let soon = |index| 1 + (spread(index, 17) * 4.0) as u64;
     let tried = trials(count, |index| {
-        stopped(ground, (soon(index), 1), |running| running.signal("TERM"), &patient)
+        stopped(ground, soon(index), 1, |running| running.signal("TERM"), &patient)
     });
     tried.figure(|seconds| format!("stopped after {seconds} s at most"))
 }
@@ -126,7 +127,8 @@ pub fn max_wall(ground: &Ground, count: usize) -> Tried {
     let mut jobs = 0;
     let tried = trials(count, |_| {
         let trial = ground.trial(2);
-        let (mut limit, mut over) = (2_u32, f64::NEG_INFINITY);
+        let mut limit = 2_u32;
+        let mut over = f64::NEG_INFINITY;
         loop {
             let before = trial.made();
             let output = trial.start(&["--max-wall", &format!("00:00:{limit:02}")], &[]).end();

@@ -133,7 +133,8 @@ impl Row {
         let passes = tried.passed == tried.tried;
         let verdict = Verdict::of(passes, false, crashed);
         let word = if tried.tried == 0 { "not tried" } else { verdict.word() };
-        let (count, passed) = (tried.tried.to_string(), tried.passed.to_string());
+        let count = tried.tried.to_string();
+        let passed = tried.passed.to_string();
         let cells = [
             self.id.into(),
             self.what.into(),

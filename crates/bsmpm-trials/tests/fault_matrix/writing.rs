@@ -29,7 +29,8 @@ pub fn storm(_: &Ground, count: usize) -> Tried {
         // Killed processes leave MPI's files; other runs must not stumble over them.
         command.env("TMPDIR", &directory);
         let mut writer = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        let (begun, instant) = (Instant::now(), Duration::from_secs_f64(0.1 + 0.9 * spread(index, 12)));
+        let begun = Instant::now();
+        let instant = Duration::from_secs_f64(0.1 + 0.9 * spread(index, 12));
         while begun.elapsed() < instant {
             std::thread::sleep(Duration::from_millis(1));
         }

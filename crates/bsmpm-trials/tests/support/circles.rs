@@ -55,7 +55,8 @@ impl Embankment {
         let scan = 400;
         let places = (0..=scan).map(|i| x - radius + 2.0 * radius * f64::from(i) / f64::from(scan));
         let inside: Vec<f64> = places.filter(|&at| base(at) < self.surface(at) - 1e-9).collect();
-        let (from, to) = (*inside.first()?, *inside.last()?);
+        let from = *inside.first()?;
+        let to = *inside.last()?;
         if from < self.within[0] || to > self.within[1] {
             return None;
         }
@@ -78,7 +79,8 @@ impl Embankment {
     }
 
     fn slice(&self, x: f64, base: f64, width: f64, sine: f64) -> Slice {
-        let (top, level) = (self.surface(x), self.toe[1]);
+        let top = self.surface(x);
+        let level = self.toe[1];
         let weight = width * (self.fill[0] * (top - base.max(level)) + self.clay[0] * (level - base).max(0.0));
         let (cohesion, friction) = if base < level {
             (self.clay[1] + self.clay[2] * (level - base), 0.0)

@@ -135,7 +135,8 @@ impl Program {
                 .chain(self.cones.iter().flatten())
         };
         let right: Vec<f64> = rows().map(|sum| sum.constant).collect();
-        let (mut places, mut values) = ([Vec::new(), Vec::new()], Vec::new());
+        let mut places = [Vec::new(), Vec::new()];
+        let mut values = Vec::new();
         for (row, sum) in rows().enumerate() {
             for &(variable, factor) in &sum.terms {
                 places[0].push(row);

@@ -41,7 +41,9 @@ impl Footing {
         };
         let mut placed = BTreeMap::new();
         for [i, j] in (1..columns.len()).flat_map(|i| (1..rows.len()).map(move |j| [i, j])) {
-            let (left, right, top) = (columns[i - 1], columns[i], rows[j]);
+            let left = columns[i - 1];
+            let right = columns[i];
+            let top = rows[j];
             if right <= 1.0 && top > 0.0 {
                 continue;
             }

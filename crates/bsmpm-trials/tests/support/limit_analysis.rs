@@ -130,7 +130,8 @@ impl Mesh {
         let p = self.triangles[triangle].0.map(|node| self.nodes[node]);
         let twice = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]);
         let gradient = |k: usize| {
-            let (a, b) = (p[(k + 1) % 3], p[(k + 2) % 3]);
+            let a = p[(k + 1) % 3];
+            let b = p[(k + 2) % 3];
             [(a[1] - b[1]) / twice, (b[0] - a[0]) / twice]
         };
         (twice / 2.0, [0, 1, 2].map(gradient))
@@ -169,7 +170,8 @@ impl Mesh {
             program.zero(hoop.clone());
         }
         for ([r, z, shear], weight) in stress.iter().zip(weights).filter(|at| at.1 > 0.0) {
-            let (half, most) = (&(r - z) * 0.5, Sum::constant(strength * weight));
+            let half = &(r - z) * 0.5;
+            let most = Sum::constant(strength * weight);
             if !self.round {
                 program.cone(vec![most, half, shear.clone()]);
                 continue;
@@ -238,7 +240,8 @@ struct Work {
 impl Flow<'_> {
     /// Gradient of the stream function at a corner of a triangle.
     fn gradient(&self, triangle: usize, node: usize) -> [Sum; 2] {
-        let (corners, by) = (self.mesh.triangles[triangle].0, self.mesh.shape(triangle).1);
+        let corners = self.mesh.triangles[triangle].0;
+        let by = self.mesh.shape(triangle).1;
         [0, 1].map(|axis| {
             let part = |(corner, by): (usize, [f64; 2])| {
                 let factor = if corner == node { 3.0 } else { -1.0 };
@@ -259,7 +262,8 @@ impl Flow<'_> {
         let (area, by) = self.mesh.shape(triangle);
         let gradients = corners.map(|node| self.gradient(triangle, node));
         let second = |of: usize, along: usize| -> Sum { (0..3).map(|k| &gradients[k][of] * by[k][along]).sum() };
-        let (mixed, bent) = (second(0, 1), &second(1, 1) - &second(0, 0));
+        let mixed = second(0, 1);
+        let bent = &second(1, 1) - &second(0, 0);
         let weights = corners.map(|node| self.mesh.weight(node));
         let (count, turned) = weights
             .iter()

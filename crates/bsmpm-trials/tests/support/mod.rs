@@ -174,13 +174,17 @@ impl Job {
 
     /// Starts it when all others that were started so have ended.
     pub fn start(self) -> Running {
-        let (ears, patience, variables) = (self.ears, self.patience, self.variables.clone());
+        let ears = self.ears;
+        let patience = self.patience;
+        let variables = self.variables.clone();
         processes::start(self.command(), &variables, ears, patience)
     }
 
     /// Starts it at once, beside a run that goes on.
     pub fn start_beside(self) -> Running {
-        let (ears, patience, variables) = (self.ears, self.patience, self.variables.clone());
+        let ears = self.ears;
+        let patience = self.patience;
+        let variables = self.variables.clone();
         processes::start_beside(self.command(), &variables, ears, patience)
     }
 

@@ -104,7 +104,8 @@ pub fn start(command: Command, variables: &[(String, String)], ears: Ears, patie
 /// Starts a command at once, beside others.
 pub fn start_beside(mut command: Command, variables: &[(String, String)], ears: Ears, patience: Duration) -> Running {
     let mark = format!("{}-{}", std::process::id(), RUNS.fetch_add(1, Ordering::Relaxed));
-    let (stdout, stderr) = (tempfile::tempfile().unwrap(), tempfile::tempfile().unwrap());
+    let stdout = tempfile::tempfile().unwrap();
+    let stderr = tempfile::tempfile().unwrap();
     command.process_group(0);
     command.env("OMP_NUM_THREADS", "1").env(MARK, &mark);
     command

@@ -106,7 +106,8 @@ impl Ground {
     /// Along an edge with the ground on its left, or within the ground.
     fn slip(&self, nodes: [usize; 2], [a, b]: [[f64; 2]; 2]) -> Option<Slip> {
         let lies_on = |from: [f64; 2], to: [f64; 2]| [a, b].iter().all(|&node| off(from, to, node) < CLOSE);
-        let (cost, weight) = (self.cost(a, b), self.unit_weight * self.above(a, b));
+        let cost = self.cost(a, b);
+        let weight = self.unit_weight * self.above(a, b);
         let inner = Slip {
             nodes,
             along: minus(b, a),
@@ -170,7 +171,8 @@ impl Ground {
     fn clears(&self, a: [f64; 2], b: [f64; 2]) -> bool {
         self.edges().all(|(from, to, _)| {
             let side = |from: [f64; 2], to: [f64; 2], at: [f64; 2]| cross(minus(to, from), minus(at, from));
-            let (edge, line) = (side(from, to, a) * side(from, to, b), side(a, b, from) * side(a, b, to));
+            let edge = side(from, to, a) * side(from, to, b);
+            let line = side(a, b, from) * side(a, b, to);
             edge > -CLOSE || line > -CLOSE
         })
     }
@@ -186,7 +188,8 @@ struct Jumps {
 impl Jumps {
     /// A jump of 1 m of the left of a slip over its right.
     fn add(&mut self, slip: &Slip, jump: [f64; 2], cost: f64) -> Sum {
-        let (column, [from, to]) = (self.program.variable(cost), slip.nodes);
+        let column = self.program.variable(cost);
+        let [from, to] = slip.nodes;
         for (axis, part) in jump.into_iter().enumerate() {
             self.around[from][axis] += &column * part;
             self.around[to][axis] += &column * -part;
@@ -208,7 +211,8 @@ fn mechanism(nodes: usize, slips: &[Slip], loaded: bool) -> f64 {
     for slip in slips {
         let length = slip.along[0].hypot(slip.along[1]);
         let along = slip.along.map(|x| x / length);
-        let (back, across) = (along.map(|x| -x), [-along[1], along[0]]);
+        let back = along.map(|x| -x);
+        let across = [-along[1], along[0]];
         let forwards = jumps.add(slip, along, slip.cost);
         if slip.cost > 0.0 {
             let backwards = jumps.add(slip, back, slip.cost);

@@ -133,7 +133,8 @@ fn forces_and_works_of_a_disc_are_of_the_whole_of_it() {
     scratch.mpirun(2, &["case.toml", "-q", "-o", "disc"]).expect(0);
     let table = history(&scratch.path("disc"));
     let of = |name: &str| at(&table, name, 1.0);
-    let (force, pressure) = (of("footing-force"), of("footing-pressure"));
+    let force = of("footing-force");
+    let pressure = of("footing-pressure");
     assert!(
         force > 100.0 && (pressure * PI * 0.25 / force - 1.0).abs() < 1e-12,
         "{force} {pressure}"
@@ -213,7 +214,8 @@ history = [
     let scratch = Scratch::with_case(case);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "even"]).expect(0);
     let table = history(&scratch.path("even"));
-    let (water, dimple) = (at(&table, "axis", 10.0), at(&table, "top-y", 10.0));
+    let water = at(&table, "axis", 10.0);
+    let dimple = at(&table, "top-y", 10.0);
     assert!((water / 50e3 - 1.0).abs() <= 1e-3, "{water}");
     assert!(dimple.abs() <= 1e-5, "{dimple}");
 }

@@ -144,7 +144,8 @@ fn a_damaged_checkpoint_is_passed_over_with_a_warning_but_refused_by_name() {
 
 #[test]
 fn a_file_whose_arrays_are_not_those_of_its_record_is_refused_on_all_ranks() {
-    let (scratch, other) = (Scratch::new(), Scratch::new());
+    let scratch = Scratch::new();
+    let other = Scratch::new();
     run(1, &["write", &at(&scratch, ""), FEW, "2"]).expect(0);
     run(1, &["write", &at(&other, ""), "51", "2"]).expect(0);
     let path = "checkpoint/step_000000002.h5";

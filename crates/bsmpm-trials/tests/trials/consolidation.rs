@@ -92,7 +92,8 @@ fn terzaghis_column_by_a_face_and_by_a_surface_within_a_cell() {
             // The point nearest to the top has 1 % of the load more. The flux is the rate of the settlement.
             let terms = (0..20).map(|k| (f64::from(2 * k + 1) * std::f64::consts::FRAC_PI_2).powi(2));
             let rate = 2e-6 * FINAL * terms.map(|square| (-square * time).exp()).sum::<f64>();
-            let (drained, flux) = (of("at-drain") / LOAD, of("flux-y") / rate - 1.0);
+            let drained = of("at-drain") / LOAD;
+            let flux = of("flux-y") / rate - 1.0;
             println!("T = {time}: {drained:e} of the load at the drain, flux {flux:+e}");
             assert!(drained.abs() < 1e-3 && flux.abs() < 0.02, "{time}: {drained} {flux}");
             assert!(of("water-balance").abs() < 1e-4, "{time}: {}", of("water-balance"));
@@ -339,11 +340,14 @@ fn a_river_that_rises_seeps_through_a_levee() {
     run(1, "one", &[]).expect(0);
     run(2, "two", &[]).expect(0);
     let [one, two] = ["one", "two"].map(|name| history(&scratch.path(name)));
-    let (times, seeped) = (one.get("time").unwrap(), one.get("seeped").unwrap());
+    let times = one.get("time").unwrap();
+    let seeped = one.get("seeped").unwrap();
     let from = times.iter().position(|t| *t > 24.0 * 86400.0).unwrap();
     let last = times.len() - 1;
     let rate = (seeped[last] - seeped[from]) / (times[last] - times[from]);
-    let (k, height, slope) = (1e-5, 4.0, 0.5_f64.atan());
+    let k = 1e-5;
+    let height = 4.0;
+    let slope = 0.5_f64.atan();
     // From a point of the level that is 0.3 of the wetted bank before it.
     let way = (24.0 - 8.0 + 0.3 * 8.0) / slope.cos();
     let seeps = way - (way.powi(2) - (height / slope.sin()).powi(2)).sqrt();
@@ -447,10 +451,8 @@ fn strength_falls_at_the_pore_pressures_that_consolidation_has_left() {
         "{moved:?}"
     );
     assert!((moved[1] / moved[0] - 1.0).abs() < 1e-4, "{moved:?}");
-    let (time, pressure) = (
-        tables[0].get("time").unwrap(),
-        tables[0].get("excess-pressure").unwrap(),
-    );
+    let time = tables[0].get("time").unwrap();
+    let pressure = tables[0].get("excess-pressure").unwrap();
     let left = at(&tables[0], "excess-pressure", until);
     assert!(left > 5e3, "{left}");
     let held = time

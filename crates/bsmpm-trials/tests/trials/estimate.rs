@@ -23,12 +23,14 @@ fn beside(case: PathBuf, run: PathBuf) -> EstimateArguments {
 
 #[test]
 fn the_short_footing_is_estimated_beside_its_run() {
-    let (scratch, case) = (Scratch::new(), shipped("short/strip_footing.toml"));
+    let scratch = Scratch::new();
+    let case = shipped("short/strip_footing.toml");
     scratch
         .direct(&[case.to_str().unwrap(), "-q", "-o", "run.out"])
         .expect(0);
     let mut arguments = beside(case, scratch.path("run.out"));
-    let (mut reported, _turn) = (Vec::new(), processes::turn());
+    let mut reported = Vec::new();
+    let _turn = processes::turn();
     let found: Value = serde_json::from_str(&run(&arguments, |line| reported.push(line.to_owned())).unwrap()).unwrap();
     assert!(
         reported.iter().any(|line| line.starts_with("cells 2 times")),
@@ -75,11 +77,13 @@ fn the_short_footing_is_estimated_beside_its_run() {
 /// Clay that consolidates, whose pore pressures are unknowns, too: measured 1.10 of the evaluations.
 #[test]
 fn the_embankment_on_clay_is_estimated_beside_its_run() {
-    let (scratch, case) = (Scratch::new(), shipped("embankment_consolidation.toml"));
+    let scratch = Scratch::new();
+    let case = shipped("embankment_consolidation.toml");
     scratch
         .direct(&[case.to_str().unwrap(), "-q", "-o", "run.out"])
         .expect(0);
-    let (arguments, _turn) = (beside(case, scratch.path("run.out")), processes::turn());
+    let arguments = beside(case, scratch.path("run.out"));
+    let _turn = processes::turn();
     let found: Value = serde_json::from_str(&run(&arguments, |_| ()).unwrap()).unwrap();
     for [ours, of] in [
         ["work/evaluations", "actual/evaluations"],

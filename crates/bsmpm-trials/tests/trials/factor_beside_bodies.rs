@@ -1,6 +1,6 @@
 //! Tests `bsmpm fos` with rigid bodies.
 
-use super::factor_of_safety::{estimate, of_stage};
+use super::factor_of_safety::{Search, estimate, of_stage};
 use serde_json::Value;
 
 /// Strong soil on rock that is inclined by tan(theta) = 0.5, with friction 0.75: gravity is inclined, or the rock.
@@ -41,12 +41,16 @@ const SLOPE: &str = r#"
     unit_weight = "20 kN/m3"
 "#;
 
-fn found(text: &str, (range, stage): ((f64, f64), Option<&str>), set: &[&str]) -> Value {
+fn found(text: &str, range: [f64; 2], stage: Option<&str>, set: &[&str]) -> Value {
     let dir = tempfile::tempdir().unwrap();
     let case = dir.path().join("case.toml");
     std::fs::write(&case, text).unwrap();
     of_stage(
-        (range, 0.02, stage),
+        Search {
+            range,
+            width: 0.02,
+            stage,
+        },
         case.to_str().unwrap(),
         set,
         2,
@@ -76,7 +80,7 @@ fn a_block_on_rock_has_the_factor_of_its_friction_inclined_to_the_cells_or_not()
         "boundary.bottom={ friction_coefficient = 0.75 }",
     ];
     for set in [&[][..], &inclined, &elastic] {
-        let found = found(BLOCK, ((1.2, 1.8), None), set);
+        let found = found(BLOCK, [1.2, 1.8], None, set);
         let [stands, fails] = band(&found);
         println!("{stands} to {fails}");
         assert!(
@@ -116,7 +120,7 @@ const LAYER: &str = r#"
 /// times as soft, it has sunk before, and what is left of the slope has 1.883 for 1.824.
 #[test]
 fn a_layer_of_sensitive_clay_has_the_factor_of_its_peak_and_exchanged_clay_that_of_what_is_there() {
-    let [stands, fails] = band(&found(LAYER, ((1.0, 1.5), None), &[]));
+    let [stands, fails] = band(&found(LAYER, [1.0, 1.5], None, &[]));
     println!("{stands} to {fails}");
     assert!(stands >= 1.33 && fails <= 1.3751, "{stands} {fails}");
     let slope = [
@@ -134,7 +138,7 @@ fn a_layer_of_sensitive_clay_has_the_factor_of_its_peak_and_exchanged_clay_that_
         "gravity.ramp=0.0",
         "initial.k0=0.6",
     ];
-    let of = |stage, set: &[&str]| estimate(&found(LAYER, ((1.0, 4.0), stage), &[&slope, set].concat()));
+    let of = |stage, set: &[&str]| estimate(&found(LAYER, [1.0, 4.0], stage, &[&slope, set].concat()));
     let [clay, strength] = [
         of(Some("fails"), &exchanged),
         of(None, &[&format!("material.clay{tresca}")]),
@@ -152,7 +156,7 @@ fn a_slope_held_by_a_wall_has_the_factor_of_one_held_by_a_face() {
     let ground = ["boundary.right=free", "grid.upper=[30, 12]"];
     let wall =
         |path: &str| format!("rigid=[{{ name = \"wall\", polygon = [[26, -2], [29, -2], [29, 14], [26, 14]]{path} }}]");
-    let of = |stage: Option<&str>, set: &[&str]| found(SLOPE, ((0.9, 1.8), stage), set);
+    let of = |stage: Option<&str>, set: &[&str]| found(SLOPE, [0.9, 1.8], stage, set);
     let still = wall("");
     let held = [&ground[..], &[&still]].concat();
     let [face, wall_holds, open] = [&[][..], &held, &ground]
@@ -196,10 +200,11 @@ fn a_body_far_away_does_not_change_the_factor() {
             "boundary.right=free",
             "grid.upper=[34, 12]",
         ];
-        estimate(&found(SLOPE, ((0.8, 1.2), None), &[&still, set].concat()))
+        estimate(&found(SLOPE, [0.8, 1.2], None, &[&still, set].concat()))
     };
     let far = "rigid=[{ name = \"far\", polygon = [[30, 6], [33, 6], [33, 9], [30, 9]], friction_coefficient = 0.3 }]";
-    let (alone, beside) = (of(&[]), of(&[far]));
+    let alone = of(&[]);
+    let beside = of(&[far]);
     assert!((beside / alone - 1.0).abs() < 5e-6, "{alone} {beside}");
 }
 
@@ -217,7 +222,7 @@ fn a_footing_that_carries_a_load_has_the_factor_of_prandtls_limit() {
     let set = [footing, "history=[{ quantity = \"max-displacement\" }]"];
     let text = text.unwrap();
     for stage in [None, Some("end")] {
-        let factor = estimate(&found(&text, ((1.0, 2.0), stage), &set));
+        let factor = estimate(&found(&text, [1.0, 2.0], stage, &set));
         let over = factor * 3.4 / (std::f64::consts::PI + 2.0);
         println!("{factor}, {over} of Prandtl's load");
         assert!((1.0..1.075).contains(&over), "{stage:?}: {factor}");
@@ -242,7 +247,7 @@ fn a_slope_has_the_factor_of_the_load_of_a_free_block_on_it() {
         &[slope, block, "history=[{ quantity = \"max-displacement\" }]"],
     ]
     .concat();
-    let factor = estimate(&found(SLOPE, ((1.25, 1.45), None), &set));
+    let factor = estimate(&found(SLOPE, [1.25, 1.45], None, &set));
     println!("{factor}");
     assert!((1.33..1.39).contains(&factor), "{factor}");
 }

@@ -12,23 +12,34 @@ use serde_json::Value;
 const CASES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../cases");
 
 fn search(case: &str, set: &[&str], jobs: usize, output: &Path) -> (Value, usize) {
-    between((1.0, 2.0), case, set, jobs, output)
+    between([1.0, 2.0], case, set, jobs, output)
 }
 
-fn between(range: (f64, f64), case: &str, set: &[&str], jobs: usize, output: &Path) -> (Value, usize) {
-    of_stage((range, 0.05, None), case, set, jobs, output)
+fn between(range: [f64; 2], case: &str, set: &[&str], jobs: usize, output: &Path) -> (Value, usize) {
+    let search = Search {
+        range,
+        width: 0.05,
+        stage: None,
+    };
+    of_stage(search, case, set, jobs, output)
 }
 
-pub(super) fn of_stage(
-    ((from, to), width, stage): ((f64, f64), f64, Option<&str>),
-    case: &str,
-    set: &[&str],
-    jobs: usize,
-    output: &Path,
-) -> (Value, usize) {
+/// What a search is asked for.
+#[derive(Clone, Copy)]
+pub(super) struct Search<'a> {
+    /// Factors between which the search begins.
+    pub range: [f64; 2],
+    /// Width of the interval in which it ends.
+    pub width: f64,
+    /// Stage at whose end the strength is reduced.
+    pub stage: Option<&'a str>,
+}
+
+pub(super) fn of_stage(search: Search<'_>, case: &str, set: &[&str], jobs: usize, output: &Path) -> (Value, usize) {
+    let Search { range, width, stage } = search;
     let arguments = FosArguments {
-        from: Some(from),
-        to: Some(to),
+        from: Some(range[0]),
+        to: Some(range[1]),
         stage: stage.map(str::to_owned),
         width: Some(width),
         jobs: Some(jobs),
@@ -46,7 +57,8 @@ pub(super) fn searched(arguments: FosArguments, output: &Path) -> (Value, usize)
         command,
         ..arguments
     };
-    let (mut made, _turn) = (0, processes::turn());
+    let mut made = 0;
+    let _turn = processes::turn();
     let (_, pictures) = run(&arguments, |line| made += usize::from(!line.contains("kept"))).unwrap();
     assert_eq!(pictures.len(), 3);
     assert!(pictures.iter().all(|picture| picture.is_file()));
@@ -109,7 +121,12 @@ fn the_factor_of_a_slope_depends_neither_on_the_background_nor_on_the_number_of_
     std::fs::write(&case, slope(0.0)).unwrap();
     for set in ["solver.background=1e-5", "solver.background=1e-4", "analysis.steps=40"] {
         let output = dir.path().join(set);
-        let found = estimate(&of_stage(((1.25, 1.5), 0.005, None), case.to_str().unwrap(), &[set], 2, &output).0);
+        let search = Search {
+            range: [1.25, 1.5],
+            width: 0.005,
+            stage: None,
+        };
+        let found = estimate(&of_stage(search, case.to_str().unwrap(), &[set], 2, &output).0);
         println!("{set}: {found}");
         assert!((found / 1.370 - 1.0).abs() < 0.0025, "{set}: {found}");
     }
@@ -124,7 +141,7 @@ fn the_factor_of_acads_1a_does_not_depend_on_the_stiffness() {
         let dir = tempfile::tempdir().unwrap();
         let set = [format!("material.soil.young={young}"), "grid.cell=2.5".to_owned()];
         let set: Vec<&str> = set.iter().map(String::as_str).collect();
-        let (found, _) = between((0.8, 1.4), "validation/acads_1a.toml", &set, 2, dir.path());
+        let (found, _) = between([0.8, 1.4], "validation/acads_1a.toml", &set, 2, dir.path());
         (estimate(&found), found["conditions"]["stiffness"].as_f64().unwrap())
     };
     let [(soft, times), (stiff, none)] = ["1e7", "1e9"].map(of);
@@ -158,7 +175,11 @@ fn an_embankment_on_clay_whose_weight_acts_from_the_start_has_a_factor() {
 fn a_slope_that_is_built_and_then_weakened_has_the_same_factor() {
     let found = |stage: Option<&str>| {
         let dir = tempfile::tempdir().unwrap();
-        let plan = ((1.0, 2.0), 0.05, stage);
+        let plan = Search {
+            range: [1.0, 2.0],
+            width: 0.05,
+            stage,
+        };
         let (found, made) = of_stage(plan, "short/slope_stability.toml", &["grid.cell=2.0"], 1, dir.path());
         if stage.is_some() {
             let (again, none) = of_stage(plan, "short/slope_stability.toml", &["grid.cell=2.0"], 1, dir.path());
@@ -166,7 +187,8 @@ fn a_slope_that_is_built_and_then_weakened_has_the_same_factor() {
         }
         (estimate(&found), made, found)
     };
-    let ((plain, ..), (staged, made, whole)) = (found(None), found(Some("end")));
+    let (plain, ..) = found(None);
+    let (staged, made, whole) = found(Some("end"));
     println!("{plain} loaded with less strength, {staged} weakened after it was built");
     assert!((plain - staged).abs() < 0.05, "{plain} {staged}");
     let trials = whole["trials"].as_array().unwrap();
@@ -183,25 +205,31 @@ fn a_slope_that_is_built_and_then_weakened_has_the_same_factor() {
 /// of the second one is 1.88, where blocks allow 1.884.
 #[test]
 fn a_pit_has_the_factor_of_a_vertical_cut_and_then_no_more_than_blocks_allow() {
-    let of = |cell: &str, stage: &str, range: (f64, f64)| {
+    let of = |cell: &str, stage: &str, range: [f64; 2]| {
         let dir = tempfile::tempdir().unwrap();
         let grid = format!("grid={{ lower = [0, 0], upper = [32, 18], cell = {cell}, degree = \"quadratic\" }}");
-        let plan = (range, 0.1, Some(stage));
+        let plan = Search {
+            range,
+            width: 0.1,
+            stage: Some(stage),
+        };
         let (found, _) = of_stage(plan, "excavation.toml", &[&grid], 2, dir.path());
         let notes = found["notes"].to_string();
         assert!(notes.contains(&format!("the stage \\\"{stage}\\\"")), "{notes}");
         estimate(&found)
     };
     let number = 50.0 / (18.0 * 4.0);
-    let [coarse, fine] = ["1.0", "0.5"].map(|cell| of(cell, "pit 1", (2.4, 3.2)));
-    let (cut, blocks) = (2.0 * fine - coarse, pit(1, 2.0));
+    let [coarse, fine] = ["1.0", "0.5"].map(|cell| of(cell, "pit 1", [2.4, 3.2]));
+    let cut = 2.0 * fine - coarse;
+    let blocks = pit(1, 2.0);
     println!("{coarse}, {fine}, {cut}; blocks {blocks}");
     assert!(
         coarse > fine && fine > 3.7859 * number && blocks > 3.7603 * number,
         "{coarse} {fine} {blocks}"
     );
     assert!((cut / (3.7731 * number) - 1.0).abs() < 0.03, "{coarse} {fine} {cut}");
-    let (second, blocks) = (of("1.0", "pit 2", (1.5, 2.2)), pit(2, 2.0));
+    let second = of("1.0", "pit 2", [1.5, 2.2]);
+    let blocks = pit(2, 2.0);
     println!("{second}; blocks {blocks}");
     assert!((second / blocks - 1.0).abs() < 0.03, "{second} {blocks}");
 }
@@ -231,11 +259,15 @@ fn the_embankment_of_the_scenes_has_the_factor_of_bishops_circles() {
 /// ends, as Baligh and Azzouz (1975) have it: what c holds on it and at both ends over the weight's moment. The true
 /// one is less, as a mechanism bounds it from above.
 fn turns_between_ends(length: f64, centre: [f64; 2], radius: f64) -> f64 {
-    let (c, gamma, cell, angle) = (20.0, 20.0, 0.02, 1e-3);
+    let c = 20.0;
+    let gamma = 20.0;
+    let cell = 0.02;
+    let angle = 1e-3;
     let is_ground = |x: f64, z: f64| z < (14.0 - x).clamp(2.0, 7.0);
     let on = |k: i32| (f64::from(k) * angle).sin_cos();
     let turned = (-3141..3141).filter(|&k| is_ground(centre[0] + radius * on(k).0, centre[1] - radius * on(k).1));
-    let (mut held, mut weight) = (c * radius * radius * turned.count() as f64 * angle, 0.0);
+    let mut held = c * radius * radius * turned.count() as f64 * angle;
+    let mut weight = 0.0;
     for (k, l) in (0..1000).flat_map(|k| (0..350).map(move |l| (k, l))) {
         let [x, z] = [k, l].map(|at| (f64::from(at) + 0.5) * cell);
         let r = (x - centre[0]).hypot(z - centre[1]);
@@ -256,7 +288,8 @@ fn rough_ends_hold_a_slope_up_to_what_a_cylinder_between_them_allows() {
         estimate(&between(range, "slope_between_ends.toml", set, 2, dir.path()).0)
     };
     let slice = ["grid.upper=[20, 1, 8]", "body.0.extrude.to=1", "boundary.back=roller"];
-    let (plane, held) = (of((0.9, 1.3), &slice), of((1.2, 1.6), &[]));
+    let plane = of([0.9, 1.3], &slice);
+    let held = of([1.2, 1.6], &[]);
     let most = turns_between_ends(1e9, [9.5, 9.5], 9.5);
     assert!(0.93 * most < plane && plane < most, "{plane} {most}");
     let most = turns_between_ends(10.0, [10.25, 8.0], 6.25);
@@ -275,7 +308,11 @@ fn a_thick_cylinder_has_the_factor_of_its_limit_pressure() {
         "solver.background=1e-6",
         "stabilisation.method=consistent-f-bar",
     ];
-    let range = ((1.0, 2.0), 0.02, None);
+    let range = Search {
+        range: [1.0, 2.0],
+        width: 0.02,
+        stage: None,
+    };
     let (found, _) = of_stage(range, "validation/thick_cylinder.toml", &set, 2, dir.path());
     let [stable, failed] = ["last_stable", "first_failed"].map(|key| found["factor_of_safety"][key].as_f64().unwrap());
     let exact = 2.0 * std::f64::consts::LN_2;
@@ -295,7 +332,11 @@ fn a_point_that_creeps_at_the_surface_does_not_decide() {
     std::fs::write(&case, slope(0.0)).unwrap();
     let set = ["solver.extension=off", "analysis.steps=100"];
     let (found, _) = of_stage(
-        ((1.0, 1.5), 0.02, None),
+        Search {
+            range: [1.0, 1.5],
+            width: 0.02,
+            stage: None,
+        },
         case.to_str().unwrap(),
         &set,
         2,
@@ -340,7 +381,11 @@ fn a_side_in_tension_that_holds_a_mechanism_back_is_named() {
     std::fs::write(&case, CUT).unwrap();
     let of = |set: &[&str]| {
         of_stage(
-            ((1.2, 2.0), 0.02, None),
+            Search {
+                range: [1.2, 2.0],
+                width: 0.02,
+                stage: None,
+            },
             case.to_str().unwrap(),
             set,
             2,

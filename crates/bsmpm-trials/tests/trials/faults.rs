@@ -103,7 +103,8 @@ fn failed(scratch: &Scratch, code: u8) -> bsmpm_io::manifest::Manifest {
     );
     let failure = manifest.failure.as_ref().expect("a failure");
     let times = history(&directory).get("time").unwrap().to_vec();
-    let (frames, last) = (all_frames(&directory), *times.last().unwrap());
+    let frames = all_frames(&directory);
+    let last = *times.last().unwrap();
     assert_eq!(
         frames.last().unwrap().time,
         last,

@@ -53,7 +53,8 @@ fn a_block_finds_its_equilibrium_on_ground_that_spreads_beneath_it() {
         assert!(x.abs() < 1e-3 && (y / 20e3 - 1.0).abs() < 1e-6, "{x} {y}");
         ["rigid-displacement-x", "rigid-displacement-y"].map(|column| at(&history, column, 1.0))
     };
-    let (rough, smooth) = (settled("1.0", 1), settled("0.1", 1));
+    let rough = settled("1.0", 1);
+    let smooth = settled("0.1", 1);
     println!(
         "settlement {:.4e} m with friction 1, {:.4e} m with 0.1, aside {:.1e} m",
         rough[1], smooth[1], smooth[0]

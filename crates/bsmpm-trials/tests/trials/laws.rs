@@ -58,7 +58,8 @@ fn block(geometry: &str, thick: f64, back: &str) -> String {
         }
     };
     let part = |k: usize, name: &str| {
-        let (left, right) = (0.5 * k as f64, 0.5 * (k + 1) as f64);
+        let left = 0.5 * k as f64;
+        let right = 0.5 * (k + 1) as f64;
         let [lower, upper, middle] = [
             place(left, 0.0, 0.0),
             place(right, thick, 1.0),
@@ -98,7 +99,8 @@ fn laws_with_a_state_go_on_to_the_bit_in_the_round_and_in_space() {
         scratch.goes_on(2, &["4"]);
         let [whole, part] = ["whole2", "part2"].map(|name| last_frame(&scratch.path(name)));
         assert!(whole == part);
-        let (strain, ids) = (whole.real("plastic_strain", 1).unwrap(), ids(&whole));
+        let strain = whole.real("plastic_strain", 1).unwrap();
+        let ids = ids(&whole);
         for (body, name) in NAMES.iter().enumerate() {
             let own = ids
                 .iter()
@@ -117,10 +119,8 @@ fn a_slice_of_laws_with_a_state_is_plane_strain() {
         scratch.direct(&["case.toml", "-q", "-o", "out"]).expect(0);
         history(&scratch.path("out"))
     };
-    let (plane, solid) = (
-        run(&block("plane-strain", 0.0, "")),
-        run(&block("solid", 0.25, "roller")),
-    );
+    let plane = run(&block("plane-strain", 0.0, ""));
+    let solid = run(&block("solid", 0.25, "roller"));
     for name in NAMES {
         for (of_plane, of_solid) in [
             ("xx", "xx"),

@@ -149,10 +149,8 @@ fn a_lift_loads_the_water_below_and_both_drain_through_its_top() {
         }
         // The ground's surface sinks by the mean of what has drained below it, over M.
         let below = terzaghi(|k| of_lift(k) * (k * LIFT).cos() / k, t);
-        let (settled, exact) = (
-            of("top-y", 0.25) - of("top-y", 0.25 + t),
-            (whole * GROUND - below) / 1e8,
-        );
+        let settled = of("top-y", 0.25) - of("top-y", 0.25 + t);
+        let exact = (whole * GROUND - below) / 1e8;
         println!("settled after {t} s: {settled:e} m, exactly {exact:e}");
         assert!((settled / exact - 1.0).abs() < 0.01, "{settled:e}, exactly {exact:e}");
     }
@@ -288,7 +286,8 @@ fn a_head_and_an_inflow_begin_with_a_stage() {
     let heights = [0.025, 0.875].map(|y: f64| ((y / 0.05 * 3.0).floor() + 0.5) * 0.05 / 3.0);
     for (t, fall) in [(5.0, excess), (9.0, -9810.0 * RATE / 9.81e-5)] {
         for (name, y) in ["base", "within"].into_iter().zip(heights) {
-            let (p, exact) = (of(name, t), excess - fall * y);
+            let p = of(name, t);
+            let exact = excess - fall * y;
             println!("{name} at {t} s: {p} Pa, exactly {exact}");
             assert!((p - exact).abs() < 0.01 * excess, "{p}, exactly {exact}");
         }
@@ -343,7 +342,8 @@ fn a_lift_comes_with_the_suction_of_its_time() {
     );
     let found = history(&scratch.path("whole"));
     // Under its own weight what pores hold bears little: p is near that of still water, gamma_w (0.45 - 0.875) m.
-    let (suction, still) = (at(&found, "within", 0.255), 9810.0 * (0.45 - 0.875));
+    let suction = at(&found, "within", 0.255);
+    let still = 9810.0 * (0.45 - 0.875);
     println!("{suction} Pa, of still water {still}");
     assert!((suction / still - 1.0).abs() < 0.01, "{suction}, {still}");
     let balance = [0.25, 0.255, 0.55].map(|t| at(&found, "water-balance", t).abs());

@@ -15,7 +15,8 @@ struct LimitLoad {
 
 /// The text and `limit-load.json` of a shipped case with settings.
 fn limit_load(scratch: &Scratch, case: &str, settings: &[&str]) -> (String, Value) {
-    let (output, case) = (scratch.path("out"), shipped(&format!("limit_load/{case}.toml")));
+    let output = scratch.path("out");
+    let case = shipped(&format!("limit_load/{case}.toml"));
     let mut words = vec![
         "limit-load",
         case.to_str().expect("a path"),

@@ -112,7 +112,7 @@ fn largest_difference(found: &Columns, expected: &Columns) -> f64 {
 
 /// A run on some ranks, on one with a restart, whose tables are those of the run `one`: to the bit on one rank. Its
 /// name.
-pub fn goes_the_same_way(scratch: &Scratch, tables: &[&str], (ranks, bound): (usize, f64)) -> String {
+pub fn goes_the_same_way(scratch: &Scratch, tables: &[&str], ranks: usize, bound: f64) -> String {
     let name = format!("part-{ranks}");
     let part = ["case.toml", "-q", "-o", &name];
     if ranks == 1 {
@@ -197,7 +197,7 @@ fn parts_lines_and_places_of_a_column_have_its_weight_on_any_ranks_and_after_a_r
     }));
 
     for ranks in [3, 1] {
-        let name = goes_the_same_way(&scratch, &TABLES, (ranks, 1e-8));
+        let name = goes_the_same_way(&scratch, &TABLES, ranks, 1e-8);
         let off = differences(&last_frame(&scratch.path(&name)), &last_frame(&one));
         assert!(off.iter().all(|(_, off)| *off < 1e-8), "{off:?}");
     }
@@ -209,14 +209,18 @@ fn frames_have_the_fields_that_are_asked_for_with_names_of_bodies() {
     scratch.mpirun(2, &["case.toml", "-q", "-o", "asked"]).expect(0);
     let frame = last_frame(&scratch.path("asked"));
     let real = |name: &str, components: usize| frame.real(name, components).unwrap();
-    let (stress, q, principal) = (real("stress", 6), real("q", 1), real("principal_stresses", 3));
-    let (mobilised, density) = (real("mobilised_strength", 1), real("density", 1));
+    let stress = real("stress", 6);
+    let q = real("q", 1);
+    let principal = real("principal_stresses", 3);
+    let mobilised = real("mobilised_strength", 1);
+    let density = real("density", 1);
     let number = |name: &str| frame.fields.iter().find(|field| field.name == name).unwrap();
     let FieldValues::U64(bodies) = &number("body").values else {
         panic!("bodies are numbers")
     };
     for (p, x) in frame.position.iter().enumerate() {
-        let (xx, yy) = (stress[6 * p], stress[6 * p + 1]);
+        let xx = stress[6 * p];
+        let yy = stress[6 * p + 1];
         assert!((q[p] - (xx - yy).abs()).abs() < 1e-3 * q[p].max(1.0));
         assert!((principal[3 * p] - xx).abs() < 1e-3 * yy.abs() && (principal[3 * p + 2] - yy).abs() < 1e-3 * yy.abs());
         let body = if x[1] < 1.0 {
@@ -227,7 +231,8 @@ fn frames_have_the_fields_that_are_asked_for_with_names_of_bodies() {
         assert_eq!(bodies[p], body);
         assert!((density[p] * 9.81 / if body == 0 { 25e3 } else { 20e3 } - 1.0).abs() < 1e-3);
         // Rock has no strength to mobilise; soil is not at yield: with c' = m c, tan phi' = m tan phi it would be.
-        let (tan, c) = (mobilised[p] * 30.0_f64.to_radians().tan(), mobilised[p] * 5e3);
+        let tan = mobilised[p] * 30.0_f64.to_radians().tan();
+        let c = mobilised[p] * 5e3;
         let (sin, cos) = tan.atan().sin_cos();
         let excess = (xx - yy) + (xx + yy) * sin - 2.0 * c * cos;
         assert!(if body == 0 {

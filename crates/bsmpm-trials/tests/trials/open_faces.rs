@@ -142,7 +142,8 @@ fn ground_on_a_base_that_absorbs_is_the_same_on_any_number_of_ranks_and_over_res
 fn what_leaves_is_counted_and_the_rest_goes_on() {
     let scratch = repeats(SHELF, &["30", "31", "60"]);
     let found = history(&scratch.path("whole1"));
-    let (mass, left) = (at(&found, "mass", 0.5), at(&found, "outflow", 0.5));
+    let mass = at(&found, "mass", 0.5);
+    let left = at(&found, "outflow", 0.5);
     assert!(
         left > 0.1 * mass && (mass + left - 320.0).abs() < 1e-9,
         "{mass} kg stay, {left} leave"

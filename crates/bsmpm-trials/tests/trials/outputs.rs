@@ -77,7 +77,8 @@ fn steps_reports_how_hard_each_step_was() {
         &rows(&directory.join("steps.csv")),
         &[0, 3, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15],
     );
-    let (steps, history) = (steps(&directory), history(&directory));
+    let steps = steps(&directory);
+    let history = history(&directory);
     for name in ["step", "time"] {
         assert_eq!(steps.get(name).unwrap(), &history.get(name).unwrap()[1..]);
     }
@@ -114,7 +115,8 @@ fn what_the_ranks_tell_each_other_is_counted() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
     for ranks in [1, 2] {
         scratch.mpirun(ranks, &["case.toml", "-q", "--force"]).expect(0);
-        let (steps, manifest) = (steps(&scratch.path("case.out")), manifest(&scratch.path("case.out")));
+        let steps = steps(&scratch.path("case.out"));
+        let manifest = manifest(&scratch.path("case.out"));
         let total = |name: &str| steps.get(name).unwrap().iter().sum::<f64>();
         let [sums, reductions, moves] = ["halo sum", "reduction", "migration"].map(|kind| manifest.communication[kind]);
         assert!(total("reductions") > 2.0 * total("iterations") && reductions.calls as f64 >= total("reductions"));
@@ -132,7 +134,8 @@ fn what_the_ranks_tell_each_other_is_counted() {
         assert!(moves.messages > 0 && moves.calls >= 50, "{moves:?}");
         let all: u64 = manifest.communication.values().map(|kind| kind.messages).sum();
         assert!(total("messages") > 0.5 * all as f64 && total("messages") <= all as f64);
-        let (balance, imbalance) = (manifest.balance.unwrap(), steps.get("imbalance").unwrap());
+        let balance = manifest.balance.unwrap();
+        let imbalance = steps.get("imbalance").unwrap();
         assert!((balance.mean - total("imbalance") / 50.0).abs() < 1e-12 && balance.steps == 50);
         assert_eq!(balance.largest, imbalance.iter().copied().fold(0.0, f64::max));
     }
@@ -283,7 +286,8 @@ fn a_frame_holds_every_point_once_by_id_with_all_its_quantities() {
             assert!(fields.contains(&field), "{field:?} in {fields:?}");
         }
         assert!(fields.contains(&("material", 1)));
-        let (stress, pressure) = (frame.real("stress", 6).unwrap(), frame.real("pressure", 1).unwrap());
+        let stress = frame.real("stress", 6).unwrap();
+        let pressure = frame.real("pressure", 1).unwrap();
         let mean = stress.chunks_exact(6).map(|s| -(s[0] + s[1] + s[2]) / 3.0);
         assert!(
             mean.zip(pressure)

@@ -35,7 +35,8 @@ fn inertia_begins_at_the_state_at_rest_and_changes_neither_weight_nor_water() {
     let history = history(&scratch.path("out"));
     let of = |column: &str, time: f64| at(&history, column, time);
     // 1.25 m below the surface: 20 kN/m3 of the ground, 9.81 of the water, and a shear stress of 0.2 times the weight.
-    let (weight, water) = (-20e3 * 1.25, 9.81e3 * 1.25);
+    let weight = -20e3 * 1.25;
+    let water = 9.81e3 * 1.25;
     assert_eq!(of("stress-xy", 0.0), 0.0);
     assert!((of("stress-xx", 0.0) / of("stress-yy", 0.0) - 0.5).abs() < 1e-9);
     for time in [0.5, 1.0] {
@@ -91,7 +92,9 @@ const BLOCK: &str = r#"
 
 fn critical(text: &str, [from, to]: [f64; 2], pushed: PushedSide) -> [Option<f64>; 3] {
     let scratch = Scratch::with_case(text);
-    let (from, to, seismic) = (Some(from), Some(to), Some(pushed));
+    let from = Some(from);
+    let to = Some(to);
+    let seismic = Some(pushed);
     let arguments = FosArguments {
         from,
         to,
@@ -124,7 +127,8 @@ fn a_block_slides_at_its_friction_on_the_effective_weight() {
         let text = changed(BLOCK, "ru = 0.4", &format!("ru = {ratio}"));
         let [stable, failed, _] = critical(&text, [0.2, 0.8], PushedSide::Right);
         println!("{stable:?} {failed:?}");
-        let (stable, failed) = (stable.unwrap(), failed.unwrap());
+        let stable = stable.unwrap();
+        let failed = failed.unwrap();
         assert!(
             stable < 1.01 * exact && exact < 1.01 * failed && failed - stable < 0.0101,
             "{stable} {failed}"

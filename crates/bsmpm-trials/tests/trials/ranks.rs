@@ -178,7 +178,8 @@ fn the_sliding_block_does_cross_the_bounds_of_slabs() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
     scratch.mpirun(1, &["case.toml", "-q"]).expect(0);
     let frames = all_frames(&scratch.path("case.out"));
-    let (first, last) = (&frames[0], &frames[frames.len() - 1]);
+    let first = &frames[0];
+    let last = &frames[frames.len() - 1];
     let moved = first
         .position
         .iter()
@@ -281,7 +282,8 @@ fn a_factor_of_single_precision_that_is_too_coarse_is_made_again_on_1_2_and_3_ra
             .stdout
     };
     for ranks in [1, 2, 3] {
-        let (stiff, usual) = (reports("0.499999", ranks), reports("0.3", ranks));
+        let stiff = reports("0.499999", ranks);
+        let usual = reports("0.3", ranks);
         assert!(
             stiff.contains("1 factorisations more") && usual.contains("0 factorisations more"),
             "{stiff} {usual}"
@@ -296,11 +298,9 @@ fn a_factor_of_single_precision_that_is_too_coarse_is_made_again_on_1_2_and_3_ra
 fn the_stiffness_is_the_same_on_1_3_10_and_12_ranks_of_one_column_at_most() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
     let shared = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
-    let (quadratic, cubic, shared) = (
-        ["grid.degree=quadratic"],
-        ["grid.degree=cubic"],
-        [shared, "solver.reproducible=false"],
-    );
+    let quadratic = ["grid.degree=quadratic"];
+    let cubic = ["grid.degree=cubic"];
+    let shared = [shared, "solver.reproducible=false"];
     let cases = [
         (&quadratic, &[][..], 5e-2),
         (&cubic, &[], 5e-2),

@@ -20,14 +20,16 @@ fn run(case: &str, set: &[&str]) -> bsmpm_io::table::Columns {
 /// Mohr's circle of radius p sin(phi) meets the wall's friction, tan(delta) = 0.4. Cells of 0.5 m: 2.2 and 4.2 %.
 #[test]
 fn what_presses_on_the_bottom_of_a_silo_is_janssens() {
-    let (friction, grain) = (0.4_f64, 0.5_f64);
+    let friction = 0.4_f64;
+    let grain = 0.5_f64;
     let turned = (friction.atan().sin() / grain).asin() - friction.atan();
     let yielding = (1.0 - grain * turned.cos()) / (1.0 + grain * turned.cos());
     for (poisson, ratio, slack) in [("0.333333333", 0.5, 0.03), ("0.2", yielding, 0.06)] {
         let poisson = format!("material.grain.poisson={poisson}");
         let found = run("silo.toml", &["grid.cell=0.5", &poisson, "check=[]"]);
         for lifts in 1..=8 {
-            let (t, depth) = (f64::from(lifts), 2.0 * f64::from(lifts));
+            let t = f64::from(lifts);
+            let depth = 2.0 * f64::from(lifts);
             let has_friction = friction * ratio / 2.0;
             let janssen = 15e3 / has_friction * (1.0 - (-has_friction * depth).exp());
             let pressure = at(&found, "bottom-y", t) / 2.0;
@@ -59,8 +61,10 @@ fn a_strip_on_strong_clay_over_soft_clay_carries_less_than_a_circle() {
             "punch_through.toml",
             &[small[0], small[1], &soft, "accuracy=\"draft\"", "check=[]"],
         );
-        let (factor, circle) = (at(&found, "N", 1.0), strip_on_two_clays(1.0, ratio));
-        let (prandtl, blocks) = (2.0 + std::f64::consts::PI, strip(ratio, 4));
+        let factor = at(&found, "N", 1.0);
+        let circle = strip_on_two_clays(1.0, ratio);
+        let prandtl = 2.0 + std::f64::consts::PI;
+        let blocks = strip(ratio, 4);
         println!("{ratio}: {factor}; circle {circle}, blocks {blocks}");
         assert!(
             prandtl * ratio < factor && factor < 1.01 * circle,
@@ -94,7 +98,8 @@ fn bounds_of_triangles_hold_what_is_known() {
     ];
     for (exact, footing) in known {
         let mesh = footing.mesh(0.1, 0.3);
-        let (lower, upper) = (mesh.lower_bound(), mesh.upper_bound());
+        let lower = mesh.lower_bound();
+        let upper = mesh.upper_bound();
         assert!(
             lower < exact && exact < upper && upper - lower < 0.13 * exact,
             "{exact}: {lower}, {upper}"
@@ -108,7 +113,8 @@ fn bounds_of_triangles_hold_what_is_known() {
 #[test]
 fn a_pipe_that_is_pulled_out_of_clay_carries_less_than_blocks_above_it() {
     let found = run("pipe_uplift.toml", &["check=[]"]);
-    let (block, blocks) = (2.0 * 2.0, pipe(2.0, 4));
+    let block = 2.0 * 2.0;
+    let blocks = pipe(2.0, 4);
     assert!(blocks < 0.9 * block, "{blocks}");
     for t in [0.5, 0.75, 1.0] {
         let factor = at(&found, "N-y", t);
@@ -139,7 +145,9 @@ fn an_anchor_plate_carries_less_in_smaller_cells_towards_what_blocks_allow() {
             1.0,
         )
     };
-    let ([coarse, fine], rough, blocks) = ([0.125, 0.0625].map(of), 2.56 * 4_f64.ln(), plate(2.0, 0.25, 4));
+    let [coarse, fine] = [0.125, 0.0625].map(of);
+    let rough = 2.56 * 4_f64.ln();
+    let blocks = plate(2.0, 0.25, 4);
     println!("{coarse}, {fine}; blocks {blocks}");
     assert!(rough < blocks && rough < fine, "{fine}, {rough}, {blocks}");
     assert!(
@@ -155,7 +163,9 @@ fn an_anchor_plate_carries_less_in_smaller_cells_towards_what_blocks_allow() {
 #[test]
 fn a_disc_rolls_and_slips_down_an_incline() {
     let [along, across] = [2.8188, 9.3963];
-    let (t, ramp, radius): (f64, f64, f64) = (0.8, 0.1, 0.25);
+    let t: f64 = 0.8;
+    let ramp: f64 = 0.1;
+    let radius: f64 = 0.25;
     let way = t * t / 2.0 - ramp * t / 2.0 + ramp * ramp / 6.0;
     let slips = (along - 0.05 * across) * way;
     for (friction, exact, behind) in [(0.5, along * 2.0 / 3.0 * way, 0.035), (0.05, slips, 0.045)] {

@@ -46,7 +46,8 @@ fn a_run_that_was_stopped_goes_on_to_the_bit() {
                 results(&scratch.path("whole")) == results(&scratch.path("part")),
                 "{ranks} ranks, step {stop}"
             );
-            let (whole, part) = (manifest(&scratch.path("whole")), manifest(&scratch.path("part")));
+            let whole = manifest(&scratch.path("whole"));
+            let part = manifest(&scratch.path("part"));
             assert_eq!(part.restarts.len(), 1);
             assert_eq!(whole.summary.iterations, part.summary.iterations);
             assert_eq!(whole.linear, part.linear);
@@ -256,7 +257,8 @@ fn another_case_is_refused_by_the_keys_that_differ_and_nothing_is_touched() {
     let content = || {
         ["run.json", "history.csv", "steps.csv"].map(|name| std::fs::read(scratch.path("case.out").join(name)).unwrap())
     };
-    let (before, listed) = (content(), entries(&scratch.path("case.out/checkpoint")));
+    let before = content();
+    let listed = entries(&scratch.path("case.out/checkpoint"));
     let file = "case.out/checkpoint/step_000000005.h5";
     for restart in ["auto", file] {
         let other = ["case.toml", "--set", "body.0.points_per_cell=3", "--restart", restart];
@@ -349,7 +351,8 @@ fn a_run_goes_on_with_a_later_end_and_says_what_has_changed() {
     scratch
         .mpirun(2, &["case.toml", "-q", "-o", "whole", "--set", &later])
         .expect(0);
-    let (part, whole) = (history(&scratch.path("part")), history(&scratch.path("whole")));
+    let part = history(&scratch.path("part"));
+    let whole = history(&scratch.path("whole"));
     assert_eq!(part.get("time").unwrap().last(), whole.get("time").unwrap().last());
     let changed = &manifest(&scratch.path("part")).restarts[0].changed;
     assert!(

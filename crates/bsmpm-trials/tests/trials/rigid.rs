@@ -101,7 +101,8 @@ fn rigid_bodies_are_the_same_on_any_number_of_ranks_and_over_restarts() {
         "rigid-moment",
         "rigid-work",
     ] {
-        let (a, b) = (at(&one, name, 0.12), at(&three, name, 0.12));
+        let a = at(&one, name, 0.12);
+        let b = at(&three, name, 0.12);
         assert!((a - b).abs() < 1e-8 * a.abs(), "{name}: {a} and {b}");
     }
     assert!(at(&one, "block-y", 0.12) > 0.0 && at(&one, "roller-y", 0.06) > 1e3 && at(&one, "rigid-slip", 0.12) > 0.0);
@@ -196,7 +197,8 @@ rigid = "wall"
 
 /// The horizontal part of Coulomb's active thrust on that wall with this coefficient of friction at it, N.
 fn active(friction: f64) -> f64 {
-    let (phi, delta) = (30.0_f64.to_radians(), friction.atan());
+    let phi = 30.0_f64.to_radians();
+    let delta = friction.atan();
     let root = ((phi + delta).sin() * phi.sin() / delta.cos()).sqrt();
     0.5 * 18.0e3 * 9.0 * (phi.cos() / (1.0 + root)).powi(2)
 }
@@ -470,7 +472,8 @@ fn a_wedge_that_lies_in_a_notch_touches_its_sides() {
         scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(0);
         at(&history(&scratch.path("out")), column, 1.0)
     };
-    let (by_body, by_footing) = (force(wedge, "f-y"), force(footing, "f"));
+    let by_body = force(wedge, "f-y");
+    let by_footing = force(footing, "f");
     // measured 10,804 for 12,006; in cells half as long 11,137 for 11,849, a quarter 11,257 for 11,731
     assert!(
         (by_body / by_footing - 1.0).abs() < 0.12,

@@ -53,7 +53,8 @@ struct RunOut {
 fn run_out(further: &[&str]) -> RunOut {
     let scratch = Scratch::with_case(DAM_BREAK);
     scratch.mpirun(2, &[&["case.toml", "-q"], further].concat()).expect(0);
-    let (history, manifest) = (history(&scratch.path("case.out")), manifest(&scratch.path("case.out")));
+    let history = history(&scratch.path("case.out"));
+    let manifest = manifest(&scratch.path("case.out"));
     let relative = |column: &str| history.get(column).unwrap().last().unwrap() / 2.0 - 1.0;
     let closure = manifest.indicators["energy-closure"].value;
     assert!(closure < 1e-4, "{closure}");

@@ -125,7 +125,8 @@ fn the_footings_histories_are_true() {
     scratch.mpirun(2, &["case.toml", "-q"]).expect(0);
     let directory = scratch.path("case.out");
     all_finite(&directory);
-    let (history, manifest) = (history(&directory), manifest(&directory));
+    let history = history(&directory);
+    let manifest = manifest(&directory);
     let last = |name: &str| *history.get(name).unwrap().last().unwrap();
     assert!((last("penetration") - 0.4).abs() < 1e-12);
     // Up is what the ground pushes with: weight, traction, point load and the footing.
@@ -269,7 +270,8 @@ fn the_footing_on_clay_is_the_same_on_1_2_3_and_4_ranks() {
 /// The draft preset's graded cells against the paper's discretisation.
 #[test]
 fn a_draft_of_the_footing_is_within_a_tenth_for_a_four_hundredth_of_the_work() {
-    let (case, scratch) = (shipped("presets/strip_footing.toml"), Scratch::new());
+    let case = shipped("presets/strip_footing.toml");
+    let scratch = Scratch::new();
     let arguments = [
         case.to_str().unwrap(),
         "-q",

@@ -51,7 +51,8 @@ fn stopped(scratch: &Scratch) {
     let manifest = manifest(&directory);
     assert_eq!((manifest.status, manifest.exit_code), (Status::Stopped, Some(75)));
     assert_eq!(manifest.failure, None);
-    let (steps, history) = (steps(&directory), history(&directory));
+    let steps = steps(&directory);
+    let history = history(&directory);
     let last = *steps.get("step").unwrap().last().unwrap();
     assert_eq!(manifest.summary.steps as f64, last);
     assert_eq!(*history.get("step").unwrap().last().unwrap(), last);
@@ -130,10 +131,8 @@ fn usr2_writes_a_frame_and_a_checkpoint_and_changes_nothing_else() {
         to.send("USR1", &running);
         let output = running.end().expect(75);
         stopped(&scratch);
-        let (directory, count) = (
-            scratch.path("case.out"),
-            output.count("Writing a frame and a checkpoint"),
-        );
+        let directory = scratch.path("case.out");
+        let count = output.count("Writing a frame and a checkpoint");
         assert_eq!(
             all_frames(&directory).len(),
             2 + count,
@@ -207,7 +206,8 @@ fn a_run_whose_words_nobody_reads_any_more_goes_on_to_the_same_end() {
     let scratch = Scratch::with_case(COLUMN);
     scratch.job(None, &["case.toml", "-o", "heard"]).run().expect(0);
     scratch.job(None, &["case.toml"]).abandoned().run().expect(0);
-    let (heard, alone) = (scratch.path("heard"), scratch.path("case.out"));
+    let heard = scratch.path("heard");
+    let alone = scratch.path("case.out");
     assert_eq!(history(&heard).values, history(&alone).values);
     assert_eq!(last_frame(&heard), last_frame(&alone));
     assert_eq!(manifest(&alone).status, Status::Finished);

@@ -76,7 +76,8 @@ pub fn slice() -> String {
 
 /// The same on a layer ten times as stiff, whose top is a line across which strains may jump.
 fn layered(case: &str) -> String {
-    let (thick, mut layered) = (if case == PLANE { "" } else { "0.25, " }, case.to_owned());
+    let thick = if case == PLANE { "" } else { "0.25, " };
+    let mut layered = case.to_owned();
     let from = if case == PLANE { "[0, " } else { "[0, 0, " };
     layered = changed(
         &layered,
@@ -126,7 +127,8 @@ fn a_slice_between_rollers_is_plane_strain_but_for_f_bars_exponent() {
         (&one, "f-bar", 1e-4, 2e-2),
         (&one, "f-bar-zhao", 1e-4, 2e-2),
     ] {
-        let (plane, solid) = (run(&case[0], method), run(&case[1], method));
+        let plane = run(&case[0], method);
+        let solid = run(&case[1], method);
         for (of_plane, of_solid) in pairs.into_iter().chain(stresses) {
             let [expected, found] = [at(&plane, of_plane, 0.3), at(&solid, of_solid, 0.3)];
             let apart = found / expected - 1.0;
@@ -292,7 +294,8 @@ fn a_box_weighs_what_it_weighs() {
     let scratch = Scratch::with_case(&format!("{still}{wanted}"));
     scratch.mpirun(2, &["case.toml", "-q", "-o", "out"]).expect(0);
     let table = history(&scratch.path("out"));
-    let (weight, constrained) = (2000.0 * 9.81, 1e6 * 0.7 / (1.3 * 0.4));
+    let weight = 2000.0 * 9.81;
+    let constrained = 1e6 * 0.7 / (1.3 * 0.4);
     assert!((at(&table, "reaction-z", 1.0) / weight - 1.0).abs() < 1e-6);
     // Hencky's law in one direction, P = M ln(lambda)/lambda: lambda = 1 - p + 3/2 p^2 under P = -p M.
     let share = weight / constrained;
@@ -446,7 +449,8 @@ quantity = "energy"
         scratch.direct(&["case.toml", "-q", "-o", "whole"]).expect(0);
         history(&scratch.path("whole"))
     };
-    let (round, quarter) = (run(ROUND), run(&quarter));
+    let round = run(ROUND);
+    let quarter = run(&quarter);
     let pairs = [
         ("top-y", "top-z", 1.0),
         ("side-x", "side-x", 1.0),

@@ -53,7 +53,9 @@ fn a_block_slides_obliquely_with_its_acceleration_and_sticks_with_more_friction(
     let scratch = Scratch::with_case(BLOCK);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "slides"]).expect(0);
     let table = history(&scratch.path("slides"));
-    let (mass, down, along) = (62.5, 8.7743305, 4.3871653);
+    let mass = 62.5;
+    let down = 8.7743305;
+    let along = 4.3871653;
     let speed = |time: f64| ["x", "y"].map(|axis| at(&table, &format!("momentum-{axis}"), time) / mass);
     let gained = [0, 1].map(|axis| (speed(0.5)[axis] - speed(0.2)[axis]) / 0.3);
     let expected = along - 0.3 * down;
@@ -108,7 +110,8 @@ fn a_block_in_a_corner_is_the_same_on_all_numbers_of_ranks() {
         "{wall}[[history]]\nquantity = \"reaction\"\nname = \"wall\"\nface = \"back\"\n"
     ));
     scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
-    let (table, time) = (history(&scratch.path("one")), 0.25);
+    let table = history(&scratch.path("one"));
+    let time = 0.25;
     let wall = ["x", "y", "z"].map(|axis| at(&table, &format!("wall-{axis}"), time));
     println!("{wall:?}");
     assert!(wall[1] < 0.0 && wall[0] == 0.0 && wall[2] == 0.0, "{wall:?}");
@@ -159,14 +162,16 @@ fn a_slice_that_slides_is_plane_strain() {
         scratch.mpirun(1, &["case.toml", "-q", "-o", "out"]).expect(0);
         history(&scratch.path("out"))
     };
-    let (plane, solid) = (run(plane), run(&slice));
+    let plane = run(plane);
+    let solid = run(&slice);
     let pairs = [
         ("momentum-x", "momentum-x"),
         ("reaction-x", "reaction-x"),
         ("reaction-y", "reaction-z"),
     ];
     for (flat, along) in pairs.into_iter().chain([("friction-power", "friction-power")]) {
-        let (expected, found) = (at(&plane, flat, 0.2), at(&solid, along, 0.2) / 0.25);
+        let expected = at(&plane, flat, 0.2);
+        let found = at(&solid, along, 0.2) / 0.25;
         println!("{flat}: {:e}", found / expected - 1.0);
         assert!((found / expected - 1.0).abs() < 1e-9, "{flat}: {found} {expected}");
     }
@@ -188,7 +193,8 @@ fn a_bar_meets_a_wall_and_leaves_it() {
     scratch.mpirun(2, &["case.toml", "-q", "-o", "out"]).expect(0);
     let table = history(&scratch.path("out"));
     let pushed = table.get("reaction-x").expect("a column");
-    let (momentum, mass) = (table.get("momentum-x").expect("a column"), 62.5);
+    let momentum = table.get("momentum-x").expect("a column");
+    let mass = 62.5;
     let least = pushed.iter().fold(f64::NEG_INFINITY, |most, force| most.max(*force));
     let touches = pushed.iter().filter(|force| **force < 0.0).count() as f64 * 2e-4;
     let returned = -momentum[momentum.len() - 1] / mass;

@@ -53,7 +53,9 @@ fn root(f: impl Fn(f64) -> f64, mut ends: [f64; 2]) -> f64 {
 /// Kirchhoff's stress is E ln(lambda) along the load; a dead load has lambda of it, a pressure J.
 #[test]
 fn a_cube_under_a_dead_load_and_under_a_pressure_is_that_of_henckys_law() {
-    let (young, poisson, load) = (1e6, 0.3, 1e5);
+    let young = 1e6;
+    let poisson = 0.3;
+    let load = 1e5;
     let dead = root(|l| young * f64::ln(l) + load * l, [0.5, 1.0]);
     let pressed = root(
         |l| young * f64::ln(l) + load * f64::powf(l, 1.0 - 2.0 * poisson),
@@ -158,7 +160,10 @@ fn bar(loads: &[([f64; 2], [f64; 2], [f64; 3])], cell: f64, places: &[(f64, f64)
 /// 0.1406 of the edge's fourth power.
 #[test]
 fn a_bar_bends_and_twists_as_beams_do() {
-    let (young, poisson, edge, length) = (1e6, 0.3, 0.5_f64, 2.0_f64);
+    let young = 1e6;
+    let poisson = 0.3;
+    let edge = 0.5_f64;
+    let length = 2.0_f64;
     let shear = young / (2.0 * (1.0 + poisson));
     let whole = [([0.125, 0.125], [0.625, 0.625], [0.0, 0.0, -10.0])];
     let force = 10.0 * edge * edge;
@@ -384,12 +389,14 @@ fn eighth(radius: f64, parts: usize, closed: bool) -> String {
 /// p pi a^2/4.
 #[test]
 fn a_hollow_sphere_under_pressure_inside_is_lames_by_a_sphere_and_by_triangles() {
-    let (a, b, young, poisson, load) = (0.5_f64, 1.0_f64, 1e7, 0.3, 1e3);
+    let a = 0.5_f64;
+    let b = 1.0_f64;
+    let young = 1e7;
+    let poisson = 0.3;
+    let load = 1e3;
     let wall = (1.0 - 2.0 * poisson) * a + (1.0 + poisson) * b.powi(3) / (2.0 * a * a);
-    let (moved, held) = (
-        load * a.powi(3) * wall / (young * (b.powi(3) - a.powi(3))),
-        load * PI * a * a / 4.0,
-    );
+    let moved = load * a.powi(3) * wall / (young * (b.powi(3) - a.powi(3)));
+    let held = load * PI * a * a / 4.0;
     let hollow = changed(HOLLOW, "BALL", &eighth(b, 24, true));
     let sphere = "sphere = { centre = [0, 0, 0], radius = 0.5 }\npressure";
     let triangles = format!("surface = {{ triangles = {} }}\npressure", eighth(a, 24, false));

@@ -97,7 +97,8 @@ fn lines_and_places_of_a_block_have_its_weight_on_any_ranks_and_after_a_restart(
     let of = |name: &str| depth.get(name).unwrap();
     let at_end: Vec<usize> = (0..of("time").len()).filter(|&row| of("time")[row] == 1.0).collect();
     assert_eq!(at_end.len(), 9);
-    let (poisson, largest) = (0.3, 2.0 * WEIGHT);
+    let poisson = 0.3;
+    let largest = 2.0 * WEIGHT;
     for row in at_end {
         let vertical = -WEIGHT * of("distance")[row];
         let aside = poisson / (1.0 - poisson) * vertical;
@@ -128,14 +129,18 @@ fn lines_and_places_of_a_block_have_its_weight_on_any_ranks_and_after_a_restart(
     }
 
     for ranks in [2, 1] {
-        goes_the_same_way(&scratch, &TABLES, (ranks, 1e-9));
+        goes_the_same_way(&scratch, &TABLES, ranks, 1e-9);
     }
 }
 
 /// A cantilever of 2 m by 0.5 m by 0.5 m of 20 N/m3 that a couple of strips along the edges of its end twists.
 #[test]
 fn sections_of_a_bar_have_the_weight_beyond_its_moment_and_the_couple() {
-    let (edge, length, unit_weight, stress, cell) = (0.5_f64, 2.0, 20.0, 100.0, 0.125);
+    let edge = 0.5_f64;
+    let length = 2.0;
+    let unit_weight = 20.0;
+    let stress = 100.0;
+    let cell = 0.125;
     let strips = [
         ("[2, 0.125, 0.5]", "[2, 0.625, 0.625]", [0.0, -stress, 0.0]),
         ("[2, 0.125, 0.125]", "[2, 0.625, 0.25]", [0.0, stress, 0.0]),
@@ -166,7 +171,8 @@ fn sections_of_a_bar_have_the_weight_beyond_its_moment_and_the_couple() {
     for (x, name) in [(0.5, "goes"), (1.1, "middle"), (0.5, "stays")] {
         let of = |component: &str| at(&rows, &format!("{name}-{component}"), 1.0);
         let beyond = length - x;
-        let (shear, moment) = (per_length * beyond, 0.5 * per_length * beyond * beyond);
+        let shear = per_length * beyond;
+        let moment = 0.5 * per_length * beyond * beyond;
         let off = [
             of("q2") / -shear - 1.0,
             of("t") / couple - 1.0,
@@ -181,7 +187,7 @@ fn sections_of_a_bar_have_the_weight_beyond_its_moment_and_the_couple() {
         );
         assert!(others.iter().all(|other| other.abs() < 2e-3), "{others:?}");
     }
-    goes_the_same_way(&scratch, &["history.csv"], (2, 1e-9));
+    goes_the_same_way(&scratch, &["history.csv"], 2, 1e-9);
 }
 
 /// Sand that slumps through a box which it is partly in at the start, into one that it reaches, and far from a third;
@@ -208,7 +214,8 @@ fn boxes_of_histories_count_the_points_that_frames_have_there() {
         let within = |(_, [lower, upper]): &(&str, [[f64; 2]; 2])| [corner(*lower, 0.1), corner(*upper, 0.25)];
         let mut case = changed(&text, "every = 0.1", "every = 0.1\nfields = [\"density\"]");
         for (name, quantity) in boxes.iter().flat_map(|of| QUANTITIES.map(|quantity| (of, quantity))) {
-            let ([lower, upper], name) = (within(name), name.0);
+            let [lower, upper] = within(name);
+            let name = name.0;
             case += &format!(
                 "[[history]]\nquantity = \"{quantity}\"\nmaterial = \"sand\"\nname = \"{name}-{quantity}\"\n\
                  box = {{ lower = {lower:?}, upper = {upper:?} }}\n"
@@ -216,7 +223,8 @@ fn boxes_of_histories_count_the_points_that_frames_have_there() {
         }
         let scratch = Scratch::with_case(&case);
         scratch.mpirun(1, &["case.toml", "-q", "-o", "one"]).expect(0);
-        let (one, mut counts) = (scratch.path("one"), Vec::new());
+        let one = scratch.path("one");
+        let mut counts = Vec::new();
         all_finite(&one);
         let rows = history(&one);
         for (frame, of) in all_frames(&one)
@@ -301,7 +309,7 @@ fn boxes_of_histories_count_the_points_that_frames_have_there() {
         );
         // Sums are exact: the same bits as long as what is summed is.
         for ranks in [3, 1] {
-            let name = goes_the_same_way(&scratch, &["history.csv"], (ranks, 1e-9));
+            let name = goes_the_same_way(&scratch, &["history.csv"], ranks, 1e-9);
             assert_eq!(manifest(&scratch.path(&name)).warnings, warned);
         }
         // A sum over no point is zero; no mean is any number.

@@ -88,7 +88,8 @@ fn a_rigid_block_in_a_slice_is_that_of_plane_strain() {
         scratch.direct(&["case.toml", "-q", "-o", "whole"]).expect(0);
         history(&scratch.path("whole"))
     };
-    let (plane, solid) = (run(PLANE), run(&slice));
+    let plane = run(PLANE);
+    let solid = run(&slice);
     for (of_plane, of_solid, share) in [
         ("rigid-force-x", "rigid-force-x", 0.25),
         ("rigid-force-y", "rigid-force-z", 0.25),
@@ -114,7 +115,8 @@ fn a_rigid_block_in_a_slice_is_that_of_plane_strain() {
 
 /// A block on rigid terrain that falls by 1 in 2 along x: the plane through its posts.
 fn sliding(friction: f64) -> String {
-    let (root, run) = (5.0_f64.sqrt(), [2.0, 1.5, 3.5]);
+    let root = 5.0_f64.sqrt();
+    let run = [2.0, 1.5, 3.5];
     let place = |a: f64, b: f64, c: f64| {
         let at = [run[0] + (2.0 * a + c) / root, run[1] + b, run[2] + (2.0 * c - a) / root];
         format!("{:?}, {:?}, {:?}", at[0], at[1], at[2])
@@ -158,7 +160,8 @@ fn a_block_slides_on_rigid_terrain_and_goes_on_to_the_bit_on_1_and_2_ranks() {
     let [one, two] = [&found, &two].map(|table| at(table, "momentum-x", 0.5));
     assert!((two / one - 1.0).abs() < 1e-6, "on two ranks {two}, on one {one}");
     let of = |name: &str, t: f64| at(&found, name, t);
-    let (sin, cos) = (1.0 / 5.0_f64.sqrt(), 2.0 / 5.0_f64.sqrt());
+    let sin = 1.0 / 5.0_f64.sqrt();
+    let cos = 2.0 / 5.0_f64.sqrt();
     // Mass 500 kg; the first tenths of a second are those of a meeting.
     let gained = |axis: &str| (of(&format!("momentum-{axis}"), 0.5) - of(&format!("momentum-{axis}"), 0.25)) / 500.0;
     let along = (gained("x") * cos - gained("z") * sin) / 0.25;
@@ -167,7 +170,8 @@ fn a_block_slides_on_rigid_terrain_and_goes_on_to_the_bit_on_1_and_2_ranks() {
         let column = found.get(&format!("rigid-force-{axis}")).expect("a column");
         column[26..].iter().sum::<f64>()
     });
-    let (normal, tangential) = (-force[0] * sin - force[2] * cos, force[0] * cos - force[2] * sin);
+    let normal = -force[0] * sin - force[2] * cos;
+    let tangential = force[0] * cos - force[2] * sin;
     assert!((along / exact - 1.0).abs() < 0.02, "acceleration {along} for {exact}");
     assert!(
         (tangential / normal / 0.3 - 1.0).abs() < 1e-5,
@@ -293,7 +297,8 @@ fn a_sphere_pressed_into_a_quarter_of_a_block_is_the_axisymmetric_one() {
         scratch.direct(&["case.toml", "-q", "-o", "whole"]).expect(0);
         history(&scratch.path("whole"))
     };
-    let (round, quarter) = (run(BALL), run(&quarter));
+    let round = run(BALL);
+    let quarter = run(&quarter);
     for t in [0.25, 0.5, 0.75, 1.0] {
         let off = 4.0 * at(&quarter, "rigid-force-z", t) / at(&round, "rigid-force-y", t) - 1.0;
         // Two cells and less in the radius of contact, which the points of the two see otherwise: -3.0 to +4.1 %.

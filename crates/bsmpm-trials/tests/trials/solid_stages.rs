@@ -104,7 +104,8 @@ fn a_shaken_slice_that_loses_sand_is_plane_strain() {
     );
     let grid = ["upper = [4, 0.25, 2]", "upper = [1, 0.25, 2]"];
     let solid = shaken(&slice(), grid, "[0.1, -6, 0, 1], [0.2, 3, 0, -1], [0.3, 0, 0, 0]");
-    let (plane, solid) = (run(&plane), run(&solid));
+    let plane = run(&plane);
+    let solid = run(&solid);
     let pairs = [
         ("displacement-x", "displacement-x", 1.0),
         ("displacement-y", "displacement-z", 1.0),
@@ -155,7 +156,8 @@ fn a_cube_keeps_the_angular_momentum_of_its_spin() {
     let inertia = 1000.0 / 6.0 * (1.0 - 1.0 / 64.0);
     for (column, share) in [("x", 1.0 / 3.0), ("y", 2.0 / 3.0), ("z", 2.0 / 3.0)] {
         let momentum = found.get(&format!("angular-momentum-{column}")).expect("a column");
-        let (first, last) = (momentum[0], momentum[momentum.len() - 1]);
+        let first = momentum[0];
+        let last = momentum[momentum.len() - 1];
         assert!(
             (first / (share * 3.0 * inertia) - 1.0).abs() < 1e-12,
             "{column}: {first}"

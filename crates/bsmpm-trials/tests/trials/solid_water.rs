@@ -104,7 +104,8 @@ fn run(case: &str) -> Columns {
 
 /// Largest distance of columns at the time `t`, over their values.
 fn apart(plane: &str, t: f64, columns: &[(&str, &str)]) -> f64 {
-    let (of_plane, of_solid) = (run(plane), run(&slice(plane)));
+    let of_plane = run(plane);
+    let of_solid = run(&slice(plane));
     let each = columns.iter().map(|(plane, solid)| {
         let [expected, found] = [at(&of_plane, plane, t), at(&of_solid, solid, t)];
         assert!(expected != 0.0, "{plane}");
@@ -201,7 +202,8 @@ fn a_slice_into_which_it_rains_and_that_seeps_is_plane_strain() {
         "from = [0, 1.5]\nto = [1, 1.5]",
         "rectangle = { lower = [0, 0, 1.5], upper = [1, 0.25, 1.5] }",
     );
-    let (plane, found) = (run(&rain), run(&solid));
+    let plane = run(&rain);
+    let found = run(&solid);
     for (of_plane, of_solid) in MOVED.into_iter().chain(FLOWN) {
         let [expected, found] = [at(&plane, of_plane, 7200.0), at(&found, of_solid, 7200.0)];
         println!("{of_solid}: {expected:e}, {:e}", found / expected - 1.0);
@@ -343,7 +345,9 @@ fn a_cube_drained_on_six_sides_follows_the_series() {
     let table = run(&cube());
     for t in [0.05, 0.08] {
         // c_v = k K_w/(gamma_w n) = 1 m2/s over half an edge.
-        let (centre, side, mean) = (slab(0.25, 4.0 * t), slab(0.75, 4.0 * t), slab(0.0, 4.0 * t)[1]);
+        let centre = slab(0.25, 4.0 * t);
+        let side = slab(0.75, 4.0 * t);
+        let mean = slab(0.0, 4.0 * t)[1];
         let expected = [centre[0].powi(3), side[0] * centre[0].powi(2), mean.powi(3)].map(|left| 1.0 - left);
         let found = ["centre", "side", "pore-pressures-mean"].map(|column| at(&table, column, t) / 100.0);
         let errors: Vec<f64> = found

@@ -373,7 +373,8 @@ fn a_gate_that_opens_lets_a_column_give_way() {
     let scratch = Scratch::with_case(&case);
     scratch.mpirun(1, &["case.toml", "-q", "-o", "whole"]).expect(0);
     let found = history(&scratch.path("whole"));
-    let (young, poisson) = (1e8, 0.25);
+    let young = 1e8;
+    let poisson = 0.25;
     let between = PRESSURE * COLUMN / SOFT;
     let free = PRESSURE * COLUMN * (1.0 - poisson * poisson) / young;
     let side = free / COLUMN * 2.0 * poisson / (1.0 - poisson);

@@ -66,10 +66,8 @@ fn submerged_level_ground_has_its_buoyant_weight_and_rests() {
     let moved = at(&history(&scratch.path("out")), "max-displacement", 1.0);
     assert!(moved < 1e-12, "{moved}");
     for frame in all_frames(&scratch.path("out")) {
-        let (stress, pore) = (
-            frame.real("stress", 6).unwrap(),
-            frame.real("pore_pressure", 1).unwrap(),
-        );
+        let stress = frame.real("stress", 6).unwrap();
+        let pore = frame.real("pore_pressure", 1).unwrap();
         for (p, place) in frame.position.iter().enumerate() {
             let [side, vertical, shear] = [stress[6 * p], stress[6 * p + 1], stress[6 * p + 3]];
             // Points on thirds hold the mean of the linear stress in a cell, not its value.
@@ -186,10 +184,8 @@ fn level_ground_by_a_ratio_has_the_rest_of_its_weight_and_rests() {
     assert!(found.unbalance < 1e-12 && found.yielding == 0, "{found:?}");
     assert!(at(&history(&scratch.path("out")), "max-displacement", 1.0) < 1e-12);
     let frame = last_frame(&scratch.path("out"));
-    let (stress, pore) = (
-        frame.real("stress", 6).unwrap(),
-        frame.real("pore_pressure", 1).unwrap(),
-    );
+    let stress = frame.real("stress", 6).unwrap();
+    let pore = frame.real("pore_pressure", 1).unwrap();
     for (p, place) in frame.position.iter().enumerate() {
         let [side, vertical] = [stress[6 * p], stress[6 * p + 1]];
         let weight = 17_000.0 * (9.0 - place[1]);

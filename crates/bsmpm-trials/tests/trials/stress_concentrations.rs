@@ -110,7 +110,9 @@ fn knots(across: f64, first: f64) -> String {
         knots.push(at);
         at += cell;
     }
-    let (from, mut edge, mut end) = (at, cell, at);
+    let from = at;
+    let mut edge = cell;
+    let mut end = at;
     let mut growing = Vec::new();
     while end < 10.0 {
         edge = (1.2 * edge).min(1.0);

@@ -85,11 +85,15 @@ fn a_strip_with_friction_that_separates_is_the_same_on_any_ranks_by_newton_and_a
     let one = history(&scratch.path("one"));
     let of = |name: &str| one.get(name).unwrap();
     let rows = of("time").len();
-    let (x, y) = (of("reaction-x"), of("reaction-y"));
+    let x = of("reaction-x");
+    let y = of("reaction-y");
     let most = y.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
-    let (mut work, mut slid, mut open) = (0.0, 0, 0);
+    let mut work = 0.0;
+    let mut slid = 0;
+    let mut open = 0;
     for row in 1..rows {
-        let (time, dt) = (of("time")[row], of("time")[row] - of("time")[row - 1]);
+        let time = of("time")[row];
+        let dt = of("time")[row] - of("time")[row - 1];
         for (strip, ground) in [(x, of("ground-x")), (y, of("ground-y"))] {
             assert!(
                 (strip[row] + ground[row]).abs() < 1e-6 * most,
@@ -150,7 +154,8 @@ fn a_strip_with_friction_that_separates_is_the_same_on_any_ranks_by_newton_and_a
     for (run, tolerance) in [("newton", 1e-5), ("three", 1e-8)] {
         let other = history(&scratch.path(run));
         for name in ["reaction-x", "reaction-y", "moment", "work"] {
-            let (a, b) = (of(name), other.get(name).unwrap());
+            let a = of(name);
+            let b = other.get(name).unwrap();
             let scale = a.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
             let off = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale;
             println!("{run} {name}: {off:.1e}");
@@ -183,17 +188,16 @@ fn a_strip_with_friction_is_applied_and_released_by_stages_on_two_ranks_and_over
     scratch.direct(&["case.toml", "-q", "-o", "one"]).expect(0);
     let [one, two] = ["one", "whole2"].map(|run| history(&scratch.path(run)));
     for name in ["reaction-x", "reaction-y", "work"] {
-        let (a, b) = (one.get(name).unwrap(), two.get(name).unwrap());
+        let a = one.get(name).unwrap();
+        let b = two.get(name).unwrap();
         let scale = a.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         assert!(
             scale > 0.0 && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-8 * scale),
             "{name}"
         );
     }
-    let (time, [x, y]) = (
-        two.get("time").unwrap(),
-        ["x", "y"].map(|axis| two.get(&format!("reaction-{axis}")).unwrap()),
-    );
+    let time = two.get("time").unwrap();
+    let [x, y] = ["x", "y"].map(|axis| two.get(&format!("reaction-{axis}")).unwrap());
     let mut slid = 0;
     for (row, t) in time.iter().enumerate() {
         let acts = *t > 0.2 + 1e-9 && *t < 0.7 + 1e-9;
@@ -266,7 +270,8 @@ fn a_strip_carries_more_by_the_rate_in_quasi_static_time() {
         let found = history(&scratch.path(name));
         *found.get("N").unwrap().last().unwrap()
     };
-    let (slow, fast) = (end("slow", &[]), end("fast", &["--set", "analysis.end=100 s"]));
+    let slow = end("slow", &[]);
+    let fast = end("fast", &["--set", "analysis.end=100 s"]);
     let same = end(
         "same",
         &[
@@ -305,7 +310,9 @@ fn ground() -> Vec<(f64, f64)> {
             from.1 + (to.1 - from.1) * (t - from.0) / (to.0 - from.0)
         })
     };
-    let (mut u, mut v, mut moved) = (0.0, 0.0, vec![(0.0, 0.0)]);
+    let mut u = 0.0;
+    let mut v = 0.0;
+    let mut moved = vec![(0.0, 0.0)];
     for step in 0..40 {
         let [from, to] = [step, step + 1].map(|step| acceleration(f64::from(step) * STEP));
         u += v * STEP + (2.0 * from + to) / 6.0 * STEP * STEP;
@@ -354,7 +361,8 @@ fn a_base_motion_is_the_shaking_of_that_ground() {
     let path: Vec<String> = ground.iter().map(|(t, u)| format!("[{t}, {u}, 0]")).collect();
     let motion = format!("prescribed = [{{ face = \"bottom\", path = [{}] }}]", path.join(", "));
     for (cell, most) in [(0.25, 0.01), (0.125, 0.003)] {
-        let (beside, whole) = (run(cell, &shaking), run(cell, &motion));
+        let beside = run(cell, &shaking);
+        let whole = run(cell, &motion);
         let largest = beside.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
         let apart = ground
             .iter()

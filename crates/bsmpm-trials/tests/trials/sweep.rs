@@ -53,14 +53,16 @@ impl Bench {
 
     /// The text of a sweep, the lines that it reported, and its `sweep.json`.
     fn sweep(&self, options: &[&str]) -> (String, Vec<String>, Value) {
-        let (output, solver) = (self.path("sweep"), self.path("solver"));
+        let output = self.path("sweep");
+        let solver = self.path("solver");
         let words = [
             &["sweep", COLUMN, "--output", output.to_str().unwrap()][..],
             &SHORT,
             options,
             &["--", solver.to_str().unwrap()],
         ];
-        let (mut lines, _turn) = (Vec::new(), processes::turn());
+        let mut lines = Vec::new();
+        let _turn = processes::turn();
         let line = Sweep::parse_from(words.concat());
         let (text, files) = sweep::run(&line.arguments, |line| lines.push(line.to_owned())).unwrap();
         assert!(files.iter().all(|file| file.is_file()), "{files:?}");
@@ -288,7 +290,8 @@ fn a_sweep_of_a_thick_cylinder_leads_to_its_closed_form() {
         env!("CARGO_MANIFEST_DIR"),
         "/../../cases/validation/thick_cylinder.toml"
     );
-    let (output, solver) = (bench.path("sweep"), bench.path("solver"));
+    let output = bench.path("sweep");
+    let solver = bench.path("solver");
     let linear = [
         "traction.0.stress=[1, 0]",
         "material.wall.young=1 MPa",
@@ -312,7 +315,10 @@ fn a_sweep_of_a_thick_cylinder_leads_to_its_closed_form() {
     sweep::run(&Sweep::parse_from(words.concat()).arguments, |_| ()).unwrap();
     let found: Value = serde_json::from_str(&fs::read_to_string(output.join("sweep.json")).unwrap()).unwrap();
     let limit = found["reference"]["values"][0][0].as_f64().unwrap();
-    let (radius, wall, poisson, young) = (0.5_f64, 1.0_f64, 0.3, 1e6);
+    let radius = 0.5_f64;
+    let wall = 1.0_f64;
+    let poisson = 0.3;
+    let young = 1e6;
     let exact = 2.0 * (1.0 - poisson * poisson) * radius.powi(2) * wall / (young * (wall.powi(2) - radius.powi(2)));
     assert!((limit / exact - 1.0).abs() <= 1e-5, "{limit:e} {exact:e}"); // 2e-6; 0.005 % with the smallest cells
 }

@@ -159,7 +159,8 @@ fn water_under_what_is_removed_loses_its_weight_and_comes_back() {
     assert!(is_reported("out"));
     let found = history(&scratch.path("out"));
     let of = |name: &str, t: f64| at(&found, name, t);
-    let (first, path): (f64, f64) = (-(20e3 - 9810.0) * 0.25, 0.75);
+    let first: f64 = -(20e3 - 9810.0) * 0.25;
+    let path: f64 = 0.75;
     assert!(
         ["top", "middle"]
             .iter()

@@ -110,7 +110,8 @@ impl Lines {
         let of = |k: usize, [b, p, a]: [f64; 3]| {
             (self.holds(k, p) - self.held[k]) * self.h + dt * (through(k + 1, p, a) - through(k, b, p))
         };
-        let (mut upper, mut right) = (vec![0.0; n], vec![0.0; n]);
+        let mut upper = vec![0.0; n];
+        let mut right = vec![0.0; n];
         for k in 0..n {
             let (b, a) = around(k);
             let at = [b, self.p[k], a];
@@ -157,7 +158,9 @@ fn by_lines(cells: usize, dt: f64, times: &[f64]) -> Vec<Row> {
     for _ in 0..(RAIN / dt).round() as usize {
         lines.step(dt, K);
     }
-    let (mut t, mut out, before) = (0.0, 0.0, lines.height());
+    let mut t = 0.0;
+    let mut out = 0.0;
+    let before = lines.height();
     let to = |time: &f64| {
         while t < time - dt / 2.0 {
             out += lines.step(dt, 0.0);

@@ -92,7 +92,8 @@ fn a_line_along_an_infinite_slope_presses_as_its_depth_straight_below() {
         ];
         factor(&set, INCLINED, 2.0)
     });
-    let (tan, cos) = (|degrees: f64| degrees.to_radians().tan(), INCLINED.to_radians().cos());
+    let tan = |degrees: f64| degrees.to_radians().tan();
+    let cos = INCLINED.to_radians().cos();
     let closed = tan(FRICTION) / tan(INCLINED) * (1.0 - WEIGHTS[1] / (WEIGHTS[0] * cos * cos));
     println!("a line along the slope, h = 0.5, 0.25 m: {found:.4?}; {closed:.4}");
     assert!((closed - 0.8552).abs() < 5e-5);

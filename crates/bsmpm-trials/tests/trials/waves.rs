@@ -208,7 +208,8 @@ const PORES: f64 = 0.4;
 /// A column between rollers whose water is `ratio` times as stiff as the skeleton, in so many cells over 10 periods of
 /// 60 steps; with its period, s.
 fn column(ratio: f64, cells: f64) -> (String, f64) {
-    let (cell, modulus) = (HEIGHT / cells, (1.0 + ratio) * SKELETON);
+    let cell = HEIGHT / cells;
+    let modulus = (1.0 + ratio) * SKELETON;
     let period = 4.0 * HEIGHT / (modulus / DENSITY).sqrt();
     let case = format!(
         r#"
@@ -262,7 +263,8 @@ name = "top"
 /// s, -  period of a column by the passages through its place at rest, and the mean swing (RMS) in the last of ten
 /// periods over that in the first
 fn vibration(table: &Columns, rest: f64) -> (f64, f64) {
-    let (times, places) = (table.get("time").unwrap(), table.get("top-y").unwrap());
+    let times = table.get("time").unwrap();
+    let places = table.get("top-y").unwrap();
     let swing: Vec<f64> = places.iter().map(|y| y - rest).collect();
     let passages: Vec<f64> = (1..swing.len())
         .filter(|k| swing[k - 1] * swing[*k] < 0.0)

@@ -136,20 +136,23 @@ const ALIKE: f64 = 1e-10;
 
 /// For each cell of an axis the first one of the cells next to each other that it is like.
 fn first_alike(products: &[FormProducts]) -> Vec<usize> {
-    let are_alike = |one: &FormProducts, other: &FormProducts| {
-        one.iter().zip(other).all(|(one, other)| {
-            let largest = one.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-            one.iter()
-                .zip(other)
-                .all(|(one, other)| (one - other).abs() <= ALIKE * largest)
-        })
-    };
     let mut first = 0;
-    let of_cell = |cell: usize| {
-        if !are_alike(&products[first], &products[cell]) {
+    let mut alike = Vec::with_capacity(products.len());
+    for (cell, own) in products.iter().enumerate() {
+        if !are_alike(&products[first], own) {
             first = cell;
         }
-        first
-    };
-    (0..products.len()).map(of_cell).collect()
+        alike.push(first);
+    }
+    alike
+}
+
+/// Whether two cells have the same integrals.
+fn are_alike(one: &FormProducts, other: &FormProducts) -> bool {
+    one.iter().zip(other).all(|(one, other)| {
+        let largest = one.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        one.iter()
+            .zip(other)
+            .all(|(one, other)| (one - other).abs() <= ALIKE * largest)
+    })
 }

@@ -2,7 +2,7 @@
 
 use crate::gauss::GAUSS;
 use crate::grid::shape::with_width;
-use crate::grid::{Grid, KnotVector};
+use crate::grid::{Grid, KnotVector, digit};
 use crate::lanes::LANES;
 
 /// int N_a N_b, int N_a' N_b', int N_a' N_b and int N_a N_b' over a cell of one axis, row-major, (q + 1) square; m,
@@ -26,17 +26,17 @@ pub(super) struct Integrals {
 
 impl Integrals {
     pub(super) fn of<const D: usize>(grid: &Grid<D>) -> Self {
-        let (width, nodes) = (grid.order() + 1, grid.cell_nodes());
-        let of_axis = |axis: usize| {
-            let along = |k: usize| k / width.pow((D - 1 - axis) as u32) % width;
-            (0..nodes * nodes)
-                .map(|entry| along(entry / nodes) * width + along(entry % nodes))
-                .collect()
-        };
+        let width = grid.order() + 1;
+        let nodes = grid.cell_nodes();
+        let entries = (0..D).map(|axis| {
+            let entries = (0..nodes * nodes).map(|entry| [entry / nodes, entry % nodes]);
+            let along = entries.map(|pair| pair.map(|k| digit::<D>(k, axis, width)));
+            along.map(|[a, b]| a * width + b).collect()
+        });
         Self {
             width,
             products: products(grid).into(),
-            entries: (0..D).map(of_axis).collect(),
+            entries: entries.collect(),
         }
     }
 
@@ -44,20 +44,16 @@ impl Integrals {
     /// the components, and half of sum_ij du_i/dx_j du_j/dx_i.
     pub(super) fn strain<const D: usize>(&self, cell: &[usize; D]) -> Vec<f64> {
         let nodes = self.entries[0].len().isqrt();
-        let (mut plain, mut coupled) = (vec![0.0; nodes * nodes], vec![0.0; (nodes * D).pow(2)]);
+        let mut plain = vec![0.0; nodes * nodes];
+        let mut coupled = vec![0.0; (nodes * D).pow(2)];
         for i in 0..D {
             self.add(cell, 0.5, |axis| usize::from(axis == i), &mut plain);
         }
         let mut mixed = vec![0.0; nodes * nodes];
         for (i, j) in (0..D * D).map(|k| (k / D, k % D)) {
             // Of u_i at a and u_j at b: the derivative of N_a along j times that of N_b along i.
-            let of = |axis| match (axis == j, axis == i) {
-                (true, false) => MIXED[0],
-                (false, true) => MIXED[1],
-                (both, _) => usize::from(both),
-            };
             mixed.fill(0.0);
-            self.add(cell, 0.5, of, &mut mixed);
+            self.add(cell, 0.5, |axis| kind(axis == j, axis == i), &mut mixed);
             for (a, (mixed, plain)) in mixed.chunks_exact(nodes).zip(plain.chunks_exact(nodes)).enumerate() {
                 let row = coupled[(a * D + i) * nodes * D..].iter_mut().skip(j).step_by(D);
                 for (sum, (value, own)) in row.zip(mixed.iter().zip(plain)) {
@@ -79,25 +75,36 @@ impl Integrals {
     }
 }
 
+/// Kind of the integral of the row's and the column's function, of which those that say so are derived.
+fn kind(is_row_derived: bool, is_column_derived: bool) -> usize {
+    match (is_row_derived, is_column_derived) {
+        (true, false) => MIXED[0],
+        (false, true) => MIXED[1],
+        (both, _) => usize::from(both),
+    }
+}
+
 /// The integrals of every cell of every axis.
 fn products<const D: usize>(grid: &Grid<D>) -> [Vec<FormProducts>; D] {
-    let of_axis = |axis: &KnotVector| {
+    grid.axes().each_ref().map(|axis| {
         with_width!(axis.order() + 1, W => {
             (0..axis.cells()).map(|cell| of_cell::<W>(axis, cell)).collect()
         })
-    };
-    grid.axes().each_ref().map(of_axis)
+    })
 }
 
 fn of_cell<const W: usize>(axis: &KnotVector, cell: usize) -> FormProducts {
     if !axis.has_length(cell) {
         return std::array::from_fn(|_| vec![0.0; W * W]);
     }
-    let (lower, upper) = (axis.breakpoint(cell), axis.breakpoint(cell + 1));
-    let (middle, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
+    let lower = axis.breakpoint(cell);
+    let upper = axis.breakpoint(cell + 1);
+    let middle = 0.5 * (lower + upper);
+    let half = 0.5 * (upper - lower);
     let mut sums = [(); KINDS].map(|()| vec![0.0; W * W]);
     for (at, weight) in GAUSS {
-        let (shift, weight) = (at * half, weight * half);
+        let shift = at * half;
+        let weight = weight * half;
         let (N, dN) = axis.basis::<W>(middle + shift, cell);
         for (sum, (rows, columns)) in sums.iter_mut().zip([(N, N), (dN, dN), (dN, N), (N, dN)]) {
             for (entry, value) in sum.iter_mut().enumerate() {

@@ -2,6 +2,7 @@
 //! time.
 
 use super::integrals::{Integrals, KINDS};
+use crate::grid::digit;
 use crate::grid::shape::with_width;
 use crate::lanes::{self, InLanes, Lanes, Simd};
 
@@ -36,6 +37,12 @@ fn chosen<S: Simd>(matrices: &[[AxisMatrix<S>; KINDS]; D], kinds: [usize; D]) ->
     [0, 1, 2].map(|axis| &matrices[axis][kinds[axis]])
 }
 
+/// Product of the values of these kinds along the axes.
+#[inline]
+fn term(values: &[[f64; KINDS]; D], kinds: [usize; D]) -> f64 {
+    (0..D).map(|axis| values[axis][kinds[axis]]).product()
+}
+
 /// The forms of cells in space, by number.
 #[derive(Clone, Debug)]
 pub(super) struct TensorForms {
@@ -59,19 +66,23 @@ impl TensorForms {
 
     /// Adds `factor` times the block of a form, symmetric to the last bit, to a patch's.
     pub(super) fn add_to(&self, number: usize, factor: f64, block: &mut [f64]) {
-        let (width, cell) = (self.integrals.width, self.cells[number]);
+        let width = self.integrals.width;
+        let cell = self.cells[number];
         let products: [_; D] = std::array::from_fn(|axis| &self.integrals.products[axis][cell[axis]]);
-        let along = |node: usize| [node / width / width, node / width % width, node % width];
         let nodes = width.pow(D as u32);
         for (a, rows) in block.chunks_exact_mut(nodes * D * D).enumerate() {
             for b in 0..nodes {
-                let (row, column) = (along(a), along(b));
-                let of = |axis: usize, kind: usize| products[axis][kind][row[axis] * width + column[axis]];
-                let values: [[f64; KINDS]; D] = [0, 1, 2].map(|axis| [0, 1, 2, 3].map(|kind| of(axis, kind)));
+                let [row, column] = [a, b].map(|node| [0, 1, 2].map(|axis| digit::<D>(node, axis, width)));
+                let values = [0, 1, 2].map(|axis| {
+                    let entry = row[axis] * width + column[axis];
+                    [0, 1, 2, 3].map(|kind| products[axis][kind][entry])
+                });
                 for (i, j) in (0..D * D).map(|k| (k / D, k % D)) {
-                    let term = |kinds: [usize; D]| (0..D).map(|axis| values[axis][kinds[axis]]).product::<f64>();
-                    let squares = || (0..D).map(|k| term(across(k)) * half_unless(k == i)).sum();
-                    let value: f64 = if i == j { squares() } else { 0.5 * term(mixed(i, j)) };
+                    let value: f64 = if i == j {
+                        (0..D).map(|k| term(&values, across(k)) * half_unless(k == i)).sum()
+                    } else {
+                        0.5 * term(&values, mixed(i, j))
+                    };
                     rows[i * nodes * D + b * D + j] += factor * value;
                 }
             }
@@ -102,21 +113,23 @@ impl<const W: usize> InLanes for TensorProduct<'_, W> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let nodes = W.pow(D as u32);
-        let cell = |lane: usize| lane.min(self.cells.len() - 1);
+        let last = self.cells.len() - 1;
         let none = [Lanes::splat(simd, 0.0); MOST[1]];
         let mut matrices = [[[Lanes::splat(simd, 0.0); MOST[0] * MOST[0]]; KINDS]; D];
         for (axis, kinds) in matrices.iter_mut().enumerate() {
             for (kind, matrix) in kinds.iter_mut().enumerate() {
                 let products = &self.integrals.products[axis];
                 for (entry, value) in matrix[..W * W].iter_mut().enumerate() {
-                    *value = Lanes::from_fn(simd, |lane| products[self.cells[cell(lane)][axis]][kind][entry]);
+                    *value = Lanes::from_fn(simd, |lane| products[self.cells[lane.min(last)][axis]][kind][entry]);
                 }
             }
         }
-        let (mut u, mut f, mut scratch) = ([none; D], [none; D], [none; 2]);
+        let mut u = [none; D];
+        let mut f = [none; D];
+        let mut scratch = [none; 2];
         for (j, own) in u.iter_mut().enumerate() {
             for (node, value) in own[..nodes].iter_mut().enumerate() {
-                *value = Lanes::from_fn(simd, |lane| self.u[(cell(lane) * nodes + node) * D + j]);
+                *value = Lanes::from_fn(simd, |lane| self.u[(lane.min(last) * nodes + node) * D + j]);
             }
         }
         for (i, f) in f.iter_mut().enumerate() {

@@ -34,30 +34,25 @@ impl Dashpots {
     /// Of the faces of the `boundary` that absorb, at components that are `free`; `impedance` of a point, kg m/s: its
     /// mass times the speed of compression and of shear waves. One exchange with the neighbours a face.
     pub fn of<K: Kinematics<D>, const D: usize>(
-        (boundary, grid): (&Boundary<D>, &Grid<D>),
-        (shape, points): (&Shape<D>, &Points<D>),
+        boundary: &Boundary<D>,
+        grid: &Grid<D>,
+        shape: &Shape<D>,
+        points: &Points<D>,
         impedance: impl Fn(usize) -> [f64; 2] + Sync,
         free: &[bool],
         halo: &dyn Halo,
     ) -> Self {
         let mut dashpots = Vec::new();
         for (number, face) in boundary.absorbing().enumerate() {
-            let (edge, last) = (face_cell(grid, face.axis, face.upper), face.last_cell(grid));
-            // A point's mass weighs by its own radius, what it says of the face by the face's.
-            let weight = |x: &Vector<D>| {
-                let mut on_face = *x;
-                on_face[face.axis] = if face.upper {
-                    grid.axes()[face.axis].length()
-                } else {
-                    0.0
-                };
-                K::weight(&on_face) / K::weight(x)
-            };
-            let at_face = |p: usize| match grid.locate(&points.x[p]) {
-                Some(cell) if cell[face.axis] == last => impedance(p).map(|of| of / edge * weight(&points.x[p])),
+            let edge = face_cell(grid, face.axis, face.upper);
+            let last = face.last_cell(grid);
+            let nodal = halo.sum(&transfer::to_nodes(shape, |p| match grid.locate(&points.x[p]) {
+                Some(cell) if cell[face.axis] == last => {
+                    let weight = weight_on::<K, D>(grid, face, &points.x[p]);
+                    impedance(p).map(|of| of / edge * weight)
+                }
                 _ => [0.0; 2],
-            };
-            let nodal = halo.sum(&transfer::to_nodes(shape, at_face));
+            }));
             let held = points.surface.held.get(number);
             for node in grid.face_nodes(face.axis, face.upper) {
                 let [compression, shear] = across(grid, face, node, &nodal);
@@ -116,15 +111,16 @@ impl Dashpots {
     /// holds the start.
     pub fn work<const D: usize>(&self, inertia: &Inertia, u: &[f64], halo: &dyn Halo) -> Vec<f64> {
         let owned = halo.owned();
-        let own = self
+        let mut works = Vec::new();
+        for at in self
             .0
             .iter()
-            .filter(|at| owned.contains(Nodal::<D>::node(at.component)));
-        let work = |at: &Dashpot| {
+            .filter(|at| owned.contains(Nodal::<D>::node(at.component)))
+        {
             let faster = inertia.velocity(at.component, u[at.component]) - at.beside;
-            -at.impedance * faster * (u[at.component] - at.beside * inertia.dt)
-        };
-        own.map(work).collect()
+            works.push(-at.impedance * faster * (u[at.component] - at.beside * inertia.dt));
+        }
+        works
     }
 }
 
@@ -174,13 +170,11 @@ impl<const D: usize> Boundary<D> {
     pub fn held(&self, grid: &Grid<D>, reaction: &[f64], halo: &dyn Halo) -> Vec<Vec<Vector<D>>> {
         let owned = halo.owned();
         let mut counted = vec![false; reaction.len()];
-        let mut of_face = |face: &Support<D>| {
+        let mut held = Vec::new();
+        for face in self.absorbing() {
             let mut forces = vec![0.0; nodes_on(grid, face) * D];
-            for node in grid
-                .face_nodes(face.axis, face.upper)
-                .into_iter()
-                .filter(|&node| owned.contains(node))
-            {
+            let nodes = grid.face_nodes(face.axis, face.upper).into_iter();
+            for node in nodes.filter(|&node| owned.contains(node)) {
                 for component in 0..D {
                     let place = Nodal::<D>::at(node, component);
                     if !std::mem::replace(&mut counted[place], true) {
@@ -189,10 +183,19 @@ impl<const D: usize> Boundary<D> {
                 }
             }
             halo.reduce(&mut forces); // of one rank each: exact
-            forces.chunks_exact(D).map(Vector::from_column_slice).collect()
-        };
-        self.absorbing().map(&mut of_face).collect()
+            held.push(forces.chunks_exact(D).map(Vector::from_column_slice).collect());
+        }
+        held
     }
+}
+
+/// Weight of the place of a face at a point at `x`, m, over the point's own: a point's mass weighs by its own radius,
+/// what it says of the face by the face's.
+fn weight_on<K: Kinematics<D>, const D: usize>(grid: &Grid<D>, face: &Support<D>, x: &Vector<D>) -> f64 {
+    let length = grid.axes()[face.axis].length();
+    let mut on_face = *x;
+    on_face[face.axis] = if face.upper { length } else { 0.0 };
+    K::weight(&on_face) / K::weight(x)
 }
 
 /// The axes along a face.

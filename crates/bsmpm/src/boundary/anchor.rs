@@ -89,15 +89,14 @@ impl Anchors {
         if starts.is_empty() {
             return carried.clone();
         }
-        let mut ids = nearest((&starts, &surfaces.dry), points, halo).into_iter();
-        let mut take = |count: usize| ids.by_ref().take(count).collect::<Vec<u64>>();
+        let mut ids = nearest(&starts, &surfaces.dry, points, halo).into_iter();
         let mut anchors = carried.clone();
         if !found[0] {
-            anchors.strips = boundary.strips.iter().map(|strip| take(strip.points.len())).collect();
-            anchors.loads = boundary.loads.iter().map(|load| take(load.points.len())).collect();
+            anchors.strips = parts(&mut ids, boundary.strips.iter().map(|strip| strip.points.len()));
+            anchors.loads = parts(&mut ids, boundary.loads.iter().map(|load| load.points.len()));
         }
         if !found[1] {
-            anchors.water = surfaces.water.iter().map(|points| take(points.len())).collect();
+            anchors.water = parts(&mut ids, surfaces.water.iter().map(|points| points.len()));
         }
         anchors
     }
@@ -123,7 +122,7 @@ impl Anchors {
             held.chain(wet).filter(|(id, _)| gone(**id)).unzip();
         if !lost.is_empty() {
             lost.iter_mut()
-                .zip(nearest((&places, &surfaces.dry), points, halo))
+                .zip(nearest(&places, &surfaces.dry, points, halo))
                 .for_each(|(id, found)| **id = found);
         }
         anchors
@@ -163,7 +162,7 @@ impl Anchors {
                 .chain(anchors.water.iter_mut().zip(&idle.water));
             let renewed = all.filter(|(_, idle)| **idle).flat_map(|(ids, _)| ids);
             renewed
-                .zip(nearest((&places, &surfaces.dry), points, halo))
+                .zip(nearest(&places, &surfaces.dry, points, halo))
                 .for_each(|(id, found)| *id = found);
         }
         anchors
@@ -172,7 +171,8 @@ impl Anchors {
     /// Where the material is now. One reduction, if there are surface points at all.
     pub fn places<const D: usize>(
         &self,
-        (boundary, grid): (&Boundary<D>, &Grid<D>),
+        boundary: &Boundary<D>,
+        grid: &Grid<D>,
         points: Anchored<'_, D>,
         halo: &dyn Halo,
     ) -> AnchorPlaces<D> {
@@ -183,16 +183,15 @@ impl Anchors {
             points.visit(self.strips.iter().chain(&self.loads).flatten(), |p, at| {
                 found[0][at] = match at < of_strips {
                     true => points.ahead(p, &starts[at]),
-                    false => within((boundary, grid), &starts[at], points.along(p, &starts[at])),
+                    false => within(boundary, grid, &starts[at], points.along(p, &starts[at])),
                 };
             });
             reduce(&mut found, halo);
         }
         let mut found = found.into_iter().flatten();
-        let mut take = |ids: &Vec<u64>| found.by_ref().take(ids.len()).collect();
         AnchorPlaces {
-            strips: self.strips.iter().map(&mut take).collect(),
-            loads: self.loads.iter().map(&mut take).collect(),
+            strips: parts(&mut found, self.strips.iter().map(Vec::len)),
+            loads: parts(&mut found, self.loads.iter().map(Vec::len)),
         }
     }
 }
@@ -209,17 +208,15 @@ impl<const D: usize> AnchorPlaces<D> {
         let Some(ahead) = held.try_normalize(0.0).filter(|_| strip.acts() && !strip.lifts()) else {
             return 0;
         };
-        let reach = |x: &Vector<D>| {
-            0.5 * grid
-                .locate(x)
-                .map_or(grid.smallest_edge(), |cell| grid.cell_box(&cell).1.min())
-        };
         let held = self.strips.get(number).map_or(&[][..], Vec::as_slice);
-        let lags = |(at, place): &(usize, &Vector<D>)| {
-            let x = strip.points[*at].x + displacement(strips, number, *at, t);
-            (x - **place).dot(&ahead) > reach(&x)
-        };
-        held.iter().enumerate().filter(lags).count()
+        let mut count = 0;
+        for (at, place) in held.iter().enumerate() {
+            let x = strip.points[at].x + displacement(strips, number, at, t);
+            let cell = grid.locate(&x);
+            let reach = 0.5 * cell.map_or(grid.smallest_edge(), |cell| grid.cell_box(&cell).1.min());
+            count += usize::from((x - place).dot(&ahead) > reach);
+        }
+        count
     }
 }
 
@@ -228,9 +225,8 @@ impl<const D: usize> Anchored<'_, D> {
     pub(crate) fn visit<'i>(&self, ids: impl Iterator<Item = &'i u64>, mut each: impl FnMut(usize, usize)) {
         let mut anchored: Vec<(u64, usize)> = ids.copied().zip(0..).collect();
         anchored.sort_unstable();
-        let (Some(first), Some(last)) = (anchored.first(), anchored.last()) else {
-            return;
-        };
+        let Some(first) = anchored.first() else { return };
+        let Some(last) = anchored.last() else { return };
         for p in (0..self.id.len()).filter(|&p| (first.0..=last.0).contains(&self.id[p])) {
             let from = anchored.partition_point(|(id, _)| *id < self.id[p]);
             for (_, at) in anchored[from..].iter().take_while(|(id, _)| *id == self.id[p]) {
@@ -254,6 +250,11 @@ impl<const D: usize> Anchored<'_, D> {
     }
 }
 
+/// Takes what comes in parts of these lengths.
+fn parts<T>(all: &mut impl Iterator<Item = T>, lengths: impl Iterator<Item = usize>) -> Vec<Vec<T>> {
+    lengths.map(|length| all.take(length).collect()).collect()
+}
+
 /// An area of the start, as a vector along its normal, after the deformation F: cof(F) N dA (Nanson).
 pub(crate) fn turned<const D: usize>(F: &Tensor, area: &Vector<D>) -> Vector<D> {
     cofactor(F).fixed_view::<D, D>(0, 0) * area
@@ -261,14 +262,18 @@ pub(crate) fn turned<const D: usize>(F: &Tensor, area: &Vector<D>) -> Vector<D> 
 
 /// Cofactors: J F^-T.
 fn cofactor(F: &Tensor) -> Tensor {
-    let at = |i: usize, j: usize| F[(i % 3, j % 3)];
-    Tensor::from_fn(|i, j| at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1))
+    Tensor::from_fn(|i, j| {
+        let [i1, i2] = [(i + 1) % 3, (i + 2) % 3];
+        let [j1, j2] = [(j + 1) % 3, (j + 2) % 3];
+        F[(i1, j1)] * F[(i2, j2)] - F[(i1, j2)] * F[(i2, j1)]
+    })
 }
 
 /// A place that was at `start`, not beyond the faces that hold or stop material, and on those that it began on if no
 /// material leaves them: what the material at it has stretched would take it off.
 fn within<const D: usize>(
-    (boundary, grid): (&Boundary<D>, &Grid<D>),
+    boundary: &Boundary<D>,
+    grid: &Grid<D>,
     start: &Vector<D>,
     mut place: Vector<D>,
 ) -> Vector<D> {
@@ -295,16 +300,11 @@ fn starts<const D: usize>(boundary: &Boundary<D>) -> Vec<Vector<D>> {
 
 /// Ids of the points that were nearest to places at the start; of equally near ones the smallest. Where water crosses,
 /// of those whose material is not `dry`.
-fn nearest<const D: usize>(
-    (at, dry): (&[StartPlace<D>], &[bool]),
-    points: Anchored<'_, D>,
-    halo: &dyn Halo,
-) -> Vec<u64> {
-    let start = |p: usize| points.x[p] - points.u[p];
+fn nearest<const D: usize>(at: &[StartPlace<D>], dry: &[bool], points: Anchored<'_, D>, halo: &dyn Halo) -> Vec<u64> {
     let mut least = vec![f64::INFINITY; at.len()];
     let mut ids = vec![u64::MAX; at.len()];
     for p in 0..points.id.len() {
-        let start = start(p);
+        let start = points.x[p] - points.u[p];
         let is_dry = dry.get(usize::from(points.material[p])) == Some(&true);
         for (k, (at, _)) in at.iter().enumerate().filter(|(_, (_, wet))| !(*wet && is_dry)) {
             let distance = (start - at).norm_squared();
@@ -316,14 +316,11 @@ fn nearest<const D: usize>(
     let own = least.clone();
     least.iter_mut().for_each(|distance| *distance = -*distance);
     halo.maximum(&mut least);
-    let candidate = |k: usize| {
-        if -least[k] == own[k] {
-            -(ids[k] as f64)
-        } else {
-            f64::NEG_INFINITY
-        }
-    };
-    let mut smallest: Vec<f64> = (0..at.len()).map(candidate).collect();
+    let candidates = (0..at.len()).map(|k| match -least[k] == own[k] {
+        true => -(ids[k] as f64),
+        false => f64::NEG_INFINITY,
+    });
+    let mut smallest: Vec<f64> = candidates.collect();
     halo.maximum(&mut smallest);
     smallest.into_iter().map(|id| -id as u64).collect()
 }

@@ -5,13 +5,14 @@ mod gap;
 mod neutral;
 mod node;
 
-use super::coulomb::{ContactReport, Status};
+use super::coulomb::{ContactReport, Status, ratio};
 use super::{Boundary, Support};
 use crate::exact::Exact;
-use crate::grid::{Grid, Shape};
+use crate::grid::Grid;
+use crate::model::Model;
 use crate::nodal::Nodal;
 use crate::parallel::{Halo, LinearSolver};
-use crate::points::Points;
+use crate::points::MappedPoints;
 use crate::tensor::Vector;
 pub(super) use gap::face_cell;
 use gap::{ROUNDING, gaps};
@@ -33,41 +34,30 @@ impl<const D: usize> Contacts<D> {
     /// Of the `boundary` in a step from `t`: of nodes with components that are `free`, in the statuses that the last
     /// displacement had, `guess`, if there is one; `water_force` is what pore water carries of the normal forces, N.
     /// One exchange with the neighbours a face that lifts.
-    pub fn of(
-        (boundary, grid): (&Boundary<D>, &Grid<D>),
-        (shape, points): (&Shape<D>, &Points<D>),
+    pub fn of<K>(
+        model: &Model<K, D>,
+        mapped: MappedPoints<'_, D>,
         free: &[bool],
-        (t, guess): (f64, &[f64]),
+        t: f64,
+        guess: &[f64],
         water_force: Option<&[f64]>,
         halo: &dyn Halo,
     ) -> Self {
+        let Model { boundary, grid, .. } = model;
         let mut nodes = Vec::new();
-        let on_face = |node: usize, axis: usize, upper: bool| {
-            grid.node_at(node)[axis] == if upper { grid.axes()[axis].functions() - 1 } else { 0 }
-        };
         for (support, face) in boundary.supports.iter().enumerate() {
             let Some(law) = face.contact else { continue };
             let gaps = law
                 .lifts
-                .then(|| gaps((boundary, grid, shape, points), (face.axis, face.upper), halo));
-            let rivals = || {
-                boundary
-                    .supports
-                    .iter()
-                    .filter(|other| other.contact.is_some() && other.axis != face.axis)
-            };
+                .then(|| gaps(boundary, grid, mapped, face.axis, face.upper, halo));
             for node in grid.face_nodes(face.axis, face.upper) {
                 if !free[Nodal::<D>::at(node, face.axis)] {
                     continue;
                 }
                 let along = std::array::from_fn(|component| {
-                    let other = rivals().any(|other| other.axis == component && on_face(node, component, other.upper));
-                    // Along an edge in space that it shares with a face with friction, a smooth one decides nothing.
-                    let has_friction = |of: &Support<D>| of.contact.is_some_and(|law| law.friction > 0.0);
-                    let smooth = D > 2 && law.friction == 0.0;
-                    let other =
-                        other || smooth && rivals().any(|of| has_friction(of) && on_face(node, of.axis, of.upper));
-                    component != face.axis && free[Nodal::<D>::at(node, component)] && !other
+                    component != face.axis
+                        && free[Nodal::<D>::at(node, component)]
+                        && !is_decided_beside(boundary, grid, face, node, component)
                 });
                 let inward = if face.upper { -1.0 } else { 1.0 };
                 let gap = gaps.as_ref().map_or(0.0, |gaps| gaps[node]);
@@ -86,19 +76,8 @@ impl<const D: usize> Contacts<D> {
                     transverse_stiffness: 0.0,
                     slip_length: 0.0,
                 };
-                let behind = grid.node_at(node);
-                let behind = std::array::from_fn(|axis| match (axis == face.axis, face.upper) {
-                    (true, true) => behind[axis].saturating_sub(1),
-                    (true, false) => behind[axis] + 1,
-                    (false, _) => behind[axis],
-                });
-                let moved = |node: usize| {
-                    guess
-                        .get(Nodal::<D>::of(node))
-                        .is_some_and(|u| u.iter().any(|u| *u != 0.0))
-                };
-                let had_material = grid.node_index(&behind).is_some_and(moved);
-                at.recall((t, guess), face_cell(grid, face.axis, face.upper), had_material);
+                let had_material = had_material(grid, face, node, guess);
+                at.recall(t, guess, face_cell(grid, face.axis, face.upper), had_material);
                 nodes.push(at);
             }
         }
@@ -208,11 +187,11 @@ impl<const D: usize> Contacts<D> {
 
     /// Corrects every status that the displacement `u` (m) and the `reaction` (N) under it contradict by more than
     /// `force`, N; how many there were over all ranks.
-    pub fn correct(&mut self, u: &[f64], reaction: &[f64], (force, edge): (f64, f64), halo: &dyn Halo) -> usize {
+    pub fn correct(&mut self, u: &[f64], reaction: &[f64], force: f64, edge: f64, halo: &dyn Halo) -> usize {
         let owned = halo.owned();
         let mut corrected = [0.0];
         for (at, released) in self.nodes.iter_mut().zip(&mut self.released) {
-            let asked = at.corrected(u, reaction, (force, ROUNDING * edge));
+            let asked = at.corrected(u, reaction, force, ROUNDING * edge);
             *released = at.status == Status::Stick && asked.status != Status::Stick;
             let is_new = at.transverse_stiffness == 0.0 && asked.transverse_stiffness > 0.0;
             let is_corrected = asked.status != at.status || is_new;
@@ -243,7 +222,8 @@ impl<const D: usize> Contacts<D> {
 
     /// What every face with contact did under the converged displacement `u`, m, with the `reaction`, N.
     pub fn report(&self, boundary: &Boundary<D>, u: &[f64], reaction: &[f64], halo: &dyn Halo) -> Vec<ContactReport> {
-        let (owned, mut reports) = (halo.owned(), Vec::new());
+        let owned = halo.owned();
+        let mut reports = Vec::new();
         for (support, _) in boundary
             .supports
             .iter()
@@ -252,9 +232,13 @@ impl<const D: usize> Contacts<D> {
         {
             let mut sums: [Exact; 6] = std::array::from_fn(|_| Exact::ZERO);
             let mut ends = [f64::NEG_INFINITY; 2];
-            let own = |at: &&ContactNode<D>| at.support == support && owned.contains(at.node) && at.gap.is_finite();
-            for at in self.nodes.iter().filter(own) {
-                let (pushed, slip) = (at.pushed(reaction).max(0.0), at.slip(u));
+            let own = self
+                .nodes
+                .iter()
+                .filter(|at| at.support == support && owned.contains(at.node));
+            for at in own.filter(|at| at.gap.is_finite()) {
+                let pushed = at.pushed(reaction).max(0.0);
+                let slip = at.slip(u);
                 let slides = matches!(at.status, Status::Slip(_)) && slip.norm() > 0.0;
                 let friction = at.friction(reaction);
                 let gap = (at.gap + at.inward * u[Nodal::<D>::at(at.node, at.axis)]).max(0.0);
@@ -267,9 +251,10 @@ impl<const D: usize> Contacts<D> {
             let [nodes, closed, pushed, sliding, slipped, dissipated] =
                 halo.total(&sums).try_into().unwrap_or([0.0; 6]);
             halo.maximum(&mut ends);
-            let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
             let gap = if nodes > 0.0 { [-ends[0], ends[1]] } else { [0.0; 2] };
-            let (closed, sliding, slip) = (share(closed, nodes), share(sliding, pushed), share(slipped, pushed));
+            let closed = ratio(closed, nodes);
+            let sliding = ratio(sliding, pushed);
+            let slip = ratio(slipped, pushed);
             reports.push(ContactReport {
                 support,
                 nodes: nodes as usize,
@@ -282,4 +267,39 @@ impl<const D: usize> Contacts<D> {
         }
         reports
     }
+}
+
+/// Whether another face with contact decides a component at a node of a face: one normal to it or, along an edge in
+/// space that a smooth face shares with one with friction, the latter.
+fn is_decided_beside<const D: usize>(
+    boundary: &Boundary<D>,
+    grid: &Grid<D>,
+    face: &Support<D>,
+    node: usize,
+    component: usize,
+) -> bool {
+    let is_smooth = D > 2 && face.contact.is_some_and(|law| law.friction == 0.0);
+    boundary.supports.iter().any(|other| {
+        let is_rival = other.contact.is_some() && other.axis != face.axis;
+        let has_friction = other.contact.is_some_and(|law| law.friction > 0.0);
+        let decides = other.axis == component || is_smooth && has_friction;
+        is_rival && decides && is_on(grid, node, other)
+    })
+}
+
+/// Whether a node is on a face.
+fn is_on<const D: usize>(grid: &Grid<D>, node: usize, face: &Support<D>) -> bool {
+    let last = grid.axes()[face.axis].functions() - 1;
+    grid.node_at(node)[face.axis] == if face.upper { last } else { 0 }
+}
+
+/// Whether the node behind a node of a face has moved in the last displacement, `guess`, m.
+fn had_material<const D: usize>(grid: &Grid<D>, face: &Support<D>, node: usize, guess: &[f64]) -> bool {
+    let mut behind = grid.node_at(node);
+    let at = behind[face.axis];
+    behind[face.axis] = if face.upper { at.saturating_sub(1) } else { at + 1 };
+    let u = grid
+        .node_index(&behind)
+        .and_then(|node| guess.get(Nodal::<D>::of(node)));
+    u.is_some_and(|u| u.iter().any(|u| *u != 0.0))
 }

@@ -28,6 +28,11 @@ pub(super) fn transverse<const D: usize>(vector: &Vector<D>, unit: &Vector<D>) -
     vector - unit * vector.dot(unit)
 }
 
+/// Returns a part of a whole, 0 of nothing.
+pub(super) fn ratio(part: f64, whole: f64) -> f64 {
+    if whole > 0.0 { part / whole } else { 0.0 }
+}
+
 /// What a face or strip with contact did in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactReport {

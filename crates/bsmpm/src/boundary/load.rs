@@ -9,9 +9,10 @@ use super::surface::{Anchors, Attachment, Surface, SurfacePoint};
 use crate::error::StepError;
 use crate::grid::{Contributions, Grid};
 use crate::parallel::Halo;
+use crate::schedule::TimeInterval;
 use crate::schedule::{between, turns};
 use crate::tensor::Vector;
-use follower::FollowerLoads;
+use follower::{AttachedPoint, FollowerLoads};
 
 /// A load on a surface.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,13 +57,13 @@ impl<const D: usize> Load<D> {
     }
 
     /// Whether its course turns sharply in a step.
-    pub(super) fn turns(&self, step: (f64, f64)) -> bool {
+    pub(super) fn turns(&self, interval: TimeInterval) -> bool {
         let rows = if self.amplitude.is_empty() {
             &[(self.ramp, 1.0)][..]
         } else {
             &self.amplitude
         };
-        turns(rows, 0.0, f64::abs, step)
+        turns(rows, 0.0, f64::abs, interval)
     }
 
     /// Share of the load that acts at time `t`.
@@ -75,21 +76,35 @@ impl<const D: usize> Load<D> {
     }
 }
 
-/// Nodal forces of all loads at time `t`, N, added to `f_ext`; those that follow the surface, which is one of these
-/// `surfaces`, are returned instead. Fails on all ranks if a load has lost its material.
-pub fn add_forces<const D: usize>(
-    (surfaces, surface): (&Surfaces<'_, D>, &Surface<D>),
+/// Nodal forces of all loads.
+pub struct LoadForces<const D: usize> {
+    /// Nodal forces of the dead loads, N, D per node; empty without loads.
+    pub dead: Vec<f64>,
+    /// Loads that follow the surface.
+    pub followers: FollowerLoads<D>,
+}
+
+/// Returns the forces of all loads at time `t` on the `surface`, which is one of these `surfaces`. Fails on all ranks
+/// if a load has lost its material.
+pub fn forces<const D: usize>(
+    surfaces: &Surfaces<'_, D>,
+    surface: &Surface<D>,
     points: Anchored<'_, D>,
-    (grid, active): (&Grid<D>, &[bool]),
+    grid: &Grid<D>,
+    active: &[bool],
     t: f64,
     halo: &dyn Halo,
-    f_ext: &mut [f64],
-) -> Result<FollowerLoads<D>, StepError> {
+) -> Result<LoadForces<D>, StepError> {
     let loads = &surfaces.boundary.loads[..];
     if loads.is_empty() {
-        return Ok(FollowerLoads::default());
+        return Ok(LoadForces {
+            dead: Vec::new(),
+            followers: FollowerLoads::default(),
+        });
     }
-    let (offsets, mut applied, mut pushed) = (grid.offsets(), vec![0.0; loads.len()], Vec::new());
+    let offsets = grid.offsets();
+    let mut applied = vec![0.0; loads.len()];
+    let mut pushed = Vec::new();
     let mut force = Contributions::none(grid, D, Vec::new());
     for (number, load) in loads.iter().enumerate() {
         let grown = load.grown(t);
@@ -97,40 +112,49 @@ pub fn add_forces<const D: usize>(
             if let Some(attachment) = Attachment::at(grid, &offsets, |node| active[node], x) {
                 applied[number] += 1.0;
                 if load.follows {
-                    pushed.push((number, k, grown * point.area, attachment));
+                    pushed.push(AttachedPoint {
+                        load: number,
+                        point: k,
+                        area: grown * point.area,
+                        attachment,
+                    });
                 } else {
                     attachment.scatter(&offsets, &(load.traction[k] * (grown * point.area)), &mut force);
                 }
             }
         }
     }
-    let followers = match loads.iter().any(|load| load.follows) {
-        true => {
-            let anchors = Anchors::of(surfaces, &surface.anchors, points, halo);
-            FollowerLoads::of(loads, pushed, (grid, &anchors), points)
-        }
-        false => FollowerLoads::default(),
+    let followers = if loads.iter().any(|load| load.follows) {
+        let anchors = Anchors::of(surfaces, &surface.anchors, points, halo);
+        FollowerLoads::of(loads, pushed, grid, &anchors, points)
+    } else {
+        FollowerLoads::default()
     };
     applied.extend(followers.carried(loads));
     halo.reduce(&mut applied);
-    // Points of a load that have material where it pushes, and whose material is there, if that carries them.
-    let found = |number: usize| {
-        let carried = applied.get(loads.len() + number).filter(|_| loads[number].follows);
-        carried.map_or(applied[number], |carried| carried.min(applied[number]))
-    };
-    let lacks = |number: &usize| found(*number) < loads[*number].points.len() as f64;
-    let lost = (0..loads.len()).filter(|&number| !loads[number].is_idle()).find(lacks);
-    if let Some(load) = lost {
-        return Err(StepError::Unloaded {
-            load,
-            points: loads[load].points.len() - found(load) as usize,
-        });
+    if let Some(error) = lost_load(loads, &applied) {
+        return Err(error);
     }
-    f_ext
-        .iter_mut()
-        .zip(halo.sum(&force))
-        .for_each(|(sum, force)| *sum += force);
-    Ok(followers)
+    Ok(LoadForces {
+        dead: halo.sum(&force),
+        followers,
+    })
+}
+
+/// Returns the error of the first load that has lost some of its material, by the numbers of points of every load that
+/// have material where it pushes and, where some load follows the surface, of those whose material is there.
+fn lost_load<const D: usize>(loads: &[Load<D>], applied: &[f64]) -> Option<StepError> {
+    for (number, load) in loads.iter().enumerate().filter(|(_, load)| !load.is_idle()) {
+        let carried = applied.get(loads.len() + number).filter(|_| load.follows);
+        let found = carried.map_or(applied[number], |carried| carried.min(applied[number]));
+        if found < load.points.len() as f64 {
+            return Some(StepError::Unloaded {
+                load: number,
+                points: load.points.len() - found as usize,
+            });
+        }
+    }
+    None
 }
 
 /// Positions that all loads' points would have after the converged displacement `u`, m, moved by the nodes that their
@@ -138,7 +162,8 @@ pub fn add_forces<const D: usize>(
 pub fn moved<const D: usize>(
     loads: &[Load<D>],
     surface: &Surface<D>,
-    (grid, active): (&Grid<D>, &[bool]),
+    grid: &Grid<D>,
+    active: &[bool],
     u: &[f64],
     halo: &dyn Halo,
 ) -> Vec<Vec<Vector<D>>> {
@@ -146,17 +171,12 @@ pub fn moved<const D: usize>(
         return Vec::new();
     }
     let offsets = grid.offsets();
-    let place = |x: &Vector<D>| {
+    let mut position = surface.position.clone();
+    for x in position.iter_mut().flatten() {
         let attachment = Attachment::at(grid, &offsets, |node| active[node], x);
-        attachment.map_or_else(Vector::zeros, |attachment| {
-            x + attachment.displacement::<D>(&offsets, u)
-        })
-    };
-    let mut position: Vec<Vec<Vector<D>>> = surface
-        .position
-        .iter()
-        .map(|points| points.iter().map(place).collect())
-        .collect();
+        let moved = attachment.map(|attachment| *x + attachment.displacement::<D>(&offsets, u));
+        *x = moved.unwrap_or_else(Vector::zeros);
+    }
     reduce(&mut position, halo);
     position
 }
@@ -165,26 +185,31 @@ pub fn moved<const D: usize>(
 /// of their points, from one surface to the other.
 pub fn work<const D: usize>(
     loads: &[Load<D>],
-    (before, after): (&Surface<D>, &Surface<D>),
-    (t, dt): (f64, f64),
+    before: &Surface<D>,
+    after: &Surface<D>,
+    interval: TimeInterval,
 ) -> (f64, f64) {
     let mut sums = (0.0, 0.0);
     for (number, load) in loads.iter().enumerate() {
-        let acting = |surface: &Surface<D>| match load.follows {
-            true => surface.pressure[number].clone(),
-            false => load.traction.clone(),
-        };
-        let full = |traction: &[Vector<D>]| {
-            let moved = before.position[number]
-                .iter()
-                .zip(&after.position[number])
-                .map(|(from, to)| to - from);
-            let work = |(k, moved): (usize, Vector<D>)| load.points[k].area * traction[k].dot(&moved);
-            moved.enumerate().map(work).sum::<f64>()
-        };
-        let works = [(before, t), (after, t + dt)].map(|(surface, t)| load.grown(t) * full(&acting(surface)));
+        let places = before.position[number].iter().zip(&after.position[number]);
+        let moved: Vec<Vector<D>> = places.map(|(from, to)| to - from).collect();
+        let works = [(before, interval.start), (after, interval.end())].map(|(surface, t)| {
+            let traction = match load.follows {
+                true => &surface.pressure[number],
+                false => &load.traction,
+            };
+            load.grown(t) * full_work(load, traction, &moved)
+        });
         sums.0 += 0.5 * (works[0] + works[1]);
         sums.1 += 0.5 * (works[1] - works[0]);
     }
     sums
+}
+
+/// Work of the tractions of a load when fully applied, Pa, on points that have `moved`, m; N m.
+fn full_work<const D: usize>(load: &Load<D>, traction: &[Vector<D>], moved: &[Vector<D>]) -> f64 {
+    let moved = moved.iter().enumerate();
+    moved
+        .map(|(k, moved)| load.points[k].area * traction[k].dot(moved))
+        .sum()
 }

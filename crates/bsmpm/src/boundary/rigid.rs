@@ -119,13 +119,13 @@ impl<const D: usize> RigidContacts<D> {
         }
         let stiffness = self.stiffness(true, halo);
         for (number, (at, stiffness)) in self.bodies.iter_mut().zip(stiffness).enumerate() {
-            let free = |k: usize| if at.body.free[k] { 1.0 } else { 0.0 };
+            let free = at.body.freedom();
             let mut whole = Matrix3::from_diagonal(&at.inertia) + stiffness;
             for k in 0..MOTIONS {
                 for l in 0..MOTIONS {
-                    whole[(k, l)] *= free(k) * free(l);
+                    whole[(k, l)] *= free[k] * free[l];
                 }
-                whole[(k, k)] += 1.0 - free(k);
+                whole[(k, k)] += 1.0 - free[k];
             }
             let inverse = whole
                 .try_inverse()
@@ -133,7 +133,7 @@ impl<const D: usize> RigidContacts<D> {
             let Some(mut inverse) = inverse else {
                 return Err(StepError::Loose { body: number });
             };
-            (0..MOTIONS).for_each(|k| inverse[(k, k)] -= 1.0 - free(k));
+            (0..MOTIONS).for_each(|k| inverse[(k, k)] -= 1.0 - free[k]);
             at.resists = inverse;
         }
         Ok(())
@@ -172,8 +172,7 @@ impl<const D: usize> RigidContacts<D> {
         if !self.is_coupled() {
             return vec![Vector::zeros(); self.bodies.len()];
         }
-        let force = |point: &RigidPoint<D>| point.force(&point.displacement(&self.offsets, u));
-        let forces = self.on_bodies(force, halo);
+        let forces = self.on_bodies(|point| point.force(&point.displacement(&self.offsets, u)), halo);
         self.bodies
             .iter()
             .zip(forces)
@@ -186,8 +185,7 @@ impl<const D: usize> RigidContacts<D> {
         if !self.is_coupled() {
             return vec![Vector::zeros(); self.bodies.len()];
         }
-        let force = |point: &RigidPoint<D>| point.rate(&point.displacement(&self.offsets, v), whole);
-        let forces = self.on_bodies(force, halo);
+        let forces = self.on_bodies(|point| point.rate(&point.displacement(&self.offsets, v), whole), halo);
         self.bodies
             .iter()
             .zip(forces)
@@ -245,46 +243,49 @@ impl<const D: usize> RigidContacts<D> {
     /// How the symmetric part of the points' forces couples every free motion with the nodes, N/m or N, a nodal array
     /// each, and of every body what its motions resist with.
     pub fn coupling(&self, grid: &Grid<D>, halo: &dyn Halo) -> (Vec<Vec<f64>>, Vec<Matrix3<f64>>) {
-        let columns = self.free_motions().map(|(body, k)| {
-            let mut unit = Vector::<3>::zeros();
-            unit[k] = 1.0;
-            let mut out = Contributions::none(grid, D, Vec::new());
-            let force = |point: &RigidPoint<D>| match point.body == body {
-                true => -point.rate(&point.carried_by(&unit), false),
-                false => Vector::zeros(),
-            };
-            self.scatter(force, &mut out);
-            halo.sum(&out)
-        });
+        let columns = self.free_motions().map(|(body, k)| self.column(body, k, grid, halo));
         let columns = columns.collect();
         let stiffness = self.stiffness(false, halo);
-        let whole = |(at, stiffness): (&BodyInStep<D>, _)| Matrix3::from_diagonal(&at.inertia) + stiffness;
-        (columns, self.bodies.iter().zip(stiffness).map(whole).collect())
+        let bodies = self.bodies.iter().zip(stiffness);
+        let whole = bodies.map(|(at, stiffness)| Matrix3::from_diagonal(&at.inertia) + stiffness);
+        (columns, whole.collect())
+    }
+
+    /// How the symmetric part of the points' forces couples a motion of a body with the nodes, N/m or N.
+    fn column(&self, body: usize, motion: usize, grid: &Grid<D>, halo: &dyn Halo) -> Vec<f64> {
+        let mut unit = Vector::<3>::zeros();
+        unit[motion] = 1.0;
+        let mut out = Contributions::none(grid, D, Vec::new());
+        self.scatter(
+            |point| match point.body == body {
+                true => -point.rate(&point.carried_by(&unit), false),
+                false => Vector::zeros(),
+            },
+            &mut out,
+        );
+        halo.sum(&out)
     }
 
     /// Body and number of every free motion.
     pub fn free_motions(&self) -> impl Iterator<Item = (usize, usize)> {
-        let free = |(body, at): (usize, &BodyInStep<D>)| {
-            let free = at.body.free;
-            (0..MOTIONS).filter(move |&k| free[k]).map(move |k| (body, k))
-        };
-        self.bodies.iter().enumerate().flat_map(free)
+        let free = self.bodies.iter().map(|at| at.body.free).enumerate();
+        free.flat_map(|(body, free)| (0..MOTIONS).filter(move |&k| free[k]).map(move |k| (body, k)))
     }
 
     /// du . K du of the symmetric part on this rank, N m.
     pub fn energy(&self, du: &[f64], halo: &dyn Halo) -> Exact {
         let motions = self.follow(du, false, halo);
-        let of = |point: &RigidPoint<D>| {
+        let energies = self.points.iter().map(|point| {
             let moved = self.moved(point, du, &motions);
             -moved.dot(&point.rate(&moved, false))
-        };
-        self.points.iter().map(of).collect()
+        });
+        energies.collect()
     }
 
     /// Corrects the statuses that the displacement `u` (m) contradicts by more than `force`, N: all of them in the
     /// first `passes`, later those that it contradicts most, as all at once may go round in a circle; how many there
     /// were over all ranks.
-    pub fn correct(&mut self, u: &[f64], (force, passes): (f64, usize), halo: &dyn Halo) -> Result<usize, StepError> {
+    pub fn correct(&mut self, u: &[f64], force: f64, passes: usize, halo: &dyn Halo) -> Result<usize, StepError> {
         if self.is_empty() {
             return Ok(0);
         }
@@ -307,7 +308,8 @@ impl<const D: usize> RigidContacts<D> {
         };
         let mut most = [statuses.iter().map(|(_, by)| *by).fold(0.0, f64::max)];
         halo.maximum(&mut most);
-        let (mut corrected, mut released) = ([0.0], vec![false; self.points.len()]);
+        let mut corrected = [0.0];
+        let mut released = vec![false; self.points.len()];
         for (number, (status, by)) in statuses.into_iter().enumerate() {
             let point = &mut self.points[number];
             if point.status != status && by >= share * most[0] {
@@ -333,12 +335,10 @@ impl<const D: usize> RigidContacts<D> {
             return;
         }
         let mut met = vec![0.0; self.bodies.len()];
-        let is_new =
-            |point: &&RigidPoint<D>| point.status != ContactStatus::Open && point.gap_before() > CLOSE * self.edge;
-        self.points
-            .iter()
-            .filter(is_new)
-            .for_each(|point| met[point.body] = 1.0);
+        let touching = self.points.iter().filter(|point| point.status != ContactStatus::Open);
+        for point in touching.filter(|point| point.gap_before() > CLOSE * self.edge) {
+            met[point.body] = 1.0;
+        }
         halo.maximum(&mut met);
         for (at, _) in self.bodies.iter_mut().zip(met).filter(|(_, met)| *met > 0.0) {
             at.strike(self.dt);
@@ -371,7 +371,8 @@ impl<const D: usize> RigidContacts<D> {
         if !self.has_friction() {
             return None;
         }
-        let (motions, mut carried) = (self.found(u, halo), vec![Vector::zeros(); count]);
+        let motions = self.found(u, halo);
+        let mut carried = vec![Vector::zeros(); count];
         for point in &self.points {
             let (_, along) = point.pushed(&self.moved(point, u, &motions));
             let force = point.vector(along);
@@ -416,28 +417,42 @@ impl<const D: usize> RigidContacts<D> {
         }
         let sums = halo.total(&sums);
         halo.maximum(&mut most);
-        let report = |number: usize| {
-            let (at, [touched, pushed, slipped, dissipated, work]) =
-                (&self.bodies[number], [0, 1, 2, 3, 4].map(|k| sums[5 * number + k]));
-            let slip = if pushed > 0.0 { slipped / pushed } else { 0.0 };
-            let state = at.state(&motions[number], self.length, slip, work);
-            let [near, penetration, advance] = [0, 1, 2].map(|k| most[3 * number + k]);
-            // Where no point is near enough to be looked at, the least is that of the start.
-            let gap = if near.is_finite() { -near } else { at.least }.max(0.0);
-            let report = RigidReport {
-                force: forces[number],
-                moved: state.moved,
-                velocity: state.velocity,
-                slipped: state.slipped,
-                work: state.work,
-                dissipated,
-                gap: if gap.is_finite() { gap } else { 0.0 },
-                touched: touched as usize,
-                penetration: penetration.max(0.0),
-                advance: advance.max(0.0),
-            };
-            (report, state)
+        let reports = (0..count).map(|number| {
+            let sums = &sums[5 * number..][..5];
+            let most = &most[3 * number..][..3];
+            self.report(number, &motions[number], forces[number], sums, most)
+        });
+        reports.unzip()
+    }
+
+    /// What a body did, and its state then, by what [`Self::conclude`] found of its points.
+    fn report(
+        &self,
+        number: usize,
+        motion: &Vector<3>,
+        force: Vector<3>,
+        sums: &[f64],
+        most: &[f64],
+    ) -> (RigidReport, RigidState) {
+        let at = &self.bodies[number];
+        let [touched, pushed, slipped, dissipated, work] = [0, 1, 2, 3, 4].map(|k| sums[k]);
+        let slip = if pushed > 0.0 { slipped / pushed } else { 0.0 };
+        let state = at.state(motion, self.length, slip, work);
+        let [near, penetration, advance] = [0, 1, 2].map(|k| most[k]);
+        // Where no point is near enough to be looked at, the least is that of the start.
+        let gap = if near.is_finite() { -near } else { at.least }.max(0.0);
+        let report = RigidReport {
+            force,
+            moved: state.moved,
+            velocity: state.velocity,
+            slipped: state.slipped,
+            work: state.work,
+            dissipated,
+            gap: if gap.is_finite() { gap } else { 0.0 },
+            touched: touched as usize,
+            penetration: penetration.max(0.0),
+            advance: advance.max(0.0),
         };
-        (0..count).map(report).unzip()
+        (report, state)
     }
 }

@@ -10,6 +10,7 @@
 mod contact;
 mod point;
 
+use crate::schedule::TimeInterval;
 pub use contact::StripContact;
 
 use super::coulomb::ContactReport;
@@ -18,7 +19,7 @@ use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
 use crate::nodal::Nodal;
 use crate::parallel::{Halo, LinearSolver};
-use crate::schedule::between;
+use crate::schedule::{between, turns};
 use crate::tensor::Vector;
 use crate::water::pore_pressure::PorePressure;
 use contact::ContactState;
@@ -35,8 +36,13 @@ pub struct Path<const D: usize> {
 impl<const D: usize> Path<D> {
     /// Displacement at time `t`, m.
     pub fn at(&self, t: f64) -> Vector<D> {
-        let stays = || self.rows.last().map_or_else(Vector::zeros, |(_, u)| *u);
-        between(&self.rows, Vector::zeros(), t).unwrap_or_else(stays)
+        let rows = &self.rows;
+        between(rows, Vector::zeros(), t).unwrap_or_else(|| rows.last().map_or_else(Vector::zeros, |(_, u)| *u))
+    }
+
+    /// Whether it turns sharply in a step.
+    pub(super) fn turns(&self, interval: TimeInterval) -> bool {
+        turns(&self.rows, Vector::zeros(), |u| u.norm(), interval)
     }
 }
 
@@ -125,6 +131,14 @@ struct Resultant<const D: usize> {
     moment: f64,      // N m  about the strip's middle in the plane of the axes 0 and 1, counter-clockwise
 }
 
+impl<const D: usize> Resultant<D> {
+    /// Adds a force, N, that acts at `arm`, m, from the middle.
+    fn add(&mut self, force: Vector<D>, arm: Vector<D>) {
+        self.force += force;
+        self.moment += arm[0] * force[1] - arm[1] * force[0];
+    }
+}
+
 /// Forces of all strips on the body, of what their points carry. The force at a point belongs to the strips whose
 /// motions it follows, by the same parts, so that force times motion is the work.
 fn resultants<const D: usize>(strips: &[Strip<D>], carried: &[Vec<Vector<D>>]) -> Vec<Resultant<D>> {
@@ -139,16 +153,10 @@ fn resultants<const D: usize>(strips: &[Strip<D>], carried: &[Vec<Vector<D>>]) -
     for (number, strip) in strips.iter().enumerate() {
         for (at, (point, carried)) in strip.points.iter().zip(&carried[number]).enumerate() {
             let acting = strip.contact.map_or(*carried, |contact| contact.acting(carried)) * point.area;
-            let mut add = |strip: usize, force: Vector<D>| {
-                let arm = point.x - middles[strip];
-                resultants[strip].force += force;
-                resultants[strip].moment += arm[0] * force[1] - arm[1] * force[0];
-            };
-            add(number, strip.own(at, &acting));
-            strip
-                .others(at)
-                .iter()
-                .for_each(|other| add(other.strip, other.of(&acting)));
+            resultants[number].add(strip.own(at, &acting), point.x - middles[number]);
+            for other in strip.others(at) {
+                resultants[other.strip].add(other.of(&acting), point.x - middles[other.strip]);
+            }
         }
     }
     resultants
@@ -158,8 +166,8 @@ fn resultants<const D: usize>(strips: &[Strip<D>], carried: &[Vec<Vector<D>>]) -
 pub fn nodes_at<const D: usize>(strips: &[Strip<D>], grid: &Grid<D>, t: f64) -> BTreeSet<usize> {
     let mut nodes = BTreeSet::new();
     for (number, strip) in strips.iter().enumerate().filter(|(_, strip)| strip.acts()) {
-        let place = |(at, point): (usize, &SurfacePoint<D>)| point.x + displacement(strips, number, at, t);
-        let places = strip.points.iter().enumerate().map(place);
+        let points = strip.points.iter().enumerate();
+        let places = points.map(|(at, point)| point.x + displacement(strips, number, at, t));
         let cells: BTreeSet<[usize; D]> = places.filter_map(|place| grid.locate(&on_grid(grid, &place))).collect();
         let functions = cells.into_iter().flat_map(|cell| grid.functions_of(cell));
         nodes.extend(functions.filter_map(|function| grid.node_index(&function)));
@@ -209,7 +217,7 @@ pub struct StripWork {
 #[derive(Clone, Debug)]
 pub struct StripAttachments<const D: usize> {
     offsets: Vec<usize>,
-    span: (f64, f64), // s  when the step starts, and its length
+    interval: TimeInterval,
     held: Vec<StripPoint<D>>,
 }
 
@@ -219,14 +227,16 @@ impl<const D: usize> StripAttachments<D> {
     pub fn at(
         strips: &[Strip<D>],
         surface: &Surface<D>,
-        (grid, free): (&Grid<D>, &[bool]),
-        (t, dt): (f64, f64),
+        grid: &Grid<D>,
+        free: &[bool],
+        interval: TimeInterval,
     ) -> Self {
-        let (offsets, mut held) = (if strips.is_empty() { Vec::new() } else { grid.offsets() }, Vec::new());
+        let offsets = if strips.is_empty() { Vec::new() } else { grid.offsets() };
+        let mut held = Vec::new();
         for (number, strip) in strips.iter().enumerate().filter(|(_, strip)| strip.acts()) {
             for (index, point) in strip.points.iter().enumerate() {
-                let place = displacement(strips, number, index, t);
-                let motion = displacement(strips, number, index, t + dt) - place;
+                let place = displacement(strips, number, index, interval.start);
+                let motion = displacement(strips, number, index, interval.end()) - place;
                 let carried = surface.traction[number][index];
                 let state = strip.contact.map(|contact| ContactState::of(contact, &carried));
                 // The material across a gap is what the gap is to.
@@ -258,7 +268,7 @@ impl<const D: usize> StripAttachments<D> {
         }
         Self {
             offsets,
-            span: (t, dt),
+            interval,
             held,
         }
     }
@@ -281,7 +291,8 @@ impl<const D: usize> StripAttachments<D> {
         let offsets = &self.offsets;
         for held in &mut self.held {
             let Some(mut state) = held.state else { continue };
-            let (trial, before) = (held.trial(&state, offsets, guess), held.own(state.start(&held.carried)));
+            let trial = held.trial(&state, offsets, guess);
+            let before = held.own(state.start(&held.carried));
             state.recall(&trial, &before);
             held.state = Some(state);
         }
@@ -289,7 +300,8 @@ impl<const D: usize> StripAttachments<D> {
 
     /// Corrects what the displacement `u` (m) contradicts by more than `force`, N; how many points over all ranks.
     pub fn correct(&mut self, u: &[f64], force: f64, halo: &dyn Halo) -> usize {
-        let (offsets, mut corrected) = (&self.offsets, [0.0]);
+        let offsets = &self.offsets;
+        let mut corrected = [0.0];
         for held in &mut self.held {
             let Some(mut state) = held.state else { continue };
             let is_corrected = state.correct(&held.trial(&state, offsets, u), force / held.area);
@@ -329,19 +341,21 @@ impl<const D: usize> StripAttachments<D> {
 
     /// du . K du of the strips' stiffness on this rank, N m.
     pub fn energy(&self, du: &[f64]) -> Exact {
-        let of = |held: &StripPoint<D>| {
+        let energies = self.held.iter().map(|held| {
             let moved = held.part(held.displacement(&self.offsets, du));
             held.penalty * held.area * moved.norm_squared()
-        };
-        self.held.iter().map(of).collect()
+        });
+        energies.collect()
     }
 
     /// Work on this rank under the converged displacement `u`.
     pub fn work(&self, u: &[f64]) -> StripWork {
         let mut work = StripWork::default();
         for held in &self.held {
-            let (before, after) = (held.before(), held.traction(&self.offsets, u));
-            let (moved, mean) = (held.displacement(&self.offsets, u), held.mean(&self.offsets, u));
+            let before = held.before();
+            let after = held.traction(&self.offsets, u);
+            let moved = held.displacement(&self.offsets, u);
+            let mean = held.mean(&self.offsets, u);
             work.given.add(mean.dot(&held.motion));
             work.taken.add(mean.dot(&moved));
             if let Some(state) = &held.state {
@@ -359,7 +373,8 @@ impl<const D: usize> StripAttachments<D> {
     /// What every strip did under the converged displacement `u`, and the tractions that the next step starts from.
     pub fn conclude(
         &self,
-        (strips, grid): (&[Strip<D>], &Grid<D>),
+        strips: &[Strip<D>],
+        grid: &Grid<D>,
         surface: &Surface<D>,
         u: &[f64],
         halo: &dyn Halo,
@@ -367,11 +382,12 @@ impl<const D: usize> StripAttachments<D> {
         if strips.is_empty() {
             return (Vec::new(), Vec::new());
         }
-        let at_rest = || strips.iter().map(|s| vec![Vector::zeros(); s.points.len()]);
-        let mut traction: Vec<Vec<Vector<D>>> = at_rest().collect();
+        let at_rest = strips.iter().map(|strip| vec![Vector::zeros(); strip.points.len()]);
+        let mut traction: Vec<Vec<Vector<D>>> = at_rest.collect();
         // Which points of strips that lift are held by some rank.
-        let lifting = |(strip, list): (&Strip<D>, Vec<Vector<D>>)| if strip.lifts() { list } else { Vec::new() };
-        let mut there: Vec<Vec<Vector<D>>> = strips.iter().zip(at_rest()).map(lifting).collect();
+        let mut there = traction.clone();
+        let others = strips.iter().zip(&mut there).filter(|(strip, _)| !strip.lifts());
+        others.for_each(|(_, list)| list.clear());
         let mut sums: Vec<StripSums> = strips.iter().map(|_| StripSums::default()).collect();
         let mut longest = vec![0.0; LENGTHS * strips.len()];
         for (number, _) in strips.iter().enumerate().filter(|(_, strip)| strip.contact.is_some()) {
@@ -381,15 +397,8 @@ impl<const D: usize> StripAttachments<D> {
             let lengths = held.lengths(&self.offsets, u, grid.smallest_edge(), &mut sums[held.strip]);
             let acting = held.traction(&self.offsets, u);
             sums[held.strip].held.add(1.0);
-            let (mean, (t, dt)) = (held.mean(&self.offsets, u), self.span);
-            let motion = |strip: usize| strips[strip].path.at(t + dt) - strips[strip].path.at(t);
-            let strip = &strips[held.strip];
-            sums[held.strip]
-                .given
-                .add(strip.own(held.point, &mean).dot(&motion(held.strip)));
-            for other in strip.others(held.point) {
-                sums[other.strip].given.add(other.of(&mean).dot(&motion(other.strip)));
-            }
+            let mean = held.mean(&self.offsets, u);
+            self.add_given(strips, held, &mean, &mut sums);
             let most = longest[LENGTHS * held.strip..].iter_mut().zip(lengths);
             most.for_each(|(most, length)| *most = f64::max(*most, length));
             traction[held.strip][held.point] = match &held.state {
@@ -407,34 +416,39 @@ impl<const D: usize> StripAttachments<D> {
         traction.extend(there);
         reduce(&mut traction, halo);
         let there = traction.split_off(count);
-        self.keep_apart((strips, &there), surface, &mut traction);
+        self.keep_apart(strips, &there, surface, &mut traction);
         let resultants = resultants(strips, &traction);
         let of_strip = totals.len() / strips.len();
-        let report = |number: usize| {
+        let reports = strips.iter().enumerate().map(|(number, strip)| {
             let totals = &totals[of_strip * number..][..of_strip];
-            let Resultant { force, moment } = resultants[number];
             let lengths = &longest[LENGTHS * number..][..LENGTHS];
-            let contact = strips[number].contact.map(|_| contact_report(number, totals, lengths));
-            StripReport {
-                force: force.as_slice().to_vec(),
-                moment,
-                work: totals[1],
-                slip: lengths[0],
-                accumulated: lengths[1],
-                motion: lengths[2],
-                held: totals[0] as usize,
-                left_behind: 0,
-                moved_on: totals.get(7).map_or(0, |count| *count as usize),
-                contact,
-            }
-        };
-        ((0..strips.len()).map(report).collect(), traction)
+            let contact = strip.contact.map(|_| contact_report(number, totals, lengths));
+            report(&resultants[number], totals, lengths, contact)
+        });
+        (reports.collect(), traction)
+    }
+
+    /// Adds the work of the mean force of a point, N, on the motions of the strips that it follows.
+    fn add_given(&self, strips: &[Strip<D>], held: &StripPoint<D>, mean: &Vector<D>, sums: &mut [StripSums]) {
+        let strip = &strips[held.strip];
+        let given = strip.own(held.point, mean).dot(&self.motion(strip));
+        sums[held.strip].given.add(given);
+        for other in strip.others(held.point) {
+            let given = other.of(mean).dot(&self.motion(&strips[other.strip]));
+            sums[other.strip].given.add(given);
+        }
+    }
+
+    /// m  of a strip in the step.
+    fn motion(&self, strip: &Strip<D>) -> Vector<D> {
+        strip.path.at(self.interval.end()) - strip.path.at(self.interval.start)
     }
 
     /// Goes on with the gaps of points that have no material across them, which is then taken to rest.
     fn keep_apart(
         &self,
-        (strips, there): (&[Strip<D>], &[Vec<Vector<D>>]),
+        strips: &[Strip<D>],
+        there: &[Vec<Vector<D>>],
         surface: &Surface<D>,
         traction: &mut [Vec<Vector<D>>],
     ) {
@@ -446,14 +460,35 @@ impl<const D: usize> StripAttachments<D> {
             let Some(StripContact { inward, .. }) = strip.contact else {
                 continue;
             };
-            let (t, dt) = self.span;
+            let times = [self.interval.start, self.interval.end()];
             for (point, _) in there[number].iter().enumerate().filter(|(_, there)| there[0] == 0.0) {
-                let [start, end] = [t, t + dt].map(|t| displacement(strips, number, point, t));
+                let [start, end] = times.map(|t| displacement(strips, number, point, t));
                 let closer = (end - start).dot(&inward);
                 let before = inward.dot(&surface.traction[number][point]).min(0.0);
                 traction[number][point] = inward * (before + strip.penalty * closer).min(0.0);
             }
         }
+    }
+}
+
+/// What a strip did, by its force, the totals and the largest lengths of its points.
+fn report<const D: usize>(
+    resultant: &Resultant<D>,
+    totals: &[f64],
+    lengths: &[f64],
+    contact: Option<ContactReport>,
+) -> StripReport {
+    StripReport {
+        force: resultant.force.as_slice().to_vec(),
+        moment: resultant.moment,
+        work: totals[1],
+        slip: lengths[0],
+        accumulated: lengths[1],
+        motion: lengths[2],
+        held: totals[0] as usize,
+        left_behind: 0,
+        moved_on: totals.get(7).map_or(0, |count| *count as usize),
+        contact,
     }
 }
 

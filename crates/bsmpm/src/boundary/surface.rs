@@ -3,7 +3,7 @@
 
 use super::rigid::RigidState;
 use crate::grid::shape::with_width;
-use crate::grid::{Contributions, Grid, KnotVector};
+use crate::grid::{Contributions, Grid, KnotVector, digit};
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;
 use crate::tensor::Vector;
@@ -57,10 +57,12 @@ impl<const D: usize> SurfacePoint<D> {
 /// m^(D-1)  area of a piece, a vector along its normal: of a segment, or in space by its diagonals.
 pub(super) fn area<const D: usize>(corners: &[Vector<D>; CORNERS]) -> Vector<D> {
     let [along, across] = [corners[2] - corners[0], corners[3] - corners[1]];
-    let cross = |i: usize, j: usize| 0.5 * (along[i] * across[j] - along[j] * across[i]);
     match D {
         2 => Vector::from_fn(|axis, _| if axis == 0 { -along[1] } else { along[0] }),
-        _ => Vector::from_fn(|axis, _| cross((axis + 1) % D, (axis + 2) % D)),
+        _ => Vector::from_fn(|axis, _| {
+            let [i, j] = [(axis + 1) % D, (axis + 2) % D];
+            0.5 * (along[i] * across[j] - along[j] * across[i])
+        }),
     }
 }
 
@@ -73,37 +75,37 @@ pub fn along<K: Kinematics<D>, const D: usize>(
     to: &Vector<D>,
     count: usize,
 ) -> Vec<SurfacePoint<D>> {
-    let cuts = cuts(grid, from, to);
     let length = (to - from).norm();
-    let piece = |part: &[f64], k: usize| {
+    let mut points = Vec::new();
+    for part in cuts(grid, from, to).windows(2) {
         let share = (part[1] - part[0]) / count as f64;
-        let middle = part[0] + (k as f64 + 0.5) * share;
-        let off = middle - 0.5 * (part[0] + part[1]);
-        let x = from + (to - from) * (middle + off * (spread::<K, D>((from, to), part, count) - 1.0));
-        let [a, b] = [0.0, 1.0].map(|end| from + (to - from) * (part[0] + (k as f64 + end) * share));
-        SurfacePoint {
-            x,
-            area: share * length * K::weight(&x),
-            corners: [a, a, b, b],
+        let spread = spread::<K, D>(from, to, part, count);
+        for k in 0..count {
+            let middle = part[0] + (k as f64 + 0.5) * share;
+            let off = middle - 0.5 * (part[0] + part[1]);
+            let x = from + (to - from) * (middle + off * (spread - 1.0));
+            let [a, b] = [0.0, 1.0].map(|end| from + (to - from) * (part[0] + (k as f64 + end) * share));
+            points.push(SurfacePoint {
+                x,
+                area: share * length * K::weight(&x),
+                corners: [a, a, b, b],
+            });
         }
-    };
-    cuts.windows(2)
-        .flat_map(|part| (0..count).map(move |k| piece(part, k)))
-        .collect()
+    }
+    points
 }
 
 /// [`Kinematics::spread`] of the points of a part of a segment: that along the axis along which they are others than
 /// the middles of equal pieces, if there is one.
-fn spread<K: Kinematics<D>, const D: usize>((from, to): (&Vector<D>, &Vector<D>), part: &[f64], count: usize) -> f64 {
-    let along = |axis: usize| {
+fn spread<K: Kinematics<D>, const D: usize>(from: &Vector<D>, to: &Vector<D>, part: &[f64], count: usize) -> f64 {
+    let mut spread = 1.0;
+    for axis in 0..D {
         let [a, b] = [part[0], part[1]].map(|share| from[axis] + (to[axis] - from[axis]) * share);
-        if a == b {
-            1.0
-        } else {
-            K::spread(axis, [a.min(b), a.max(b)], count)
+        if a != b {
+            spread *= K::spread(axis, [a.min(b), a.max(b)], count);
         }
-    };
-    (0..D).map(along).product()
+    }
+    spread
 }
 
 /// Points in the middles of `count` by `count` equal pieces of every part of a rectangle along the axes that the grid's
@@ -114,12 +116,13 @@ pub fn over<K: Kinematics<D>, const D: usize>(
     upper: &Vector<D>,
     count: usize,
 ) -> Vec<SurfacePoint<D>> {
-    let weighed = |(point, edges): (SurfacePoint<D>, Vector<D>)| SurfacePoint {
+    let pieces = pieces(grid, lower, upper, count).into_iter();
+    let weighed = pieces.map(|(point, edges)| SurfacePoint {
         area: point.area * K::weight(&point.x),
         corners: corners(&point.x, &edges),
         ..point
-    };
-    pieces(grid, lower, upper, count).into_iter().map(weighed).collect()
+    });
+    weighed.collect()
 }
 
 /// Corners of a rectangle along the axes, m.
@@ -143,15 +146,18 @@ fn pieces<const D: usize>(
     for axis in (0..D).filter(|&axis| upper[axis] > lower[axis]) {
         let mut end = *lower;
         end[axis] = upper[axis];
-        let line = along_axis(grid, (lower, &end), axis, count);
-        let across = |(point, edges): (SurfacePoint<D>, Vector<D>)| {
-            line.iter().map(move |&(at, length)| {
-                let (mut x, mut edges) = (point.x, edges);
-                (x[axis], edges[axis]) = (at, length);
-                (SurfacePoint::at(x, point.area * length), edges)
-            })
-        };
-        pieces = pieces.into_iter().flat_map(across).collect();
+        let line = along_axis(grid, lower, &end, axis, count);
+        let mut finer = Vec::with_capacity(pieces.len() * line.len());
+        for (point, edges) in pieces {
+            for &(at, length) in &line {
+                let mut x: Vector<D> = point.x;
+                let mut edges: Vector<D> = edges;
+                x[axis] = at;
+                edges[axis] = length;
+                finer.push((SurfacePoint::at(x, point.area * length), edges));
+            }
+        }
+        pieces = finer;
     }
     pieces
 }
@@ -163,66 +169,84 @@ const STRIPS: usize = 64;
 /// them is, at its middle.
 pub fn within<K: Kinematics<D>, const D: usize>(
     grid: &Grid<D>,
-    (lower, upper): (&Vector<D>, &Vector<D>),
-    (center, radius): (&Vector<D>, f64),
+    lower: &Vector<D>,
+    upper: &Vector<D>,
+    center: &Vector<D>,
+    radius: f64,
     count: usize,
 ) -> Vec<SurfacePoint<D>> {
     let mut plane = (0..D).filter(|axis| lower[*axis] < upper[*axis]);
-    let (Some(a), Some(b)) = (plane.next(), plane.next()) else {
-        return Vec::new();
-    };
-    // Area and its moments of what is inside, in strips across an axis.
-    let strips = |(piece, edges): (&SurfacePoint<D>, &Vector<D>), across: usize, along: usize| {
-        let width = edges[across] / STRIPS as f64;
-        let (mut area, mut moment) = (0.0, Vector::<D>::zeros());
-        for strip in 0..STRIPS {
-            let x = piece.x[across] - 0.5 * edges[across] + (strip as f64 + 0.5) * width;
-            let half = (radius.powi(2) - (x - center[across]).powi(2)).max(0.0).sqrt();
-            let [from, to] = [-1.0, 1.0].map(|side| {
-                (center[along] + side * half - piece.x[along]).clamp(-0.5 * edges[along], 0.5 * edges[along])
-            });
-            let part = width * (to - from);
-            area += part;
-            moment[across] += part * x;
-            moment[along] += part * (piece.x[along] + 0.5 * (from + to));
-        }
-        (area, moment)
-    };
-    let clipped = |(piece, edges): (SurfacePoint<D>, Vector<D>)| {
+    let Some(a) = plane.next() else { return Vec::new() };
+    let Some(b) = plane.next() else { return Vec::new() };
+    let mut points = Vec::new();
+    for (piece, edges) in pieces(grid, lower, upper, count) {
         // Both ways, so that a disc keeps its symmetry.
-        let [one, other] = [(a, b), (b, a)].map(|(across, along)| strips((&piece, &edges), across, along));
-        let (area, moment) = (0.5 * (one.0 + other.0), 0.5 * (one.1 + other.1));
-        let mut x = piece.x;
-        (x[a], x[b]) = (moment[a] / area, moment[b] / area);
-        let corners = corners(&piece.x, &edges);
-        (area > 0.0).then(|| SurfacePoint {
-            x,
-            area: area * K::weight(&x),
-            corners,
-        })
-    };
-    pieces(grid, lower, upper, count)
-        .into_iter()
-        .filter_map(clipped)
-        .collect()
+        let [one, other] = [[a, b], [b, a]].map(|axes| inside_disc(&piece, &edges, center, radius, axes));
+        let area = 0.5 * (one.area + other.area);
+        if area > 0.0 {
+            let moment = 0.5 * (one.moment + other.moment);
+            let mut x = piece.x;
+            x[a] = moment[a] / area;
+            x[b] = moment[b] / area;
+            points.push(SurfacePoint {
+                x,
+                area: area * K::weight(&x),
+                corners: corners(&piece.x, &edges),
+            });
+        }
+    }
+    points
+}
+
+/// What of a piece is inside a disc.
+struct DiscPart<const D: usize> {
+    area: f64,         // m2
+    moment: Vector<D>, // m3
+}
+
+/// What of a piece with these edges is inside a disc, in strips across the first of two axes.
+fn inside_disc<const D: usize>(
+    piece: &SurfacePoint<D>,
+    edges: &Vector<D>,
+    center: &Vector<D>,
+    radius: f64,
+    [across, along]: [usize; 2],
+) -> DiscPart<D> {
+    let width = edges[across] / STRIPS as f64;
+    let mut area = 0.0;
+    let mut moment = Vector::<D>::zeros();
+    for strip in 0..STRIPS {
+        let x = piece.x[across] - 0.5 * edges[across] + (strip as f64 + 0.5) * width;
+        let half = (radius.powi(2) - (x - center[across]).powi(2)).max(0.0).sqrt();
+        let [from, to] = [-1.0, 1.0]
+            .map(|side| (center[along] + side * half - piece.x[along]).clamp(-0.5 * edges[along], 0.5 * edges[along]));
+        let part = width * (to - from);
+        area += part;
+        moment[across] += part * x;
+        moment[along] += part * (piece.x[along] + 0.5 * (from + to));
+    }
+    DiscPart { area, moment }
 }
 
 /// Middles and lengths of the pieces of an edge along an axis, m.
 fn along_axis<const D: usize>(
     grid: &Grid<D>,
-    (from, to): (&Vector<D>, &Vector<D>),
+    from: &Vector<D>,
+    to: &Vector<D>,
     axis: usize,
     count: usize,
 ) -> Vec<(f64, f64)> {
-    let (start, length) = (from[axis], to[axis] - from[axis]);
-    let piece = |part: &[f64], k: usize| {
+    let start = from[axis];
+    let length = to[axis] - from[axis];
+    let mut pieces = Vec::new();
+    for part in cuts(grid, from, to).windows(2) {
         let share = (part[1] - part[0]) / count as f64;
-        (start + length * (part[0] + (k as f64 + 0.5) * share), length * share)
-    };
-    let cuts = cuts(grid, from, to);
-    cuts.windows(2)
-        .flat_map(|part| (0..count).map(move |k| piece(part, k)))
-        .collect()
+        for k in 0..count {
+            let middle = start + length * (part[0] + (k as f64 + 0.5) * share);
+            pieces.push((middle, length * share));
+        }
+    }
+    pieces
 }
 
 /// Parts of the way along a straight segment at which the grid's lines cut it, its ends among them.
@@ -231,8 +255,8 @@ fn cuts<const D: usize>(grid: &Grid<D>, from: &Vector<D>, to: &Vector<D>) -> Vec
     for (axis, knots) in grid.axes().iter().enumerate() {
         let reach = to[axis] - from[axis];
         if reach != 0.0 {
-            let cut = |i: usize| (knots.breakpoint(i) - from[axis]) / reach;
-            cuts.extend((0..=knots.cells()).map(cut).filter(|s| *s > 0.0 && *s < 1.0));
+            let places = (0..=knots.cells()).map(|i| (knots.breakpoint(i) - from[axis]) / reach);
+            cuts.extend(places.filter(|s| *s > 0.0 && *s < 1.0));
         }
     }
     cuts.sort_by(f64::total_cmp);
@@ -291,7 +315,7 @@ impl Attachment {
         counts: impl Fn(usize) -> bool,
         x: &Vector<D>,
     ) -> Option<Self> {
-        Self::by(grid, (grid.order() + 1, offsets), counts, x)
+        Self::by(grid, grid.order() + 1, offsets, counts, x)
     }
 
     /// The same by the functions of degree q - 1, which have their own `offsets` ([`Grid::lowered_offsets`]).
@@ -301,7 +325,7 @@ impl Attachment {
         counts: impl Fn(usize) -> bool,
         x: &Vector<D>,
     ) -> Option<Self> {
-        Self::by(grid, (grid.order(), offsets), counts, x)
+        Self::by(grid, grid.order(), offsets, counts, x)
     }
 
     /// The nodes with their shares, by the `offsets` that it was made with.
@@ -315,19 +339,22 @@ impl Attachment {
 
     fn by<const D: usize>(
         grid: &Grid<D>,
-        (width, offsets): (usize, &[usize]),
+        width: usize,
+        offsets: &[usize],
         counts: impl Fn(usize) -> bool,
         x: &Vector<D>,
     ) -> Option<Self> {
         let x = on_grid(grid, x);
         let cell = grid.locate(&x).filter(|cell| grid.holds(cell))?;
         let first_node = grid.first_node(&cell);
-        let row = |axis: usize| values(&grid.axes()[axis], width, x[axis], cell[axis]);
-        let rows: Vec<Vec<f64>> = (0..D).map(row).collect();
-        let along = |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
-        let product = |k: usize| (0..D).map(|axis| rows[axis][along(k, axis)]).product::<f64>();
-        let seen = |(k, offset): (usize, &usize)| if counts(first_node + offset) { product(k) } else { 0.0 };
-        let mut N: Vec<f64> = offsets.iter().enumerate().map(seen).collect();
+        let rows = (0..D).map(|axis| values(&grid.axes()[axis], width, x[axis], cell[axis]));
+        let rows: Vec<Vec<f64>> = rows.collect();
+        let mut N = vec![0.0; offsets.len()];
+        for (k, (value, offset)) in N.iter_mut().zip(offsets).enumerate() {
+            if counts(first_node + offset) {
+                *value = (0..D).map(|axis| rows[axis][digit::<D>(k, axis, width)]).product();
+            }
+        }
         let sum: f64 = N.iter().sum();
         if sum < NEAR {
             return None;
@@ -388,16 +415,15 @@ impl Attachment {
 
 /// The place itself, or the place on the face that it has left by rounding.
 pub(super) fn on_grid<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D> {
-    Vector::from_fn(|axis, _| {
-        let knots = &grid.axes()[axis];
-        let inside = x[axis].clamp(0.0, knots.length());
+    let mut inside = *x;
+    for (x, knots) in inside.iter_mut().zip(grid.axes()) {
+        let nearest = x.clamp(0.0, knots.length());
         let slack = ROUNDING * knots.length() / knots.cells() as f64;
-        if (x[axis] - inside).abs() <= slack {
-            inside
-        } else {
-            x[axis]
+        if (*x - nearest).abs() <= slack {
+            *x = nearest;
         }
-    })
+    }
+    inside
 }
 
 /// Values of the `width` functions of a cell of one axis.
@@ -423,7 +449,7 @@ mod tests {
         ] {
             let center = Vector::<3>::new(center[0], center[1], 1.0);
             let [lower, upper] = [-radius, radius].map(|by| center + Vector::<3>::new(by, by, 0.0));
-            let points = within::<Solid, 3>(&grid, (&lower, &upper), (&center, radius), 4);
+            let points = within::<Solid, 3>(&grid, &lower, &upper, &center, radius, 4);
             let area: f64 = points.iter().map(|point| point.area).sum();
             let middle = points.iter().map(|point| point.x * point.area).sum::<Vector<3>>() / area;
             assert!(

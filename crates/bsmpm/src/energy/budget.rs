@@ -168,7 +168,10 @@ mod tests {
         budget.enter(&turnover(0.0, 2.4));
         assert!(budget.require().is_err(), "{budget:?}");
         // A mass of 1 on a dashpot of 30 under 1 N, in steps of 0.1 s.
-        let (mut damped, mut v, mut a, dt) = (Budget::open(Stored::default()), 0.0, 1.0, 0.1);
+        let mut damped = Budget::open(Stored::default());
+        let mut v = 0.0;
+        let mut a = 1.0;
+        let dt = 0.1;
         for _ in 0..20 {
             let du: f64 = (1.0 + 4.0 / dt * v + a) / (4.0 / (dt * dt) + 30.0 / dt);
             let next = 4.0 / (dt * dt) * du - 4.0 / dt * v - a;

@@ -146,12 +146,10 @@ impl LinearSolver for Band {
 
     fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
         let components = self.components;
-        let of_node = |&node: &usize| (0..components).map(move |c| node * components + c);
-        let unknowns: Vec<_> = nodes
+        let of_nodes = nodes
             .iter()
-            .flat_map(of_node)
-            .map(|c| self.number[c % self.layer])
-            .collect();
+            .flat_map(|&node| (0..components).map(move |c| node * components + c));
+        let unknowns: Vec<_> = of_nodes.map(|c| self.number[c % self.layer]).collect();
         for (row, values) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
             for (column, value) in unknowns.iter().zip(values) {
                 if let (Some(row), Some(column)) = (row, column) {
@@ -191,7 +189,8 @@ impl LinearSolver for Band {
                 self.rows[of_k] = factor;
                 if factor != 0.0 {
                     for j in k + 1..(k + self.half + 1).min(n) {
-                        let (at, above) = (self.at(i, j), self.at(k, j));
+                        let at = self.at(i, j);
+                        let above = self.at(k, j);
                         self.rows[at] -= factor * self.rows[above];
                     }
                 }
@@ -220,11 +219,14 @@ impl LinearSolver for Band {
         rhs: &[f64],
         solution: &mut [f64],
     ) -> Result<Krylov, SolveError> {
-        let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let right = self.picked(rhs);
         let scale = norm(&right);
-        let (mut x, mut left, mut residual) = (vec![0.0; right.len()], right.clone(), 1.0);
-        let (mut trial, mut image, mut iterations) = (vec![0.0; rhs.len()], vec![0.0; rhs.len()], 0);
+        let mut x = vec![0.0; right.len()];
+        let mut left = right.clone();
+        let mut residual = 1.0;
+        let mut trial = vec![0.0; rhs.len()];
+        let mut image = vec![0.0; rhs.len()];
+        let mut iterations = 0;
         while residual > relative && scale > 0.0 && iterations < CORRECTIONS {
             let better: Vec<f64> = self
                 .substituted(left.clone())
@@ -251,4 +253,9 @@ impl LinearSolver for Band {
             residual: if scale > 0.0 { residual } else { 0.0 },
         })
     }
+}
+
+/// Euclidean norm.
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }

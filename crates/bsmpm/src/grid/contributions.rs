@@ -3,6 +3,7 @@
 
 use super::Grid;
 use crate::exact::Exact;
+use crate::grid::ColumnExtent;
 
 /// Contributions of the columns of this rank, `width` numbers a node; see the module.
 #[derive(Clone, Debug)]
@@ -18,14 +19,15 @@ pub struct Contributions {
 impl Contributions {
     /// None, by the `columns` (ascending) of a window.
     pub fn none<const D: usize>(grid: &Grid<D>, width: usize, columns: Vec<usize>) -> Self {
-        Self::zeros((grid.column_layers(), grid.layer_nodes(), grid.nodes()), width, columns)
+        Self::zeros(grid.column_extent(), width, columns)
     }
 
-    pub(super) fn zeros(
-        (layers, layer_nodes, nodes): (usize, usize, usize),
-        width: usize,
-        columns: Vec<usize>,
-    ) -> Self {
+    pub(super) fn zeros(extent: ColumnExtent, width: usize, columns: Vec<usize>) -> Self {
+        let ColumnExtent {
+            layers,
+            layer_nodes,
+            nodes,
+        } = extent;
         let layer = layer_nodes * width;
         Self {
             sums: vec![0.0; columns.len() * layers * layer],
@@ -108,17 +110,13 @@ impl Contributions {
 
     /// Product with a nodal array of the window: what forces that contribute work on a displacement.
     pub fn dot(&self, nodal: &[f64]) -> Exact {
-        let of = |(&column, sums): (&usize, &[f64])| {
-            nodal[column * self.layer..]
-                .iter()
-                .zip(sums)
-                .map(|(value, sum)| value * sum)
-                .sum::<f64>()
-        };
         self.columns
             .iter()
             .zip(self.sums.chunks_exact(self.column_size().max(1)))
-            .map(of)
+            .map(|(&column, sums)| {
+                let values = &nodal[column * self.layer..];
+                values.iter().zip(sums).map(|(value, sum)| value * sum).sum::<f64>()
+            })
             .collect()
     }
 

@@ -52,9 +52,14 @@ impl<const D: usize> Homes<D> {
     /// How near a cell (global, along each axis) is to a function (global); `None` where it cannot be a home: too far
     /// away, or off a face that the function must keep to.
     pub fn nearness(&self, grid: &Grid<D>, function: &[usize; D], cell: &[usize; D]) -> Option<Nearness> {
-        let (mut is_on_side, mut apart, mut off_centre, mut number) = (true, 0, 0.0, 0);
+        let mut is_on_side = true;
+        let mut apart = 0;
+        let mut off_centre = 0.0;
+        let mut number = 0;
         for axis in 0..D {
-            let (knots, j, l) = (&grid.axes()[axis], function[axis], cell[axis]);
+            let knots = &grid.axes()[axis];
+            let j = function[axis];
+            let l = cell[axis];
             let steps = if j < l {
                 l - j
             } else {
@@ -65,7 +70,8 @@ impl<const D: usize> Homes<D> {
             }
             is_on_side &= self.is_on_side(knots, axis, j, l);
             apart += steps * steps;
-            let (lower, upper) = (knots.breakpoint(l), knots.breakpoint(l + 1));
+            let lower = knots.breakpoint(l);
+            let upper = knots.breakpoint(l + 1);
             off_centre += ((knots.greville(j) - 0.5 * (lower + upper)) / (upper - lower)).powi(2);
             number = number * knots.cells() + l;
         }
@@ -100,17 +106,19 @@ impl<const D: usize> Homes<D> {
 /// Per cell of an axis the number of C0 lines before it: breakpoints of multiplicity q, between whose copies lie q - 1
 /// cells without length. Linear splines are C0 everywhere, and have no such lines.
 fn sides(knots: &KnotVector) -> Vec<usize> {
-    let (mut lines, mut without_length) = (0, 0);
-    let side = |cell: usize| {
+    let mut lines = 0;
+    let mut without_length = 0;
+    let mut sides = Vec::with_capacity(knots.cells());
+    for cell in 0..knots.cells() {
         if knots.has_length(cell) {
             without_length = 0;
         } else {
             without_length += 1;
             lines += usize::from(without_length + 1 == knots.order());
         }
-        lines
-    };
-    (0..knots.cells()).map(side).collect()
+        sides.push(lines);
+    }
+    sides
 }
 
 /// e_ij along one axis: what function `j` takes of each of the q + 1 functions of cell `home`.

@@ -45,9 +45,9 @@ impl<'a, const D: usize> Occupied<'a, D> {
 
     fn has(&self, cell: &[usize; D]) -> bool {
         let cells = self.grid.cells_along();
-        let behind = |axis: usize| cells[axis].start.saturating_sub(cell[axis]);
-        let along = if self.grid.is_parted() { behind(1) } else { 0 };
-        self.marks[self.place(cell, [behind(0), along])] > 0.0
+        let behind: [usize; D] = std::array::from_fn(|axis| cells[axis].start.saturating_sub(cell[axis]));
+        let along = if self.grid.is_parted() { behind[1] } else { 0 };
+        self.marks[self.place(cell, [behind[0], along])] > 0.0
     }
 
     /// Whether all neighbours hold points, those that the grid does not have at its faces counted as ones that do where
@@ -70,11 +70,10 @@ impl<'a, const D: usize> Occupied<'a, D> {
     /// as the copies of a breakpoint are q at most.
     fn beside(&self, axis: usize, cell: usize, side: usize) -> Option<usize> {
         let axis = &self.grid.axes()[axis];
-        let has_length = |at: &usize| axis.has_length(*at);
         match side {
-            0 => (0..cell).rev().find(has_length),
+            0 => (0..cell).rev().find(|&at| axis.has_length(at)),
             1 => Some(cell),
-            _ => (cell + 1..axis.cells()).find(has_length),
+            _ => (cell + 1..axis.cells()).find(|&at| axis.has_length(at)),
         }
     }
 }

@@ -19,11 +19,14 @@ pub(crate) struct Paired {
 
 impl Paired {
     pub fn of(axis: &KnotVector) -> Self {
-        let (degree, cells, pairs) = (axis.order() - 1, axis.cells(), pairs(axis));
+        let degree = axis.order() - 1;
+        let cells = axis.cells();
+        let pairs = pairs(axis);
         let count = pairs.len() + degree;
         let last = pairs.len() - 1;
-        let support = |k: usize| pairs[k.saturating_sub(degree)].start..pairs[k.min(last)].end;
-        let support: Vec<_> = (0..count).map(support).collect();
+        let support: Vec<_> = (0..count)
+            .map(|k| pairs[k.saturating_sub(degree)].start..pairs[k.min(last)].end)
+            .collect();
         // The end of the pair that a function starts to vanish behind; past the last one, as many nodes as functions
         // are left.
         let slots: Vec<usize> = (0..count)
@@ -63,7 +66,7 @@ impl Paired {
     }
 
     /// r of function `a` on the pairs and function `b` on the cells, of a cell.
-    pub fn share(&self, cell: usize, (a, b): (usize, usize)) -> f64 {
+    pub fn share(&self, cell: usize, a: usize, b: usize) -> f64 {
         self.shares[(cell * (self.degree + 1) + a) * (self.degree + 1) + b]
     }
 
@@ -118,23 +121,21 @@ impl Knots {
 
     /// r_kj of splines of a degree (the Oslo algorithm).
     fn share(&self, k: usize, j: usize, degree: usize) -> f64 {
-        let (t, T) = (&self.cells, &self.pairs);
+        let t = &self.cells;
+        let T = &self.pairs;
         if degree == 0 {
             return f64::from(u8::from(T[k] <= t[j] && t[j] < T[k + 1]));
         }
-        let part = |from: usize, length: f64, share: f64| {
-            if T[from + degree] > T[from] {
-                length * share
-            } else {
-                0.0
-            }
+        let rising = if T[k + degree] > T[k] {
+            (t[j + degree] - T[k]) / (T[k + degree] - T[k]) * self.share(k, j, degree - 1)
+        } else {
+            0.0
         };
-        let rising = part(
-            k,
-            (t[j + degree] - T[k]) / (T[k + degree] - T[k]),
-            self.share(k, j, degree - 1),
-        );
-        let falling = (T[k + degree + 1] - t[j + degree]) / (T[k + degree + 1] - T[k + 1]);
-        rising + part(k + 1, falling, self.share(k + 1, j, degree - 1))
+        let falling = if T[k + degree + 1] > T[k + 1] {
+            (T[k + degree + 1] - t[j + degree]) / (T[k + degree + 1] - T[k + 1]) * self.share(k + 1, j, degree - 1)
+        } else {
+            0.0
+        };
+        rising + falling
     }
 }

@@ -32,7 +32,7 @@ impl<const D: usize> Grid<D> {
     /// The same grid with room for points in the cells `occupied`, and at least so many columns, and rows in them.
     pub fn with_room(&self, occupied: &[Range<usize>; D], least: [usize; 2]) -> Self {
         let cells = self.axes().each_ref().map(KnotVector::cells);
-        self.within(around(occupied, cells, (self.order(), self.beyond()), least))
+        self.within(around(occupied, cells, self.order(), self.beyond(), least))
     }
 
     /// The same grid with at least so many columns in its room, and rows in them.
@@ -51,7 +51,8 @@ impl<const D: usize> Grid<D> {
 pub fn around<const D: usize>(
     occupied: &[Range<usize>; D],
     cells: [usize; D],
-    (order, beyond): (usize, usize),
+    order: usize,
+    beyond: usize,
     least: [usize; 2],
 ) -> [Range<usize>; D] {
     let mut room: [Range<usize>; D] = std::array::from_fn(|axis| {
@@ -86,11 +87,8 @@ mod tests {
 
     #[test]
     fn the_room_is_as_wide_as_what_is_coupled_and_a_part_of_the_extent() {
-        assert_eq!(
-            around(&[100..164, 3..5], [1000, 1000], (2, 1), [1; 2]),
-            [89..175, 0..10]
-        );
-        assert_eq!(around(&[1..9, 0..20], [12, 20], (3, 0), [1; 2]), [0..12, 0..20]);
+        assert_eq!(around(&[100..164, 3..5], [1000, 1000], 2, 1, [1; 2]), [89..175, 0..10]);
+        assert_eq!(around(&[1..9, 0..20], [12, 20], 3, 0, [1; 2]), [0..12, 0..20]);
     }
 
     /// A plane grid of 40 x 20 cells.
@@ -135,7 +133,7 @@ mod tests {
     #[test]
     fn there_is_a_column_for_every_rank_if_the_grid_has_one() {
         let columns = |from: usize, to: usize, wanted: usize| {
-            let [columns, rows] = around(&[from..to, 3..4], [100, 8], (1, 0), [wanted, 1]);
+            let [columns, rows] = around(&[from..to, 3..4], [100, 8], 1, 0, [wanted, 1]);
             assert_eq!(rows, 1..6);
             columns
         };

@@ -5,6 +5,7 @@ mod support;
 
 use super::{Grid, Located};
 use crate::error::StepError;
+use crate::grid::ColumnExtent;
 use crate::tensor::Vector;
 use crate::threads;
 use merged::Merged;
@@ -41,7 +42,7 @@ pub struct Shape<const D: usize> {
     offsets: Vec<usize>,
     patches: Vec<Patch>,
     columns: Vec<PatchColumn>,
-    extent: (usize, usize, usize), // layers that a column touches, nodes of a layer, of the window
+    extent: ColumnExtent,
     rows: Vec<f64>, // per point and axis: q + 1 values, q + 1 derivatives (1/m) but for lowered ones; then zeros
     stride: usize,  // numbers of a row
     pub(super) merged: Option<Merged<D>>, // of lowered functions: those inside a body with their neighbours
@@ -91,7 +92,7 @@ impl<const D: usize> Shape<D> {
             offsets: grid.offsets(),
             patches: Vec::new(),
             columns: Vec::new(),
-            extent: (grid.column_layers(), grid.layer_nodes(), grid.nodes()),
+            extent: grid.column_extent(),
             rows: vec![0.0; points.places().len() * 2 * D * width + BEHIND],
             stride: 2 * width,
             merged: None,
@@ -105,11 +106,12 @@ impl<const D: usize> Shape<D> {
         let x = points.places();
         let cells = threads::each(x.len(), |p| grid.locate(&x[p]).filter(|cell| grid.holds(cell)));
         for (p, located) in cells.iter().enumerate() {
-            let outside = || StepError::Outside {
-                id: points.id(p),
-                x: x[p].as_slice().to_vec(),
+            let Some(located) = located else {
+                return Err(StepError::Outside {
+                    id: points.id(p),
+                    x: x[p].as_slice().to_vec(),
+                });
             };
-            let located = located.as_ref().ok_or_else(outside)?;
             let cell = grid.cell_index(located);
             match self.patches.last_mut() {
                 Some(patch) if patch.cell == cell => patch.points.end = p + 1,
@@ -151,11 +153,10 @@ impl<const D: usize> Shape<D> {
     fn lower(&self, grid: &Grid<D>, points: &impl Located<D>, derivatives: bool) -> Self {
         let width = self.width - 1;
         let stride = if derivatives { 2 * width } else { width };
-        let inside = |k: usize| (0..D).all(|axis| k / self.width.pow(axis as u32) % self.width < width);
         let mut lower = Self {
             width,
             offsets: (0..self.offsets.len())
-                .filter(|&k| inside(k))
+                .filter(|k| (0..D).all(|axis| k / self.width.pow(axis as u32) % self.width < width))
                 .map(|k| self.offsets[k])
                 .collect(),
             patches: self.patches.clone(),
@@ -170,7 +171,9 @@ impl<const D: usize> Shape<D> {
     }
 
     fn evaluate_lower<const W: usize>(&mut self, grid: &Grid<D>, points: &impl Located<D>) {
-        let (x, stride, patches) = (points.places(), self.stride, &self.patches);
+        let x = points.places();
+        let stride = self.stride;
+        let patches = &self.patches;
         let mut rest = &mut self.rows[..];
         let mut rows = Vec::with_capacity(self.columns.len());
         for column in &self.columns {
@@ -209,8 +212,8 @@ impl<const D: usize> Shape<D> {
         &self.columns
     }
 
-    /// Layers of nodes that a column touches, nodes of a layer, nodes of the window.
-    pub(crate) fn extent(&self) -> (usize, usize, usize) {
+    /// Extent of the contributions of a column.
+    pub(crate) fn extent(&self) -> ColumnExtent {
         self.extent
     }
 

@@ -42,16 +42,15 @@ impl KnotVector {
         let length = last - from;
         let mut knots = vec![0.0; order];
         knots.extend(breakpoints.iter().map(|x| x - from));
-        let apart = |pair: &[f64]| pair[1] - pair[0] >= SHORTEST;
-        let equal = |pair: &[f64]| pair[1] == pair[0];
-        let increasing = knots[order..].windows(2).all(|pair| apart(pair) || equal(pair));
+        let increasing = knots[order..]
+            .windows(2)
+            .all(|pair| pair[1] - pair[0] >= SHORTEST || pair[1] == pair[0]);
         if !increasing || length.is_nan() || length > LONGEST {
             return Err(GridError::Breakpoints);
         }
         knots.extend(std::iter::repeat_n(length, order));
         // One copy more than q, or of an end, would tear the axis apart.
-        let torn = |copies: &[f64]| copies[0] == copies[order];
-        if (1..knots.len() - order - 1).any(|i| torn(&knots[i..=i + order])) {
+        if (1..knots.len() - order - 1).any(|i| knots[i] == knots[i + order]) {
             return Err(GridError::Breakpoints);
         }
         Ok(Self {
@@ -150,9 +149,11 @@ impl KnotVector {
     #[inline]
     pub fn basis<const W: usize>(&self, x: f64, cell: usize) -> ([f64; W], [f64; W]) {
         debug_assert!((1..=self.order + 1).contains(&W));
-        let (span, q) = (cell + self.order, W - 1);
+        let span = cell + self.order;
+        let q = W - 1;
         let knots = &self.knots[span + 1 - q..=span + q];
-        let (mut N, mut lower) = ([0.0; W], [0.0; W]);
+        let mut N = [0.0; W];
+        let mut lower = [0.0; W];
         N[0] = 1.0;
         for degree in 1..=q {
             if degree == q {
@@ -160,7 +161,8 @@ impl KnotVector {
             }
             let mut saved = 0.0;
             for r in 0..degree {
-                let (left, right) = (knots[q - degree + r], knots[q + r]);
+                let left = knots[q - degree + r];
+                let right = knots[q + r];
                 let ratio = N[r] / (right - left);
                 N[r] = saved + (right - x) * ratio;
                 saved = (x - left) * ratio;

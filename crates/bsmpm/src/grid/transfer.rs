@@ -5,7 +5,7 @@ mod patch;
 pub mod scalars;
 
 use super::contributions::Contributions;
-use super::shape::{PatchColumn, Shape, with_width};
+use super::shape::{Patch, PatchColumn, Shape, with_width};
 use crate::kinematics::{Kinematics, Slope};
 use crate::lanes;
 use crate::stabilisation::Grouped;
@@ -59,11 +59,13 @@ pub fn largest_to_nodes<const D: usize>(
     let mut largest = nothing(shape, count);
     let columns = apart(&mut largest);
     with_width!(lowered shape.width(), W => share(columns.len(), &|index| {
-        let (column, out) = (&shape.columns()[index], &mut *columns[index].lock().expect("the column's only thread"));
-        let first = column.column * shape.extent().1;
+        let column = &shape.columns()[index];
+        let out = &mut *columns[index].lock().expect("the column's only thread");
+        let first = column.column * shape.extent().layer_nodes;
         for patch in &shape.patches()[column.patches.clone()] {
             for p in patch.points.clone() {
-                let (support, value) = (shape.values::<W>(p), value(p));
+                let support = shape.values::<W>(p);
+                let value = value(p);
                 for (k, offset) in shape.offsets().iter().enumerate() {
                     if support.value(k) > 0.0 {
                         let at_node = &mut out[(patch.first_node - first + offset) * count + grouped.of(p)];
@@ -93,10 +95,10 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Clone + Send>(
     nodal: &[f64],
     found: impl Fn(usize, [f64; C]) -> T + Sync,
 ) -> Vec<T> {
-    let scratch = || [[0.0; C]; MOST_NODES];
+    let scratch = [[0.0; C]; MOST_NODES];
     with_width!(lowered shape.width(), W => at_points(shape, scratch, |number, block, out: &mut Vec<T>| {
         for (group, points) in grouped.runs(shape.patches()[number].points.clone()) {
-            gathered(shape, nodal, number, (group, grouped.count()), block);
+            gathered(shape, nodal, number, group, grouped.count(), block);
             for p in points {
                 let support = shape.values::<W>(p);
                 let mut value = [0.0; C];
@@ -115,30 +117,35 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Clone + Send>(
 /// Gather with gradients: what `found` makes of (grad u)_p = sum_I u_I (x) grad N_Ip (step 4a), for every point; the
 /// points are at `x`, m.
 pub fn gradients<K: Kinematics<D>, const D: usize, T: Clone + Send>(
-    (shape, x): (&Shape<D>, &[Vector<D>]),
+    shape: &Shape<D>,
+    x: &[Vector<D>],
     u: &[f64],
     found: impl Fn(usize, K::Gradient) -> T + Sync,
 ) -> Vec<T> {
-    let scratch = || [[0.0; D]; MOST_NODES];
+    let scratch = [[0.0; D]; MOST_NODES];
     with_width!(shape.width(), W => at_points(shape, scratch, |number, block, out: &mut Vec<T>| {
         let patch = &shape.patches()[number];
-        gather(u, shape.offsets(), patch.first_node, (0, 1), block);
-        let (rows, points, kinematics) = (shape.rows_with_derivatives(), patch.points.clone(), PhantomData::<K>);
+        gather(u, shape.offsets(), patch.first_node, 0, 1, block);
+        let rows = shape.rows_with_derivatives();
+        let points = patch.points.clone();
+        let kinematics = PhantomData::<K>;
         lanes::run(Gradients::<K, _, _, D, W> { rows, x, points, block, found: &found, out, kinematics });
     }))
 }
 
 /// Scatter with gradients, the adjoint of [`gradients`]: sum_p flux_p grad N_Ip (step 5a).
 pub fn divergence<K: Kinematics<D>, const D: usize>(
-    at: (&Shape<D>, &[Vector<D>]),
+    shape: &Shape<D>,
+    x: &[Vector<D>],
     flux: impl Fn(usize) -> K::Gradient + Sync,
 ) -> Contributions {
-    divergence_of::<K, D>(at, |points, fluxes| fluxes.extend(points.map(&flux)))
+    divergence_of::<K, D>(shape, x, |points, fluxes| fluxes.extend(points.map(&flux)))
 }
 
 /// The same of fluxes that are appended for many consecutive points at a time.
 pub fn divergence_of<K: Kinematics<D>, const D: usize>(
-    (shape, x): (&Shape<D>, &[Vector<D>]),
+    shape: &Shape<D>,
+    x: &[Vector<D>],
     flux: impl Fn(Range<usize>, &mut Vec<K::Gradient>) + Sync,
 ) -> Contributions {
     with_width!(shape.width(), W => scatter_columns(shape, Grouped::NOT, |column| {
@@ -156,7 +163,8 @@ pub fn divergence_of<K: Kinematics<D>, const D: usize>(
 pub fn squared_gradients<const D: usize>(shape: &Shape<D>, weight: impl Fn(usize) -> f64 + Sync) -> Contributions {
     with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut PatchBlock<1>| {
         for p in points {
-            let (support, weight) = (shape.support::<W>(p), weight(p));
+            let support = shape.support::<W>(p);
+            let weight = weight(p);
             for (k, sum) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
                 sum[0] += weight * support.gradient(k).norm_squared();
             }
@@ -167,7 +175,8 @@ pub fn squared_gradients<const D: usize>(shape: &Shape<D>, weight: impl Fn(usize
 /// What all nodes of point `p` at `x` have in a gradient, for pair sums over a patch.
 #[inline]
 pub(crate) fn slopes_of<K: Kinematics<D>, const D: usize>(
-    (shape, x): (&Shape<D>, &[Vector<D>]),
+    shape: &Shape<D>,
+    x: &[Vector<D>],
     p: usize,
     out: &mut [Slope<K, D>],
 ) {
@@ -198,11 +207,10 @@ fn scatter_columns<const D: usize, const C: usize, F: FnMut(Range<usize>, &mut P
     let mut contributions = nothing(shape, count * C);
     let sums = apart(&mut contributions);
     share(sums.len(), &|index| {
-        let (column, sums) = (
-            &shape.columns()[index],
-            &mut *sums[index].lock().expect("the column's only thread"),
-        );
-        let (first, mut fill) = (column.column * shape.extent().1, filling(column));
+        let column = &shape.columns()[index];
+        let sums = &mut *sums[index].lock().expect("the column's only thread");
+        let first = column.column * shape.extent().layer_nodes;
+        let mut fill = filling(column);
         let mut block = [[0.0; C]; MOST_NODES];
         for number in column.patches.clone() {
             let patch = &shape.patches()[number];
@@ -211,45 +219,65 @@ fn scatter_columns<const D: usize, const C: usize, F: FnMut(Range<usize>, &mut P
                 fill(points, &mut block);
                 let node = patch.first_node - first;
                 let Some(merged) = shape.merger() else {
-                    add(sums, shape.offsets(), node, (group, count), &block);
+                    add(sums, shape.offsets(), node, group, count, &block);
                     continue;
                 };
-                let [cells, pairs] = merged.spread((number, group), &block);
-                add(sums, shape.offsets(), node, (2 * group, 2 * count), &cells);
-                add(sums, merged.offsets(number), node, (2 * group + 1, 2 * count), &pairs);
+                let [cells, pairs] = merged.spread(number, group, &block);
+                add(sums, shape.offsets(), node, 2 * group, 2 * count, &cells);
+                add(sums, merged.offsets(number), node, 2 * group + 1, 2 * count, &pairs);
             }
         }
     });
     contributions
 }
 
+/// The patch that a thread is at, and what `work` found at its points.
+struct CurrentPatch<S, T> {
+    scratch: S,
+    points: Range<usize>,
+    found: Vec<T>,
+}
+
+impl<S, T: Clone> CurrentPatch<S, T> {
+    /// Begins before any patch.
+    fn new(scratch: S) -> Self {
+        Self {
+            scratch,
+            points: 0..0,
+            found: Vec::new(),
+        }
+    }
+
+    /// Returns what is found at point `p`. A thread that begins within a patch works it out from its first point.
+    #[inline]
+    fn find(&mut self, patches: &[Patch], work: &impl Fn(usize, &mut S, &mut Vec<T>), p: usize) -> T {
+        if !self.points.contains(&p) {
+            let number = patches.partition_point(|patch| patch.points.end <= p);
+            self.found.clear();
+            work(number, &mut self.scratch, &mut self.found);
+            self.points.clone_from(&patches[number].points);
+        }
+        self.found[p - self.points.start].clone()
+    }
+}
+
 /// What the patches leave at their points, in the order of the points.
-fn at_points<const D: usize, S, T: Clone + Send>(
+fn at_points<const D: usize, S: Copy + Sync, T: Clone + Send>(
     shape: &Shape<D>,
-    scratch: impl Fn() -> S + Sync,
+    scratch: S,
     work: impl Fn(usize, &mut S, &mut Vec<T>) + Sync,
 ) -> Vec<T> {
     if rayon::current_num_threads() == 1 {
-        let (mut scratch, mut out) = (scratch(), Vec::with_capacity(shape.len()));
+        let mut scratch = scratch;
+        let mut out = Vec::with_capacity(shape.len());
         (0..shape.patches().len()).for_each(|patch| work(patch, &mut scratch, &mut out));
         return out;
     }
     let patches = shape.patches();
-    let begin = || (scratch(), 0..0, Vec::new());
-    // A thread that begins within a patch works it out from its first point.
-    let of_point = |(scratch, points, found): &mut (S, Range<usize>, Vec<T>), p: usize| {
-        if !points.contains(&p) {
-            let number = patches.partition_point(|patch| patch.points.end <= p);
-            found.clear();
-            work(number, scratch, found);
-            points.clone_from(&patches[number].points);
-        }
-        found[p - points.start].clone()
-    };
     (0..shape.len())
         .into_par_iter()
         .with_min_len(CHUNK)
-        .map_init(begin, of_point)
+        .map_init(|| CurrentPatch::new(scratch), |patch, p| patch.find(patches, &work, p))
         .collect()
 }
 
@@ -270,30 +298,33 @@ fn gathered<const D: usize, const C: usize>(
     shape: &Shape<D>,
     nodal: &[f64],
     number: usize,
-    (group, groups): (usize, usize),
+    group: usize,
+    groups: usize,
     block: &mut PatchBlock<C>,
 ) {
     let first = shape.patches()[number].first_node;
     let Some(merged) = shape.merger() else {
-        return gather(nodal, shape.offsets(), first, (group, groups), block);
+        return gather(nodal, shape.offsets(), first, group, groups, block);
     };
     let mut pairs = [[0.0; C]; MOST_NODES];
-    gather(nodal, shape.offsets(), first, (2 * group, 2 * groups), block);
+    gather(nodal, shape.offsets(), first, 2 * group, 2 * groups, block);
     gather(
         nodal,
         merged.offsets(number),
         first,
-        (2 * group + 1, 2 * groups),
+        2 * group + 1,
+        2 * groups,
         &mut pairs,
     );
-    *block = merged.combine((number, group), [*block, pairs]);
+    *block = merged.combine(number, group, [*block, pairs]);
 }
 
 fn gather<const C: usize>(
     nodal: &[f64],
     offsets: &[usize],
     first: usize,
-    (group, groups): (usize, usize),
+    group: usize,
+    groups: usize,
     block: &mut PatchBlock<C>,
 ) {
     for (at_node, offset) in block.iter_mut().zip(offsets) {
@@ -305,7 +336,8 @@ fn add<const C: usize>(
     nodal: &mut [f64],
     offsets: &[usize],
     first: usize,
-    (group, groups): (usize, usize),
+    group: usize,
+    groups: usize,
     block: &PatchBlock<C>,
 ) {
     for (sums, offset) in block.iter().zip(offsets) {

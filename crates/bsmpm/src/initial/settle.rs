@@ -6,12 +6,13 @@ use crate::error::StepError;
 use crate::kinematics::Kinematics;
 use crate::method::Criteria;
 use crate::model::Model;
-use crate::parallel::{Halo, LinearSolver};
+use crate::parallel::{Backend, Halo, LinearSolver};
 use crate::points::Points;
-use crate::solve;
 use crate::solve::convergence::worst_nodes;
+use crate::solve::found::Found;
 use crate::solve::round_off::RoundOff;
 use crate::step::commit;
+use crate::step::commit::ConstitutiveUpdate;
 use crate::step::report::Counts;
 use crate::step::residual::Residual;
 use crate::tensor::Symmetric;
@@ -45,9 +46,10 @@ pub fn set_spread<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
     k0: impl Fn(u16) -> f64,
-    (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
+    halo: &dyn Halo,
+    solver: &mut dyn LinearSolver,
 ) -> Result<(), StepError> {
-    set_elastic(model, points, (halo, solver))?;
+    set_elastic(model, points, halo, solver)?;
     let mut most = [points.sigma.iter().map(|stress| -stress.0[D - 1]).fold(0.0, f64::max)];
     halo.maximum(&mut most);
     for p in 0..points.len() {
@@ -73,24 +75,17 @@ pub fn set_spread<K: Kinematics<D>, const D: usize>(
 pub fn settle<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
-    (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
+    halo: &dyn Halo,
+    solver: &mut dyn LinearSolver,
 ) -> Result<Settling, StepError> {
     let model = &model.settling();
-    let Criteria {
-        force, max_iterations, ..
-    } = model.criteria;
-    let criteria = Criteria {
-        energy: ANY,
-        force: WITHIN * force,
-        max_iterations,
-    };
-    let sought = &Model {
-        criteria,
-        ..model.clone()
-    };
+    let sought = &of_a_round(model);
     let at_rest = vec![0.0; model.grid.nodes() * D];
-    let (mut held, mut counts, mut rounds) = (None::<Vec<f64>>, Counts::default(), 0);
-    let (mut left, mut part) = (1.0_f64, 1.0_f64);
+    let mut held = None::<Vec<f64>>;
+    let mut counts = Counts::default();
+    let mut rounds = 0;
+    let mut left = 1.0_f64;
+    let mut part = 1.0_f64;
     loop {
         let mut start = Undeformed::of(model, points, halo)?;
         let problem = start.problem(model, points, halo);
@@ -104,48 +99,59 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
             });
         }
         if rounds == MOST_ROUNDS {
-            let worst = worst_nodes(&problem, &balance);
             return Err(StepError::Unbalanced {
                 rounds,
                 force: balance.measure(),
-                worst,
+                worst: worst_nodes(&problem, &balance),
             });
         }
         // What is out of balance at first, the stress beyond yield returned, is held by forces that go.
-        let (held, next) = (held.get_or_insert(balance.f_oob), (left - part).max(0.0));
-        start
-            .nodes
-            .f_ext
-            .iter_mut()
-            .zip(&*held)
-            .for_each(|(force, held)| *force -= next * held);
-        let around = (&mut start.attachments, &*points);
-        let found = solve::contact::find(
-            sought,
-            &start.shape,
-            &mut start.nodes,
-            around,
-            &at_rest,
-            (halo, solver),
-            &mut counts,
-        );
-        match found {
+        let held = held.get_or_insert(balance.f_oob);
+        let next = (left - part).max(0.0);
+        let f_ext = start.nodes.f_ext.iter_mut().zip(&*held);
+        f_ext.for_each(|(force, held)| *force -= next * held);
+        match start.find(sought, points, &mut Backend { halo, solver }, &mut counts) {
             Ok(found) => {
-                let (answers, state) = commit::answers(model, &found.trial, points, halo)?;
-                let (_, traction) =
-                    start
-                        .attachments
-                        .conclude((&model.boundary.strips, &model.grid), &points.surface, &found.u, halo);
-                points.surface.traction = traction;
-                for (p, answer) in answers.iter().enumerate() {
-                    points.b_e.set(p, answer.b_e);
-                    points.sigma.set(p, answer.tau);
-                }
-                points.state = state;
+                take(model, &start, points, &found, halo)?;
                 (left, part, rounds) = (next, 2.0 * part, rounds + 1);
             }
             Err(error) if error.is_final() || part.min(left) <= LEAST => return Err(error),
             Err(_) => part = 0.5 * part.min(left),
         }
     }
+}
+
+/// The model with what a round has to reach.
+fn of_a_round<K: Kinematics<D>, const D: usize>(model: &Model<K, D>) -> Model<K, D> {
+    let criteria = Criteria {
+        energy: ANY,
+        force: WITHIN * model.criteria.force,
+        max_iterations: model.criteria.max_iterations,
+    };
+    Model {
+        criteria,
+        ..model.clone()
+    }
+}
+
+/// Gives the points the stress and the laws' state of an equilibrium, and strips their tractions.
+fn take<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    start: &Undeformed<D>,
+    points: &mut Points<D>,
+    found: &Found<K, D>,
+    halo: &dyn Halo,
+) -> Result<(), StepError> {
+    let ConstitutiveUpdate { answers, state } = commit::constitutive_update(model, &found.trial, points, halo)?;
+    let (_, traction) =
+        start
+            .attachments
+            .conclude(&model.boundary.strips, &model.grid, &points.surface, &found.u, halo);
+    points.surface.traction = traction;
+    for (p, answer) in answers.iter().enumerate() {
+        points.b_e.set(p, answer.b_e);
+        points.sigma.set(p, answer.tau);
+    }
+    points.state = state;
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! Axisymmetry without torsion.
 
 use super::{Kinematics, pull_back};
+use crate::material::Moduli;
 use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
 use nalgebra::{SMatrix, SVector};
@@ -32,13 +33,15 @@ impl Kinematics<2> for Axisymmetric {
 
     /// The rows and columns r, z of sum B_a^T D B_b, B the strains rr, zz, theta theta and rz of a node's displacement.
     #[inline]
-    fn stiffness(moment: &SMatrix<f64, 3, 3>, (lambda, mu): (f64, f64)) -> Square<2> {
-        let T = |i: usize, j: usize| moment[(i, j)];
+    fn stiffness(moment: &SMatrix<f64, 3, 3>, moduli: Moduli) -> Square<2> {
+        let Moduli { lambda, mu } = moduli;
+        let T = moment;
         Square::<2>::new(
-            lambda * (T(0, 0) + T(0, 2) + T(2, 0) + T(2, 2)) + mu * (2.0 * T(0, 0) + T(1, 1) + 2.0 * T(2, 2)),
-            lambda * (T(0, 1) + T(2, 1)) + mu * T(1, 0),
-            lambda * (T(1, 0) + T(1, 2)) + mu * T(0, 1),
-            lambda * T(1, 1) + mu * (2.0 * T(1, 1) + T(0, 0)),
+            lambda * (T[(0, 0)] + T[(0, 2)] + T[(2, 0)] + T[(2, 2)])
+                + mu * (2.0 * T[(0, 0)] + T[(1, 1)] + 2.0 * T[(2, 2)]),
+            lambda * (T[(0, 1)] + T[(2, 1)]) + mu * T[(1, 0)],
+            lambda * (T[(1, 0)] + T[(1, 2)]) + mu * T[(0, 1)],
+            lambda * T[(1, 1)] + mu * (2.0 * T[(1, 1)] + T[(0, 0)]),
         )
     }
 
@@ -65,9 +68,9 @@ impl Kinematics<2> for Axisymmetric {
     }
 
     #[inline(always)]
-    fn working<R: Real>(tensor: &Tensor<R>) -> SMatrix<R, 2, 3> {
-        let t = |i: usize, j: usize| tensor[(i, j)];
-        SMatrix::<R, 2, 3>::new(t(0, 0), t(0, 1), t(2, 2), t(1, 0), t(1, 1), t(0, 0).like(0.0))
+    fn working<R: Real>(t: &Tensor<R>) -> SMatrix<R, 2, 3> {
+        let zero = t[(0, 0)].like(0.0);
+        SMatrix::<R, 2, 3>::new(t[(0, 0)], t[(0, 1)], t[(2, 2)], t[(1, 0)], t[(1, 1)], zero)
     }
 
     fn dilation() -> Tensor {

@@ -1,6 +1,7 @@
 //! Plane strain.
 
 use super::{Kinematics, isotropic};
+use crate::material::Moduli;
 use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
 use nalgebra::SMatrix;
@@ -23,8 +24,8 @@ impl Kinematics<2> for PlaneStrain {
     }
 
     #[inline]
-    fn stiffness(moment: &Square<2>, lame: (f64, f64)) -> Square<2> {
-        isotropic(moment, lame)
+    fn stiffness(moment: &Square<2>, moduli: Moduli) -> Square<2> {
+        isotropic(moment, moduli)
     }
 
     #[inline(always)]
@@ -60,7 +61,10 @@ impl Kinematics<2> for PlaneStrain {
     #[inline(always)]
     fn flux<R: Real>(tau: &Symmetric<R>, dF: &Tensor<R>) -> SMatrix<R, 2, 2> {
         let [xx, yy, _, xy, ..] = tau.0;
-        let (a, b, c, d) = (dF[(0, 0)], dF[(0, 1)], dF[(1, 0)], dF[(1, 1)]);
+        let a = dF[(0, 0)];
+        let b = dF[(0, 1)];
+        let c = dF[(1, 0)];
+        let d = dF[(1, 1)];
         let inverse = a.like(1.0) / (a * d - b * c);
         SMatrix::<R, 2, 2>::new(
             (xx * d - xy * b) * inverse,
@@ -73,14 +77,16 @@ impl Kinematics<2> for PlaneStrain {
     #[inline(always)]
     fn push_forward<R: Real>(dF: &Tensor<R>, b_e: &Symmetric<R>) -> Symmetric<R> {
         let [xx, yy, zz, xy, ..] = b_e.0;
-        let (a, b, c, d) = (dF[(0, 0)], dF[(0, 1)], dF[(1, 0)], dF[(1, 1)]);
-        let (row_x, row_y) = ((a * xx + b * xy, a * xy + b * yy), (c * xx + d * xy, c * xy + d * yy));
+        let a = dF[(0, 0)];
+        let b = dF[(0, 1)];
+        let c = dF[(1, 0)];
+        let d = dF[(1, 1)];
+        let row_x = (a * xx + b * xy, a * xy + b * yy);
+        let row_y = (c * xx + d * xy, c * xy + d * yy);
         let normal = dF[(2, 2)] * dF[(2, 2)] * zz;
         let zero = a.like(0.0);
-        let (along, across) = (
-            [row_x.0 * a + row_x.1 * b, row_y.0 * c + row_y.1 * d],
-            row_x.0 * c + row_x.1 * d,
-        );
+        let along = [row_x.0 * a + row_x.1 * b, row_y.0 * c + row_y.1 * d];
+        let across = row_x.0 * c + row_x.1 * d;
         Symmetric([along[0], along[1], normal, across, zero, zero])
     }
 

@@ -1,6 +1,7 @@
 //! Three dimensions.
 
 use super::{Kinematics, determinant, isotropic, plus_identity, pull_back};
+use crate::material::Moduli;
 use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
 
@@ -22,8 +23,8 @@ impl Kinematics<3> for Solid {
     }
 
     #[inline]
-    fn stiffness(moment: &Square<3>, lame: (f64, f64)) -> Square<3> {
-        isotropic(moment, lame)
+    fn stiffness(moment: &Square<3>, moduli: Moduli) -> Square<3> {
+        isotropic(moment, moduli)
     }
 
     #[inline(always)]

@@ -52,8 +52,10 @@ impl CamClay {
     /// stress. Shear modulus and κ are those of `elastic`: its bulk modulus is met at the pressure κ̂ K.
     pub fn new(elastic: Elastic, [kappa, lambda, ratio, preconsolidation, ocr]: [f64; 5]) -> Self {
         let moduli = elastic.moduli();
-        let (swelling, compression) = (kappa / (1.0 - kappa), lambda / (1.0 - lambda));
-        let (hardening, reference) = (compression - swelling, swelling * moduli.bulk());
+        let swelling = kappa / (1.0 - kappa);
+        let compression = lambda / (1.0 - lambda);
+        let hardening = compression - swelling;
+        let reference = swelling * moduli.bulk();
         let constants = Constants {
             swelling,
             hardening,
@@ -78,7 +80,7 @@ impl CamClay {
 impl Constants {
     /// `f/p_c`, Pa.
     #[inline(always)]
-    fn excess<R: Real>(&self, (pressure, deviator): (R, R), preconsolidation: R) -> R {
+    fn excess<R: Real>(&self, pressure: R, deviator: R, preconsolidation: R) -> R {
         let slope = deviator / self.ratio;
         slope * slope / preconsolidation + pressure * (pressure / preconsolidation - 1.0)
     }
@@ -104,18 +106,21 @@ impl Constants {
     /// `2 r d/M + (s_trial - s)(1 - r²) = 0`. Left of the critical state, r = 1, and right of it a root lies between
     /// that and the ratio that makes no change of volume; Newton's steps are kept between its bounds.
     #[inline(always)]
-    fn solve<R: Real>(&self, (pressure, shear): (R, R), before: R) -> R {
-        let (one, none) = (pressure.like(1.0), pressure.like(0.0));
+    fn solve<R: Real>(&self, pressure: R, shear: R, before: R) -> R {
+        let one = pressure.like(1.0);
+        let none = pressure.like(0.0);
         let wet = (before * 0.5).at_most(pressure);
         let highest = (before / pressure - 1.0).magnitude().root();
-        let (mut low, mut high) = (R::choose(wet, none, one), R::choose(wet, one, highest));
+        let mut low = R::choose(wet, none, one);
+        let mut high = R::choose(wet, one, highest);
         let trial = shear * (3.0 * self.mu / self.ratio) / pressure;
         let inside = low.below(trial) & trial.below(high);
         let mut r = R::choose(inside, trial, (low + high) * 0.5);
         let mut sought = none.at_most(none);
         for _ in 0..EVALUATIONS {
             let (lost, preconsolidation, kept) = self.at_ratio(r, pressure, before);
-            let (square, rest) = (r * r, shear - kept);
+            let square = r * r;
+            let rest = shear - kept;
             let value = r * lost * (2.0 / self.ratio) + rest * (one - square);
             low = R::choose(none.below(value), r, low);
             high = R::choose(value.below(none), r, high);
@@ -211,18 +216,21 @@ impl Law for CamClay {
     #[inline(always)]
     fn excess<R: Real>(&self, tau: [R; 3], state: &[R]) -> R {
         let (mean, _, norm) = split(tau);
-        self.constants.excess((-mean, norm * 1.5_f64.sqrt()), state[0])
+        self.constants.excess(-mean, norm * 1.5_f64.sqrt(), state[0])
     }
 
     #[inline(never)]
     fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, CamClayReturn<R>> {
-        let (constants, before) = (self.constants, state[0]);
+        let constants = self.constants;
+        let before = state[0];
         let (mean, part, norm) = split(trial);
-        let (none, pressure, q) = (mean.like(0.0), -mean, norm * 1.5_f64.sqrt());
-        let yields = !constants.excess((pressure, q), before).at_most(none);
+        let none = mean.like(0.0);
+        let pressure = -mean;
+        let q = norm * 1.5_f64.sqrt();
+        let yields = !constants.excess(pressure, q, before).at_most(none);
         let shear = q / (3.0 * constants.mu);
         let r = if R::any(yields) {
-            constants.solve((pressure, shear), before)
+            constants.solve(pressure, shear, before)
         } else {
             none
         };
@@ -275,7 +283,8 @@ impl Law for CamClay {
             mu,
             ..
         } = constants;
-        let (mean, bulk) = (-flow.pressure, flow.pressure / swelling);
+        let mean = -flow.pressure;
+        let bulk = flow.pressure / swelling;
         let growth = preconsolidation / hardening; // of p_c with the volume
         let normal = [2.0 * mean + preconsolidation, 2.0 * flow.deviator / (ratio * ratio)];
         let scale = [
@@ -284,28 +293,29 @@ impl Law for CamClay {
         ];
         let rate = [normal[0] * bulk + mean * growth, 3.0 * mu * normal[1]]; // of f with elastic strains
         let drive = rate[0] * normal[0] / scale[0] + rate[1] * normal[1] / scale[1];
-        let moved = |volume: f64, shear: f64| {
-            if !flow.yields {
-                return [bulk * volume, 3.0 * mu * shear];
-            }
-            let right = [(1.0 + multiplier * growth) * volume, shear];
-            let by = (rate[0] * right[0] / scale[0] + rate[1] * right[1] / scale[1] - mean * growth * volume) / drive;
-            [
-                bulk * (right[0] - normal[0] * by) / scale[0],
-                3.0 * mu * (right[1] - normal[1] * by) / scale[1],
-            ]
-        };
         let turned = 2.0 * mu * flow.kept();
         let along = (2.0_f64 / 3.0).sqrt();
+        // Changes of P and Q per principal strain, whose volume is 1.
+        let mut moved = n.map(|n| [bulk, 3.0 * mu * (along * n)]);
+        if flow.yields {
+            for (moved, n) in moved.iter_mut().zip(n) {
+                let right = [1.0 + multiplier * growth, along * n];
+                let by = (rate[0] * right[0] / scale[0] + rate[1] * right[1] / scale[1] - mean * growth) / drive;
+                *moved = [
+                    bulk * (right[0] - normal[0] * by) / scale[0],
+                    3.0 * mu * (right[1] - normal[1] * by) / scale[1],
+                ];
+            }
+        }
         Tensor::from_fn(|a, b| {
-            let [mean, deviator] = moved(1.0, along * n[b]);
+            let [mean, deviator] = moved[b];
             let across = if a == b { 2.0 / 3.0 } else { -1.0 / 3.0 } - n[a] * n[b];
             mean + along * deviator * n[a] + turned * across
         })
     }
 
     /// All differences are kept alike.
-    fn chord(flow: &CamClayReturn<f64>, moduli: Moduli, _differences: (f64, f64)) -> f64 {
+    fn chord(flow: &CamClayReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
         2.0 * moduli.mu * flow.kept()
     }
 

@@ -1,7 +1,7 @@
 //! Drucker-Prager law, theory-manual equations (T4.8), (T4.9): perfectly plastic, non-associated. Stresses return to
 //! the cone or its tip.
 
-use super::law::{Branch, FRICTIONAL, Law, Projection, Variable, frictional, reduced, split};
+use super::law::{Branch, FRICTIONAL, Law, Projection, Strength, Variable, frictional, split};
 use super::{Elastic, Moduli};
 use crate::real::{Real, three};
 use crate::tensor::Tensor;
@@ -23,7 +23,9 @@ impl Match {
     /// Of an angle (rad) its slope in the mean stress, η or η_ψ, and of the friction angle the factor ξ of the
     /// cohesion.
     fn slopes(self, angle: f64) -> (f64, f64) {
-        let (sin, cos, tan) = (angle.sin(), angle.cos(), angle.tan());
+        let sin = angle.sin();
+        let cos = angle.cos();
+        let tan = angle.tan();
         match self {
             Self::Outer => (
                 6.0 * sin / (3_f64.sqrt() * (3.0 - sin)),
@@ -71,8 +73,9 @@ pub struct DruckerPragerReturn<R: Real> {
 impl DruckerPrager {
     /// A law that meets the pyramid of friction angle 0 ≤ φ < π/2 (rad), dilation angle 0 ≤ ψ ≤ φ (rad) and cohesion
     /// c ≥ 0 (Pa) as `fit` says.
-    pub fn new(elastic: Elastic, (friction, dilation, cohesion): (f64, f64, f64), fit: Match) -> Self {
-        let (moduli, (eta, xi)) = (elastic.moduli(), fit.slopes(friction));
+    pub fn new(elastic: Elastic, friction: f64, dilation: f64, cohesion: f64, fit: Match) -> Self {
+        let moduli = elastic.moduli();
+        let (eta, xi) = fit.slopes(friction);
         let slopes = [eta, fit.slopes(dilation).0];
         Self {
             elastic,
@@ -138,7 +141,7 @@ impl Law for DruckerPrager {
     /// ψ is at most φ.
     fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
         let [friction, dilation, cohesion] = frictional(parameters);
-        Self::new(elastic, (friction, dilation, cohesion), self.fit)
+        Self::new(elastic, friction, dilation, cohesion, self.fit)
     }
 
     /// `f = √J₂ + η p - ξ c`.
@@ -152,9 +155,11 @@ impl Law for DruckerPrager {
     /// p = ξ c/η.
     #[inline(always)]
     fn project<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, DruckerPragerReturn<R>> {
-        let (Moduli { mu, .. }, [eta, eta_psi]) = (self.moduli, self.slopes);
+        let Moduli { mu, .. } = self.moduli;
+        let [eta, eta_psi] = self.slopes;
         let (mean, deviator, norm) = split(trial);
-        let (root, zero) = (norm * std::f64::consts::FRAC_1_SQRT_2, mean.like(0.0));
+        let root = norm * std::f64::consts::FRAC_1_SQRT_2;
+        let zero = mean.like(0.0);
         let excess = root + mean * eta - self.strength;
         let yields = !excess.at_most(zero);
         if !R::any(yields) {
@@ -209,20 +214,20 @@ impl Law for DruckerPrager {
         if apex {
             return Tensor::zeros();
         }
-        let (mu, bulk) = (moduli.mu, moduli.bulk());
+        let mu = moduli.mu;
+        let bulk = moduli.bulk();
         let inverse = 1.0 / (mu + bulk * eta * eta_psi);
         let mixed = std::f64::consts::SQRT_2 * mu * inverse * bulk;
-        let entry = |a: usize, b: usize| {
+        Tensor::from_fn(|a, b| {
             let deviator = if a == b { 2.0 / 3.0 } else { -1.0 / 3.0 };
             2.0 * mu * (kept * deviator + (1.0 - kept - mu * inverse) * n[a] * n[b])
                 - mixed * (eta * n[a] + eta_psi * n[b])
                 + bulk * mu * inverse
-        };
-        Tensor::from_fn(entry)
+        })
     }
 
     /// All differences are kept alike.
-    fn chord(flow: &DruckerPragerReturn<f64>, moduli: Moduli, _differences: (f64, f64)) -> f64 {
+    fn chord(flow: &DruckerPragerReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
         if flow.apex { 0.0 } else { 2.0 * moduli.mu * flow.kept }
     }
 
@@ -230,8 +235,17 @@ impl Law for DruckerPrager {
         if factor == 1.0 {
             return self;
         }
-        let strength = reduced((self.friction, self.dilation, self.cohesion), factor);
-        Self::new(self.elastic, strength, self.fit)
+        let Strength {
+            friction_angle,
+            dilation_angle,
+            cohesion,
+        } = Strength {
+            friction_angle: self.friction,
+            dilation_angle: self.dilation,
+            cohesion: self.cohesion,
+        }
+        .reduced(factor);
+        Self::new(self.elastic, friction_angle, dilation_angle, cohesion, self.fit)
     }
 
     fn dilation(&self) -> f64 {

@@ -26,8 +26,9 @@ impl Elastic {
         lambda + 2.0 * mu
     }
 
+    /// Returns the Lamé constants, Pa.
     #[inline]
-    pub(super) fn moduli(&self) -> Moduli {
+    pub fn moduli(&self) -> Moduli {
         let (lambda, mu) = self.lame();
         Moduli { lambda, mu }
     }

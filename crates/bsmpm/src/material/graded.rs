@@ -34,7 +34,8 @@ impl Profile {
 
     /// Its smallest and largest value between two heights.
     pub fn bounds(&self, heights: &Range<f64>) -> (f64, f64) {
-        let (a, b) = (self.at(heights.start), self.at(heights.end));
+        let a = self.at(heights.start);
+        let b = self.at(heights.end);
         (a.min(b), a.max(b))
     }
 }

@@ -100,7 +100,7 @@ pub trait Law {
     ///
     /// In 0..2μ, since returns shrink stress differences; here 0 of equal strains, as what is near an edge returns to
     /// it. The bounds keep rounding of a tiny difference inside.
-    fn chord(_flow: &Self::Flow<f64>, moduli: Moduli, (tau, eps): (f64, f64)) -> f64 {
+    fn chord(_flow: &Self::Flow<f64>, moduli: Moduli, tau: f64, eps: f64) -> f64 {
         if eps > 0.0 {
             (tau / eps).max(0.0).min(2.0 * moduli.mu)
         } else {
@@ -202,11 +202,28 @@ pub(super) fn frictional(parameters: &[f64]) -> [f64; 3] {
     [parameters[0], parameters[1].min(parameters[0]), parameters[2]]
 }
 
-/// Friction and dilation angle (rad) and cohesion (Pa), divided by a strength reduction factor: `atan(tan φ/SRF)`,
-/// `ψ_f = min(ψ, φ_f)`, `c/SRF`.
-pub(super) fn reduced((friction, dilation, cohesion): (f64, f64, f64), factor: f64) -> (f64, f64, f64) {
-    let reduced = (friction.tan() / factor).atan();
-    (reduced, dilation.min(reduced), cohesion / factor)
+/// Strength of soil with friction and cohesion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Strength {
+    /// Friction angle φ, rad.
+    pub friction_angle: f64,
+    /// Dilation angle ψ, rad.
+    pub dilation_angle: f64,
+    /// Cohesion c, Pa.
+    pub cohesion: f64,
+}
+
+impl Strength {
+    /// Returns the strength divided by a strength reduction factor: `φ_f = atan(tan φ/SRF)`, `ψ_f = min(ψ, φ_f)`,
+    /// `c_f = c/SRF`.
+    pub(super) fn reduced(self, factor: f64) -> Self {
+        let friction_angle = (self.friction_angle.tan() / factor).atan();
+        Self {
+            friction_angle,
+            dilation_angle: self.dilation_angle.min(friction_angle),
+            cohesion: self.cohesion / factor,
+        }
+    }
 }
 
 /// Mean, deviator and norm of the deviator of principal values.
@@ -214,7 +231,8 @@ pub(super) fn reduced((friction, dilation, cohesion): (f64, f64, f64), factor: f
 pub fn split<R: Real>(tau: [R; 3]) -> (R, [R; 3], R) {
     let mean = (tau[0] + tau[1] + tau[2]) / 3.0;
     // By differences, so that the deviator has no trace even where the mean is many orders larger.
-    let (upper, lower) = (tau[0] - tau[1], tau[1] - tau[2]);
+    let upper = tau[0] - tau[1];
+    let lower = tau[1] - tau[2];
     let whole = tau[0] - tau[2];
     let deviator = [(upper + whole) / 3.0, (lower - upper) / 3.0, -(whole + lower) / 3.0];
     let squares = deviator[0] * deviator[0] + deviator[1] * deviator[1] + deviator[2] * deviator[2];

@@ -1,7 +1,7 @@
 //! Mohr-Coulomb and Tresca laws, theory-manual equations (T4.5) to (T4.7): perfectly plastic, non-associated. All
 //! return mappings have closed forms.
 
-use super::law::{Branch, FRICTIONAL, Law, Projection, Separation, Variable, frictional, reduced};
+use super::law::{Branch, FRICTIONAL, Law, Projection, Separation, Strength, Variable, frictional};
 use super::{Elastic, Moduli};
 use crate::real::{Real, choose};
 use crate::tensor::Tensor;
@@ -103,11 +103,10 @@ impl<P: Real> Slopes<P> {
     /// The right edge (τ₂ = τ₃), on which the potentials of the planes 1-3 and 1-2 flow together.
     #[inline(always)]
     fn right(self, moduli: Moduli) -> YieldEdge<P> {
-        let ((minus, plus), one) = (self.flow(), self.sin_psi.like(1.0));
-        let (dev, trace) = (
-            self.sin_psi * (6.0 * moduli.bulk()),
-            (self.sin_psi + 3.0) * (2.0 * moduli.mu),
-        );
+        let (minus, plus) = self.flow();
+        let one = self.sin_psi.like(1.0);
+        let dev = self.sin_psi * (6.0 * moduli.bulk());
+        let trace = (self.sin_psi + 3.0) * (2.0 * moduli.mu);
         YieldEdge::new(
             [self.ratio(), one, one],
             [minus, plus, plus],
@@ -118,9 +117,11 @@ impl<P: Real> Slopes<P> {
     /// The left edge (τ₁ = τ₂), on which the potentials of the planes 1-3 and 2-3 flow together.
     #[inline(always)]
     fn left(self, moduli: Moduli) -> YieldEdge<P> {
-        let ((minus, plus), one) = (self.flow(), self.sin_psi.like(1.0));
+        let (minus, plus) = self.flow();
+        let one = self.sin_psi.like(1.0);
         let trace = (self.sin_psi.like(3.0) - self.sin_psi) * (2.0 * moduli.mu);
-        let (dev, ratio) = (self.sin_psi * (6.0 * moduli.bulk()), self.ratio());
+        let dev = self.sin_psi * (6.0 * moduli.bulk());
+        let ratio = self.ratio();
         YieldEdge::new(
             [ratio, ratio, one],
             [minus, minus, plus],
@@ -137,9 +138,10 @@ impl Slopes {
             Branch::Elastic => moduli.tangent(),
             Branch::Apex => Tensor::zeros(),
             Branch::Face => {
-                let normal = |sin: f64| [1.0 + sin, 0.0, sin - 1.0];
-                let (n, m) = (normal(self.sin_phi), normal(self.sin_psi));
-                let (d_n, d_m) = (moduli.stress(n), moduli.stress(m));
+                let n = [1.0 + self.sin_phi, 0.0, self.sin_phi - 1.0];
+                let m = [1.0 + self.sin_psi, 0.0, self.sin_psi - 1.0];
+                let d_n = moduli.stress(n);
+                let d_m = moduli.stress(m);
                 let product = self.sin_phi * self.sin_psi;
                 let scale = 4.0 * (moduli.lambda * product + moduli.mu * (1.0 + product));
                 moduli.tangent() - Tensor::from_fn(|i, j| d_m[i] * d_n[j] / scale)
@@ -232,7 +234,8 @@ impl<P: Real> Pyramid<P> {
     /// order.
     #[inline(always)]
     fn face<R: With<P>>(&self, trial: [R; 3], excess: R) -> ([R; 3], R::Mask) {
-        let (Moduli { lambda, mu }, sin_psi) = (self.moduli, self.slopes.sin_psi);
+        let Moduli { lambda, mu } = self.moduli;
+        let sin_psi = self.slopes.sin_psi;
         let half = excess * self.slope;
         let second = trial[1] - half * lambda * sin_psi;
         let third = trial[2] - half * (sin_psi * lambda - (sin_psi.like(1.0) - sin_psi) * mu);
@@ -248,13 +251,13 @@ impl<P: Real> Pyramid<P> {
         let Self {
             slopes, moduli, shift, ..
         } = *self;
-        let (upper, lower) = (trial[0] - trial[1], trial[1] - trial[2]);
-        let ((minus, plus), none) = (slopes.flow(), shift.like(0.0));
+        let upper = trial[0] - trial[1];
+        let lower = trial[1] - trial[2];
+        let (minus, plus) = slopes.flow();
+        let none = shift.like(0.0);
         let is_right = (lower * plus).below(upper * minus);
-        let (right, left) = (
-            slopes.right(moduli).third(trial, [shift, none, none]),
-            slopes.left(moduli).third(trial, [shift, shift, none]),
-        );
+        let right = slopes.right(moduli).third(trial, [shift, none, none]);
+        let left = slopes.left(moduli).third(trial, [shift, shift, none]);
         let third = R::choose(is_right, right, left);
         let first = third * slopes.ratio() + shift;
         (
@@ -343,8 +346,17 @@ impl Law for MohrCoulomb {
         if factor == 1.0 {
             return self;
         }
-        let (friction, dilation, cohesion) = reduced((self.friction, self.dilation, self.cohesion), factor);
-        Self::new(self.elastic, friction, dilation, cohesion).separating(self.separation)
+        let Strength {
+            friction_angle,
+            dilation_angle,
+            cohesion,
+        } = Strength {
+            friction_angle: self.friction,
+            dilation_angle: self.dilation,
+            cohesion: self.cohesion,
+        }
+        .reduced(factor);
+        Self::new(self.elastic, friction_angle, dilation_angle, cohesion).separating(self.separation)
     }
 
     fn dilation(&self) -> f64 {

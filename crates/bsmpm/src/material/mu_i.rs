@@ -45,11 +45,14 @@ impl MuI {
     /// p (μ_s I_0 √p + μ_2 k γ)`, k the quickness, where T > μ_s p > 0; and of it the rates with T and p.
     #[inline(always)]
     fn sheared<R: Real>(&self, root: R, pressure: R) -> (R, [R; 2]) {
-        let ([mu_s, mu_2, i_0, ..], mu, quick) = (self.parameters, self.moduli.mu, self.quickness);
+        let [mu_s, mu_2, i_0, ..] = self.parameters;
+        let mu = self.moduli.mu;
+        let quick = self.quickness;
         let slow = pressure.root() * i_0;
         let over = root - pressure * mu_s;
         let linear = slow * mu + (pressure * mu_2 - root) * quick;
-        let (square, constant) = (mu * quick, slow * over);
+        let square = mu * quick;
+        let constant = slow * over;
         let discriminant = (linear * linear + constant * (4.0 * square)).root();
         // Of the two forms of the root that without a difference of like numbers.
         let falls = linear.below(linear.like(0.0));
@@ -115,10 +118,14 @@ impl Law for MuI {
     #[inline(always)]
     fn project<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, MuIReturn<R>> {
         let (mean, deviator, norm) = split(trial);
-        let (root, pressure, zero) = (norm / SQRT_2, -mean, mean.like(0.0));
+        let root = norm / SQRT_2;
+        let pressure = -mean;
+        let zero = mean.like(0.0);
         let yields = !(root + mean * self.parameters[0]).at_most(zero);
-        let (apex, (gamma, rates)) = (pressure.at_most(zero), self.sheared(root, pressure));
-        let (kept, mu) = (-(gamma * self.moduli.mu / root) + 1.0, self.moduli.mu);
+        let apex = pressure.at_most(zero);
+        let (gamma, rates) = self.sheared(root, pressure);
+        let kept = -(gamma * self.moduli.mu / root) + 1.0;
+        let mu = self.moduli.mu;
         let tau = three(|k| {
             let returned = R::choose(apex, zero, mean + kept * deviator[k]);
             R::choose(yields, returned, trial[k])
@@ -149,7 +156,8 @@ impl Law for MuI {
         if apex {
             return Tensor::zeros();
         }
-        let (mu, bulk) = (moduli.mu, moduli.bulk());
+        let mu = moduli.mu;
+        let bulk = moduli.bulk();
         Tensor::from_fn(|a, b| {
             let deviator = if a == b { 2.0 / 3.0 } else { -1.0 / 3.0 };
             2.0 * mu * (kept * deviator + (1.0 - kept - with_root) * n[a] * n[b])
@@ -159,7 +167,7 @@ impl Law for MuI {
     }
 
     /// All differences are kept alike.
-    fn chord(flow: &MuIReturn<f64>, moduli: Moduli, _differences: (f64, f64)) -> f64 {
+    fn chord(flow: &MuIReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
         if flow.apex { 0.0 } else { 2.0 * moduli.mu * flow.kept }
     }
 

@@ -17,7 +17,7 @@ pub struct Response {
 
 impl Response {
     #[inline]
-    pub(super) fn new(b_trial: Symmetric, trial: Spectrum, moduli: Moduli, (tau, flowed): ([f64; 3], Flowed)) -> Self {
+    pub(super) fn new(b_trial: Symmetric, trial: Spectrum, moduli: Moduli, tau: [f64; 3], flowed: Flowed) -> Self {
         Self {
             b_trial,
             trial,
@@ -31,13 +31,14 @@ impl Response {
     ///
     /// # Errors
     /// As [`Material::respond`](super::Material::respond).
-    pub fn elastic(b: &Symmetric, (lambda, mu): (f64, f64)) -> Result<Self, MaterialError> {
-        let (spectrum, moduli) = (Spectrum::of(b)?, Moduli { lambda, mu });
+    pub fn elastic(b: &Symmetric, moduli: Moduli) -> Result<Self, MaterialError> {
+        let spectrum = Spectrum::of(b)?;
         Ok(Self::new(
             *b,
             spectrum,
             moduli,
-            (moduli.stress(spectrum.eps), Flowed::Elastic),
+            moduli.stress(spectrum.eps),
+            Flowed::Elastic,
         ))
     }
 
@@ -87,8 +88,9 @@ impl Response {
         if self.branch() != Branch::Apex {
             return 0.0;
         }
-        let sum = |eps: [f64; 3]| eps[0] + eps[1] + eps[2];
-        (sum(self.trial.eps) - sum(self.principal_eps_e())).max(0.0)
+        let trial = self.trial.eps;
+        let elastic = self.principal_eps_e();
+        ((trial[0] + trial[1] + trial[2]) - (elastic[0] + elastic[1] + elastic[2])).max(0.0)
     }
 
     /// The equivalent plastic strain of this return: `Δεᵖ = √(2/3) |dev(ε_trial - εᵉ)|`, zero if elastic.
@@ -97,9 +99,12 @@ impl Response {
         if self.branch() == Branch::Elastic {
             return 0.0;
         }
-        let (eps_e, eps) = (self.principal_eps_e(), self.trial.eps);
+        let eps_e = self.principal_eps_e();
+        let eps = self.trial.eps;
         let flow = [eps[0] - eps_e[0], eps[1] - eps_e[1], eps[2] - eps_e[2]];
-        let (a, b, c) = (flow[0] - flow[1], flow[1] - flow[2], flow[2] - flow[0]);
+        let a = flow[0] - flow[1];
+        let b = flow[1] - flow[2];
+        let c = flow[2] - flow[0];
         // |dev x|² is a third of the sum of squared differences.
         (2.0 * (a * a + b * b + c * c)).sqrt() / 3.0
     }
@@ -110,7 +115,8 @@ impl Response {
         if self.branch() == Branch::Elastic {
             return 0.0;
         }
-        let (eps_e, eps) = (self.principal_eps_e(), self.trial.eps);
+        let eps_e = self.principal_eps_e();
+        let eps = self.trial.eps;
         (0..3).map(|k| self.tau[k] * (eps[k] - eps_e[k])).sum()
     }
 
@@ -146,10 +152,12 @@ impl Response {
     /// there was none.
     pub fn returned(&self) -> Option<Symmetric> {
         if let Some(trial) = self.unreturned().filter(|_| self.flowed.is_linear()) {
-            let (trial, tau) = (trial.tau().0, self.tau().0);
+            let trial = trial.tau().0;
+            let tau = self.tau().0;
             return Some(Symmetric(std::array::from_fn(|k| trial[k] - tau[k])));
         }
-        let (eps_e, eps) = (self.principal_eps_e(), self.trial.eps);
+        let eps_e = self.principal_eps_e();
+        let eps = self.trial.eps;
         let plastic = [0, 1, 2].map(|k| eps[k] - eps_e[k]);
         (self.branch() != Branch::Elastic).then(|| self.trial.assemble(self.moduli.stress(plastic)))
     }
@@ -168,7 +176,8 @@ impl Response {
     /// How what the return took changes with a spatial gradient, Pa: what the bulk modulus after the return differs by
     /// from the law's where elasticity is not linear takes its part of the mean stress.
     pub fn change_of_returned(&self) -> Option<impl Fn(&Tensor) -> Tensor + use<>> {
-        let (trial, own) = (self.unreturned()?.tangent(), self.tangent());
+        let trial = self.unreturned()?.tangent();
+        let own = self.tangent();
         let stiffer = self.moduli.bulk() / self.flowed.elastic_moduli(self.moduli).bulk() - 1.0;
         Some(move |l: &Tensor| {
             let tau = own.apply(l);

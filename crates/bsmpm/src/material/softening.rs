@@ -1,7 +1,8 @@
 //! Mohr-Coulomb law whose strength depends on plastic strain, theory-manual equation (T4.11), and optionally on the
 //! strain rate (T4.13). The shear band width scales the softening strain of the case (T4.12).
 
-use super::law::{Branch, Law, Projection, Variable, reduced, split};
+pub use super::law::Strength;
+use super::law::{Branch, Law, Projection, Variable, split};
 use super::mohr_coulomb::{Corners, Pyramid, Slopes};
 use super::{Elastic, Moduli};
 use crate::real::{Real, three};
@@ -51,8 +52,19 @@ pub struct SofteningMohrCoulomb {
     dt: f64, // s  of the step; without end outside of one
 }
 
-/// φ and ψ in rad, c in Pa.
-type Strength = (f64, f64, f64);
+/// Parameters of the yield surface: sin φ, sin ψ (-) and c cos φ (Pa).
+fn yield_parameters(strength: Strength) -> [f64; 3] {
+    let Strength {
+        friction_angle,
+        dilation_angle,
+        cohesion,
+    } = strength;
+    [
+        friction_angle.sin(),
+        dilation_angle.min(friction_angle).sin(),
+        cohesion * friction_angle.cos(),
+    ]
+}
 
 /// What a return leaves.
 #[derive(Clone, Copy, Debug)]
@@ -75,11 +87,10 @@ impl SofteningMohrCoulomb {
     /// A law with the strength `peak` before any plastic strain and `residual` from the plastic strain κ_r > 0 on:
     /// 0 ≤ φ < π/2 and 0 ≤ ψ ≤ φ (rad), c ≥ 0 (Pa).
     pub fn new(elastic: Elastic, peak: Strength, residual: Strength, strain: f64, decay: Decay) -> Self {
-        let numbers = |(friction, dilation, cohesion): Strength| {
-            [friction.sin(), dilation.min(friction).sin(), cohesion * friction.cos()]
-        };
-        let (first, last) = (numbers(peak), numbers(residual));
-        let (moduli, change) = (elastic.moduli(), [0, 1, 2].map(|k| last[k] - first[k]));
+        let first = yield_parameters(peak);
+        let last = yield_parameters(residual);
+        let moduli = elastic.moduli();
+        let change = [0, 1, 2].map(|k| last[k] - first[k]);
         Self {
             elastic,
             moduli,
@@ -118,7 +129,8 @@ impl SofteningMohrCoulomb {
     /// How far the strength has come after the plastic strain κ, 0 to 1, and its rate with κ.
     #[inline(always)]
     fn progress<R: Real>(&self, kappa: R) -> (R, R) {
-        let (along, none) = (kappa / self.strain, kappa.like(0.0));
+        let along = kappa / self.strain;
+        let none = kappa.like(0.0);
         match self.decay {
             Decay::Linear => {
                 let done = along.like(1.0).at_most(along); // what is no number stays none
@@ -166,8 +178,11 @@ impl SofteningMohrCoulomb {
         let none = kappa.like(0.0);
         let size = trial[0].magnitude() + trial[1].magnitude() + trial[2].magnitude();
         let round_off = size * (AGREED[1] / (2.0 * self.moduli.mu));
-        let (mut low, mut high) = (none, none.like(f64::INFINITY));
-        let (mut growth, mut last_growth, mut last_gap) = (none, none, none);
+        let mut low = none;
+        let mut high = none.like(f64::INFINITY);
+        let mut growth = none;
+        let mut last_growth = none;
+        let mut last_gap = none;
         let mut found = none.like(f64::NAN);
         let mut sought = none.at_most(none);
         for _ in 0..EVALUATIONS {
@@ -231,27 +246,16 @@ impl Law for SofteningMohrCoulomb {
         let Self {
             peak, residual, strain, ..
         } = *self;
-        vec![peak.0, peak.1, peak.2, residual.0, residual.1, residual.2, strain]
+        let [first, last] =
+            [peak, residual].map(|strength| [strength.friction_angle, strength.dilation_angle, strength.cohesion]);
+        [&first[..], &last, &[strain]].concat()
     }
 
     /// ψ is at most φ.
     fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
-        let [
-            friction,
-            dilation,
-            cohesion,
-            last_friction,
-            last_dilation,
-            last_cohesion,
-            strain,
-        ] = parameters[..7]
-        else {
-            unreachable!("seven numbers")
-        };
-        let (peak, residual) = (
-            (friction, dilation, cohesion),
-            (last_friction, last_dilation, last_cohesion),
-        );
+        let peak = strength(&parameters[..3]);
+        let residual = strength(&parameters[3..6]);
+        let strain = parameters[6];
         Self {
             rate: self.rate,
             dt: self.dt,
@@ -278,7 +282,8 @@ impl Law for SofteningMohrCoulomb {
             kappa.like(0.0)
         };
         let growth = R::choose(yields, growth, kappa.like(0.0));
-        let (pyramid, (_, rate)) = (self.pyramid(kappa + growth, growth), self.progress(kappa + growth));
+        let pyramid = self.pyramid(kappa + growth, growth);
+        let (_, rate) = self.progress(kappa + growth);
         let (projected, _, corners) = pyramid.project(trial);
         let tau = three(|k| R::choose(yields, projected[k], trial[k]));
         let mut rates = three(|k| rate * self.change[k]);
@@ -286,7 +291,8 @@ impl Law for SofteningMohrCoulomb {
             let (quickened, slope) = self.quickened(growth);
             rates[2] = rates[2] * quickened + pyramid.strength / quickened * slope;
         }
-        let (slopes, strength) = (pyramid.slopes, pyramid.strength);
+        let slopes = pyramid.slopes;
+        let strength = pyramid.strength;
         Projection {
             tau,
             yields,
@@ -332,7 +338,8 @@ impl Law for SofteningMohrCoulomb {
         if factor == 1.0 {
             return self;
         }
-        let (peak, residual) = (reduced(self.peak, factor), reduced(self.residual, factor));
+        let peak = self.peak.reduced(factor);
+        let residual = self.residual.reduced(factor);
         Self {
             rate: self.rate,
             dt: self.dt,
@@ -341,7 +348,7 @@ impl Law for SofteningMohrCoulomb {
     }
 
     fn hardens(&self) -> bool {
-        self.residual.0 > self.peak.0 || self.residual.2 > self.peak.2
+        self.residual.friction_angle > self.peak.friction_angle || self.residual.cohesion > self.peak.cohesion
     }
 
     fn softens(&self) -> bool {
@@ -349,7 +356,7 @@ impl Law for SofteningMohrCoulomb {
     }
 
     fn dilation(&self) -> f64 {
-        self.peak.1.max(self.residual.1)
+        self.peak.dilation_angle.max(self.residual.dilation_angle)
     }
 }
 
@@ -357,42 +364,90 @@ impl SofteningReturn<f64> {
     /// `∂τ/∂κ` at a trial that stays, Pa, from `τ = τ_trial - D Σ γ m` and `f = n · τ - 2 c cos φ = 0` of the planes
     /// that flow: `(n · D m) γ' = n' · τ - 2 (c cos φ)' - n · D m' γ`, `τ' = -D Σ (m γ' + m' γ)`.
     fn along(&self, moduli: Moduli) -> [f64; 3] {
-        let Slopes { sin_phi, sin_psi } = self.slopes;
+        let sin_phi = self.slopes.sin_phi;
         let planes: &[Plane] = match self.corners.branch() {
             Branch::Apex => return [(self.rates[2] - self.rates[0] * self.strength / sin_phi) / sin_phi; 3],
             Branch::RightEdge => &[(0, 2), (0, 1)],
             Branch::LeftEdge => &[(0, 2), (1, 2)],
             _ => &[(0, 2)],
         };
-        let n = |plane: Plane| normal(plane, 1.0 + sin_phi, sin_phi - 1.0);
-        let m = |plane: Plane| normal(plane, 1.0 + sin_psi, sin_psi - 1.0);
-        let grown = |plane: Plane, rate: f64| normal(plane, rate, rate);
-        let solve = |right: &dyn Fn(Plane) -> f64| -> [f64; 2] {
-            let entry = |a: usize, b: usize| dot(n(planes[a]), moduli.stress(m(planes[b])));
-            let first = right(planes[0]);
-            if planes.len() == 1 {
-                return [first / entry(0, 0), 0.0];
-            }
-            let (second, (a, b, c, d)) = (right(planes[1]), (entry(0, 0), entry(0, 1), entry(1, 0), entry(1, 1)));
-            let determinant = a * d - b * c;
-            [
-                (first * d - b * second) / determinant,
-                (a * second - c * first) / determinant,
-            ]
+        let flowing = FlowingPlanes {
+            planes,
+            slopes: self.slopes,
+            moduli,
         };
-        let stressed = |direction: &dyn Fn(Plane) -> [f64; 3], by: [f64; 2]| {
-            let mut sum = [0.0; 3];
-            for (&plane, factor) in planes.iter().zip(by) {
-                let direction = direction(plane);
-                (0..3).for_each(|k| sum[k] += direction[k] * factor);
-            }
-            moduli.stress(sum)
-        };
-        let multipliers = solve(&|plane| dot(n(plane), self.trial) - 2.0 * self.strength);
-        let turned = stressed(&|plane| grown(plane, self.rates[1]), multipliers);
-        let driven = |plane: Plane| dot(grown(plane, self.rates[0]), self.tau) - 2.0 * self.rates[2];
-        let followed = stressed(&m, solve(&|plane| driven(plane) - dot(n(plane), turned)));
+        let multipliers = flowing.solve(|plane| dot(flowing.normal(plane), self.trial) - 2.0 * self.strength);
+        let turned = flowing.stress(|plane| normal(plane, self.rates[1], self.rates[1]), multipliers);
+        let rates = flowing.solve(|plane| {
+            let driven = dot(normal(plane, self.rates[0], self.rates[0]), self.tau) - 2.0 * self.rates[2];
+            driven - dot(flowing.normal(plane), turned)
+        });
+        let followed = flowing.stress(|plane| flowing.direction(plane), rates);
         [0, 1, 2].map(|k| -followed[k] - turned[k])
+    }
+}
+
+/// The one or two planes of the pyramid that flow.
+struct FlowingPlanes<'a> {
+    planes: &'a [Plane],
+    slopes: Slopes,
+    moduli: Moduli,
+}
+
+impl FlowingPlanes<'_> {
+    /// Gradient n of the yield function of a plane.
+    fn normal(&self, plane: Plane) -> [f64; 3] {
+        normal(plane, 1.0 + self.slopes.sin_phi, self.slopes.sin_phi - 1.0)
+    }
+
+    /// Direction m of the flow of a plane.
+    fn direction(&self, plane: Plane) -> [f64; 3] {
+        normal(plane, 1.0 + self.slopes.sin_psi, self.slopes.sin_psi - 1.0)
+    }
+
+    /// Solves `n_a · D Σ_b m_b x_b = right_a`; returns x, of one plane alone with a zero behind it.
+    fn solve(&self, right: impl Fn(Plane) -> f64) -> [f64; 2] {
+        let first = right(self.planes[0]);
+        let a = self.entry(0, 0);
+        if self.planes.len() == 1 {
+            return [first / a, 0.0];
+        }
+        let second = right(self.planes[1]);
+        let b = self.entry(0, 1);
+        let c = self.entry(1, 0);
+        let d = self.entry(1, 1);
+        let determinant = a * d - b * c;
+        [
+            (first * d - b * second) / determinant,
+            (a * second - c * first) / determinant,
+        ]
+    }
+
+    /// `n_a · D m_b`, Pa.
+    fn entry(&self, a: usize, b: usize) -> f64 {
+        dot(
+            self.normal(self.planes[a]),
+            self.moduli.stress(self.direction(self.planes[b])),
+        )
+    }
+
+    /// Stress D of a strain that has a `direction` for every plane, times a factor.
+    fn stress(&self, direction: impl Fn(Plane) -> [f64; 3], factors: [f64; 2]) -> [f64; 3] {
+        let mut strain = [0.0; 3];
+        for (&plane, factor) in self.planes.iter().zip(factors) {
+            let direction = direction(plane);
+            (0..3).for_each(|k| strain[k] += direction[k] * factor);
+        }
+        self.moduli.stress(strain)
+    }
+}
+
+/// Strength of three `numbers`: φ, ψ, c.
+fn strength(numbers: &[f64]) -> Strength {
+    Strength {
+        friction_angle: numbers[0],
+        dilation_angle: numbers[1],
+        cohesion: numbers[2],
     }
 }
 

@@ -25,6 +25,13 @@ pub(super) struct Spectrum<R: Real = f64> {
     axes: Axes<R>,
 }
 
+/// An eigenvalue of b, as the sum of a number near it and a difference.
+#[derive(Clone, Copy)]
+struct EigenvalueSum<R = f64> {
+    start: R,
+    gain: R,
+}
+
 /// Unit eigenvectors.
 #[derive(Clone, Copy, Debug)]
 enum Axes<R> {
@@ -53,11 +60,11 @@ impl Spectrum {
 
     /// Of eigenvalues that are sums of a component of b and a gain.
     #[inline(always)]
-    fn of_sums([x, y, z]: [(f64, f64); 3], axes: Axes<f64>) -> Result<Self, MaterialError> {
+    fn of_sums([x, y, z]: [EigenvalueSum; 3], axes: Axes<f64>) -> Result<Self, MaterialError> {
         let principal = [
-            Principal::of(x.0, x.1)?,
-            Principal::of(y.0, y.1)?,
-            Principal::of(z.0, z.1)?,
+            Principal::of(x.start, x.gain)?,
+            Principal::of(y.start, y.gain)?,
+            Principal::of(z.start, z.gain)?,
         ];
         Ok(Self::sorted(principal, axes))
     }
@@ -71,8 +78,7 @@ impl Spectrum {
             }
             Axes::Solid(axes) => axes,
         };
-        let component = |i: usize| self.descending([axes[0][i], axes[1][i], axes[2][i]]);
-        let [x, y, z] = three(component);
+        let [x, y, z] = three(|i| self.descending([axes[0][i], axes[1][i], axes[2][i]]));
         [0, 1, 2].map(|k| [x[k], y[k], z[k]])
     }
 }
@@ -100,18 +106,19 @@ impl<R: Real> Spectrum<R> {
         Self::admitted(xx + yy + zz + xy + yz + xz, sums, Axes::Solid(axes))
     }
 
+    /// Of eigenvalues that are sums, of components whose magnitudes add up to `largest`.
     #[inline(always)]
-    fn admitted(largest: R, sums: [(R, R); 3], axes: Axes<R>) -> Option<Self> {
-        let positive = |(start, gain): (R, R)| start.like(SMALLEST).at_most(start + gain);
+    fn admitted(largest: R, sums: [EigenvalueSum<R>; 3], axes: Axes<R>) -> Option<Self> {
+        let positive = |sum: EigenvalueSum<R>| sum.start.like(SMALLEST).at_most(sum.start + sum.gain);
         let finite = largest.at_most(largest.like(LARGEST));
         if R::any(!(finite & positive(sums[0]) & positive(sums[1]) & positive(sums[2]))) {
             return None;
         }
         // Not by a closure: not inlined, it would make a call of every operation between lanes.
         let principal = [
-            Principal::of_sum(sums[0]),
-            Principal::of_sum(sums[1]),
-            Principal::of_sum(sums[2]),
+            Principal::of_sum(sums[0].start, sums[0].gain),
+            Principal::of_sum(sums[1].start, sums[1].gain),
+            Principal::of_sum(sums[2].start, sums[2].gain),
         ];
         Some(Self::sorted(principal, axes))
     }
@@ -179,7 +186,9 @@ impl<R: Real> Spectrum<R> {
     fn assemble_solid(&self, axes: &[[R; 3]; 3], s: [R; 3]) -> Symmetric<R> {
         // Not by closures that are given away: see `planar`.
         let component = |i: usize| self.descending([axes[0][i], axes[1][i], axes[2][i]]);
-        let (first, third, n) = (s[0] - s[1], s[2] - s[1], [component(0), component(1), component(2)]);
+        let first = s[0] - s[1];
+        let third = s[2] - s[1];
+        let n = [component(0), component(1), component(2)];
         let at = |i: usize, j: usize| first * (n[i][0] * n[j][0]) + third * (n[i][2] * n[j][2]);
         let spherical = s[1];
         Symmetric([
@@ -204,8 +213,9 @@ impl<R: Real> Principal<R> {
     /// `ε = artanh(e/(2 + e))`, e = b - 1 without the rounding of b; as a series where soils are, else by the
     /// logarithm.
     #[inline(always)]
-    fn of_sum((start, gain): (R, R)) -> Self {
-        let (b, strain) = (start + gain, (start - 1.0) + gain);
+    fn of_sum(start: R, gain: R) -> Self {
+        let b = start + gain;
+        let strain = (start - 1.0) + gain;
         let far = !(b - 1.0).magnitude().below(b.like(NEAR));
         Self {
             b,
@@ -222,7 +232,7 @@ impl Principal<f64> {
         if b < SMALLEST {
             Err(MaterialError::NotPositive(b))
         } else {
-            Ok(Self::of_sum((start, gain)))
+            Ok(Self::of_sum(start, gain))
         }
     }
 }
@@ -246,10 +256,16 @@ fn artanh<R: Real>(z: R) -> R {
 
 /// Eigenvalues of a tensor of a plane and its normal, as sums of a component and a gain, and its axes.
 #[inline(always)]
-fn plane<R: Real>([xx, yy, zz]: [R; 3], xy: R) -> ([(R, R); 3], Axes<R>) {
+fn plane<R: Real>([xx, yy, zz]: [R; 3], xy: R) -> ([EigenvalueSum<R>; 3], Axes<R>) {
     let tan = tangent((xx - yy) * 0.5, xy);
     let gain = tan * xy;
-    ([(xx, gain), (yy, -gain), (zz, zz.like(0.0))], Axes::Plane { tan })
+    let x = EigenvalueSum { start: xx, gain };
+    let y = EigenvalueSum { start: yy, gain: -gain };
+    let z = EigenvalueSum {
+        start: zz,
+        gain: zz.like(0.0),
+    };
+    ([x, y, z], Axes::Plane { tan })
 }
 
 /// `tan θ = g/(d ± √(d² + g²))` of the smaller of the two rotations that make a pair of axes principal, for half the

@@ -37,23 +37,24 @@ impl Stiffness {
     pub(super) fn of(response: &Response) -> Self {
         let moduli = response.flowed.elastic_moduli(response.moduli);
         let tangent = response.flowed.tangent(response.moduli);
-        let plastic = |plastic: f64, elastic: f64| plastic + ELASTIC * (elastic - plastic);
         let deviatoric = positive([[0, 0], [1, 1], [0, 1]].map(|[i, j]| {
-            let entry = |k: usize| 0.5 * (tangent[(k / 3, k % 3)] + tangent[(k % 3, k / 3)]);
-            (0..9).map(|k| SHAPES[i][k / 3] * entry(k) * SHAPES[j][k % 3]).sum()
+            let terms = (0..9).map(|k| {
+                let entry = 0.5 * (tangent[(k / 3, k % 3)] + tangent[(k % 3, k / 3)]);
+                SHAPES[i][k / 3] * entry * SHAPES[j][k % 3]
+            });
+            terms.sum()
         }));
-        let [a, b, c] = [0, 1, 2].map(|k| plastic(deviatoric[k], if k < 2 { 2.0 * moduli.mu } else { 0.0 }));
-        let bulk = plastic(tangent.sum().max(0.0) / 9.0, moduli.bulk());
+        let [a, b, c] = [0, 1, 2].map(|k| stiffened(deviatoric[k], if k < 2 { 2.0 * moduli.mu } else { 0.0 }));
+        let bulk = stiffened(tangent.sum().max(0.0) / 9.0, moduli.bulk());
         let [first, second] = SHAPES;
-        let entry = |i: usize, j: usize| {
-            let mixed = first[i] * second[j] + second[i] * first[j];
-            bulk + a * first[i] * first[j] + b * second[i] * second[j] + c * mixed
-        };
         let axis = response.trial.axis();
         Self {
             axes: Tensor::from_fn(|i, j| axis[i][j]),
-            principal: Tensor::from_fn(entry),
-            shear: PAIRS.map(|(a, b)| plastic(0.5 * slope(response, a, b), moduli.mu)),
+            principal: Tensor::from_fn(|i, j| {
+                let mixed = first[i] * second[j] + second[i] * first[j];
+                bulk + a * first[i] * first[j] + b * second[i] * second[j] + c * mixed
+            }),
+            shear: PAIRS.map(|(a, b)| stiffened(0.5 * slope(response, a, b), moduli.mu)),
         }
     }
 
@@ -65,17 +66,17 @@ impl Stiffness {
     /// no unit has to be turned to the axes of b and its stress back.
     #[inline(always)]
     pub fn moduli<G: Gradient<D>, const D: usize>(&self, seen: impl Fn(&Tensor) -> G) -> G::Moduli {
-        let n = |a: usize, i: usize| self.axes[(a, i)];
-        let dyad = |a: usize| seen(&Tensor::from_fn(|i, j| n(a, i) * n(a, j)));
-        let pair = |(a, b): (usize, usize)| seen(&Tensor::from_fn(|i, j| n(a, i) * n(b, j) + n(b, i) * n(a, j)));
-        let (v, w) = (
-            [dyad(0), dyad(1), dyad(2)],
-            [pair(PAIRS[0]), pair(PAIRS[1]), pair(PAIRS[2])],
-        );
+        let n = &self.axes;
+        let dyad = |a: usize| seen(&Tensor::from_fn(|i, j| n[(a, i)] * n[(a, j)]));
+        let pair =
+            |(a, b): (usize, usize)| seen(&Tensor::from_fn(|i, j| n[(a, i)] * n[(b, j)] + n[(b, i)] * n[(a, j)]));
+        let v = [dyad(0), dyad(1), dyad(2)];
+        let w = [pair(PAIRS[0]), pair(PAIRS[1]), pair(PAIRS[2])];
         let mut moduli = G::moduli(|_, _| G::zeros());
         for m in 0..3 {
             let [a, b, c] = [self.principal[(m, 0)], self.principal[(m, 1)], self.principal[(m, 2)]];
-            let (stress, shear) = (v[0] * a + v[1] * b + v[2] * c, w[m] * self.shear[m]);
+            let stress = v[0] * a + v[1] * b + v[2] * c;
+            let shear = w[m] * self.shear[m];
             for k in 0..D {
                 (0..k).for_each(|l| moduli[(k, l)] = moduli[(l, k)]);
                 for l in k..G::SLOPES {
@@ -95,16 +96,24 @@ impl Response {
         if self.branch() == Branch::Elastic {
             return (!self.flowed.is_linear()).then(|| Stiffness::of(self));
         }
-        let (trial, elastic) = (self.principal_eps_trial(), self.principal_eps_e());
+        let trial = self.principal_eps_trial();
+        let elastic = self.principal_eps_e();
         let flows = (0..3).any(|k| (trial[k] - elastic[k]).abs() > FLOW);
         (flows || !self.flowed.is_linear()).then(|| Stiffness::of(self))
     }
 }
 
+/// A modulus of the plastic response, with a share of the elastic one.
+fn stiffened(plastic: f64, elastic: f64) -> f64 {
+    plastic + ELASTIC * (elastic - plastic)
+}
+
 /// The symmetric matrix [[a, c], [c, b]] without its negative eigenvalues.
 fn positive([a, b, c]: [f64; 3]) -> [f64; 3] {
-    let (mean, radius) = (0.5 * (a + b), (0.25 * (a - b).powi(2) + c * c).sqrt());
-    let (most, least) = (mean + radius, mean - radius);
+    let mean = 0.5 * (a + b);
+    let radius = (0.25 * (a - b).powi(2) + c * c).sqrt();
+    let most = mean + radius;
+    let least = mean - radius;
     if least >= 0.0 {
         [a, b, c]
     } else if most <= 0.0 {

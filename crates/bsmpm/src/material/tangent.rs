@@ -69,8 +69,7 @@ fn chord(response: &Response, a: usize, b: usize) -> f64 {
 
 /// `(τ_A - τ_B)/(ε_A - ε_B)` in Pa, as the law reports it.
 pub(super) fn slope(response: &Response, a: usize, b: usize) -> f64 {
-    let (tau, eps) = (response.tau, response.trial.eps);
-    response
-        .flowed
-        .chord(response.moduli, (tau[a] - tau[b], eps[a] - eps[b]))
+    let tau = response.tau;
+    let eps = response.trial.eps;
+    response.flowed.chord(response.moduli, tau[a] - tau[b], eps[a] - eps[b])
 }

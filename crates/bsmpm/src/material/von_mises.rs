@@ -78,7 +78,8 @@ impl Law for VonMises {
     #[inline(always)]
     fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, VonMisesReturn<R>> {
         let (mean, deviator, norm) = split(trial);
-        let (q, strength) = (norm * 1.5_f64.sqrt(), self.strength(state));
+        let q = norm * 1.5_f64.sqrt();
+        let strength = self.strength(state);
         let yields = !q.at_most(strength);
         if !R::any(yields) {
             let flow = VonMisesReturn {
@@ -124,15 +125,14 @@ impl Law for VonMises {
             followed,
             ..
         } = *flow;
-        let entry = |a: usize, b: usize| {
+        Tensor::from_fn(|a, b| {
             let deviator = if a == b { 2.0 / 3.0 } else { -1.0 / 3.0 };
             moduli.bulk() + 2.0 * moduli.mu * (kept * deviator + (followed - kept) * n[a] * n[b])
-        };
-        Tensor::from_fn(entry)
+        })
     }
 
     /// All differences are kept alike.
-    fn chord(flow: &VonMisesReturn<f64>, moduli: Moduli, _differences: (f64, f64)) -> f64 {
+    fn chord(flow: &VonMisesReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
         2.0 * moduli.mu * flow.kept
     }
 

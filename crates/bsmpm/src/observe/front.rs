@@ -31,11 +31,11 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
         }
     }
     // Of a cell one rank alone has points.
-    let volume = |points: &CellPoints| points.iter().map(|[_, volume]| volume).sum::<f64>();
-    let mut sums: Vec<f64> = held
-        .iter()
-        .flat_map(|points| [points.len() as f64, volume(points)])
-        .collect();
+    let own = held.iter().flat_map(|points| {
+        let volume = points.iter().map(|[_, volume]| volume).sum::<f64>();
+        [points.len() as f64, volume]
+    });
+    let mut sums: Vec<f64> = own.collect();
     halo.reduce(&mut sums);
     let mut front = 0.0_f64;
     for at in (0..held.len()).rev() {
@@ -99,10 +99,10 @@ fn of_all_ranks(held: &[CellPoints], sums: &[f64], cells: &[Option<usize>], halo
 
 /// The farthest of the points, in order, such that those from it back by `length` have the volume that is wanted.
 fn end_of_full(points: &CellPoints, length: f64, wanted: f64) -> Option<f64> {
-    let fills = |&end: &usize| {
+    let full = (0..points.len()).rev().find(|&end| {
         let x = points[end][0];
         let window = points[..=end].iter().filter(|[at, _]| *at > x - length);
         window.map(|[_, volume]| volume).sum::<f64>() >= wanted
-    };
-    (0..points.len()).rev().find(fills).map(|end| points[end][0])
+    });
+    full.map(|end| points[end][0])
 }

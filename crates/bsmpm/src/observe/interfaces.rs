@@ -6,6 +6,7 @@ use crate::model::Model;
 use crate::parallel::Halo;
 use crate::points::Points;
 use crate::tensor::Vector;
+use crate::water::flow::Flow;
 use std::collections::BTreeMap;
 
 /// Ratio of two permeabilities from which the flow changes with the place of their interface.
@@ -80,11 +81,6 @@ pub fn shift<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, halo: &
             },
         );
     }
-    let permeability = |material: usize, axis: usize| {
-        let soil = flow.and_then(|flow| flow.soils.get(material)?.as_ref());
-        soil.and_then(|soil| soil.permeability.as_ref())
-            .map(|permeability| permeability.along[axis])
-    };
     let mut found = InterfaceShift::default();
     for (&(side, lower), below) in all.iter().filter(|((side, _), _)| !side.is_above) {
         let above = LineSide { is_above: true, ..side };
@@ -93,7 +89,7 @@ pub fn shift<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, halo: &
             if lower != upper && below.is_c0 {
                 found.stress = Some(found.stress.map_or(moved, |so_far| so_far.max(moved)));
             }
-            let permeabilities = [lower, upper].map(|material| permeability(material, side.axis));
+            let permeabilities = [lower, upper].map(|material| permeability(flow, material, side.axis));
             let [Some(a), Some(b)] = permeabilities else { continue };
             if a.max(b) >= UNLIKE * a.min(b) {
                 found.water = Some(found.water.map_or(moved, |so_far| so_far.max(moved)));
@@ -101,6 +97,12 @@ pub fn shift<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, halo: &
         }
     }
     found
+}
+
+/// Permeability of a material along an axis, where water flows in it.
+fn permeability<const D: usize>(flow: Option<&Flow<D>>, material: usize, axis: usize) -> Option<f64> {
+    let soil = flow?.soils.get(material)?.as_ref()?;
+    Some(soil.permeability.as_ref()?.along[axis])
 }
 
 fn keep(all: &mut Neighbours, side: LineSide, material: usize, neighbour: Neighbour) {
@@ -112,10 +114,8 @@ fn keep(all: &mut Neighbours, side: LineSide, material: usize, neighbour: Neighb
 
 /// Of the points of this rank, in the half of a cell next to each line.
 fn neighbours<K, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Neighbours {
-    let (grid, flows) = (
-        &model.grid,
-        model.water.as_ref().is_some_and(|water| water.flow.is_some()),
-    );
+    let grid = &model.grid;
+    let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
     let mut found = Neighbours::new();
     for p in 0..points.len() {
         let start: Vector<D> = points.x[p] - points.u[p];
@@ -163,11 +163,12 @@ struct InnerLine {
 
 /// The line above or below a cell. Between the cells at a C0 line there are q - 1 or more without length.
 fn line_beside(knots: &KnotVector, cell: usize, is_upper: bool) -> Option<InnerLine> {
-    let has_length = |other: &usize| knots.has_length(*other);
     let [below, above] = if is_upper {
-        [cell, (cell + 1..knots.cells()).find(has_length)?]
+        let mut others = cell + 1..knots.cells();
+        [cell, others.find(|&other| knots.has_length(other))?]
     } else {
-        [(0..cell).rev().find(has_length)?, cell]
+        let mut others = (0..cell).rev();
+        [others.find(|&other| knots.has_length(other))?, cell]
     };
     Some(InnerLine {
         below,

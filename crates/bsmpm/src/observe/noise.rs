@@ -40,7 +40,8 @@ pub fn stress_noise<const D: usize>(
 ) -> Result<Noise, StepError> {
     let squares = Squares::of(
         grid,
-        (points, &Part::Whole),
+        points,
+        &Part::Whole,
         weighting,
         &|p| points.sigma.at(p).0[component],
         halo,
@@ -55,11 +56,12 @@ pub fn stress_noise<const D: usize>(
 /// Noise of the pressure -tr(sigma)/3, Pa, over the points of a part.
 pub fn pressure_noise<const D: usize>(
     grid: &Grid<D>,
-    (points, part): (&Points<D>, &Part),
+    points: &Points<D>,
+    part: &Part,
     weighting: Weighting,
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
-    Ok(Squares::of(grid, (points, part), weighting, &|p| pressure(points, p), halo)?.noise(1.0))
+    Ok(Squares::of(grid, points, part, weighting, &|p| pressure(points, p), halo)?.noise(1.0))
 }
 
 /// Part of Young's modulus up to which a pressure is the rounding of F: what flies freely has no other.
@@ -70,10 +72,11 @@ const ROUNDING: f64 = 1e-13;
 pub fn relative_pressure_noise<const D: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
-    (weighting, young): (Weighting, f64),
+    weighting: Weighting,
+    young: f64,
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
-    let squares = Squares::of(grid, (points, &Part::Whole), weighting, &|p| pressure(points, p), halo)?;
+    let squares = Squares::of(grid, points, &Part::Whole, weighting, &|p| pressure(points, p), halo)?;
     Ok(if squares.mean <= ROUNDING * young {
         Noise::default()
     } else {
@@ -96,7 +99,8 @@ struct Squares {
 impl Squares {
     fn of<const D: usize>(
         grid: &Grid<D>,
-        (points, part): (&Points<D>, &Part),
+        points: &Points<D>,
+        part: &Part,
         weighting: Weighting,
         stress: &(impl Fn(usize) -> f64 + Sync),
         halo: &dyn Halo,
@@ -104,7 +108,7 @@ impl Squares {
         let shape = agreed(halo, Shape::at(grid, points), StepError::OtherRank)?;
         let average = averaged(&shape, points, weighting, stress, halo);
         let planes = planes(grid, &shape, points, stress, halo);
-        let of_column = |column: usize| {
+        let sums = threads::total(shape.columns().len(), |column| {
             let mut sums = [const { Exact::ZERO }; 4];
             for number in shape.columns()[column].patches.clone() {
                 let patch = &shape.patches()[number];
@@ -119,16 +123,11 @@ impl Squares {
                 }
             }
             sums
-        };
-        let sums = threads::total(shape.columns().len(), of_column);
+        });
         let sums = halo.total(&sums);
         let [count, absolute, average, plane] = [0, 1, 2, 3].map(|k| sums[k]);
-        let mean = |sum: f64| if count > 0.0 { sum / count } else { 0.0 };
-        Ok(Self {
-            mean: mean(absolute),
-            average: mean(average),
-            plane: mean(plane),
-        })
+        let [mean, average, plane] = [absolute, average, plane].map(|sum| if count > 0.0 { sum / count } else { 0.0 });
+        Ok(Self { mean, average, plane })
     }
 
     fn noise(&self, unit: f64) -> Noise {
@@ -151,8 +150,9 @@ fn averaged<const D: usize>(
         Weighting::Volume => &points.volume,
     };
     let nodal = halo.sum(&transfer::to_nodes(shape, |p| [weights[p], weights[p] * stress(p)]));
-    let mean = |pair: &[f64]| if pair[0] > 0.0 { pair[1] / pair[0] } else { 0.0 };
-    let nodal: Vec<f64> = nodal.chunks_exact(2).map(mean).collect();
+    let pairs = nodal.chunks_exact(2);
+    let means = pairs.map(|pair| if pair[0] > 0.0 { pair[1] / pair[0] } else { 0.0 });
+    let nodal: Vec<f64> = means.collect();
     transfer::to_points(shape, &nodal, |_, [average]| average)
 }
 
@@ -201,23 +201,23 @@ fn planes<const D: usize>(
             }
             add_moved(
                 moments,
-                &between(grid, (&own, &cell)),
+                &between(grid, &own, &cell),
                 &mut sums[offset * WIDTH..(offset + 1) * WIDTH],
             );
         }
     }
     let sums = halo.sum(&sums);
     let middle_offset = shape.offsets()[(0..D).fold(0, |k, _| k * shape.width() + middle)];
-    let plane = |number: usize| {
+    threads::each(shape.patches().len(), |number| {
         let node = shape.patches()[number].first_node + middle_offset;
         fit::<D>(&sums[node * WIDTH..(node + 1) * WIDTH])
-    };
-    threads::each(shape.patches().len(), plane)
+    })
 }
 
 /// Scale and shift by which the [`terms`] of one cell become those of another: t' = scale t + shift.
-fn between<const D: usize>(grid: &Grid<D>, (from, to): (&[usize; D], &[usize; D])) -> [[f64; 2]; MOST] {
-    let ((lower, size), (other, length)) = (grid.cell_box(from), grid.cell_box(to));
+fn between<const D: usize>(grid: &Grid<D>, from: &[usize; D], to: &[usize; D]) -> [[f64; 2]; MOST] {
+    let (lower, size) = grid.cell_box(from);
+    let (other, length) = grid.cell_box(to);
     let mut change = [[1.0, 0.0]; MOST];
     for axis in 0..D {
         let shift = (lower[axis] - other[axis] + 0.5 * size[axis]) / length[axis] - 0.5;

@@ -40,7 +40,8 @@ pub enum Configuration {
 pub fn values<K: Kinematics<D>, const D: usize, const C: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
-    (places, configuration): (&[Vector<D>], Configuration),
+    places: &[Vector<D>],
+    configuration: Configuration,
     field: impl Fn(usize) -> [f64; C],
     halo: &dyn Halo,
 ) -> Vec<Option<[f64; C]>> {
@@ -71,10 +72,11 @@ pub fn values<K: Kinematics<D>, const D: usize, const C: usize>(
         }
     }
     let totals = halo.total(&sums);
-    let value = |(totals, material): (&[f64], &Option<u16>)| {
-        material.and_then(|_| (totals[0] > 0.0).then(|| solved::<D, C>(totals)))
-    };
-    totals.chunks_exact(width).zip(&materials).map(value).collect()
+    let values = totals.chunks_exact(width).zip(&materials).map(|(totals, material)| {
+        let is_in_material = material.is_some() && totals[0] > 0.0;
+        is_in_material.then(|| solved::<D, C>(totals))
+    });
+    values.collect()
 }
 
 /// Places among points.
@@ -96,7 +98,8 @@ impl<const D: usize> Fit<'_, D> {
 
     /// Terms of a plane about a place at point `p`, in units of the cell; `None` out of reach.
     fn terms(&self, number: usize, p: usize) -> Option<[f64; TERMS]> {
-        let (scale, apart) = (self.scale[number]?, self.place_of(p) - self.places[number]);
+        let scale = self.scale[number]?;
+        let apart = self.place_of(p) - self.places[number];
         let mut terms = [1.0, 0.0, 0.0, 0.0];
         for axis in 0..D {
             terms[axis + 1] = apart[axis] / scale[axis];
@@ -107,24 +110,28 @@ impl<const D: usize> Fit<'_, D> {
         Some(terms)
     }
 
+    /// Squared distance of point `p` from a place, m2, if it is so near that the place is in material.
+    fn distance(&self, number: usize, p: usize) -> Option<f64> {
+        let apart = (self.place_of(p) - self.places[number]).norm_squared();
+        let (volume, sizes) = match self.configuration {
+            Configuration::Initial => (self.points.volume[p], 1.0),
+            Configuration::Surface => (self.points.volume[p], CORNER),
+            Configuration::Present => (self.points.volume[p] * self.points.F.at(p).determinant(), 1.0),
+        };
+        let size = volume / (self.weight)(&self.place_of(p));
+        let within = apart <= sizes * sizes * size.powf(2.0 / D as f64);
+        self.terms(number, p).and_then(|_| within.then_some(apart))
+    }
+
     /// Material of the point nearest to every place, if that is so near that the place is in material; of equally near
     /// ones that of the smallest id.
     fn materials(&self, halo: &dyn Halo) -> Vec<Option<u16>> {
-        let distance = |number: usize, p: usize| -> Option<f64> {
-            let apart = (self.place_of(p) - self.places[number]).norm_squared();
-            let (volume, sizes) = match self.configuration {
-                Configuration::Initial => (self.points.volume[p], 1.0),
-                Configuration::Surface => (self.points.volume[p], CORNER),
-                Configuration::Present => (self.points.volume[p] * self.points.F.at(p).determinant(), 1.0),
-            };
-            let size = volume / (self.weight)(&self.place_of(p));
-            let within = apart <= sizes * sizes * size.powf(2.0 / D as f64);
-            self.terms(number, p).and_then(|_| within.then_some(apart))
-        };
         let mut nearest = vec![(f64::INFINITY, u64::MAX, 0_u16); self.places.len()];
         for p in 0..self.points.len() {
             for (number, nearest) in nearest.iter_mut().enumerate() {
-                let Some(apart) = distance(number, p) else { continue };
+                let Some(apart) = self.distance(number, p) else {
+                    continue;
+                };
                 let found = (apart, self.points.id[p], self.points.material[p]);
                 if (found.0, found.1) < (nearest.0, nearest.1) {
                     *nearest = found;
@@ -133,18 +140,17 @@ impl<const D: usize> Fit<'_, D> {
         }
         let mut closest: Vec<f64> = nearest.iter().map(|(apart, ..)| -apart).collect();
         halo.maximum(&mut closest);
-        let as_near =
-            |(&(apart, id, _), closest): (&(f64, u64, u16), &f64)| match apart.is_finite() && -apart == *closest {
-                true => -(id as f64),
-                false => f64::NEG_INFINITY,
-            };
-        let mut ids: Vec<f64> = nearest.iter().zip(&closest).map(as_near).collect();
+        let ids = nearest.iter().zip(&closest).map(|(&(apart, id, _), closest)| {
+            let is_nearest = apart.is_finite() && -apart == *closest;
+            if is_nearest { -(id as f64) } else { f64::NEG_INFINITY }
+        });
+        let mut ids: Vec<f64> = ids.collect();
         halo.maximum(&mut ids);
-        let own = |(&(_, id, material), first): (&(f64, u64, u16), &f64)| match -(id as f64) == *first {
-            true => f64::from(material),
-            false => -1.0,
-        };
-        let mut materials: Vec<f64> = nearest.iter().zip(&ids).map(own).collect();
+        let materials = nearest.iter().zip(&ids).map(|(&(_, id, material), first)| {
+            let is_first = -(id as f64) == *first;
+            if is_first { f64::from(material) } else { -1.0 }
+        });
+        let mut materials: Vec<f64> = materials.collect();
         halo.maximum(&mut materials);
         materials
             .iter()

@@ -18,11 +18,11 @@ pub fn projected_pressure<K, const D: usize>(
 ) -> Result<Vec<f64>, StepError> {
     let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?.lowered(&model.grid, points);
     let grouped = model.grouped(points);
-    let moments = |p: usize| {
+    let moments = transfer::to_nodes_grouped(&shape, grouped, |p| {
         let volume = points.volume[p] * points.F.at(p).determinant();
         [volume, volume * pressure(points, p)]
-    };
-    let mut nodal = halo.sum(&transfer::to_nodes_grouped(&shape, grouped, moments));
+    });
+    let mut nodal = halo.sum(&moments);
     for sums in nodal.chunks_exact_mut(2) {
         sums[1] = if sums[0] > 0.0 { sums[1] / sums[0] } else { 0.0 };
     }

@@ -29,7 +29,8 @@ pub fn defect<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Option<Defect> {
     let grid = &model.grid;
-    let (mut held, mut counts) = (vec![0.0; grid.cells()], vec![0_u32; grid.cells()]);
+    let mut held = vec![0.0; grid.cells()];
+    let mut counts = vec![0_u32; grid.cells()];
     for p in 0..points.len() {
         if let Some(cell) = grid.locate(&points.x[p]) {
             held[grid.cell_index(&cell)] += points.volume[p] * points.F.at(p).determinant();
@@ -38,7 +39,9 @@ pub fn defect<K: Kinematics<D>, const D: usize>(
     }
     let filled = held.iter().enumerate().filter(|(_, volume)| **volume > 0.0);
     let occupied = Occupied::of(grid, filled.map(|(index, _)| index), halo);
-    let (mut squares, mut largest, mut numbers) = (Exact::ZERO, [0.0_f64], [0.0; 2]);
+    let mut squares = Exact::ZERO;
+    let mut largest = [0.0_f64];
+    let mut numbers = [0.0; 2];
     for (index, volume) in held.iter().enumerate() {
         let cell = grid.cell_at(index);
         if *volume > 0.0 && occupied.surround(&cell, &[[true; 2]; D]) {
@@ -71,6 +74,8 @@ pub fn compression<const D: usize>(points: &Points<D>, materials: usize, halo: &
         volumes[at + 1].add(points.volume[p] * points.F.at(p).determinant());
     }
     let volumes = halo.total(&volumes);
-    let lost = |pair: &[f64]| if pair[0] > 0.0 { 1.0 - pair[1] / pair[0] } else { 0.0 };
-    volumes.chunks_exact(2).map(lost).collect()
+    let pairs = volumes.chunks_exact(2);
+    pairs
+        .map(|pair| if pair[0] > 0.0 { 1.0 - pair[1] / pair[0] } else { 0.0 })
+        .collect()
 }

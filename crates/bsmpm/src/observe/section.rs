@@ -91,6 +91,11 @@ impl Side {
     fn lack(&self) -> f64 {
         self.least - self.room
     }
+
+    /// Whether a ramp that is too near to this end moves towards the other one.
+    fn gives_way_to(&self, other: &Self) -> bool {
+        self.lack() > 0.0 && (other.lack() <= 0.0 || self.held && !other.held)
+    }
 }
 
 impl<const D: usize> SectionPlane<D> {
@@ -110,15 +115,16 @@ impl<const D: usize> SectionPlane<D> {
         };
         let across = first.cross(&second);
         let (_, size) = grid.cell_box(&grid.locate(&middle)?);
-        let over = |size: &dyn Fn(usize) -> f64| (0..D).map(|axis| (across[axis] * size(axis)).abs()).sum::<f64>();
-        let smear = over(&|axis| size[axis]);
-        let support = over(&|number| {
-            let axis = &grid.axes()[number];
-            let lengths = (0..axis.cells()).map(|cell| axis.breakpoint(cell + 1) - axis.breakpoint(cell));
+        let longest = Vector::<D>::from_fn(|axis, _| {
+            let knots = &grid.axes()[axis];
+            let lengths = (0..knots.cells()).map(|cell| knots.breakpoint(cell + 1) - knots.breakpoint(cell));
             lengths.fold(0.0, f64::max)
         });
+        let smear = extent_along(&across, &size);
+        let support = extent_along(&across, &longest);
         let reach = 0.5 * smear + (grid.order() as f64 + 1.0) * support;
-        let (along, halves) = ([first, second], [0.5 * length, 0.5 * other]);
+        let along = [first, second];
+        let halves = [0.5 * length, 0.5 * other];
         Some(Self {
             middle,
             along,
@@ -140,10 +146,9 @@ impl<const D: usize> SectionPlane<D> {
         }
         let [before, beyond] = &sides;
         // Of a body too thin for a ramp between its ends the face of the grid is what surely acts on it.
-        let gives_way = |to: &Side, from: &Side| from.lack() > 0.0 && (to.lack() <= 0.0 || from.held && !to.held);
-        let (onward, shift) = if gives_way(beyond, before) {
+        let (onward, shift) = if before.gives_way_to(beyond) {
             (1.0, before.lack())
-        } else if gives_way(before, beyond) {
+        } else if beyond.gives_way_to(before) {
             (-1.0, beyond.lack())
         } else {
             return Some(self);
@@ -152,11 +157,12 @@ impl<const D: usize> SectionPlane<D> {
         let apart = self.smear.min(0.5 * left);
         let count = if apart >= 0.25 * self.smear { 3 } else { 1 };
         let places: Vec<f64> = (0..count).map(|k| onward * (shift + f64::from(k) * apart)).collect();
-        let weight = |own: usize| -> f64 {
+        self.ramps.clear();
+        for (own, place) in places.iter().enumerate() {
             let others = places.iter().enumerate().filter(|(k, _)| *k != own);
-            others.map(|(_, other)| other / (other - places[own])).product()
-        };
-        self.ramps = (0..places.len()).map(|k| [places[k], weight(k)]).collect();
+            let weight = others.map(|(_, other)| other / (other - place)).product();
+            self.ramps.push([*place, weight]);
+        }
         self.reach += places[places.len() - 1].abs();
         Some(self)
     }
@@ -182,7 +188,8 @@ impl<const D: usize> SectionPlane<D> {
         }
         halo.maximum(&mut ends);
         [0, 1].map(|side| {
-            let (face, room) = (self.to_face(grid, side == 1), ends[side]);
+            let face = self.to_face(grid, side == 1);
+            let room = ends[side];
             let held = room + 0.25 * self.smear >= face;
             // At a face one node moves what is held, and the cells of as many nodes as the order are shorter: a ramp
             // over them moves another weight than is beyond its middle.
@@ -197,25 +204,28 @@ impl<const D: usize> SectionPlane<D> {
 
     /// From the section to the face of the grid along or against n, m: from its edge if it is all but parallel to it.
     fn to_face(&self, grid: &Grid<D>, along: bool) -> f64 {
-        let distance = |axis: usize| {
+        let mut least = f64::INFINITY;
+        for axis in 0..D {
             let slope = if along { self.across[axis] } else { -self.across[axis] };
-            let (at, length) = (self.middle[axis], grid.axes()[axis].length());
+            if slope == 0.0 {
+                continue;
+            }
+            let at = self.middle[axis];
+            let length = grid.axes()[axis].length();
             let tilt: f64 = (0..D - 1).map(|k| self.halves[k] * self.along[k][axis].abs()).sum();
             let tilt = if tilt < 0.25 * self.smear { tilt } else { 0.0 };
             let straight = if slope > 0.0 { length - at } else { at };
-            if slope == 0.0 {
-                f64::INFINITY
-            } else {
-                (straight - tilt) / slope.abs()
-            }
-        };
-        (0..D).map(distance).fold(f64::INFINITY, f64::min)
+            least = least.min((straight - tilt) / slope.abs());
+        }
+        least
     }
 
     /// Part of the motion that a node has, by its place along n from the section (m).
     fn beyond(&self, place: f64) -> f64 {
-        let ramp = |[at, weight]: &[f64; 2]| weight * ((place - at) / self.smear + 0.5).clamp(0.0, 1.0);
-        self.ramps.iter().map(ramp).sum()
+        let ramps = self.ramps.iter();
+        ramps
+            .map(|[at, weight]| weight * ((place - at) / self.smear + 0.5).clamp(0.0, 1.0))
+            .sum()
     }
 
     /// The part of a point of some volume (m^D of the grid) that is within the section's edge; 0 of one that is far
@@ -227,20 +237,18 @@ impl<const D: usize> SectionPlane<D> {
         }
         let volume = volume.max(f64::MIN_POSITIVE);
         let half = 0.5 * if D == 2 { volume.sqrt() } else { volume.cbrt() };
-        let within = |at: f64, end: f64| {
-            let inside = (at + half).min(end) - (at - half).max(-end);
-            (inside / (2.0 * half)).clamp(0.0, 1.0)
-        };
         let at = self.along.map(|along| apart.dot(&along));
         if self.round {
-            let (away, part) = (
-                at[0].hypot(at[1]),
-                (at[0] / self.halves[0]).hypot(at[1] / self.halves[1]),
-            );
+            let away = at[0].hypot(at[1]);
+            let part = (at[0] / self.halves[0]).hypot(at[1] / self.halves[1]);
             // As far as the edge is on the ray through the point.
-            return if part > 0.0 { within(away, away / part) } else { 1.0 };
+            return if part > 0.0 {
+                part_within(half, away, away / part)
+            } else {
+                1.0
+            };
         }
-        (0..D - 1).map(|k| within(at[k], self.halves[k])).product()
+        (0..D - 1).map(|k| part_within(half, at[k], self.halves[k])).product()
     }
 
     /// Virtual work of the stress of a point per volume, Pa or N/m, on the motion of what is beyond the section: by 1
@@ -248,22 +256,21 @@ impl<const D: usize> SectionPlane<D> {
     fn work<const W: usize>(&self, grid: &Grid<D>, points: &Points<D>, p: usize) -> Option<[f64; 6]> {
         let cell = grid.locate(&points.x[p])?;
         let rows: [_; D] = std::array::from_fn(|axis| grid.axes()[axis].basis::<W>(points.x[p][axis], cell[axis]));
-        let (mut slope, mut turn) = (Vector::<3>::zeros(), [[0.0; 3]; 3]);
+        let mut slope = Vector::<3>::zeros();
+        let mut turn = [[0.0; 3]; 3];
         for node in 0..W.pow(D as u32) {
             let number: [usize; D] = std::array::from_fn(|axis| node / W.pow((D - 1 - axis) as u32) % W);
             let place = Vector::from_fn(|axis, _| grid.axes()[axis].greville(cell[axis] + number[axis]));
             let arm = spatial::<D>(&(place - self.middle));
             let beyond = self.beyond(arm.dot(&self.across));
-            let gradient = spatial(&Vector::<D>::from_fn(|along, _| {
-                let factor = |axis: usize| {
-                    if axis == along {
-                        rows[axis].1[number[axis]]
-                    } else {
-                        rows[axis].0[number[axis]]
-                    }
-                };
-                (0..D).map(factor).product()
-            }));
+            let gradient = Vector::<D>::from_fn(|along, _| {
+                let factors = (0..D).map(|axis| match axis == along {
+                    true => rows[axis].1[number[axis]],
+                    false => rows[axis].0[number[axis]],
+                });
+                factors.product()
+            });
+            let gradient = spatial(&gradient);
             slope += gradient * beyond;
             (0..D).for_each(|i| (0..D).for_each(|j| turn[i][j] += beyond * arm[i] * gradient[j]));
         }
@@ -275,6 +282,17 @@ impl<const D: usize> SectionPlane<D> {
     }
 }
 
+/// m  sum of edges along the axes, each projected onto a direction.
+fn extent_along<const D: usize>(direction: &Vector<3>, edges: &Vector<D>) -> f64 {
+    (0..D).map(|axis| (direction[axis] * edges[axis]).abs()).sum::<f64>()
+}
+
+/// Part of what reaches by `half` to each side of `at` that is nearer to 0 than `end`, all in m.
+fn part_within(half: f64, at: f64, end: f64) -> f64 {
+    let inside = (at + half).min(end) - (at - half).max(-end);
+    (inside / (2.0 * half)).clamp(0.0, 1.0)
+}
+
 /// Work of a stress on motions by 1 along the axes, `slope` the gradient of what moves, and on rotations by 1 about
 /// them, `turn` the gradients of what moves times the components of the arm; in a plane about its normal alone.
 fn force_and_moment<const D: usize>(
@@ -283,20 +301,25 @@ fn force_and_moment<const D: usize>(
     turn: &[[f64; 3]; 3],
 ) -> (Vector<3>, Vector<3>) {
     let traction = Vector::<3>::from_fn(|i, _| (0..D).map(|j| stress[(i, j)] * slope[j]).sum());
-    // On a rotation that moves by arm_b along a, and by -arm_a along b.
-    let turned = |a: usize, b: usize| {
-        let both = stress[(a, a)] * turn[b][a] - stress[(b, b)] * turn[a][b];
-        let both = both + stress[(a, b)] * (turn[b][b] - turn[a][a]);
-        let others = (0..D).filter(|c| ![a, b].contains(c));
-        others.fold(both, |sum, c| {
-            sum + stress[(a, c)] * turn[b][c] - stress[(b, c)] * turn[a][c]
-        })
-    };
     let moment = Vector::<3>::from_fn(|c, _| {
         let [a, b] = [(c + 1) % 3, (c + 2) % 3];
-        if a.max(b) < D { turned(b, a) } else { 0.0 }
+        if a.max(b) < D {
+            work_of_rotation::<D>(stress, turn, b, a)
+        } else {
+            0.0
+        }
     });
     (traction, moment)
+}
+
+/// Work of a stress on a rotation that moves by arm_b along a, and by -arm_a along b.
+fn work_of_rotation<const D: usize>(stress: &Tensor, turn: &[[f64; 3]; 3], a: usize, b: usize) -> f64 {
+    let both = stress[(a, a)] * turn[b][a] - stress[(b, b)] * turn[a][b];
+    let both = both + stress[(a, b)] * (turn[b][b] - turn[a][a]);
+    let others = (0..D).filter(|c| ![a, b].contains(c));
+    others.fold(both, |sum, c| {
+        sum + stress[(a, c)] * turn[b][c] - stress[(b, c)] * turn[a][c]
+    })
 }
 
 /// A place, on the face of the grid if it has left the grid by less than half of the cell there: a section in a face

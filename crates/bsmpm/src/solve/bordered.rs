@@ -20,7 +20,8 @@ pub struct Bordered<'a, const D: usize> {
 impl<'a, const D: usize> Bordered<'a, D> {
     /// Of a problem whose bodies move freely.
     pub fn of<K>(problem: &Problem<'a, K, D>, solver: &'a mut dyn LinearSolver) -> Self {
-        let (rigid, halo) = (&problem.nodes.rigid, problem.halo);
+        let rigid = &problem.nodes.rigid;
+        let halo = problem.halo;
         let (mut columns, blocks) = rigid.coupling(&problem.model.grid, halo);
         for column in &mut columns {
             problem.nodes.reduce(&mut [&mut column[..]], halo);
@@ -31,11 +32,11 @@ impl<'a, const D: usize> Bordered<'a, D> {
                 .for_each(|(c, _)| *c = 0.0);
         }
         let motions: Vec<(usize, usize)> = rigid.free_motions().collect();
-        let entry = |row: usize, column: usize| {
-            let ((body, k), (other, l)) = (motions[row], motions[column]);
+        let resists = DMatrix::from_fn(motions.len(), motions.len(), |row, column| {
+            let (body, k) = motions[row];
+            let (other, l) = motions[column];
             if body == other { blocks[body][(k, l)] } else { 0.0 }
-        };
-        let resists = DMatrix::from_fn(motions.len(), motions.len(), entry);
+        });
         debug_assert!(blocks.iter().all(|block| block.len() == MOTIONS * MOTIONS));
         Self {
             solver,

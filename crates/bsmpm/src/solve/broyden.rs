@@ -54,7 +54,8 @@ impl Broyden {
         };
         self.complete_products::<D>(&w, halo);
         let coefficients = self.coefficients();
-        let (a, g) = (self.length, coefficients[last]);
+        let a = self.length;
+        let g = coefficients[last];
         let denominator = 1.0 - a * g;
         if !(denominator.abs() >= SINGULAR && denominator.is_finite()) {
             *self = Self::default();

@@ -3,12 +3,11 @@
 
 use crate::boundary::strip::StripAttachments;
 use crate::error::StepError;
-use crate::grid::Shape;
 use crate::kinematics::Kinematics;
 use crate::method::Criteria;
 use crate::model::Model;
-use crate::parallel::{Halo, LinearSolver};
-use crate::points::Points;
+use crate::parallel::{Backend, Halo};
+use crate::points::MappedPoints;
 use crate::solve::bordered::Bordered;
 use crate::solve::found::Found;
 use crate::step::nodes::Nodes;
@@ -28,61 +27,29 @@ const ROUGH: f64 = 1e-2;
 /// Finds equilibrium from the last displacement `guess`, and leaves the statuses that it has in the `nodes`.
 pub fn find<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    shape: &Shape<D>,
+    mapped: MappedPoints<'_, D>,
     nodes: &mut Nodes<D>,
-    (attachments, points): (&mut StripAttachments<D>, &Points<D>),
+    attachments: &mut StripAttachments<D>,
     guess: &[f64],
-    (halo, solver): (&dyn Halo, &mut dyn LinearSolver),
+    backend: &mut Backend<'_>,
     counts: &mut Counts,
 ) -> Result<Found<K, D>, StepError> {
-    let (faces, strips) = (model.boundary.has_contact(), model.boundary.has_strip_contact());
+    let halo = backend.halo;
+    let faces = model.boundary.has_contact();
+    let strips = model.boundary.has_strip_contact();
     if !faces && !strips && nodes.rigid.is_empty() {
-        return super::find(
-            &Problem {
-                model,
-                shape,
-                nodes,
-                attachments,
-                points,
-                halo,
-            },
-            guess,
-            solver,
-            counts,
-        );
+        return find_at_statuses(model, mapped, nodes, attachments, guess, backend, counts);
     }
     attachments.recall(guess);
-    let Criteria {
-        energy,
-        force,
-        max_iterations,
-    } = model.criteria;
-    let criteria = Criteria {
-        energy: energy.max(ROUGH),
-        force: force.max(ROUGH),
-        max_iterations,
-    };
-    let rough = Model {
-        criteria,
-        ..model.clone()
-    };
-    let (mut u, mut history, mut is_rough, mut first_guess) = (guess.to_vec(), Vec::new(), true, true);
+    let rough = rough(model);
+    let mut u = guess.to_vec();
+    let mut history = Vec::new();
+    let mut is_rough = true;
+    let mut first_guess = true;
     let most = if nodes.rigid.is_empty() { MOST } else { MOST_AT_BODIES };
     for pass in 0..most {
         let judged = if is_rough { &rough } else { model };
-        let problem = Problem {
-            model: judged,
-            shape,
-            nodes,
-            attachments,
-            points,
-            halo,
-        };
-        let found = match nodes.rigid.is_coupled() {
-            true => super::find(&problem, &u, &mut Bordered::of(&problem, solver), counts),
-            false => super::find(&problem, &u, solver, counts),
-        };
-        let found = match found {
+        let found = match find_at_statuses(judged, mapped, nodes, attachments, &u, backend, counts) {
             Ok(found) => found,
             // With all nodes of its faces sliding, what they alone hold is free to move.
             Err(error) if !faces || error.is_final() || nodes.contacts.hold_neutral(&model.grid, &u, halo) == 0 => {
@@ -96,19 +63,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         };
         history.extend(found.history.iter().copied());
         first_guess &= found.first_guess;
-        let doubt = (DOUBT * judged.criteria.force * found.scale, model.grid.smallest_edge());
-        let mut corrected = if strips {
-            attachments.correct(&found.u, doubt.0, halo)
-        } else {
-            0
-        };
-        corrected += nodes.rigid.correct(&found.u, (doubt.0, pass), halo)?;
-        nodes.contacts.first_energy = found.first_energy;
-        if faces {
-            corrected += nodes.contacts.correct(&found.u, &found.reaction, doubt, halo);
-            nodes.meet();
-            nodes.count(halo);
-        }
+        let corrected = correct(judged, nodes, attachments, &found, pass, halo)?;
         if corrected == 0 && !is_rough {
             return Ok(Found {
                 history,
@@ -120,4 +75,68 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         u = found.u;
     }
     Err(StepError::Unsettled { passes: most })
+}
+
+/// Finds equilibrium from the displacement `u` with the statuses that the nodes and attachments have.
+fn find_at_statuses<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    mapped: MappedPoints<'_, D>,
+    nodes: &Nodes<D>,
+    attachments: &StripAttachments<D>,
+    u: &[f64],
+    backend: &mut Backend<'_>,
+    counts: &mut Counts,
+) -> Result<Found<K, D>, StepError> {
+    let problem = Problem {
+        model,
+        shape: mapped.shape,
+        nodes,
+        attachments,
+        points: mapped.points,
+        halo: backend.halo,
+    };
+    let solver = &mut *backend.solver;
+    match nodes.rigid.is_coupled() {
+        true => super::find(&problem, u, &mut Bordered::of(&problem, solver), counts),
+        false => super::find(&problem, u, solver, counts),
+    }
+}
+
+/// The model with criteria for an equilibrium whose statuses will change.
+fn rough<K: Kinematics<D>, const D: usize>(model: &Model<K, D>) -> Model<K, D> {
+    let criteria = Criteria {
+        energy: model.criteria.energy.max(ROUGH),
+        force: model.criteria.force.max(ROUGH),
+        ..model.criteria
+    };
+    Model {
+        criteria,
+        ..model.clone()
+    }
+}
+
+/// Corrects the statuses that an equilibrium contradicts; returns how many. The `model` has the criteria that it was
+/// judged by.
+fn correct<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    nodes: &mut Nodes<D>,
+    attachments: &mut StripAttachments<D>,
+    found: &Found<K, D>,
+    pass: usize,
+    halo: &dyn Halo,
+) -> Result<usize, StepError> {
+    let doubt = DOUBT * model.criteria.force * found.scale;
+    let mut corrected = 0;
+    if model.boundary.has_strip_contact() {
+        corrected += attachments.correct(&found.u, doubt, halo);
+    }
+    corrected += nodes.rigid.correct(&found.u, doubt, pass, halo)?;
+    nodes.contacts.first_energy = found.first_energy;
+    if model.boundary.has_contact() {
+        let edge = model.grid.smallest_edge();
+        corrected += nodes.contacts.correct(&found.u, &found.reaction, doubt, edge, halo);
+        nodes.meet();
+        nodes.count(halo);
+    }
+    Ok(corrected)
 }

@@ -38,7 +38,8 @@ pub struct Convergence {
 impl Convergence {
     /// Nothing iterated yet.
     pub fn new<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>) -> Self {
-        let (criteria, round_off) = (problem.model.criteria, RoundOff::of(problem));
+        let criteria = problem.model.criteria;
+        let round_off = RoundOff::of(problem);
         let first_energy = problem.nodes.contacts.first_energy;
         Self {
             criteria,
@@ -99,11 +100,9 @@ impl Convergence {
     }
 
     /// Takes the measures of a state `u` and the direction that `method` found there; whether both criteria hold.
-    pub fn reaches(&mut self, method: Method, energy: f64, (u, balance): (&[f64], &Balance)) -> bool {
-        let (energy, force) = (
-            energy / self.first_energy.unwrap_or(f64::INFINITY),
-            self.measure(balance),
-        );
+    pub fn reaches(&mut self, method: Method, energy: f64, u: &[f64], balance: &Balance) -> bool {
+        let energy = energy / self.first_energy.unwrap_or(f64::INFINITY);
+        let force = self.measure(balance);
         let water = self.water(balance);
         self.history.push(Measures {
             energy,
@@ -134,15 +133,18 @@ impl Convergence {
         let Some(before) = self.history.len().checked_sub(WINDOW) else {
             return false;
         };
-        let excess = |range: std::ops::Range<usize>| {
-            self.history[range]
-                .iter()
-                .map(|m| (m.energy / self.criteria.energy).max(m.force / self.criteria.force))
-                .fold(f64::INFINITY, f64::min)
-        };
-        let (then, now) = (excess(0..before.max(1)), excess(0..self.history.len()));
+        let then = self.least_excess(before.max(1));
+        let now = self.least_excess(self.history.len());
         let per_iteration = (then / now).ln() / WINDOW as f64;
         now.ln() > PATIENCE * per_iteration
+    }
+
+    /// The least of the first `count` iterations' measures over their criteria.
+    fn least_excess(&self, count: usize) -> f64 {
+        self.history[..count]
+            .iter()
+            .map(|m| (m.energy / self.criteria.energy).max(m.force / self.criteria.force))
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// How many of the iterations were Newton's.
@@ -220,14 +222,14 @@ pub fn worst_nodes<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>
     let force = |node: usize| Vector::<D>::from_column_slice(&balance.f_oob[Nodal::<D>::of(node)]).norm();
     let mut nodes: Vec<usize> = problem.halo.owned().nodes().filter(|&node| force(node) > 0.0).collect();
     nodes.sort_by(|&a, &b| force(b).total_cmp(&force(a)));
-    let worst = |node: usize| {
+    let mut worst = Vec::new();
+    for node in nodes.into_iter().take(WORST) {
         let place = grid.node_at(node);
-        let x = (0..D).map(|axis| grid.axes()[axis].greville(place[axis])).collect();
-        WorstNode {
+        worst.push(WorstNode {
             number: grid.number_of(node) as u64,
-            x,
+            x: (0..D).map(|axis| grid.axes()[axis].greville(place[axis])).collect(),
             force: force(node),
-        }
-    };
-    nodes.into_iter().take(WORST).map(worst).collect()
+        });
+    }
+    worst
 }

@@ -1,6 +1,7 @@
 //! Flexible GMRES (Saad, 1993) for an operator that is given by its matrix-vector product.
 
 use crate::error::SolveError;
+use crate::exact::Exact;
 use crate::parallel::{Halo, Krylov};
 use crate::solve::unknowns::Unknowns;
 
@@ -10,27 +11,24 @@ pub const MOST: usize = 300;
 /// Solves A x = b for packed vectors of the `unknowns` from x = 0, `product` A x and `precondition` about A^-1 r, to
 /// the residual `relative` to b or as far as it gets; two reductions an iteration.
 pub fn solve(
-    (unknowns, halo): (&Unknowns, &dyn Halo),
+    unknowns: &Unknowns,
+    halo: &dyn Halo,
     mut product: impl FnMut(&[f64]) -> Vec<f64>,
     mut precondition: impl FnMut(&[f64]) -> Result<Vec<f64>, SolveError>,
-    (b, relative): (&[f64], f64),
+    b: &[f64],
+    relative: f64,
 ) -> Result<(Vec<f64>, Krylov), SolveError> {
-    let dots = |with: &[Vec<f64>], a: &[f64]| -> Vec<f64> {
-        halo.total(&with.iter().flat_map(|v| unknowns.dots([v], a)).collect::<Vec<_>>())
-    };
     let norm = |a: &[f64]| halo.total(&unknowns.dots([a], a))[0].sqrt();
     let size = norm(b);
     if !size.is_finite() {
         return Err(SolveError::NotFinite);
     }
     if size == 0.0 {
-        return Ok((
-            vec![0.0; b.len()],
-            Krylov {
-                iterations: 0,
-                residual: 0.0,
-            },
-        ));
+        let krylov = Krylov {
+            iterations: 0,
+            residual: 0.0,
+        };
+        return Ok((vec![0.0; b.len()], krylov));
     }
     let mut directions: Vec<Vec<f64>> = Vec::new();
     let mut basis = vec![scaled(b, 1.0 / size)];
@@ -39,15 +37,7 @@ pub fn solve(
         let direction = precondition(basis.last().map_or(b, |v| v))?;
         let mut image = product(&direction);
         directions.push(direction);
-        // Twice: once leaves what rounding makes of nearly parallel vectors.
-        let mut column = vec![0.0; basis.len()];
-        for _ in 0..2 {
-            let along = dots(&basis, &image);
-            for ((v, along), entry) in basis.iter().zip(&along).zip(&mut column) {
-                *entry += along;
-                image.iter_mut().zip(v).for_each(|(image, v)| *image -= along * v);
-            }
-        }
+        let column = orthogonalise(&basis, &mut image, unknowns, halo);
         let rest = norm(&image);
         if !rest.is_finite() {
             return Err(SolveError::NotFinite);
@@ -69,13 +59,26 @@ pub fn solve(
     if !residual.is_finite() {
         return Err(SolveError::NotFinite);
     }
-    Ok((
-        x,
-        Krylov {
-            iterations: directions.len(),
-            residual,
-        },
-    ))
+    let krylov = Krylov {
+        iterations: directions.len(),
+        residual,
+    };
+    Ok((x, krylov))
+}
+
+/// Takes what lies along the `basis` from `image`; returns how much of it, a number for every vector. Two reductions.
+fn orthogonalise(basis: &[Vec<f64>], image: &mut [f64], unknowns: &Unknowns, halo: &dyn Halo) -> Vec<f64> {
+    let mut column = vec![0.0; basis.len()];
+    // Twice: once leaves what rounding makes of nearly parallel vectors.
+    for _ in 0..2 {
+        let products: Vec<Exact> = basis.iter().flat_map(|v| unknowns.dots([v], image)).collect();
+        let along = halo.total(&products);
+        for ((v, along), entry) in basis.iter().zip(&along).zip(&mut column) {
+            *entry += along;
+            image.iter_mut().zip(v).for_each(|(image, v)| *image -= along * v);
+        }
+    }
+    column
 }
 
 fn scaled(a: &[f64], factor: f64) -> Vec<f64> {
@@ -147,14 +150,13 @@ mod tests {
     #[test]
     fn it_solves_an_unsymmetric_system() {
         let count = 40;
-        let (unknowns, halo) = (
-            Unknowns::of::<1>(&vec![true; count], &Alone { nodes: count }),
-            Alone { nodes: count },
-        );
+        let unknowns = Unknowns::of::<1>(&vec![true; count], &Alone { nodes: count });
+        let halo = Alone { nodes: count };
         let diagonal = |i: usize| 2.0 + 10.0 * i as f64;
         let product = |x: &[f64]| -> Vec<f64> {
             let at = |i: usize| {
-                let (before, after) = (if i > 0 { x[i - 1] } else { 0.0 }, x.get(i + 1).unwrap_or(&0.0));
+                let before = if i > 0 { x[i - 1] } else { 0.0 };
+                let after = x.get(i + 1).unwrap_or(&0.0);
                 diagonal(i) * x[i] + 3.0 * before - 1.5 * after
             };
             (0..count).map(at).collect()
@@ -162,14 +164,14 @@ mod tests {
         let exact: Vec<f64> = (0..count).map(|i| (i as f64).sin()).collect();
         let b = product(&exact);
         let divided = |r: &[f64]| Ok(r.iter().enumerate().map(|(i, r)| r / diagonal(i)).collect());
-        let by_diagonal = solve((&unknowns, &halo), product, divided, (&b, 1e-12)).unwrap();
-        let alone = solve((&unknowns, &halo), product, |r: &[f64]| Ok(r.to_vec()), (&b, 1e-12)).unwrap();
+        let by_diagonal = solve(&unknowns, &halo, product, divided, &b, 1e-12).unwrap();
+        let alone = solve(&unknowns, &halo, product, |r: &[f64]| Ok(r.to_vec()), &b, 1e-12).unwrap();
         for (x, krylov) in [&by_diagonal, &alone] {
             assert!(krylov.residual <= 2e-12 && krylov.iterations <= count, "{krylov:?}");
             assert!(x.iter().zip(&exact).all(|(x, exact)| (x - exact).abs() < 1e-10));
         }
         assert!(by_diagonal.1.iterations < alone.1.iterations);
-        let none = solve((&unknowns, &halo), product, divided, (&vec![0.0; count], 1e-12)).unwrap();
+        let none = solve(&unknowns, &halo, product, divided, &vec![0.0; count], 1e-12).unwrap();
         assert_eq!(
             none,
             (

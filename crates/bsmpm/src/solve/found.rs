@@ -44,10 +44,12 @@ impl<K: Kinematics<D>, const D: usize> Found<K, D> {
     /// The state that an iteration reached: displacements, and pressures behind them where water flows.
     pub fn new(mut u: Vec<f64>, residual: Residual<K, D>, convergence: &Convergence) -> Self {
         let newton_iterations = convergence.by_newton();
-        let (force, work) = (convergence.measure(&residual.balance), residual.balance.work);
+        let force = convergence.measure(&residual.balance);
+        let work = residual.balance.work;
         let scale = residual.balance.scale;
         let Residual { trial, balance, .. } = residual;
-        let (history, reaction) = (convergence.history().to_vec(), balance.reaction);
+        let history = convergence.history().to_vec();
+        let reaction = balance.reaction;
         let first_energy = convergence.first_energy();
         let p = u.split_off(reaction.len());
         let judged = history.last().copied().filter(|last| last.force == force);

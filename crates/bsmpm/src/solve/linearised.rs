@@ -3,12 +3,13 @@
 
 use crate::error::SolveError;
 use crate::grid::transfer;
-use crate::kinematics::{Gradient, Kinematics, Moduli, Slope};
+use crate::kinematics::{Gradient, GradientModuli, Kinematics, Slope};
 use crate::material::Tangent;
 use crate::parallel::{LinearSolver, Symmetry};
 use crate::step::adjoint::{Adjoint, Pressures, transposed, works};
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, Dilations, Raised, Share};
+use crate::step::inertia::Inertia;
 use crate::step::problem::Problem;
 use crate::step::reduced_system::ReducedSystem;
 use crate::step::residual::Residual;
@@ -23,7 +24,7 @@ pub struct Linearised<'a, K: Kinematics<D>, const D: usize> {
     trial: &'a Trial<K, D>,
     reaction: &'a [f64], // N
     /// N m  V0 d(tau dF^-T)/d(grad v), one unit gradient after the other
-    moduli: Vec<Moduli<K, D>>,
+    moduli: Vec<GradientModuli<K, D>>,
     /// under F-bar
     dilation: Option<Vec<Dilation<K::Gradient>>>,
     /// under consistent F-bar in dilatant material; of all points
@@ -34,10 +35,59 @@ pub struct Linearised<'a, K: Kinematics<D>, const D: usize> {
 
 /// What the adjoint force adds at a point: its pressure is that of an average.
 struct Pressure<G> {
-    /// J  d(V0 tau : I / dof) per gradient, and per unit of d ln(dJ-bar/dJ)
-    raised: (G, f64),
+    /// J  d(V0 tau : I / dof) per gradient
+    by_gradient: G,
+    /// J  the same per unit of d ln(dJ-bar/dJ)
+    by_rate: f64,
     /// J  V0 tau : I / dof of the point itself
     own: f64,
+}
+
+/// A point whose stress changes with the displacement.
+struct LinearisedPoint {
+    tangent: Tangent,
+    inverse: Tensor,       // dF^-1
+    tau: Tensor,           // Pa
+    volume: f64,           // m^D  V0
+    pressure: Option<f64>, // J  of the adjoint force
+    pore: Option<f64>,     // Pa  J p of the water
+}
+
+impl LinearisedPoint {
+    /// V0 d(tau dF^-T) for the unit gradient of a row and a column, N m.
+    fn change<K: Kinematics<D>, const D: usize>(&self, row: usize, column: usize) -> K::Gradient {
+        let l = K::gradient::<f64>(&K::Gradient::unit(row, column)) * self.inverse;
+        let mut change = self.tangent.apply(&l) - self.tau * l.transpose();
+        if let Some(pressure) = self.pressure {
+            let pressure = pressure / self.volume;
+            let own = works::<K, D>(&self.tau);
+            change -= l.transpose() * (pressure - own);
+            change += Tensor::identity() * (pressure * l.trace() - works::<K, D>(&self.tangent.apply(&l)));
+        }
+        if let Some(pore) = self.pore {
+            change += (l.transpose() - Tensor::identity() * l.trace()) * pore;
+        }
+        K::working(&(change * self.inverse.transpose())) * self.volume
+    }
+
+    /// What F-bar adds, of a point whose viscous stress changes by `viscous` of a gradient, if it has any.
+    fn dilation<K: Kinematics<D>, const D: usize>(
+        &self,
+        viscous: Option<&impl Fn(&Tensor) -> Tensor>,
+    ) -> Dilation<K::Gradient> {
+        let mut change = self.tangent.apply(&K::dilation());
+        if self.pressure.is_some() {
+            change -= Tensor::identity() * works::<K, D>(&change);
+        }
+        if let Some(viscous) = viscous {
+            change += viscous(&K::dilation());
+        }
+        let change = change * self.inverse.transpose();
+        Dilation {
+            trace: K::working(&self.inverse.transpose()),
+            flux: K::working(&change) * self.volume,
+        }
+    }
 }
 
 /// What F-bar adds at a point.
@@ -49,23 +99,19 @@ struct Dilation<G> {
 }
 
 impl<G> Pressure<G> {
-    /// Of a point with a tangent, dF^-1 and tau.
-    fn of<K: Kinematics<D, Gradient = G>, const D: usize>(
-        (tangent, inverse): (&Tangent, &Tensor),
-        tau: &Tensor,
-        volume: f64,
-    ) -> Self
+    /// Of a point.
+    fn of<K: Kinematics<D, Gradient = G>, const D: usize>(point: &LinearisedPoint) -> Self
     where
         G: Gradient<D, Of<f64> = G>,
     {
-        let by_gradient = G::from_fn(|k, l| {
-            let unit = G::unit(k, l);
-            volume * works::<K, D>(&tangent.apply(&(K::gradient::<f64>(&unit) * inverse)))
-        });
-        let by_rate = volume * works::<K, D>(&tangent.apply(&K::dilation()));
+        let LinearisedPoint { tangent, volume, .. } = point;
         Self {
-            raised: (by_gradient, by_rate),
-            own: volume * works::<K, D>(tau),
+            by_gradient: G::from_fn(|k, l| {
+                let unit = G::unit(k, l);
+                volume * works::<K, D>(&tangent.apply(&(K::gradient::<f64>(&unit) * point.inverse)))
+            }),
+            by_rate: volume * works::<K, D>(&tangent.apply(&K::dilation())),
+            own: volume * works::<K, D>(&point.tau),
         }
     }
 }
@@ -73,7 +119,8 @@ impl<G> Pressure<G> {
 impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
     /// The derivative where `residual` was evaluated; no point of it may have inverted.
     pub fn at(problem: &'a Problem<'a, K, D>, residual: &'a Residual<K, D>) -> Self {
-        let (trial, points) = (&residual.trial, problem.points);
+        let trial = &residual.trial;
+        let points = problem.points;
         let averaged = trial.is_averaged();
         let mut moduli = Vec::with_capacity(points.len());
         let mut dilation = averaged.then(|| Vec::with_capacity(points.len()));
@@ -82,47 +129,32 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         for (p, &volume) in problem.volume().iter().enumerate() {
             let dF = trial.dF(p);
             let inverse = dF.try_inverse();
-            let (Ok(response), Some(inverse)) = (trial.respond(problem.model, points, p), inverse) else {
+            let response = trial.respond(problem.model, points, p).ok();
+            let Some((response, inverse)) = response.zip(inverse) else {
                 moduli.push(K::Gradient::moduli(|_, _| K::Gradient::zeros())); // cannot be: the residual has refused such a point
                 continue;
             };
-            let (tau, tangent) = (response.tau().full(), response.tangent());
-            let unit = |k: usize, l: usize| {
-                let l = K::gradient::<f64>(&K::Gradient::unit(k, l)) * inverse;
-                let mut change = tangent.apply(&l) - tau * l.transpose();
-                if let Some(pressure) = pressures.at(p) {
-                    let (pressure, own) = (pressure / volume, works::<K, D>(&tau));
-                    change -= l.transpose() * (pressure - own);
-                    change += Tensor::identity() * (pressure * l.trace() - works::<K, D>(&tangent.apply(&l)));
-                }
-                if let Some(pore) = trial.pore_at(p) {
-                    change += (l.transpose() - Tensor::identity() * l.trace()) * pore;
-                }
-                K::working(&(change * inverse.transpose())) * volume
+            let point = LinearisedPoint {
+                tangent: response.tangent(),
+                inverse,
+                tau: response.tau().full(),
+                volume,
+                pressure: pressures.at(p),
+                pore: trial.pore_at(p),
             };
             let viscous = trial.viscous(problem.model, points, p, &response);
             let viscous = viscous.map(|viscous| (viscous.tau.full(), viscous.tangent(response.change_of_returned())));
             moduli.push(K::Gradient::moduli(|k, l| match &viscous {
-                Some((tau, change)) => unit(k, l) + viscous_flux::<K, D>((tau, change), &inverse, (k, l)) * volume,
-                None => unit(k, l),
+                Some((tau, change)) => {
+                    point.change::<K, D>(k, l) + viscous_flux::<K, D>(tau, change, &inverse, k, l) * volume
+                }
+                None => point.change::<K, D>(k, l),
             }));
             if let Some(dilation) = &mut dilation {
-                let mut change = tangent.apply(&K::dilation());
                 if let Some((_, at)) = &mut adjoint {
-                    at.push(Pressure::of::<K, D>((&tangent, &inverse), &tau, volume));
+                    at.push(Pressure::of::<K, D>(&point));
                 }
-                if pressures.at(p).is_some() {
-                    change -= Tensor::identity() * works::<K, D>(&change);
-                }
-                if let Some((_, viscous)) = &viscous {
-                    change += viscous(&K::dilation());
-                }
-                let change = change * inverse.transpose();
-                let flux = K::working(&change) * volume;
-                dilation.push(Dilation {
-                    trace: K::working(&inverse.transpose()),
-                    flux,
-                });
+                dilation.push(point.dilation::<K, D>(viscous.as_ref().map(|(_, change)| change)));
             }
         }
         Self {
@@ -140,8 +172,10 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
     pub fn with_water(mut self, x: &'a [f64]) -> Self {
         let Problem { nodes, .. } = *self.problem;
         let p = &x[nodes.free.len()..];
-        let of = |pores: &'a _| LinearisedWater::at((self.problem, pores), self.trial, p);
-        self.water = nodes.pores.as_ref().map(of);
+        self.water = nodes
+            .pores
+            .as_ref()
+            .map(|pores| LinearisedWater::at(self.problem, pores, self.trial, p));
         self
     }
 
@@ -155,42 +189,30 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             halo,
             ..
         } = *self.problem;
-        let ((v, v_p), (out, out_p)) = (v.split_at(nodes.free.len()), out.split_at_mut(nodes.free.len()));
+        let (v, v_p) = v.split_at(nodes.free.len());
+        let (out, out_p) = out.split_at_mut(nodes.free.len());
         let mut extended = Cow::Borrowed(v);
         if let Some(extension) = &nodes.extension {
             extension.extend(&self.problem.model.grid, extended.to_mut(), halo);
         }
         let v = &extended[..];
-        let grad = transfer::gradients::<K, D, _>((shape, &points.x), v, |_, grad| grad);
+        let grad = transfer::gradients::<K, D, _>(shape, &points.x, v, |_, grad| grad);
         let rate = self.dilation.as_ref().and_then(|dilation| {
-            let trace: Vec<f64> = dilation
-                .iter()
-                .zip(&grad)
-                .map(|(at, grad)| at.trace.dot(grad))
-                .collect();
+            let traces = dilation.iter().zip(&grad).map(|(at, grad)| at.trace.dot(grad));
+            let trace: Vec<f64> = traces.collect();
             Some((dilation, self.trial.dilation_rate(self.problem, &trace)?))
         });
-        let moduli = &self.moduli;
-        let pressed = rate.as_ref().and_then(|(dilation, rate)| {
-            let (adjoint, at) = self.adjoint.as_ref()?;
-            let raised = |p: usize| {
-                let Pressure {
-                    raised: (by_gradient, by_rate),
-                    own,
-                } = &at[p];
-                let (_, mean) = self.trial.means(self.problem.model, self.problem.points, p);
-                let grown = own * (rate[p] + dilation[p].trace.dot(&grad[p]));
-                (by_gradient.dot(&grad[p]) + by_rate * rate[p] - grown) / mean
-            };
-            Some((dilation, transposed(self.problem, adjoint, self.trial, raised)))
-        });
+        let pressed = rate
+            .as_ref()
+            .and_then(|(dilation, rate)| Some((dilation, self.pressed(dilation, rate, &grad)?)));
         let water = self.water.as_ref().map(|water| (water, water.pressures(v_p)));
         if let Some((water, pressures)) = &water {
             let averaged = rate.as_ref().map(|(_, rate)| &rate[..]);
-            out_p.copy_from_slice(&water.multiply(self.problem, (&grad, averaged), pressures, v_p));
+            out_p.copy_from_slice(&water.multiply(self.problem, &grad, averaged, pressures, v_p));
         }
         let volume = self.problem.volume();
-        let mut force = transfer::divergence::<K, D>((shape, &points.x), |p| {
+        let moduli = &self.moduli;
+        let mut force = transfer::divergence::<K, D>(shape, &points.x, |p| {
             let flux = contract::<K, D>(&moduli[p], &grad[p]);
             let flux = rate
                 .as_ref()
@@ -199,7 +221,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 .as_ref()
                 .map_or(flux, |(dilation, pressed)| flux + dilation[p].trace * pressed[p]);
             water.as_ref().map_or(flux, |(water, changes)| {
-                flux + water.pressed::<K>(p, changes[p].0) * volume[p]
+                flux + water.pressed::<K>(p, changes[p].value) * volume[p]
             })
         });
         if let Some(background) = &nodes.background {
@@ -210,28 +232,42 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         out.copy_from_slice(&halo.sum(&force));
         nodes.reduce(&mut [&mut *out], halo);
         if let Some(inertia) = &nodes.inertia {
-            let (factor, moved) = (inertia.factor(), v);
-            let alike = inertia.moving.is_empty();
-            let scaled = |(c, v): (usize, &f64)| inertia.factor_of(c) / factor * v;
-            let scaled: Vec<f64> = if alike {
-                Vec::new()
-            } else {
-                v.iter().enumerate().map(scaled).collect()
-            };
-            let v = if alike { v } else { &scaled };
-            for (out, momentum) in out.iter_mut().zip(self.problem.mass().times(v)) {
-                *out += factor * momentum;
-            }
-            nodes
-                .dashpots
-                .stiffness(inertia)
-                .for_each(|(c, stiffness)| out[c] += stiffness * moved[c]);
+            self.add_inertia(inertia, v, out);
         }
         nodes.contacts.add_derivative(self.reaction, v, out);
         out.iter_mut()
             .zip(&nodes.free)
             .filter(|(_, free)| !**free)
             .for_each(|(out, _)| *out = 0.0);
+    }
+
+    /// What the pressures of the adjoint force change by at the points for a gradient and the rate of ln(dJ-bar/dJ), J;
+    /// `None` without such a force. One exchange with the neighbours.
+    fn pressed(&self, dilation: &[Dilation<K::Gradient>], rate: &[f64], grad: &[K::Gradient]) -> Option<Vec<f64>> {
+        let Problem { model, points, .. } = *self.problem;
+        let (adjoint, at) = self.adjoint.as_ref()?;
+        Some(transposed(self.problem, adjoint, self.trial, |p| {
+            let (_, mean) = self.trial.means(model, points, p);
+            let grown = at[p].own * (rate[p] + dilation[p].trace.dot(&grad[p]));
+            (at[p].by_gradient.dot(&grad[p]) + at[p].by_rate * rate[p] - grown) / mean
+        }))
+    }
+
+    /// Adds what inertia and dashpots resist a nodal displacement `v`, m, with, N.
+    fn add_inertia(&self, inertia: &Inertia, v: &[f64], out: &mut [f64]) {
+        let factor = inertia.factor();
+        let mut scaled = Cow::Borrowed(v);
+        if !inertia.moving.is_empty() {
+            for (c, v) in scaled.to_mut().iter_mut().enumerate() {
+                *v *= inertia.factor_of(c) / factor;
+            }
+        }
+        for (out, momentum) in out.iter_mut().zip(self.problem.mass().times(&scaled)) {
+            *out += factor * momentum;
+        }
+        for (c, stiffness) in self.problem.nodes.dashpots.stiffness(inertia) {
+            out[c] += stiffness * v[c];
+        }
     }
 
     /// Assembles and factorises the matrix that preconditions the product: all of it, but for F-bar's average where
@@ -258,9 +294,9 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             block.fill(0.0);
             let mut dilations = coupling.as_ref().map(Coupling::of_patch);
             for p in patch.points.clone() {
-                transfer::slopes_of::<K, D>((shape, &points.x), p, slopes);
+                transfer::slopes_of::<K, D>(shape, &points.x, p, slopes);
                 match &mut dilations {
-                    Some(dilations) => self.add_coupled(p, slopes, (dilations, &mut block)),
+                    Some(dilations) => self.add_coupled(p, slopes, dilations, &mut block),
                     None => add_point::<K, D>(&self.narrow(p).0, slopes, Pairs::All, &mut block),
                 }
             }
@@ -271,8 +307,10 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 background.add_to(number, &mut block);
             }
             add_mass(
-                (self.problem.model.mass, nodes),
-                (shape, patch),
+                self.problem.model.mass,
+                nodes,
+                shape,
+                patch,
                 &self.problem.points.mass,
                 &mut block,
             );
@@ -286,28 +324,28 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
 
     /// Moduli of point `p`, and its flux per unit of d ln(dJ-bar/dJ), of a force that is not the adjoint: that one
     /// reaches twice as far as a matrix.
-    fn narrow(&self, p: usize) -> (Moduli<K, D>, K::Gradient) {
+    fn narrow(&self, p: usize) -> (GradientModuli<K, D>, K::Gradient) {
         let flux = self
             .dilation
             .as_ref()
             .map_or_else(K::Gradient::zeros, |dilation| dilation[p].flux);
-        let has = |(adjoint, _): &&(Adjoint, _)| adjoint.has(self.problem.model, self.problem.points, p);
-        let (Some((_, at)), Some(dilation)) = (self.adjoint.as_ref().filter(has), &self.dilation) else {
+        let pressures = self
+            .adjoint
+            .as_ref()
+            .filter(|(adjoint, _)| adjoint.has(self.problem.model, self.problem.points, p));
+        let Some(((_, at), dilation)) = pressures.zip(self.dilation.as_ref()) else {
             return (self.moduli[p], flux);
         };
-        let (
-            Dilation { trace, .. },
-            Pressure {
-                raised: (by_gradient, by_rate),
-                ..
-            },
-        ) = (&dilation[p], &at[p]);
-        let unit = |k: usize, l: usize| self.moduli[p][(k, l)] + *trace * by_gradient[(k, l)];
-        (K::Gradient::moduli(unit), flux + *trace * *by_rate)
+        let Dilation { trace, .. } = &dilation[p];
+        let Pressure {
+            by_gradient, by_rate, ..
+        } = &at[p];
+        let moduli = K::Gradient::moduli(|k, l| self.moduli[p][(k, l)] + *trace * by_gradient[(k, l)]);
+        (moduli, flux + *trace * *by_rate)
     }
 
     /// Adds point `p`, whose dilation is averaged: flux_p (S(w dJ tr l)_p / S(w dJ)_p - tr l_p) besides its moduli.
-    fn add_coupled(&self, p: usize, slopes: &[Slope<K, D>], (dilations, block): (&mut Dilations, &mut [f64])) {
+    fn add_coupled(&self, p: usize, slopes: &[Slope<K, D>], dilations: &mut Dilations, block: &mut [f64]) {
         let Problem {
             model, nodes, points, ..
         } = *self.problem;
@@ -324,7 +362,8 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
             *dilation = trace.times(slope) * (weight * dilated);
             *force = flux.times(slope) / mean;
         }
-        let (dilation, force) = (&dilation[..slopes.len()], &force[..slopes.len()]);
+        let dilation = &dilation[..slopes.len()];
+        let force = &force[..slopes.len()];
         let group = model.groups.of(points.material[p]);
         dilations.add(
             nodes,
@@ -342,9 +381,11 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
 
 /// Change of the flux of a viscous stress for a unit gradient, per volume: (d tau_v - tau_v l^T) dF^-T.
 fn viscous_flux<K: Kinematics<D>, const D: usize>(
-    (tau, change): (&Tensor, &impl Fn(&Tensor) -> Tensor),
+    tau: &Tensor,
+    change: &impl Fn(&Tensor) -> Tensor,
     inverse: &Tensor,
-    (row, column): (usize, usize),
+    row: usize,
+    column: usize,
 ) -> K::Gradient {
     let l = K::gradient::<f64>(&K::Gradient::unit(row, column)) * inverse;
     K::working(&((change(&l) - tau * l.transpose()) * inverse.transpose()))
@@ -352,7 +393,7 @@ fn viscous_flux<K: Kinematics<D>, const D: usize>(
 
 /// Change of the flux for a gradient: sum_kl moduli_kl grad_kl.
 #[inline]
-fn contract<K: Kinematics<D>, const D: usize>(moduli: &Moduli<K, D>, grad: &K::Gradient) -> K::Gradient {
+fn contract<K: Kinematics<D>, const D: usize>(moduli: &GradientModuli<K, D>, grad: &K::Gradient) -> K::Gradient {
     let mut flux = K::Gradient::zeros();
     for k in 0..D {
         for l in 0..K::Gradient::SLOPES {

@@ -48,13 +48,14 @@ impl Multisecant {
 
     /// Turns the nodal w = K_0^-1 f into the direction du, and reports du . f: one reduction for everything.
     pub fn correct(&mut self, nodal_w: &mut [f64], f: &[f64], halo: &dyn Halo) -> f64 {
-        let (w, f) = (self.unknowns.packed(nodal_w), self.unknowns.packed(f));
+        let w = self.unknowns.packed(nodal_w);
+        let f = self.unknowns.packed(f);
         let dw = self.learn(&w, &f);
         let Products {
             right,
             both,
             mut energy,
-        } = self.products((&w, &f), dw.as_deref(), halo);
+        } = self.products(&w, &f, dw.as_deref(), halo);
         let weights = least_squares(&self.products, &right);
         weights
             .iter()
@@ -83,8 +84,8 @@ impl Multisecant {
     /// Adds the secant of the last step, and forgets the oldest one if there are too many; what w changed by.
     fn learn(&mut self, w: &[f64], f: &[f64]) -> Option<Vec<f64>> {
         let last = self.last.take()?;
-        let change = |now: &[f64], before: &[f64]| -> Vec<f64> { now.iter().zip(before).map(|(a, b)| a - b).collect() };
-        let (dw, df) = (change(w, &last.w), change(f, &last.f));
+        let dw: Vec<f64> = w.iter().zip(&last.w).map(|(w, before)| w - before).collect();
+        let df = f.iter().zip(&last.f).map(|(f, before)| f - before).collect();
         let both = last.s.iter().zip(&dw).map(|(s, dw)| s + dw).collect();
         self.secants.push(Secant { both, df });
         if self.secants.len() > MOST {
@@ -99,15 +100,15 @@ impl Multisecant {
 
     /// Products with the present force, from one reduction; rows of `products` are completed on the way, of the newest
     /// secant's `dw`.
-    fn products(&mut self, (w, f): (&[f64], &[f64]), dw: Option<&[f64]>, halo: &dyn Halo) -> Products {
+    fn products(&mut self, w: &[f64], f: &[f64], dw: Option<&[f64]>, halo: &dyn Halo) -> Products {
         let Self { unknowns, secants, .. } = self;
         let count = secants.len();
-        let of_secant = |k: usize| {
+        let of_secants = threads::each(count, |k| {
             let [own, right] = unknowns.dots([dw.unwrap_or_default(), w], &secants[k].df);
             let [both] = unknowns.dots([f], &secants[k].both);
             [own, right, both]
-        };
-        let mut sums: Vec<Exact> = threads::each(count, of_secant).into_iter().flatten().collect();
+        });
+        let mut sums: Vec<Exact> = of_secants.into_iter().flatten().collect();
         sums.extend(unknowns.dots([w], f));
         let sums = halo.total(&sums);
         let every_third = |from: usize| sums[..3 * count].iter().skip(from).step_by(3).copied().collect();
@@ -136,10 +137,10 @@ fn least_squares(products: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     if unit == 0.0 {
         return vec![0.0; size];
     }
-    let scale: Vec<f64> = (0..size).map(|i| (products[i][i] / unit).abs().sqrt()).collect();
-    let inverse = |i: usize| if scale[i] > 0.0 { 1.0 / scale[i] } else { 0.0 };
+    let scale = (0..size).map(|i| (products[i][i] / unit).abs().sqrt());
+    let inverse: Vec<f64> = scale.map(|scale| if scale > 0.0 { 1.0 / scale } else { 0.0 }).collect();
     let matrix = DMatrix::from_fn(size, size, |i, j| {
-        products[i.max(j)][i.min(j)] / unit * inverse(i) * inverse(j)
+        products[i.max(j)][i.min(j)] / unit * inverse[i] * inverse[j]
     });
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return vec![0.0; size];
@@ -148,15 +149,15 @@ fn least_squares(products: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
         eigenvectors,
         eigenvalues,
     } = SymmetricEigen::new(matrix);
-    let mut along = eigenvectors.tr_mul(&DVector::from_fn(size, |i, _| right[i] / unit * inverse(i)));
+    let mut along = eigenvectors.tr_mul(&DVector::from_fn(size, |i, _| right[i] / unit * inverse[i]));
     let least = DEPENDENT * eigenvalues.amax();
     for (component, value) in along.iter_mut().zip(&eigenvalues) {
         *component = if *value > least { *component / value } else { 0.0 };
     }
     (eigenvectors * along)
         .iter()
-        .enumerate()
-        .map(|(i, weight)| weight * inverse(i))
+        .zip(inverse)
+        .map(|(weight, inverse)| weight * inverse)
         .collect()
 }
 

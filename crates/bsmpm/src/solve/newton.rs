@@ -54,21 +54,16 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if problem.halo.is_interrupted() {
             return Err(StepError::Interrupted.into());
         }
-        let (du, energy) = match direction(problem, (&u, &residual), solver, counts) {
+        let (du, energy) = match direction(problem, &u, &residual, solver, counts) {
             Ok(found) => found,
             Err(unsolved) => {
-                return Err(Stopped::without_direction(
-                    problem,
-                    (u, &residual),
-                    convergence,
-                    unsolved,
-                ));
+                return Err(Stopped::without_direction(problem, u, &residual, convergence, unsolved));
             }
         };
         if !convergence.has_begun() {
             convergence.begin(first_energy(problem, &du[..problem.nodes.free.len()], energy));
         }
-        if convergence.reaches(Method::Newton, energy.abs(), (&u, &residual.balance)) {
+        if convergence.reaches(Method::Newton, energy.abs(), &u, &residual.balance) {
             return Ok(Found::new(u, residual, convergence));
         }
         if iteration == MOST {
@@ -78,7 +73,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         let Some((next, found)) = search(problem, &u, &du, &residual, counts) else {
             break;
         };
-        stability::check(problem, convergence, (&du, work), &found.balance)?;
+        stability::check(problem, convergence, &du, work, &found.balance)?;
         (u, residual) = (next, found);
     }
     Err(Stopped {
@@ -90,14 +85,15 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
 /// K du = f_oob with the complete K at this state, and du . f_oob; with the pressures behind them where water flows.
 fn direction<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    (x, residual): (&[f64], &Residual<K, D>),
+    x: &[f64],
+    residual: &Residual<K, D>,
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
 ) -> Result<(Vec<f64>, f64), SolveError> {
     if let Some((pores, water)) = problem.nodes.pores.as_ref().zip(residual.balance.water.as_ref()) {
         let measure = Scales::of(problem, &residual.balance).measure(&residual.balance);
         let forcing = measure.clamp(FORCING.0, LOOSE);
-        let Exact { dx, energy, krylov } = coupled((problem, pores), (x, residual, water), forcing, solver)?;
+        let Exact { dx, energy, krylov } = coupled(problem, pores, x, residual, water, forcing, solver)?;
         counts.factorisations += 2;
         counts.iterations += 1;
         counts.products += krylov.iterations + 1;
@@ -108,18 +104,22 @@ fn direction<K: Kinematics<D>, const D: usize>(
             Err(SolveError::Residual(krylov.residual))
         };
     }
-    let forcing = |loosest: f64| residual.balance.measure().clamp(FORCING.0, loosest);
+    let measure = residual.balance.measure();
     counts.factorisations += 1;
     counts.iterations += 1;
     // In space a general matrix takes more than twice the memory for the same iterations.
     let (du, krylov) = if solver.is_rough() || D == 3 {
-        around_stiffness(problem, residual, forcing(LOOSE), solver)?
+        around_stiffness(problem, residual, measure.clamp(FORCING.0, LOOSE), solver)?
     } else {
         let linearised = Linearised::at(problem, residual);
         linearised.factorise(solver)?;
         let mut du = vec![0.0; residual.balance.f_oob.len()];
-        let mut product = |v: &[f64], out: &mut [f64]| linearised.multiply(v, out);
-        let krylov = solver.solve_with(&mut product, forcing(FORCING.1), &residual.balance.f_oob, &mut du)?;
+        let krylov = solver.solve_with(
+            &mut |v, out| linearised.multiply(v, out),
+            measure.clamp(FORCING.0, FORCING.1),
+            &residual.balance.f_oob,
+            &mut du,
+        )?;
         (du, krylov)
     };
     counts.products += krylov.iterations + 1;
@@ -139,27 +139,30 @@ fn around_stiffness<K: Kinematics<D>, const D: usize>(
     relative: f64,
     solver: &mut dyn LinearSolver,
 ) -> Result<(Vec<f64>, Krylov), SolveError> {
-    let (halo, f) = (problem.halo, &residual.balance.f_oob);
+    let halo = problem.halo;
+    let f = &residual.balance.f_oob;
     let linearised = Linearised::at(problem, residual);
     stiffness::assemble(problem, Some(&residual.trial), solver)?;
     let unknowns = Unknowns::of::<D>(&problem.nodes.free, halo);
-    let (mut nodal, mut image) = (vec![0.0; f.len()], vec![0.0; f.len()]);
-    let product = |v: &[f64]| {
-        unknowns.unpack(v, &mut nodal);
-        linearised.multiply(&nodal, &mut image);
-        unknowns.packed(&image)
-    };
-    let (mut force, mut direction) = (vec![0.0; f.len()], vec![0.0; f.len()]);
-    let precondition = |r: &[f64]| {
-        unknowns.unpack(r, &mut force);
-        solver.solve(&force, &mut direction)?;
-        Ok(unknowns.packed(&direction))
-    };
+    let mut nodal = vec![0.0; f.len()];
+    let mut image = vec![0.0; f.len()];
+    let mut force = vec![0.0; f.len()];
+    let mut direction = vec![0.0; f.len()];
     let (found, krylov) = fgmres::solve(
-        (&unknowns, halo),
-        product,
-        precondition,
-        (&unknowns.packed(f), relative),
+        &unknowns,
+        halo,
+        |v| {
+            unknowns.unpack(v, &mut nodal);
+            linearised.multiply(&nodal, &mut image);
+            unknowns.packed(&image)
+        },
+        |r| {
+            unknowns.unpack(r, &mut force);
+            solver.solve(&force, &mut direction)?;
+            Ok(unknowns.packed(&direction))
+        },
+        &unknowns.packed(f),
+        relative,
     )?;
     let mut du = vec![0.0; f.len()];
     unknowns.unpack(&found, &mut du);

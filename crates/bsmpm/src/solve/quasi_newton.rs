@@ -51,7 +51,8 @@ impl Secants {
 
     /// The same of the unknowns of a problem, pressures among them where water flows: there by all secants.
     fn of<K, const D: usize>(method: QuasiNewton, problem: &Problem<'_, K, D>) -> Self {
-        let (free, halo) = (&problem.nodes.free, problem.halo);
+        let free = &problem.nodes.free;
+        let halo = problem.halo;
         let Some(pores) = &problem.nodes.pores else {
             return Self::new::<D>(method, free, halo);
         };
@@ -82,7 +83,7 @@ impl Secants {
             Some((pores, water)) => {
                 let lacking = water.excess.iter().map(|excess| -excess);
                 let f: Vec<f64> = balance.f_oob.iter().copied().chain(lacking).collect();
-                let Split { z, f, solved } = Split::of(problem, (pores, &f), solver)?;
+                let Split { z, f, solved } = Split::of(problem, pores, &f, solver)?;
                 Ok(self.corrected::<D>(z, &f, problem.halo, solved))
             }
             None => self.direction::<D>(&balance.f_oob, problem.halo, solver),
@@ -128,15 +129,21 @@ impl Stopped {
     /// itself is at fault.
     pub fn without_direction<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        (best, residual): (Vec<f64>, &Residual<K, D>),
+        best: Vec<f64>,
+        residual: &Residual<K, D>,
         convergence: &Convergence,
         unsolved: SolveError,
     ) -> Self {
         if convergence.iterations() == 0 {
             return unsolved.into();
         }
+        Self::with_best(convergence.failed(problem, residual, Some(unsolved)), best)
+    }
+
+    /// An iteration that had the displacement `best`, m, nodal, before it failed.
+    fn with_best(error: StepError, best: Vec<f64>) -> Self {
         Self {
-            error: Box::new(convergence.failed(problem, residual, Some(unsolved))),
+            error: Box::new(error),
             best: Some(best),
         }
     }
@@ -151,48 +158,42 @@ impl<E: Into<StepError>> From<E> for Stopped {
     }
 }
 
+/// How secants are used.
+#[derive(Clone, Copy, Debug)]
+pub struct SecantMethod {
+    /// Quasi-Newton update.
+    pub update: QuasiNewton,
+    /// Whether the iteration goes on to the limit of iterations where it converges slowly.
+    pub is_patient: bool,
+}
+
 /// Iterates from the displacement `u` and its `residual` with K_0 factorised, to the limit of iterations; unless
-/// `patient`, only as long as convergence is in reach.
+/// it is patient, only as long as convergence is in reach.
 pub fn iterate<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    (method, patient): (QuasiNewton, bool),
-    (mut u, mut residual): (Vec<f64>, Residual<K, D>),
+    method: SecantMethod,
+    mut u: Vec<f64>,
+    mut residual: Residual<K, D>,
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
     convergence: &mut Convergence,
 ) -> Result<Found<K, D>, Stopped> {
-    let (mut secants, mut follow) = (Secants::of(method, problem), Follow::of(problem, &u));
-    let (mut best, mut least) = (u.clone(), residual.balance.norm);
-    while convergence.iterations() < problem.model.criteria.max_iterations && (patient || !convergence.stalls()) {
+    let mut secants = Secants::of(method.update, problem);
+    let mut follow = Follow::of(problem, &u);
+    let mut best = u.clone();
+    let mut least = residual.balance.norm;
+    while convergence.iterations() < problem.model.criteria.max_iterations
+        && (method.is_patient || !convergence.stalls())
+    {
         if convergence.is_balanced(&residual.balance, problem) {
             return Ok(Found::new(u, residual, convergence));
         }
         if problem.halo.is_interrupted() {
             return Err(StepError::Interrupted.into());
         }
-        let mut direction = match secants.towards(problem, &residual.balance, solver) {
-            Ok(direction) => direction, // (6), (7)
-            Err(unsolved) => {
-                return Err(Stopped::without_direction(
-                    problem,
-                    (best, &residual),
-                    convergence,
-                    unsolved,
-                ));
-            }
-        };
-        counts.iterations += 1;
-        counts.linear_iterations += direction.solved.iterations;
-        counts.factorisations += direction.solved.factorisations;
-        if !convergence.has_begun() {
-            let du = &direction.du[..problem.nodes.free.len()];
-            convergence.begin(first_energy(problem, du, direction.energy));
-        }
-        if convergence.reaches(
-            Method::QuasiNewton(method),
-            direction.energy.abs(),
-            (&u, &residual.balance),
-        ) {
+        let mut direction = next_direction(problem, &mut secants, &residual, &best, solver, counts, convergence)?;
+        let energy = direction.energy.abs();
+        if convergence.reaches(Method::QuasiNewton(method.update), energy, &u, &residual.balance) {
             return Ok(Found::new(u, residual, convergence)); // (9)
         }
         // The direction's own energy is a sum of products with secants, whose round-off is another.
@@ -200,37 +201,49 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             .then(|| dots(problem.halo, D, &[(&direction.du, &residual.balance.f_oob)])[0]);
         let of_water = convergence.water(&residual.balance).unwrap_or(0.0);
         if let Some(pores) = &problem.nodes.pores {
-            follow.tame((problem, pores), (&u, &mut direction.du), of_water);
+            follow.tame(problem, pores, &u, &mut direction.du, of_water);
         }
         match advance(problem, &mut u, &direction.du, &mut residual, counts) {
             Ok(length) => secants.took(length), // (8), (4), (5)
-            Err(inverted) => {
-                return Err(Stopped {
-                    error: Box::new(inverted),
-                    best: Some(best),
-                });
-            }
+            Err(inverted) => return Err(Stopped::with_best(inverted, best)),
         }
-        stability::check(problem, convergence, (&direction.du, work), &residual.balance)?;
-        if let Some(pores) = &problem.nodes.pores
-            && follow.up(
-                (problem, pores),
-                &u,
-                convergence.water(&residual.balance).unwrap_or(0.0),
-                solver,
-            )?
-        {
-            counts.factorisations += 1;
-            secants = Secants::of(method, problem);
+        stability::check(problem, convergence, &direction.du, work, &residual.balance)?;
+        if let Some(pores) = &problem.nodes.pores {
+            let of_water = convergence.water(&residual.balance).unwrap_or(0.0);
+            if follow.up(problem, pores, &u, of_water, solver)? {
+                counts.factorisations += 1;
+                secants = Secants::of(method.update, problem);
+            }
         }
         if residual.balance.norm < least {
             (least, best) = (residual.balance.norm, u.clone());
         }
     }
-    Err(Stopped {
-        error: Box::new(convergence.failed(problem, &residual, None)),
-        best: Some(best),
-    })
+    Err(Stopped::with_best(convergence.failed(problem, &residual, None), best))
+}
+
+/// Steps (6), (7): solves for the next direction. Fails with the `best` displacement so far where the linear system
+/// cannot be solved.
+fn next_direction<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    secants: &mut Secants,
+    residual: &Residual<K, D>,
+    best: &[f64],
+    solver: &mut dyn LinearSolver,
+    counts: &mut Counts,
+    convergence: &mut Convergence,
+) -> Result<Direction, Stopped> {
+    let direction = secants
+        .towards(problem, &residual.balance, solver)
+        .map_err(|unsolved| Stopped::without_direction(problem, best.to_vec(), residual, convergence, unsolved))?;
+    counts.iterations += 1;
+    counts.linear_iterations += direction.solved.iterations;
+    counts.factorisations += direction.solved.factorisations;
+    if !convergence.has_begun() {
+        let du = &direction.du[..problem.nodes.free.len()];
+        convergence.begin(first_energy(problem, du, direction.energy));
+    }
+    Ok(direction)
 }
 
 /// Step (8): takes the direction, or the first half, quarter, .. of it under which no point inverts.

@@ -41,16 +41,16 @@ impl RoundOff {
             .zip(&nodes.free)
             .filter(|(_, free)| !**free)
             .for_each(|(force, _)| *force = 0.0);
-        let square = |c: usize| force[c].powi(2);
-        let mut sums = vec![over_layers(problem.halo, D, square)];
+        let mut sums = vec![over_layers(problem.halo, D, |c| force[c].powi(2))];
         sums.extend(
             nodes
                 .apart
                 .iter()
-                .flat_map(|apart| apart.sums(problem.halo, D, |c| [square(c)])),
+                .flat_map(|apart| apart.sums(problem.halo, D, |c| [force[c].powi(2)])),
         );
         let sums = problem.halo.total(&sums);
-        let (norm, apart) = (sums[0].sqrt(), sums[1..].iter().map(|sum| sum.sqrt()).collect());
+        let norm = sums[0].sqrt();
+        let apart = sums[1..].iter().map(|sum| sum.sqrt()).collect();
         let water = nodes.pores.as_ref().map_or(0.0, |pores| pores.round_off);
         Self {
             force,
@@ -98,7 +98,9 @@ impl RoundOff {
 
 /// Largest Young's modulus of the points in the cells of each node, Pa.
 fn largest_moduli<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>) -> Vec<f64> {
-    let (model, shape, points) = (problem.model, problem.shape, problem.points);
+    let model = problem.model;
+    let shape = problem.shape;
+    let points = problem.points;
     let number = problem.nodes.weight.len();
     if model.is_uniformly_stiff() {
         return vec![model.stiffest(); number];

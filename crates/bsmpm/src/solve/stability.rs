@@ -3,7 +3,6 @@
 
 use crate::error::StepError;
 use crate::kinematics::Kinematics;
-use crate::material::Material;
 use crate::model::Model;
 use crate::parallel::dots;
 use crate::solve::convergence::Convergence;
@@ -39,7 +38,8 @@ pub fn is_decisive<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Bala
 pub fn check<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     convergence: &Convergence,
-    (du, work): (&[f64], Option<f64>),
+    du: &[f64],
+    work: Option<f64>,
     after: &Balance,
 ) -> Result<(), StepError> {
     let Some(before) = work.filter(|_| after.measure() < NEAR) else {
@@ -68,8 +68,11 @@ fn is_symmetric<K, const D: usize>(model: &Model<K, D>) -> bool {
 /// Largest stiffness against dilation over Young's modulus, by which the round-off of nearly incompressible stress is
 /// larger.
 fn bulkiness<K, const D: usize>(model: &Model<K, D>) -> f64 {
-    let of = |material: &Material| material.elastic().oedometric() / material.elastic().young;
-    model.materials.iter().map(of).fold(1.0, f64::max)
+    model
+        .materials
+        .iter()
+        .map(|material| material.elastic().oedometric() / material.elastic().young)
+        .fold(1.0, f64::max)
 }
 
 /// Whether a `work` in N m along a direction of the length `du` in m is negative for forces that are each known to

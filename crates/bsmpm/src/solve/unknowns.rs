@@ -73,7 +73,8 @@ impl Unknowns {
 
 /// Several at a time, as what is kept of many steps comes from memory.
 fn dots<const M: usize>(with: [&[f64]; M], a: &[f64]) -> [f64; M] {
-    let (mut sums, (eights, rest)) = ([[0.0; LANES]; M], a.as_chunks::<LANES>());
+    let mut sums = [[0.0; LANES]; M];
+    let (eights, rest) = a.as_chunks::<LANES>();
     let with = with.map(|b| b.as_chunks::<LANES>());
     for (k, a) in eights.iter().enumerate() {
         for (sums, (b, _)) in sums.iter_mut().zip(with) {

@@ -58,13 +58,15 @@ impl Pressures {
         };
         let Problem { model, points, .. } = *problem;
         let volume = problem.volume();
-        let per_mean = |p: usize| match trial.respond(model, points, p) {
+        let transposed = transposed(problem, &adjoint, trial, |p| match trial.respond(model, points, p) {
             Ok(response) => volume[p] * works::<K, D>(&response.tau().full()) / trial.means(model, points, p).1,
             Err(_) => 0.0, // the residual refuses such a point
-        };
-        let transposed = transposed(problem, &adjoint, trial, per_mean);
-        let of = |(p, pressure)| adjoint.has(model, points, p).then_some(pressure);
-        Self(Some(transposed.into_iter().enumerate().map(of).collect()))
+        });
+        let pressures = transposed
+            .into_iter()
+            .enumerate()
+            .map(|(p, pressure)| adjoint.has(model, points, p).then_some(pressure));
+        Self(Some(pressures.collect()))
     }
 
     /// pi-bar of point `p`, if it has the adjoint force.
@@ -100,14 +102,13 @@ pub fn transposed<K: Kinematics<D>, const D: usize>(
         ..
     } = *problem;
     let weights = nodes.dilation_weights(model, points);
-    let per_weight = |p: usize| {
+    let mut sums = nodes.mean_dilation(model, shape, points, halo, |p| {
         if adjoint.has(model, points, p) {
             value(p) / weights[p]
         } else {
             0.0
         }
-    };
-    let mut sums = nodes.mean_dilation(model, (shape, points), halo, per_weight);
+    });
     for (p, sum) in sums.iter_mut().enumerate() {
         *sum *= weights[p] * trial.means(model, points, p).0;
     }

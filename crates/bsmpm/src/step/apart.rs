@@ -30,7 +30,7 @@ impl Apart {
         let mut ends = vec![f64::NEG_INFINITY; 2 * nodes];
         for patch in shape.patches() {
             let of = &points.material[patch.points.clone()];
-            let (Some(&least), Some(&most)) = (of.iter().min(), of.iter().max()) else {
+            let Some((&least, &most)) = of.iter().min().zip(of.iter().max()) else {
                 continue;
             };
             for offset in shape.offsets() {

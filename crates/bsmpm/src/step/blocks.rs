@@ -4,7 +4,7 @@
 use crate::error::SolveError;
 use crate::grid::Shape;
 use crate::grid::shape::Patch;
-use crate::kinematics::{Gradient, Kinematics, Moduli, Slope};
+use crate::kinematics::{Gradient, GradientModuli, Kinematics, Slope};
 use crate::nodal::Nodal;
 use crate::parallel::{LinearSolver, Symmetry};
 use crate::step::mass::{MassMatrix, SHARE};
@@ -25,12 +25,13 @@ pub enum Pairs {
 
 /// Adds grad N_a . moduli . grad N_b of one point to the block of its patch.
 pub fn add_point<K: Kinematics<D>, const D: usize>(
-    moduli: &Moduli<K, D>,
+    moduli: &GradientModuli<K, D>,
     slopes: &[Slope<K, D>],
     pairs: Pairs,
     block: &mut [f64],
 ) {
-    let (order, numbers) = (slopes.len() * D, K::Gradient::SLOPES);
+    let order = slopes.len() * D;
+    let numbers = K::Gradient::SLOPES;
     for (a, of_a) in slopes.iter().enumerate() {
         // Along the rows, so that nodes b follow each other in memory: D numbers of each row for one product.
         let first = if pairs == Pairs::All { 0 } else { a };
@@ -57,12 +58,14 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
     nodes.rigid.assemble(solver);
     nodes.contacts.assemble(solver, problem.halo);
     if let Some(inertia) = &nodes.inertia {
-        let factor = |c: usize| match problem.model.mass {
+        let factors = (0..nodes.free.len()).map(|c| match problem.model.mass {
             MassMatrix::Lumped => inertia.factor_of(c),
             MassMatrix::Consistent => (1.0 - SHARE) * inertia.factor(),
-        };
-        let inertial = |c: usize| factor(c) * nodes.weight[Nodal::<D>::node(c)];
-        let mut diagonal: Vec<f64> = (0..nodes.free.len()).map(inertial).collect();
+        });
+        let mut diagonal: Vec<f64> = factors
+            .enumerate()
+            .map(|(c, factor)| factor * nodes.weight[Nodal::<D>::node(c)])
+            .collect();
         nodes
             .dashpots
             .stiffness(inertia)
@@ -74,8 +77,10 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
 
 /// Adds what couples the nodes of a patch by their mass, if that is consistent; [`complete`] adds the diagonal.
 pub fn add_mass<const D: usize>(
-    (matrix, nodes): (MassMatrix, &Nodes<D>),
-    (shape, patch): (&Shape<D>, &Patch),
+    matrix: MassMatrix,
+    nodes: &Nodes<D>,
+    shape: &Shape<D>,
+    patch: &Patch,
     mass: &[f64],
     block: &mut [f64],
 ) {

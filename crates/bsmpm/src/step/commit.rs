@@ -50,11 +50,9 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
         .chain(&anchors.loads)
         .chain(&anchors.water)
         .collect();
-    let carries = |p: usize| acting.iter().any(|ids| ids.contains(&points.id[p]));
-    let wrongly = |(p, _, out): &(usize, Vector<D>, bool)| !out || carries(*p);
     let mut leaves: Vec<_> = leaves.into_iter().flatten().collect();
     let mut counts = [(points.len() - leaves.len()) as f64, 0.0, leaves.len() as f64];
-    leaves.retain(wrongly);
+    leaves.retain(|(p, _, out)| !out || acting.iter().any(|ids| ids.contains(&points.id[*p])));
     counts[1] = leaves.len() as f64;
     halo.reduce(&mut counts);
     if counts[1] > 0.0 {
@@ -127,53 +125,83 @@ impl Answer {
     }
 }
 
-/// The constitution's answers to the converged step, and the laws' state after it, if they have any. Fails on all ranks
-/// if it refuses a state that it answered during the iteration.
-pub fn answers<K: Kinematics<D>, const D: usize>(
+/// What the laws make of a converged step.
+pub struct ConstitutiveUpdate {
+    /// Of every point.
+    pub answers: Vec<Answer>,
+    /// State variables of the laws after the step, if they have any.
+    pub state: Option<Rows>,
+}
+
+/// Returns what the laws make of the converged step. Fails on all ranks if a law refuses a state that it answered
+/// during the iteration.
+pub fn constitutive_update<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     trial: &Trial<K, D>,
     points: &Points<D>,
     halo: &dyn Halo,
-) -> Result<(Vec<Answer>, Option<Rows>), StepError> {
+) -> Result<ConstitutiveUpdate, StepError> {
     let mut state = points.state.clone();
-    let refused = Mutex::new(None::<(usize, MaterialError)>);
-    let asks = has_second_order_works(model);
-    let kept = |p: usize, row: Option<&mut [f64]>| match trial.respond(model, points, p) {
-        Ok(response) => {
-            row.into_iter().for_each(|row| response.advance(row));
-            let gap = points.gap_of(p);
-            let mut answer = Answer::of(&response, gap);
-            let strain = if asks { trial.strain(model, points, p) } else { None };
-            if let Some(strain) = strain {
-                answer.second_order_works = response.second_order_works(&strain, gap);
-            }
-            answer
-        }
-        Err(source) => {
-            let mut refused = refused.lock().expect("no thread panicked");
-            if refused.as_ref().is_none_or(|(first, _)| p < *first) {
-                *refused = Some((p, source));
-            }
-            Answer::default()
-        }
+    let laws = LawsOfPoints {
+        model,
+        trial,
+        points,
+        asks: has_second_order_works(model),
+        refused: Mutex::new(None),
     };
     let answers: Vec<Answer> = match &mut state {
         Some(state) => state
             .par_rows_mut()
             .enumerate()
-            .map(|(p, row)| kept(p, Some(row)))
+            .map(|(p, row)| laws.answer(p, Some(row)))
             .collect(),
-        None => threads::each(points.len(), |p| kept(p, None)),
+        None => threads::each(points.len(), |p| laws.answer(p, None)),
     };
-    let failed = |(p, source)| StepError::Material {
-        id: points.id[p],
-        source,
+    let answers = match laws.refused.into_inner().expect("no thread panicked") {
+        Some((p, source)) => Err(StepError::Material {
+            id: points.id[p],
+            source,
+        }),
+        None => Ok(answers),
     };
-    let answers = refused
-        .into_inner()
-        .expect("no thread panicked")
-        .map_or(Ok(answers), |point| Err(failed(point)));
-    Ok((agreed(halo, answers, StepError::OtherRank)?, state))
+    Ok(ConstitutiveUpdate {
+        answers: agreed(halo, answers, StepError::OtherRank)?,
+        state,
+    })
+}
+
+/// The laws of the points at a converged state.
+struct LawsOfPoints<'a, K: Kinematics<D>, const D: usize> {
+    model: &'a Model<K, D>,
+    trial: &'a Trial<K, D>,
+    points: &'a Points<D>,
+    asks: bool,                                     // for second-order works
+    refused: Mutex<Option<(usize, MaterialError)>>, // the first point that a law refused, and why
+}
+
+impl<K: Kinematics<D>, const D: usize> LawsOfPoints<'_, K, D> {
+    /// Returns the answer at point `p`, whose state variables are its `row`, if its law has any; remembers a refusal.
+    fn answer(&self, p: usize, row: Option<&mut [f64]>) -> Answer {
+        let response = match self.trial.respond(self.model, self.points, p) {
+            Ok(response) => response,
+            Err(source) => {
+                let mut refused = self.refused.lock().expect("no thread panicked");
+                if refused.as_ref().is_none_or(|(first, _)| p < *first) {
+                    *refused = Some((p, source));
+                }
+                return Answer::default();
+            }
+        };
+        row.into_iter().for_each(|row| response.advance(row));
+        let gap = self.points.gap_of(p);
+        let mut answer = Answer::of(&response, gap);
+        if self.asks
+            && let Some(strain) = self.trial.strain(self.model, self.points, p)
+        {
+            answer.second_order_works = response.second_order_works(&strain, gap);
+        }
+        answer
+    }
 }
 
 /// Whether second-order works measure how far the ground is from failure: in quasi-static analysis of material that
@@ -192,8 +220,13 @@ pub fn second_order_works<K, const D: usize>(
     answers: &[Answer],
     halo: &dyn Halo,
 ) -> Option<[f64; 2]> {
-    let of = |p: usize| answers[p].second_order_works.map(|dense| points.volume[p] * dense);
-    let total = has_second_order_works(model).then(|| halo.total(&threads::sums(points.len(), of)))?;
+    if !has_second_order_works(model) {
+        return None;
+    }
+    let sums = threads::sums(points.len(), |p| {
+        answers[p].second_order_works.map(|dense| points.volume[p] * dense)
+    });
+    let total = halo.total(&sums);
     Some([total[0], total[1]])
 }
 
@@ -205,26 +238,29 @@ pub fn stress_work<K: Kinematics<D>, const D: usize>(
     answers: &[Answer],
     halo: &dyn Halo,
 ) -> f64 {
-    let of = |p: usize| {
+    let sum = threads::sum(points.len(), |p| {
         let strain = Symmetric::of(&(trial.dF(p) - Tensor::identity()));
-        [points.volume[p] * answers[p].tau.double_dot(&strain).abs()]
-    };
-    halo.total(&threads::sums(points.len(), of))[0]
+        points.volume[p] * answers[p].tau.double_dot(&strain).abs()
+    });
+    halo.total(&[sum])[0]
 }
 
-/// Saves the converged step, which the constitution has answered so, with the laws' state after it, into the points.
+/// Saves the converged step and the update of the laws into the points.
 pub fn commit<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    (shape, nodes): (&Shape<D>, &Nodes<D>),
-    (found, (answers, state)): (Found<K, D>, (Vec<Answer>, Option<Rows>)),
+    shape: &Shape<D>,
+    nodes: &Nodes<D>,
+    found: Found<K, D>,
+    update: ConstitutiveUpdate,
     points: &mut Points<D>,
     halo: &dyn Halo,
 ) -> Committed {
+    let ConstitutiveUpdate { answers, state } = update;
     let Found {
         u, p: pressures, trial, ..
     } = found;
     if let Some(inertia) = &nodes.inertia {
-        move_with_inertia((shape, model.mass), inertia, &u, points);
+        move_with_inertia(shape, model.mass, inertia, &u, points);
     }
     let du = transfer::to_points::<D, D, _>(shape, &u, |_, du| Vector::from(du));
     let mut advance = [threads::largest(du.len(), |p| du[p].norm_squared()).sqrt()];
@@ -250,7 +286,7 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
         }
         Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => {
             let flow = threads::each(answers.len(), |p| answers[p].flow);
-            smooth::filter_dilation(model, (shape, nodes), points, &flow, halo)
+            smooth::filter_dilation(model, shape, nodes, points, &flow, halo)
         }
         Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => 0.0,
     };
@@ -277,15 +313,21 @@ fn keep<K: Kinematics<D>, const D: usize>(
     let damped = (!model.damping.is_empty())
         .then(|| threads::each(points.len(), |p| trial.damped_at(model, points, p, answers[p].tau)));
     let [mut sigma, mut b_e] = [&mut points.sigma, &mut points.b_e].map(std::mem::take);
-    let (mut F, mut eps_p) = (std::mem::take(&mut points.F), std::mem::take(&mut points.eps_p));
-    let (sigmas, elastic, Fs) = (sigma.apart(), b_e.apart(), F.apart());
+    let mut F = std::mem::take(&mut points.F);
+    let mut eps_p = std::mem::take(&mut points.eps_p);
+    let sigmas = sigma.apart();
+    let elastic = b_e.apart();
+    let Fs = F.apart();
     let plastic = threads::apart(&mut eps_p, 1);
     threads::by_chunks(points.len(), &|chunk, range| {
         let only = "the chunk's only thread";
-        let (mut sigma, mut b_e) = (sigmas[chunk].lock().expect(only), elastic[chunk].lock().expect(only));
-        let (mut F, mut eps_p) = (Fs[chunk].lock().expect(only), plastic[chunk].lock().expect(only));
+        let mut sigma = sigmas[chunk].lock().expect(only);
+        let mut b_e = elastic[chunk].lock().expect(only);
+        let mut F = Fs[chunk].lock().expect(only);
+        let mut eps_p = plastic[chunk].lock().expect(only);
         for (k, p) in range.enumerate() {
-            let (answer, deformed) = (&answers[p], trial.dF(p) * F.at(k));
+            let answer = &answers[p];
+            let deformed = trial.dF(p) * F.at(k);
             let tau = damped.as_ref().map_or(answer.tau, |damped| damped[p]);
             let dilation = dilation
                 .as_ref()
@@ -308,31 +350,34 @@ fn gaps<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, answers: &[A
         .iter()
         .map(|law| law.separation() == Separation::Closing)
         .collect();
-    let gap = |(answer, material): (&Answer, &u16)| {
+    if !closes.contains(&true) {
+        return None;
+    }
+    let gaps = answers.iter().zip(&points.material).map(|(answer, material)| {
         if closes[usize::from(*material)] {
             answer.gap
         } else {
             0.0
         }
-    };
-    closes
-        .contains(&true)
-        .then(|| answers.iter().zip(&points.material).map(gap).collect())
+    });
+    Some(gaps.collect())
 }
 
 /// Steps (10a), (11c), (11d): a_I by Newmark, a_p = sum_I N_Ip a_I, v_p += dt ((1 - gamma) a_p(t) + gamma a_p(t+dt)).
 /// With a consistent mass v_p += sum_I N_Ip (v_I(t+dt) - v_I(t)) instead, what supports took included: with it the
 /// points gain what the nodes gain, and with the accelerations that points keep to themselves they gain more.
 fn move_with_inertia<const D: usize>(
-    (shape, matrix): (&Shape<D>, MassMatrix),
+    shape: &Shape<D>,
+    matrix: MassMatrix,
     inertia: &Inertia,
     u: &[f64],
     points: &mut Points<D>,
 ) {
     let Some(motion) = &mut points.motion else { return };
     if matrix == MassMatrix::Consistent {
-        let gain = |c: usize| inertia.velocity(c, u[c]) - inertia.v[c] + inertia.blow.get(c).copied().unwrap_or(0.0);
-        let gained: Vec<f64> = (0..u.len()).map(gain).collect();
+        let gained: Vec<f64> = (0..u.len())
+            .map(|c| inertia.velocity(c, u[c]) - inertia.v[c] + inertia.blow.get(c).copied().unwrap_or(0.0))
+            .collect();
         let gained = transfer::to_points::<D, D, _>(shape, &gained, |_, v| Vector::from(v));
         threads::change(&mut motion.v, 1, |p, v| v[0] += gained[p]);
     }
@@ -344,8 +389,9 @@ fn move_with_inertia<const D: usize>(
     let a: Vec<f64> = u.iter().enumerate().map(|(c, &u)| inertia.acceleration(c, u)).collect();
     let a = transfer::to_points::<D, D, _>(shape, &a, |_, a| Vector::from(a));
     if matrix == MassMatrix::Lumped {
-        let gained = |before, after| inertia.newmark.gained(inertia.dt, before, after);
-        threads::change(&mut motion.v, 1, |p, v| v[0] += motion.a[p].zip_map(&a[p], gained));
+        threads::change(&mut motion.v, 1, |p, v| {
+            v[0] += motion.a[p].zip_map(&a[p], |before, after| inertia.newmark.gained(inertia.dt, before, after));
+        });
     }
     motion.a = a;
 }

@@ -1,8 +1,8 @@
 //! Stiffness of the F-bar average: the third term of theory-manual equation (T5.8), with the sums (T5.9).
 
-use crate::grid::{Contributions, Grid, Shape};
+use crate::grid::{Contributions, Grid, Shape, digit};
 use crate::model::Model;
-use crate::parallel::{Halo, LinearSolver};
+use crate::parallel::{Halo, LinearSolver, OwnedNodes};
 use crate::step::nodes::Nodes;
 use crate::tensor::Vector;
 
@@ -85,22 +85,16 @@ impl<'a, const D: usize> Coupling<'a, D> {
     /// No sums yet; `None` where dilations are not averaged by functions of a lower degree, or windows do not reach as
     /// far as these couple ([`Grid::reaching`]).
     pub fn of<K>(model: &'a Model<K, D>, nodes: &'a Nodes<D>, raised: Raised) -> Option<Self> {
-        let (grid, groups) = (&model.grid, model.groups.count());
+        let grid = &model.grid;
+        let groups = model.groups.count();
         let lower = nodes.lowered().filter(|_| grid.beyond() + 1 >= grid.order())?;
         let q = grid.order();
-        let level = |side| {
-            FunctionSums::of(
-                (grid, groups),
-                side,
-                HEAD + raised.vectors() * usize::pow(side, D as u32) * D,
-            )
-        };
         // A function spans q cells or q pairs of them, and these touch q nodes more.
         Some(Self {
             grid,
             lower,
-            cells: level(2 * q),
-            pairs: lower.merger().map(|_| level(3 * q)),
+            cells: FunctionSums::of(grid, groups, 2 * q, raised),
+            pairs: lower.merger().map(|_| FunctionSums::of(grid, groups, 3 * q, raised)),
             raised,
         })
     }
@@ -118,31 +112,33 @@ impl<'a, const D: usize> Coupling<'a, D> {
 
     /// Adds what the patch of a number contributes.
     pub fn add(&mut self, number: usize, dilations: &Dilations) {
-        let (grid, lower) = (self.grid, self.lower);
-        let (first, of_function) = (lower.patches()[number].first_node, dilations.of_function);
+        let grid = self.grid;
+        let lower = self.lower;
+        let first = lower.patches()[number].first_node;
+        let of_function = dilations.of_function;
         let cell = grid.cell_at(lower.patches()[number].cell);
         for (group, numbers) in dilations.numbers.chunks_exact(dilations.of_group).enumerate() {
             if numbers.chunks_exact(of_function).all(|numbers| numbers[0] == 0.0) {
                 continue; // no point of the group
             }
             for (h, (numbers, offset)) in numbers.chunks_exact(of_function).zip(lower.offsets()).enumerate() {
-                let share = lower.merger().map_or(1.0, |merged| merged.rest((number, group), h));
+                let share = lower.merger().map_or(1.0, |merged| merged.rest(number, group, h));
                 let shift: [usize; D] =
                     std::array::from_fn(|axis| grid.order() - 1 - digit::<D>(h, axis, grid.order()));
                 if share > 0.0 {
-                    self.cells.add(group, (first, *offset, shift), (share, numbers));
+                    self.cells.add(group, first, *offset, shift, share, numbers);
                 }
             }
-            let (Some(merged), Some(pairs)) = (lower.merger(), &mut self.pairs) else {
+            let Some((merged, pairs)) = lower.merger().zip(self.pairs.as_mut()) else {
                 continue;
             };
-            for (k, shares) in merged.rows((number, group)) {
+            for (k, shares) in merged.rows(number, group) {
                 let offset = merged.offsets(number)[k];
                 let slot = grid.node_at(first + offset);
                 let shift: [usize; D] =
                     std::array::from_fn(|axis| cell[axis] - merged.first_cell(axis, slot[axis]).unwrap_or(0));
                 for (share, numbers) in shares.iter().zip(numbers.chunks_exact(of_function)) {
-                    pairs.add(group, (first, offset, shift), (*share, numbers));
+                    pairs.add(group, first, offset, shift, *share, numbers);
                 }
             }
         }
@@ -151,18 +147,29 @@ impl<'a, const D: usize> Coupling<'a, D> {
     /// Adds the products to a matrix, each on the rank that owns the first of its nodes. One exchange with the
     /// neighbours for every group, and one more where functions are merged.
     pub fn assemble(&self, halo: &dyn Halo, solver: &mut dyn LinearSolver) {
-        let (grid, degree) = (self.grid, self.grid.order() - 1);
+        let grid = self.grid;
+        let degree = self.grid.order() - 1;
         for sums in &self.cells.sums {
-            let first = |_: usize, number: usize| Some(number as isize - degree as isize);
-            self.assemble_group((sums, self.cells.side), first, halo, solver);
+            self.assemble_group(
+                sums,
+                self.cells.side,
+                |_, number| Some(number as isize - degree as isize),
+                halo,
+                solver,
+            );
         }
-        let (Some(merged), Some(pairs)) = (self.lower.merger(), &self.pairs) else {
+        let Some((merged, pairs)) = self.lower.merger().zip(self.pairs.as_ref()) else {
             return;
         };
         debug_assert!(grid.beyond() + 1 >= 2 * grid.order());
         for sums in &pairs.sums {
-            let first = |axis: usize, number: usize| merged.first_cell(axis, number).map(|cell| cell as isize);
-            self.assemble_group((sums, pairs.side), first, halo, solver);
+            self.assemble_group(
+                sums,
+                pairs.side,
+                |axis, number| merged.first_cell(axis, number).map(|cell| cell as isize),
+                halo,
+                solver,
+            );
         }
     }
 
@@ -170,26 +177,26 @@ impl<'a, const D: usize> Coupling<'a, D> {
     /// may lie before the grid.
     fn assemble_group(
         &self,
-        (sums, side): (&Contributions, usize),
+        sums: &Contributions,
+        side: usize,
         first: impl Fn(usize, usize) -> Option<isize>,
         halo: &dyn Halo,
         solver: &mut dyn LinearSolver,
     ) {
-        let (width, grid) = (sums.width(), self.grid);
+        let width = sums.width();
+        let grid = self.grid;
         let sums = halo.sum(sums);
         let owned = halo.owned();
-        let is_ours = |starts: &[Option<isize>; D]| {
-            let first = starts.map(|start| start.map(|start| start.max(0) as usize));
-            let node = grid.cells_along().each_ref().map(|cells| cells.start);
-            let node = std::array::from_fn(|axis| first[axis].unwrap_or(node[axis]));
-            first[0].is_some() && grid.node_index(&node).is_some_and(|node| owned.contains(node))
-        };
-        let (mut nodes, mut g, mut f, mut block) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut nodes = Vec::new();
+        let mut g = Vec::new();
+        let mut f = Vec::new();
+        let mut block = Vec::new();
         for (function, numbers) in sums.chunks_exact(width).enumerate() {
-            let (weight, bulk) = (numbers[0], numbers[1]);
+            let weight = numbers[0];
+            let bulk = numbers[1];
             let number = grid.node_at(function);
             let starts: [Option<isize>; D] = std::array::from_fn(|axis| first(axis, number[axis]));
-            if weight <= 0.0 || !is_ours(&starts) {
+            if weight <= 0.0 || !is_owned(grid, &starts, &owned) {
                 continue;
             }
             nodes.clear();
@@ -197,8 +204,10 @@ impl<'a, const D: usize> Coupling<'a, D> {
             f.clear();
             let (dilation, force) = numbers[HEAD..].split_at(side.pow(D as u32) * D);
             for (place, along) in dilation.chunks_exact(D).enumerate() {
-                let node = |axis: usize| starts[axis].map(|first| first + digit::<D>(place, axis, side) as isize);
-                if let Some(node) = node_at(grid, node) {
+                let node = node_at(grid, |axis| {
+                    starts[axis].map(|first| first + digit::<D>(place, axis, side) as isize)
+                });
+                if let Some(node) = node {
                     nodes.push(node);
                     g.extend_from_slice(along);
                     f.extend_from_slice(if self.raised == Raised::Own {
@@ -220,15 +229,15 @@ impl<'a, const D: usize> Coupling<'a, D> {
 }
 
 impl FunctionSums {
-    fn of<const D: usize>((grid, groups): (&Grid<D>, usize), side: usize, width: usize) -> Self {
-        let none = || Contributions::none(grid, width, Vec::new());
-        let along = |node: usize, axis: usize| digit::<D>(node, axis, grid.order() + 1);
-        let place = |node| (0..D).fold(0, |place, axis| place * side + along(node, axis));
-        let places = (0..grid.cell_nodes()).map(place).collect();
+    /// Zeros of functions whose cells touch `side` nodes along an axis.
+    fn of<const D: usize>(grid: &Grid<D>, groups: usize, side: usize, raised: Raised) -> Self {
+        let width = HEAD + raised.vectors() * side.pow(D as u32) * D;
+        let places = (0..grid.cell_nodes())
+            .map(|node| (0..D).fold(0, |place, axis| place * side + digit::<D>(node, axis, grid.order() + 1)));
         Self {
-            sums: (0..groups).map(|_| none()).collect(),
+            sums: vec![Contributions::none(grid, width, Vec::new()); groups],
             side,
-            places,
+            places: places.collect(),
         }
     }
 
@@ -237,10 +246,14 @@ impl FunctionSums {
     fn add<const D: usize>(
         &mut self,
         group: usize,
-        (first, offset, shift): (usize, usize, [usize; D]),
-        (share, numbers): (f64, &[f64]),
+        first: usize,
+        offset: usize,
+        shift: [usize; D],
+        share: f64,
+        numbers: &[f64],
     ) {
-        let (width, side) = (self.sums[group].width(), self.side);
+        let width = self.sums[group].width();
+        let side = self.side;
         let sums = &mut self.sums[group].patch(first)[offset * width..(offset + 1) * width];
         sums.iter_mut()
             .zip(&numbers[..HEAD])
@@ -258,9 +271,12 @@ impl FunctionSums {
     }
 }
 
-/// Digit of `number`, of which axis 0 is the slowest.
-fn digit<const D: usize>(number: usize, axis: usize, base: usize) -> usize {
-    number / base.pow((D - 1 - axis) as u32) % base
+/// Whether this rank owns the first node of a function that the grid has, of those that begin at `starts`.
+fn is_owned<const D: usize>(grid: &Grid<D>, starts: &[Option<isize>; D], owned: &OwnedNodes) -> bool {
+    let first = starts.map(|start| start.map(|start| start.max(0) as usize));
+    let node = grid.cells_along().each_ref().map(|cells| cells.start);
+    let node = std::array::from_fn(|axis| first[axis].unwrap_or(node[axis]));
+    first[0].is_some() && grid.node_index(&node).is_some_and(|node| owned.contains(node))
 }
 
 /// The node of the window at a place along each axis; `None` where there is none.

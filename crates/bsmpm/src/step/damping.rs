@@ -1,10 +1,10 @@
 //! Kelvin-Voigt damping: adds the viscous stress, theory-manual equation (T5.6), to the stress of the law in each
 //! iteration. Smoothing of the elastic tensor b^e causes no viscous stress.
 
+use crate::material::Moduli;
 use crate::material::{MaterialError, Response};
 use crate::model::Model;
 use crate::points::Points;
-use crate::step::inertia::Inertia;
 use crate::step::nodes::Nodes;
 use crate::tensor::{Symmetric, Tensor};
 
@@ -23,11 +23,10 @@ pub struct Viscous {
 impl Damping {
     /// Of a step; none without inertia, whose time is none, and of a state that no step has led to.
     pub fn of<K, const D: usize>(model: &Model<K, D>, nodes: &Nodes<D>) -> Self {
-        let steps = |inertia: &&Inertia| inertia.dt > 0.0 && !model.damping.is_empty();
-        let Some(inertia) = nodes.inertia.as_ref().filter(steps) else {
-            return Self::default();
-        };
-        Self(model.damping.iter().map(|time| time / inertia.dt).collect())
+        match &nodes.inertia {
+            Some(inertia) if inertia.dt > 0.0 => Self(model.damping.iter().map(|time| time / inertia.dt).collect()),
+            _ => Self::default(),
+        }
     }
 
     /// What multiplies the elastic stiffness of a material.
@@ -41,12 +40,15 @@ impl Damping {
 
     /// Lamé's moduli of point `p` times β/Δt, Pa; `None` where it has no damping.
     #[inline(always)]
-    pub fn lame<K, const D: usize>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<(f64, f64)> {
+    pub fn moduli<K, const D: usize>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Moduli> {
         let relative = self.relative(points.material[p])?;
         let material = &model.materials[usize::from(points.material[p])];
-        let (lambda, mu) = material.elastic().lame();
+        let Moduli { lambda, mu } = material.elastic().moduli();
         let factor = relative * material.relative_stiffness(points.height(p));
-        Some((factor * lambda, factor * mu))
+        Some(Moduli {
+            lambda: factor * lambda,
+            mu: factor * mu,
+        })
     }
 }
 
@@ -59,11 +61,12 @@ impl Viscous {
     /// A step that is no strain.
     pub fn of(
         strained: &Symmetric,
-        lame: (f64, f64),
-        (returned, share): (Option<Symmetric>, f64),
+        moduli: Moduli,
+        returned: Option<Symmetric>,
+        share: f64,
         gap: f64,
     ) -> Result<Self, MaterialError> {
-        let elastic = Response::elastic(strained, lame)?;
+        let elastic = Response::elastic(strained, moduli)?;
         let mut tau = elastic.tau();
         if let Some(returned) = returned {
             tau.0
@@ -74,7 +77,7 @@ impl Viscous {
         if gap > 0.0 {
             tau.0[..3]
                 .iter_mut()
-                .for_each(|normal| *normal += (lame.0 + lame.1 * (2.0 / 3.0)) * gap);
+                .for_each(|normal| *normal += (moduli.lambda + moduli.mu * (2.0 / 3.0)) * gap);
         }
         Ok(Self { tau, elastic, share })
     }
@@ -89,7 +92,8 @@ impl Viscous {
     /// How the stress changes with a spatial gradient at the end of the step, Pa, where `returned` is how that changes
     /// which the return took.
     pub fn tangent<R: Fn(&Tensor) -> Tensor>(&self, returned: Option<R>) -> impl Fn(&Tensor) -> Tensor + use<R> {
-        let (elastic, share) = (self.elastic.tangent(), self.share);
+        let elastic = self.elastic.tangent();
+        let share = self.share;
         move |l| {
             let all = elastic.apply(l);
             returned.as_ref().map_or(all, |returned| all - returned(l) * share)

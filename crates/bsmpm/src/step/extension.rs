@@ -80,9 +80,8 @@ impl<const D: usize> Extension<D> {
         let grid = &model.grid;
         let full = full_cells::<K, D>(grid, shape, points);
         let is_inner = inner_functions(grid, shape, &full, halo);
-        let movable = |node: usize| free[Nodal::<D>::of(node)].contains(&true);
         let is_outer: Vec<bool> = (0..grid.nodes())
-            .map(|node| active[node] && !is_inner[node] && movable(node))
+            .map(|node| active[node] && !is_inner[node] && free[Nodal::<D>::of(node)].contains(&true))
             .collect();
         let mut outer: Vec<usize> = halo.owned().nodes().filter(|&node| is_outer[node]).collect();
         let mut counts = [outer.len() as f64, 0.0];
@@ -96,17 +95,7 @@ impl<const D: usize> Extension<D> {
             full: &full,
             homes: Homes::of(grid, model.boundary.contact_faces()),
         };
-        let candidate = |node: usize| Candidate {
-            number: grid.number_of(node),
-            tied: std::array::from_fn(|axis| free[Nodal::<D>::at(node, axis)]),
-        };
-        let (own, shared): (Vec<usize>, Vec<usize>) = outer
-            .into_iter()
-            .partition(|&node| is_surrounded_by_private_nodes(grid, node, halo));
-        let shared: Vec<Candidate<D>> = shared.into_iter().map(candidate).collect();
-        let mut ties: Vec<Tie<D>> = own.into_iter().filter_map(|node| search.tie(candidate(node))).collect();
-        ties.extend(search.published_ties(&shared, halo));
-        ties.sort_by_key(|tie| tie.number);
+        let ties = search.ties(outer, free, halo);
         let mut extension = Self {
             of_node: vec![0; grid.nodes()],
             ..Self::default()
@@ -122,8 +111,9 @@ impl<const D: usize> Extension<D> {
         }
         halo.reduce(&mut counts[1..]);
         extension.ties = ties;
-        let is_loose = |&node: &usize| is_outer[node] && !at_bodies[node] && extension.of_node[node] == 0;
-        extension.loose = (0..grid.nodes()).filter(is_loose).collect();
+        extension.loose = (0..grid.nodes())
+            .filter(|&node| is_outer[node] && !at_bodies[node] && extension.of_node[node] == 0)
+            .collect();
         extension.tied = counts[1] as usize;
         extension.untied = (counts[0] - counts[1]) as usize;
         Some(extension)
@@ -194,9 +184,10 @@ impl<const D: usize> Extension<D> {
         let mut known = BTreeMap::new();
         if self.is_published() {
             let mut message = Vec::new();
-            let is_ours = |node: &usize| halo.owned().contains(*node);
             for tie in self.ties.iter().filter(|tie| tie.is_published) {
-                let Some(node) = tie.node.filter(is_ours) else { continue };
+                let Some(node) = tie.node.filter(|&node| halo.owned().contains(node)) else {
+                    continue;
+                };
                 message.push(tie.number as f64);
                 forces
                     .iter()
@@ -262,10 +253,13 @@ fn values_by_number<const D: usize>(message: &[f64], width: usize) -> BTreeMap<u
 
 /// Per cell of the window: whether its points fill it.
 fn full_cells<K: Kinematics<D>, const D: usize>(grid: &Grid<D>, shape: &Shape<D>, points: &Points<D>) -> Vec<bool> {
-    let volume = |p: usize| points.volume[p] * points.F.at(p).determinant();
     let mut full = vec![false; grid.cells()];
     for patch in shape.patches() {
-        let filled: f64 = patch.points.clone().map(volume).sum();
+        let volumes = patch
+            .points
+            .clone()
+            .map(|p| points.volume[p] * points.F.at(p).determinant());
+        let filled: f64 = volumes.sum();
         full[patch.cell] = filled >= FULL * grid.cell_volume::<K>(&grid.cell_at(patch.cell));
     }
     full
@@ -311,6 +305,26 @@ struct Candidate<const D: usize> {
     tied: [bool; D],
 }
 
+impl<const D: usize> Candidate<D> {
+    /// Of a node, whose `free` components are to be tied.
+    fn of(grid: &Grid<D>, node: usize, free: &[bool]) -> Self {
+        Self {
+            number: grid.number_of(node),
+            tied: std::array::from_fn(|axis| free[Nodal::<D>::at(node, axis)]),
+        }
+    }
+}
+
+/// Cell number `at` of a box of cells, axis 0 slowest.
+fn cell_within<const D: usize>(ranges: &[std::ops::Range<usize>; D], mut at: usize) -> [usize; D] {
+    let mut cell = [0; D];
+    for axis in (0..D).rev() {
+        cell[axis] = ranges[axis].start + at % ranges[axis].len();
+        at /= ranges[axis].len();
+    }
+    cell
+}
+
 /// Looks for homes among the full cells of this rank.
 struct HomeSearch<'a, const D: usize> {
     grid: &'a Grid<D>,
@@ -321,25 +335,32 @@ struct HomeSearch<'a, const D: usize> {
 impl<const D: usize> HomeSearch<'_, D> {
     /// The nearest full cell of this rank that may be the function's home.
     fn nearest(&self, number: usize) -> Option<Nearness> {
-        let (grid, place) = (self.grid, self.grid.place_of_number(number));
+        let grid = self.grid;
+        let place = self.grid.place_of_number(number);
         let ranges: [std::ops::Range<usize>; D] = std::array::from_fn(|axis| {
             let window = &grid.cells_along()[axis];
             let start = place[axis].saturating_sub(grid.order() + REACH).max(window.start);
             start..(place[axis] + REACH + 1).min(window.end).max(start)
         });
         let count: usize = ranges.iter().map(ExactSizeIterator::len).product();
-        let cell_at = |mut at: usize| {
-            let mut cell = [0; D];
-            for axis in (0..D).rev() {
-                cell[axis] = ranges[axis].start + at % ranges[axis].len();
-                at /= ranges[axis].len();
-            }
-            cell
-        };
-        let homes = (0..count).map(cell_at).filter(|cell| self.full[grid.cell_index(cell)]);
+        let cells = (0..count).map(|at| cell_within(&ranges, at));
+        let homes = cells.filter(|cell| self.full[grid.cell_index(cell)]);
         homes
             .filter_map(|cell| self.homes.nearness(grid, &place, &cell))
             .min_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal))
+    }
+
+    /// Ties of the `outer` nodes of all ranks as far as they have homes, ascending by number.
+    fn ties(&self, outer: Vec<usize>, free: &[bool], halo: &dyn Halo) -> Vec<Tie<D>> {
+        let (own, shared): (Vec<usize>, Vec<usize>) = outer
+            .into_iter()
+            .partition(|&node| is_surrounded_by_private_nodes(self.grid, node, halo));
+        let own = own.into_iter().map(|node| Candidate::of(self.grid, node, free));
+        let shared = shared.into_iter().map(|node| Candidate::of(self.grid, node, free));
+        let mut ties: Vec<Tie<D>> = own.filter_map(|candidate| self.tie(candidate)).collect();
+        ties.extend(self.published_ties(&shared.collect::<Vec<_>>(), halo));
+        ties.sort_by_key(|tie| tie.number);
+        ties
     }
 
     /// The tie of a function whose surroundings are this rank's alone, if there is a home.
@@ -393,16 +414,15 @@ impl<const D: usize> HomeSearch<'_, D> {
                 *known = other;
             }
         }
-        let tie = |candidate: Candidate<D>| Some(self.tied_to(candidate, *nearest.get(&candidate.number)?, true));
-        all.into_iter().filter_map(tie).collect()
+        all.into_iter()
+            .filter_map(|candidate| Some(self.tied_to(candidate, *nearest.get(&candidate.number)?, true)))
+            .collect()
     }
 
     fn tied_to(&self, outer: Candidate<D>, nearest: Nearness, is_published: bool) -> Tie<D> {
         let grid = self.grid;
-        let (place, home) = (
-            grid.place_of_number(outer.number),
-            self.cell_of_number(nearest.cell as usize),
-        );
+        let place = grid.place_of_number(outer.number);
+        let home = self.cell_of_number(nearest.cell as usize);
         let along: [Vec<f64>; D] = std::array::from_fn(|axis| weights(&grid.axes()[axis], place[axis], home[axis]));
         let mut inner = Vec::new();
         for function in grid.functions_of(home) {

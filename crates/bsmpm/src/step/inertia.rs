@@ -50,7 +50,7 @@ impl Inertia {
             };
         }
         self.newmark
-            .acceleration(self.dt, u, (self.v[component], self.a[component]))
+            .acceleration(self.dt, u, self.v[component], self.a[component])
     }
 
     /// m/s2  what the mass of a component resists with: times the mass, its inertia in the balance of forces.
@@ -118,16 +118,15 @@ pub(super) fn map<const D: usize>(
     mass: &Mass<'_, D>,
     points: &Points<D>,
     prescribed: &[Option<f64>],
-    (dt, newmark): (f64, Newmark),
+    dt: f64,
+    newmark: Newmark,
 ) -> Inertia {
-    let zeros = || vec![0.0; prescribed.len()];
-    let (nowhere, still) = (
-        vec![None; prescribed.len()],
-        prescribed.iter().map(|v| v.map(|_| 0.0)).collect::<Vec<_>>(),
-    );
+    let zeros = vec![0.0; prescribed.len()];
+    let nowhere = vec![None; prescribed.len()];
+    let still = prescribed.iter().map(|v| v.map(|_| 0.0)).collect::<Vec<_>>();
     let mut inertia = Inertia {
-        v: zeros(),
-        a: zeros(),
+        v: zeros.clone(),
+        a: zeros,
         struck: Vec::new(),
         blow: Vec::new(),
         moving: Vec::new(),
@@ -136,17 +135,14 @@ pub(super) fn map<const D: usize>(
         newmark,
     };
     let Some(motion) = &points.motion else { return inertia };
-    let momentum = |field: &[Vector<D>]| {
-        mass.halo.sum(&transfer::to_nodes::<D, D>(mass.shape, |p| {
-            (field[p] * points.mass[p]).into()
-        }))
-    };
-    let arriving = momentum(&motion.v);
-    inertia.a = mass.solve(momentum(&motion.a), &still);
+    let arriving = momentum(mass, points, &motion.v);
+    inertia.a = mass.solve(momentum(mass, points, &motion.a), &still);
     inertia.v = mass.solve(arriving.clone(), prescribed);
     // On any rank: solutions are collective, and the nodes of one rank may all be free.
-    let given = || prescribed.iter().flatten();
-    let flags = [given().any(|&velocity| velocity != 0.0), given().next().is_some()];
+    let flags = [
+        prescribed.iter().flatten().any(|&velocity| velocity != 0.0),
+        prescribed.iter().any(Option::is_some),
+    ];
     let mut flags = flags.map(|flag| f64::from(u8::from(flag)));
     mass.halo.maximum(&mut flags);
     let [moves, holds] = flags.map(|flag| flag > 0.0);
@@ -167,4 +163,11 @@ pub(super) fn map<const D: usize>(
         }
     }
     inertia
+}
+
+/// Nodal sums of m_p times a `field` of the points, D numbers a node.
+fn momentum<const D: usize>(mass: &Mass<'_, D>, points: &Points<D>, field: &[Vector<D>]) -> Vec<f64> {
+    mass.halo.sum(&transfer::to_nodes::<D, D>(mass.shape, |p| {
+        (field[p] * points.mass[p]).into()
+    }))
 }

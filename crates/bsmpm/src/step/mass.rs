@@ -45,13 +45,16 @@ pub struct Mass<'a, const D: usize> {
 impl<const D: usize> Mass<'_, D> {
     /// M times a nodal field: one exchange with the neighbours where M is consistent.
     pub fn times(&self, field: &[f64]) -> Vec<f64> {
-        let lumped = |(c, value): (usize, &f64)| self.lumped[Nodal::<D>::node(c)] * value;
+        let lumped = field
+            .iter()
+            .enumerate()
+            .map(|(c, value)| self.lumped[Nodal::<D>::node(c)] * value);
         if self.matrix == MassMatrix::Lumped {
-            return field.iter().enumerate().map(lumped).collect();
+            return lumped.collect();
         }
         let carried = transfer::to_points::<D, D, _>(self.shape, field, |p, v| v.map(|v| v * self.of_points[p]));
         let mut product = self.halo.sum(&transfer::to_nodes::<D, D>(self.shape, |p| carried[p]));
-        for (sum, lumped) in product.iter_mut().zip(field.iter().enumerate().map(lumped)) {
+        for (sum, lumped) in product.iter_mut().zip(lumped) {
             *sum = SHARE * *sum + (1.0 - SHARE) * lumped;
         }
         product

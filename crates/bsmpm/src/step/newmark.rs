@@ -69,7 +69,7 @@ impl Newmark {
 
     /// m/s2  a' of a displacement u, from v and a at the start of the step (steps 5b, 10a).
     #[inline]
-    pub fn acceleration(&self, dt: f64, u: f64, (v, a): (f64, f64)) -> f64 {
+    pub fn acceleration(&self, dt: f64, u: f64, v: f64, a: f64) -> f64 {
         self.stiffness(dt) * u - 1.0 / (self.beta * dt) * v - (0.5 / self.beta - 1.0) * a
     }
 

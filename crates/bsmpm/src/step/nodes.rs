@@ -4,6 +4,7 @@
 use crate::background::Blocks;
 use crate::boundary::absorbing::Dashpots;
 use crate::boundary::contact::Contacts;
+use crate::boundary::load::LoadForces;
 use crate::boundary::load::{self, follower::FollowerLoads};
 use crate::boundary::rigid::{RigidContacts, Surroundings};
 use crate::boundary::strip;
@@ -13,8 +14,11 @@ use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime, Weighting};
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
+use crate::points::MappedPoints;
 use crate::points::Points;
 use crate::quadrature::{self, Quadrature};
+use crate::schedule::TimeInterval;
+use crate::stabilisation::Grouped;
 use crate::stabilisation::Stabilisation;
 use crate::step::apart::Apart;
 use crate::step::extension::Extension;
@@ -100,129 +104,81 @@ impl<const D: usize> Nodes<D> {
         model: &Model<K, D>,
         shape: &Shape<D>,
         points: &Points<D>,
-        times: (f64, f64),
+        interval: TimeInterval,
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
-        Self::after(model, (shape, points), &[], times, halo)
+        Self::after(model, shape, points, &[], interval, halo)
     }
 
     /// The same after a step that had the displacement `last`, m, nodal, up to a factor: faces with contact go on as
     /// they were in it.
     pub fn after<K: Kinematics<D>>(
         model: &Model<K, D>,
-        (shape, points): (&Shape<D>, &Points<D>),
+        shape: &Shape<D>,
+        points: &Points<D>,
         last: &[f64],
-        (t, dt): (f64, f64),
+        interval: TimeInterval,
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
-        let nodes = model.grid.nodes();
-        let weighting = model.inertial_weighting();
-        let weight = scatter_weight(weighting, shape, points, halo);
+        let mut nodes = Self::of_points(model, shape, points, interval, halo);
+        nodes.rigid = nodes.rigid_contacts(model, shape, points, last, interval, halo)?;
+        let mut at_bodies = nodes.rigid.touched_nodes(model.grid.nodes(), halo);
+        for node in strip::nodes_at(&model.boundary.strips, &model.grid, interval.start) {
+            at_bodies[node] = true;
+        }
+        nodes.extension = Extension::of(model, shape, points, &nodes.active, &at_bodies, &mut nodes.free, halo);
+        nodes.contacts = nodes.face_contacts(model, shape, points, last, interval.start, halo);
+        nodes.dashpots = nodes.dashpots(model, shape, points, halo);
+        nodes.inertia = nodes.start_inertia(model, shape, points, interval.dt, halo);
+        nodes.load(model, shape, points, interval.end(), halo)?;
+        nodes.pores = Pores::of(model, shape, points, interval, halo)?;
+        nodes.meet();
+        nodes.count(halo);
+        Ok(nodes)
+    }
+
+    /// Nodes that the points give weight and stiffness, before bodies, faces and loads act on them.
+    fn of_points<K: Kinematics<D>>(
+        model: &Model<K, D>,
+        shape: &Shape<D>,
+        points: &Points<D>,
+        interval: TimeInterval,
+        halo: &dyn Halo,
+    ) -> Self {
+        let weight = scatter_weight(model.inertial_weighting(), shape, points, halo);
         let threshold = threshold(&weight, halo);
-        let velocities = model.boundary.velocities(&model.grid);
         let background = model
             .background
             .map(|soft| soft.blocks::<K, D>(&model.grid, shape, points, &model.materials));
         let fitted = (model.quadrature == Quadrature::Fitted)
-            .then(|| quadrature::fitted::<K, D>((&model.grid, &model.boundary), shape, points, halo));
+            .then(|| quadrature::fitted::<K, D>(&model.grid, &model.boundary, shape, points, halo));
         let volume = fitted.as_deref().unwrap_or(&points.volume);
-        let (active, stiff) = supported(shape, volume, background.is_some(), nodes, halo);
-        let unknown = |node: usize| active[node] && (weight[node] > threshold || stiff[node]);
-        let mut free: Vec<bool> = velocities
-            .iter()
-            .enumerate()
-            .map(|(c, v)| v.is_none() && unknown(Nodal::<D>::node(c)))
-            .collect();
-        let pore_pressure = carried::pore_pressure(model, (shape, points), volume, t + dt, halo);
-        let rigid = match model.boundary.rigid.is_empty() {
-            true => RigidContacts::default(),
-            false => {
-                let around = Surroundings {
-                    bodies: (&model.boundary.rigid, &points.surface.bodies),
-                    reaching: model.reaching(points),
-                    shape,
-                    body_force: model.body_force(t + dt).unwrap_or_else(Vector::zeros),
-                    free: &free,
-                    newmark: (model.regime == Regime::Dynamic).then_some(model.newmark),
-                    pore_pressure: pore_pressure.as_ref(),
-                };
-                let young = |p: usize| model.young(points, p);
-                RigidContacts::of(&around, young, (t, dt), last, halo)?
-            }
-        };
-        let mut at_bodies = rigid.touched_nodes(nodes, halo);
-        strip::nodes_at(&model.boundary.strips, &model.grid, t)
-            .into_iter()
-            .for_each(|node| at_bodies[node] = true);
-        let extension = Extension::of::<K>(model, shape, points, &active, &at_bodies, &mut free, halo);
-        let prescribed = velocities.iter().map(|velocity| velocity.map(|v| v * dt)).collect();
-        let contacts = match model.boundary.has_contact() {
-            true => {
-                let on_faces = |pores| carried::forces_on_faces(pores, model, (shape, points), volume, halo);
-                let water = pore_pressure.as_ref().map(on_faces);
-                let window = (&model.boundary, &model.grid);
-                Contacts::of(window, (shape, points), &free, (t, last), water.as_deref(), halo)
-            }
-            false => Contacts::default(),
-        };
-        let dashpots = match model.boundary.absorbing().next() {
-            Some(_) if model.regime == Regime::Dynamic => {
-                let impedance = |p: usize| model.impedance(points, p);
-                Dashpots::of::<K, D>((&model.boundary, &model.grid), (shape, points), impedance, &free, halo)
-            }
-            _ => Dashpots::default(),
-        };
-        let mut starting = velocities;
-        contacts.rest(&mut starting);
-        let mass = Mass {
-            matrix: model.mass,
-            shape,
-            of_points: &points.mass,
-            lumped: &weight,
-            threshold,
-            halo,
-        };
-        let mut inertia =
-            (model.regime == Regime::Dynamic).then(|| inertia::map(&mass, points, &starting, (dt, model.newmark)));
-        if let Some(inertia) = &mut inertia {
-            inertia.moving = contacts.moving(&inertia.v, dt);
+        let (active, stiff) = supported(shape, volume, background.is_some(), model.grid.nodes(), halo);
+        let velocities = model.boundary.velocities(&model.grid);
+        let mut free = vec![false; velocities.len()];
+        for (c, free) in free.iter_mut().enumerate() {
+            let node = Nodal::<D>::node(c);
+            *free = velocities[c].is_none() && active[node] && (weight[node] > threshold || stiff[node]);
         }
-        let mut f_ext = external_force((model, shape, points), t + dt, (weighting, &weight), halo);
-        if let Some(force) = carried::force(model, (shape, points), volume, t + dt) {
-            f_ext
-                .iter_mut()
-                .zip(halo.sum(&force))
-                .for_each(|(all, force)| *all += force);
-        }
-        let window = (&model.grid, &active[..]);
-        let surfaces = (&model.surfaces(), &points.surface);
-        let followers = load::add_forces(surfaces, points.anchored(), window, t + dt, halo, &mut f_ext)?;
-        if let Some(inertia) = inertia.as_mut().filter(|_| !rigid.moving.is_empty()) {
-            inertia.moving.resize(rigid.moving.len(), false);
-            inertia
-                .moving
-                .iter_mut()
-                .zip(&rigid.moving)
-                .for_each(|(moving, by_body)| *moving |= by_body);
-        }
-        let pores = Pores::of(model, (shape, points), (t, dt), halo)?;
-        let averages = Averages::of(model, (shape, points), threshold, halo);
-        let apart = Apart::of(model.materials.len(), shape, points, nodes, halo);
-        let mut mapped = Self {
-            apart,
-            pores,
-            contacts,
-            rigid,
-            pore_pressure,
-            dashpots,
-            f_ext,
-            followers,
-            prescribed,
-            inertia,
+        Self {
+            apart: Apart::of(model.materials.len(), shape, points, model.grid.nodes(), halo),
+            averages: Averages::of(model, shape, points, threshold, halo),
+            pore_pressure: carried::pore_pressure(model, shape, points, volume, interval.end(), halo),
+            prescribed: velocities
+                .iter()
+                .map(|velocity| velocity.map(|v| v * interval.dt))
+                .collect(),
+            pores: None,
+            contacts: Contacts::default(),
+            rigid: RigidContacts::default(),
+            dashpots: Dashpots::default(),
+            f_ext: Vec::new(),
+            followers: FollowerLoads::default(),
+            inertia: None,
             free,
             background,
             unresisted: None,
-            extension,
+            extension: None,
             active_nodes: 0,
             unknowns: 0,
             massless_nodes: 0,
@@ -230,15 +186,135 @@ impl<const D: usize> Nodes<D> {
             threshold,
             weight,
             active,
-            averages,
             fitted,
+        }
+    }
+
+    /// Points near rigid bodies in a step after one with the displacement `last`.
+    fn rigid_contacts<K: Kinematics<D>>(
+        &self,
+        model: &Model<K, D>,
+        shape: &Shape<D>,
+        points: &Points<D>,
+        last: &[f64],
+        interval: TimeInterval,
+        halo: &dyn Halo,
+    ) -> Result<RigidContacts<D>, StepError> {
+        if model.boundary.rigid.is_empty() {
+            return Ok(RigidContacts::default());
+        }
+        let around = Surroundings {
+            bodies: (&model.boundary.rigid, &points.surface.bodies),
+            reaching: model.reaching(points),
+            shape,
+            body_force: model.body_force(interval.end()).unwrap_or_else(Vector::zeros),
+            free: &self.free,
+            newmark: (model.regime == Regime::Dynamic).then_some(model.newmark),
+            pore_pressure: self.pore_pressure.as_ref(),
         };
-        let mut f_ext = std::mem::take(&mut mapped.f_ext);
-        mapped.reduce(&mut [&mut f_ext], halo);
-        mapped.f_ext = f_ext;
-        mapped.meet();
-        mapped.count(halo);
-        Ok(mapped)
+        RigidContacts::of(&around, |p| model.young(points, p), interval, last, halo)
+    }
+
+    /// Nodes on faces with contact in a step from `t`, in the statuses that the displacement `last` had.
+    fn face_contacts<K: Kinematics<D>>(
+        &self,
+        model: &Model<K, D>,
+        shape: &Shape<D>,
+        points: &Points<D>,
+        last: &[f64],
+        t: f64,
+        halo: &dyn Halo,
+    ) -> Contacts<D> {
+        if !model.boundary.has_contact() {
+            return Contacts::default();
+        }
+        let volume = self.volume(points);
+        let water = self
+            .pore_pressure
+            .as_ref()
+            .map(|pores| carried::forces_on_faces(pores, model, shape, points, volume, halo));
+        let mapped = MappedPoints { shape, points };
+        Contacts::of(model, mapped, &self.free, t, last, water.as_deref(), halo)
+    }
+
+    /// Dashpots of faces that absorb waves; none without inertia.
+    fn dashpots<K: Kinematics<D>>(
+        &self,
+        model: &Model<K, D>,
+        shape: &Shape<D>,
+        points: &Points<D>,
+        halo: &dyn Halo,
+    ) -> Dashpots {
+        if model.regime != Regime::Dynamic || model.boundary.absorbing().next().is_none() {
+            return Dashpots::default();
+        }
+        Dashpots::of::<K, D>(
+            &model.boundary,
+            &model.grid,
+            shape,
+            points,
+            |p| model.impedance(points, p),
+            &self.free,
+            halo,
+        )
+    }
+
+    /// Inertia at the start of a step of the length `dt`, s; `None` in quasi-static analysis.
+    fn start_inertia<K>(
+        &self,
+        model: &Model<K, D>,
+        shape: &Shape<D>,
+        points: &Points<D>,
+        dt: f64,
+        halo: &dyn Halo,
+    ) -> Option<Inertia> {
+        if model.regime != Regime::Dynamic {
+            return None;
+        }
+        let mut starting = model.boundary.velocities(&model.grid);
+        self.contacts.rest(&mut starting);
+        let mass = self.mass(model, shape, points, halo);
+        let mut inertia = inertia::map(&mass, points, &starting, dt, model.newmark);
+        inertia.moving = self.contacts.moving(&inertia.v, dt);
+        if !self.rigid.moving.is_empty() {
+            inertia.moving.resize(self.rigid.moving.len(), false);
+            for (moving, by_body) in inertia.moving.iter_mut().zip(&self.rigid.moving) {
+                *moving |= by_body;
+            }
+        }
+        Some(inertia)
+    }
+
+    /// Sets the external forces at time `t`. Fails if a load has lost its material.
+    fn load<K: Kinematics<D>>(
+        &mut self,
+        model: &Model<K, D>,
+        shape: &Shape<D>,
+        points: &Points<D>,
+        t: f64,
+        halo: &dyn Halo,
+    ) -> Result<(), StepError> {
+        let mut f_ext = external_force(model, shape, points, t, &self.weight, halo);
+        if let Some(force) = carried::force(model, shape, points, self.volume(points), t) {
+            f_ext
+                .iter_mut()
+                .zip(halo.sum(&force))
+                .for_each(|(all, force)| *all += force);
+        }
+        let LoadForces { dead, followers } = load::forces(
+            &model.surfaces(),
+            &points.surface,
+            points.anchored(),
+            &model.grid,
+            &self.active,
+            t,
+            halo,
+        )?;
+        f_ext.iter_mut().zip(dead).for_each(|(all, force)| *all += force);
+        self.reduce(&mut [&mut f_ext], halo);
+        self.f_ext = f_ext;
+        self.followers = followers;
+        Ok(())
     }
 
     /// The components that move: unknowns, those that statuses of contact decide, and those that are tied to others.
@@ -311,14 +387,19 @@ impl<const D: usize> Nodes<D> {
     pub fn average<K, const C: usize, T: Clone + Send>(
         &self,
         model: &Model<K, D>,
-        (shape, points): (&Shape<D>, &Points<D>),
+        shape: &Shape<D>,
+        points: &Points<D>,
         halo: &dyn Halo,
         value: impl Fn(usize) -> [f64; C] + Sync,
         found: impl Fn(usize, [f64; C]) -> T + Sync,
     ) -> Vec<T> {
-        let weight = self.averages.weight.as_ref().unwrap_or(&self.weight);
+        let projection = Projection {
+            shape,
+            weight: self.averages.weight.as_ref().unwrap_or(&self.weight),
+            threshold: self.averages.threshold,
+        };
         let weights = weights(model.weighting, points);
-        self.average_with(model, (shape, weight), (points, weights), halo, value, found)
+        projection.average(model.grouped(points), weights, halo, value, found)
     }
 
     /// What these points, which the nodes were mapped from, weigh in the integrals of the stress: m^D of the reference
@@ -338,17 +419,22 @@ impl<const D: usize> Nodes<D> {
     pub fn mean_dilation<K>(
         &self,
         model: &Model<K, D>,
-        (shape, points): (&Shape<D>, &Points<D>),
+        shape: &Shape<D>,
+        points: &Points<D>,
         halo: &dyn Halo,
         value: impl Fn(usize) -> f64 + Sync,
     ) -> Vec<f64> {
-        let (value, found) = (|p| [value(p)], |_, [mean]: [f64; 1]| mean);
         match &self.averages.lower {
-            Some((lower, weight)) => {
+            Some((shape, weight)) => {
+                let projection = Projection {
+                    shape,
+                    weight,
+                    threshold: self.averages.threshold,
+                };
                 let weights = self.dilation_weights(model, points);
-                self.average_with(model, (lower, weight), (points, weights), halo, value, found)
+                projection.average(model.grouped(points), weights, halo, |p| [value(p)], |_, [mean]| mean)
             }
-            None => self.average(model, (shape, points), halo, value, found),
+            None => self.average(model, shape, points, halo, |p| [value(p)], |_, [mean]| mean),
         }
     }
 
@@ -361,28 +447,12 @@ impl<const D: usize> Nodes<D> {
             .unwrap_or_else(|| weights(model.weighting, points))
     }
 
-    /// With functions `shape` and their weights; zero where these are at most the threshold.
-    fn average_with<K, const C: usize, T: Clone + Send>(
-        &self,
-        model: &Model<K, D>,
-        (shape, weight): (&Shape<D>, &[f64]),
-        (points, weights): (&Points<D>, &[f64]),
-        halo: &dyn Halo,
-        value: impl Fn(usize) -> [f64; C] + Sync,
-        found: impl Fn(usize, [f64; C]) -> T + Sync,
-    ) -> Vec<T> {
-        let grouped = model.grouped(points);
-        let weighted = |p: usize| value(p).map(|v| weights[p] * v);
-        let mut nodal = halo.sum(&transfer::to_nodes_grouped(shape, grouped, weighted));
-        transfer::divide(&mut nodal, weight, self.averages.threshold);
-        transfer::to_points_grouped(shape, grouped, &nodal, found)
-    }
-
     /// The mass matrix, in dynamics.
     pub fn mass<'a, K>(
         &'a self,
         model: &Model<K, D>,
-        (shape, points): (&'a Shape<D>, &'a Points<D>),
+        shape: &'a Shape<D>,
+        points: &'a Points<D>,
         halo: &'a dyn Halo,
     ) -> Mass<'a, D> {
         let Self { weight, threshold, .. } = self;
@@ -399,15 +469,13 @@ impl<const D: usize> Nodes<D> {
     /// Counts what is reported of the nodes, over all ranks.
     pub fn count(&mut self, halo: &dyn Halo) {
         let owned = halo.owned();
-        let count = |marks: &mut dyn Iterator<Item = bool>| marks.filter(|&mark| mark).count() as f64;
+        let active = owned.nodes().filter(|&node| self.active[node]);
+        let massless = active.clone().filter(|&node| self.weight[node] <= self.threshold);
+        let unknowns = owned.places::<D>().filter(|&place| self.free[place]);
         let mut counts = [
-            count(&mut owned.nodes().map(|node| self.active[node])),
-            count(&mut owned.places::<D>().map(|place| self.free[place])),
-            count(
-                &mut owned
-                    .nodes()
-                    .map(|node| self.active[node] && self.weight[node] <= self.threshold),
-            ),
+            active.count() as f64,
+            unknowns.count() as f64,
+            massless.count() as f64,
             self.background.as_ref().map_or(0, Blocks::count) as f64,
         ];
         halo.reduce(&mut counts);
@@ -420,12 +488,36 @@ impl<const D: usize> Nodes<D> {
     }
 }
 
+/// Lumped L2 projection onto the splines of `shape` (Eqs 16, 17).
+struct Projection<'a, const D: usize> {
+    shape: &'a Shape<D>,
+    weight: &'a [f64],
+    threshold: f64, // of the weight, at and below which a projected value is zero
+}
+
+impl<const D: usize> Projection<'_, D> {
+    /// Returns what `found` makes of the projected `value` at every point. `weights` are those of the points.
+    fn average<const C: usize, T: Clone + Send>(
+        &self,
+        grouped: Grouped<'_>,
+        weights: &[f64],
+        halo: &dyn Halo,
+        value: impl Fn(usize) -> [f64; C] + Sync,
+        found: impl Fn(usize, [f64; C]) -> T + Sync,
+    ) -> Vec<T> {
+        let mut nodal = halo.sum(&transfer::to_nodes_grouped(self.shape, grouped, |p| {
+            value(p).map(|v| weights[p] * v)
+        }));
+        transfer::divide(&mut nodal, self.weight, self.threshold);
+        transfer::to_points_grouped(self.shape, grouped, &nodal, found)
+    }
+}
+
 impl<const D: usize> Averages<D> {
     /// `threshold` is that of the nodes' own weights.
-    fn of<K>(model: &Model<K, D>, (shape, points): (&Shape<D>, &Points<D>), threshold: f64, halo: &dyn Halo) -> Self {
-        let (weights, grouped) = (weights(model.weighting, points), model.grouped(points));
-        let weight =
-            |shape: &Shape<D>, weights: &[f64]| halo.sum(&transfer::to_nodes_grouped(shape, grouped, |p| [weights[p]]));
+    fn of<K>(model: &Model<K, D>, shape: &Shape<D>, points: &Points<D>, threshold: f64, halo: &dyn Halo) -> Self {
+        let weights = weights(model.weighting, points);
+        let grouped = model.grouped(points);
         let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
         let of_points: Option<Vec<f64>> = (flows && model.stabilisation.lowers()).then(|| {
             weights
@@ -434,25 +526,22 @@ impl<const D: usize> Averages<D> {
                 .map(|(weight, F)| weight * F.determinant())
                 .collect()
         });
-        let lowered = || {
-            let lower = shape.lowered(&model.grid, points);
-            let subgrid = model.stabilisation == Stabilisation::SubgridFBar;
-            let lower = if subgrid {
-                lower.merged(&model.grid, grouped, halo)
-            } else {
-                lower
-            };
-            let weight = weight(&lower, of_points.as_deref().unwrap_or(weights));
+        let lower = model.stabilisation.lowers().then(|| {
+            let mut lower = shape.lowered(&model.grid, points);
+            if model.stabilisation == Stabilisation::SubgridFBar {
+                lower = lower.merged(&model.grid, grouped, halo);
+            }
+            let weight = scatter_grouped(&lower, grouped, of_points.as_deref().unwrap_or(weights), halo);
             (lower, weight)
-        };
+        });
         let own = grouped.count() > 1 || model.weighting != model.inertial_weighting();
-        let of_nodes = (model.stabilisation.averages() && own).then(|| weight(shape, weights));
+        let of_nodes = (model.stabilisation.averages() && own).then(|| scatter_grouped(shape, grouped, weights, halo));
         Self {
             threshold: of_nodes
                 .as_ref()
                 .map_or(threshold, |weight| self::threshold(weight, halo)),
             weight: of_nodes,
-            lower: model.stabilisation.lowers().then(lowered),
+            lower,
             of_points,
         }
     }
@@ -473,6 +562,16 @@ fn scatter_weight<const D: usize>(
 ) -> Vec<f64> {
     let weights = weights(weighting, points);
     halo.sum(&transfer::to_nodes(shape, |p| [weights[p]]))
+}
+
+/// Nodal sums of the points' `weights`, of every group of materials by itself.
+fn scatter_grouped<const D: usize>(
+    shape: &Shape<D>,
+    grouped: Grouped<'_>,
+    weights: &[f64],
+    halo: &dyn Halo,
+) -> Vec<f64> {
+    halo.sum(&transfer::to_nodes_grouped(shape, grouped, |p| [weights[p]]))
 }
 
 /// Per node: touched by an occupied cell, and: touched by a point with a gradient or by a background, so that its
@@ -497,22 +596,27 @@ fn supported<const D: usize>(
     let mut stiffest = [stiff.iter().copied().fold(0.0, f64::max)];
     halo.maximum(&mut stiffest);
     let above = MASSLESS * stiffest[0];
-    let is_stiff = |(&stiff, &touched): (&f64, &bool)| stiff > above || (has_background && touched);
-    let stiff = stiff.iter().zip(&touched).map(is_stiff).collect();
+    let stiff = stiff
+        .iter()
+        .zip(&touched)
+        .map(|(stiff, touched)| *stiff > above || (has_background && *touched))
+        .collect();
     (touched, stiff)
 }
 
 /// Body force (step 2d): sum_p N_Ip m_p g(t + dt), and that of still water.
 fn external_force<K: Kinematics<D>, const D: usize>(
-    (model, shape, points): (&Model<K, D>, &Shape<D>, &Points<D>),
+    model: &Model<K, D>,
+    shape: &Shape<D>,
+    points: &Points<D>,
     t: f64,
-    (weighting, weight): (Weighting, &[f64]),
+    weight: &[f64],
     halo: &dyn Halo,
 ) -> Vec<f64> {
     let mut f_ext = vec![0.0; weight.len() * D];
     if let Some(g) = model.body_force(t) {
         let own;
-        let mass = match weighting {
+        let mass = match model.inertial_weighting() {
             Weighting::Mass => weight,
             Weighting::Volume => {
                 own = scatter_weight(Weighting::Mass, shape, points, halo);
@@ -527,7 +631,7 @@ fn external_force<K: Kinematics<D>, const D: usize>(
     }
     if let Some(water) = model.still_water(t) {
         let force = halo.sum(&transfer::to_nodes(shape, |p| {
-            <[f64; D]>::from(water.force(points, (p, model.span(points, p)), model.follows_water(points, p)))
+            <[f64; D]>::from(water.force(points, p, model.span(points, p), model.follows_water(points, p)))
         }));
         f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
     }

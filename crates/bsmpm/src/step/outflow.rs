@@ -24,23 +24,25 @@ impl Outflow {
     /// outlets.
     pub fn of<K: Kinematics<D>, const D: usize>(
         model: &Model<K, D>,
-        (points, t): (&mut Points<D>, f64),
+        points: &mut Points<D>,
+        t: f64,
         halo: &dyn Halo,
     ) -> Option<Self> {
         if model.boundary.outlets.is_empty() {
             return None;
         }
-        let left = |p: &usize| model.boundary.lets_out(&model.grid, &points.x[*p]);
-        let out: Vec<usize> = (0..points.len()).filter(left).collect();
+        let out: Vec<usize> = (0..points.len())
+            .filter(|&p| model.boundary.lets_out(&model.grid, &points.x[p]))
+            .collect();
         let mass: Exact = out.iter().map(|&p| points.mass[p]).collect();
         let sums = halo.total(&[[out.len() as f64].into_iter().collect(), mass]);
         if sums[0] == 0.0 {
             return None;
         }
-        let before = Stored::of(model, (points, t), halo);
+        let before = Stored::of(model, points, t, halo);
         let gone: HashSet<u64> = out.iter().map(|&p| points.id[p]).collect();
         points.remove(|id| gone.contains(&id));
-        let stored = [before, Stored::of(model, (points, t), halo)];
+        let stored = [before, Stored::of(model, points, t, halo)];
         Some(Self {
             points: sums[0] as u64,
             mass: sums[1],

@@ -27,7 +27,7 @@ pub struct Problem<'a, K, const D: usize> {
 impl<'a, K, const D: usize> Problem<'a, K, D> {
     /// The mass matrix, in dynamics.
     pub fn mass(&self) -> Mass<'_, D> {
-        self.nodes.mass(self.model, (self.shape, self.points), self.halo)
+        self.nodes.mass(self.model, self.shape, self.points, self.halo)
     }
 
     /// What the points weigh in the integrals of the stress, m^D of the reference volume.

@@ -91,11 +91,15 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
         }
     }
 
+    /// Whether blocks couple with a tie that is this rank's alone.
+    fn is_own(&self, origin: &BlockOrigin) -> bool {
+        let place = self.extension.place_of_number(origin.other);
+        place.is_some_and(|place| !self.extension.ties()[place].is_published)
+    }
+
     /// Completes the blocks of published ties by those of other ranks. One gathering.
     fn exchange(&self, kept: &mut [KeptBlocks<D>]) {
         let extension = self.extension;
-        let tie_at = |number: usize| extension.place_of_number(number).map(|place| &extension.ties()[place]);
-        let is_own = |origin: &BlockOrigin| tie_at(origin.other).is_some_and(|tie| !tie.is_published);
         let mut message = Vec::new();
         for (tie, blocks) in extension
             .ties()
@@ -104,11 +108,11 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
             .filter(|(tie, _)| tie.is_published)
         {
             for (part, blocks) in [&mut blocks.row, &mut blocks.column].into_iter().enumerate() {
-                for (origin, block) in blocks.iter().filter(|(origin, _)| !is_own(origin)) {
+                for (origin, block) in blocks.iter().filter(|(origin, _)| !self.is_own(origin)) {
                     message.extend([tie.number, part, origin.other, origin.cells].map(|number| number as f64));
                     message.extend_from_slice(block.as_slice());
                 }
-                blocks.retain(|origin, _| is_own(origin));
+                blocks.retain(|origin, _| self.is_own(origin));
             }
         }
         for item in self.halo.gather(&message).chunks_exact(4 + D * D) {

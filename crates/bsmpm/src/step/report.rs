@@ -161,11 +161,11 @@ pub fn background_share<K: Kinematics<D>, const D: usize>(
     blocks.multiply::<D>(shape, &nodes.resisted(&found.u), &mut force);
     let mut force = halo.sum(&force);
     nodes.reduce(&mut [&mut force], halo);
-    let size = |node: usize| {
+    let sizes = halo.owned().nodes().map(|node| {
         let free = Nodal::<D>::of(node).filter(|&at| nodes.free[at]);
         free.map(|at| force[at].powi(2)).sum::<f64>().sqrt()
-    };
-    let mut largest = [halo.owned().nodes().map(size).fold(0.0, f64::max)];
+    });
+    let mut largest = [sizes.fold(0.0, f64::max)];
     halo.maximum(&mut largest);
     let mean = found.scale / (nodes.active_nodes.max(1) as f64).sqrt();
     (mean > 0.0).then(|| largest[0] / mean)

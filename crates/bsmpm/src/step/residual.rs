@@ -77,8 +77,8 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
         let u = &extended[..];
         let mut trial = Trial::of(model, shape, nodes, points, u, halo);
         let water = nodes.pores.as_ref().map(|pores| match p {
-            [] => WaterBalance::of((problem, pores), &mut trial, &vec![0.0; pores.free.len()]),
-            p => WaterBalance::of((problem, pores), &mut trial, p),
+            [] => WaterBalance::of(problem, pores, &mut trial, &vec![0.0; pores.free.len()]),
+            p => WaterBalance::of(problem, pores, &mut trial, p),
         });
         let InternalForce {
             mut f_int,
@@ -90,7 +90,7 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
         }
         let balance = Balance {
             water,
-            ..Balance::of(problem, (u, &|p| trial.dF(p)), halo.sum(&f_int), inverted)
+            ..Balance::of(problem, u, &|p| trial.dF(p), halo.sum(&f_int), inverted)
         };
         Self {
             trial,
@@ -116,50 +116,41 @@ impl InternalForce {
         let Problem {
             model, shape, points, ..
         } = *problem;
-        let (inverted, first_inverted) = (AtomicU64::new(0), AtomicUsize::new(usize::MAX));
-        let (pressures, volume) = (&Pressures::of(problem, trial), problem.volume());
-        let flux = |p: usize| match trial.respond(model, points, p) {
-            Ok(response) => {
-                let tau = pressures.acting::<K, D>(p, volume[p], response.tau());
-                let tau = trial.pressed(p, trial.damped(model, points, (p, &response), tau));
-                K::flux(&tau, &trial.dF(p)) * volume[p]
-            }
-            Err(_) => {
-                inverted.fetch_add(1, Relaxed);
-                first_inverted.fetch_min(p, Relaxed);
-                K::Gradient::zeros()
-            }
-        };
-        let f_int = transfer::divergence_of::<K, D>((shape, &points.x), |range, fluxes| {
+        let inverted = &AtomicU64::new(0);
+        let first_inverted = &AtomicUsize::new(usize::MAX);
+        let pressures = &Pressures::of(problem, trial);
+        let volume = problem.volume();
+        let f_int = transfer::divergence_of::<K, D>(shape, &points.x, |range, fluxes| {
             lanes::run(Fluxes {
                 model,
                 points,
                 trial,
                 pressures,
                 volume,
+                inverted,
+                first_inverted,
                 range,
-                flux: &flux,
                 fluxes,
             });
         });
-        let first_inverted = Some(first_inverted.into_inner()).filter(|&p| p < points.len());
         Self {
             f_int,
-            inverted: inverted.into_inner(),
-            first_inverted,
+            inverted: inverted.load(Relaxed),
+            first_inverted: Some(first_inverted.load(Relaxed)).filter(|&p| p < points.len()),
         }
     }
 }
 
-/// Fluxes of consecutive points, eight at a time; of those by `flux` of which one is not like the others.
+/// Fluxes of consecutive points, eight at a time; of those one by one of which one is not like the others.
 struct Fluxes<'a, K: Kinematics<D>, const D: usize> {
     model: &'a Model<K, D>,
     points: &'a Points<D>,
     trial: &'a Trial<K, D>,
     pressures: &'a Pressures,
     volume: &'a [f64],
+    inverted: &'a AtomicU64,
+    first_inverted: &'a AtomicUsize,
     range: Range<usize>,
-    flux: &'a dyn Fn(usize) -> K::Gradient,
     fluxes: &'a mut Vec<K::Gradient>,
 }
 
@@ -170,7 +161,10 @@ impl<K: Kinematics<D>, const D: usize> InLanes for Fluxes<'_, K, D> {
     fn run<S: Simd>(self, simd: S) {
         for eight in lanes::eights(self.range.clone()) {
             let Some(flux) = self.of(simd, eight) else {
-                self.fluxes.extend(eight.points().map(self.flux));
+                for p in eight.points() {
+                    let flux = self.of_point(p);
+                    self.fluxes.push(flux);
+                }
                 continue;
             };
             let mut each = [K::Gradient::zeros(); LANES];
@@ -197,6 +191,23 @@ impl<K: Kinematics<D>, const D: usize> Fluxes<'_, K, D> {
         let volume = Lanes::from_fn(simd, |lane| *volume[lane]);
         Some(K::Gradient::of(|i, j| flux[(i, j)] * volume))
     }
+
+    /// Flux of one point, N m; zero of one that inverted, which is counted. Not inlined into the code of each
+    /// instruction set.
+    #[inline(never)]
+    fn of_point(&self, p: usize) -> K::Gradient {
+        let Self {
+            model, points, trial, ..
+        } = *self;
+        let Ok(response) = trial.respond(model, points, p) else {
+            self.inverted.fetch_add(1, Relaxed);
+            self.first_inverted.fetch_min(p, Relaxed);
+            return K::Gradient::zeros();
+        };
+        let tau = self.pressures.acting::<K, D>(p, self.volume[p], response.tau());
+        let tau = trial.pressed(p, trial.damped(model, points, p, &response, tau));
+        K::flux(&tau, &trial.dF(p)) * self.volume[p]
+    }
 }
 
 impl Balance {
@@ -204,69 +215,52 @@ impl Balance {
     /// displacement `u`, extended, that deforms points by `dF`.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        (u, dF): (&[f64], &dyn Fn(usize) -> Tensor),
+        u: &[f64],
+        dF: &dyn Fn(usize) -> Tensor,
         mut f_int: Vec<f64>,
         inverted: u64,
     ) -> Self {
-        let f_ext = &*external_force(problem, (u, dF));
-        let mut f_strips = Vec::new();
-        if !problem.model.boundary.strips.is_empty() || !problem.nodes.rigid.is_empty() {
-            let mut held = Contributions::none(&problem.model.grid, D, Vec::new());
-            problem.attachments.add_forces(u, &mut held);
-            problem.nodes.rigid.add_forces(u, &mut held, problem.halo);
-            f_strips = problem.halo.sum(&held);
-        }
+        let f_ext = &*external_force(problem, u, dF);
+        let mut f_strips = force_of_strips(problem, u);
         match f_strips.is_empty() {
             true => problem.nodes.reduce(&mut [&mut f_int], problem.halo),
             false => problem.nodes.reduce(&mut [&mut f_int, &mut f_strips], problem.halo),
         }
-        let forces = Forces::of(problem, u, (f_ext, &f_int, &f_strips));
+        let forces = Forces::of(problem, u, f_ext, &f_int, &f_strips);
         let soft = problem.nodes.background.is_some();
-        let squares = |force: &[f64]| over_layers(problem.halo, D, |c| force[c].powi(2));
         let supporting = |c: usize| forces.reaction[c].powi(2) + f_strips.get(c).copied().unwrap_or(0.0).powi(2);
         let whole = [
             std::iter::once(inverted as f64).collect(),
-            squares(&forces.f_oob),
+            over_layers(problem.halo, D, |c| forces.f_oob[c].powi(2)),
             over_active(problem, |c| f_ext[c].powi(2)),
             over_active(problem, |c| f_int[c].powi(2)),
-            over_layers(problem.halo, D, |c| {
-                forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2))
-            }),
+            over_layers(problem.halo, D, |c| forces.inertial_at(c).powi(2)),
             over_active(problem, supporting),
             over_active(problem, |c| if soft { (f_int[c] * u[c]).abs() } else { 0.0 }),
         ];
         let kinds = whole.len() - 2;
         // Out of balance, external, internal, inertial, of supports and strips.
-        let terms = |c: usize| {
-            let inertial = forces.inertial.get(c).map_or(0.0, |inertial| inertial.powi(2));
-            [
-                forces.f_oob[c].powi(2),
-                f_ext[c].powi(2),
-                f_int[c].powi(2),
-                inertial,
-                supporting(c),
-            ]
-        };
-        let apart = problem
-            .nodes
-            .apart
-            .as_ref()
-            .map_or_else(Vec::new, |apart| apart.sums(problem.halo, D, terms));
+        let apart = problem.nodes.apart.as_ref().map_or_else(Vec::new, |apart| {
+            apart.sums(problem.halo, D, |c| {
+                let forces = [forces.f_oob[c], f_ext[c], f_int[c], forces.inertial_at(c)];
+                let [out, external, internal, inertial] = forces.map(|force| force.powi(2));
+                [out, external, internal, inertial, supporting(c)]
+            })
+        });
         let sums = problem.halo.total(&[&whole[..], &apart].concat());
         let (sums, apart) = sums.split_at(whole.len());
-        let norms = |sums: &[f64]| [sums[0], sums[1..].iter().copied().fold(0.0, f64::max)].map(f64::sqrt);
         let [norm, scale] = norms(&sums[1..=kinds]);
         // Where nothing but stress acts on a material's own nodes, that is all out of balance: no scale to judge it by.
-        let acts = |sums: &[f64]| [sums[1], sums[3], sums[4]].into_iter().any(|sum| sum > 0.0);
+        let apart = apart.chunks_exact(kinds).map(|sums| {
+            let acts = [sums[1], sums[3], sums[4]].into_iter().any(|sum| sum > 0.0);
+            if acts { norms(sums) } else { [0.0; 2] }
+        });
         Self {
             f_oob: forces.f_oob,
             reaction: forces.reaction,
             norm,
             scale,
-            apart: apart
-                .chunks_exact(kinds)
-                .map(|sums| if acts(sums) { norms(sums) } else { [0.0; 2] })
-                .collect(),
+            apart: apart.collect(),
             work: sums[kinds + 1],
             inverted: sums[0] as u64,
             water: None,
@@ -292,7 +286,8 @@ impl Balance {
 /// N  external force at the end of the step, that of the loads that follow the surface among it.
 fn external_force<'a, K: Kinematics<D>, const D: usize>(
     problem: &Problem<'a, K, D>,
-    moved: (&[f64], &dyn Fn(usize) -> Tensor),
+    u: &[f64],
+    dF: &dyn Fn(usize) -> Tensor,
 ) -> Cow<'a, [f64]> {
     let Problem {
         model,
@@ -305,7 +300,7 @@ fn external_force<'a, K: Kinematics<D>, const D: usize>(
     if !nodes.followers.is_empty() {
         let traction = nodes
             .followers
-            .tractions::<K>((&model.boundary.loads, &model.grid), points, moved, halo);
+            .tractions::<K>(&model.boundary.loads, &model.grid, points, u, dF, halo);
         let mut force = nodes.followers.forces(&traction, &model.grid, halo);
         nodes.reduce(&mut [&mut force], halo);
         f_ext
@@ -315,6 +310,23 @@ fn external_force<'a, K: Kinematics<D>, const D: usize>(
             .for_each(|(all, force)| *all += force);
     }
     f_ext
+}
+
+/// N  force of strips and rigid bodies, D numbers a node; empty without any. One exchange with the neighbours where
+/// there are some.
+fn force_of_strips<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, u: &[f64]) -> Vec<f64> {
+    if problem.model.boundary.strips.is_empty() && problem.nodes.rigid.is_empty() {
+        return Vec::new();
+    }
+    let mut force = Contributions::none(&problem.model.grid, D, Vec::new());
+    problem.attachments.add_forces(u, &mut force);
+    problem.nodes.rigid.add_forces(u, &mut force, problem.halo);
+    problem.halo.sum(&force)
+}
+
+/// Norm of the force out of balance and the largest of the others', of the sums of their squares.
+fn norms(sums: &[f64]) -> [f64; 2] {
+    [sums[0], sums[1..].iter().copied().fold(0.0, f64::max)].map(f64::sqrt)
 }
 
 /// Sum over the components of this rank's own active nodes.
@@ -339,7 +351,9 @@ impl Forces {
     fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         u: &[f64],
-        (f_ext, f_int, f_strips): (&[f64], &[f64], &[f64]),
+        f_ext: &[f64],
+        f_int: &[f64],
+        f_strips: &[f64],
     ) -> Self {
         let nodes = problem.nodes;
         let mut forces = Self {
@@ -348,18 +362,14 @@ impl Forces {
             inertial: Vec::new(),
         };
         if let Some(inertia) = &nodes.inertia {
-            let of = |c: usize| {
-                if nodes.active[Nodal::<D>::node(c)] {
-                    inertia.acting(c, u[c])
-                } else {
-                    0.0
-                }
-            };
-            let acting: Vec<f64> = (0..u.len()).map(of).collect();
+            let mut acting = vec![0.0; u.len()];
+            for c in (0..u.len()).filter(|&c| nodes.active[Nodal::<D>::node(c)]) {
+                acting[c] = inertia.acting(c, u[c]);
+            }
             forces.inertial = problem.mass().times(&acting);
         }
         for component in (0..u.len()).filter(|&component| nodes.active[Nodal::<D>::node(component)]) {
-            let inertial = forces.inertial.get(component).copied().unwrap_or(0.0);
+            let inertial = forces.inertial_at(component);
             let held = f_strips.get(component).copied().unwrap_or(0.0);
             let balance = f_ext[component] + held - f_int[component] - inertial;
             if nodes.free[component] {
@@ -375,5 +385,10 @@ impl Forces {
         }
         nodes.contacts.add_friction(u, &mut forces.f_oob, &mut forces.reaction);
         forces
+    }
+
+    /// N  of inertia at a component; 0 without.
+    fn inertial_at(&self, component: usize) -> f64 {
+        self.inertial.get(component).copied().unwrap_or(0.0)
     }
 }

@@ -26,7 +26,7 @@ pub fn average_b_e<K, const D: usize>(
     halo: &dyn Halo,
 ) {
     let b_e = &points.b_e;
-    let averaged = nodes.average(model, (shape, points), halo, |p| b_e.at(p).0, |_, b_e| Symmetric(b_e));
+    let averaged = nodes.average(model, shape, points, halo, |p| b_e.at(p).0, |_, b_e| Symmetric(b_e));
     let averaged: Packed<D, Symmetric> = averaged.into_iter().collect();
     if let Some(dilation) = &mut points.dilation {
         for ((dilation, after), before) in dilation.iter_mut().zip(averaged.iter()).zip(points.b_e.iter()) {
@@ -39,15 +39,20 @@ pub fn average_b_e<K, const D: usize>(
 /// What smoothing made of elastic strains: of b^e before and after it the left Cauchy-Green tensor that leads from the
 /// one to the other, L^-1 b^e L^-T with the Cholesky factor L of that before; where nothing changed it is the identity.
 pub fn change<const D: usize>(before: &Packed<D, Symmetric>, after: &Packed<D, Symmetric>) -> Packed<D, Symmetric> {
-    let change = |p: usize| {
-        let (before, after) = (before.at(p), after.at(p));
-        let factor = (before != after).then(|| before.full().cholesky()).flatten()?;
-        let inverse = factor.l().try_inverse()?;
-        Some(Symmetric::of(&(inverse * after.full() * inverse.transpose())))
-    };
-    threads::each(before.len(), |p| change(p).unwrap_or(Symmetric::IDENTITY))
-        .into_iter()
-        .collect()
+    threads::each(before.len(), |p| {
+        change_of_point(before.at(p), after.at(p)).unwrap_or(Symmetric::IDENTITY)
+    })
+    .into_iter()
+    .collect()
+}
+
+/// The same of one point; `None` where nothing changed.
+fn change_of_point(before: Symmetric, after: Symmetric) -> Option<Symmetric> {
+    if before == after {
+        return None;
+    }
+    let inverse = before.full().cholesky()?.l().try_inverse()?;
+    Some(Symmetric::of(&(inverse * after.full() * inverse.transpose())))
 }
 
 /// What the filter of consistent F-bar needs of a point's return.
@@ -62,7 +67,8 @@ pub struct PlasticFlow {
 impl PlasticFlow {
     /// Of one response; `gap` is what gaped before the step, which is in its trial but did not flow in it.
     pub fn of(response: &Response, gap: f64) -> Self {
-        let (trial, elastic) = (response.principal_eps_trial(), response.principal_eps_e());
+        let trial = response.principal_eps_trial();
+        let elastic = response.principal_eps_e();
         let squares: f64 = trial
             .iter()
             .zip(elastic)
@@ -88,7 +94,8 @@ const RENEWING: f64 = 0.01;
 /// theta (S(eps_v) - eps_v), the deviator of the elastic strain not at all. Returns the mean of theta over all points.
 pub fn filter_dilation<K, const D: usize>(
     model: &Model<K, D>,
-    (shape, nodes): (&Shape<D>, &Nodes<D>),
+    shape: &Shape<D>,
+    nodes: &Nodes<D>,
     points: &mut Points<D>,
     flow: &[PlasticFlow],
     halo: &dyn Halo,
@@ -103,15 +110,19 @@ pub fn filter_dilation<K, const D: usize>(
     halo.max(&mut chi, grouped.count());
     let share = transfer::to_points_grouped(shape, grouped, &chi, |_, [x]| -(-x / RENEWING).exp_m1());
     let b_e = &points.b_e;
-    let filter = |p: usize, [theta, mean]: [f64; 2]| {
-        let change = theta * (mean - flow[p].dilation);
-        (b_e.at(p).scaled((2.0 / 3.0 * change).exp()), theta, change)
-    };
-    let filtered = nodes.average(model, (shape, points), halo, |p| [share[p], flow[p].dilation], filter);
-    let (elastic, dilations) = (
-        points.b_e.apart(),
-        points.dilation.as_mut().map(|all| threads::apart(all, 1)),
+    let filtered = nodes.average(
+        model,
+        shape,
+        points,
+        halo,
+        |p| [share[p], flow[p].dilation],
+        |p, [theta, mean]| {
+            let change = theta * (mean - flow[p].dilation);
+            (b_e.at(p).scaled((2.0 / 3.0 * change).exp()), theta, change)
+        },
     );
+    let elastic = points.b_e.apart();
+    let dilations = points.dilation.as_mut().map(|all| threads::apart(all, 1));
     let shares = threads::of_chunks(filtered.len(), |chunk, range| {
         let only = "the chunk's only thread";
         let mut b_e = elastic[chunk].lock().expect(only);
@@ -124,7 +135,8 @@ pub fn filter_dilation<K, const D: usize>(
         }
         [shares]
     });
-    let ([shares], count) = (threads::added(shares), std::iter::once(filtered.len() as f64).collect());
+    let [shares] = threads::added(shares);
+    let count = std::iter::once(filtered.len() as f64).collect();
     let sums = halo.total(&[shares, count]);
     sums[0] / sums[1]
 }

@@ -2,9 +2,10 @@
 //! a step.
 
 use crate::error::SolveError;
-use crate::grid::shape::{Patch, PatchColumn};
+use crate::grid::shape::Patch;
 use crate::grid::{Shape, transfer};
-use crate::kinematics::{Gradient, Kinematics, Moduli, Moment, Slope};
+use crate::kinematics::{Gradient, GradientModuli, Kinematics, Moment, Slope};
+use crate::material::Moduli;
 use crate::material::Stiffness;
 use crate::model::Model;
 use crate::parallel::{LinearSolver, Symmetry};
@@ -63,8 +64,11 @@ fn assemble_into<K: Kinematics<D>, const D: usize>(
             coupling: coupling.as_ref(),
             damping: &damping,
         };
-        let of_column = |column: &PatchColumn| column.patches.clone().map(|patch| state.part(patch)).collect();
-        let parts: Vec<Vec<PatchPart>> = columns.par_iter().with_max_len(1).map(of_column).collect();
+        let parts: Vec<Vec<PatchPart>> = columns
+            .par_iter()
+            .with_max_len(1)
+            .map(|column| column.patches.clone().map(|patch| state.part(patch)).collect())
+            .collect();
         let patches = columns.iter().flat_map(|column| column.patches.clone());
         for (patch, part) in patches.zip(parts.into_iter().flatten()) {
             solver.add(shape.patches()[patch].first_node, &part.block);
@@ -135,24 +139,26 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
         for run in runs_of_one_material(patch, &points.material) {
             let mut moments = vec![K::Gradient::NO_MOMENT; size * size];
             let material = &model.materials[usize::from(points.material[run.start])];
-            let (lambda, mu) = material.elastic().lame();
+            let Moduli { lambda, mu } = material.elastic().moduli();
             // What F-bar averages of isotropic stiffness is lambda + 2 mu/dof times the dilation; the rest has -2
             // mu/dof.
             let averaged = 2.0 * mu * K::dilation().norm_squared();
             for p in run {
                 let stiffness = yielding[p - patch.points.start].as_ref();
                 self.add(
-                    (p, &mut slopes[..size]),
-                    (stiffness, lambda + averaged),
+                    p,
+                    &mut slopes[..size],
+                    stiffness,
+                    lambda + averaged,
                     &mut moments,
                     &mut part,
                 );
             }
             let lambda = if coupling.is_some() { -averaged } else { lambda };
-            add_elastic::<K, D>(&moments, (lambda, mu), &mut part.block);
+            add_elastic::<K, D>(&moments, Moduli { lambda, mu }, &mut part.block);
         }
         mirror(size * D, &mut part.block);
-        add_mass((model.mass, self.nodes), (shape, patch), &points.mass, &mut part.block);
+        add_mass(model.mass, self.nodes, shape, patch, &points.mass, &mut part.block);
         if let Some(background) = &self.nodes.background {
             background.add_to(number, &mut part.block);
         }
@@ -170,8 +176,10 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
     /// averaged. `slopes` is room to work.
     fn add(
         &self,
-        (p, slopes): (usize, &mut [Slope<K, D>]),
-        (stiffness, bulk): (Option<&Stiffness>, f64),
+        p: usize,
+        slopes: &mut [Slope<K, D>],
+        stiffness: Option<&Stiffness>,
+        bulk: f64,
         moments: &mut [Moment<K, D>],
         part: &mut PatchPart,
     ) {
@@ -183,7 +191,7 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
             coupling,
             ..
         } = *self;
-        transfer::slopes_of::<K, D>((shape, &points.x), p, slopes);
+        transfer::slopes_of::<K, D>(shape, &points.x, p, slopes);
         let volume = self.volume[p];
         // What damps a point is its stiffness, too, times a share.
         let damped = 1.0 + self.damping.relative(points.material[p]).unwrap_or(0.0);
@@ -227,7 +235,7 @@ fn of_point<K: Kinematics<D>, const D: usize>(
     stiffness: &Stiffness,
     volume: f64,
     averaged: bool,
-) -> (Moduli<K, D>, f64) {
+) -> (GradientModuli<K, D>, f64) {
     let dilation = K::dilation().diagonal();
     let works = |stress: &Tensor| stress.diagonal().dot(&dilation);
     let bulk = stiffness.moduli::<SMatrix<f64, 1, 1>, 1>(|stress| SMatrix::from_element(works(stress)))[(0, 0)].x;
@@ -269,11 +277,11 @@ fn accumulate<K: Kinematics<D>, const D: usize>(volume: f64, slopes: &[Slope<K, 
 }
 
 /// Adds the elastic stiffness of node pairs a <= b.
-fn add_elastic<K: Kinematics<D>, const D: usize>(moments: &[Moment<K, D>], lame: (f64, f64), block: &mut [f64]) {
+fn add_elastic<K: Kinematics<D>, const D: usize>(moments: &[Moment<K, D>], moduli: Moduli, block: &mut [f64]) {
     let size = moments.len().isqrt();
     for a in 0..size {
         for b in a..size {
-            let pair = K::stiffness(&moments[a * size + b], lame);
+            let pair = K::stiffness(&moments[a * size + b], moduli);
             for i in 0..D {
                 for j in 0..D {
                     block[(a * D + i) * size * D + b * D + j] += pair[(i, j)];
@@ -320,7 +328,8 @@ mod tests {
             .expect("it yields");
         let whole = stiffness.moduli::<Tensor, 3>(|stress| *stress);
         let apply = |l: &Tensor| -> Tensor { (0..9).map(|at| whole[(at / 3, at % 3)] * l[(at / 3, at % 3)]).sum() };
-        let (volume, dilation) = (0.7, <PlaneStrain as Kinematics<2>>::dilation());
+        let volume = 0.7;
+        let dilation = <PlaneStrain as Kinematics<2>>::dilation();
         let expected_bulk = apply(&dilation).dot(&dilation);
         for averaged in [false, true] {
             let (moduli, bulk) = of_point::<PlaneStrain, 2>(&stiffness, volume, averaged);

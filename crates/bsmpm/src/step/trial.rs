@@ -4,6 +4,7 @@
 use crate::grid::{Shape, transfer};
 use crate::kinematics::{Gradient, Kinematics};
 use crate::lanes::{Eight, Lanes, Simd};
+use crate::material::Moduli;
 use crate::material::{MOST_STATE, MaterialError, Response};
 use crate::model::Model;
 use crate::parallel::Halo;
@@ -42,7 +43,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         u: &[f64],
         halo: &dyn Halo,
     ) -> Self {
-        let grad = transfer::gradients::<K, D, _>((shape, &points.x), u, |_, grad| {
+        let grad = transfer::gradients::<K, D, _>(shape, &points.x, u, |_, grad| {
             let dJ = K::jacobian::<f64>(&grad);
             if dJ > 0.0 && dJ.is_finite() {
                 grad
@@ -56,14 +57,13 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
             damping: Damping::of(model, nodes),
             pore: None,
         };
-        let own = |p: usize| match trial.own(model, points, p) {
-            inverted if inverted.is_nan() => weight(model.stabilisation, points, p), // no other point shall suffer for it
-            own => own,
-        };
-        let mean = model
-            .stabilisation
-            .averages()
-            .then(|| nodes.mean_dilation(model, (shape, points), halo, own));
+        let mean = model.stabilisation.averages().then(|| {
+            nodes.mean_dilation(model, shape, points, halo, |p| match trial.own(model, points, p) {
+                // No other point shall suffer for it.
+                inverted if inverted.is_nan() => weight(model.stabilisation, points, p),
+                own => own,
+            })
+        });
         Self { mean, ..trial }
     }
 
@@ -128,8 +128,7 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
             halo,
             ..
         } = *problem;
-        let own = |p: usize| self.own(model, points, p) * trace[p];
-        let mut rate = nodes.mean_dilation(model, (shape, points), halo, own);
+        let mut rate = nodes.mean_dilation(model, shape, points, halo, |p| self.own(model, points, p) * trace[p]);
         rate.iter_mut()
             .zip(mean)
             .zip(trace)
@@ -163,7 +162,8 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         let dF = K::deformation(&grad);
         let mut dF_bar = dF;
         if let Some(mean) = &self.mean {
-            let (mean, mut own) = (eight.of(mean), K::jacobian::<Lanes<S>>(&grad));
+            let mean = eight.of(mean);
+            let mut own = K::jacobian::<Lanes<S>>(&grad);
             let mut before = Lanes::splat(simd, 1.0);
             if model.stabilisation == Stabilisation::FBarZhao {
                 own = Lanes::from_fn(simd, |lane| weight(model.stabilisation, points, eight.point(lane))) * own;
@@ -207,13 +207,11 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     /// The viscous stress of point `p` beside that of its law's `response`, if it has any.
     #[inline]
     pub fn viscous(&self, model: &Model<K, D>, points: &Points<D>, p: usize, response: &Response) -> Option<Viscous> {
-        let (lame, share) = (
-            self.damping.lame(model, points, p)?,
-            self.damping.relative(points.material[p])?,
-        );
+        let moduli = self.damping.moduli(model, points, p)?;
+        let share = self.damping.relative(points.material[p])?;
         let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
         let strained = K::push_forward(&dF_bar, &points.smoothing_of(p));
-        Viscous::of(&strained, lame, (response.returned(), share), points.gap_of(p)).ok()
+        Viscous::of(&strained, moduli, response.returned(), share, points.gap_of(p)).ok()
     }
 
     /// `tau` and the viscous stress of point `p`, Pa, of the constitution's `response` there.
@@ -222,7 +220,8 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         &self,
         model: &Model<K, D>,
         points: &Points<D>,
-        (p, response): (usize, &Response),
+        p: usize,
+        response: &Response,
         tau: Symmetric,
     ) -> Symmetric {
         self.viscous(model, points, p, response)
@@ -267,11 +266,17 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
     pub(crate) fn strain(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Tensor> {
         let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
         let strained = K::push_forward(&dF_bar, &Symmetric::IDENTITY);
-        let (one, e) = (Tensor::identity(), strained.full() - Tensor::identity());
+        let one = Tensor::identity();
+        let e = strained.full() - Tensor::identity();
         if e.amax() < SMALL {
             return Some(e * (one - e * (one * 0.5 - e * (one / 3.0 - e * 0.25))) * 0.5);
         }
-        Some(Response::elastic(&strained, (0.0, 0.0)).ok()?.trial_strain().full())
+        Some(
+            Response::elastic(&strained, Moduli { lambda: 0.0, mu: 0.0 })
+                .ok()?
+                .trial_strain()
+                .full(),
+        )
     }
 
     /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, widened by its gap, and the constitution's answer.

@@ -2,6 +2,7 @@
 
 use crate::boundary::Support;
 use crate::exact::Exact;
+use crate::grid::Grid;
 use crate::model::{Model, WallVelocity};
 use crate::parallel::Halo;
 use crate::points::Points;
@@ -28,6 +29,18 @@ struct Layer {
 }
 
 impl Layer {
+    /// The cells at the face of a support.
+    fn at<const D: usize>(grid: &Grid<D>, support: &Support<D>) -> Self {
+        let axis = &grid.axes()[support.axis];
+        let cells = axis.cells();
+        let [face, end] = if support.upper { [cells, cells - 1] } else { [0, 1] };
+        Self {
+            axis: support.axis,
+            face: axis.breakpoint(face),
+            end: axis.breakpoint(end),
+        }
+    }
+
     /// Distance (-) from the face in cells, if the place is in the layer.
     fn depth<const D: usize>(&self, x: &Vector<D>) -> Option<f64> {
         let depth = (x[self.axis] - self.face) / (self.end - self.face);
@@ -42,22 +55,13 @@ impl Layer {
 
 /// The cells at all faces that hold all components.
 fn layers<K, const D: usize>(model: &Model<K, D>) -> Vec<Layer> {
-    let fixed = model
+    model
         .boundary
         .supports
         .iter()
-        .filter(|support| support.velocity == [Some(0.0); D]);
-    let layer = |support: &Support<D>| {
-        let axis = &model.grid.axes()[support.axis];
-        let cells = axis.cells();
-        let [face, end] = if support.upper { [cells, cells - 1] } else { [0, 1] };
-        Layer {
-            axis: support.axis,
-            face: axis.breakpoint(face),
-            end: axis.breakpoint(end),
-        }
-    };
-    fixed.map(layer).collect()
+        .filter(|support| support.velocity == [Some(0.0); D])
+        .map(|support| Layer::at(&model.grid, support))
+        .collect()
 }
 
 /// Relaxes the velocities of the points near fixed faces to those of their displacement `du`, m, in the step of the
@@ -66,7 +70,8 @@ pub fn relax<K, const D: usize>(model: &Model<K, D>, points: &mut Points<D>, du:
     if model.wall_velocity == WallVelocity::Own {
         return;
     }
-    let (layers, degree) = (layers(model), model.grid.order() as i32);
+    let layers = layers(model);
+    let degree = model.grid.order() as i32;
     let Points {
         x,
         motion: Some(motion),
@@ -79,7 +84,8 @@ pub fn relax<K, const D: usize>(model: &Model<K, D>, points: &mut Points<D>, du:
         let near = layers
             .iter()
             .filter_map(|layer| Some((layer.thickness(), layer.depth(&x[p])?)));
-        let (mut thickness, mut others) = (f64::INFINITY, 1.0);
+        let mut thickness = f64::INFINITY;
+        let mut others = 1.0;
         for (of_layer, depth) in near {
             thickness = of_layer.min(thickness);
             others *= 1.0 - (1.0 - depth).powi(degree);
@@ -102,12 +108,16 @@ pub fn excess<K, const D: usize>(
 ) -> Option<f64> {
     let layers = layers(model);
     let v = &points.motion.as_ref().filter(|_| !layers.is_empty())?.v;
-    let is_near = |p: &usize| {
-        let path = (points.u[*p] + du[*p]).norm();
-        let counts = |layer: &Layer| layer.depth(&points.x[*p]).is_some() && path > LEAST_PATH * layer.thickness();
-        layers.iter().any(counts)
-    };
-    let excess = |p: usize| 0.5 * points.mass[p] * (v[p].norm_squared() - (du[p] / dt).norm_squared());
-    let sum: Exact = (0..points.len()).filter(is_near).map(excess).collect();
+    let mut sum = Exact::ZERO;
+    for p in 0..points.len() {
+        let x = &points.x[p];
+        let path = (points.u[p] + du[p]).norm();
+        let counts = layers
+            .iter()
+            .any(|layer| layer.depth(x).is_some() && path > LEAST_PATH * layer.thickness());
+        if counts {
+            sum.add(0.5 * points.mass[p] * (v[p].norm_squared() - (du[p] / dt).norm_squared()));
+        }
+    }
     Some(halo.total(&[sum])[0])
 }

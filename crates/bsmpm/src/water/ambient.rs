@@ -2,6 +2,7 @@
 //! (T8.3).
 
 use crate::points::Points;
+use crate::schedule::TimeInterval;
 use crate::schedule::{between, turns};
 use crate::tensor::Vector;
 
@@ -25,6 +26,13 @@ pub struct LevelAt {
     pub rows: Vec<(f64, f64)>,
 }
 
+impl LevelAt {
+    /// m  height of the level at time `t`; `None` without rows.
+    fn height(&self, t: f64) -> Option<f64> {
+        level(&self.rows, t)
+    }
+}
+
 impl Ambient {
     /// m  height of the water table at `x` (m, along axis 0) and time `t`, and its slope along `x` (-).
     pub fn table(&self, x: f64, t: f64) -> Option<(f64, f64)> {
@@ -33,15 +41,14 @@ impl Ambient {
             Self::Level(rows) => Some((level(rows, t)?, 0.0)),
             Self::Line(places) => {
                 let next = places.partition_point(|place| place.x <= x);
-                let height = |place: &LevelAt| level(&place.rows, t);
                 let Some(before) = next.checked_sub(1).map(|before| &places[before]) else {
-                    return Some((height(places.first()?)?, 0.0));
+                    return Some((places.first()?.height(t)?, 0.0));
                 };
-                let low = height(before)?;
+                let low = before.height(t)?;
                 let Some(after) = places.get(next) else {
                     return Some((low, 0.0));
                 };
-                let slope = (height(after)? - low) / (after.x - before.x);
+                let slope = (after.height(t)? - low) / (after.x - before.x);
                 Some((low + slope * (x - before.x), slope))
             }
         }
@@ -66,10 +73,10 @@ impl Ambient {
     }
 
     /// Whether it turns sharply in a step.
-    pub fn turns(&self, step: (f64, f64)) -> bool {
+    pub fn turns(&self, interval: TimeInterval) -> bool {
         self.levels()
             .iter()
-            .any(|rows| turns(rows, rows.first().map_or(0.0, |row| row.1), f64::abs, step))
+            .any(|rows| turns(rows, rows.first().map_or(0.0, |row| row.1), f64::abs, interval))
     }
 
     /// Whether it rises or falls.
@@ -159,7 +166,7 @@ impl<'a> StillWater<'a> {
 
     /// N  force of the water on point `p`, which has this height: -J V0 grad p_a, and, unless its mass `follows`, what
     /// the water weighs that its pores have taken up or given off, of what is below the water table.
-    pub fn force<const D: usize>(&self, points: &Points<D>, (p, span): (usize, Span), follows: bool) -> Vector<D> {
+    pub fn force<const D: usize>(&self, points: &Points<D>, p: usize, span: Span, follows: bool) -> Vector<D> {
         let x = &points.x[p];
         let mut force = Vector::zeros();
         let Some((height, slope)) = self.ambient.table(x[0], self.t) else {
@@ -224,9 +231,11 @@ mod tests {
     /// it, along the slope and normal to it, give tan phi/tan beta (1 - gamma_w/(gamma cos^2 beta)).
     #[test]
     fn seepage_along_a_slope_lowers_its_factor_of_safety() {
-        let (beta, phi) = (20.0_f64.to_radians(), 35.0_f64.to_radians());
+        let beta = 20.0_f64.to_radians();
+        let phi = 35.0_f64.to_radians();
         let line = line(&[(0.0, 0.0), (100.0, 100.0 * beta.tan())]);
-        let (x, v) = (Vector::<2>::new(50.0, 10.0), Vector::<2>::zeros());
+        let x = Vector::<2>::new(50.0, 10.0);
+        let v = Vector::<2>::zeros();
         let seed = Seed {
             id: 0,
             material: 0,
@@ -237,11 +246,9 @@ mod tests {
         };
         let points = Points::<2>::from_seeds([seed], false);
         let weight = Vector::<2>::new(0.0, -9.81) * points.mass[0];
-        let acts = weight + StillWater::new(&line, 9.81, 0.0).force(&points, (0, Span::default()), false);
-        let (down, into) = (
-            Vector::<2>::new(-beta.cos(), -beta.sin()),
-            Vector::<2>::new(beta.sin(), -beta.cos()),
-        );
+        let acts = weight + StillWater::new(&line, 9.81, 0.0).force(&points, 0, Span::default(), false);
+        let down = Vector::<2>::new(-beta.cos(), -beta.sin());
+        let into = Vector::<2>::new(beta.sin(), -beta.cos());
         let factor = phi.tan() * acts.dot(&into) / acts.dot(&down);
         assert!((factor - 0.8552).abs() < 5e-5, "{factor}");
         assert!((factor - phi.tan() / beta.tan() * (1.0 - 9.81 / (20.0 * beta.cos().powi(2)))).abs() < 1e-12);

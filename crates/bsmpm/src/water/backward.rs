@@ -3,7 +3,8 @@
 
 use crate::model::{Model, Regime};
 use crate::points::Points;
-use crate::water::flow::{Course, Flow, Motion};
+use crate::schedule::TimeInterval;
+use crate::water::flow::{Course, Motion};
 
 /// A step over the one before it, above which that says nothing: the differences are stable below 1 + sqrt 2, but what
 /// dies away goes beyond its end the further the nearer to it.
@@ -42,45 +43,46 @@ impl Differences {
         }
     }
 
-    /// Those of the model's step from `t` to `end`, s, by what the points carry.
-    pub fn of<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, (t, end): (f64, f64)) -> Self {
-        let goes_on = is_smooth(model) && points.content_change.is_some() && !turns(model, (t, end));
+    /// Those of the model's step, by what the points carry.
+    pub fn of<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, interval: TimeInterval) -> Self {
+        let goes_on = is_smooth(model) && points.content_change.is_some() && !turns(model, interval);
         let before = points.surface.flowed.as_ref().filter(|_| goes_on);
-        before.map_or(Self::EULER, |flowed| Self::of_second_order(end - t, flowed.dt))
+        before.map_or(Self::EULER, |flowed| {
+            Self::of_second_order(interval.end() - interval.start, flowed.dt)
+        })
     }
 
     /// The rate that counts in the step of `dt` from `t` for a given one: with it all that has come in is the integral
     /// of that, however it turns.
-    pub fn of_rate(&self, rate: &Course, (t, dt): (f64, f64)) -> f64 {
-        let before = self.last * rate.integral((t - self.before, t));
-        (rate.integral((t, t + dt)) - before) / (self.now * dt)
+    pub fn of_rate(&self, rate: &Course, interval: TimeInterval) -> f64 {
+        let before = self.last * rate.integral(interval.start - self.before, interval.start);
+        (rate.integral(interval.start, interval.end()) - before) / (self.now * interval.dt)
     }
 }
 
 /// Whether what drives the flow turns sharply in a step: then the last one says nothing of it.
-fn turns<K, const D: usize>(model: &Model<K, D>, step: (f64, f64)) -> bool {
-    let of_water = model
-        .water
-        .as_ref()
-        .is_some_and(|water| water.ambient.turns(step) || water.flow.as_ref().is_some_and(|flow| flow.turns(step)));
-    of_water || model.boundary.turns(step)
+fn turns<K, const D: usize>(model: &Model<K, D>, interval: TimeInterval) -> bool {
+    let of_water = model.water.as_ref().is_some_and(|water| {
+        water.ambient.turns(interval) || water.flow.as_ref().is_some_and(|flow| flow.turns(interval))
+    });
+    of_water || model.boundary.turns(interval)
 }
 
 /// Whether the flow of a step says anything about the next one's: not where pores fill, surfaces open and close,
 /// inertia makes waves, or nothing flows.
 pub fn is_smooth<K, const D: usize>(model: &Model<K, D>) -> bool {
-    let flow = model.water.as_ref().and_then(|water| water.flow.as_ref());
-    let flows = |flow: &Flow<D>| {
-        let some = flow.soils.iter().flatten().any(|soil| soil.permeability.is_some());
-        some && flow.motion == Motion::Flows
+    let Some(flow) = model.water.as_ref().and_then(|water| water.flow.as_ref()) else {
+        return false;
     };
-    let is_smooth = |flow: &Flow<D>| flows(flow) && !flow.retains() && !flow.is_one_way();
-    model.regime == Regime::QuasiStatic && flow.is_some_and(is_smooth)
+    let lets_through = flow.soils.iter().flatten().any(|soil| soil.permeability.is_some());
+    let flows = lets_through && flow.motion == Motion::Flows;
+    model.regime == Regime::QuasiStatic && flows && !flow.retains() && !flow.is_one_way()
 }
 
 #[cfg(test)]
 mod tests {
     use super::Differences;
+    use crate::schedule::TimeInterval;
     use crate::water::flow::Course;
 
     #[test]
@@ -99,18 +101,20 @@ mod tests {
     #[test]
     fn all_that_has_come_in_is_the_integral_of_a_rate_on_steps_of_any_length() {
         let rate = Course(vec![(1.0, 0.0), (2.0, 3.0), (2.1, -1.0), (4.0, 0.5)]);
-        let (mut t, mut before, mut inward) = (0.0, [0.0, 0.0], 0.0);
+        let mut t = 0.0;
+        let mut before = [0.0, 0.0];
+        let mut inward = 0.0;
         for dt in [0.7, 1.0, 0.31, 0.4, 0.6, 1.5, 0.5] {
             let of = if before[0] > 0.0 {
                 Differences::of_second_order(dt, before[0])
             } else {
                 Differences::EULER
             };
-            let step = of.last * before[1] + of.now * dt * of.of_rate(&rate, (t, dt));
+            let step = of.last * before[1] + of.now * dt * of.of_rate(&rate, TimeInterval { start: t, dt });
             (t, before, inward) = (t + dt, [dt, step], inward + step);
-            assert!((inward - rate.integral((0.0, t))).abs() < 1e-14, "{t} {inward}");
+            assert!((inward - rate.integral(0.0, t)).abs() < 1e-14, "{t} {inward}");
         }
         // Triangles and trapezia by hand, and 0.5 from the last row on.
-        assert!((rate.integral((0.0, 5.0)) - (1.5 + 0.1 - 0.475 + 0.5)).abs() < 1e-14);
+        assert!((rate.integral(0.0, 5.0) - (1.5 + 0.1 - 0.475 + 0.5)).abs() < 1e-14);
     }
 }

@@ -1,7 +1,6 @@
 //! Pore pressure that material points store: ratio r_u, or excess pressure that strength reduction keeps constant. Its
 //! nodal force is theory-manual equation (T8.4).
 
-use crate::boundary::Support;
 use crate::grid::{Contributions, Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
@@ -15,30 +14,32 @@ use crate::water::pore_pressure::PorePressure;
 /// `volume` (m^D) is what points weigh in integrals of the stress.
 pub fn force<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    (shape, points): (&Shape<D>, &Points<D>),
+    shape: &Shape<D>,
+    points: &Points<D>,
     volume: &[f64],
     t: f64,
 ) -> Option<Contributions> {
     let carried = pressures(model, points, t)?;
-    let flux = |p: usize| {
+    Some(transfer::divergence::<K, D>(shape, &points.x, |p| {
         let pressed = volume[p] * points.F.at(p).determinant() * carried[p];
         K::working(&(Tensor::identity() * pressed))
-    };
-    Some(transfer::divergence::<K, D>((shape, &points.x), flux))
+    }))
 }
 
 /// J  work of the pressures of the times `t` on the displacements `u` (m, nodal), of every point.
 pub fn work<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    (shape, points): (&Shape<D>, &Points<D>),
+    shape: &Shape<D>,
+    points: &Points<D>,
     volume: &[f64],
     u: &[f64],
     t: [f64; 2],
 ) -> Option<Vec<[f64; 2]>> {
     let [before, after] = t.map(|t| pressures(model, points, t));
-    let (before, after) = (before?, after?);
+    let before = before?;
+    let after = after?;
     let x: &[Vector<D>] = &points.x;
-    Some(transfer::gradients::<K, D, _>((shape, x), u, |p, gradient| {
+    Some(transfer::gradients::<K, D, _>(shape, x, u, |p, gradient| {
         let dilates = volume[p] * points.F.at(p).determinant() * K::gradient::<f64>(&gradient).trace();
         [before[p] * dilates, after[p] * dilates]
     }))
@@ -48,7 +49,8 @@ pub fn work<K: Kinematics<D>, const D: usize>(
 /// the stress. `None` where nothing has friction, and where points carry no such pressure. A sum over the ranks.
 pub fn pore_pressure<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    (shape, points): (&Shape<D>, &Points<D>),
+    shape: &Shape<D>,
+    points: &Points<D>,
     volume: &[f64],
     t: f64,
     halo: &dyn Halo,
@@ -67,15 +69,17 @@ pub fn pore_pressure<K: Kinematics<D>, const D: usize>(
 pub fn forces_on_faces<K: Kinematics<D>, const D: usize>(
     pores: &PorePressure<D>,
     model: &Model<K, D>,
-    (shape, points): (&Shape<D>, &Points<D>),
+    shape: &Shape<D>,
+    points: &Points<D>,
     volume: &[f64],
     halo: &dyn Halo,
 ) -> Vec<f64> {
-    let areas = |p: usize| K::working(&(Tensor::identity() * weight(points, volume, p)));
-    let areas = halo.sum(&transfer::divergence::<K, D>((shape, &points.x), areas));
+    let areas = halo.sum(&transfer::divergence::<K, D>(shape, &points.x, |p| {
+        K::working(&(Tensor::identity() * weight(points, volume, p)))
+    }));
     let mut forces = vec![0.0; areas.len()];
-    let with_friction = |support: &&Support<D>| support.contact.is_some_and(|law| law.friction > 0.0);
-    for face in model.boundary.supports.iter().filter(with_friction) {
+    let supports = model.boundary.supports.iter();
+    for face in supports.filter(|support| support.contact.is_some_and(|law| law.friction > 0.0)) {
         let axis = face.axis;
         let place = if face.upper {
             model.grid.axes()[axis].length()
@@ -122,10 +126,11 @@ fn excess_pressures<K: Kinematics<D>, const D: usize>(
     let water = model.water.as_ref()?;
     let flow = water.flow.as_ref()?;
     let still = model.still_water(t).filter(|_| flow.retains());
-    let of = |p: usize| {
+    let mut pressures = vec![0.0; points.len()];
+    for (p, pressure) in pressures.iter_mut().enumerate() {
         let x = &points.x[p];
         let Some(soil) = &flow.soils[usize::from(points.material[p])] else {
-            return 0.0;
+            continue;
         };
         let excess = points
             .pore_pressure
@@ -137,7 +142,7 @@ fn excess_pressures<K: Kinematics<D>, const D: usize>(
             excess
         };
         let borne = still.as_ref().map_or(0.0, |still| still.pressure(x));
-        soil.retained(whole, water.unit_weight).effective * whole - borne
-    };
-    Some((0..points.len()).map(of).collect())
+        *pressure = soil.retained(whole, water.unit_weight).effective * whole - borne;
+    }
+    Some(pressures)
 }

@@ -1,7 +1,7 @@
 //! Water content of a soil, theory-manual equation (T8.5).
 
 use crate::water::flow::Soil;
-use crate::water::retention::{Retained, RetainedChange, Retention};
+use crate::water::retention::{Retained, RetainedChange};
 
 impl<const D: usize> Soil<D> {
     /// Water per volume of the start, of soil that has become `J` times that volume, under the excess pressure `p`, Pa;
@@ -22,8 +22,10 @@ impl<const D: usize> Soil<D> {
     /// What those change by with the whole pore pressure, which was `before`, Pa.
     #[inline]
     pub fn retained_change(&self, before: f64, now: f64, weight: f64) -> RetainedChange {
-        let change = |retention: &Retention| retention.change(before, now, weight);
-        self.retention.as_ref().map_or(RetainedChange::default(), change)
+        match &self.retention {
+            Some(retention) => retention.change(before, now, weight),
+            None => RetainedChange::default(),
+        }
     }
 
     /// 1/Pa  see [`Retention::chord`](crate::water::retention::Retention::chord); 0 of pores that stay full

@@ -33,7 +33,8 @@ impl Crossed {
             .chain(&self.faces)
             .copied()
             .chain(self.inflows.iter().map(|inflow| -inflow));
-        let (mut left, mut come) = (0.0, 0.0);
+        let mut left = 0.0;
+        let mut come = 0.0;
         out.for_each(|out| if out > 0.0 { left += out } else { come -= out });
         f64::max(left, come)
     }

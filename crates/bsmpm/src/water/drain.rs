@@ -10,9 +10,10 @@ use crate::grid::{Contributions, Grid};
 use crate::model::Model;
 use crate::parallel::{Halo, LinearSolver};
 use crate::points::Points;
+use crate::schedule::TimeInterval;
 use crate::tensor::Vector;
 use crate::water::backward::Differences;
-use crate::water::flow::{Flow, Given, Motion};
+use crate::water::flow::{Drain, Flow, Given, Inflow, Motion};
 
 /// Conductance of a drain over that of the soil of a cell, k/(gamma_w h).
 ///
@@ -69,40 +70,110 @@ impl WaterCrossing {
     }
 }
 
+/// A surface that water crosses in a step.
+struct CrossedSurface<'a, const D: usize> {
+    number: usize,
+    drain: Option<&'a Drain<D>>,
+    inflow: Option<&'a Inflow<D>>, // if it is no drain
+    rate: f64,                     // m/s  of the inflow
+    duration: f64,                 // s
+    end: f64,                      // s
+    unit_weight: f64,              // N/m3  of water
+}
+
+impl<'a, const D: usize> CrossedSurface<'a, D> {
+    /// Of a number among the drains and then the inflows, in a step that takes these `differences`.
+    fn of(
+        flow: &'a Flow<D>,
+        number: usize,
+        unit_weight: f64,
+        differences: Differences,
+        interval: TimeInterval,
+    ) -> Self {
+        let of_inflows = number.checked_sub(flow.drains.len());
+        let inflow = of_inflows.map(|number| &flow.inflows[number]);
+        Self {
+            number,
+            drain: flow.drains.get(number),
+            inflow,
+            rate: inflow.map_or(0.0, |inflow| differences.of_rate(&inflow.rate, interval)),
+            duration: differences.now * interval.dt,
+            end: interval.end(),
+            unit_weight,
+        }
+    }
+
+    /// Of a point at a `place`, whose `area` is that at the start, m2.
+    fn crossing(
+        &self,
+        grid: &Grid<D>,
+        place: &SurfacePlace<D>,
+        area: f64,
+        attachment: Attachment,
+        still: &impl Fn(&Vector<D>) -> f64,
+    ) -> WaterCrossing {
+        let through = self.duration * area * place.normal.norm();
+        let conductance = through * CONDUCTANCE * place.leads(grid) / self.unit_weight;
+        let closed = WaterCrossing {
+            surface: self.number,
+            attachment,
+            conductance: 0.0,
+            given: 0.0,
+            inflow: through * self.rate,
+            one_way: false,
+        };
+        if let Some(drain) = self.drain {
+            return WaterCrossing {
+                conductance,
+                given: drain.given.excess(self.unit_weight, &place.x, self.end, still),
+                inflow: 0.0,
+                one_way: drain.given == Given::Seepage && still(&place.x) <= 0.0,
+                ..closed
+            };
+        }
+        if self.inflow.is_some_and(|inflow| inflow.runs_off) {
+            return WaterCrossing {
+                conductance,
+                given: Given::Seepage.excess(self.unit_weight, &place.x, self.end, still),
+                one_way: true,
+                ..closed
+            };
+        }
+        closed
+    }
+}
+
 impl Drainage {
-    /// Of a step of `dt` from `t` that takes these `differences`, and the points at its start; by the functions of
+    /// Of a step that takes these `differences`, and the points at its start; by the functions of
     /// degree q - 1 that `counts` says. `still` is the pressure of the still water at the end, Pa. One reduction,
     /// before the first step three. Fails on all ranks where a surface is on material that lets no water through.
     pub fn at<K, const D: usize>(
         model: &Model<K, D>,
         points: &Points<D>,
-        ((t, dt), differences): ((f64, f64), Differences),
+        interval: TimeInterval,
+        differences: Differences,
         counts: impl Fn(usize) -> bool,
         still: impl Fn(&Vector<D>) -> f64,
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
-        let Some((water, flow)) = model
-            .water
-            .as_ref()
-            .and_then(|water| Some((water, water.flow.as_ref()?)))
-        else {
+        let water = model.water.as_ref();
+        let Some((water, flow)) = water.and_then(|water| Some((water, water.flow.as_ref()?))) else {
             return Ok(Self::default());
         };
         let of = [flow.drains.len(), flow.inflows.len()];
         if of == [0; 2] || flow.motion != Motion::Flows {
             return Ok(Self { of, ..Self::default() });
         }
-        let (grid, offsets) = (&model.grid, model.grid.lowered_offsets());
-        let (end, duration) = (t + dt, differences.now * dt);
+        let grid = &model.grid;
+        let offsets = model.grid.lowered_offsets();
         let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo).water;
         let mut places = places(flow, points, &anchors, halo).into_iter();
-        let (mut outlets, mut torn) = (Vec::new(), vec![0.0; of[0] + of[1]]);
+        let mut outlets = Vec::new();
+        let mut torn = vec![0.0; of[0] + of[1]];
         for ((surface, (starts, _)), acts) in flow.surfaces().enumerate().zip(flow.acting()) {
-            let kept = |place: SurfacePlace<D>| SurfacePlace {
-                x: model.boundary.kept_in(grid, place.x),
-                ..place
-            };
-            let here: Vec<SurfacePlace<D>> = places.by_ref().take(starts.len()).map(kept).collect();
+            let mut here: Vec<SurfacePlace<D>> = places.by_ref().take(starts.len()).collect();
+            here.iter_mut()
+                .for_each(|place| place.x = model.boundary.kept_in(grid, place.x));
             if !acts {
                 continue;
             }
@@ -114,52 +185,10 @@ impl Drainage {
                 });
             }
             torn[surface] = cells_apart(grid, starts, &here);
-            let inflow = surface
-                .checked_sub(flow.drains.len())
-                .map(|number| &flow.inflows[number]);
-            let rate = inflow.map_or(0.0, |inflow| differences.of_rate(&inflow.rate, (t, dt)));
+            let surface = CrossedSurface::of(flow, surface, water.unit_weight, differences, interval);
             for (place, SurfacePoint { area, .. }) in here.iter().zip(starts) {
                 let attachment = Attachment::lowered_at(grid, &offsets, &counts, &place.x);
-                let Some(attachment) = attachment else { continue };
-                let through = duration * area * place.normal.norm();
-                let none = WaterCrossing {
-                    surface,
-                    attachment,
-                    conductance: 0.0,
-                    given: 0.0,
-                    inflow: 0.0,
-                    one_way: false,
-                };
-                let conductance = through * CONDUCTANCE * place.leads(grid) / water.unit_weight;
-                let dry = Given::Seepage.excess(water.unit_weight, &place.x, end, &still);
-                outlets.push(match flow.drains.get(surface) {
-                    Some(drain) => {
-                        let given = drain.given.excess(water.unit_weight, &place.x, end, &still);
-                        let one_way = drain.given == Given::Seepage && still(&place.x) <= 0.0;
-                        WaterCrossing {
-                            conductance,
-                            given,
-                            one_way,
-                            ..none
-                        }
-                    }
-                    None => {
-                        let rain = WaterCrossing {
-                            inflow: through * rate,
-                            ..none
-                        };
-                        if inflow.is_some_and(|inflow| inflow.runs_off) {
-                            WaterCrossing {
-                                conductance,
-                                given: dry,
-                                one_way: true,
-                                ..rain
-                            }
-                        } else {
-                            rain
-                        }
-                    }
-                });
+                outlets.extend(attachment.map(|attachment| surface.crossing(grid, place, *area, attachment, &still)));
             }
         }
         Ok(Self {
@@ -198,8 +227,8 @@ impl Drainage {
     /// Adds the derivative of that to the matrix of the pressures, m3/Pa: of drains that let water out only where they
     /// are open under `p`.
     pub fn assemble(&self, p: &[f64], solver: &mut dyn LinearSolver) {
-        let acts = |outlet: &&WaterCrossing| outlet.conductance > 0.0 && outlet.is_open(&self.offsets, p);
-        for outlet in self.outlets.iter().filter(acts) {
+        let conducting = self.outlets.iter().filter(|outlet| outlet.conductance > 0.0);
+        for outlet in conducting.filter(|outlet| outlet.is_open(&self.offsets, p)) {
             let N = outlet.attachment.N();
             let block: Vec<f64> = N
                 .iter()
@@ -211,9 +240,10 @@ impl Drainage {
 
     /// J  what the water that leaves under the excess pressures `p`, Pa, takes along, on this rank, `times` as often.
     pub fn work(&self, p: &[f64], times: f64) -> Exact {
-        let of =
-            |outlet: &WaterCrossing| times * outlet.attachment.value(&self.offsets, p) * outlet.out(&self.offsets, p);
-        self.outlets.iter().map(of).collect()
+        self.outlets
+            .iter()
+            .map(|outlet| times * outlet.attachment.value(&self.offsets, p) * outlet.out(&self.offsets, p))
+            .collect()
     }
 
     /// What every drain, and every inflow, did under the converged excess pressures `p`, Pa. One reduction.
@@ -248,10 +278,9 @@ struct SurfacePlace<const D: usize> {
 impl<const D: usize> SurfacePlace<D> {
     /// 1/s  permeability across the surface over the edges of the cell that it is in.
     fn leads(&self, grid: &Grid<D>) -> f64 {
-        let edges = grid.locate(&self.x).map(|cell| grid.cell_box(&cell).1);
-        let edge = |axis: usize| edges.map_or(grid.smallest_edge(), |edges| edges[axis]);
-        let along = |axis: usize| self.normal[axis].powi(2) * self.permeability[axis] / edge(axis);
-        (0..D).map(along).sum::<f64>() / self.normal.norm_squared()
+        let edges = edges_at(grid, &self.x);
+        let along = (0..D).map(|axis| self.normal[axis].powi(2) * self.permeability[axis] / edges[axis]);
+        along.sum::<f64>() / self.normal.norm_squared()
     }
 }
 
@@ -259,25 +288,31 @@ impl<const D: usize> SurfacePlace<D> {
 /// in the order of the surface: what the ground has laid bare between them is closed.
 fn cells_apart<const D: usize>(grid: &Grid<D>, starts: &[SurfacePoint<D>], places: &[SurfacePlace<D>]) -> f64 {
     let edge = grid.smallest_edge();
-    let meet = |a: &Vector<D>, b: &Vector<D>| (a - b).norm() <= ON * edge;
-    let meets = |pair: &[SurfacePoint<D>]| {
-        let ends = pair[0]
-            .corners
-            .iter()
-            .any(|a| pair[1].corners.iter().any(|b| meet(a, b)));
-        ends || (pair[0].x - pair[1].x).norm() < edge
-    };
-    let pairs = starts
-        .windows(2)
-        .zip(places.windows(2))
-        .filter(|(starts, _)| meets(starts));
-    let apart = |places: &[SurfacePlace<D>]| {
-        let edges = grid
-            .locate(&places[0].x)
-            .map_or_else(|| Vector::from_element(edge), |cell| grid.cell_box(&cell).1);
-        (places[1].x - places[0].x).component_div(&edges).norm()
-    };
-    pairs.map(|(_, places)| apart(places)).fold(0.0, f64::max)
+    let mut most = 0.0_f64;
+    for (starts, places) in starts.windows(2).zip(places.windows(2)) {
+        if are_neighbours(&starts[0], &starts[1], edge) {
+            let apart = (places[1].x - places[0].x).component_div(&edges_at(grid, &places[0].x));
+            most = most.max(apart.norm());
+        }
+    }
+    most
+}
+
+/// Whether two surface points have corners that meet, or are within an `edge` of each other, m.
+fn are_neighbours<const D: usize>(a: &SurfacePoint<D>, b: &SurfacePoint<D>, edge: f64) -> bool {
+    let mut pairs = a
+        .corners
+        .iter()
+        .flat_map(|one| b.corners.iter().map(move |other| one - other));
+    pairs.any(|apart| apart.norm() <= ON * edge) || (a.x - b.x).norm() < edge
+}
+
+/// Edges of the cell at `x`, m; outside the grid the smallest of all.
+fn edges_at<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D> {
+    grid.locate(x).map_or_else(
+        || Vector::from_element(grid.smallest_edge()),
+        |cell| grid.cell_box(&cell).1,
+    )
 }
 
 /// Those of all surface points, now. One reduction.
@@ -291,10 +326,12 @@ fn places<const D: usize>(
         .surfaces()
         .flat_map(|(points, normals)| points.iter().zip(normals))
         .collect();
-    let (width, anchored) = (3 * D + 1, points.anchored());
+    let width = 3 * D + 1;
+    let anchored = points.anchored();
     let mut numbers = vec![0.0; width * starts.len()];
     anchored.visit(anchors.iter().flatten(), |p, at| {
-        let ((start, normal), F) = (starts[at], points.F.at(p));
+        let (start, normal) = starts[at];
+        let F = points.F.at(p);
         let permeability = flow.permeability(points.material[p], F.determinant() * points.dilation_of(p));
         let vectors = [
             anchored.along(p, &start.x),
@@ -313,16 +350,16 @@ fn places<const D: usize>(
     });
     // Each number is of one rank alone.
     halo.reduce(&mut numbers);
-    let place = |numbers: &[f64]| {
-        let vector = |k: usize| Vector::from_column_slice(&numbers[k * D..(k + 1) * D]);
+    let places = numbers.chunks_exact(width).map(|numbers| {
+        let [x, normal, permeability] = [0, 1, 2].map(|k| Vector::from_column_slice(&numbers[k * D..][..D]));
         SurfacePlace {
-            x: vector(0),
-            normal: vector(1),
-            permeability: vector(2),
+            x,
+            normal,
+            permeability,
             drained: numbers[3 * D] > 0.0,
         }
-    };
-    numbers.chunks_exact(width).map(place).collect()
+    });
+    places.collect()
 }
 
 impl Given {

@@ -1,6 +1,7 @@
 //! Input of pore-water flow: soils, permeability, theory-manual equation (T8.8), drains and inflows.
 
 use crate::boundary::SurfacePoint;
+use crate::schedule::TimeInterval;
 use crate::schedule::{between, turns};
 use crate::tensor::Vector;
 use crate::water::retention::Retention;
@@ -54,17 +55,22 @@ impl<const D: usize> Flow<D> {
 
     /// Whether a surface lets water through one way only.
     pub fn is_one_way(&self) -> bool {
-        let seeps = |drain: &Drain<D>| drain.acts && drain.given == Given::Seepage;
-        self.drains.iter().any(seeps) || self.inflows.iter().any(|inflow| inflow.acts && inflow.runs_off)
+        self.drains
+            .iter()
+            .any(|drain| drain.acts && drain.given == Given::Seepage)
+            || self.inflows.iter().any(|inflow| inflow.acts && inflow.runs_off)
     }
 
     /// Whether what is given at a surface that water crosses now turns sharply in a step.
-    pub fn turns(&self, step: (f64, f64)) -> bool {
-        let turn = |course: &Course| turns(&course.0, course.at(0.0), f64::abs, step);
-        let given = |given: &Given| given.course().is_some_and(turn);
-        self.drains.iter().any(|drain| drain.acts && given(&drain.given))
-            || self.faces.iter().any(|face| face.acts && given(&face.given))
-            || self.inflows.iter().any(|inflow| inflow.acts && turn(&inflow.rate))
+    pub fn turns(&self, interval: TimeInterval) -> bool {
+        self.drains
+            .iter()
+            .any(|drain| drain.acts && drain.given.turns(interval))
+            || self.faces.iter().any(|face| face.acts && face.given.turns(interval))
+            || self
+                .inflows
+                .iter()
+                .any(|inflow| inflow.acts && inflow.rate.turns(interval))
     }
 
     /// m  the largest suction head at which air enters a soil
@@ -96,10 +102,9 @@ impl<const D: usize> Flow<D> {
 impl PermeabilityLaw {
     /// Permeability over that of the start, of a soil of this porosity then that has become `J` times its volume.
     pub fn relative(self, porosity: f64, J: f64) -> f64 {
-        let of = |n: f64| n.powi(3) / (1.0 - n).powi(2);
         match self {
             Self::Constant => 1.0,
-            Self::KozenyCarman => of((1.0 - (1.0 - porosity) / J).max(0.0)) / of(porosity),
+            Self::KozenyCarman => kozeny_carman((1.0 - (1.0 - porosity) / J).max(0.0)) / kozeny_carman(porosity),
         }
     }
 
@@ -111,6 +116,11 @@ impl PermeabilityLaw {
             _ => 0.0,
         }
     }
+}
+
+/// n^3/(1-n)^2 of a porosity n.
+fn kozeny_carman(n: f64) -> f64 {
+    n.powi(3) / (1.0 - n).powi(2)
 }
 
 /// What a soil is to water.
@@ -168,27 +178,41 @@ impl Given {
             Self::StillWater | Self::Seepage => None,
         }
     }
+
+    /// Whether that turns sharply in a step.
+    fn turns(&self, interval: TimeInterval) -> bool {
+        self.course().is_some_and(|course| course.turns(interval))
+    }
 }
 
 impl Course {
+    /// Whether it turns sharply in a step.
+    fn turns(&self, interval: TimeInterval) -> bool {
+        turns(&self.0, self.at(0.0), f64::abs, interval)
+    }
+
     /// Of its rows, s.
     pub fn times(&self) -> impl Iterator<Item = f64> {
         self.0.iter().map(|row| row.0)
     }
 
     /// Its integral over a time: exact, wherever the rows are.
-    pub fn integral(&self, (from, to): (f64, f64)) -> f64 {
+    pub fn integral(&self, from: f64, to: f64) -> f64 {
         let within = self.times().filter(|t| from < *t && *t < to);
-        let ends = within.chain([to]);
-        let part =
-            |(start, sum): (f64, f64), end: f64| (end, sum + 0.5 * (end - start) * (self.at(start) + self.at(end)));
-        ends.fold((from, 0.0), part).1
+        let mut start = from;
+        let mut sum = 0.0;
+        for end in within.chain([to]) {
+            sum += 0.5 * (end - start) * (self.at(start) + self.at(end));
+            start = end;
+        }
+        sum
     }
 
     /// At time `t`; 0 of none.
     pub fn at(&self, t: f64) -> f64 {
-        let value = |row: Option<&(f64, f64)>| row.map_or(0.0, |row| row.1);
-        between(&self.0, value(self.0.first()), t).unwrap_or(value(self.0.last()))
+        let first = self.0.first().map_or(0.0, |row| row.1);
+        let last = self.0.last().map_or(0.0, |row| row.1);
+        between(&self.0, first, t).unwrap_or(last)
     }
 }
 

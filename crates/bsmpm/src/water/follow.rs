@@ -43,8 +43,10 @@ impl Follow {
     /// suction and the air's entry, as long as the first iterations are followed.
     pub fn tame<K, const D: usize>(
         &mut self,
-        (problem, pores): (&Problem<'_, K, D>, &Pores<D>),
-        (x, dx): (&[f64], &mut [f64]),
+        problem: &Problem<'_, K, D>,
+        pores: &Pores<D>,
+        x: &[f64],
+        dx: &mut [f64],
         measure: f64,
     ) {
         let Some(water) = &problem.model.water else { return };
@@ -54,9 +56,11 @@ impl Follow {
         if self.first >= FIRST || measure <= NEAR {
             return;
         }
-        let (entry, start) = (flow.entry() * water.unit_weight, problem.nodes.free.len());
+        let entry = flow.entry() * water.unit_weight;
+        let start = problem.nodes.free.len();
         for (node, still) in pores.still.iter().enumerate().filter(|(node, _)| pores.free[*node]) {
-            let (whole, change) = (x[start + node] + still, &mut dx[start + node]);
+            let whole = x[start + node] + still;
+            let change = &mut dx[start + node];
             let held = if whole < 0.0 {
                 change.clamp(whole - entry, -whole)
             } else {
@@ -71,7 +75,8 @@ impl Follow {
     /// where a seepage face is or pores may empty.
     pub fn up<K: Kinematics<D>, const D: usize>(
         &mut self,
-        (problem, pores): (&Problem<'_, K, D>, &Pores<D>),
+        problem: &Problem<'_, K, D>,
+        pores: &Pores<D>,
         x: &[f64],
         measure: f64,
         solver: &mut dyn LinearSolver,

@@ -18,7 +18,7 @@ use crate::step::problem::Problem;
 use crate::step::trial::Trial;
 use crate::tensor::{Tensor, Vector};
 use crate::water::nodes::{Pores, Wet};
-use crate::water::residual::{Flowing, pushed};
+use crate::water::residual::{ExcessPressure, Flowing, pushed};
 
 /// The derivative at one state.
 pub struct LinearisedWater<'a, const D: usize> {
@@ -52,14 +52,16 @@ pub struct Changed<const D: usize> {
 impl<'a, const D: usize> LinearisedWater<'a, D> {
     /// Where the nodal excess pressures are `p`, Pa.
     pub fn at<K: Kinematics<D>>(
-        (problem, pores): (&Problem<'_, K, D>, &'a Pores<D>),
+        problem: &Problem<'_, K, D>,
+        pores: &'a Pores<D>,
         trial: &Trial<K, D>,
         p: &'a [f64],
     ) -> Self {
-        let points = scalars::scalars(&pores.shape, p, |p, pressure, gradient| {
-            let (wet, dF) = (pores.wet[p].as_ref()?, trial.dF(p));
-            let deformed = (&dF, trial.dilation(problem.model, problem.points, p));
-            Change::at(problem.model, (problem.points, p), wet, deformed, (pressure, gradient))
+        let points = scalars::scalars(&pores.shape, p, |p, value, gradient| {
+            let wet = pores.wet[p].as_ref()?;
+            let dilation = trial.dilation(problem.model, problem.points, p);
+            let excess = ExcessPressure { value, gradient };
+            Change::at(problem.model, problem.points, p, wet, &trial.dF(p), dilation, excess)
         });
         Self { pores, p, points }
     }
@@ -70,8 +72,9 @@ impl<'a, const D: usize> LinearisedWater<'a, D> {
     pub fn multiply<K: Kinematics<D>>(
         &self,
         problem: &Problem<'_, K, D>,
-        (grad, averaged): (&[K::Gradient], Option<&[f64]>),
-        pressures: &[(f64, Vector<D>)],
+        grad: &[K::Gradient],
+        averaged: Option<&[f64]>,
+        pressures: &[ExcessPressure<D>],
         v: &[f64],
     ) -> Vec<f64> {
         let pores = self.pores;
@@ -81,11 +84,8 @@ impl<'a, const D: usize> LinearisedWater<'a, D> {
                 return [none];
             };
             let l = K::gradient::<f64>(&grad[p]) * change.inverse;
-            let Changed { stored, flux } = change.of(
-                (&l, averaged.map_or(0.0, |rate| rate[p])),
-                pressures[p],
-                (wet, pores.duration),
-            );
+            let averaged = averaged.map_or(0.0, |rate| rate[p]);
+            let Changed { stored, flux } = change.of(&l, averaged, pressures[p], wet, pores.duration);
             [(stored, flux)]
         });
         pores.drainage.add_changes(self.p, v, &mut sums);
@@ -99,8 +99,11 @@ impl<'a, const D: usize> LinearisedWater<'a, D> {
     }
 
     /// Changes of the pressure at the points, and of its gradient, for one of the nodal pressures, Pa.
-    pub fn pressures(&self, v: &[f64]) -> Vec<(f64, Vector<D>)> {
-        scalars::scalars(&self.pores.shape, v, |_, value, gradient| (value, gradient))
+    pub fn pressures(&self, v: &[f64]) -> Vec<ExcessPressure<D>> {
+        scalars::scalars(&self.pores.shape, v, |_, value, gradient| ExcessPressure {
+            value,
+            gradient,
+        })
     }
 
     /// What the pressure's change at point `p`, Pa, adds to what works on the gradients there, per volume.
@@ -114,12 +117,14 @@ impl<'a, const D: usize> LinearisedWater<'a, D> {
 impl<const D: usize> Change<D> {
     fn at<K>(
         model: &Model<K, D>,
-        (points, p): (&Points<D>, usize),
+        points: &Points<D>,
+        p: usize,
         wet: &Wet<D>,
-        deformed: (&Tensor, f64),
-        (pressure, gradient): (f64, Vector<D>),
+        dF: &Tensor,
+        dilation: f64,
+        excess: ExcessPressure<D>,
     ) -> Option<Self> {
-        let state = Flowing::at(model, (points, p), wet, deformed, (pressure, gradient))?;
+        let state = Flowing::at(model, points, p, wet, dF, dilation, excess)?;
         let water = model.water.as_ref()?;
         let flow = water.flow.as_ref()?;
         let soil = flow.soils[usize::from(points.material[p])].as_ref()?;
@@ -140,7 +145,7 @@ impl<const D: usize> Change<D> {
         let by_volume = soil
             .permeability
             .as_ref()
-            .map_or(0.0, |law| law.law.relative_change(soil.porosity, J * deformed.1));
+            .map_or(0.0, |law| law.law.relative_change(soil.porosity, J * dilation));
         Some(Self {
             inverse: state.inverse,
             J,
@@ -151,23 +156,20 @@ impl<const D: usize> Change<D> {
             relative: (by_volume, change.permeability / retained.permeability),
             tau: (
                 wet.tau * lumped,
-                wet.tau_of(gradient) * (wet.lumps(soil) * change.chord),
+                wet.tau_of(excess.gradient) * (wet.lumps(soil) * change.chord),
             ),
             presses: J * (retained.effective + change.effective * whole),
         })
     }
 
-    fn of(
-        &self,
-        (l, averaged): (&Tensor, f64),
-        (pressure, gradient): (f64, Vector<D>),
-        (wet, duration): (&Wet<D>, f64),
-    ) -> Changed<D> {
+    fn of(&self, l: &Tensor, averaged: f64, excess: ExcessPressure<D>, wet: &Wet<D>, duration: f64) -> Changed<D> {
+        let ExcessPressure {
+            value: pressure,
+            gradient,
+        } = excess;
         let trace = l.trace();
-        let turned = |along: &Vector<D>| -> Vector<D> {
-            Vector::from_fn(|i, _| (0..D).map(|j| l[(j, i)] * along[j]).sum::<f64>())
-        };
-        let now = pushed(&self.inverse, &gradient) - turned(&self.now);
+        let turned = Vector::from_fn(|i, _| (0..D).map(|j| l[(j, i)] * self.now[j]).sum::<f64>());
+        let now = pushed(&self.inverse, &gradient) - turned;
         let relative = self.relative.0 * (trace + averaged) + self.relative.1 * pressure;
         let w = self.w * (relative + trace) - now.component_mul(&self.conducts);
         let w = w - Vector::from_fn(|i, _| (0..D).map(|j| l[(i, j)] * self.w[j]).sum::<f64>());

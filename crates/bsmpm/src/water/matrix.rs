@@ -1,11 +1,13 @@
 //! Pressure matrix S of the fixed-stress split, theory-manual equation (T8.17).
 
 use crate::error::SolveError;
-use crate::grid::transfer::scalars::{self, MOST_FUNCTIONS};
+use crate::grid::transfer::scalars::{self, FunctionAtPoint, MOST_FUNCTIONS};
 use crate::kinematics::Kinematics;
 use crate::parallel::{LinearSolver, Symmetry};
 use crate::step::problem::Problem;
 use crate::tensor::Vector;
+use crate::water::Water;
+use crate::water::flow::Flow;
 use crate::water::nodes::{Pores, SHORTEST_WAVE};
 
 /// Assembles S at the state of the step's start into `solver` and factorises it; pores empty and seepage faces are open
@@ -16,7 +18,7 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     p: &[f64],
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
-    let Problem { model, points, .. } = *problem;
+    let model = problem.model;
     let Some((water, flow)) = model
         .water
         .as_ref()
@@ -33,41 +35,20 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     let wave = model.grid.smallest_edge().powi(2) / SHORTEST_WAVE;
     let size = pores.shape.offsets().len();
     let mut block = vec![0.0; size * size];
-    let mut functions = [(0.0, Vector::zeros()); MOST_FUNCTIONS];
+    let mut functions = [FunctionAtPoint::zero(); MOST_FUNCTIONS];
     for patch in pores.shape.patches() {
         block.fill(0.0);
         for p in patch.points.clone() {
-            let Some(wet) = &pores.wet[p] else { continue };
+            let Some(factors) = MatrixFactors::of(problem, pores, water, flow, &pressures, wave, p) else {
+                continue;
+            };
             scalars::functions_of(&pores.shape, p, &mut functions);
-            // What gives way to a pressure of the wave number k, k^2/(M k^2 + rho a), by its tangent at the shortest
-            // wave: a part as at rest, and one that grows with k^2.
-            let [at_rest, in_waves] = [wet.stiffness - wet.inertia, wave * wet.inertia]
-                .map(|part| wet.volume * wet.J.powi(2) * part / wet.stiffness.powi(2));
-            let mut gives_way = 1.0;
-            let mut conductivity = flow
-                .permeability(points.material[p], wet.mean_J)
-                .unwrap_or_else(Vector::zeros);
-            let mut stored = wet.volume * wet.content / flow.bulk;
-            let mut tau = wet.tau;
-            let soil = flow.soils[usize::from(points.material[p])].as_ref();
-            if let Some(soil) = soil.filter(|soil| soil.retention.is_some()) {
-                let (whole, weight) = (pressures[p] + wet.ambient, water.unit_weight);
-                let (retained, pores) = (soil.retained(whole, weight), soil.pores(wet.mean_J));
-                let chord = soil.chord(wet.pressure, whole, weight);
-                gives_way = retained.effective * retained.saturation;
-                let empties = pores * chord.max(retained.slope);
-                stored = wet.volume * (wet.content / flow.bulk + empties);
-                conductivity *= retained.permeability;
-                tau *= wet.lumped(soil, chord);
-            }
-            stored += gives_way * at_rest;
-            let flows = conductivity * (pores.duration * wet.volume * wet.J / water.unit_weight);
-            let along = (tau + flows).add_scalar(gives_way * in_waves);
-            for (row, (A, gradient)) in block.chunks_exact_mut(size).zip(&functions) {
-                let (A, gradient) = (A * stored, gradient.component_mul(&along));
+            for (row, function) in block.chunks_exact_mut(size).zip(&functions) {
+                let A = function.value * factors.stored;
+                let gradient = function.gradient.component_mul(&factors.along);
                 row.iter_mut()
                     .zip(&functions)
-                    .for_each(|(entry, (B, other))| *entry += A * B + gradient.dot(other));
+                    .for_each(|(entry, other)| *entry += A * other.value + gradient.dot(&other.gradient));
             }
         }
         solver.add(patch.first_node, &block);
@@ -75,4 +56,54 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     pores.drainage.assemble(p, solver);
     pores.ties.assemble(problem.halo, solver);
     solver.finish(Symmetry::Definite)
+}
+
+/// What a point adds to S.
+struct MatrixFactors<const D: usize> {
+    stored: f64,      // m3/Pa  per product of two functions
+    along: Vector<D>, // m5/Pa  per product of their gradients, along the axes
+}
+
+impl<const D: usize> MatrixFactors<D> {
+    /// Of point `p`; `None` where no water flows. `pressures` are the points' excess pressures where pores may empty,
+    /// Pa, and `wave` 1/k^2 of the shortest wave, m2.
+    fn of<K: Kinematics<D>>(
+        problem: &Problem<'_, K, D>,
+        pores: &Pores<D>,
+        water: &Water<D>,
+        flow: &Flow<D>,
+        pressures: &[f64],
+        wave: f64,
+        p: usize,
+    ) -> Option<Self> {
+        let material = problem.points.material[p];
+        let wet = pores.wet[p].as_ref()?;
+        // What gives way to a pressure of the wave number k, k^2/(M k^2 + rho a), by its tangent at the shortest
+        // wave: a part as at rest, and one that grows with k^2.
+        let [at_rest, in_waves] = [wet.stiffness - wet.inertia, wave * wet.inertia]
+            .map(|part| wet.volume * wet.J.powi(2) * part / wet.stiffness.powi(2));
+        let mut gives_way = 1.0;
+        let mut conductivity = flow.permeability(material, wet.mean_J).unwrap_or_else(Vector::zeros);
+        let mut stored = wet.volume * wet.content / flow.bulk;
+        let mut tau = wet.tau;
+        let soil = flow.soils[usize::from(material)].as_ref();
+        if let Some(soil) = soil.filter(|soil| soil.retention.is_some()) {
+            let whole = pressures[p] + wet.ambient;
+            let weight = water.unit_weight;
+            let retained = soil.retained(whole, weight);
+            let pores = soil.pores(wet.mean_J);
+            let chord = soil.chord(wet.pressure, whole, weight);
+            gives_way = retained.effective * retained.saturation;
+            let empties = pores * chord.max(retained.slope);
+            stored = wet.volume * (wet.content / flow.bulk + empties);
+            conductivity *= retained.permeability;
+            tau *= wet.lumped(soil, chord);
+        }
+        stored += gives_way * at_rest;
+        let flows = conductivity * (pores.duration * wet.volume * wet.J / water.unit_weight);
+        Some(Self {
+            stored,
+            along: (tau + flows).add_scalar(gives_way * in_waves),
+        })
+    }
 }

@@ -3,7 +3,6 @@
 
 use crate::error::SolveError;
 use crate::kinematics::Kinematics;
-use crate::material::Material;
 use crate::parallel::{Krylov, LinearSolver, dots};
 use crate::solve::fgmres;
 use crate::solve::linearised::Linearised;
@@ -27,8 +26,10 @@ impl Scales {
     /// Of a state: the largest force, and the largest of what is stored, flows and leaves, or of what such forces would
     /// strain of the stiffest material.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, balance: &Balance) -> Self {
-        let material = |material: &Material| material.elastic().oedometric();
-        let stiffest = problem.model.materials.iter().map(material).fold(0.0, f64::max);
+        let materials = problem.model.materials.iter();
+        let stiffest = materials
+            .map(|material| material.elastic().oedometric())
+            .fold(0.0, f64::max);
         let force = if balance.scale > 0.0 { balance.scale } else { 1.0 };
         let strained = force * problem.model.grid.smallest_edge() / stiffest;
         Self {
@@ -57,53 +58,64 @@ pub struct Exact {
 
 /// The direction at the state `x` to the residual `relative`, by systems that are assembled there.
 pub fn direction<K: Kinematics<D>, const D: usize>(
-    (problem, pores): (&Problem<'_, K, D>, &Pores<D>),
-    (x, residual, water): (&[f64], &Residual<K, D>, &WaterBalance),
+    problem: &Problem<'_, K, D>,
+    pores: &Pores<D>,
+    x: &[f64],
+    residual: &Residual<K, D>,
+    water: &WaterBalance,
     relative: f64,
     solver: &mut dyn LinearSolver,
 ) -> Result<Exact, SolveError> {
-    let (components, halo, balance) = (problem.nodes.free.len(), problem.halo, &residual.balance);
+    let components = problem.nodes.free.len();
+    let halo = problem.halo;
+    let balance = &residual.balance;
     let linearised = Linearised::at(problem, residual).with_water(x);
     stiffness::assemble(problem, Some(&residual.trial), solver)?;
     matrix::assemble(problem, pores, &x[components..], system(solver)?)?;
     let scales = Scales::of(problem, balance);
     let unknowns = Unknowns::of::<D>(&problem.nodes.free, halo).with_pressures(components, &pores.free, halo);
-    let weighted = |nodal: &mut [f64], by: [f64; 2]| {
-        nodal[..components].iter_mut().for_each(|force| *force *= by[0]);
-        nodal[components..].iter_mut().for_each(|volume| *volume *= by[1]);
-    };
-    let (divided, back) = ([1.0 / scales.force, 1.0 / scales.water], [scales.force, scales.water]);
+    let divided = [1.0 / scales.force, 1.0 / scales.water];
+    let back = [scales.force, scales.water];
     let mut f: Vec<f64> = balance
         .f_oob
         .iter()
         .copied()
         .chain(water.excess.iter().map(|excess| -excess))
         .collect();
-    let first = Split::of(problem, (pores, &f), solver)?;
-    weighted(&mut f, divided);
-    let (mut nodal, mut image) = (vec![0.0; x.len()], vec![0.0; x.len()]);
-    let product = |v: &[f64]| {
-        unknowns.unpack(v, &mut nodal);
-        linearised.multiply(&nodal, &mut image);
-        weighted(&mut image, divided);
-        unknowns.packed(&image)
-    };
+    let first = Split::of(problem, pores, &f, solver)?;
+    scale(&mut f, components, divided);
+    let mut nodal = vec![0.0; x.len()];
+    let mut image = vec![0.0; x.len()];
     let mut force = vec![0.0; x.len()];
-    let precondition = |r: &[f64]| {
-        unknowns.unpack(r, &mut force);
-        weighted(&mut force, back);
-        Ok(unknowns.packed(&Split::of(problem, (pores, &force), solver)?.z))
-    };
     let (found, krylov) = fgmres::solve(
-        (&unknowns, halo),
-        product,
-        precondition,
-        (&unknowns.packed(&f), relative),
+        &unknowns,
+        halo,
+        |v| {
+            unknowns.unpack(v, &mut nodal);
+            linearised.multiply(&nodal, &mut image);
+            scale(&mut image, components, divided);
+            unknowns.packed(&image)
+        },
+        |r| {
+            unknowns.unpack(r, &mut force);
+            scale(&mut force, components, back);
+            Ok(unknowns.packed(&Split::of(problem, pores, &force, solver)?.z))
+        },
+        &unknowns.packed(&f),
+        relative,
     )?;
     let mut dx = vec![0.0; x.len()];
     unknowns.unpack(&found, &mut dx);
-    let ((du, dp), (f_u, f_p)) = (dx.split_at(components), first.f.split_at(components));
+    let (du, dp) = dx.split_at(components);
+    let (f_u, f_p) = first.f.split_at(components);
     // Of either sign by itself: what one lacks must not hide what the other does.
     let energy = dots(halo, D, &[(du, f_u)])[0].abs() + dots(halo, 1, &[(dp, f_p)])[0].abs();
     Ok(Exact { dx, energy, krylov })
+}
+
+/// Multiplies a nodal array's `components` of the force by one factor, and the water behind them by another.
+fn scale(nodal: &mut [f64], components: usize, factors: [f64; 2]) {
+    let (forces, volumes) = nodal.split_at_mut(components);
+    forces.iter_mut().for_each(|force| *force *= factors[0]);
+    volumes.iter_mut().for_each(|volume| *volume *= factors[1]);
 }

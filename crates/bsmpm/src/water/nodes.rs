@@ -3,11 +3,12 @@
 
 use crate::error::StepError;
 use crate::grid::transfer::scalars;
-use crate::grid::{Grid, Shape};
+use crate::grid::{Contributions, Grid, Shape};
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime};
 use crate::parallel::{Halo, over_layers};
 use crate::points::Points;
+use crate::schedule::TimeInterval;
 use crate::tensor::Vector;
 use crate::water::Water;
 use crate::water::backward::Differences;
@@ -98,99 +99,57 @@ impl<const D: usize> Pores<D> {
     /// on tight material.
     pub fn of<K: Kinematics<D>>(
         model: &Model<K, D>,
-        (full, points): (&Shape<D>, &Points<D>),
-        (t, dt): (f64, f64),
+        full: &Shape<D>,
+        points: &Points<D>,
+        interval: TimeInterval,
         halo: &dyn Halo,
     ) -> Result<Option<Self>, StepError> {
-        let Some((water, flow)) = model
-            .water
-            .as_ref()
-            .and_then(|water| Some((water, water.flow.as_ref()?)))
-        else {
+        let Some(water) = &model.water else { return Ok(None) };
+        let Some(flow) = water.flow.as_ref().filter(|flow| flow.motion != Motion::Held) else {
             return Ok(None);
         };
-        if flow.motion == Motion::Held {
-            return Ok(None);
-        }
-        let (shape, end) = (full.lowered_with_derivatives(&model.grid, points), t + dt);
-        let differences = Differences::of(model, points, (t, end));
-        let duration = differences.now * dt;
-        let inertia = inertia(model, dt);
-        let of_point = |p: usize| Wet::of(model, (water, flow), (points, p), (t, end), differences.last, inertia);
-        let wet: Vec<Option<Wet<D>>> = (0..points.len()).map(of_point).collect();
-        let pressure = points.pore_pressure.as_ref();
-        let sums = halo.sum(&scalars::of_scalars(&shape, |p| {
-            let volume = wet[p].as_ref().map_or(0.0, |wet| wet.volume);
-            let takes = wet[p]
-                .as_ref()
-                .map_or(0.0, |wet| wet.takes(model, (water, flow), points.material[p], duration));
-            let values = [
-                volume,
-                volume * pressure.map_or_else(|| water.excess_at_start(&points.x[p]), |pressure| pressure[p]),
-                takes,
-            ];
-            values.map(|value| (value, Vector::zeros()))
-        }));
+        let shape = full.lowered_with_derivatives(&model.grid, points);
+        let end = interval.end();
+        let differences = Differences::of(model, points, interval);
+        let duration = differences.now * interval.dt;
+        let ground = FlowingGround::of(model, water, flow, points, interval, differences.last);
+        let wet: Vec<Option<Wet<D>>> = (0..points.len()).map(|p| ground.wet(p)).collect();
+        let sums = halo.sum(&ground.sums(&shape, &wet, duration));
         let mut largest = [sums.chunks_exact(SUMS).map(|of| of[0]).fold(0.0, f64::max)];
         halo.maximum(&mut largest);
         let seen: Vec<bool> = sums.chunks_exact(SUMS).map(|of| of[0] > UNSEEN * largest[0]).collect();
-        let mut prescribed = vec![None; seen.len()];
-        if flow.motion == Motion::Flows {
-            given(&model.grid, (water, flow), end, &mut prescribed);
-        }
-        let free: Vec<bool> = seen
-            .iter()
-            .zip(&prescribed)
-            .map(|(seen, given)| *seen && given.is_none())
+        let prescribed = given(&model.grid, water, flow, end);
+        let free: Vec<bool> = (0..seen.len())
+            .map(|node| seen[node] && prescribed[node].is_none())
             .collect();
-        let mean = |node: usize| {
-            if seen[node] {
-                sums[SUMS * node + 1] / sums[SUMS * node]
-            } else {
-                0.0
-            }
-        };
-        let guess = (0..seen.len())
-            .map(|node| prescribed[node].unwrap_or_else(|| mean(node)))
-            .collect();
-        let still = |x: &Vector<D>| water.still_pressure(x, end);
-        let at_nodes = (0..if flow.retains() { seen.len() } else { 0 }).map(|node| {
-            let number = model.grid.node_at(node);
-            let place = |axis: usize| {
-                let axis_of = &model.grid.axes()[axis];
-                axis_of.lowered_greville(number[axis].min(axis_of.functions() - 2))
-            };
-            still(&Vector::from_fn(|axis, _| place(axis)))
-        });
-        let at_nodes = at_nodes.collect();
-        let drainage = Drainage::at(model, points, ((t, dt), differences), |node| seen[node], still, halo)?;
+        let drainage = Drainage::at(
+            model,
+            points,
+            interval,
+            differences,
+            |node| seen[node],
+            |x| water.still_pressure(x, end),
+            halo,
+        )?;
         let takes: Vec<f64> = sums.chunks_exact(SUMS).map(|of| of[2]).collect();
         let ties = Ties::of(&model.grid, &seen, &takes);
-        let limit = |node: usize| {
-            if free[node] {
-                (ROUND_OFF * sums[SUMS * node]).powi(2)
-            } else {
-                0.0
-            }
-        };
-        let round_off = halo.total(&[over_layers(halo, 1, limit)])[0].sqrt();
+        let round_off = round_off(&sums, &free, halo);
         let mut unknowns = [halo.owned().nodes().filter(|&node| free[node]).count() as f64];
         halo.reduce(&mut unknowns);
-        let unknowns = unknowns[0] as usize;
         Ok(Some(Self {
+            guess: guess(&sums, &seen, &prescribed),
             shape,
             seen,
             free,
             prescribed,
-            guess,
-            still: at_nodes,
+            still: still_at_nodes(&model.grid, water, flow, end),
             wet,
             drainage,
             ties,
             differences,
             duration,
             end,
-            unknowns,
+            unknowns: unknowns[0] as usize,
             round_off,
         }))
     }
@@ -205,26 +164,132 @@ fn inertia<K, const D: usize>(model: &Model<K, D>, dt: f64) -> f64 {
     }
 }
 
-impl<const D: usize> Wet<D> {
-    fn of<K: Kinematics<D>>(
-        model: &Model<K, D>,
-        (water, flow): (&Water<D>, &Flow<D>),
-        (points, p): (&Points<D>, usize),
-        (t, end): (f64, f64),
+/// Pa  excess pressures to begin with, nodal: what is `prescribed`, else the points' mean.
+fn guess(sums: &[f64], seen: &[bool], prescribed: &[Option<f64>]) -> Vec<f64> {
+    let nodes = sums.chunks_exact(SUMS).enumerate();
+    let pressures = nodes.map(|(node, of)| match prescribed[node] {
+        Some(given) => given,
+        None if seen[node] => of[1] / of[0],
+        None => 0.0,
+    });
+    pressures.collect()
+}
+
+/// m3  norm of what is round-off in the balance of the functions that are `free`.
+fn round_off(sums: &[f64], free: &[bool], halo: &dyn Halo) -> f64 {
+    let squares = over_layers(halo, 1, |node| {
+        if free[node] {
+            (ROUND_OFF * sums[SUMS * node]).powi(2)
+        } else {
+            0.0
+        }
+    });
+    halo.total(&[squares])[0].sqrt()
+}
+
+/// Pa  pressure of the still water at the places of the functions of degree q - 1, nodal; none where all pores stay
+/// full.
+fn still_at_nodes<const D: usize>(grid: &Grid<D>, water: &Water<D>, flow: &Flow<D>, t: f64) -> Vec<f64> {
+    if !flow.retains() {
+        return Vec::new();
+    }
+    let pressures = (0..grid.nodes()).map(|node| {
+        let number = grid.node_at(node);
+        let x = Vector::from_fn(|axis, _| {
+            let knots = &grid.axes()[axis];
+            knots.lowered_greville(number[axis].min(knots.functions() - 2))
+        });
+        water.still_pressure(&x, t)
+    });
+    pressures.collect()
+}
+
+/// Ground through which water flows in a step.
+struct FlowingGround<'a, K, const D: usize> {
+    model: &'a Model<K, D>,
+    water: &'a Water<D>,
+    flow: &'a Flow<D>,
+    points: &'a Points<D>,
+    interval: TimeInterval,
+    last: f64,    // -  factor of the last change in the difference in time
+    inertia: f64, // m2/s2, see `inertia`
+}
+
+impl<'a, K: Kinematics<D>, const D: usize> FlowingGround<'a, K, D> {
+    /// Of a step whose difference in time has the factor `last` of the last change.
+    fn of(
+        model: &'a Model<K, D>,
+        water: &'a Water<D>,
+        flow: &'a Flow<D>,
+        points: &'a Points<D>,
+        interval: TimeInterval,
         last: f64,
-        inertia: f64,
-    ) -> Option<Self> {
+    ) -> Self {
+        Self {
+            model,
+            water,
+            flow,
+            points,
+            interval,
+            last,
+            inertia: inertia(model, interval.dt),
+        }
+    }
+
+    /// The numbers that every function sums up, see [`SUMS`].
+    fn sums(&self, shape: &Shape<D>, wet: &[Option<Wet<D>>], duration: f64) -> Contributions {
+        let Self { model, water, flow, .. } = *self;
+        scalars::of_scalars(shape, |p| {
+            let wet = wet[p].as_ref();
+            let volume = wet.map_or(0.0, |wet| wet.volume);
+            let material = self.points.material[p];
+            let takes = wet.map_or(0.0, |wet| wet.takes(model, water, flow, material, duration));
+            [volume, volume * self.excess(p), takes].map(|value| (value, Vector::zeros()))
+        })
+    }
+
+    /// Pa  excess pressure at point `p` at the start of the step.
+    fn excess(&self, p: usize) -> f64 {
+        match &self.points.pore_pressure {
+            Some(pressure) => pressure[p],
+            None => self.water.excess_at_start(&self.points.x[p]),
+        }
+    }
+
+    /// Pa/m  gradient of the whole pore pressure at point `p` at the start of the step, and as much of it as goes on.
+    fn gradient(&self, p: usize) -> Vector<D> {
+        let points = self.points;
+        let before = match &points.pressure_gradient {
+            Some(before) => before[p],
+            None => self.water.still_gradient(&points.x[p], self.interval.start),
+        };
+        let change = points.gradient_change.as_ref();
+        before + change.map_or_else(Vector::zeros, |change| change[p] * self.last)
+    }
+
+    /// The state of point `p` at the start of the step; `None` if no water flows through its material.
+    fn wet(&self, p: usize) -> Option<Wet<D>> {
+        let Self {
+            model,
+            water,
+            flow,
+            points,
+            last,
+            inertia,
+            ..
+        } = *self;
+        let t = self.interval.start;
+        let end = self.interval.end();
         let material = usize::from(points.material[p]);
         let soil = flow.soils[material].as_ref()?;
         let law = &model.materials[material];
         let skeleton = law.elastic().oedometric() * law.relative_stiffness(points.height(p));
         let inertia = inertia * points.mass[p] / points.volume[p];
         let stiffness = skeleton + inertia;
-        let (volume, J, x) = (points.volume[p], points.F.at(p).determinant(), &points.x[p]);
-        let pressure = points
-            .pore_pressure
-            .as_ref()
-            .map_or_else(|| water.excess_at_start(x), |pressure| pressure[p]);
+        let volume = points.volume[p];
+        let J = points.F.at(p).determinant();
+        let x = &points.x[p];
+        let pressure = self.excess(p);
         let edges = model
             .grid
             .locate(x)
@@ -242,7 +307,7 @@ impl<const D: usize> Wet<D> {
         } else {
             0.0
         };
-        Some(Self {
+        Some(Wet {
             volume,
             J,
             mean_J: J * points.dilation_of(p),
@@ -257,14 +322,7 @@ impl<const D: usize> Wet<D> {
             stiffness,
             inertia,
             tau: edges.component_mul(&edges) * (volume * J * TAU / stiffness),
-            before: points
-                .pressure_gradient
-                .as_ref()
-                .map_or_else(|| water.still_gradient(x, t), |before| before[p])
-                + points
-                    .gradient_change
-                    .as_ref()
-                    .map_or_else(Vector::zeros, |change| change[p] * last),
+            before: self.gradient(p),
             still,
             drive: (still - water.weight(model, end)) * flows,
         })
@@ -288,15 +346,19 @@ impl<const D: usize> Wet<D> {
     }
 
     /// m3/Pa  what the point stores and lets flow through a cell in `duration`, s, per pressure.
-    fn takes<K>(&self, model: &Model<K, D>, (water, flow): (&Water<D>, &Flow<D>), material: u16, duration: f64) -> f64 {
+    fn takes<K>(&self, model: &Model<K, D>, water: &Water<D>, flow: &Flow<D>, material: u16, duration: f64) -> f64 {
         let conductivity = flow.permeability(material, self.mean_J).unwrap_or_else(Vector::zeros);
         let flows = duration * conductivity.max() / (water.unit_weight * model.grid.smallest_edge().powi(2));
         self.volume * (self.content / flow.bulk + self.J.powi(2) / self.stiffness + self.J * flows)
     }
 }
 
-/// Puts the pressures that faces of the grid have in the place of their nodes.
-fn given<const D: usize>(grid: &Grid<D>, (water, flow): (&Water<D>, &Flow<D>), t: f64, prescribed: &mut [Option<f64>]) {
+/// Pa  excess pressures that faces of the grid give their nodes, nodal.
+fn given<const D: usize>(grid: &Grid<D>, water: &Water<D>, flow: &Flow<D>, t: f64) -> Vec<Option<f64>> {
+    let mut prescribed = vec![None; grid.nodes()];
+    if flow.motion != Motion::Flows {
+        return prescribed;
+    }
     for face in flow.faces.iter().filter(|face| face.acts) {
         for node in face_functions(grid, face.axis, face.upper) {
             let number = grid.node_at(node);
@@ -311,6 +373,7 @@ fn given<const D: usize>(grid: &Grid<D>, (water, flow): (&Water<D>, &Flow<D>), t
             );
         }
     }
+    prescribed
 }
 
 /// Nodes of the functions of degree q - 1 that are not zero on a face.

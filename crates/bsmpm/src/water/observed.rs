@@ -45,6 +45,11 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         Some((flow, flow.soils[usize::from(self.points.material[p])].as_ref()?))
     }
 
+    /// m3  (per metre in plane strain)  present volume of point `p`
+    fn volume(&self, p: usize) -> f64 {
+        self.points.volume[p] * self.points.F.at(p).determinant()
+    }
+
     /// J-bar of point `p`
     fn mean_J(&self, p: usize) -> f64 {
         self.points.F.at(p).determinant() * self.points.dilation_of(p)
@@ -57,11 +62,10 @@ impl<'a, const D: usize> PoreWater<'a, D> {
 
     /// Pa  excess pressure at point `p`; 0 where no water flows
     pub fn excess(&self, p: usize) -> f64 {
-        let start = || self.water.excess_at_start(&self.points.x[p]);
-        self.points
-            .pore_pressure
-            .as_ref()
-            .map_or_else(start, |pressure| pressure[p])
+        match &self.points.pore_pressure {
+            Some(pressure) => pressure[p],
+            None => self.water.excess_at_start(&self.points.x[p]),
+        }
     }
 
     /// Pa  pore pressure at point `p`, positive in compression
@@ -77,9 +81,9 @@ impl<'a, const D: usize> PoreWater<'a, D> {
     /// Pa  mean pore pressure of the points of a part, weighted with their present volumes, the least and the largest;
     /// 0 without points. Two reductions.
     pub fn range(&self, part: &Part, halo: &dyn Halo) -> [f64; 3] {
-        let volume = |p: usize| self.points.volume[p] * self.points.F.at(p).determinant();
-        let weighted = part.of(self.points).map(|p| volume(p) * self.pressure(p));
-        let sums = halo.total(&[weighted.collect(), part.of(self.points).map(volume).collect()]);
+        let weighted = part.of(self.points).map(|p| self.volume(p) * self.pressure(p));
+        let volumes = part.of(self.points).map(|p| self.volume(p));
+        let sums = halo.total(&[weighted.collect(), volumes.collect()]);
         let mut ends = [f64::NEG_INFINITY; 2];
         for pressure in part.of(self.points).map(|p| self.pressure(p)) {
             ends = [ends[0].max(-pressure), ends[1].max(pressure)];
@@ -131,9 +135,8 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         let is_inside = inside(grid, &shape, halo);
         let mut fluxes: Vec<Vector<D>> = (0..self.points.len()).map(|p| self.flux(p)).collect();
         for patch in shape.patches().iter().filter(|patch| is_inside(patch)) {
-            let volume = |p: usize| self.points.volume[p] * self.points.F.at(p).determinant();
-            let filled =
-                patch.points.clone().map(volume).sum::<f64>() / grid.cell_volume::<K>(&grid.cell_at(patch.cell));
+            let volume: f64 = patch.points.clone().map(|p| self.volume(p)).sum();
+            let filled = volume / grid.cell_volume::<K>(&grid.cell_at(patch.cell));
             fluxes[patch.points.clone()].iter_mut().for_each(|flux| *flux *= filled);
         }
         Ok(fluxes)
@@ -147,7 +150,7 @@ impl<'a, const D: usize> PoreWater<'a, D> {
             .flow
             .as_ref()
             .and_then(|flow| flow.permeability(self.points.material[p], J));
-        let (Some(conductivity), Some(gradient)) = (conductivity, &self.points.pressure_gradient) else {
+        let Some((conductivity, gradient)) = conductivity.zip(self.points.pressure_gradient.as_ref()) else {
             return Vector::zeros();
         };
         let relative = self.flow(p).map_or(1.0, |(_, soil)| {
@@ -197,19 +200,23 @@ impl<'a, const D: usize> PoreWater<'a, D> {
 
     /// m3  (per metre in plane strain)  of water that every point has taken in since the start, at its density then
     fn taken(&self) -> impl Iterator<Item = f64> {
-        let of = move |p: usize| {
-            let Some((flow, soil)) = self.flow(p) else { return 0.0 };
-            let J = self.points.F.at(p).determinant();
-            if !flow.retains() {
-                return self.points.volume[p] * (soil.content(flow.bulk, J, self.excess(p)) - soil.porosity);
-            }
-            let held =
-                |J: f64, p: f64| soil.content(flow.bulk, J, p) * soil.retained(p, self.water.unit_weight).saturation;
-            let x = self.points.x[p] - self.points.u[p];
-            let start = self.water.still_pressure(&x, 0.0) + self.water.excess_at_start(&x);
-            self.points.volume[p] * (held(J, self.pressure(p)) - held(1.0, start))
-        };
-        (0..self.points.len()).map(of)
+        (0..self.points.len()).map(move |p| self.taken_at(p))
+    }
+
+    /// m3  (per metre in plane strain)  of water that point `p` has taken in since the start, at its density then
+    fn taken_at(&self, p: usize) -> f64 {
+        let Some((flow, soil)) = self.flow(p) else { return 0.0 };
+        let J = self.points.F.at(p).determinant();
+        if !flow.retains() {
+            return self.points.volume[p] * (soil.content(flow.bulk, J, self.excess(p)) - soil.porosity);
+        }
+        let weight = self.water.unit_weight;
+        let x = self.points.x[p] - self.points.u[p];
+        let start = self.water.still_pressure(&x, 0.0) + self.water.excess_at_start(&x);
+        let before = soil.content(flow.bulk, 1.0, start) * soil.retained(start, weight).saturation;
+        let pressure = self.pressure(p);
+        let now = soil.content(flow.bulk, J, pressure) * soil.retained(pressure, weight).saturation;
+        self.points.volume[p] * (now - before)
     }
 }
 
@@ -221,29 +228,30 @@ fn inside<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, halo: &dyn Halo) -> 
         let counts = counts.patch(patch.first_node);
         shape.offsets().iter().for_each(|&offset| counts[offset] += 1.0);
     }
-    let supports = |node: usize| -> f64 {
-        let number = grid.node_at(node);
-        let along = |axis: usize| {
-            let knots = &grid.axes()[axis];
-            let cells = number[axis].saturating_sub(grid.order())..=number[axis];
-            cells
-                .filter(|&cell| cell < knots.cells() && knots.has_length(cell))
-                .count() as f64
-        };
-        (0..D).map(along).product()
-    };
     let counts = halo.sum(&counts);
     let is_full: Vec<bool> = counts
         .iter()
         .enumerate()
-        .map(|(node, count)| *count >= supports(node))
+        .map(|(node, count)| *count >= cells_in_support(grid, node))
         .collect();
-    let (width, order) = (shape.width(), grid.order());
-    let is_middle =
-        |k: usize| (0..D).all(|axis| (order / 2..=order.div_ceil(2)).contains(&(k / width.pow(axis as u32) % width)));
+    let width = shape.width();
+    let order = grid.order();
+    let central = order / 2..=order.div_ceil(2);
     let middle: Vec<usize> = (0..shape.offsets().len())
-        .filter(|&k| is_middle(k))
+        .filter(|k| (0..D).all(|axis| central.contains(&(k / width.pow(axis as u32) % width))))
         .map(|k| shape.offsets()[k])
         .collect();
     move |patch| middle.iter().all(|offset| is_full[patch.first_node + offset])
+}
+
+/// Cells with a length in the support of a node's function.
+fn cells_in_support<const D: usize>(grid: &Grid<D>, node: usize) -> f64 {
+    let number = grid.node_at(node);
+    let counts = grid.axes().iter().zip(number).map(|(knots, number)| {
+        let cells = number.saturating_sub(grid.order())..=number;
+        cells
+            .filter(|&cell| cell < knots.cells() && knots.has_length(cell))
+            .count() as f64
+    });
+    counts.product()
 }

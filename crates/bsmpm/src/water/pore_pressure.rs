@@ -17,32 +17,35 @@ impl<const D: usize> PorePressure<D> {
     /// Of all nodes, fitted to points at `places` (m, from the grid's lower corner) with `weights` (m^D) and
     /// `pressures` (Pa). A sum over the ranks.
     pub fn fitted(shape: &Shape<D>, places: &[Vector<D>], weights: &[f64], pressures: &[f64], halo: &dyn Halo) -> Self {
-        let moments = |p: usize| moments_of(weights[p], &places[p], pressures[p]);
         let moments = match D {
-            2 => halo.sum(&transfer::to_nodes(shape, |p| -> [f64; 8] { padded(&moments(p)) })),
-            _ => halo.sum(&transfer::to_nodes(shape, |p| -> [f64; 11] { padded(&moments(p)) })),
+            2 => transfer::to_nodes(shape, |p| moments_of::<D, 8>(weights[p], &places[p], pressures[p])),
+            _ => transfer::to_nodes(shape, |p| moments_of::<D, 11>(weights[p], &places[p], pressures[p])),
         };
-        Self { moments }
+        Self {
+            moments: halo.sum(&moments),
+        }
     }
 
     /// Pa  at `x` (m, from the grid's lower corner), by the function of a node in the given axes; along the others it
     /// is that of the middle of what the node sees.
     pub(super) fn of_node(&self, node: usize, axes: Range<usize>, x: &Vector<D>) -> f64 {
         let moments = &self.moments[Self::WIDTH * node..][..Self::WIDTH];
-        let (weight, value) = (moments[0], moments[1]);
+        let weight = moments[0];
+        let value = moments[1];
         if weight <= 0.0 {
             return 0.0;
         }
-        let along = |axis: usize| {
+        let rises = axes.map(|axis| {
             let [first, second, product] = [0, 1, 2].map(|k| moments[2 + 3 * axis + k] / weight);
             rise([first, second, value / weight, product], x[axis])
-        };
-        (value / weight + axes.map(along).sum::<f64>()).max(0.0)
+        });
+        (value / weight + rises.sum::<f64>()).max(0.0)
     }
 
     /// Pa  at `x` (m, from the grid's lower corner), the mean by `weights` of what nodes have there.
     pub fn at(&self, weights: impl Iterator<Item = (usize, f64)>, x: &Vector<D>) -> f64 {
-        let (mut sum, mut whole) = (0.0, 0.0);
+        let mut sum = 0.0;
+        let mut whole = 0.0;
         for (node, weight) in weights.filter(|(node, _)| self.moments[Self::WIDTH * node] > 0.0) {
             sum += weight * self.of_node(node, 0..D, x);
             whole += weight;
@@ -51,16 +54,14 @@ impl<const D: usize> PorePressure<D> {
     }
 }
 
-/// What a point adds to the moments of a node.
-fn moments_of<const D: usize>(weight: f64, x: &Vector<D>, pressure: f64) -> Vec<f64> {
-    let along = x
-        .iter()
-        .flat_map(|x| [weight * x, weight * x * x, weight * pressure * x]);
-    [weight, weight * pressure].into_iter().chain(along).collect()
-}
-
-fn padded<const N: usize>(numbers: &[f64]) -> [f64; N] {
-    std::array::from_fn(|k| numbers[k])
+/// What a point adds to the N = 2 + 3 D moments of a node.
+fn moments_of<const D: usize, const N: usize>(weight: f64, x: &Vector<D>, pressure: f64) -> [f64; N] {
+    let mut moments = [0.0; N];
+    moments[..2].copy_from_slice(&[weight, weight * pressure]);
+    for (moments, x) in moments[2..].chunks_exact_mut(3).zip(x) {
+        moments.copy_from_slice(&[weight * x, weight * x * x, weight * pressure * x]);
+    }
+    moments
 }
 
 /// By how much the line through weighted points is higher at `x` than their mean: of `moments` per weight of x, x^2, y

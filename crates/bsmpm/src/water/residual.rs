@@ -1,7 +1,7 @@
 //! Water balance at the nodes, theory-manual equation (T8.9), Darcy flux (T8.7), and pore pressure in the Kirchhoff
 //! stress (T8.6).
 
-use crate::grid::transfer::scalars;
+use crate::grid::transfer::{self, scalars};
 use crate::kinematics::{Gradient, Kinematics};
 use crate::model::Model;
 use crate::parallel::over_layers;
@@ -9,7 +9,6 @@ use crate::points::Points;
 use crate::step::problem::Problem;
 use crate::step::trial::Trial;
 use crate::tensor::{Tensor, Vector};
-use crate::water::Water;
 use crate::water::nodes::{Pores, Wet};
 use crate::water::retention::Retained;
 use std::sync::atomic::AtomicU64;
@@ -43,23 +42,23 @@ impl WaterBalance {
     /// Of nodal excess pressures `p` (Pa; none: zero) under the deformation of `trial`, which then carries what the
     /// water presses with. One exchange with the neighbours and one reduction.
     pub fn of<K: Kinematics<D>, const D: usize>(
-        (problem, pores): (&Problem<'_, K, D>, &Pores<D>),
+        problem: &Problem<'_, K, D>,
+        pores: &Pores<D>,
         trial: &mut Trial<K, D>,
         p: &[f64],
     ) -> Self {
         let Problem {
             model, points, halo, ..
         } = *problem;
-        let pressures = scalars::scalars(&pores.shape, p, |_, value, gradient| (value, gradient));
+        let pressures = scalars::scalars(&pores.shape, p, |_, value, gradient| ExcessPressure { value, gradient });
         let closed = AtomicU64::new(0);
         let mut sums = scalars::of_scalars(&pores.shape, |p| {
             let Some(wet) = &pores.wet[p] else {
                 return [(0.0, Vector::zeros()); TERMS];
             };
-            let (pressure, gradient) = pressures[p];
-            let deformed = (&trial.dF(p), trial.dilation(model, points, p));
+            let dilation = trial.dilation(model, points, p);
             let zero = Vector::zeros();
-            let Some(state) = Flowing::at(model, (points, p), wet, deformed, (pressure, gradient)) else {
+            let Some(state) = Flowing::at(model, points, p, wet, &trial.dF(p), dilation, pressures[p]) else {
                 closed.fetch_add(1, Relaxed);
                 return [(f64::NAN, zero); TERMS];
             };
@@ -67,7 +66,7 @@ impl WaterBalance {
                 closed.fetch_add(1, Relaxed);
             }
             let stored = wet.volume * (state.content - wet.content - wet.goes_on);
-            let tau = wet.tau_of(gradient) * state.lumped;
+            let tau = wet.tau_of(pressures[p].gradient) * state.lumped;
             [
                 (stored, zero),
                 (0.0, state.flux * -(pores.duration * wet.volume)),
@@ -84,13 +83,14 @@ impl WaterBalance {
 
     fn at_nodes<K, const D: usize>(problem: &Problem<'_, K, D>, pores: &Pores<D>, sums: &[f64], closed: u64) -> Self {
         let halo = problem.halo;
-        let whole = |node: usize| sums[node * TERMS..][..TERMS].iter().sum::<f64>();
-        let (mut excess, mut out) = (vec![0.0; pores.free.len()], vec![0.0; pores.free.len()]);
-        for node in 0..pores.free.len() {
+        let mut excess = vec![0.0; pores.free.len()];
+        let mut out = vec![0.0; pores.free.len()];
+        for (node, terms) in sums.chunks_exact(TERMS).enumerate() {
+            let whole = terms.iter().sum::<f64>();
             if pores.free[node] {
-                excess[node] = whole(node);
+                excess[node] = whole;
             } else if pores.prescribed[node].is_some() {
-                out[node] = -whole(node);
+                out[node] = -whole;
             }
         }
         let term = |k: usize| over_layers(halo, 1, |node| sums[node * TERMS + k].powi(2));
@@ -130,25 +130,34 @@ fn of_points<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     pores: &Pores<D>,
     trial: &Trial<K, D>,
-    pressures: &[(f64, Vector<D>)],
+    pressures: &[ExcessPressure<D>],
 ) -> Vec<f64> {
-    let of = |(p, wet): (usize, &Option<Wet<D>>)| {
-        wet.as_ref().map_or(0.0, |wet| {
-            let whole = pressures[p].0 + wet.ambient;
-            let chi = retained(problem.model, problem.points.material[p], whole).effective;
-            wet.J * trial.dF(p).determinant() * (chi * whole - wet.borne)
-        })
-    };
-    pores.wet.iter().enumerate().map(of).collect()
+    let of_points = pores.wet.iter().enumerate().map(|(p, wet)| {
+        let Some(wet) = wet else { return 0.0 };
+        let whole = pressures[p].value + wet.ambient;
+        let chi = retained(problem.model, problem.points.material[p], whole).effective;
+        wet.J * trial.dF(p).determinant() * (chi * whole - wet.borne)
+    });
+    of_points.collect()
 }
 
 /// The water of a material under the whole pore pressure `p`, Pa.
 fn retained<K, const D: usize>(model: &Model<K, D>, material: u16, p: f64) -> Retained {
-    let soil = |water: &Water<D>| {
-        let soil = water.flow.as_ref()?.soils[usize::from(material)].as_ref()?;
-        Some(soil.retained(p, water.unit_weight))
+    let Some(water) = &model.water else {
+        return Retained::FULL;
     };
-    model.water.as_ref().and_then(soil).unwrap_or(Retained::FULL)
+    let flow = water.flow.as_ref();
+    let soil = flow.and_then(|flow| flow.soils[usize::from(material)].as_ref());
+    soil.map_or(Retained::FULL, |soil| soil.retained(p, water.unit_weight))
+}
+
+/// Excess pore pressure at a point, or a change of it.
+#[derive(Clone, Copy)]
+pub struct ExcessPressure<const D: usize> {
+    /// Excess pore pressure, Pa.
+    pub value: f64,
+    /// Gradient with respect to the position at the start of the step, Pa/m.
+    pub gradient: Vector<D>,
 }
 
 /// What water does at a point under a trial.
@@ -184,20 +193,24 @@ impl<const D: usize> Flowing<D> {
     #[inline]
     pub fn at<K>(
         model: &Model<K, D>,
-        (points, p): (&Points<D>, usize),
+        points: &Points<D>,
+        p: usize,
         wet: &Wet<D>,
-        (dF, dilation): (&Tensor, f64),
-        (pressure, excess): (f64, Vector<D>),
+        dF: &Tensor,
+        dilation: f64,
+        excess: ExcessPressure<D>,
     ) -> Option<Self> {
         let water = model.water.as_ref()?;
         let flow = water.flow.as_ref()?;
         let soil = flow.soils[usize::from(points.material[p])].as_ref()?;
-        let (inverse, J) = (dF.try_inverse()?, wet.J * dF.determinant());
-        let gradient = pushed(&inverse, &excess);
+        let inverse = dF.try_inverse()?;
+        let J = wet.J * dF.determinant();
+        let gradient = pushed(&inverse, &excess.gradient);
         let permeability = flow
             .permeability(points.material[p], J * dilation)
             .unwrap_or_else(Vector::zeros);
-        let (whole, weight) = (pressure + wet.ambient, water.unit_weight);
+        let whole = excess.value + wet.ambient;
+        let weight = water.unit_weight;
         let retained = soil.retained(whole, weight);
         let w = (gradient + wet.drive).component_mul(&permeability) * (-retained.permeability / weight);
         let flux = Vector::from_fn(|i, _| J * (0..D).map(|j| inverse[(i, j)] * w[j]).sum::<f64>());
@@ -235,14 +248,13 @@ pub fn pressing<K: Kinematics<D>, const D: usize>(
     let at_points = scalars::scalars(&pores.shape, p, |_, value, _| value);
     let identity = K::working::<f64>(&Tensor::identity());
     let volume = problem.volume();
-    let flux = |p: usize| match &pores.wet[p] {
-        Some(wet) => {
-            let chi = retained(problem.model, problem.points.material[p], wet.pressure).effective;
-            identity * (volume[p] * wet.J * (chi * at_points[p]))
-        }
-        None => K::Gradient::zeros(),
-    };
-    let force = crate::grid::transfer::divergence::<K, D>((problem.shape, &problem.points.x), flux);
+    let force = transfer::divergence::<K, D>(problem.shape, &problem.points.x, |p| {
+        let Some(wet) = &pores.wet[p] else {
+            return K::Gradient::zeros();
+        };
+        let chi = retained(problem.model, problem.points.material[p], wet.pressure).effective;
+        identity * (volume[p] * wet.J * (chi * at_points[p]))
+    });
     let mut force = problem.halo.sum(&force);
     problem.nodes.reduce(&mut [&mut force], problem.halo);
     force

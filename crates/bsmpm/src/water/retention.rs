@@ -115,7 +115,8 @@ impl Curve {
 
     /// m  integral of the effective saturation over heads between which it does not change its course: Gauss' rule
     fn between(&self, from: f64, to: f64) -> f64 {
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        let middle = 0.5 * (from + to);
+        let half = 0.5 * (to - from);
         GAUSS
             .iter()
             .map(|(at, weight)| half * weight * self.drawn(middle + half * at).effective)
@@ -155,7 +156,8 @@ impl Curve {
     fn closes(&self, s: f64) -> f64 {
         match self {
             Self::VanGenuchten { alpha, n } => {
-                let (m, found) = (1.0 - 1.0 / n, self.drawn(s));
+                let m = 1.0 - 1.0 / n;
+                let found = self.drawn(s);
                 let head = alpha * s;
                 let drawn = head.powf(*n);
                 let wide = 1.0 - (drawn / (1.0 + drawn)).powf(m);
@@ -352,8 +354,10 @@ mod tests {
     fn the_slope_is_the_derivative() {
         for soil in [loam(), sand()] {
             for head in [0.02, 0.3, 2.0] {
-                let (p, step) = (-head * WEIGHT, 3e-5 * head * WEIGHT);
-                let (found, saturation) = (soil.under(p, WEIGHT).slope, |p: f64| soil.under(p, WEIGHT).saturation);
+                let p = -head * WEIGHT;
+                let step = 3e-5 * head * WEIGHT;
+                let found = soil.under(p, WEIGHT).slope;
+                let saturation = |p: f64| soil.under(p, WEIGHT).saturation;
                 let difference = (saturation(p + step) - saturation(p - step)) / (2.0 * step);
                 assert!((difference / found - 1.0).abs() < 1e-8, "{difference} {found}");
                 // Chords go over to the slope where what they would be the quotient of is round-off.
@@ -371,8 +375,10 @@ mod tests {
         for soil in [loam(), sand(), clay] {
             let (alpha, n) = parameters(&soil);
             for head in [0.01, 0.3, 2.0] {
-                let (p, step) = (-head * WEIGHT, 3e-5 * head * WEIGHT);
-                let (found, of) = (soil.change(-WEIGHT, p, WEIGHT), |p: f64| soil.under(p, WEIGHT));
+                let p = -head * WEIGHT;
+                let step = 3e-5 * head * WEIGHT;
+                let found = soil.change(-WEIGHT, p, WEIGHT);
+                let of = |p: f64| soil.under(p, WEIGHT);
                 let difference = (of(p + step).permeability - of(p - step).permeability) / (2.0 * step);
                 if of(p).permeability > LEAST && alpha * head > ENTERED {
                     assert!(
@@ -382,7 +388,8 @@ mod tests {
                 }
             }
             // The factors besides the one that is cut are at most 1.
-            let (m, steep) = (1.0 - 1.0 / n, ENTERED.powf((n - 2.0).min(0.0)));
+            let m = 1.0 - 1.0 / n;
+            let steep = ENTERED.powf((n - 2.0).min(0.0));
             let most = m * n * alpha / WEIGHT * (0.5 + 2.0 * steep);
             for k in 1..200 {
                 let near = soil
@@ -405,7 +412,8 @@ mod tests {
             };
             (1..500).map(off).fold(0.0, f64::max)
         };
-        let (coarse, fine) = (error(10), error(20));
+        let coarse = error(10);
+        let fine = error(20);
         assert!(fine < 2e-5 && coarse / fine > 4.0, "{coarse} {fine}");
         let steps = vec![
             [0.0, 1.0, 1.0],
@@ -419,7 +427,9 @@ mod tests {
             let at = |s: f64| soil.under(-s * WEIGHT, WEIGHT);
             for k in 1..300 {
                 let s = f64::from(k) * 0.004 + 1e-4;
-                let (step, found, change) = (1e-6, at(s), soil.change(-WEIGHT, -s * WEIGHT, WEIGHT));
+                let step = 1e-6;
+                let found = at(s);
+                let change = soil.change(-WEIGHT, -s * WEIGHT, WEIGHT);
                 let by = |of: fn(&Retained) -> f64| (of(&at(s - step)) - of(&at(s + step))) / (2.0 * step * WEIGHT);
                 assert!((by(|of| of.saturation) - found.slope).abs() < 1e-6 / WEIGHT, "{s}");
                 assert!(found.slope >= 0.0 && change.permeability >= 0.0 && found.permeability >= LEAST);
@@ -440,7 +450,8 @@ mod tests {
         for soil in [loam(), sand()] {
             let under = |k: i32| soil.under(-WEIGHT * 1.3_f64.powi(k), WEIGHT);
             for k in -40..20 {
-                let (more, less) = (under(k), under(k + 1));
+                let more = under(k);
+                let less = under(k + 1);
                 assert!(more.saturation > less.saturation && more.permeability >= less.permeability);
                 assert!(more.slope > 0.0);
             }

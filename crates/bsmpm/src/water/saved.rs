@@ -14,7 +14,7 @@ use crate::water::backward::is_smooth;
 use crate::water::crossed::Crossed;
 use crate::water::flow::{DrainedFace, Flow};
 use crate::water::nodes::{Pores, face_functions};
-use crate::water::residual::Flowing;
+use crate::water::residual::{ExcessPressure, Flowing};
 
 /// Part of a cell by which ground is off a drained face when it is reported: a column that had settled by 0.1 of a
 /// cell was 1 % short of its settlement, by 0.3 of a cell 4 %, and by one it settled no more.
@@ -60,42 +60,39 @@ impl WaterReport {
     /// with drained faces three.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Option<Self> {
         let Problem { model, nodes, halo, .. } = *problem;
-        let (pores, water) = (nodes.pores.as_ref()?, found.water.as_ref()?);
+        let pores = nodes.pores.as_ref()?;
+        let water = found.water.as_ref()?;
         let flow = model.water.as_ref()?.flow.as_ref()?;
         let owned = halo.owned();
         let mut counted = vec![false; water.out.len()];
-        let of_face = |face: &DrainedFace| -> Exact {
-            let nodes = if face.acts {
-                face_functions(&model.grid, face.axis, face.upper)
-            } else {
-                Vec::new()
-            };
-            let mine = nodes.into_iter().filter(|&node| owned.contains(node));
-            mine.filter(|&node| !std::mem::replace(&mut counted[node], true))
-                .map(|node| water.out[node])
-                .collect()
-        };
+        let mut sums = vec![Exact::ZERO; flow.faces.len()];
         // The face that is named last decides a pressure of two.
-        let sums: Vec<Exact> = flow.faces.iter().rev().map(of_face).collect();
-        let mut faces = halo.total(&sums);
-        faces.reverse();
+        for (face, sum) in flow.faces.iter().zip(&mut sums).rev().filter(|(face, _)| face.acts) {
+            let nodes = face_functions(&model.grid, face.axis, face.upper).into_iter();
+            for node in nodes.filter(|&node| owned.contains(node)) {
+                if !std::mem::replace(&mut counted[node], true) {
+                    sum.add(water.out[node]);
+                }
+            }
+        }
+        let faces = halo.total(&sums);
         let [drains, inflows] = pores.drainage.report(&found.p, halo);
         let held = drains.iter().chain(&inflows).map(|report| report.held).collect();
-        let through =
-            |reports: &[crate::water::drain::DrainReport]| reports.iter().map(|report| report.through).collect();
         let mut crossed = Crossed {
-            drains: through(&drains),
+            drains: drains.iter().map(|report| report.through).collect(),
             faces,
-            inflows: through(&inflows),
+            inflows: inflows.iter().map(|report| report.through).collect(),
             removed: 0.0,
         };
-        let (mut left, last) = (water.left, pores.differences.last);
+        let mut left = water.left;
+        let last = pores.differences.last;
         if let Some(flowed) = &problem.points.surface.flowed {
             crossed.add(last, &flowed.crossed);
             left += last * flowed.left;
         }
         let measure = water.measure(pores.round_off);
-        let (torn, faces) = (pores.drainage.torn.clone(), at_faces(problem, pores, flow));
+        let torn = pores.drainage.torn.clone();
+        let faces = at_faces(problem, pores, flow);
         Some(Self {
             stored: 0.0,
             crossed,
@@ -111,45 +108,47 @@ impl WaterReport {
 
 /// The ground at the drained faces, before the step. One reduction, if there are some.
 fn at_faces<K, const D: usize>(problem: &Problem<'_, K, D>, pores: &Pores<D>, flow: &Flow<D>) -> Vec<FaceReport> {
-    let Problem {
-        model, points, halo, ..
-    } = *problem;
     if flow.faces.is_empty() {
         return Vec::new();
     }
-    let (owned, grid) = (halo.owned(), &model.grid);
-    let of_face = |face: &DrainedFace| {
-        let axis = &grid.axes()[face.axis];
-        let last = if face.upper { axis.cells() } else { 1 };
-        let edge = axis.breakpoint(last) - axis.breakpoint(last - 1);
-        let depth = |x: f64| if face.upper { axis.length() - x } else { x };
-        let flows = |p: &usize| flow.permeability(points.material[*p], 1.0).is_some();
-        let depths = (0..points.len()).filter(flows).map(|p| {
-            let x = points.x[p][face.axis];
-            [depth(x - points.u[p][face.axis]), depth(x)]
-        });
-        let near = depths.filter(|[before, _]| *before < NEAR * edge);
-        let (mut all, mut off, mut held) = (Exact::ZERO, Exact::ZERO, Exact::ZERO);
-        for [before, now] in near {
-            all.add(1.0);
-            off.add(f64::from(u8::from(now - before > OFF * edge)));
+    let counts = flow.faces.iter().flat_map(|face| at_face(problem, pores, flow, face));
+    let sums: Vec<Exact> = counts.collect();
+    let totals = problem.halo.total(&sums);
+    let reports = totals.chunks_exact(3).map(|counts| FaceReport {
+        near: counts[0] as usize,
+        off: counts[1] as usize,
+        held: counts[2] as usize,
+    });
+    reports.collect()
+}
+
+/// The numbers of a [`FaceReport`], on this rank.
+fn at_face<K, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    pores: &Pores<D>,
+    flow: &Flow<D>,
+    face: &DrainedFace,
+) -> [Exact; 3] {
+    let Problem { points, halo, .. } = *problem;
+    let grid = &problem.model.grid;
+    let axis = &grid.axes()[face.axis];
+    let last = if face.upper { axis.cells() } else { 1 };
+    let edge = axis.breakpoint(last) - axis.breakpoint(last - 1);
+    let depth = |x: f64| if face.upper { axis.length() - x } else { x };
+    let mut near = Exact::ZERO;
+    let mut off = Exact::ZERO;
+    for p in (0..points.len()).filter(|&p| flow.permeability(points.material[p], 1.0).is_some()) {
+        let x = points.x[p][face.axis];
+        let before = depth(x - points.u[p][face.axis]);
+        if before < NEAR * edge {
+            near.add(1.0);
+            off.add(f64::from(u8::from(depth(x) - before > OFF * edge)));
         }
-        let nodes = face_functions(grid, face.axis, face.upper).into_iter();
-        held.extend(
-            nodes
-                .filter(|&node| owned.contains(node) && pores.seen[node])
-                .map(|_| 1.0),
-        );
-        [all, off, held]
-    };
-    let sums: Vec<Exact> = flow.faces.iter().flat_map(of_face).collect();
-    let totals = halo.total(&sums);
-    let report = |of: &[f64]| FaceReport {
-        near: of[0] as usize,
-        off: of[1] as usize,
-        held: of[2] as usize,
-    };
-    totals.chunks_exact(3).map(report).collect()
+    }
+    let owned = halo.owned();
+    let nodes = face_functions(grid, face.axis, face.upper).into_iter();
+    let held = nodes.filter(|&node| owned.contains(node) && pores.seen[node]);
+    [near, off, held.map(|_| 1.0).collect()]
 }
 
 /// Saves nodal excess pressures `p`, Pa, into the points, which have moved, and the mass of the water that they took
@@ -165,16 +164,22 @@ pub fn save<K: Kinematics<D>, const D: usize>(
     let Some(water) = &model.water else { return 0.0 };
     let states = scalars::scalars(&pores.shape, p, |p, pressure, gradient| {
         let wet = pores.wet[p].as_ref()?;
-        let deformed = (&trial.dF(p), points.dilation_of(p)); // the points have it from the trial
-        Flowing::at(model, (points, p), wet, deformed, (pressure, gradient)).map(|state| (pressure, state))
+        let dilation = points.dilation_of(p); // the points have it from the trial
+        let excess = ExcessPressure {
+            value: pressure,
+            gradient,
+        };
+        let state = Flowing::at(model, points, p, wet, &trial.dF(p), dilation, excess)?;
+        Some((pressure, state))
     });
     let density = water.density(model);
     let holds = water.flow.as_ref().is_some_and(|flow| flow.retains());
-    let (mut pressures, mut gradients) = (vec![0.0; states.len()], vec![Vector::zeros(); states.len()]);
+    let mut pressures = vec![0.0; states.len()];
+    let mut gradients = vec![Vector::zeros(); states.len()];
     let mut goes_on = is_smooth(model).then(|| (vec![0.0; states.len()], gradients.clone()));
     let mut stored = Vec::with_capacity(states.len());
     for (p, (state, wet)) in states.iter().zip(&pores.wet).enumerate() {
-        let (Some((pressure, state)), Some(wet)) = (state, wet) else {
+        let Some(((pressure, state), wet)) = state.as_ref().zip(wet.as_ref()) else {
             continue;
         };
         // What the whole pressure is now is what counts where it empties pores: the excess is over the place it came

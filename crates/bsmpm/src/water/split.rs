@@ -23,7 +23,8 @@ impl Split {
     /// those of the solutions.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        (pores, out_of_balance): (&Pores<D>, &[f64]),
+        pores: &Pores<D>,
+        out_of_balance: &[f64],
         solver: &mut dyn LinearSolver,
     ) -> Result<Self, SolveError> {
         let mut f = out_of_balance.to_vec();

@@ -5,7 +5,6 @@ use crate::points::Points;
 use crate::tensor::Vector;
 use crate::water::Water;
 use crate::water::ambient::Ambient;
-use crate::water::flow::Flow;
 
 /// m/s2  by which a weight is a mass, where a model has no gravity
 const GRAVITY: f64 = 9.81;
@@ -43,8 +42,8 @@ impl<const D: usize> Water<D> {
     pub fn fill(&self, points: &mut Points<D>, first: usize, t: f64) {
         for p in first..points.len() {
             let x = points.x[p];
-            let flows = |flow: &Flow<D>| flow.soils[usize::from(points.material[p])].is_some();
-            if !self.flow.as_ref().is_some_and(flows) {
+            let flow = self.flow.as_ref();
+            if flow.is_none_or(|flow| flow.soils[usize::from(points.material[p])].is_none()) {
                 continue;
             }
             if let Some(excess) = &mut points.pore_pressure {

@@ -70,7 +70,9 @@ impl Ties {
 /// Numbers of the functions of degree q - 1 of an axis that are 1 on a line from below.
 fn torn(axis: &KnotVector) -> Vec<usize> {
     let order = axis.order();
-    let closed = |cell: usize| (1..order).all(|k| cell + k < axis.cells() && !axis.has_length(cell + k));
-    let before = |&cell: &usize| axis.has_length(cell) && closed(cell) && cell + order < axis.cells();
-    (0..axis.cells()).filter(before).map(|cell| cell + order - 1).collect()
+    let before = (0..axis.cells()).filter(|cell| {
+        let is_closed = (1..order).all(|k| cell + k < axis.cells() && !axis.has_length(cell + k));
+        axis.has_length(*cell) && is_closed && cell + order < axis.cells()
+    });
+    before.map(|cell| cell + order - 1).collect()
 }

@@ -9,6 +9,7 @@ use crate::points::Points;
 use crate::solve::found::Found;
 use crate::step::problem::Problem;
 use crate::water::flow::{Flow, Soil};
+use crate::water::residual::ExcessPressure;
 use crate::water::residual::Flowing;
 
 /// J, on this rank; see the [books](crate::energy).
@@ -32,30 +33,28 @@ impl Work {
     /// Of what was found, before the points have taken it; `None` where no water flows.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Option<Self> {
         let Problem {
-            model,
-            nodes,
-            points,
-            halo,
-            ..
+            model, points, halo, ..
         } = *problem;
-        let (pores, balance) = (nodes.pores.as_ref()?, found.water.as_ref()?);
-        let (flow, weight) = model
-            .water
-            .as_ref()
-            .and_then(|water| Some((water.flow.as_ref()?, water.unit_weight)))?;
+        let pores = problem.nodes.pores.as_ref()?;
+        let balance = found.water.as_ref()?;
+        let water = model.water.as_ref()?;
+        let flow = water.flow.as_ref()?;
+        let weight = water.unit_weight;
         let now = pores.differences.now;
         let dt = pores.duration / now;
         let each = scalars::scalars(&pores.shape, &found.p, |p, pressure, gradient| {
             let Some(wet) = &pores.wet[p] else { return [0.0; 5] };
             let dF = found.trial.dF(p);
-            let deformed = (&dF, found.trial.dilation(model, points, p));
-            let Some(state) = Flowing::at(model, (points, p), wet, deformed, (pressure, gradient)) else {
+            let dilation = found.trial.dilation(model, points, p);
+            let excess = ExcessPressure {
+                value: pressure,
+                gradient,
+            };
+            let Some(state) = Flowing::at(model, points, p, wet, &dF, dilation, excess) else {
                 return [f64::NAN; 5];
             };
             let soil = flow.soils[usize::from(points.material[p])].as_ref();
-            let held = soil.map_or(0.0, |soil| {
-                held(flow, soil, state.pores, (pressure, state.whole), weight)
-            });
+            let held = soil.map_or(0.0, |soil| held(flow, soil, state.pores, pressure, state.whole, weight));
             let through = dt * wet.volume;
             let fall = (0..D).map(|i| wet.drive[i] * (0..D).map(|j| dF[(i, j)] * state.flux[j]).sum::<f64>());
             let fall = -through * fall.sum::<f64>();
@@ -101,8 +100,11 @@ pub fn in_points<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, t: 
         .as_ref()
         .and_then(|water| Some((water, water.flow.as_ref()?)));
     let Some((water, flow)) = flow else { return Exact::ZERO };
-    let of = |p: usize| {
-        let x = &points.x[p];
+    let mut sum = Exact::ZERO;
+    for (p, x) in points.x.iter().enumerate() {
+        let Some(soil) = &flow.soils[usize::from(points.material[p])] else {
+            continue;
+        };
         let excess = points
             .pore_pressure
             .as_ref()
@@ -112,17 +114,14 @@ pub fn in_points<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, t: 
         } else {
             0.0
         };
-        let soil = flow.soils[usize::from(points.material[p])].as_ref();
-        soil.map_or(0.0, |soil| {
-            let pores = soil.pores(points.F.at(p).determinant() * points.dilation_of(p));
-            points.volume[p] * held(flow, soil, pores, (excess, excess + still), water.unit_weight)
-        })
-    };
-    (0..points.len()).map(of).collect()
+        let pores = soil.pores(points.F.at(p).determinant() * points.dilation_of(p));
+        sum.add(points.volume[p] * held(flow, soil, pores, excess, excess + still, water.unit_weight));
+    }
+    sum
 }
 
 /// J/m^D  to the excess pressure from none, in water that is compressed; and to the `whole` one from full pores.
-fn held<const D: usize>(flow: &Flow<D>, soil: &Soil<D>, pores: f64, (excess, whole): (f64, f64), weight: f64) -> f64 {
+fn held<const D: usize>(flow: &Flow<D>, soil: &Soil<D>, pores: f64, excess: f64, whole: f64, weight: f64) -> f64 {
     let emptied = soil
         .retention
         .as_ref()

@@ -5,6 +5,7 @@ use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::problem::Problem;
@@ -56,10 +57,18 @@ fn allocations(per_axis: usize, method: Stabilisation) -> usize {
         .body([1..9, 0..5], per_axis, 1.0, |_| Vector::zeros())
         .gravity(9.81, 0.0)
         .stabilised(method);
-    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
-    let nodes = Nodes::map(model, &shape, points, (0.0, 0.1), &halo).expect("no loads");
-    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.1));
+    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 0.1 }, &halo).expect("no loads");
+    let attachments = StripAttachments::at(
+        &[],
+        &points.surface,
+        &model.grid,
+        &nodes.free,
+        TimeInterval { start: 0.0, dt: 0.1 },
+    );
     let pieces = Problem {
         model,
         shape: &shape,

@@ -46,7 +46,8 @@ fn random_trial(random: &mut Random, law: &CamClay) -> ([f64; 3], f64) {
 fn returns_lie_on_the_ellipse_that_has_grown_and_flow_along_its_normal() {
     let mut random = Random::new(110);
     let (swelling, compression) = slopes();
-    let (mut wet, mut dry) = (0, 0);
+    let mut wet = 0;
+    let mut dry = 0;
     for _ in 0..40_000 {
         let law = law(random.pick(&[1e6, 5e6, 5e7]), 1e5, 0.0);
         let (eps, before) = random_trial(&mut random, &law);
@@ -62,7 +63,8 @@ fn returns_lie_on_the_ellipse_that_has_grown_and_flow_along_its_normal() {
             p > 0.0 && material.excess(tau, &[after]).abs() <= 1e-11 * (p + q),
             "{p} {q} {after}"
         );
-        let (trial, elastic) = (response.principal_eps_trial(), response.principal_eps_e());
+        let trial = response.principal_eps_trial();
+        let elastic = response.principal_eps_e();
         let flow: [f64; 3] = std::array::from_fn(|k| trial[k] - elastic[k]);
         let size = largest(&trial);
         let volume: f64 = flow.iter().sum();
@@ -96,7 +98,8 @@ fn returns_lie_on_the_ellipse_that_has_grown_and_flow_along_its_normal() {
 #[test]
 fn tangent_is_the_derivative() {
     let mut random = Random::new(111);
-    let (mut worst, mut seen) = (0.0_f64, [0; 2]);
+    let mut worst = 0.0_f64;
+    let mut seen = [0; 2];
     for trial in 0..20_000 {
         let law = law(random.pick(&[1e6, 5e6]), 1e5, 0.0);
         let (eps, before) = random_trial(&mut random, &law);
@@ -206,7 +209,8 @@ fn isotropic_compression_follows_both_lines() {
 fn undrained_triaxial_path_strength_and_strain() {
     let (swelling, compression) = slopes();
     let rest = 1.0 - swelling / compression;
-    let (p0, shear) = (1e5, 3e6);
+    let p0 = 1e5;
+    let shear = 3e6;
     let mut errors = Vec::new();
     for steps in [50, 100, 200] {
         let mut sample = point(law(shear, 0.0, 1.0), [-p0; 3]);
@@ -217,7 +221,8 @@ fn undrained_triaxial_path_strength_and_strain() {
             steps,
             duration: f64::INFINITY,
         };
-        let (mut worst, mut end) = (0.0_f64, 0.0);
+        let mut worst = 0.0_f64;
+        let mut end = 0.0;
         let followed = sample.follow(&control, |point| {
             let (p, q) = of_cauchy(point);
             let eta = q / p;
@@ -251,7 +256,8 @@ fn undrained_triaxial_path_strength_and_strain() {
 #[test]
 fn drained_triaxial_volume_and_strain_to_the_critical_state() {
     let (swelling, compression) = slopes();
-    let (p0, shear) = (1e5, 3e6);
+    let p0 = 1e5;
+    let shear = 3e6;
     let hardening = compression - swelling;
     // (1 + λ̂) ln J = -λ̂ ln(p/p_0) - (λ̂ - κ̂) ln(1 + (η/M)²), p = 3 p_0/(3 - η).
     let volume = |eta: f64| {
@@ -312,7 +318,8 @@ fn oedometer_tends_to_its_stress_ratio_and_slope() {
     let exact = 0.5 * (-3.0 * rest + (9.0 * rest * rest + 4.0 * M * M).sqrt());
     let mut sample = point(law(1e10, 0.0, 1.0), [-1e4; 3]);
     follow(&mut sample, [HELD, Target::Stress(-1e5), HELD, HELD], false, 200);
-    let (before, start) = (of_cauchy(&sample).0, sample.volume_strain());
+    let before = of_cauchy(&sample).0;
+    let start = sample.volume_strain();
     follow(&mut sample, [HELD, Target::Stress(-1e6), HELD, HELD], false, 200);
     let (p, q) = of_cauchy(&sample);
     let slope = -(sample.volume_strain() - start) / (p / before).ln();
@@ -329,7 +336,8 @@ fn the_start_gives_the_ellipse_and_no_pressure_gives_none() {
     let clay = law(3e6, 0.0, 2.0);
     let mut state = [0.0];
     clay.start([-4e4, -4e4, -1e5], &mut state);
-    let (p, q) = (6e4, 6e4);
+    let p = 6e4;
+    let q = 6e4;
     assert!((state[0] / (2.0 * (p + q * q / (M * M * p))) - 1.0).abs() < 1e-14);
     let given = law(3e6, 3e5, 0.0);
     given.start([-4e4, -4e4, -1e5], &mut state);

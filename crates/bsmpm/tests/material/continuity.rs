@@ -12,7 +12,8 @@ fn at(material: &Material, from: [f64; 3], to: [f64; 3], s: f64) -> (Branch, [f6
 
 /// The regions on both sides of a boundary on the segment, and the jump of stress across it.
 fn jump(material: &Material, from: [f64; 3], to: [f64; 3]) -> Option<(Branch, Branch, f64)> {
-    let (mut low, mut high) = (0.0, 1.0);
+    let mut low = 0.0;
+    let mut high = 1.0;
     let start = at(material, from, to, low).0;
     if at(material, from, to, high).0 == start {
         return None;
@@ -25,7 +26,8 @@ fn jump(material: &Material, from: [f64; 3], to: [f64; 3]) -> Option<(Branch, Br
             high = middle
         }
     }
-    let ((a, tau), (b, other)) = (at(material, from, to, low), at(material, from, to, high));
+    let (a, tau) = at(material, from, to, low);
+    let (b, other) = at(material, from, to, high);
     Some((
         a,
         b,
@@ -44,7 +46,8 @@ fn stress_is_continuous_where_regions_meet() {
         let dilation = friction * random.pick(&[0.0, 0.5, 1.0]);
         let poisson = random.pick(&[0.0, 0.3, 0.45]);
         let material = mohr_coulomb(1e3, poisson, friction, dilation, random.pick(&[0.0, 1.0]));
-        let (from, to) = (random.strains(-3.0, -1.5), random.strains(-3.0, -1.5));
+        let from = random.strains(-3.0, -1.5);
+        let to = random.strains(-3.0, -1.5);
         if let Some((a, b, jump)) = jump(&material, from, to) {
             let index = |r: Branch| REGIONS.iter().position(|x| *x == r).unwrap();
             met[index(a)][index(b)] += 1;

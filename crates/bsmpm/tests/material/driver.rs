@@ -18,7 +18,8 @@ fn triaxial(material: &Material, lateral: f64, height: f64, steps: u32) -> f64 {
                 &Symmetric([x * lateral, y * ratio * ratio, z * lateral, 0.0, 0.0, 0.0]),
             )
         };
-        let (mut low, mut high) = (0.5, 2.0);
+        let mut low = 0.5;
+        let mut high = 2.0;
         for _ in 0..80 {
             let middle = 0.5 * (low + high);
             if trial(middle).tau().0[0] < lateral {

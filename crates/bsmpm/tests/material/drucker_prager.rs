@@ -9,8 +9,8 @@ const FITS: [Match; 3] = [Match::Outer, Match::Inner, Match::PlaneStrain];
 const COHESION: f64 = 1.0;
 
 fn law(poisson: f64, friction: f64, dilation: f64, fit: Match) -> DruckerPrager {
-    let strength = (friction.to_radians(), dilation.to_radians(), COHESION);
-    DruckerPrager::new(Elastic { young: 1e3, poisson }, strength, fit)
+    let elastic = Elastic { young: 1e3, poisson };
+    DruckerPrager::new(elastic, friction.to_radians(), dilation.to_radians(), COHESION, fit)
 }
 
 /// √J₂ and mean stress.
@@ -23,7 +23,8 @@ fn invariants(tau: [f64; 3]) -> (f64, f64) {
 #[test]
 fn returns_lie_on_the_cone_or_its_tip_and_flow_along_the_potential() {
     let mut random = Random::new(80);
-    let (mut cones, mut tips) = (0, 0);
+    let mut cones = 0;
+    let mut tips = 0;
     for _ in 0..30_000 {
         let friction = random.pick(&[0.0, 1e-9, 20.0, 45.0, 80.0]);
         let dilation = friction * random.pick(&[0.0, 0.5, 1.0]);
@@ -54,12 +55,13 @@ fn returns_lie_on_the_cone_or_its_tip_and_flow_along_the_potential() {
         assert!((0..3).all(|k| (again[k] - found.principal_tau()[k]).abs() <= 1e-9 * size.max(1.0)));
         if found.branch() == Branch::Face {
             // Volume over shear of the flow is that of the potential: tr εᵖ = η_ψ Δγ, |dev εᵖ| = Δγ/√2.
-            let (trial, elastic) = (found.principal_eps_trial(), found.principal_eps_e());
+            let trial = found.principal_eps_trial();
+            let elastic = found.principal_eps_e();
             let (mean, _, norm) = split(std::array::from_fn(|k| trial[k] - elastic[k]));
             let Material::DruckerPrager(law) = &material else {
                 unreachable!()
             };
-            let dilating = DruckerPrager::new(law.elastic().clone(), (law.dilation(), 0.0, COHESION), law.fit())
+            let dilating = DruckerPrager::new(law.elastic().clone(), law.dilation(), 0.0, COHESION, law.fit())
                 .cone()
                 .0;
             assert!((3.0 * mean - dilating * 2_f64.sqrt() * norm).abs() <= 1e-11 * largest(&trial));
@@ -72,7 +74,9 @@ fn returns_lie_on_the_cone_or_its_tip_and_flow_along_the_potential() {
 /// strength; where flow goes on in plane strain it has the part of the pyramid's that it reports.
 #[test]
 fn the_cone_meets_the_pyramid_where_it_is_said_to() {
-    let (friction, compression, extension) = (30_f64, [-0.001, -0.001, -0.2], [0.0, -0.2, -0.2]);
+    let friction = 30_f64;
+    let compression = [-0.001, -0.001, -0.2];
+    let extension = [0.0, -0.2, -0.2];
     for (fit, eps) in [(Match::Outer, compression), (Match::Inner, extension)] {
         let cone = Material::DruckerPrager(law(0.3, friction, 0.0, fit));
         let pyramid = mohr_coulomb(1e3, 0.3, friction, 0.0, COHESION);
@@ -104,16 +108,20 @@ fn the_cone_meets_the_pyramid_where_it_is_said_to() {
 
 /// Radius of Mohr's circle and mean stress in the plane, sheared under a constant one until nothing changes.
 fn sheared_in_the_plane(cone: &Material) -> (f64, f64) {
-    let (mut b_e, mut tau) = (stretched([0.0; 3]), [0.0; 3]);
+    let mut b_e = stretched([0.0; 3]);
+    let mut tau = [0.0; 3];
     let mean_of = |tau: [f64; 3], z: f64| (tau[0] + tau[1] + tau[2] - z) / 2.0;
     for _ in 0..400 {
         let trial = |volume: f64| {
-            let (x, y) = ((2e-3 + volume).exp(), (-2e-3 + volume).exp());
+            let x = (2e-3 + volume).exp();
+            let y = (-2e-3 + volume).exp();
             respond(cone, &Symmetric([b_e.0[0] * x, b_e.0[1] * y, b_e.0[2], 0.0, 0.0, 0.0]))
         };
-        let (mut low, mut high) = (-0.1, 0.1);
+        let mut low = -0.1;
+        let mut high = 0.1;
         for _ in 0..60 {
-            let (middle, found) = (0.5 * (low + high), trial(0.5 * (low + high)));
+            let middle = 0.5 * (low + high);
+            let found = trial(0.5 * (low + high));
             let lower = mean_of(found.principal_tau(), found.tau().0[2]) < -100.0;
             if lower { low = middle } else { high = middle }
         }
@@ -127,7 +135,8 @@ fn sheared_in_the_plane(cone: &Material) -> (f64, f64) {
 #[test]
 fn tangent_is_the_derivative_on_cone_and_tip() {
     let mut random = Random::new(81);
-    let (mut worst, mut seen) = (0.0_f64, [0, 0]);
+    let mut worst = 0.0_f64;
+    let mut seen = [0, 0];
     for trial in 0..40_000 {
         let friction = random.pick(&[0.0, 20.0, 45.0]);
         let dilation = friction * random.pick(&[0.0, 0.5, 1.0]);
@@ -139,7 +148,8 @@ fn tangent_is_the_derivative_on_cone_and_tip() {
         ));
         let eps = random.strains(-2.5, -0.7);
         let eps = if trial % 4 == 0 { [eps[0], eps[0], eps[2]] } else { eps };
-        let (rotation, l) = (random.rotation(), Tensor::from_fn(|_, _| random.signed()));
+        let rotation = random.rotation();
+        let l = Tensor::from_fn(|_, _| random.signed());
         let b = turned(&rotation, &stretched(eps));
         let found = respond(&material, &b);
         let around = [-2.0, -1.0, 1.0, 2.0]

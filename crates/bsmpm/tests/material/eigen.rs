@@ -15,8 +15,10 @@ fn rotated_b_gives_rotated_tau() {
     for _ in 0..50_000 {
         let friction = random.pick(&[0.0, 20.0, 45.0]);
         let material = mohr_coulomb(1e3, 0.3, friction, 0.5 * friction, 1.0);
-        let (b, q) = (random.trial(-4.0, 0.0), random.rotation());
-        let (found, after) = (respond(&material, &b), respond(&material, &turned(&q, &b)));
+        let b = random.trial(-4.0, 0.0);
+        let q = random.rotation();
+        let found = respond(&material, &b);
+        let after = respond(&material, &turned(&q, &b));
         let tau = turned(&q, &found.tau());
         // Rounding of b when it is rotated, as stress, is not the material's.
         let stored = 1e3 * 1e-15 * found.principal_eps_trial()[0].exp().powi(4).max(1.0);
@@ -42,8 +44,10 @@ fn plane_path_is_the_general_path() {
         );
         let [xx, yy, zz, xy, _, _] = b.0;
         let renamed = Symmetric([zz, xx, yy, 0.0, xy, 0.0]);
-        let (found, general) = (respond(&material, &b), respond(&material, &renamed));
-        let ([a, b, c, d, e, f], [z, x, y, g, h, i]) = (found.tau().0, general.tau().0);
+        let found = respond(&material, &b);
+        let general = respond(&material, &renamed);
+        let [a, b, c, d, e, f] = found.tau().0;
+        let [z, x, y, g, h, i] = general.tau().0;
         assert_eq!((e, f), (0.0, 0.0));
         let apart = largest(&[a - x, b - y, c - z, d - h, g, i]);
         let size = largest(&[a, b, c, d]).max(1e3 * largest(&eps));
@@ -60,7 +64,8 @@ fn hencky_holds_from_tiny_to_large_strain() {
     let mut random = Random::new(42);
     for exponent in 0..=20 {
         let size = 10.0_f64.ln() * 1e-10_f64.powf(f64::from(exponent) / 20.0);
-        let (mut along, mut turn) = (0.0_f64, 0.0_f64);
+        let mut along = 0.0_f64;
+        let mut turn = 0.0_f64;
         for _ in 0..500 {
             let eps = [0; 3].map(|_| size * random.signed());
             let b = stretched(eps);
@@ -91,7 +96,8 @@ fn pure_shear_is_exact_at_any_size() {
         for component in 3..6 {
             let mut b = Symmetric::IDENTITY;
             b.0[component] = g;
-            let (found, exact) = (respond(&material, &b).tau().0[component], 0.5 * g.atanh());
+            let found = respond(&material, &b).tau().0[component];
+            let exact = 0.5 * g.atanh();
             assert!((found - exact).abs() <= 1e-15 * exact, "{found:e} for {exact:e}");
         }
     }
@@ -116,7 +122,8 @@ fn nearly_equal_eigenvalues_rebuild_b() {
     let mut worst = 0.0_f64;
     for exponent in 0..=16 {
         for _ in 0..200 {
-            let (gap, base) = (10.0_f64.powi(-exponent), 0.5 * random.signed());
+            let gap = 10.0_f64.powi(-exponent);
+            let base = 0.5 * random.signed();
             let eps = [base + 0.1 * gap, base, base - 0.05 * gap * random.unit().round()];
             let b = turned(&random.rotation(), &stretched(eps));
             let tau = respond(&material, &b).tau().full();
@@ -144,7 +151,9 @@ fn a_hundred_turns_leave_the_stress() {
             let drawn = Tensor::identity() * (1.0 - 1e-5 * gradient.trace() / 3.0) + 1e-5 * gradient;
             let about = Vector3::new(random.signed(), random.signed(), random.signed()).normalize();
             let turn = |step: u32| Rotation3::new(about * (10.0 * f64::from(step)).to_radians()).into_inner();
-            let (mut still, mut turning, mut yielded) = (start, start, 0);
+            let mut still = start;
+            let mut turning = start;
+            let mut yielded = 0;
             for step in 0..STEPS {
                 let trial = Solid::push_forward(&drawn, &still);
                 let found = respond(&material, &trial);

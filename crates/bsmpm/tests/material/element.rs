@@ -59,7 +59,8 @@ fn undrained_triaxial_strength_and_pore_pressure() {
     let cell = Target::Stress(-1e5);
     follow(&mut sample, [cell, Target::Strain(-0.05), cell, HELD], true, 25);
     let [x, y, ..] = sample.sigma().0;
-    let (p, q) = (-(2.0 * x + y) / 3.0, x - y);
+    let p = -(2.0 * x + y) / 3.0;
+    let q = x - y;
     assert!(
         (p / 1e5 - 1.0).abs() < 1e-9 && (q / 1.2e5 - 1.0).abs() < 1e-9,
         "p {p}, q {q}"
@@ -112,7 +113,8 @@ fn biaxial_and_simple_shear_strength() {
 /// Any stress inside the yield surface is reached from any other, and its strain is that of the linear law.
 #[test]
 fn mixed_control_reaches_its_stress() {
-    let (young, poisson) = (1e7, 0.3);
+    let young = 1e7;
+    let poisson = 0.3;
     let mut sample = point(hencky(young, poisson), 3e4, 0.5);
     let start = sample.sigma().0;
     let wanted = [-2e4, -9e4, -4e4, 1e4];

@@ -44,7 +44,7 @@ fn laws() -> Vec<Material> {
         laws.push(mohr_coulomb(1e3, 0.3, 35.0, 10.0, cohesion));
         laws.extend(
             [Match::Outer, Match::Inner, Match::PlaneStrain]
-                .map(|fit| Material::DruckerPrager(DruckerPrager::new(elastic.clone(), (0.5, 0.2, cohesion), fit))),
+                .map(|fit| Material::DruckerPrager(DruckerPrager::new(elastic.clone(), 0.5, 0.2, cohesion, fit))),
         );
     }
     laws.extend([0.0, 40.0].map(|hardening| Material::VonMises(VonMises::new(elastic.clone(), 3.0, hardening))));
@@ -61,7 +61,8 @@ fn eight_points_have_the_stresses_of_each() {
 #[test]
 fn eight_points_in_space_have_the_stresses_of_each() {
     compare(true);
-    let (material, mut b_trial) = (hencky(1e3, 0.3), [Symmetric([1.0, 1.0, 1.0, 0.1, 0.1, 0.0]); LANES]);
+    let material = hencky(1e3, 0.3);
+    let mut b_trial = [Symmetric([1.0, 1.0, 1.0, 0.1, 0.1, 0.0]); LANES];
     assert!(
         lanes::run(Stresses {
             material: &material,
@@ -117,7 +118,8 @@ fn compare(in_space: bool) {
                 computed += 1;
                 for ((found, b_trial), state) in found.iter().zip(&b_trial).zip(state) {
                     let response = material.respond(b_trial, &[state]).expect("an admissible trial");
-                    let (found, expected) = (found.0.map(f64::to_bits), response.tau().0.map(f64::to_bits));
+                    let found = found.0.map(f64::to_bits);
+                    let expected = response.tau().0.map(f64::to_bits);
                     assert_eq!(found, expected, "{vectors}, {material:?}: {b_trial:?}");
                     *seen.entry(format!("{:?}", response.branch())).or_insert(0) += 1;
                 }

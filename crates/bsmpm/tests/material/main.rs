@@ -40,7 +40,8 @@ fn hencky(young: f64, poisson: f64) -> Material {
 
 /// Angles in degrees.
 fn mohr_coulomb(young: f64, poisson: f64, friction: f64, dilation: f64, cohesion: f64) -> Material {
-    let (friction, dilation) = (friction.to_radians(), dilation.to_radians());
+    let friction = friction.to_radians();
+    let dilation = dilation.to_radians();
     Material::MohrCoulomb(MohrCoulomb::new(
         Elastic { young, poisson },
         friction,

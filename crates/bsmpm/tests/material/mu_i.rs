@@ -16,7 +16,10 @@ fn law(poisson: f64, numbers: [f64; 5]) -> MuI {
 #[test]
 fn returns_have_the_friction_of_their_own_rate() {
     let mut random = Random::new(90);
-    let (mut cones, mut tips, mut fast, mut worst) = (0, 0, 0, 0.0_f64);
+    let mut cones = 0;
+    let mut tips = 0;
+    let mut fast = 0;
+    let mut worst = 0.0_f64;
     for _ in 0..30_000 {
         let dt = random.pick(&[1e-9, 1e-5, 1e-3, 1.0, 1e6]);
         let law = law(random.pick(&[-0.5, 0.0, 0.3, 0.49]), NUMBERS)
@@ -25,8 +28,10 @@ fn returns_have_the_friction_of_their_own_rate() {
         let material = Material::MuI(law);
         let found = respond(&material, &random.trial(-6.0, -0.7));
         let (mean, _, norm) = split(found.principal_tau());
-        let (root, pressure) = (norm / 2_f64.sqrt(), -mean);
-        let (trial, elastic) = (found.principal_eps_trial(), found.principal_eps_e());
+        let root = norm / 2_f64.sqrt();
+        let pressure = -mean;
+        let trial = found.principal_eps_trial();
+        let elastic = found.principal_eps_e();
         let (volume, _, sheared) = split(std::array::from_fn(|k| trial[k] - elastic[k]));
         let [mu_s, mu_2, i_0, diameter, density] = NUMBERS;
         match found.branch() {
@@ -63,7 +68,9 @@ fn without_a_rate_it_is_a_cone() {
             young: 1e6,
             poisson: 0.3,
         },
-        (0.6, 0.0, 0.0),
+        0.6,
+        0.0,
+        0.0,
         Match::PlaneStrain,
     );
     let slope = cone.cone().0;
@@ -75,7 +82,8 @@ fn without_a_rate_it_is_a_cone() {
             let b = random.trial(-6.0, -0.7);
             let [a, b] = [Material::MuI(law.clone()), Material::DruckerPrager(cone.clone())].map(|m| respond(&m, &b));
             assert_eq!(a.branch(), b.branch());
-            let (a, b) = (a.principal_tau(), b.principal_tau());
+            let a = a.principal_tau();
+            let b = b.principal_tau();
             assert!((0..3).all(|k| (a[k] - b[k]).abs() <= 1e-9 * largest(&b)), "{a:?} {b:?}");
         }
     }
@@ -85,13 +93,15 @@ fn without_a_rate_it_is_a_cone() {
 #[test]
 fn tangent_is_the_derivative() {
     let mut random = Random::new(92);
-    let (mut worst, mut seen) = (0.0_f64, [0, 0]);
+    let mut worst = 0.0_f64;
+    let mut seen = [0, 0];
     for trial in 0..40_000 {
         let dt = random.pick(&[1e-7, 1e-4, 1e-2, 1e3]);
         let material = Material::MuI(law(random.pick(&[0.0, 0.3, 0.49]), NUMBERS).over(dt).unwrap());
         let eps = random.strains(-3.5, -0.7).map(|strain| strain - 0.02);
         let eps = if trial % 4 == 0 { [eps[0], eps[0], eps[2]] } else { eps };
-        let (rotation, l) = (random.rotation(), Tensor::from_fn(|_, _| random.signed()));
+        let rotation = random.rotation();
+        let l = Tensor::from_fn(|_, _| random.signed());
         let b = turned(&rotation, &stretched(eps));
         let found = respond(&material, &b);
         let around = [-2.0, -1.0, 1.0, 2.0]
@@ -113,7 +123,8 @@ fn tangent_is_the_derivative() {
 /// Simple shear at a constant rate under a constant pressure: `τ = μ(I) p`, however long the steps are.
 #[test]
 fn steady_shear_has_the_friction_of_its_inertial_number() {
-    let ([mu_s, mu_2, i_0, diameter, density], pressure) = (NUMBERS, 500.0);
+    let [mu_s, mu_2, i_0, diameter, density] = NUMBERS;
+    let pressure = 500.0;
     for (rate, steps) in [(0.1, 50), (30.0, 50), (30.0, 400), (3e3, 50)] {
         let stress = Symmetric([-pressure, -pressure, -pressure, 0.0, 0.0, 0.0]);
         let mut point = Element::new(Material::MuI(law(0.3, NUMBERS)), stress).expect("within its strength");

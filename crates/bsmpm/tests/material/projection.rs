@@ -60,7 +60,8 @@ fn region(tau: &[f64; 3], size: f64) -> Branch {
 #[test]
 fn associated_return_is_the_closest_point() {
     let mut random = Random::new(30);
-    let (mut tried, mut worst) = (0, 0.0_f64);
+    let mut tried = 0;
+    let mut worst = 0.0_f64;
     while tried < 10_000 {
         let friction = random.pick(&[0.0, 10.0, 20.0, 45.0, 60.0]);
         let poisson = random.pick(&[0.0, 0.3, 0.45]);

@@ -47,14 +47,13 @@ fn method_section_2_table() {
 #[test]
 fn friction_to_zero_is_tresca() {
     let mut random = Random::new(1);
-    let (tresca, nearly) = (
-        mohr_coulomb(1e3, 0.3, 0.0, 0.0, 1.0),
-        mohr_coulomb(1e3, 0.3, 1e-9, 1e-9, 1.0),
-    );
+    let tresca = mohr_coulomb(1e3, 0.3, 0.0, 0.0, 1.0);
+    let nearly = mohr_coulomb(1e3, 0.3, 1e-9, 1e-9, 1.0);
     let mut worst = 0.0_f64;
     for _ in 0..10_000 {
         let b = random.trial(-4.0, -1.0);
-        let (a, b) = (respond(&tresca, &b).tau(), respond(&nearly, &b).tau());
+        let a = respond(&tresca, &b).tau();
+        let b = respond(&nearly, &b).tau();
         worst = worst.max(difference(&a, &b) / (1.0 + largest(&a.0)));
     }
     println!("friction of 1e-9 degrees: {worst:.1e}");
@@ -66,7 +65,8 @@ fn results_scale_exactly_with_the_unit_of_stress() {
     let mut random = Random::new(2);
     let unit = 1024.0 * 1024.0;
     for _ in 0..10_000 {
-        let (friction, cohesion) = (random.pick(&[0.0, 20.0, 45.0]), random.pick(&[0.0, 1.0]));
+        let friction = random.pick(&[0.0, 20.0, 45.0]);
+        let cohesion = random.pick(&[0.0, 1.0]);
         let b = random.trial(-6.0, -0.5);
         let small = respond(&mohr_coulomb(1e3, 0.3, friction, 0.5 * friction, cohesion), &b);
         let large = respond(
@@ -84,7 +84,8 @@ fn elastic_state_is_the_trial_bit_for_bit() {
     let strong = mohr_coulomb(1e3, 0.3, 20.0, 10.0, 1e6);
     for _ in 0..10_000 {
         let b = random.trial(-8.0, -1.0);
-        let (a, c) = (respond(&strong, &b), respond(&hencky(1e3, 0.3), &b));
+        let a = respond(&strong, &b);
+        let c = respond(&hencky(1e3, 0.3), &b);
         assert_eq!((a.branch(), a.b_e(), a.tau()), (Branch::Elastic, b, c.tau()));
         assert_eq!((c.b_e(), a.plastic_increment()), (b, 0.0));
     }
@@ -105,10 +106,8 @@ fn plastic_increment_is_the_deviatoric_strain_lost() {
 /// not at all in the second one. Elastic ground works 2 mu |strain|^2, mu = 1000/2.6 Pa.
 #[test]
 fn second_order_work_is_elastic_until_perfect_flow_leaves_none() {
-    let (weak, strong) = (
-        mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1.0),
-        mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1e3),
-    );
+    let weak = mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1.0);
+    let strong = mohr_coulomb(1000.0, 0.3, 0.0, 0.0, 1e3);
     let sheared = |by: f64| Symmetric([by, 0.0, -by, 0.0, 0.0, 0.0]);
     let elastic = 2000.0 / 2.6 * 2.0 * 0.005_f64.powi(2);
     let is_near = |found: [f64; 2], exact: [f64; 2]| (0..2).all(|k| (found[k] - exact[k]).abs() <= 1e-12);

@@ -3,7 +3,7 @@
 use super::{answer, largest, mohr_coulomb, stretched, turned};
 use crate::random::Random;
 use bsmpm::element::{Control, Element, Target};
-use bsmpm::material::{Branch, Decay, Elastic, Law, Material, Rate, Response, SofteningMohrCoulomb};
+use bsmpm::material::{Branch, Decay, Elastic, Law, Material, Rate, Response, SofteningMohrCoulomb, Strength};
 use bsmpm::tensor::{Symmetric, Tensor};
 use std::collections::BTreeMap;
 
@@ -11,7 +11,11 @@ const DECAYS: [Decay; 2] = [Decay::Linear, Decay::Exponential];
 
 /// Angles in degrees.
 fn law(poisson: f64, peak: [f64; 3], residual: [f64; 3], strain: f64, decay: Decay) -> SofteningMohrCoulomb {
-    let strength = |[phi, psi, c]: [f64; 3]| (phi.to_radians(), psi.to_radians(), c);
+    let strength = |[phi, psi, cohesion]: [f64; 3]| Strength {
+        friction_angle: phi.to_radians(),
+        dilation_angle: psi.to_radians(),
+        cohesion,
+    };
     SofteningMohrCoulomb::new(
         Elastic { young: 1e3, poisson },
         strength(peak),
@@ -40,13 +44,12 @@ fn returns_lie_on_the_surface_of_their_own_plastic_strain() {
     let mut random = Random::new(80);
     let mut seen = BTreeMap::new();
     for _ in 0..40_000 {
-        let (material, before) = (
-            Material::SofteningMohrCoulomb(random_law(&mut random)),
-            0.1 * random.unit(),
-        );
+        let material = Material::SofteningMohrCoulomb(random_law(&mut random));
+        let before = 0.1 * random.unit();
         let (response, after) = answer(&material, &random.trial(-4.0, -0.7), before);
         let tau = response.principal_tau();
-        let (size, excess) = (largest(&tau).max(1e-3), material.excess(tau, &[after]));
+        let size = largest(&tau).max(1e-3);
+        let excess = material.excess(tau, &[after]);
         *seen.entry(format!("{:?}", response.branch())).or_insert(0) += 1;
         if response.branch() == Branch::Elastic {
             assert!(excess <= 0.0 && after == before);
@@ -57,7 +60,8 @@ fn returns_lie_on_the_surface_of_their_own_plastic_strain() {
             excess.abs() <= 1e-11 * (size + 1e3 * trial),
             "{excess:e} of {size:e}, {material:?}"
         );
-        let (growth, increment) = (after - before, response.plastic_increment());
+        let growth = after - before;
+        let increment = response.plastic_increment();
         assert!(
             (increment - growth).abs() <= 1e-11 * (growth + trial),
             "{increment:e} for {growth:e} of {trial:e}, {material:?}"
@@ -78,10 +82,8 @@ fn with_one_strength_it_is_mohr_coulomb() {
         let material = Material::SofteningMohrCoulomb(law(0.3, strength, strength, 0.05, decay));
         for _ in 0..5_000 {
             let b = random.trial(-4.0, -0.7);
-            let (found, exact) = (
-                answer(&material, &b, random.unit()).0,
-                perfect.respond(&b, &[]).unwrap(),
-            );
+            let found = answer(&material, &b, random.unit()).0;
+            let exact = perfect.respond(&b, &[]).unwrap();
             assert_eq!(found.branch(), exact.branch());
             assert_eq!(found.principal_tau(), exact.principal_tau());
             let l = Tensor::from_fn(|_, _| random.signed());
@@ -95,7 +97,8 @@ fn with_one_strength_it_is_mohr_coulomb() {
 #[test]
 fn tangent_is_the_derivative() {
     let mut random = Random::new(82);
-    let (mut worst, mut seen) = (0.0_f64, BTreeMap::new());
+    let mut worst = 0.0_f64;
+    let mut seen = BTreeMap::new();
     for _ in 0..40_000 {
         // Also with a rate, in a step so long that whatever flows is above the reference.
         let rate = Rate {
@@ -109,7 +112,8 @@ fn tangent_is_the_derivative() {
         } else {
             law.at_rate(rate).over(1.0).expect("a rate")
         };
-        let (strain, before) = (law.parameters()[6], 0.05 * random.unit());
+        let strain = law.parameters()[6];
+        let before = 0.05 * random.unit();
         let material = Material::SofteningMohrCoulomb(law);
         let mut eps = random.strains(-2.5, -0.7);
         eps.sort_by(f64::total_cmp);
@@ -147,7 +151,10 @@ fn tangent_is_the_derivative() {
 /// is twelve decades above the reference, so that the plastic strain may be of any size.
 #[test]
 fn a_strength_by_the_rate_is_found_whatever_the_plastic_strain() {
-    let (young, poisson, peak, per_decade) = (1e3, 0.49, 3.0, 0.1);
+    let young = 1e3;
+    let poisson = 0.49;
+    let peak = 3.0;
+    let per_decade = 0.1;
     let shear = Elastic { young, poisson }.lame().1;
     let mut least = f64::INFINITY;
     for (k, reference) in (0..2_000).flat_map(|k| [1e-3, 1e-7, 1e-10, 1e-13].map(|reference| (k, reference))) {
@@ -172,7 +179,9 @@ fn a_strength_by_the_rate_is_found_whatever_the_plastic_strain() {
 /// Shear without friction or change of volume: `2μ (e - p) = c(κ)`, κ = 2p/√3, in one step or many.
 #[test]
 fn pure_shear_softens_by_its_own_plastic_strain_in_any_number_of_steps() {
-    let (peak, residual, strain) = (3.0, 1.0, 0.1);
+    let peak = 3.0;
+    let residual = 1.0;
+    let strain = 0.1;
     for (decay, way) in [(Decay::Linear, 0.05), (Decay::Linear, 0.3), (Decay::Exponential, 0.08)] {
         let law = law(0.3, [0.0, 0.0, peak], [0.0, 0.0, residual], strain, decay);
         let shear = law.elastic().lame().1;
@@ -181,7 +190,8 @@ fn pure_shear_softens_by_its_own_plastic_strain_in_any_number_of_steps() {
             Decay::Exponential => residual + (peak - residual) * (-3.0 * kappa / strain).exp(),
         };
         let rest = |plastic: f64| 2.0 * shear * (way - plastic) - cohesion(2.0 / 3.0_f64.sqrt() * plastic);
-        let (mut low, mut high) = (0.0, way);
+        let mut low = 0.0;
+        let mut high = way;
         for _ in 0..200 {
             let middle = 0.5 * (low + high);
             if rest(middle) > 0.0 {
@@ -193,7 +203,9 @@ fn pure_shear_softens_by_its_own_plastic_strain_in_any_number_of_steps() {
         let kappa = 2.0 / 3.0_f64.sqrt() * low;
         let material = Material::SofteningMohrCoulomb(law);
         for steps in [1, 7] {
-            let (mut b_e, mut state, mut tau) = (Symmetric::IDENTITY, 0.0, 0.0);
+            let mut b_e = Symmetric::IDENTITY;
+            let mut state = 0.0;
+            let mut tau = 0.0;
             for _ in 0..steps {
                 let [x, y, z, ..] = b_e.0;
                 let ratio = (2.0 * way / f64::from(steps)).exp();
@@ -212,18 +224,24 @@ fn pure_shear_softens_by_its_own_plastic_strain_in_any_number_of_steps() {
 /// In plane strain under a lateral stress that stays, σ₁/σ₃ falls from its value at the peak to the residual one.
 #[test]
 fn a_drained_biaxial_path_ends_at_the_residual_strength() {
-    let (peak, residual, lateral) = ([38.0, 8.0, 0.2], [30.0, 0.0, 0.0], -1.0);
+    let peak = [38.0, 8.0, 0.2];
+    let residual = [30.0, 0.0, 0.0];
+    let lateral = -1.0;
     let passive = |[phi, _, c]: [f64; 3]| {
         let sin = phi.to_radians().sin();
         (lateral * (1.0 + sin) - 2.0 * c * phi.to_radians().cos()) / (1.0 - sin)
     };
     let material = Material::SofteningMohrCoulomb(law(0.3, peak, residual, 0.05, Decay::Linear));
-    let (mut b_e, mut state, mut most, mut last) = (Symmetric::IDENTITY, 0.0, 0.0_f64, 0.0);
+    let mut b_e = Symmetric::IDENTITY;
+    let mut state = 0.0;
+    let mut most = 0.0_f64;
+    let mut last = 0.0;
     for _ in 0..400 {
         let [x, y, z, ..] = b_e.0;
         let axial = (-2.0 * 5e-4_f64).exp();
         let respond = |stretch: f64| answer(&material, &Symmetric([x * stretch, y * axial, z, 0.0, 0.0, 0.0]), state);
-        let (mut low, mut high) = (0.9, 1.1);
+        let mut low = 0.9;
+        let mut high = 1.1;
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if respond(middle).0.tau().0[0] < lateral {
@@ -260,12 +278,19 @@ fn reduction_divides_both_strengths() {
 /// the steps; below the reference, or outside of a step, the rate does nothing.
 #[test]
 fn shear_at_a_rate_is_einav_and_randolphs() {
-    let (young, peak, sensitivity, reference, per_decade) = (1e6, 3e3, 4.0, 1e-4, 0.15);
+    let young = 1e6;
+    let peak = 3e3;
+    let sensitivity = 4.0;
+    let reference = 1e-4;
+    let per_decade = 0.15;
     let xi = 0.4;
     let clay = |rate| {
         let elastic = Elastic { young, poisson: 0.49 };
         let strain = xi / 3.0_f64.sqrt();
-        let (first, last) = ((0.0, 0.0, peak), (0.0, 0.0, peak / sensitivity));
+        let [first, last] = [peak, peak / sensitivity].map(|cohesion| Strength {
+            cohesion,
+            ..Strength::default()
+        });
         let law = SofteningMohrCoulomb::new(elastic, first, last, strain, Decay::Exponential);
         Material::SofteningMohrCoulomb(law.at_rate(Rate {
             per_decade: rate,
@@ -275,7 +300,8 @@ fn shear_at_a_rate_is_einav_and_randolphs() {
     let mut shown = Vec::new();
     for (duration, steps) in [(0.5, 200), (0.5, 800), (1e5, 200), (f64::INFINITY, 200)] {
         let mut sample = Element::new(clay(per_decade), Symmetric::default()).unwrap();
-        let (way, volume) = (0.25, Target::Strain(0.0));
+        let way = 0.25;
+        let volume = Target::Strain(0.0);
         let targets = [Target::Strain(way), Target::Strain(-way), volume, volume];
         let mut last = 0.0;
         sample

@@ -38,13 +38,12 @@ fn matrix(stiffness: &Stiffness) -> nalgebra::SMatrix<f64, 6, 6> {
 #[test]
 fn it_is_symmetric_and_positive_in_every_region() {
     let mut random = Random::new(51);
-    let (mut seen, mut least) = ([0; 5], f64::INFINITY);
+    let mut seen = [0; 5];
+    let mut least = f64::INFINITY;
     for _ in 0..20_000 {
         let friction = random.pick(&[0.0, 20.0, 45.0, 60.0, 89.0]);
-        let (dilation, poisson) = (
-            friction * random.pick(&[0.0, 0.5, 1.0]),
-            random.pick(&[-0.5, 0.0, 0.3, 0.499]),
-        );
+        let dilation = friction * random.pick(&[0.0, 0.5, 1.0]);
+        let poisson = random.pick(&[-0.5, 0.0, 0.3, 0.499]);
         let found = respond(
             &mohr_coulomb(1e3, poisson, friction, dilation, 1.0),
             &random.trial(-2.5, -0.7),
@@ -69,8 +68,11 @@ fn it_is_symmetric_and_positive_in_every_region() {
 /// strain's own size the stiffness is the tangent.
 #[test]
 fn of_tresca_it_is_the_tangent() {
-    let (material, elastic) = (mohr_coulomb(1e3, 0.3, 0.0, 0.0, 1e-5), hencky(1e3, 0.3));
-    let (mut random, mut worst, mut seen) = (Random::new(52), 0.0_f64, 0);
+    let material = mohr_coulomb(1e3, 0.3, 0.0, 0.0, 1e-5);
+    let elastic = hencky(1e3, 0.3);
+    let mut random = Random::new(52);
+    let mut worst = 0.0_f64;
+    let mut seen = 0;
     for _ in 0..2_000 {
         let b = random.trial(-7.0, -6.0);
         let found: Response = respond(&material, &b);

@@ -27,7 +27,8 @@ fn error(material: &Material, b: &Symmetric, l: &Tensor, h: f64) -> Option<(Bran
 /// The smallest gap of trial strains whose stresses differ: the tangent varies over it, so a difference must stay
 /// within.
 fn smallest_gap(found: &Response) -> f64 {
-    let (eps, tau) = (found.principal_eps_trial(), found.principal_tau());
+    let eps = found.principal_eps_trial();
+    let tau = found.principal_tau();
     let pairs = [(0, 1), (1, 2)].into_iter().filter(|(a, b)| tau[*a] != tau[*b]);
     pairs.map(|(a, b)| eps[a] - eps[b]).fold(1.0, f64::min)
 }
@@ -40,12 +41,14 @@ fn gradient(random: &mut Random) -> Tensor {
 #[test]
 fn tangent_is_the_derivative_in_every_region() {
     let mut random = Random::new(50);
-    let (mut seen, mut worst) = ([0; 5], [0.0_f64; 5]);
+    let mut seen = [0; 5];
+    let mut worst = [0.0_f64; 5];
     for _ in 0..60_000 {
         let friction = random.pick(&[0.0, 1e-9, 20.0, 30.0, 45.0, 60.0, 89.9]);
         let dilation = friction * random.pick(&[0.0, 0.5, 1.0]);
         let material = mohr_coulomb(1e3, random.pick(&[-0.5, 0.0, 0.3, 0.49]), friction, dilation, 1.0);
-        let (b, l) = (random.trial(-2.5, -0.7), gradient(&mut random));
+        let b = random.trial(-2.5, -0.7);
+        let l = gradient(&mut random);
         let gap = smallest_gap(&respond(&material, &b));
         if gap < 1e-4 {
             continue;
@@ -99,7 +102,8 @@ fn spin_only_rotates_the_stress() {
     let mut random = Random::new(52);
     for _ in 0..5_000 {
         let material = mohr_coulomb(1e3, 0.3, 20.0, 10.0, 1.0);
-        let (b, l) = (random.trial(-3.0, -0.5), gradient(&mut random));
+        let b = random.trial(-3.0, -0.5);
+        let l = gradient(&mut random);
         let spin = l - l.transpose();
         let found = respond(&material, &b);
         let tau = found.tau().full();

@@ -19,18 +19,21 @@ fn returns_lie_on_the_surface_that_has_grown_and_flow_along_its_normal() {
     let mut plastic = 0;
     for _ in 0..20_000 {
         let hardening = random.pick(&[0.0, 1.0, 1e3]);
-        let (law, before) = (law(random.pick(&[-0.5, 0.0, 0.3, 0.49]), hardening), random.unit());
+        let law = law(random.pick(&[-0.5, 0.0, 0.3, 0.49]), hardening);
+        let before = random.unit();
         let material = Material::VonMises(law);
         let (response, after) = answer(&material, &random.trial(-4.0, -0.7), before);
         let (_, deviator, norm) = split(response.principal_tau());
-        let (q, strength) = (1.5_f64.sqrt() * norm, STRENGTH + hardening * after);
+        let q = 1.5_f64.sqrt() * norm;
+        let strength = STRENGTH + hardening * after;
         if response.branch() == Branch::Elastic {
             assert!(q <= strength * (1.0 + 1e-14) && after == before);
             continue;
         }
         plastic += 1;
         assert!((q - strength).abs() <= 1e-11 * strength, "{q} for {strength}");
-        let (trial, elastic) = (response.principal_eps_trial(), response.principal_eps_e());
+        let trial = response.principal_eps_trial();
+        let elastic = response.principal_eps_e();
         let flow: [f64; 3] = std::array::from_fn(|k| trial[k] - elastic[k]);
         let size = largest(&trial);
         assert!(
@@ -54,7 +57,8 @@ fn returns_lie_on_the_surface_that_has_grown_and_flow_along_its_normal() {
 #[test]
 fn tangent_is_the_derivative() {
     let mut random = Random::new(71);
-    let (mut worst, mut seen) = (0.0_f64, 0);
+    let mut worst = 0.0_f64;
+    let mut seen = 0;
     for trial in 0..20_000 {
         let material = Material::VonMises(law(random.pick(&[0.0, 0.3, 0.49]), random.pick(&[0.0, 10.0, 1e3])));
         let eps = random.strains(-2.5, -0.7);
@@ -83,7 +87,8 @@ fn tangent_is_the_derivative() {
 /// step or many.
 #[test]
 fn pure_shear_hardens_linearly_in_any_number_of_steps() {
-    let (hardening, way) = (50.0, 0.1); // principal strains ± way
+    let hardening = 50.0;
+    let way = 0.1; // principal strains ± way
     let law = law(0.3, hardening);
     let shear = law.elastic().lame().1;
     // q = √3 τ₁, q = 3 μ (2/√3 way - κ) = σ_y + H κ.
@@ -91,7 +96,9 @@ fn pure_shear_hardens_linearly_in_any_number_of_steps() {
     let exact = (STRENGTH + hardening * kappa) / 3_f64.sqrt();
     let material = Material::VonMises(law);
     for steps in [1, 7] {
-        let (mut b_e, mut state, mut tau) = (Symmetric::IDENTITY, 0.0, 0.0);
+        let mut b_e = Symmetric::IDENTITY;
+        let mut state = 0.0;
+        let mut tau = 0.0;
         for _ in 0..steps {
             let [x, y, z, ..] = b_e.0;
             let ratio = (2.0 * way / f64::from(steps)).exp();

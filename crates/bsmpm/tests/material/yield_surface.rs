@@ -14,7 +14,8 @@ fn worst(seed: u64, high: f64, check: impl Fn(&Material, &Response) -> f64) -> f
     for friction in FRICTIONS {
         for _ in 0..100_000 {
             let dilation = friction * random.pick(&[0.0, 0.5, 1.0]);
-            let (poisson, cohesion) = (random.pick(&POISSONS), random.pick(&[0.0, 1e-6, 1.0, 100.0]));
+            let poisson = random.pick(&POISSONS);
+            let cohesion = random.pick(&[0.0, 1e-6, 1.0, 100.0]);
             let material = mohr_coulomb(1e3, poisson, friction, dilation, cohesion);
             let found = check(&material, &respond(&material, &random.trial(-7.0, high)));
             assert!(!found.is_nan(), "{material:?}");
@@ -38,7 +39,8 @@ fn sines(material: &Material) -> (f64, f64, f64) {
 #[test]
 fn yield_is_satisfied_and_order_kept() {
     let violation = worst(10, 0.3, |material, response| {
-        let ([first, second, third], (sin, _, strength)) = (response.principal_tau(), sines(material));
+        let [first, second, third] = response.principal_tau();
+        let (sin, _, strength) = sines(material);
         assert!(
             first >= second && second >= third,
             "{:?} in {:?}",
@@ -76,7 +78,8 @@ fn plastic_strain_obeys_the_flow_rule() {
             let (_, sin, _) = sines(material);
             (1.0 + sin, 1.0 - sin)
         };
-        let (eps_e, [x, y, z]) = (response.principal_eps_e(), response.principal_eps_trial());
+        let eps_e = response.principal_eps_e();
+        let [x, y, z] = response.principal_eps_trial();
         let [x, y, z] = [x - eps_e[0], y - eps_e[1], z - eps_e[2]];
         let size = largest(&response.principal_eps_trial());
         let (negative, off) = match response.branch() {

@@ -28,7 +28,8 @@ fn blocks<K: Kinematics<D>, const D: usize>(axes: [KnotVector; D]) -> (Grid<D>, 
 fn background<K: Kinematics<D>, const D: usize>(axes: [KnotVector; D]) -> (Grid<D>, Shape<D>, Blocks) {
     let cells = axes.each_ref().map(|axis| 0..axis.cells());
     let scene = Scene::<K, D>::new(axes, hencky(YOUNG, 0.3), Regime::QuasiStatic).body(cells, 1, 1.0, |x| x * 0.0);
-    let (grid, points) = (scene.model.grid.clone(), &scene.points);
+    let grid = scene.model.grid.clone();
+    let points = &scene.points;
     let shape = Shape::at(&grid, points).expect("points inside");
     let background = Background {
         coefficient: COEFFICIENT,
@@ -118,7 +119,8 @@ fn multiplies_by_its_blocks<K: Kinematics<D>, const D: usize>(order: usize) {
     });
     let (grid, shape, found) = background::<K, D>(axes);
     let u: Vec<f64> = (0..grid.nodes() * D).map(|_| random.signed()).collect();
-    let (mut expected, mut work) = (vec![0.0; u.len()], 0.0);
+    let mut expected = vec![0.0; u.len()];
+    let mut work = 0.0;
     for (number, patch) in shape.patches().iter().enumerate() {
         let places = || {
             shape

@@ -25,7 +25,7 @@ fn factorised(K: &DMatrix<f64>) -> Skyline {
 
 /// The update after a step a d along the direction d = K^-1 f_old: the secant of least change,
 /// K+ = K + ((1-a) f_old - f_new) s^T / s.s with s = a d.
-fn updated(K: &DMatrix<f64>, (f_old, f_new): (&DVector<f64>, &DVector<f64>), d: &DVector<f64>, a: f64) -> DMatrix<f64> {
+fn updated(K: &DMatrix<f64>, f_old: &DVector<f64>, f_new: &DVector<f64>, d: &DVector<f64>, a: f64) -> DMatrix<f64> {
     let s = d * a;
     K + (f_old * (1.0 - a) - f_new) * s.transpose() / s.norm_squared()
 }
@@ -34,7 +34,8 @@ fn updated(K: &DMatrix<f64>, (f_old, f_new): (&DVector<f64>, &DVector<f64>), d: 
 fn worst_difference(lengths: &[f64], seed: u64) -> f64 {
     let mut random = Random::new(seed);
     let mut K = stiffness(&mut random);
-    let (mut solver, halo) = (factorised(&K), Alone { nodes: N });
+    let mut solver = factorised(&K);
+    let halo = Alone { nodes: N };
     let mut broyden = Secants::new::<1>(QuasiNewton::Broyden, &[true; N], &halo);
     let mut f = DVector::from_vec(random.array(N));
     let mut worst = 0.0_f64;
@@ -46,7 +47,7 @@ fn worst_difference(lengths: &[f64], seed: u64) -> f64 {
         broyden.took(a);
         let noise = DVector::from_vec(random.array(N)) * (0.2 * f.amax());
         let f_new = &f * 0.3 + noise; // far from a restart
-        K = updated(&K, (&f, &f_new), &expected, a);
+        K = updated(&K, &f, &f_new, &expected, a);
         f = f_new;
     }
     worst
@@ -57,9 +58,10 @@ fn the_dense_update_is_the_secant() {
     let mut random = Random::new(9);
     let K = stiffness(&mut random);
     for a in [1.0, 0.5, 0.125] {
-        let (f_old, f_new) = (DVector::from_vec(random.array(N)), DVector::from_vec(random.array(N)));
+        let f_old = DVector::from_vec(random.array(N));
+        let f_new = DVector::from_vec(random.array(N));
         let d = K.clone().lu().solve(&f_old).unwrap();
-        let K = updated(&K, (&f_old, &f_new), &d, a);
+        let K = updated(&K, &f_old, &f_new, &d, a);
         assert!((K * (d * a) - (f_old - f_new)).norm() <= 1e-13);
     }
 }
@@ -86,7 +88,8 @@ fn shortened_steps_agree_with_the_dense_update() {
 fn a_nearly_singular_update_drops_the_history() {
     let mut random = Random::new(2);
     let K = stiffness(&mut random);
-    let (mut solver, halo) = (factorised(&K), Alone { nodes: N });
+    let mut solver = factorised(&K);
+    let halo = Alone { nodes: N };
     let mut broyden = Secants::new::<1>(QuasiNewton::Broyden, &[true; N], &halo);
     let f = random.array(N);
     let plain = broyden.direction::<1>(&f, &halo, &mut solver).unwrap().du;

@@ -8,6 +8,7 @@ use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;
 use bsmpm::points::{Points, Seed};
+use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::problem::Problem;
@@ -38,10 +39,18 @@ fn deformed<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisatio
 /// Largest distance between the rate of ln ratio and its central difference.
 fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisation) -> f64 {
     let scene = deformed::<K, D>(order, method);
-    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
-    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let attachments = StripAttachments::at(
+        &[],
+        &points.surface,
+        &model.grid,
+        &nodes.free,
+        TimeInterval { start: 0.0, dt: 1.0 },
+    );
     let pieces = Problem {
         model,
         shape: &shape,
@@ -58,12 +67,13 @@ fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisat
         Trial::of(model, &shape, &nodes, points, &u, &halo)
     };
     let at = trial(0.0);
-    let trace = transfer::gradients::<K, D, _>((&shape, &scene.points.x), &du, |p, grad| {
+    let trace = transfer::gradients::<K, D, _>(&shape, &scene.points.x, &du, |p, grad| {
         (K::gradient::<f64>(&grad) * at.dF(p).try_inverse().expect("sound")).trace()
     });
     let rate = at.dilation_rate(&pieces, &trace).expect("averaged");
     let step = 1e-6;
-    let (after, before) = (trial(step), trial(-step));
+    let after = trial(step);
+    let before = trial(-step);
     let difference = |p: usize| (after.ratio(model, points, p) / before.ratio(model, points, p)).ln() / (2.0 * step);
     let size = rate.iter().fold(0.0_f64, |size, rate| size.max(rate.abs()));
     (0..points.len())
@@ -95,7 +105,8 @@ fn lowered_error<const D: usize>(order: usize) -> f64 {
         };
         Grid::<D>::new(std::array::from_fn(along)).unwrap()
     };
-    let (upper, own) = (grid(order), grid(order - 1));
+    let upper = grid(order);
+    let own = grid(order - 1);
     let mut random = Random::new(3);
     let extent = Vector::<D>::from_fn(|k, _| if k == 0 { 2.0 } else { 1.2 });
     let seed = |id| {
@@ -199,7 +210,14 @@ fn the_filter_smooths_the_elastic_dilation_where_the_material_flows_and_nothing_
     let mut scene = flowing(0.002);
     let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
-    let nodes = Nodes::map(&scene.model, &shape, &scene.points, (0.0, 1.0), &halo).expect("no loads");
+    let nodes = Nodes::map(
+        &scene.model,
+        &shape,
+        &scene.points,
+        TimeInterval { start: 0.0, dt: 1.0 },
+        &halo,
+    )
+    .expect("no loads");
     let mut flow = Vec::new();
     for p in 0..scene.points.len() {
         let response = scene.model.respond(&scene.points, p, &scene.points.b_e.at(p)).unwrap();
@@ -207,11 +225,13 @@ fn the_filter_smooths_the_elastic_dilation_where_the_material_flows_and_nothing_
         scene.points.b_e.set(p, response.b_e());
     }
     let before = scene.points.b_e.clone();
-    let share = smooth::filter_dilation(&scene.model, (&shape, &nodes), &mut scene.points, &flow, &halo);
+    let share = smooth::filter_dilation(&scene.model, &shape, &nodes, &mut scene.points, &flow, &halo);
     assert!(share > 0.0 && share < 1.0, "{share}");
-    let (mut changed, mut fluctuation) = (0.0_f64, [0.0, 0.0]);
+    let mut changed = 0.0_f64;
+    let mut fluctuation = [0.0, 0.0];
     for (p, b_e) in before.iter().enumerate() {
-        let ((volume, deviator), (filtered, kept)) = (strain(&b_e), strain(&scene.points.b_e.at(p)));
+        let (volume, deviator) = strain(&b_e);
+        let (filtered, kept) = strain(&scene.points.b_e.at(p));
         changed = (0..3).map(|k| (deviator[k] - kept[k]).abs()).fold(changed, f64::max);
         match scene.points.x[p][0] {
             x if x < 4.0 => fluctuation = [fluctuation[0] + volume.powi(2), fluctuation[1] + filtered.powi(2)],
@@ -232,28 +252,38 @@ fn without_flow_the_filter_leaves_every_bit() {
     let before = scene.points.clone();
     let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
-    let nodes = Nodes::map(&scene.model, &shape, &scene.points, (0.0, 1.0), &halo).expect("no loads");
+    let nodes = Nodes::map(
+        &scene.model,
+        &shape,
+        &scene.points,
+        TimeInterval { start: 0.0, dt: 1.0 },
+        &halo,
+    )
+    .expect("no loads");
     let respond = |p: usize| scene.model.respond(&before, p, &before.b_e.at(p)).unwrap();
     let flow: Vec<_> = (0..before.len())
         .map(|p| smooth::PlasticFlow::of(&respond(p), 0.0))
         .collect();
-    let share = smooth::filter_dilation(&scene.model, (&shape, &nodes), &mut scene.points, &flow, &halo);
+    let share = smooth::filter_dilation(&scene.model, &shape, &nodes, &mut scene.points, &flow, &halo);
     assert_eq!((share, scene.points), (0.0, before));
 }
 
 /// Mean of a value of every point that F-bar puts into its place.
 fn means<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, value: &[f64]) -> Vec<f64> {
-    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
-    nodes.mean_dilation(model, (&shape, points), &halo, |p| value[p])
+    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    nodes.mean_dilation(model, &shape, points, &halo, |p| value[p])
 }
 
 /// Body in cells of 0.5 x 0.4 m, `filled` of 8 x 7, 3 x 3 points each, the points of different mass and off the
 /// lattice.
 fn scattered(axes: [KnotVector; 2], method: Stabilisation, filled: [usize; 2]) -> Scene<PlaneStrain, 2> {
     let mut scene = Scene::<PlaneStrain, 2>::new(axes, hencky(1.0, 0.3), Regime::QuasiStatic).stabilised(method);
-    let (mut random, mut seeds) = (Random::new(4), Vec::new());
+    let mut random = Random::new(4);
+    let mut seeds = Vec::new();
     for k in 0..9 * filled[0] * filled[1] {
         let lattice = Vector::<2>::new(
             (k % (3 * filled[0])) as f64 / 6.0,
@@ -343,8 +373,10 @@ fn over_pairs_of_cells_the_average_keeps_constants_and_is_symmetric() {
         let ones = means(&scene, &vec![1.0; scene.points.len()]);
         assert!(ones.iter().all(|one| (one - 1.0).abs() <= 1e-14), "order {order}");
         let mut random = Random::new(8);
-        let (a, b) = (random.array(ones.len()), random.array(ones.len()));
-        let (mean_a, mean_b) = (means(&scene, &a), means(&scene, &b));
+        let a = random.array(ones.len());
+        let b = random.array(ones.len());
+        let mean_a = means(&scene, &a);
+        let mean_b = means(&scene, &b);
         let product = |a: &[f64], b: &[f64]| -> f64 {
             a.iter()
                 .zip(b)
@@ -352,7 +384,8 @@ fn over_pairs_of_cells_the_average_keeps_constants_and_is_symmetric() {
                 .map(|((a, b), mass)| a * b * mass)
                 .sum()
         };
-        let (left, right) = (product(&a, &mean_b), product(&mean_a, &b));
+        let left = product(&a, &mean_b);
+        let right = product(&mean_a, &b);
         assert!(
             (left - right).abs() <= 1e-12 * product(&a, &a),
             "order {order}: {left} {right}"

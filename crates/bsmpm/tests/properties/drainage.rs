@@ -10,6 +10,7 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{Model, Regime};
 use bsmpm::parallel::{Halo, LinearSolver, OwnedNodes};
 use bsmpm::points::Points;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::tensor::{Tensor, Vector};
 use bsmpm::water::Water;
 use bsmpm::water::ambient::Ambient;
@@ -113,7 +114,8 @@ fn drainage(scene: &Plane) -> Result<Drainage, StepError> {
     Drainage::at(
         &scene.model,
         &scene.points,
-        ((0.0, DT), Differences::EULER),
+        TimeInterval { start: 0.0, dt: DT },
+        Differences::EULER,
         |_| true,
         no_water,
         &scene.halo(),
@@ -139,7 +141,8 @@ fn a_linear_pressure_gives_the_exact_flux_and_its_moment() {
         let drainage = Drainage::at(
             &scene.model,
             &scene.points,
-            ((0.0, DT), Differences::EULER),
+            TimeInterval { start: 0.0, dt: DT },
+            Differences::EULER,
             |_| true,
             still,
             &scene.halo(),
@@ -147,12 +150,11 @@ fn a_linear_pressure_gives_the_exact_flux_and_its_moment() {
         .expect("permeable");
         // A head of 1.5 m at the end of the step, the still water's pressure taken off; the mean of a rate.
         let [from, to] = slope();
-        let (middle, length) = ((from + to) / 2.0, (to - from).norm());
+        let middle = (from + to) / 2.0;
+        let length = (to - from).norm();
         let excess = |x: &Vector<2>| field(x) - WEIGHT * (1.5 - x[1]) + still(x);
-        let (drained, put_in) = (
-            DT * conductance(slope()) * excess(&middle) * length,
-            DT * 2.5e-7 * length,
-        );
+        let drained = DT * conductance(slope()) * excess(&middle) * length;
+        let put_in = DT * 2.5e-7 * length;
         let [drains, inflows] = drainage.report(&p, &scene.halo());
         let near = |value: f64, exact: f64| {
             println!("order {order}: flux off by {:.1e}", value / exact - 1.0);
@@ -191,7 +193,8 @@ fn the_matrix_is_the_derivative_of_the_terms() {
     let mut matrix = Dense::of_patches(1, grid.lowered_offsets());
     matrix.begin(&vec![true; grid.nodes()]);
     let (p, _) = linear(grid, |x| (7.0 * x[0]).sin() * 1e3 + x[1].powi(2) * 4e3);
-    let (now, none) = (out(grid, &drainage, &p), out(grid, &drainage, &vec![0.0; p.len()]));
+    let now = out(grid, &drainage, &p);
+    let none = out(grid, &drainage, &vec![0.0; p.len()]);
     drainage.assemble(&p, &mut matrix);
     let largest = now.iter().fold(0.0_f64, |most, out| most.max(out.abs()));
     for (node, by_matrix) in matrix.multiply(&p).iter().enumerate() {
@@ -305,7 +308,8 @@ fn water_goes_through_no_surface_without_material_near_nor_one_of_tight_soil() {
     let some = Drainage::at(
         &scene.model,
         &scene.points,
-        ((0.0, DT), Differences::EULER),
+        TimeInterval { start: 0.0, dt: DT },
+        Differences::EULER,
         left,
         no_water,
         &scene.halo(),
@@ -441,7 +445,8 @@ fn several_ranks_make_the_same_of_drains_to_the_bit() {
     let field = |x: &Vector<2>| (3.0 * x[0]).sin() * 1e3 + x[1].powi(2) * 4e3;
     let one = drainage(&whole).expect("permeable");
     let (p, _) = linear(&whole.model.grid, field);
-    let (alone, nodal) = (one.report(&p, &whole.halo()), out(&whole.model.grid, &one, &p));
+    let alone = one.report(&p, &whole.halo());
+    let nodal = out(&whole.model.grid, &one, &p);
     let cuts = [0..4, 4..5, 5..8];
     let meeting = Meeting {
         barrier: Barrier::new(cuts.len()),
@@ -452,7 +457,9 @@ fn several_ranks_make_the_same_of_drains_to_the_bit() {
     std::thread::scope(|scope| {
         for (number, columns) in cuts.into_iter().enumerate() {
             let (model, points) = part(&whole, columns);
-            let (meeting, sums, alone) = (&meeting, &sums, &alone);
+            let meeting = &meeting;
+            let sums = &sums;
+            let alone = &alone;
             scope.spawn(move || {
                 let halo = Rank {
                     number,
@@ -462,7 +469,8 @@ fn several_ranks_make_the_same_of_drains_to_the_bit() {
                 let drainage = Drainage::at(
                     &model,
                     &points,
-                    ((0.0, DT), Differences::EULER),
+                    TimeInterval { start: 0.0, dt: DT },
+                    Differences::EULER,
                     |_| true,
                     no_water,
                     &halo,

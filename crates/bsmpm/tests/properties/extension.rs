@@ -10,6 +10,7 @@ use bsmpm::grid::{Grid, Shape};
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
 use bsmpm::nodal::Nodal;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::solve::linearised::Linearised;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::nodes::Nodes;
@@ -64,9 +65,18 @@ fn close(found: &[f64], expected: &[f64], tolerance: f64) {
 
 fn ties_keep_what_they_must<K: Kinematics<D>, const D: usize>(order: usize) {
     let scene = cut_block::<K, D>(order);
-    let (model, grid, halo) = (&scene.model, &scene.model.grid, scene.halo());
+    let model = &scene.model;
+    let grid = &scene.model.grid;
+    let halo = scene.halo();
     let shape = Shape::at(grid, &scene.points).unwrap();
-    let nodes = Nodes::map(model, &shape, &scene.points, (0.0, 1.0), &halo).expect("no loads");
+    let nodes = Nodes::map(
+        model,
+        &shape,
+        &scene.points,
+        TimeInterval { start: 0.0, dt: 1.0 },
+        &halo,
+    )
+    .expect("no loads");
     let extension = nodes.extension.as_ref().expect("cut cells");
     assert!(
         extension.tied > 0 && extension.untied == 0,
@@ -75,7 +85,8 @@ fn ties_keep_what_they_must<K: Kinematics<D>, const D: usize>(order: usize) {
         extension.untied
     );
     let mut random = Random::new(5);
-    let (constant, slope) = (random.vector(), std::array::from_fn(|_| random.vector()));
+    let constant = random.vector();
+    let slope = std::array::from_fn(|_| random.vector());
     let expected = affine(grid, &constant, &slope);
     let inner = |u: &[f64]| -> Vec<f64> {
         u.iter()
@@ -112,10 +123,18 @@ fn ties_keep_linear_fields_forces_moments_and_work() {
 
 /// The largest difference between a reduced matrix and the derivative of tied forces, over the largest force.
 fn matrix_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, is_general: bool) -> f64 {
-    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
-    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let attachments = StripAttachments::at(
+        &[],
+        &points.surface,
+        &model.grid,
+        &nodes.free,
+        TimeInterval { start: 0.0, dt: 1.0 },
+    );
     let problem = Problem {
         model,
         shape: &shape,
@@ -177,10 +196,18 @@ fn the_reduced_matrix_is_the_derivative_of_elastic_material() {
 
 /// Condition of the stiffness without any background, as the solvers get it: within the usual pattern.
 fn condition(scene: &Scene<PlaneStrain, 2>) -> f64 {
-    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
-    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let attachments = StripAttachments::at(
+        &[],
+        &points.surface,
+        &model.grid,
+        &nodes.free,
+        TimeInterval { start: 0.0, dt: 1.0 },
+    );
     let problem = Problem {
         model,
         shape: &shape,

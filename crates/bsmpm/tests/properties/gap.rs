@@ -40,7 +40,9 @@ fn forgotten(points: &Points<2>, p: usize) -> f64 {
 #[test]
 fn no_volume_is_forgotten_where_gaps_close() {
     let mut scene = thrown(Separation::Closing);
-    let (mut worst, mut most, mut left) = (0.0_f64, 0, 0);
+    let mut worst = 0.0_f64;
+    let mut most = 0;
+    let mut left = 0;
     scene.march(2e-3, 0.5, |points, _| {
         let gap = points.gap.as_ref().expect("a material closes its gaps");
         assert!((0..points.len()).all(|p| gap[p] >= 0.0 && (gap[p] == 0.0 || points.sigma.at(p).0 == [0.0; 6])));

@@ -10,6 +10,7 @@ use bsmpm::observe::noise::relative_pressure_noise;
 use bsmpm::observe::quadrature::{Defect, compression, defect};
 use bsmpm::parallel::Halo;
 use bsmpm::quadrature;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::smooth;
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
@@ -95,13 +96,14 @@ fn stirred<K: Kinematics<D>, const D: usize>() -> Scene<K, D> {
 fn weights<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> Vec<f64> {
     let Model { grid, boundary, .. } = &scene.model;
     let shape = Shape::at(grid, &scene.points).unwrap();
-    quadrature::fitted::<K, D>((grid, boundary), &shape, &scene.points, &scene.halo())
+    quadrature::fitted::<K, D>(grid, boundary, &shape, &scene.points, &scene.halo())
 }
 
 /// Largest relative error of the integrals of the lower splines that only reach cells of which `inside` holds, with the
 /// points' own volumes and the fitted ones.
 fn errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, inside: impl Fn(usize, usize) -> bool) -> [f64; 2] {
-    let (grid, points) = (&scene.model.grid, &scene.points);
+    let grid = &scene.model.grid;
+    let points = &scene.points;
     let lower = Shape::at(grid, points).unwrap().lowered(grid, points);
     // Function i of degree q - 1 reaches the cells i - (q - 1) to i.
     let reached = |at: usize| at.saturating_sub(grid.order() - 1)..=at;
@@ -123,7 +125,8 @@ fn fits_inside_and_only_there<K: Kinematics<D>, const D: usize>() {
     );
     println!("D = {D}: {own:e} {fitted:e}");
     assert!(own >= 0.05 && fitted <= 0.01 * own, "{own:e} {fitted:e}");
-    let (points, weights) = (&scene.points, weights(&scene));
+    let points = &scene.points;
+    let weights = weights(&scene);
     let factors = || {
         weights
             .iter()
@@ -180,7 +183,8 @@ fn faces_of_the_grid_that_hold_nothing_are_surfaces() {
             .map(|(w, v)| (w / v - 1.0).abs())
             .fold(0.0, f64::max)
     };
-    let (held, free) = (block(true), block(false));
+    let held = block(true);
+    let free = block(false);
     println!("largest change of a volume: {held} held, {free} free");
     assert!(held >= 0.3 && free <= 0.12);
 }
@@ -212,7 +216,7 @@ fn compression_is_that_of_each_material() {
 fn the_noise_of_the_pressure_has_no_unit() {
     let mut scene = block::<PlaneStrain, 2>(2, 0..6);
     let noise = |scene: &Scene<PlaneStrain, 2>| {
-        relative_pressure_noise(&scene.model.grid, &scene.points, (Weighting::Mass, 0.0), &scene.halo()).unwrap()
+        relative_pressure_noise(&scene.model.grid, &scene.points, Weighting::Mass, 0.0, &scene.halo()).unwrap()
     };
     assert_eq!(noise(&scene).about_plane, 0.0);
     // A checkerboard of points: 1 +- 0.5, times any stress.
@@ -246,13 +250,22 @@ fn a_pass_of_smoothing_has_the_variance_of_its_formula() {
             1.0,
             |x| x * 0.0,
         );
-        let (points, halo) = (&scene.points, scene.halo());
+        let points = &scene.points;
+        let halo = scene.halo();
         let shape = Shape::at(&scene.model.grid, points).unwrap();
-        let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 1.0), &halo).unwrap();
+        let nodes = Nodes::map(
+            &scene.model,
+            &shape,
+            points,
+            TimeInterval { start: 0.0, dt: 1.0 },
+            &halo,
+        )
+        .unwrap();
         let square = |p: usize| points.x[p][0].powi(2);
         let spread = nodes.average(
             &scene.model,
-            (&shape, points),
+            &shape,
+            points,
             &halo,
             |p| [square(p)],
             |p, [mean]| mean - square(p),

@@ -3,6 +3,7 @@
 use crate::support::random::Random;
 use crate::support::scene::hencky;
 use bsmpm::kinematics::{Axisymmetric, Gradient, Kinematics, PlaneStrain, Solid};
+use bsmpm::material::Moduli;
 use bsmpm::tensor::{Square, Symmetric, Tensor, Vector};
 use nalgebra::{Rotation3, SMatrix, Vector3};
 
@@ -28,10 +29,12 @@ fn f_bar_with_ratio_one_leaves_the_increment_bit_by_bit() {
 
 #[test]
 fn f_bar_gives_the_wanted_determinant_and_in_plane_leaves_the_third_direction() {
-    let (mut random, mut worst) = (Random::new(2), 0.0_f64);
+    let mut random = Random::new(2);
+    let mut worst = 0.0_f64;
     for _ in 0..1000 {
         let ratio = 2.0_f64.powf(random.signed());
-        let (plane, solid) = (in_plane(&mut random), Tensor::identity() + random.square::<3>() * 0.3);
+        let plane = in_plane(&mut random);
+        let solid = Tensor::identity() + random.square::<3>() * 0.3;
         let pairs = [
             (plane, PlaneStrain::dilate(&plane, ratio)),
             (plane, Axisymmetric::dilate(&plane, ratio)),
@@ -49,7 +52,8 @@ fn f_bar_gives_the_wanted_determinant_and_in_plane_leaves_the_third_direction() 
 
 #[test]
 fn a_rigid_rotation_keeps_the_principal_stress_and_turns_the_stress() {
-    let (mut random, law) = (Random::new(3), hencky(1000.0, 0.3));
+    let mut random = Random::new(3);
+    let law = hencky(1000.0, 0.3);
     let mut worst = 0.0_f64;
     for _ in 0..200 {
         let b = b_of(&(Tensor::identity() + random.square::<3>() * 0.2));
@@ -81,14 +85,18 @@ fn ten_turns_in_steps_of_a_degree_keep_the_kirchhoff_stress() {
 
 #[test]
 fn plane_strain_is_the_solid_without_out_of_plane_displacement() {
-    let (mut random, mut b_e, mut flux) = (Random::new(4), 0.0_f64, 0.0_f64);
+    let mut random = Random::new(4);
+    let mut b_e = 0.0_f64;
+    let mut flux = 0.0_f64;
     for _ in 0..200 {
         let dF = in_plane(&mut random);
         let b = b_of(&in_plane(&mut random));
-        let (plane, solid) = (PlaneStrain::push_forward(&dF, &b), Solid::push_forward(&dF, &b));
+        let plane = PlaneStrain::push_forward(&dF, &b);
+        let solid = Solid::push_forward(&dF, &b);
         b_e = b_e.max((plane.full() - solid.full()).amax());
         let tau = hencky(1.0, 0.3).respond(&solid, &[]).unwrap().tau();
-        let (plane, solid) = (PlaneStrain::flux(&tau, &dF), Solid::flux(&tau, &dF));
+        let plane = PlaneStrain::flux(&tau, &dF);
+        let solid = Solid::flux(&tau, &dF);
         let corner = solid.fixed_view::<2, 2>(0, 0);
         flux = flux.max((plane - corner).amax() / plane.amax());
     }
@@ -97,7 +105,7 @@ fn plane_strain_is_the_solid_without_out_of_plane_displacement() {
 }
 
 /// lambda tr(e) I + 2 mu e for the symmetric gradient of a displacement along `a` of node gradient `g`.
-fn elastic_force<const D: usize>(moment: &Square<D>, (lambda, mu): (f64, f64)) -> Square<D> {
+fn elastic_force<const D: usize>(moment: &Square<D>, lambda: f64, mu: f64) -> Square<D> {
     // k_ij = sum D_ikjl g_k h_l with D_ikjl = lambda d_ik d_jl + mu (d_ij d_kl + d_il d_kj) and T = g (x) h.
     Square::from_fn(|i, j| {
         let trace = if i == j { mu * moment.trace() } else { 0.0 };
@@ -108,17 +116,20 @@ fn elastic_force<const D: usize>(moment: &Square<D>, (lambda, mu): (f64, f64)) -
 #[test]
 fn the_stiffness_of_a_node_pair_is_the_isotropic_one() {
     let mut random = Random::new(6);
-    let lame = (3.0, 2.0);
-    let (plane, solid) = (random.square::<2>(), random.square::<3>());
-    assert!((PlaneStrain::stiffness(&plane, lame) - elastic_force(&plane, lame)).amax() <= 1e-15);
-    assert!((Solid::stiffness(&solid, lame) - elastic_force(&solid, lame)).amax() <= 2e-15);
+    let moduli = Moduli { lambda: 3.0, mu: 2.0 };
+    let plane = random.square::<2>();
+    let solid = random.square::<3>();
+    assert!((PlaneStrain::stiffness(&plane, moduli) - elastic_force(&plane, 3.0, 2.0)).amax() <= 1e-15);
+    assert!((Solid::stiffness(&solid, moduli) - elastic_force(&solid, 3.0, 2.0)).amax() <= 2e-15);
 }
 
 /// Every unit displacement of two nodes against lambda tr(e) I + 2 mu e of the tensors that their gradients become.
 #[test]
 fn axisymmetric_forces_are_the_adjoint_of_axisymmetric_gradients() {
-    let (mut random, mut worst) = (Random::new(7), 0.0_f64);
-    let (lambda, mu) = (3.0, 2.0);
+    let mut random = Random::new(7);
+    let mut worst = 0.0_f64;
+    let lambda = 3.0;
+    let mu = 2.0;
     for _ in 0..100 {
         let x = Vector::<2>::new(1.5 + random.signed(), random.signed());
         let slopes = [0, 1].map(|_| Axisymmetric::slope::<f64>(|| random.signed(), Vector::repeat(0.7), &x));
@@ -127,7 +138,7 @@ fn axisymmetric_forces_are_the_adjoint_of_axisymmetric_gradients() {
             gradient.set_row(component, &slopes[node].transpose());
             gradient
         };
-        let stiffness = Axisymmetric::stiffness(&(slopes[0] * slopes[1].transpose()), (lambda, mu));
+        let stiffness = Axisymmetric::stiffness(&(slopes[0] * slopes[1].transpose()), Moduli { lambda, mu });
         for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let strain = Symmetric::of(&Axisymmetric::gradient(&of(1, j))).full();
             let stress = Tensor::identity() * (lambda * strain.trace()) + strain * (2.0 * mu);

@@ -8,6 +8,7 @@ use bsmpm::lanes::{self, InLanes, LANES, Simd};
 use bsmpm::material::{Elastic, Material, MohrCoulomb, VonMises};
 use bsmpm::model::{Model, Regime};
 use bsmpm::points::Points;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::trial::Trial;
@@ -68,9 +69,11 @@ fn compared<K: Kinematics<D>, const D: usize>(method: Stabilisation, seed: u64) 
             .for_each(|component| *component += 0.01 * random.signed());
         points.b_e.set(p, b_e);
     }
-    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
-    let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
+    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
     let mut u: Vec<f64> = (0..model.grid.nodes() * D).map(|_| 2e-3 * random.signed()).collect();
     u[0] = 3.0; // the points of the first cell
     let trial = Trial::of(model, &shape, &nodes, points, &u, &halo);

@@ -11,6 +11,7 @@ use bsmpm::material::{Branch, CamClay, Elastic, Law, Material, MohrCoulomb, Sepa
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::quadrature::Quadrature;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::solve::linearised::Linearised;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::nodes::Nodes;
@@ -56,14 +57,17 @@ fn loaded<K: Kinematics<D>, const D: usize>(method: Stabilisation, regime: Regim
 
 /// Largest distance between K v and the central difference of the forces, over the largest force; points that yield.
 fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64, usize) {
-    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
+    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
     let attachments = StripAttachments::at(
         &model.boundary.strips,
         &points.surface,
-        (&model.grid, &nodes.free),
-        (0.0, 0.01),
+        &model.grid,
+        &nodes.free,
+        TimeInterval { start: 0.0, dt: 0.01 },
     );
     let pieces = Problem {
         model,
@@ -82,7 +86,8 @@ fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64,
             .map(|(value, &free)| if free { size * value } else { 0.0 })
             .collect()
     };
-    let (u, v) = (free(0.01), free(1.0));
+    let u = free(0.01);
+    let v = free(1.0);
     let residual = Residual::of(&pieces, &u);
     assert!(residual.balance.is_sound());
     let yielding = (0..points.len()).filter(|&p| {
@@ -98,7 +103,8 @@ fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64,
         let u: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + by * v).collect();
         Residual::of(&pieces, &u).balance.f_oob
     };
-    let (after, before) = (force(step), force(-step));
+    let after = force(step);
+    let before = force(-step);
     let size = product.iter().fold(0.0_f64, |size, force| size.max(force.abs()));
     let error = |c: usize| (product[c] + (after[c] - before[c]) / (2.0 * step)).abs() / size;
     ((0..u.len()).map(error).fold(0.0, f64::max), yielding.count())
@@ -108,10 +114,8 @@ fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64,
 fn the_product_is_the_derivative_of_the_forces() {
     for method in METHODS {
         for regime in [Regime::QuasiStatic, Regime::Dynamic] {
-            let (plane, solid) = (
-                loaded::<PlaneStrain, 2>(method, regime),
-                loaded::<Solid, 3>(method, regime),
-            );
+            let plane = loaded::<PlaneStrain, 2>(method, regime);
+            let solid = loaded::<Solid, 3>(method, regime);
             let axisymmetric = loaded::<Axisymmetric, 2>(method, regime);
             let found = [
                 (product_error(&plane), plane.points.len()),
@@ -322,10 +326,18 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
             .b_e
             .set(p, Symmetric([1.0 + xx, 1.0 + yy, 1.0 + zz, xy, 0.0, 0.0]));
     }
-    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
-    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
+    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
+    let attachments = StripAttachments::at(
+        &[],
+        &points.surface,
+        &model.grid,
+        &nodes.free,
+        TimeInterval { start: 0.0, dt: 0.01 },
+    );
     let pieces = Problem {
         model,
         shape: &shape,
@@ -341,7 +353,8 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
             .map(|&free| if free { size * random.signed() } else { 0.0 })
             .collect()
     };
-    let (u, v) = (free(), free());
+    let u = free();
+    let v = free();
     let at = |s: f64| Residual::of(&pieces, &u.iter().zip(&v).map(|(u, v)| u + s * v).collect::<Vec<_>>());
     let regions = |residual: &Residual<PlaneStrain, 2>| -> Vec<Branch> {
         (0..points.len())

@@ -41,17 +41,16 @@ fn a_linear_problem_takes_one_direction_more_than_it_has_unknowns_whatever_is_fa
     let unknowns = free().iter().filter(|free| **free).count();
     for seed in 0..10 {
         let mut random = Random::new(seed);
-        let (K, K_0) = (matrix(&mut random, 2.0), matrix(&mut random, 0.5));
+        let K = matrix(&mut random, 2.0);
+        let K_0 = matrix(&mut random, 0.5);
         let halo = Alone { nodes: NODES };
         let mut solver = Skyline::of_patches(2, (0..NODES).collect());
         solver.begin(&free());
         solver.add(0, K_0.as_slice());
         solver.finish(Symmetry::Definite).unwrap();
         let mut secants = Secants::new::<2>(QuasiNewton::Multisecant, &free(), &halo);
-        let (b, mut u) = (
-            zero_where_held(&DVector::from_vec(random.array(SIZE))),
-            DVector::zeros(SIZE),
-        );
+        let b = zero_where_held(&DVector::from_vec(random.array(SIZE)));
+        let mut u = DVector::zeros(SIZE);
         let mut norms = vec![b.norm()];
         for _ in 0..=unknowns {
             let f = zero_where_held(&(&b - &K * &u));
@@ -63,7 +62,8 @@ fn a_linear_problem_takes_one_direction_more_than_it_has_unknowns_whatever_is_fa
             u += du;
             norms.push(zero_where_held(&(&b - &K * &u)).norm());
         }
-        let (first, last) = (norms[0], norms[norms.len() - 1]);
+        let first = norms[0];
+        let last = norms[norms.len() - 1];
         assert!(last <= 1e-8 * first && norms[2] > 1e-3 * first, "{norms:?}");
     }
 }
@@ -74,8 +74,10 @@ fn packed_vectors_have_the_products_of_nodal_ones_and_come_back() {
     let halo = Alone { nodes: NODES };
     let unknowns = Unknowns::of::<2>(&free(), &halo);
     let vector = |random: &mut Random| zero_where_held(&DVector::from_vec(random.array(SIZE)));
-    let (a, b) = (vector(&mut random), vector(&mut random));
-    let (packed_a, packed_b) = (unknowns.packed(a.as_slice()), unknowns.packed(b.as_slice()));
+    let a = vector(&mut random);
+    let b = vector(&mut random);
+    let packed_a = unknowns.packed(a.as_slice());
+    let packed_b = unknowns.packed(b.as_slice());
     assert_eq!(packed_a.len(), free().iter().filter(|free| **free).count());
     let whole = dots(&halo, 2, &[(a.as_slice(), b.as_slice())])[0];
     assert!((unknowns.dots([&packed_a], &packed_b)[0].value() - whole).abs() <= 1e-14);
@@ -106,7 +108,8 @@ impl Halo for Between {
 #[test]
 fn ghosts_do_not_count_twice() {
     let mut random = Random::new(5);
-    let (a, b) = (random.array(SIZE), random.array(SIZE));
+    let a = random.array(SIZE);
+    let b = random.array(SIZE);
     let unknowns = Unknowns::of::<2>(&free(), &Between);
     let own: f64 = (0..4).chain(6..10).filter(|&c| free()[c]).map(|c| a[c] * b[c]).sum();
     assert_eq!(

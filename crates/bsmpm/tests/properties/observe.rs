@@ -86,11 +86,12 @@ fn the_projected_pressure_keeps_what_is_uniform_and_damps_what_alternates() {
 #[test]
 fn numbers_of_a_known_block() {
     let scene = block::<PlaneStrain, 2>(2);
-    let (points, halo) = (&scene.points, scene.halo());
+    let points = &scene.points;
+    let halo = scene.halo();
     assert!((mass(points, &Part::Whole, &halo) - 3.0 * 4.0).abs() <= 1e-14);
     assert_eq!(farthest(points, &Part::Whole, 0, &halo), 2.375);
     assert_eq!(front(&scene.model, points, &halo), 2.375);
-    assert!((percentile(points, &Part::Whole, (1, 50.0), &halo) - 1.375).abs() <= 1e-12); // half of the rows lie below and on it
+    assert!((percentile(points, &Part::Whole, 1, 50.0, &halo) - 1.375).abs() <= 1e-12); // half of the rows lie below and on it
     let id = nearest(points, &[0.7, 0.6].into(), |_| true, &halo).unwrap();
     let found = points.id.iter().position(|&other| other == id).unwrap();
     assert_eq!(points.x[found], Vector::from([0.625, 0.625]));
@@ -105,13 +106,12 @@ fn totals_are_those_of_a_material_or_of_all() {
     let scene = Scene::<PlaneStrain, 2>::new(axes, hencky(1.0, 0.3), Regime::Dynamic)
         .body([1..5, 1..5], 2, 3.0, spin)
         .with(hencky(1.0, 0.3), right);
-    let (points, halo) = (&scene.points, scene.halo());
+    let points = &scene.points;
+    let halo = scene.halo();
     let of = |part: &Part| {
         let middle = centre_of_mass(points, part, &halo).unwrap();
-        let (p, spin) = (
-            momentum(points, part, &halo),
-            angular_momentum(points, part, &middle, &halo)[2],
-        );
+        let p = momentum(points, part, &halo);
+        let spin = angular_momentum(points, part, &middle, &halo)[2];
         (mass(points, part, &halo), middle, p, spin)
     };
     // A rectangle of a x b cells of points has m (a^2 + b^2 - 2/n^2)/12 about its middle, its points at theirs.
@@ -132,7 +132,9 @@ fn totals_are_those_of_a_material_or_of_all() {
         ),
     ];
     for (part, m, x, a) in &parts {
-        let (m, x, a) = (*m, *x, *a);
+        let m = *m;
+        let x = *x;
+        let a = *a;
         let (mass, middle, p, spin) = of(part);
         close(mass, m);
         close((middle - Vector::from([x, 1.5])).norm(), 0.0);
@@ -149,7 +151,7 @@ fn totals_are_those_of_a_material_or_of_all() {
         );
         // The farthest point is half a spacing within.
         close(farthest(points, part, 0, &halo), x + 0.5 * a - 0.125);
-        close(percentile(points, part, (0, 50.0), &halo), x - 0.125);
+        close(percentile(points, part, 0, 50.0, &halo), x - 0.125);
         close(heave(points, part, &halo), 0.0);
     }
     let nowhere = Part::Within(Box::new(Part::Material(1)), [[0.0; 3], [1.5, 9.0, 0.0]]);
@@ -179,10 +181,8 @@ fn a_wall_in_contact_has_the_thrust_of_the_edge_that_a_fixed_base_holds() {
         friction: 0.0,
         lifts: true,
     };
-    let (rolls, touches) = (
-        thrust(Support::roller(0, true)),
-        thrust(Support::contact(0, true, contact)),
-    );
+    let rolls = thrust(Support::roller(0, true));
+    let touches = thrust(Support::contact(0, true, contact));
     println!("{rolls} and {touches}");
     assert!(rolls < 0.0 && (touches / rolls - 1.0).abs() < 1e-6);
 }
@@ -200,7 +200,8 @@ fn reactions_sum_to_the_weight_also_where_two_supports_hold_the_same_node() {
     .gravity(1.0, 0.0)
     .solved(1.0, 1.0);
     let reactions = &steps[0].report.reactions;
-    let (sideways, upwards) = (reactions[0][0] + reactions[1][0], reactions[0][1] + reactions[1][1]);
+    let sideways = reactions[0][0] + reactions[1][0];
+    let upwards = reactions[0][1] + reactions[1][1];
     println!("reactions {reactions:?}, weight {}", 2.0 * 2.25);
     assert!(sideways.abs() <= 1e-9 && (upwards / (2.0 * 2.25) - 1.0).abs() <= 1e-9);
 }

@@ -63,7 +63,8 @@ fn loose_points_are_no_front_and_less_than_half_a_cell_is_none() {
 #[test]
 fn a_place_between_the_points_moves_with_an_affine_motion_exactly() {
     let mut scene = step();
-    let (turn, shift) = ([[0.6, -0.9], [0.7, 1.2]], Vector::from([0.3, -0.2]));
+    let turn = [[0.6, -0.9], [0.7, 1.2]];
+    let shift = Vector::from([0.3, -0.2]);
     let to = |x: Vector<2>| Vector::from(turn.map(|row| row[0] * x[0] + row[1] * x[1])) + shift;
     let points = &mut scene.points;
     for p in 0..points.len() {

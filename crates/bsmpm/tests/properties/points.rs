@@ -127,11 +127,10 @@ fn bytes_of(numbers: &[f64]) -> Vec<u8> {
 fn rows_are_whole_tensors_and_a_plane_refuses_what_leaves_it() {
     let F = Tensor::new(1.1, 0.2, 0.0, 0.3, 1.4, 0.0, 0.0, 0.0, 1.5);
     let sigma = Symmetric([-1.0, -2.0, -3.0, 0.4, 0.0, 0.0]);
-    let (plane, solid) = (
-        Packed::<2, Tensor>::from_iter([F; 3]),
-        Packed::<3, Tensor>::from_iter([F; 3]),
-    );
-    let (mut of_plane, mut of_solid) = (Vec::new(), Vec::new());
+    let plane = Packed::<2, Tensor>::from_iter([F; 3]);
+    let solid = Packed::<3, Tensor>::from_iter([F; 3]);
+    let mut of_plane = Vec::new();
+    let mut of_solid = Vec::new();
     plane.put(1, &mut of_plane);
     solid.put(1, &mut of_solid);
     assert_eq!(
@@ -169,7 +168,8 @@ fn rows_are_whole_tensors_and_a_plane_refuses_what_leaves_it() {
 #[test]
 fn quasi_static_points_carry_no_motion() {
     let of = |regime| varied::<PlaneStrain, 2>(regime).points;
-    let (mut dynamic, mut quasi_static) = (of(Regime::Dynamic), of(Regime::QuasiStatic));
+    let mut dynamic = of(Regime::Dynamic);
+    let mut quasi_static = of(Regime::QuasiStatic);
     (quasi_static.dilation, dynamic.gap) = (None, None);
     assert!(quasi_static.motion.is_none());
     assert_eq!(dynamic.bytes() - quasi_static.bytes(), 4 * 8);

@@ -7,6 +7,7 @@ use bsmpm::grid::Shape;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::trial::Trial;
@@ -25,7 +26,8 @@ fn flight<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisation,
         .body(std::array::from_fn(|_| 1..4), 2, 1.0, |_| velocity)
         .stabilised(method);
     let dt = 0.4 / steps as f64;
-    let (mut change, mut stress) = (0.0_f64, 0.0_f64);
+    let mut change = 0.0_f64;
+    let mut stress = 0.0_f64;
     let mut last = vec![velocity; scene.points.len()];
     scene.march(dt, 0.4, |points, _| {
         let v = &points.motion.as_ref().unwrap().v;
@@ -78,11 +80,10 @@ fn free_block(v: Vector<2>) -> Scene<PlaneStrain, 2> {
 #[test]
 fn the_guess_is_scaled_to_the_step_so_that_free_flight_needs_no_iteration_after_the_first() {
     let mut scene = free_block(Vector::from([1.0, -0.5]));
-    let (halo, schedule) = (scene.halo(), Schedule::new(0.005, 0.02, [0.012, 0.013]));
-    let (mut solver, mut stepper) = (
-        Skyline::new(&scene.model.grid),
-        Stepper::new(scene.model.grid.nodes() * 2),
-    );
+    let halo = scene.halo();
+    let schedule = Schedule::new(0.005, 0.02, [0.012, 0.013]);
+    let mut solver = Skyline::new(&scene.model.grid);
+    let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     let mut iterations = Vec::new();
     while let Some(step) = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
         iterations.push(step.unwrap().report.iterations);
@@ -123,9 +124,17 @@ fn a_rigidly_rotating_field_turns_the_stress_of_every_point() {
     let mut worst = 0.0_f64;
     for method in METHODS {
         scene.model.stabilisation = method;
-        let (points, halo) = (&scene.points, scene.halo());
+        let points = &scene.points;
+        let halo = scene.halo();
         let shape = Shape::at(&scene.model.grid, points).unwrap();
-        let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
+        let nodes = Nodes::map(
+            &scene.model,
+            &shape,
+            points,
+            TimeInterval { start: 0.0, dt: 1.0 },
+            &halo,
+        )
+        .expect("no loads");
         let trial = Trial::of(&scene.model, &shape, &nodes, points, &u, &halo);
         let before = scene.model.materials[0].respond(&b_e, &[]).unwrap();
         for p in 0..points.len() {

@@ -29,7 +29,8 @@ fn repeated(copies: usize) -> Vec<f64> {
 fn a_breakpoint_of_multiplicity_m_leaves_q_less_m_derivatives_continuous() {
     // Behind and before a knot, by how much the functions and their slopes jump, in units of the cell.
     let jumps = |axis: &KnotVector, x: f64| {
-        let (before, after) = (all(axis, x.next_down()), all(axis, x));
+        let before = all(axis, x.next_down());
+        let after = all(axis, x);
         let largest = |of: fn(&(f64, f64)) -> f64| {
             before
                 .iter()
@@ -96,12 +97,14 @@ fn all(axis: &KnotVector, x: f64) -> Vec<(f64, f64)> {
 /// The plain recursion of Eqs 4, 5 for one function; 0/0 counts as 0, the last span is closed.
 fn cox_de_boor(axis: &KnotVector, i: usize, degree: usize, x: f64) -> f64 {
     if degree == 0 {
-        let (from, to) = (axis.knot(i), axis.knot(i + 1));
+        let from = axis.knot(i);
+        let to = axis.knot(i + 1);
         let closing = x == axis.length() && to == x && from < to;
         return if (from <= x && x < to) || closing { 1.0 } else { 0.0 };
     }
     let part = |numerator: f64, width: f64, N: f64| if width > 0.0 { numerator / width * N } else { 0.0 };
-    let (left, right) = (axis.knot(i), axis.knot(i + degree + 1));
+    let left = axis.knot(i);
+    let right = axis.knot(i + degree + 1);
     part(
         x - left,
         axis.knot(i + degree) - left,
@@ -141,7 +144,8 @@ fn worst(error: impl Fn(&KnotVector, f64) -> f64) -> f64 {
 fn functions_sum_to_one_and_their_derivatives_to_zero() {
     let unity = worst(|axis, x| (all(axis, x).iter().map(|f| f.0).sum::<f64>() - 1.0).abs());
     let slope = worst(|axis, x| {
-        let (found, scale) = (all(axis, x), axis.smallest_cell());
+        let found = all(axis, x);
+        let scale = axis.smallest_cell();
         found.iter().map(|f| f.1).sum::<f64>().abs() * scale
     });
     println!("partition of unity {unity:.1e}, sum of slopes x smallest cell {slope:.1e}");
@@ -178,10 +182,13 @@ fn derivatives_agree_with_central_differences_inside_a_span() {
         let axis = KnotVector::graded(&[0.0, 0.5, 1.25, 2.0], order).unwrap();
         let mut random = Random::new(order as u64);
         for _ in 0..100 {
-            let (cell, step) = ((random.unit() * 3.0) as usize, 1e-5);
-            let (lower, upper) = (axis.breakpoint(cell) + step, axis.breakpoint(cell + 1) - step);
+            let cell = (random.unit() * 3.0) as usize;
+            let step = 1e-5;
+            let lower = axis.breakpoint(cell) + step;
+            let upper = axis.breakpoint(cell + 1) - step;
             let x = lower + random.unit() * (upper - lower);
-            let (before, after) = (all(&axis, x - step), all(&axis, x + step));
+            let before = all(&axis, x - step);
+            let after = all(&axis, x + step);
             for (i, (_, dN)) in all(&axis, x).into_iter().enumerate() {
                 let difference = (after[i].0 - before[i].0) / (2.0 * step);
                 assert!(

@@ -71,7 +71,8 @@ fn whatever_is_cut_every_wanted_time_is_hit_exactly() {
 fn nominal_ends_of_a_schedule_ascend_and_are_a_function_of_time_alone() {
     let mut random = Random::new(1);
     for _ in 0..200 {
-        let (dt, end) = (0.01 + random.unit(), 0.5 + 10.0 * random.unit());
+        let dt = 0.01 + random.unit();
+        let end = 0.5 + 10.0 * random.unit();
         let wanted: Vec<f64> = (0..4).map(|_| 12.0 * random.unit()).collect();
         let schedule = Schedule::new(dt, end, wanted.clone());
         let stations: Vec<f64> = std::iter::successors(schedule.next(0.0), |&t| schedule.next(t)).collect();
@@ -270,7 +271,8 @@ fn a_step_that_is_given_up_on_request_has_never_been() {
         Nonlinear::QuasiNewton(QuasiNewton::Broyden),
         Nonlinear::Newton,
     ] {
-        let (schedule, mut whole) = (Schedule::new(1.0, 2.0, []), block(Regime::Dynamic));
+        let schedule = Schedule::new(1.0, 2.0, []);
+        let mut whole = block(Regime::Dynamic);
         whole.model.nonlinear = nonlinear;
         let mut given_up = 0;
         for interrupted_in in 1..40 {
@@ -315,7 +317,8 @@ fn a_converged_step_that_is_rejected_has_never_been() {
         Nonlinear::QuasiNewton(QuasiNewton::Broyden),
         Nonlinear::Newton,
     ] {
-        let (schedule, mut scene) = (Schedule::new(1.0, 4.0, []), block(Regime::Dynamic));
+        let schedule = Schedule::new(1.0, 4.0, []);
+        let mut scene = block(Regime::Dynamic);
         scene.model.nonlinear = nonlinear;
         let mut expected = scene.clone();
         let halo = impatient(&scene, usize::MAX);
@@ -353,9 +356,10 @@ fn a_start_that_is_given_up_on_request_leaves_the_points_as_they_are() {
     let before = scene.points.clone();
     let mut given_up = 0;
     for interrupted_in in 1..20 {
-        let (halo, mut solver) = (impatient(&scene, interrupted_in), Skyline::new(&scene.model.grid));
+        let halo = impatient(&scene, interrupted_in);
+        let mut solver = Skyline::new(&scene.model.grid);
         let mut points = before.clone();
-        match initial::set_elastic(&scene.model, &mut points, (&halo, &mut solver)) {
+        match initial::set_elastic(&scene.model, &mut points, &halo, &mut solver) {
             Ok(()) => assert_ne!(points, before),
             Err(error) => {
                 assert_eq!(error, StepError::Interrupted);

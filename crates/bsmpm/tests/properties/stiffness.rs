@@ -9,6 +9,7 @@ use bsmpm::grid::Shape;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::solve::linearised::Linearised;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::nodes::Nodes;
@@ -19,15 +20,17 @@ use bsmpm::tensor::Vector;
 
 /// Nearly incompressible soil on a fixed base, without stress, its points off the lattice.
 fn body<K: Kinematics<D>, const D: usize>(order: usize, cohesion: f64, regime: Regime) -> Scene<K, D> {
-    averaged(Stabilisation::ConsistentFBar, (4, 3), (order, cohesion), regime)
+    averaged(Stabilisation::ConsistentFBar, 4, 3, order, cohesion, regime)
 }
 
 /// The same, averaged over pairs of cells where none is cut: at one end, as it fills the grid's height.
 fn paired<K: Kinematics<D>, const D: usize>(order: usize, cohesion: f64, regime: Regime) -> Scene<K, D> {
     averaged(
         Stabilisation::SubgridFBar,
-        (if D == 2 { 10 } else { 7 }, 2),
-        (order, cohesion),
+        if D == 2 { 10 } else { 7 },
+        2,
+        order,
+        cohesion,
         regime,
     )
 }
@@ -36,8 +39,10 @@ fn paired<K: Kinematics<D>, const D: usize>(order: usize, cohesion: f64, regime:
 /// fills two.
 fn averaged<K: Kinematics<D>, const D: usize>(
     method: Stabilisation,
-    (length, width): (usize, usize),
-    (order, cohesion): (usize, f64),
+    length: usize,
+    width: usize,
+    order: usize,
+    cohesion: f64,
     regime: Regime,
 ) -> Scene<K, D> {
     let soil = MohrCoulomb::new(
@@ -81,10 +86,18 @@ fn products<K: Kinematics<D>, const D: usize>(
     size: f64,
     kind: Kind,
 ) -> (Dense, Vec<f64>, Vec<f64>) {
-    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, (0.0, 0.01), &halo).expect("no loads");
-    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.01));
+    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
+    let attachments = StripAttachments::at(
+        &[],
+        &points.surface,
+        &model.grid,
+        &nodes.free,
+        TimeInterval { start: 0.0, dt: 0.01 },
+    );
     let pieces = Problem {
         model,
         shape: &shape,
@@ -101,10 +114,12 @@ fn products<K: Kinematics<D>, const D: usize>(
             .map(|&free| if free { size * random.signed() } else { 0.0 })
             .collect()
     };
-    let (u, v) = (free(size), free(1.0));
+    let u = free(size);
+    let v = free(1.0);
     let residual = Residual::of(&pieces, &u);
     let derivative = Linearised::at(&pieces, &residual);
-    let (mut matrix, mut product) = (Dense::new(&model.grid), vec![0.0; v.len()]);
+    let mut matrix = Dense::new(&model.grid);
+    let mut product = vec![0.0; v.len()];
     match kind {
         Kind::Factorised => stiffness::assemble(&pieces, Some(&residual.trial), &mut matrix),
         Kind::General => derivative.factorise(&mut matrix),

@@ -113,7 +113,8 @@ fn windows_agree_with_the_whole<const D: usize>(axes: [KnotVector; D]) {
     for window in slabs.into_iter().chain([part(0..1), part(1..2)]) {
         let mine = |x: &&Vector<D>| whole.locate(x).is_some_and(|cell| window.holds(&cell));
         let places: Vec<Vector<D>> = places.iter().filter(mine).copied().collect();
-        let (in_window, in_whole) = (points_at(&window, &places), points_at(&whole, &places));
+        let in_window = points_at(&window, &places);
+        let in_whole = points_at(&whole, &places);
         assert_eq!(in_window, in_whole); // the canonical order is the same
         let local = Shape::at(&window, &in_window).unwrap();
         let global = Shape::at(&whole, &in_whole).unwrap();

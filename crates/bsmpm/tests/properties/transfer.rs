@@ -6,6 +6,7 @@ use bsmpm::grid::{KnotVector, Shape, transfer};
 use bsmpm::kinematics::{Axisymmetric, Gradient, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Gravity, Regime};
 use bsmpm::points::Points;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::tensor::{Square, Vector};
 use std::ops::Range;
@@ -41,23 +42,26 @@ fn elements<K: Kinematics<D>, const D: usize>(gradient: &K::Gradient) -> Vec<f64
 /// Largest |<B u, P> - <u, B^T P>| relative to the sum of the terms' sizes: gradients, then values.
 fn adjointness<K: Kinematics<D>, const D: usize>(order: usize) -> (f64, f64) {
     let scene = scattered::<K, D>(order);
-    let (grid, n) = (&scene.model.grid, scene.points.len());
+    let grid = &scene.model.grid;
+    let n = scene.points.len();
     let shape = Shape::at(grid, &scene.points).unwrap();
     let mut random = Random::new(11);
     let u = random.array(grid.nodes() * D);
     let P: Vec<K::Gradient> = (0..n).map(|_| K::Gradient::from_fn(|_, _| random.signed())).collect();
-    let gradients = transfer::gradients::<K, D, _>((&shape, &scene.points.x), &u, |_, gradient| gradient);
+    let gradients = transfer::gradients::<K, D, _>(&shape, &scene.points.x, &u, |_, gradient| gradient);
     let at_points: Vec<f64> = gradients.iter().flat_map(elements::<K, D>).collect();
     let flat: Vec<f64> = P.iter().flat_map(elements::<K, D>).collect();
-    let f = transfer::divergence::<K, D>((&shape, &scene.points.x), |p| P[p]).alone();
-    let ((gathered, scale), (scattered, _)) = (dot(&at_points, &flat), dot(&u, &f));
+    let f = transfer::divergence::<K, D>(&shape, &scene.points.x, |p| P[p]).alone();
+    let (gathered, scale) = dot(&at_points, &flat);
+    let (scattered, _) = dot(&u, &f);
     let gradients = (gathered - scattered).abs() / scale;
 
     let a = random.array(n * 3);
     let nodal = random.array(grid.nodes() * 3);
     let sums = transfer::to_nodes(&shape, |p| [a[3 * p], a[3 * p + 1], a[3 * p + 2]]).alone();
     let at_points = transfer::to_points::<D, 3, _>(&shape, &nodal, |_, value| value).concat();
-    let ((gathered, scale), (scattered, _)) = (dot(&at_points, &a), dot(&nodal, &sums));
+    let (gathered, scale) = dot(&at_points, &a);
+    let (scattered, _) = dot(&nodal, &sums);
     (gradients, (gathered - scattered).abs() / scale)
 }
 
@@ -92,11 +96,13 @@ fn linear_fields_are_exact<K: Kinematics<D>, const D: usize>(order: usize) {
     let scene = scattered::<K, D>(order);
     let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
     let mut random = Random::new(5);
-    let (H, shift) = (random.square::<D>(), random.vector::<D>());
+    let H = random.square::<D>();
+    let shift = random.vector::<D>();
     let u = linear_field(&scene, &H, &shift);
     let largest = |errors: Vec<f64>| errors.into_iter().fold(0.0, f64::max);
     let gradient = largest(transfer::gradients::<K, D, _>(
-        (&shape, &scene.points.x),
+        &shape,
+        &scene.points.x,
         &u,
         |p, found| {
             (K::gradient::<f64>(&found) - K::gradient::<f64>(&of_linear::<K, D>(&H, &shift, &scene.points.x[p]))).amax()
@@ -139,9 +145,17 @@ fn the_mapping_conserves<K: Kinematics<D>, const D: usize>(order: usize) {
         ramp: 0.0,
         starts_vertical: false,
     });
-    let (points, halo) = (&scene.points, scene.halo());
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, points).unwrap();
-    let nodes = Nodes::map(&scene.model, &shape, points, (0.0, 0.1), &halo).expect("no loads");
+    let nodes = Nodes::map(
+        &scene.model,
+        &shape,
+        points,
+        TimeInterval { start: 0.0, dt: 0.1 },
+        &halo,
+    )
+    .expect("no loads");
     let mass: f64 = points.mass.iter().sum();
     let mut worst = [(nodes.weight.iter().sum::<f64>() / mass - 1.0).abs(), 0.0, 0.0];
     let motion = points.motion.as_ref().unwrap();
@@ -195,7 +209,8 @@ fn squared_gradients_are_the_trace_of_the_moment() {
 /// bit.
 fn sums_of_windows<K: Kinematics<D>, const D: usize>(order: usize) {
     let scene = scattered::<K, D>(order);
-    let (grid, all) = (&scene.model.grid, 0..scene.model.grid.columns().end);
+    let grid = &scene.model.grid;
+    let all = 0..scene.model.grid.columns().end;
     let force = |p: usize, points: &Points<D>| {
         let F = points.F.at(p);
         K::Gradient::from_fn(|i, j| points.mass[p] + F[(i, j)])
@@ -213,7 +228,7 @@ fn sums_of_windows<K: Kinematics<D>, const D: usize>(order: usize) {
         let shape = Shape::at(&window, &points).unwrap();
         (
             columns.start,
-            transfer::divergence::<K, D>((&shape, &points.x), |p| force(p, &points)),
+            transfer::divergence::<K, D>(&shape, &points.x, |p| force(p, &points)),
         )
     };
     let (_, whole) = of_window(all.clone());

@@ -103,7 +103,8 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             .map(|axis| {
                 let knots = &self.model.grid.axes()[axis];
                 let place = |k: usize| {
-                    let (lower, upper) = (knots.breakpoint(k / per_axis), knots.breakpoint(k / per_axis + 1));
+                    let lower = knots.breakpoint(k / per_axis);
+                    let upper = knots.breakpoint(k / per_axis + 1);
                     let length = (upper - lower) / per_axis as f64;
                     let middle = lower + ((k % per_axis) as f64 + 0.5) * length;
                     let farther = K::spread(axis, [lower, upper], per_axis) - 1.0;
@@ -118,7 +119,8 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         let total: usize = along.iter().map(Vec::len).product();
         let seed = |mut index: usize| {
             let id = held + index as u64;
-            let (mut x, mut volume) = (Vector::zeros(), 1.0);
+            let mut x = Vector::zeros();
+            let mut volume = 1.0;
             for axis in (0..D).rev() {
                 let (at, length) = along[axis][index % along[axis].len()];
                 index /= along[axis].len();
@@ -270,7 +272,8 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
 
     /// Steps to `end` with nominal steps `dt`; `watch` sees the state after every accepted one. Panics on a failure.
     pub fn march(&mut self, dt: f64, end: f64, mut watch: impl FnMut(&Points<D>, &Accepted)) {
-        let (halo, schedule) = (self.halo(), Schedule::new(dt, end, []));
+        let halo = self.halo();
+        let schedule = Schedule::new(dt, end, []);
         let mut solver = Skyline::new(&self.model.grid);
         let mut stepper = Stepper::new(self.model.grid.nodes() * D);
         while let Some(found) = stepper.advance(&schedule, &self.model, &mut self.points, &halo, &mut solver) {

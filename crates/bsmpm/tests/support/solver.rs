@@ -103,7 +103,8 @@ impl LinearSolver for Skyline {
         let n = self.size();
         for i in 0..n {
             let (above, below) = self.entries.split_at_mut(i * n);
-            let (row, first) = (&mut below[..=i], self.first[i]);
+            let row = &mut below[..=i];
+            let first = self.first[i];
             for j in first..i {
                 let from = first.max(self.first[j]);
                 let lower = &above[j * n + from..j * n + j];
@@ -133,7 +134,8 @@ impl LinearSolver for Skyline {
             *x /= self.entries[i * n + i];
         }
         for i in (0..n).rev() {
-            let (row, value) = (&self.entries[i * n + self.first[i]..i * n + i], x[i]);
+            let row = &self.entries[i * n + self.first[i]..i * n + i];
+            let value = x[i];
             x[self.first[i]..i]
                 .iter_mut()
                 .zip(row)
@@ -161,7 +163,8 @@ impl LinearSolver for Skyline {
         solution: &mut [f64],
     ) -> Result<Krylov, SolveError> {
         let free: Vec<usize> = (0..rhs.len()).filter(|&c| self.number[c].is_some()).collect();
-        let (mut unit, mut image) = (vec![0.0; rhs.len()], vec![0.0; rhs.len()]);
+        let mut unit = vec![0.0; rhs.len()];
+        let mut image = vec![0.0; rhs.len()];
         let mut matrix = DMatrix::zeros(free.len(), free.len());
         for (column, &c) in free.iter().enumerate() {
             unit[c] = 1.0;

@@ -27,7 +27,8 @@ fn speed(kind: usize) -> f64 {
 /// is one of compression or of shear and goes both ways.
 fn pulsed<K: Kinematics<2>>(n: usize, along: usize, kind: usize) -> Scene<K, 2> {
     let h = 20.0 / n as f64;
-    let (mut axes, mut cells) = ([axis(h, 1, 2), axis(h, 1, 2)], [0..1, 0..1]);
+    let mut axes = [axis(h, 1, 2), axis(h, 1, 2)];
+    let mut cells = [0..1, 0..1];
     (axes[along], cells[along]) = (axis(h, n, 2), 0..n);
     let moves = if kind == 0 { along } else { 1 - along };
     let pulse = |x: &Vector<2>| {
@@ -52,17 +53,19 @@ fn pulsed<K: Kinematics<2>>(n: usize, along: usize, kind: usize) -> Scene<K, 2> 
 }
 
 /// What is left of the energy once both halves of the pulse have met the faces, and the closure of the books over it.
-fn left<K: Kinematics<2>>(mut scene: Scene<K, 2>, (n, kind): (usize, usize)) -> (f64, f64) {
+fn left<K: Kinematics<2>>(mut scene: Scene<K, 2>, n: usize, kind: usize) -> (f64, f64) {
     scene.model.balances_energy = true;
-    let (model, halo) = (scene.model.clone(), scene.halo());
-    let start = Stored::of(&model, (&scene.points, 0.0), &halo);
+    let model = scene.model.clone();
+    let halo = scene.halo();
+    let start = Stored::of(&model, &scene.points, 0.0, &halo);
     let mut books = Books::open(start);
-    let (dt, end) = (0.5 * 20.0 / n as f64 / speed(kind), 20.0 / speed(kind));
+    let dt = 0.5 * 20.0 / n as f64 / speed(kind);
+    let end = 20.0 / speed(kind);
     let mut now = start;
     scene.march(dt, end, |points, accepted| {
         assert!(accepted.rejected.is_empty());
         books.flows += accepted.report.energy.expect("it is balanced");
-        now = Stored::of(&model, (points, 0.0), &halo);
+        now = Stored::of(&model, points, 0.0, &halo);
     });
     (
         (now.kinetic + now.elastic) / start.kinetic,
@@ -74,7 +77,7 @@ fn left<K: Kinematics<2>>(mut scene: Scene<K, 2>, (n, kind): (usize, usize)) -> 
 #[test]
 fn plane_waves_of_either_kind_leave_through_any_face() {
     for (along, kind) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-        let [(coarse, _), (fine, closure)] = [40, 80].map(|n| left(pulsed::<PlaneStrain>(n, along, kind), (n, kind)));
+        let [(coarse, _), (fine, closure)] = [40, 80].map(|n| left(pulsed::<PlaneStrain>(n, along, kind), n, kind));
         // 9.7e-4 and 1.7e-5; of 20 cells 4.3e-2.
         assert!(
             coarse < 1.1e-3 && fine < 2e-5,
@@ -85,7 +88,7 @@ fn plane_waves_of_either_kind_leave_through_any_face() {
     let mut newton = pulsed::<PlaneStrain>(40, 0, 0);
     newton.model.nonlinear = Nonlinear::Newton;
     // Along the axis of a round bar, whose faces weigh by the radius.
-    for (coarse, closure) in [left(newton, (40, 0)), left(pulsed::<Axisymmetric>(40, 1, 0), (40, 0))] {
+    for (coarse, closure) in [left(newton, 40, 0), left(pulsed::<Axisymmetric>(40, 1, 0), 40, 0)] {
         assert!(coarse < 1.1e-3 && closure.abs() < 1e-9, "{coarse:e}, {closure:e}");
     }
 }
@@ -105,7 +108,8 @@ fn a_round_side_has_the_impedance_of_its_radius() {
             let v = &points.motion.as_ref().expect("dynamic").v;
             points.mass.iter().zip(v).map(|(mass, v)| mass * v[1]).sum()
         };
-        let (dt, mut seen) = (1e-7, Vec::new());
+        let dt = 1e-7;
+        let mut seen = Vec::new();
         scene.march(dt, 3.0 * dt, |points, _| seen.push(momentum(points)));
         // Not in the first step, which begins without a force.
         let taken = (seen[1] - seen[2]) / dt;
@@ -133,7 +137,7 @@ fn column(n: usize) -> Scene<PlaneStrain, 2> {
     initial::set_stress(&scene.model, &mut scene.points, |_, x| stress(x));
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
-    initial::hold(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an equilibrium");
+    initial::hold(&scene.model, &mut scene.points, &halo, &mut solver).expect("an equilibrium");
     let weight: f64 = scene.points.mass.iter().sum::<f64>() * 10.0;
     let held: f64 = scene.points.surface.held.iter().flatten().map(|force| force[1]).sum();
     assert!(
@@ -149,10 +153,8 @@ fn ground_at_rest_stays_at_rest_on_a_base_that_absorbs() {
     let mut scene = column(20);
     scene.march(0.01, 1.0, |_, _| {});
     let most = |of: &[Vector<2>]| of.iter().map(Vector::norm).fold(0.0, f64::max);
-    let (moved, fast) = (
-        most(&scene.points.u),
-        most(&scene.points.motion.as_ref().expect("dynamic").v),
-    );
+    let moved = most(&scene.points.u);
+    let fast = most(&scene.points.motion.as_ref().expect("dynamic").v);
     // 1.16e-6 m and 1.3e-8 m/s; held by the reaction of the stress that is given, it sinks by 5.4e-4 m/s.
     assert!(moved < 1.3e-6 && fast < 2e-8, "{moved:e} m, {fast:e} m/s");
 }
@@ -184,7 +186,8 @@ fn late(n: usize) -> f64 {
     let times = (1..=400).map(|k| f64::from(k) * DURATION / 400.0);
     let rows = times.map(|t| (t, [acceleration(t), 0.0].into())).collect();
     scene.model.shaking = Some(Shaking { rows });
-    let (mut worst, lag) = (0.0_f64, 10.0 / speed(1));
+    let mut worst = 0.0_f64;
+    let lag = 10.0 / speed(1);
     scene.march(0.0025 * h, 0.4, |points, accepted| {
         let top = (0..points.len())
             .max_by(|&a, &b| points.x[a][1].total_cmp(&points.x[b][1]))

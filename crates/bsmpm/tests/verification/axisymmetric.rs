@@ -18,7 +18,8 @@ type Round = Scene<Axisymmetric, 2>;
 #[test]
 fn uniform_strain_is_exact_in_one_step_with_every_method() {
     for method in METHODS {
-        let (radial, axial) = (1.05, 0.9);
+        let radial = 1.05;
+        let axial = 0.9;
         let moving = |axis: usize, stretch: f64| {
             let mut face = Support::<2>::roller(axis, true);
             face.velocity[axis] = Some(stretch - 1.0);
@@ -57,7 +58,10 @@ fn uniform_strain_is_exact_in_one_step_with_every_method() {
 /// Relative error of the radial displacement (root of the mean square over the body), of a cylinder with inner radius 1
 /// and outer radius 2 between smooth plates under a small pressure inside.
 fn cylinder(cells: usize, method: Stabilisation) -> f64 {
-    let (inner, outer, pressure, poisson) = (1.0, 2.0, 1e-7, 0.3);
+    let inner = 1.0;
+    let outer = 2.0;
+    let pressure = 1e-7;
+    let poisson = 0.3;
     let (_, scene) = wall(cells, method);
     // Lame (1852) in plane strain: u = A r + B/r.
     let factor = (1.0 + poisson) * pressure * inner * inner / (outer * outer - inner * inner);
@@ -74,7 +78,10 @@ fn cylinder(cells: usize, method: Stabilisation) -> f64 {
 
 /// The cell and the state of that cylinder, two cells high.
 fn wall(cells: usize, method: Stabilisation) -> (f64, Round) {
-    let (inner, outer, pressure, poisson) = (1.0, 2.0, 1e-7, 0.3);
+    let inner = 1.0;
+    let outer = 2.0;
+    let pressure = 1e-7;
+    let poisson = 0.3;
     let h = (outer - inner) / cells as f64;
     let columns = 3 * cells;
     let mut scene = Round::new(
@@ -86,7 +93,8 @@ fn wall(cells: usize, method: Stabilisation) -> (f64, Round) {
     .rollers(1..2)
     .stabilised(method);
     scene.model.weighting = Weighting::Volume;
-    let (from, to) = ([inner, 0.0].into(), [inner, 2.0 * h].into());
+    let from = [inner, 0.0].into();
+    let to = [inner, 2.0 * h].into();
     let points = surface::along::<Axisymmetric, 2>(&scene.model.grid, &from, &to, 3);
     (
         h,
@@ -127,11 +135,10 @@ fn inflated(cells: usize, pressure: f64) -> (f64, f64) {
         follows: true,
         ..Load::dead(points, [pressure, 0.0].into(), 1.0)
     });
-    let (schedule, halo) = (Schedule::new(0.1, 1.0, []), scene.halo());
-    let (mut solver, mut stepper) = (
-        Skyline::new(&scene.model.grid),
-        Stepper::new(scene.model.grid.nodes() * 2),
-    );
+    let schedule = Schedule::new(0.1, 1.0, []);
+    let halo = scene.halo();
+    let mut solver = Skyline::new(&scene.model.grid);
+    let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     while let Some(Ok(_)) = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
         scene.points.sort_by_cell(&scene.model.grid);
     }
@@ -191,7 +198,8 @@ fn points_at_the_axis_are_spread_and_those_far_from_it_even() {
 /// Largest relative error of the stress of a disc under a small pressure at its rim, at points within a quarter of its
 /// radius.
 fn disc(cells: usize, per_axis: usize) -> f64 {
-    let (h, pressure) = (1.0 / cells as f64, 1e-6);
+    let h = 1.0 / cells as f64;
+    let pressure = 1e-6;
     let mut scene = Round::new(
         [axis(h, cells + 1, 2), axis(h, 3, 2)],
         hencky(1.0, 0.3),
@@ -201,7 +209,8 @@ fn disc(cells: usize, per_axis: usize) -> f64 {
     .support(Support::roller(0, false))
     .support(Support::roller(1, false));
     scene.model.weighting = Weighting::Volume;
-    let (from, to) = ([1.0, 0.0].into(), [1.0, 2.0 * h].into());
+    let from = [1.0, 0.0].into();
+    let to = [1.0, 2.0 * h].into();
     let points = surface::along::<Axisymmetric, 2>(&scene.model.grid, &from, &to, per_axis);
     let (scene, _) = scene
         .load(Load::dead(points, [-pressure, 0.0].into(), 1.0))
@@ -269,7 +278,8 @@ fn volumes_of_cells_and_functions_are_those_of_the_sector() {
 /// their own weight.
 #[test]
 fn section_forces_are_those_of_a_column_and_of_a_clamped_plate() {
-    let (h, poisson) = (0.25, 0.3);
+    let h = 0.25;
+    let poisson = 0.3;
     let heavy = |cells: [usize; 2], held: Support<2>| {
         let columns = if held.axis == 0 { cells[0] } else { cells[0] + 4 };
         let above = if held.axis == 0 { 4 } else { 0 };
@@ -296,7 +306,8 @@ fn section_forces_are_those_of_a_column_and_of_a_clamped_plate() {
         assert!((whole - 1.0).abs() < 4e-4 && (z < 1.0 || (inner - 1.0).abs() < 5e-2));
     }
     let plate = heavy([40, 4], Support::fixed(0, true));
-    let (radius, weight) = (10.0, DENSITY * G);
+    let radius = 10.0;
+    let weight = DENSITY * G;
     let clamped = weight * radius * radius / 8.0;
     for r in [1.0, 2.6, 5.0, 7.5, 9.0, 10.0] {
         let found = cut(&plate, [[[r, 0.9], [r, 2.1]]]);
@@ -319,7 +330,9 @@ fn section_forces_are_those_of_a_column_and_of_a_clamped_plate() {
 /// From wall to wall: N = r sigma_rr times the height by Lame (1852), of a radian.
 #[test]
 fn the_normal_force_across_cylinders_in_a_wall_is_that_of_lame() {
-    let (inner, outer, pressure) = (1.0, 2.0, 1e-7);
+    let inner = 1.0;
+    let outer = 2.0;
+    let pressure = 1e-7;
     for (cells, tolerance) in [(8, 3e-2), (16, 5e-3)] {
         let (h, scene) = wall(cells, Stabilisation::None);
         let factor = pressure * inner * inner / (outer * outer - inner * inner);

@@ -49,7 +49,8 @@ fn after_five_periods(method: Stabilisation, steps: usize) -> (f64, f64) {
 
 fn after_five_periods_of(mut scene: Scene<PlaneStrain, 2>, steps: usize) -> (f64, f64) {
     let start = energy(&scene.points);
-    let (mut crossings, mut before) = (Vec::new(), (0.0, 0.0));
+    let mut crossings = Vec::new();
+    let mut before = (0.0, 0.0);
     scene.march(PERIOD / steps as f64, 5.0 * PERIOD, |points, accepted| {
         let tip = (0..points.len())
             .max_by(|&a, &b| points.x[a][0].total_cmp(&points.x[b][0]))
@@ -118,7 +119,9 @@ fn tiny_steps_converge_and_keep_the_energy() {
     for dt in [2.5e-4, 1e-6, 1e-9] {
         let mut scene = bar(Stabilisation::None);
         let start = energy(&scene.points);
-        let (mut iterations, mut steps, mut noise) = (0, 0, 0.0_f64);
+        let mut iterations = 0;
+        let mut steps = 0;
+        let mut noise = 0.0_f64;
         scene.march(dt, 200.0 * dt, |points, accepted| {
             iterations += accepted.report.iterations;
             steps += 1;

@@ -64,11 +64,9 @@ fn used(accepted: &Accepted) -> f64 {
 
 /// Whether a scene reaches `end`.
 fn arrives(mut scene: Scene<PlaneStrain, 2>, dt: f64, end: f64) -> bool {
-    let (halo, schedule, mut solver) = (
-        scene.halo(),
-        Schedule::new(dt, end, []),
-        Skyline::new(&scene.model.grid),
-    );
+    let halo = scene.halo();
+    let schedule = Schedule::new(dt, end, []);
+    let mut solver = Skyline::new(&scene.model.grid);
     let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     let mut step = || stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver);
     std::iter::from_fn(&mut step).all(|found| found.is_ok())
@@ -81,8 +79,9 @@ fn slid(n: usize, dt: f64, friction: f64, method: Nonlinear) -> (f64, f64, usize
     let a = G * (theta.sin() - friction * theta.cos());
     let mut scene = block(n, 0.5, rough(friction), Regime::Dynamic);
     (scene.model.nonlinear, scene.model.balances_energy) = (method, true);
-    let mut books = Books::open(Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo()));
-    let (mut iterations, mut dissipated) = (0, 0.0);
+    let mut books = Books::open(Stored::of(&scene.model, &scene.points, 0.0, &scene.halo()));
+    let mut iterations = 0;
+    let mut dissipated = 0.0;
     scene.march(dt, END, |_, accepted| {
         assert!(
             used(accepted) <= friction * (1.0 + 1e-12) && accepted.rejected.is_empty(),
@@ -94,7 +93,7 @@ fn slid(n: usize, dt: f64, friction: f64, method: Nonlinear) -> (f64, f64, usize
         iterations = iterations.max(accepted.report.iterations);
     });
     let way = mean(&scene.points, |p| scene.points.u[p][0]);
-    let now = Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo());
+    let now = Stored::of(&scene.model, &scene.points, 0.0, &scene.halo());
     assert!(
         books.closure(now).abs() < 1e-6 * now.kinetic,
         "the books close: {:.1e}",
@@ -135,10 +134,8 @@ fn a_block_slides_down_as_coulomb_says() {
 /// With the derivative of friction each step takes few iterations, also where the normal force changes with the slip.
 #[test]
 fn newtons_method_knows_friction() {
-    let (secants, newton) = (
-        slid(4, 0.01, 0.3, Nonlinear::Auto),
-        slid(4, 0.01, 0.3, Nonlinear::Newton),
-    );
+    let secants = slid(4, 0.01, 0.3, Nonlinear::Auto);
+    let newton = slid(4, 0.01, 0.3, Nonlinear::Newton);
     assert!(
         (secants.0 - newton.0).abs() < 1e-5 && newton.2 <= 8,
         "{secants:?} {newton:?}"
@@ -169,7 +166,8 @@ fn at_rest_a_block_lies_below_the_angle_of_friction_and_not_above() {
     let lies = |friction: f64| arrives(block(4, 0.3, rough(friction), Regime::QuasiStatic), 0.05, RAMP);
     assert!(lies(0.31) && !lies(0.29));
     let mut scene = block(8, 0.3, rough(0.31), Regime::QuasiStatic);
-    let (mut force, mut sliding) = (Vec::new(), 0.0);
+    let mut force = Vec::new();
+    let mut sliding = 0.0;
     scene.march(0.05, RAMP, |_, accepted| {
         (force, sliding) = (accepted.report.reactions[0].clone(), of(accepted).sliding)
     });
@@ -250,18 +248,19 @@ fn the_faces_are_alike() {
 /// A bar of 1 m, of cells of 1/`n` m, meets a wall from 0.2 m with 1 m/s. Its impulse over the exact one; its time at
 /// the wall over that of the wave there and back; its energy after over that before.
 fn bounced(n: usize, mass: MassMatrix) -> [f64; 3] {
-    let (h, c) = (1.0 / n as f64, (1e6_f64 / 1000.0).sqrt());
+    let h = 1.0 / n as f64;
+    let c = (1e6_f64 / 1000.0).sqrt();
     let mut scene = Scene::<PlaneStrain, 2>::new([axis(h, 2 * n, 2), axis(h, 1, 2)], hencky(1e6, 0.0), Regime::Dynamic)
         .body([n / 5..n + n / 5, 0..1], 2, 1000.0, |_| Vector::from([-1.0, 0.0]))
         .rollers([1])
         .support(Support::contact(0, false, rough(0.0)))
         .with_mass(mass);
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-10, 1e-6);
-    let (start, body) = (
-        Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo()),
-        weight(&scene) / G,
-    );
-    let (mut impulse, mut from, mut to) = (0.0, f64::INFINITY, 0.0_f64);
+    let start = Stored::of(&scene.model, &scene.points, 0.0, &scene.halo());
+    let body = weight(&scene) / G;
+    let mut impulse = 0.0;
+    let mut from = f64::INFINITY;
+    let mut to = 0.0_f64;
     scene.march(0.5 * h / c, 0.3, |_, accepted| {
         let push = accepted.report.reactions[2][0];
         assert!(push >= 0.0, "it pulls: {push}");
@@ -271,7 +270,7 @@ fn bounced(n: usize, mass: MassMatrix) -> [f64; 3] {
         }
     });
     assert!((from - 0.2).abs() <= 0.5 * h / c, "the bar meets the wall at {from} s");
-    let end = Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo());
+    let end = Stored::of(&scene.model, &scene.points, 0.0, &scene.halo());
     // A consistent mass also takes away what the points bring along to nodes that rest, in every step.
     let taken = velocity(&scene.points) + 1.0 - impulse / body;
     assert!(
@@ -321,11 +320,9 @@ fn a_block_that_is_lifted_leaves_the_face_and_comes_down_on_it_again() {
     let weight = weight(&scene);
     let mut lay = 0.0;
     scene.march(0.05, 1.5, |_, accepted| {
-        let (push, held, found) = (
-            accepted.report.reactions[0][1],
-            accepted.report.strips[0].force[1],
-            of(accepted),
-        );
+        let push = accepted.report.reactions[0][1];
+        let held = accepted.report.strips[0].force[1];
+        let found = of(accepted);
         let full = (accepted.t / RAMP).min(1.0) * weight;
         assert!(
             (push + held - full).abs() < 1e-4 * weight && push >= 0.0,

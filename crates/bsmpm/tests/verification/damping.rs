@@ -184,12 +184,16 @@ fn bossak_is_of_second_order_and_newmark_with_gamma_above_a_half_of_first() {
 fn a_spectral_radius_of_one_is_the_papers_method_to_the_bit() {
     assert_eq!(Newmark::of_spectral_radius(1.0), Newmark::default());
     assert_eq!(Newmark::of_gamma(0.5), Newmark::default());
-    let (newmark, mut random) = (Newmark::default(), crate::support::random::Random::new(7));
+    let newmark = Newmark::default();
+    let mut random = crate::support::random::Random::new(7);
     for _ in 0..1000 {
         let mut number = || random.signed() * 10.0_f64.powf(6.0 * random.signed());
-        let (u, v, a, dt) = (number(), number(), number(), number().abs());
+        let u = number();
+        let v = number();
+        let a = number();
+        let dt = number().abs();
         let end = 4.0 / (dt * dt) * u - 4.0 / dt * v - a;
-        assert_eq!(newmark.acceleration(dt, u, (v, a)).to_bits(), end.to_bits());
+        assert_eq!(newmark.acceleration(dt, u, v, a).to_bits(), end.to_bits());
         assert_eq!(newmark.acting(a, end).to_bits(), end.to_bits());
         assert_eq!(newmark.gained(dt, a, end).to_bits(), ((a + end) * (0.5 * dt)).to_bits());
         assert_eq!((newmark.factor(dt), newmark.pulse(dt)), (4.0 / (dt * dt), 4.0 / dt));
@@ -217,11 +221,13 @@ fn swing(mut scene: Scene<PlaneStrain, 2>, steps: usize) -> (f64, f64, f64) {
         let [before, at, after] = [course[k - 1].abs(), course[k].abs(), course[k + 1].abs()];
         if at > before && at >= after {
             // The vertex of the parabola through three points.
-            let (slope, bend) = (0.5 * (after - before), after - 2.0 * at + before);
+            let slope = 0.5 * (after - before);
+            let bend = after - 2.0 * at + before;
             turns.push((k as f64 - slope / bend, at - 0.5 * slope * slope / bend));
         }
     }
-    let (first, last) = (turns[0], turns[turns.len() - 1]);
+    let first = turns[0];
+    let last = turns[turns.len() - 1];
     let count = (turns.len() - 1) as f64;
     (last.1 / first.1, last.0 - first.0, 2.0 * (last.0 - first.0) / count)
 }
@@ -257,7 +263,8 @@ fn a_mode_of_the_bar_decays_and_slows_down_as_the_theory_says() {
 /// frequency is higher by `xi omega dt/2`, as the force comes half a step late, of which the decay knows nothing.
 #[test]
 fn a_damped_mode_decays_by_its_ratio_to_second_order_and_is_late_by_half_a_step() {
-    let (ratio, omega) = (0.05, 2.0 * PI / PERIOD);
+    let ratio = 0.05;
+    let omega = 2.0 * PI / PERIOD;
     let error = |method: Stabilisation, steps: usize| {
         let plain = swing(bar(method), steps);
         let mut damped = bar(method);
@@ -380,7 +387,10 @@ fn what_smoothing_takes_is_not_damped() {
             .support(Support::fixed(1, false))
             .stabilised(method);
         scene.model.damping = vec![TIME];
-        let (mut before, mut off, mut largest, mut smoothed) = (BTreeMap::new(), 0.0_f64, 0.0_f64, 0.0_f64);
+        let mut before = BTreeMap::new();
+        let mut off = 0.0_f64;
+        let mut largest = 0.0_f64;
+        let mut smoothed = 0.0_f64;
         scene.march(DT, 0.4, |points, accepted| {
             for p in 0..points.len() {
                 let taken = 0.5 * points.smoothing_of(p).full().determinant().ln();
@@ -414,7 +424,8 @@ fn a_rotation_is_not_damped() {
                 .map(|(v, m)| 0.5 * m * v.norm_squared())
                 .sum::<f64>()
         };
-    let (plain, damped) = (spin(0.0), spin(0.05));
+    let plain = spin(0.0);
+    let damped = spin(0.05);
     println!("{plain} {damped}");
     assert!((damped / plain - 1.0).abs() <= 2e-3, "{plain} {damped}");
 }

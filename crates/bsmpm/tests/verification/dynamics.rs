@@ -22,7 +22,8 @@ fn collision<K: Kinematics<D>, const D: usize>(method: Stabilisation, steps: usi
     let start = observe::momentum(&scene.points, &Part::Whole, &halo);
     let v = &scene.points.motion.as_ref().unwrap().v;
     let scale: f64 = v.iter().zip(&scene.points.mass).map(|(v, m)| m * v.norm()).sum();
-    let (mut drift, mut stress) = (0.0_f64, 0.0_f64);
+    let mut drift = 0.0_f64;
+    let mut stress = 0.0_f64;
     scene.march(1.0 / steps as f64, 1.0, |points, _| {
         drift = drift.max((observe::momentum(points, &Part::Whole, &halo) - start).norm() / scale);
         stress = points
@@ -108,7 +109,8 @@ fn a_body_that_nothing_holds_stays_behind_the_ground() {
     let shaking = sine(3.0, 4.0, 0.05, 0.5);
     scene.model.shaking = Some(shaking.clone());
     scene.model.balances_energy = true;
-    let (mut ground, mut work) = (0.0, 0.0);
+    let mut ground = 0.0;
+    let mut work = 0.0;
     scene.march(0.05, 1.0, |points, accepted| {
         // The trapezoidal rule is Newmark's, and rows are linear between; after the last one the ground goes on evenly.
         ground += 0.5 * accepted.dt * (shaking.at(accepted.t - accepted.dt) + shaking.at(accepted.t))[0];
@@ -142,9 +144,11 @@ fn shear_layer(omega: f64, t: f64) -> f64 {
 /// Closed form: modal superposition for an elastic layer on a base that moves as a sine.
 #[test]
 fn a_layer_on_moving_ground_sways_as_the_sum_of_its_modes() {
-    let (omega, end) = (2.3, 4.0);
+    let omega = 2.3;
+    let end = 4.0;
     let error = |cells: usize| {
-        let (h, dt) = (1.0 / cells as f64, 0.25 / cells as f64);
+        let h = 1.0 / cells as f64;
+        let dt = 0.25 / cells as f64;
         // Shear modulus and density 1; what would move up and down is held, as in a layer without end.
         let rigid = |upper| Support {
             velocity: [None, Some(0.0)],

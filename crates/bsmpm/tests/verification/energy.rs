@@ -38,8 +38,9 @@ impl Course {
 /// Runs a scene with its books.
 fn kept<K: Kinematics<D>, const D: usize>(mut scene: Scene<K, D>, dt: f64, end: f64) -> Course {
     scene.model.balances_energy = true;
-    let (model, halo) = (scene.model.clone(), scene.halo());
-    let stored = Stored::of(&model, (&scene.points, 0.0), &halo);
+    let model = scene.model.clone();
+    let halo = scene.halo();
+    let stored = Stored::of(&model, &scene.points, 0.0, &halo);
     let mut course = Course {
         books: Books::open(stored),
         stored,
@@ -52,7 +53,7 @@ fn kept<K: Kinematics<D>, const D: usize>(mut scene: Scene<K, D>, dt: f64, end: 
         course.books.flows += step;
         let turnover = accepted.report.turnover.expect("whatever balances energy has it");
         assert_eq!((turnover.external, turnover.plastic), (step.external, step.plastic));
-        course.stored = Stored::of(&model, (points, accepted.t), &halo);
+        course.stored = Stored::of(&model, points, accepted.t, &halo);
         let Course { books, stored, .. } = course;
         let energies = [
             stored.kinetic,
@@ -84,7 +85,8 @@ fn a_model_that_does_not_balance_energy_reports_none() {
 /// What a material's damping takes stands with what flow does: `1 - exp(-2 xi omega t)` of the bar's energy.
 #[test]
 fn the_books_tell_what_damping_takes() {
-    let (ratio, omega) = (0.02, 2.0 * std::f64::consts::PI / PERIOD);
+    let ratio = 0.02;
+    let omega = 2.0 * std::f64::consts::PI / PERIOD;
     for method in [Stabilisation::None, Stabilisation::ConsistentFBar] {
         let mut damped = bar(method);
         damped.model.damping = vec![2.0 * ratio / omega];
@@ -105,7 +107,8 @@ fn the_bars_books_close_and_say_where_its_energy_went() {
     for method in METHODS {
         let course = kept(bar(method), PERIOD / 80.0, 5.0 * PERIOD);
         tell(&format!("{method:?}"), &course);
-        let (flows, start) = (course.books.flows, course.books.start);
+        let flows = course.books.flows;
+        let start = course.books.start;
         let left = (course.stored.kinetic + course.stored.elastic) / start;
         assert!(course.relative() <= 1e-10); // measured 1.1e-11
         assert_eq!(
@@ -133,7 +136,8 @@ fn numerical_damping_is_a_loss_of_the_integration() {
             assert!(course.relative() <= 1e-8); // measured 1.3e-9: the force tolerance is 1e-9
             course
         };
-        let (early, late) = (after(2.0), after(4.0));
+        let early = after(2.0);
+        let late = after(4.0);
         let loss = late.books.flows.integration - early.books.flows.integration;
         loss / (early.stored.kinetic + early.stored.elastic)
     };
@@ -145,7 +149,8 @@ fn numerical_damping_is_a_loss_of_the_integration() {
         Newmark::of_gamma(0.6),
     ];
     for (newmark, decay) in schemes.into_iter().zip(decays) {
-        let (found, expected) = (lost(newmark), 1.0 - f64::exp(-80.0 * decay));
+        let found = lost(newmark);
+        let expected = 1.0 - f64::exp(-80.0 * decay);
         println!("{newmark:?}: lost {found:.4}, by the decay {expected:.4}");
         // The energy of a damped mode swings about its decay.
         assert!((found - expected).abs() <= 0.02);
@@ -227,11 +232,10 @@ fn a_method_that_makes_energy_exceeds_the_budget_and_no_other() {
             ramp: 0.0,
             starts_vertical: false,
         });
-        let (schedule, halo) = (Schedule::new(2e-3, 0.14, []), scene.halo());
-        let (mut solver, mut stepper) = (
-            Skyline::new(&scene.model.grid),
-            Stepper::new(scene.model.grid.nodes() * 2),
-        );
+        let schedule = Schedule::new(2e-3, 0.14, []);
+        let halo = scene.halo();
+        let mut solver = Skyline::new(&scene.model.grid);
+        let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
         let ended = loop {
             match stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
                 Some(Ok(_)) => scene.points.sort_by_cell(&scene.model.grid),
@@ -378,7 +382,8 @@ fn a_face_that_moves_does_the_work_of_its_reaction() {
         assert!(course.relative() <= 1e-12); // measured 4.7e-14
         (course.stored.elastic, course.books.flows.external)
     }
-    let (M, strain) = (hencky(1e3, 0.3).elastic().oedometric(), 0.9_f64.ln());
+    let M = hencky(1e3, 0.3).elastic().oedometric();
+    let strain = 0.9_f64.ln();
     for (stored, work) in [pressed::<PlaneStrain, 2>(), pressed::<Solid, 3>()] {
         assert!((stored / (0.5 * M * strain * strain) - 1.0).abs() <= 1e-12);
         assert!((work / (-0.1 * M * strain / 0.9) - 1.0).abs() <= 1e-12);

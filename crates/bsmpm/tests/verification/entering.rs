@@ -8,6 +8,7 @@ use bsmpm::boundary::strip::StripAttachments;
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::stiffness;
@@ -89,10 +90,19 @@ fn a_body_whose_edge_enters_a_cell_by_next_to_nothing_has_the_same_stress_inside
 /// Largest over smallest eigenvalue of K_0, as it is and scaled to a unit diagonal.
 fn condition(shift: f64, background: Option<Background>) -> [f64; 2] {
     let (scene, _) = block(shift, background, Regime::QuasiStatic);
-    let (model, points, halo) = (&scene.model, &scene.points, &scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = &scene.halo();
     let shape = Shape::at(&model.grid, points).expect("points inside");
-    let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), halo).expect("loads on material");
-    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let nodes =
+        Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, halo).expect("loads on material");
+    let attachments = StripAttachments::at(
+        &[],
+        &points.surface,
+        &model.grid,
+        &nodes.free,
+        TimeInterval { start: 0.0, dt: 1.0 },
+    );
     let mut stiffness = Dense::new(&model.grid);
     let scene = Problem {
         model,

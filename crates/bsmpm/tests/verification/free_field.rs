@@ -18,7 +18,7 @@ const POISSON: f64 = 0.25;
 
 /// Ground of `wide` cells of the edge `h`, m, 10 m deep, soft in its upper 6 m, that a pulse of 0.15 s of acceleration
 /// along x, and of a part of it `along_y`, shakes at a base that is to be held; nothing at its sides yet.
-fn ground((wide, h): (usize, f64), fastest: f64, along_y: f64) -> Scene<PlaneStrain, 2> {
+fn ground(wide: usize, h: f64, fastest: f64, along_y: f64) -> Scene<PlaneStrain, 2> {
     let high = (10.0 / h).round() as usize;
     let mut scene = Scene::<PlaneStrain, 2>::new(
         [axis(h, wide, 2), axis(h, high + 1, 2)],
@@ -68,11 +68,14 @@ fn off(all: &Points<2>, column: &Points<2>) -> [f64; 2] {
 /// Reference: the one-dimensional column of the free field.
 #[test]
 fn level_ground_moves_as_its_column_everywhere() {
-    let mut follows = between(ground((6, 1.0), 1e-3, 0.5), Support::free_field);
+    let mut follows = between(ground(6, 1.0, 1e-3, 0.5), Support::free_field);
     follows.model.balances_energy = true;
-    let (model, halo) = (follows.model.clone(), follows.halo());
-    let mut books = Books::open(Stored::of(&model, (&follows.points, 0.0), &halo));
-    let (mut worst, mut largest, mut columns) = (0.0_f64, 0.0_f64, Vec::new());
+    let model = follows.model.clone();
+    let halo = follows.halo();
+    let mut books = Books::open(Stored::of(&model, &follows.points, 0.0, &halo));
+    let mut worst = 0.0_f64;
+    let mut largest = 0.0_f64;
+    let mut columns = Vec::new();
     follows.march(0.005, 0.3, |points, accepted| {
         for column in &points.free_field {
             let [off, most] = off(points, column);
@@ -81,7 +84,7 @@ fn level_ground_moves_as_its_column_everywhere() {
         books.flows += accepted.report.energy.expect("it is balanced");
         columns.push(points.free_field[0].clone());
     });
-    let closure = books.closure(Stored::of(&model, (&follows.points, 0.0), &halo)) / books.flows.external;
+    let closure = books.closure(Stored::of(&model, &follows.points, 0.0, &halo)) / books.flows.external;
     // 5.2e-7 and 2.9e-10.
     assert!(
         worst < 1e-6 * largest && closure.abs() < 1e-8,
@@ -89,7 +92,9 @@ fn level_ground_moves_as_its_column_everywhere() {
         worst / largest
     );
     for side in [Support::roller as Side, Support::absorbing] {
-        let (mut scene, mut k, mut worst) = (between(ground((6, 1.0), 1e-3, 0.5), side), 0, 0.0_f64);
+        let mut scene = between(ground(6, 1.0, 1e-3, 0.5), side);
+        let mut k = 0;
+        let mut worst = 0.0_f64;
         scene.march(0.005, 0.3, |points, _| {
             worst = worst.max(off(points, &columns[k])[0]);
             k += 1;
@@ -105,7 +110,8 @@ fn amplification(beta: f64, omega: f64) -> f64 {
     let modulus = |young: f64| Complex::new(1.0, omega * beta) * (young / (2.0 * (1.0 + POISSON)));
     let wave = |young: f64| (modulus(young) / RHO).sqrt();
     let [soft, stiff] = [SOFT, STIFF].map(wave);
-    let (upper, lower) = (Complex::from(6.0 * omega) / soft, Complex::from(4.0 * omega) / stiff);
+    let upper = Complex::from(6.0 * omega) / soft;
+    let lower = Complex::from(4.0 * omega) / stiff;
     // Of unit motion at the surface.
     (upper.cos() * lower.cos() - soft / stiff * upper.sin() * lower.sin())
         .norm()
@@ -116,7 +122,7 @@ fn amplification(beta: f64, omega: f64) -> f64 {
 /// is off, at the fundamental frequency and beside it, in cells of `h`.
 fn off_amplification(h: f64) -> [f64; 3] {
     const BETA: f64 = 0.015;
-    let mut scene = between(ground((1, h), 1e-2, 0.0), Support::free_field);
+    let mut scene = between(ground(1, h, 1e-2, 0.0), Support::free_field);
     (scene.model.criteria.force, scene.model.criteria.energy) = (1e-6, 1e-8);
     scene.model.damping = vec![BETA, BETA];
     let shaking = scene.model.shaking.clone().expect("it shakes");
@@ -154,7 +160,7 @@ fn layers_amplify_as_waves_in_them_do() {
 /// stiff block at the surface in its middle, 4 m wide and 3 m deep.
 fn scattered(wide: usize, side: Side) -> Vec<Vec<Vector<2>>> {
     let middle = 0.5 * wide as f64;
-    let mut scene = between(ground((wide, 1.0), 1e-2, 0.0), side);
+    let mut scene = between(ground(wide, 1.0, 1e-2, 0.0), side);
     for p in 0..scene.points.len() {
         let x = scene.points.x[p];
         if (x[0] - middle).abs() < 2.0 && x[1] > 7.0 {

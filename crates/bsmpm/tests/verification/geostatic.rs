@@ -38,7 +38,7 @@ fn elastic_start<K: Kinematics<D>, const D: usize>(method: Stabilisation) {
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
     let before = scene.points.clone();
-    initial::set_elastic(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an elastic state");
+    initial::set_elastic(&scene.model, &mut scene.points, &halo, &mut solver).expect("an elastic state");
     let found = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
     assert_eq!((&scene.points.x, &scene.points.F), (&before.x, &before.F));
     let stress = |p: usize| scene.points.sigma.at(p).0[D - 1] + 20.0 * (4.0 - scene.points.x[p][D - 1]);
@@ -71,9 +71,9 @@ fn a_pressure_at_the_start_is_balanced_on_the_drawn_geometry() {
     });
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
-    initial::set_elastic(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an elastic state");
+    initial::set_elastic(&scene.model, &mut scene.points, &halo, &mut solver).expect("an elastic state");
     let found = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
-    let settling = initial::settle(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an equilibrium");
+    let settling = initial::settle(&scene.model, &mut scene.points, &halo, &mut solver).expect("an equilibrium");
     let (after, _) = scene.solved(1.0, 1.0);
     let moved = after.points.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
     println!(
@@ -145,9 +145,9 @@ fn settled<K: Kinematics<D>, const D: usize>(method: Stabilisation) {
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
     let before = scene.points.clone();
-    initial::set_elastic(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an elastic state");
+    initial::set_elastic(&scene.model, &mut scene.points, &halo, &mut solver).expect("an elastic state");
     let elastic = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
-    let settling = initial::settle(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an equilibrium");
+    let settling = initial::settle(&scene.model, &mut scene.points, &halo, &mut solver).expect("an equilibrium");
     let found = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
     let active = (1.0 - friction.sin()) / (1.0 + friction.sin());
     let off = |p: usize| {
@@ -210,8 +210,8 @@ fn level_ground_keeps_k0_and_loses_the_quadrature_of_its_weight() {
     scene.model.boundary.resting = vec![true];
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
-    initial::set_spread(&scene.model, &mut scene.points, |_| 0.7, (&halo, &mut solver)).expect("a state");
-    let settling = initial::settle(&scene.model, &mut scene.points, (&halo, &mut solver)).expect("an equilibrium");
+    initial::set_spread(&scene.model, &mut scene.points, |_| 0.7, &halo, &mut solver).expect("a state");
+    let settling = initial::settle(&scene.model, &mut scene.points, &halo, &mut solver).expect("an equilibrium");
     let found = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
     let stress = |p: usize| scene.points.sigma.at(p).0;
     let off = (0..scene.points.len())
@@ -243,7 +243,9 @@ fn a_stress_whose_strain_has_no_response_is_an_error() {
 #[test]
 fn a_modulus_that_grows_with_depth_settles_by_the_integral() {
     // E = e (1 + k z), z the depth: settlement of the surface = int_0^H gamma z / M(z) dz at small strain.
-    let (e, k, height) = (1e8, 0.5, 4.0);
+    let e = 1e8;
+    let k = 0.5;
+    let height = 4.0;
     let young = Profile {
         value: e,
         at: height,
@@ -280,7 +282,7 @@ fn strength_of_any_law_follows_the_height_at_which_a_point_was_placed() {
     };
     let laws = [
         Material::MohrCoulomb(MohrCoulomb::new(elastic.clone(), 0.0, 0.0, 0.0)),
-        Material::DruckerPrager(DruckerPrager::new(elastic.clone(), (0.0, 0.0, 0.0), Match::PlaneStrain)),
+        Material::DruckerPrager(DruckerPrager::new(elastic.clone(), 0.0, 0.0, 0.0, Match::PlaneStrain)),
         Material::VonMises(VonMises::new(elastic.clone(), 0.0, 0.0)),
     ];
     let strength = Profile {
@@ -339,7 +341,7 @@ fn a_gap_is_no_stress_of_a_law_that_does_not_close() {
     let mut next = scene.model.clone();
     (next.materials, next.gravity) = (vec![hencky(1e4, 0.3)], None);
     let halo = scene.halo();
-    initial::exchange((&scene.model, &next), &mut scene.points, &halo).expect("a stress of every point");
+    initial::exchange(&scene.model, &next, &mut scene.points, &halo).expect("a stress of every point");
     scene.model = next;
     let (after, _) = scene.solved(1.0, 1.0);
     let largest = (0..after.points.len())

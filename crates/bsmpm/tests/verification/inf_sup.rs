@@ -13,13 +13,14 @@ use bsmpm::boundary::Support;
 use bsmpm::grid::{Shape, transfer};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{Regime, Weighting};
+use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::tensor::Square;
 use nalgebra::DMatrix;
 
 /// Both forms on the free components of a grid of `cells` x `cells`.
-fn forms(method: Stabilisation, (order, cells): (usize, usize)) -> [DMatrix<f64>; 2] {
+fn forms(method: Stabilisation, order: usize, cells: usize) -> [DMatrix<f64>; 2] {
     let along = || axis(1.0 / cells as f64, cells, order);
     let mut scene = Scene::<PlaneStrain, 2>::new([along(), along()], hencky(1.0, 0.3), Regime::QuasiStatic)
         .stabilised(method)
@@ -28,23 +29,25 @@ fn forms(method: Stabilisation, (order, cells): (usize, usize)) -> [DMatrix<f64>
     for (axis, upper) in [(0, false), (0, true), (1, false), (1, true)] {
         scene = scene.support(Support::fixed(axis, upper));
     }
-    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
+    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
     let free: Vec<usize> = (0..nodes.free.len()).filter(|&c| nodes.free[c]).collect();
     let mut forms = [(); 2].map(|()| DMatrix::zeros(free.len(), free.len()));
     let mut u = vec![0.0; nodes.free.len()];
     for (column, &component) in free.iter().enumerate() {
         u[component] = 1.0;
-        let grad = transfer::gradients::<PlaneStrain, 2, _>((&shape, &points.x), &u, |_, grad| grad);
+        let grad = transfer::gradients::<PlaneStrain, 2, _>(&shape, &points.x, &u, |_, grad| grad);
         u[component] = 0.0;
-        let mean = nodes.mean_dilation(model, (&shape, points), &halo, |p| grad[p].trace());
-        let dilation = transfer::divergence::<PlaneStrain, 2>((&shape, &points.x), |p| {
+        let mean = nodes.mean_dilation(model, &shape, points, &halo, |p| grad[p].trace());
+        let dilation = transfer::divergence::<PlaneStrain, 2>(&shape, &points.x, |p| {
             Square::identity() * (points.volume[p] * mean[p])
         })
         .alone();
         let gradient =
-            transfer::divergence::<PlaneStrain, 2>((&shape, &points.x), |p| grad[p] * points.volume[p]).alone();
+            transfer::divergence::<PlaneStrain, 2>(&shape, &points.x, |p| grad[p] * points.volume[p]).alone();
         for (row, &c) in free.iter().enumerate() {
             forms[0][(row, column)] = dilation[c];
             forms[1][(row, column)] = gradient[c];
@@ -55,7 +58,7 @@ fn forms(method: Stabilisation, (order, cells): (usize, usize)) -> [DMatrix<f64>
 
 /// beta, and the number of pressures that it is the least of.
 fn constant(method: Stabilisation, grid: (usize, usize)) -> (f64, usize) {
-    let [dilation, gradient] = forms(method, grid);
+    let [dilation, gradient] = forms(method, grid.0, grid.1);
     let lower = gradient.cholesky().expect("held").l();
     let left = lower.solve_lower_triangular(&dilation).expect("regular");
     let both = lower.solve_lower_triangular(&left.transpose()).expect("regular");

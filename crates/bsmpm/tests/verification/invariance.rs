@@ -43,7 +43,8 @@ fn a_mirrored_scene_has_the_mirrored_result() {
     // Extreme N15: <= 1e-10 after 100 elastic steps.
     for method in METHODS {
         let run = |mirror| thrown(mirror, method).solved(0.01, 1.0).0.points;
-        let (left, right) = (run(false), run(true));
+        let left = run(false);
+        let right = run(true);
         let mirrored = |x: &Vector<2>| Vector::<2>::new(4.0 - x[0], x[1]);
         let mut worst = 0.0_f64;
         for (x, sigma) in right.x.iter().zip(right.sigma.iter()) {
@@ -72,7 +73,8 @@ fn exchanged_axes_give_the_exchanged_result() {
         let axes = [axis(0.5, 8, 2), axis(0.5, 5, 2)];
         let cells = [2..5, 0..3];
         let (axes, cells) = if exchanged {
-            let ([x, y], [i, j]) = (axes, cells);
+            let [x, y] = axes;
+            let [i, j] = cells;
             ([y, x], [j, i])
         } else {
             (axes, cells)
@@ -91,7 +93,8 @@ fn exchanged_axes_give_the_exchanged_result() {
         scene.solved(0.01, 0.5).0.points
     };
     for method in METHODS {
-        let (upright, lying) = (scene(false, method), scene(true, method));
+        let upright = scene(false, method);
+        let lying = scene(true, method);
         let worst = upright.x.iter().map(|x| {
             let exchanged = Vector::<2>::new(x[1], x[0]);
             lying

@@ -31,7 +31,8 @@ fn compressed<K: Kinematics<D>, const D: usize>(
 fn errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, l: f64) -> f64 {
     let elastic = scene.model.materials[0].elastic();
     let (lambda, _) = elastic.lame();
-    let (vertical, lateral) = (elastic.oedometric() * l.ln() / l, lambda * l.ln() / l);
+    let vertical = elastic.oedometric() * l.ln() / l;
+    let lateral = lambda * l.ln() / l;
     let of = |p: usize| {
         let sigma = scene.points.sigma.at(p).0;
         (0..3)
@@ -115,7 +116,8 @@ fn the_face_feels_the_stress_times_its_area() {
     let (scene, steps) = compressed::<PlaneStrain, 2>(2, 0.8, Stabilisation::None);
     let M = scene.model.materials[0].elastic().oedometric();
     let reactions = &steps[0].report.reactions;
-    let (bottom, face) = (reactions[2][1], reactions[4][1]);
+    let bottom = reactions[2][1];
+    let face = reactions[4][1];
     println!("bottom {bottom}, face {face}, exact {}", M * 0.8_f64.ln() / 0.8);
     assert!((face / (M * 0.8_f64.ln() / 0.8) - 1.0).abs() <= 1e-10);
     assert!((bottom / face + 1.0).abs() <= 1e-10);
@@ -135,7 +137,8 @@ fn the_sides_feel_the_stress_down_to_their_edge_on_a_fixed_bottom() {
     scene.model.criteria.force = 1e-12;
     let (scene, steps) = scene.solved(1.0, 1.0);
     let (lambda, _) = scene.model.materials[0].elastic().lame();
-    let (supports, reactions) = (&scene.model.boundary.supports, &steps[0].report.reactions);
+    let supports = &scene.model.boundary.supports;
+    let reactions = &steps[0].report.reactions;
     for (support, force) in supports.iter().zip(reactions).filter(|(support, _)| support.axis < 2) {
         let pressure = force[support.axis] * if support.upper { -1.0 } else { 1.0 };
         assert!((pressure / (-lambda * 0.8_f64.ln()) - 1.0).abs() <= 1e-10, "{pressure}");

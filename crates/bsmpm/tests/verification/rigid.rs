@@ -9,6 +9,7 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Nonlinear;
 use bsmpm::model::{Gravity, Regime};
 use bsmpm::points::Points;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::tensor::Vector;
 use std::f64::consts::PI;
@@ -116,7 +117,7 @@ fn slid(n: usize, dt: f64, method: Nonlinear) -> (f64, usize) {
     let theta = 0.5_f64.atan();
     let mut scene = block(n, 0.5, FRICTION, Regime::Dynamic);
     (scene.model.nonlinear, scene.model.balances_energy) = (method, true);
-    let mut books = Books::open(Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo()));
+    let mut books = Books::open(Stored::of(&scene.model, &scene.points, 0.0, &scene.halo()));
     let mut iterations = 0;
     scene.march(dt, END, |_, accepted| {
         books.flows += accepted.report.energy.expect("it is balanced");
@@ -124,7 +125,7 @@ fn slid(n: usize, dt: f64, method: Nonlinear) -> (f64, usize) {
         let force = accepted.report.rigid[0].force;
         assert!(accepted.rejected.is_empty() && force[0] <= FRICTION * -force[1] * (1.0 + 1e-12));
     });
-    let now = Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo());
+    let now = Stored::of(&scene.model, &scene.points, 0.0, &scene.halo());
     assert!(
         books.closure(now).abs() < 1e-6 * now.kinetic,
         "the books close: {:.1e}",
@@ -138,7 +139,8 @@ fn slid(n: usize, dt: f64, method: Nonlinear) -> (f64, usize) {
 #[test]
 fn a_block_slides_down_a_rigid_plate_as_coulomb_says() {
     let [coarse, middle, fine] = [0.02, 0.01, 0.005].map(|dt| slid(4, dt, Nonlinear::Auto).0);
-    let (cells, newton) = (slid(8, 0.01, Nonlinear::Auto).0, slid(4, 0.01, Nonlinear::Newton));
+    let cells = slid(8, 0.01, Nonlinear::Auto).0;
+    let newton = slid(4, 0.01, Nonlinear::Newton);
     println!("{coarse:.4} {middle:.4} {fine:.4}; cells half as large {cells:.4}; Newton {newton:?}");
     // measured 0.0110, 0.0055, 0.0028; 0.0028
     let order = (coarse / middle).log2();
@@ -158,7 +160,8 @@ fn a_block_sticks_where_friction_is_larger_than_the_slope_and_else_does_not() {
     );
     let mut scene = block(4, 0.3, 0.31, Regime::QuasiStatic);
     let force = last(&mut scene, 0.05, RAMP).force;
-    let (theta, weight) = (0.3_f64.atan(), 500.0 * G);
+    let theta = 0.3_f64.atan();
+    let weight = 500.0 * G;
     let off = (force[0] - theta.sin() * weight).hypot(force[1] + theta.cos() * weight);
     assert!(off < 1e-6 * weight, "{force}");
 }
@@ -166,8 +169,11 @@ fn a_block_sticks_where_friction_is_larger_than_the_slope_and_else_does_not() {
 /// A bar of `cells` that comes along x with 1 m/s over `gap` cells to a wall: time of contact over 2 L/c, velocity with
 /// which it leaves, and energy over that of the start.
 fn bar(cells: usize, gap: f64) -> [f64; 3] {
-    let (young, density, v) = (1e6_f64, 1000.0, 0.4);
-    let (h, c) = (1.0 / cells as f64, (young / density).sqrt());
+    let young = 1e6_f64;
+    let density = 1000.0;
+    let v = 0.4;
+    let h = 1.0 / cells as f64;
+    let c = (young / density).sqrt();
     let wall = slab([0.0, -1.0], [(2.0 - gap) * h, 2.0]);
     let axes = [axis(h, cells + 8, 2), axis(h, 1, 2)];
     let mut scene = Scene::<PlaneStrain, 2>::new(axes, hencky(young, 0.0), Regime::Dynamic)
@@ -175,12 +181,13 @@ fn bar(cells: usize, gap: f64) -> [f64; 3] {
         .rollers([1])
         .rigid(wall);
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-10, 1e-6);
-    let (dt, mut pushed) = (1.0 / c / cells as f64, 0);
+    let dt = 1.0 / c / cells as f64;
+    let mut pushed = 0;
     scene.march(dt, gap * h / v + 3.0 / c, |_, accepted| {
         assert!(accepted.report.rigid[0].force[0] <= 0.0, "it pulls");
         pushed += usize::from(accepted.report.rigid[0].touched > 0);
     });
-    let now = Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo());
+    let now = Stored::of(&scene.model, &scene.points, 0.0, &scene.halo());
     let mass: f64 = scene.points.mass.iter().sum();
     let energy = (now.kinetic + now.elastic) / (0.5 * mass * v * v);
     [(pushed - 1) as f64 * dt * c / 2.0, velocity(&scene.points) / v, energy]
@@ -191,7 +198,8 @@ fn bar(cells: usize, gap: f64) -> [f64; 3] {
 #[test]
 fn a_bar_hits_a_wall_and_leaves_it() {
     for gap in [0.02, 0.25, 0.5] {
-        let (coarse, fine) = (bar(20, gap), bar(40, gap));
+        let coarse = bar(20, gap);
+        let fine = bar(40, gap);
         println!("{gap}: {coarse:.3?} {fine:.3?}");
         for (of, bounds) in [(coarse, [0.06, 0.12, 0.15]), (fine, [0.03, 0.07, 0.09])] {
             assert!(
@@ -206,7 +214,9 @@ fn a_bar_hits_a_wall_and_leaves_it() {
 /// Stress below a rigid cylinder that is pressed into ground, over Hertz's 2 P/(pi a)/sqrt(1 + (z/a)^2), and whether
 /// the width of the contact, by the points that are touched, is 2 a up to the spacing of points.
 fn hertz(h: f64) -> (Vec<f64>, f64) {
-    let (radius, depth, side) = (2.0, 4.0, (4.0 / h) as usize);
+    let radius = 2.0;
+    let depth = 4.0;
+    let side = (4.0 / h) as usize;
     let cylinder = RigidBody {
         path: path(&[(1.0, [0.0, -0.02, 0.0])]),
         ..of(Outline::Circle(radius), [0.0, depth + radius])
@@ -232,7 +242,8 @@ fn hertz(h: f64) -> (Vec<f64>, f64) {
 /// Hertz (1882): contact stress of a cylinder on an elastic half-plane.
 #[test]
 fn a_cylinder_on_a_half_plane_is_hertz() {
-    let (coarse, fine) = (hertz(0.2), hertz(0.1));
+    let coarse = hertz(0.2);
+    let fine = hertz(0.1);
     println!("{coarse:.3?} {fine:.3?}");
     // measured: up to 21 % with a cell of 1.4 a, 4 % with half of it, of which 2 % are the sides and bottom of the
     // ground
@@ -252,9 +263,18 @@ fn a_step_begins_with_the_force_that_the_last_one_ended_with() {
     for friction in [0.0, 0.3] {
         let mut scene = ground(0.25, [12, 8], 4, Regime::QuasiStatic).rigid(cylinder(friction));
         let ended = last(&mut scene, 0.1, 1.0).force;
-        let (halo, still) = (scene.halo(), vec![0.0; 2 * scene.model.grid.nodes()]);
+        let halo = scene.halo();
+        let still = vec![0.0; 2 * scene.model.grid.nodes()];
         let shape = Shape::at(&scene.model.grid, &scene.points).expect("inside");
-        let nodes = Nodes::after(&scene.model, (&shape, &scene.points), &still, (1.0, 0.1), &halo).expect("no loads");
+        let nodes = Nodes::after(
+            &scene.model,
+            &shape,
+            &scene.points,
+            &still,
+            TimeInterval { start: 1.0, dt: 0.1 },
+            &halo,
+        )
+        .expect("no loads");
         let begins = nodes.rigid.conclude(&still, &halo).0[0].force;
         println!(
             "friction {friction}: {:.2e} N of {:.2e}",
@@ -312,7 +332,8 @@ fn nothing_is_pulled_and_what_was_pressed_comes_back() {
         ..slab([-1.0, 1.0], [2.0, 1.5])
     };
     let mut scene = ground(0.25, [4, 4], 4, Regime::QuasiStatic).rigid(plate);
-    let (mut most, oedometer) = (0.0_f64, 1e6 * 0.7 / (1.3 * 0.4));
+    let mut most = 0.0_f64;
+    let oedometer = 1e6 * 0.7 / (1.3 * 0.4);
     scene.march(0.25, 3.0, |_, accepted| {
         let now = accepted.report.rigid[0];
         most = most.max(now.force[1]);
@@ -345,7 +366,7 @@ fn pressed(steps: usize) -> f64 {
     scene.march(RAMP / steps as f64, RAMP, |_, accepted| {
         work = accepted.report.rigid.iter().map(|rigid| rigid.work).sum();
     });
-    work / Stored::of(&scene.model, (&scene.points, 0.0), &scene.halo()).elastic - 1.0
+    work / Stored::of(&scene.model, &scene.points, 0.0, &scene.halo()).elastic - 1.0
 }
 
 /// At a strain of 0.04; at a tenth of it a tenth of that is left.
@@ -404,7 +425,10 @@ fn a_free_block_falls_and_bounces() {
         let mut scene = ground(0.25, [8, 4], 4, Regime::Dynamic).rigid(free([0.75, 1.05], [1.25, 1.55], mass));
         scene = scene.gravity(G, 0.0);
         scene.model.nonlinear = method;
-        let (mut before, mut touches, mut leaves, mut worst) = ([0.0, -G], false, false, 0.0_f64);
+        let mut before = [0.0, -G];
+        let mut touches = false;
+        let mut leaves = false;
+        let mut worst = 0.0_f64;
         scene.march(0.004, 0.26, |_, accepted| {
             let now = accepted.report.rigid[0];
             let acts = now.force[1] / mass - G;
@@ -427,21 +451,22 @@ fn a_free_block_falls_and_bounces() {
 /// A free rigid block slides on soft ground, at last as fast as Coulomb says.
 #[test]
 fn a_rigid_block_slides_on_soil() {
-    let (theta, mass) = (0.5_f64.atan(), 200.0);
+    let theta = 0.5_f64.atan();
+    let mass = 200.0;
     let body = RigidBody {
         friction: 0.3,
         ..free([0.5, 1.0], [1.5, 1.25], mass)
     };
     let mut scene = ground(0.25, [16, 4], 2, Regime::Dynamic).rigid(body);
     scene.model.gravity = Some(inclined(0.5));
-    let (mut before, mut velocity, mut cuts) = ([Vector::<2>::zeros(); 2], 0.0, 0);
+    let mut before = [Vector::<2>::zeros(); 2];
+    let mut velocity = 0.0;
+    let mut cuts = 0;
     scene.march(0.01, 0.5, |_, accepted| {
         let now = accepted.report.rigid[0];
         let weight = Vector::<2>::new(theta.sin(), -theta.cos()) * (mass * G * (accepted.t / RAMP).min(1.0));
-        let (moves, acts) = (
-            now.velocity.fixed_rows::<2>(0).into_owned(),
-            now.force.fixed_rows::<2>(0) + weight,
-        );
+        let moves = now.velocity.fixed_rows::<2>(0).into_owned();
+        let acts = now.force.fixed_rows::<2>(0) + weight;
         for k in 0..2 {
             let off = beyond(
                 moves[k] - before[0][k],

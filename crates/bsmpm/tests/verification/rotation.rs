@@ -15,7 +15,8 @@ use std::f64::consts::TAU;
 /// A free block of `cells` x `cells` cells, 1 m wide, through a quarter of a turn in `steps` steps: parts of the
 /// angular momentum and of the energy that are lost, and the momentum gained over mass times speed.
 fn lost(mass: MassMatrix, cells: usize, steps: usize) -> [f64; 3] {
-    let (h, pad) = (1.0 / cells as f64, cells / 2);
+    let h = 1.0 / cells as f64;
+    let pad = cells / 2;
     let knots = || axis(h, cells + 2 * pad, 2);
     let centre = Vector::from([0.5 * (cells + 2 * pad) as f64 * h; 2]);
     let mut scene = Scene::<PlaneStrain, 2>::new([knots(), knots()], hencky(1e3, 0.3), Regime::Dynamic).body(
@@ -25,9 +26,10 @@ fn lost(mass: MassMatrix, cells: usize, steps: usize) -> [f64; 3] {
         |x| [centre[1] - x[1], x[0] - centre[0]].into(),
     );
     scene.model.mass = mass;
-    let (model, halo) = (scene.model.clone(), scene.halo());
+    let model = scene.model.clone();
+    let halo = scene.halo();
     let energy = |points: &Points<2>| {
-        let stored = Stored::of(&model, (points, 0.0), &halo);
+        let stored = Stored::of(&model, points, 0.0, &halo);
         stored.kinetic + stored.elastic
     };
     let start = [
@@ -69,7 +71,9 @@ fn beside_a_base(mass: MassMatrix) -> [f64; 2] {
         .rollers([0]);
     scene.points.x.iter_mut().for_each(|x| x[1] *= 0.1);
     scene.model.mass = mass;
-    let (dt, mut before, mut found) = (1e-4, Vec::new(), [0.0; 2]);
+    let dt = 1e-4;
+    let mut before = Vec::new();
+    let mut found = [0.0; 2];
     scene.march(dt, 20.0 * dt, |points, _| {
         let v = &points.motion.as_ref().expect("dynamic").v;
         let says = v.iter().map(Vector::norm_squared).sum::<f64>();

@@ -53,7 +53,8 @@ fn the_normal_force_of_a_column_is_the_weight_above() {
     for y in [1.0, 1.1, 1.5, 2.17] {
         let found = cut(&scene, [[[1.2, y], [-0.2, y]]]);
         let weight = DENSITY * G * (3.0 - y);
-        let (shear, moment) = (found.shear[0], found.bending[0]);
+        let shear = found.shear[0];
+        let moment = found.bending[0];
         println!(
             "y {y}: N {:.6} of the weight, Q {shear:.1e}, M {moment:.1e}",
             found.normal / weight
@@ -82,9 +83,11 @@ fn shear_and_moment_of_a_beam_are_those_of_statics() {
         let mut largest = 0.0_f64;
         for x in [1.0, 2.0, 2.1, 3.3, 4.5] {
             let found = cut(&scene, [[[x, floor - 0.3], [x, floor + 1.3]]]);
-            let (beyond, weight) = (6.0 - x, DENSITY * G);
+            let beyond = 6.0 - x;
+            let weight = DENSITY * G;
             // Upward is the line, n to the right: the part beyond hangs on this one by its weight.
-            let (shear, moment) = (weight * beyond, 0.5 * weight * beyond * beyond);
+            let shear = weight * beyond;
+            let moment = 0.5 * weight * beyond * beyond;
             let clamped = 18.0 * weight;
             let off = [
                 found.normal / shear,
@@ -129,7 +132,8 @@ fn the_normal_force_of_a_column_in_space_is_the_weight_above() {
         );
     }
     // The normal (1, 1, sqrt 2) / 2: the vector sum balances what is cut off, that above the middle on the average.
-    let (middle, root) = (Vector::<3>::new(0.25, 0.25, 1.3), 0.5_f64.sqrt());
+    let middle = Vector::<3>::new(0.25, 0.25, 1.3);
+    let root = 0.5_f64.sqrt();
     let axes = [Vector::<3>::new(root, -root, 0.0), Vector::<3>::new(0.5, 0.5, -root)];
     let lines = axes.map(|along| [middle - along, middle + along].map(<[f64; 3]>::from));
     let found = cut(&scene, lines);
@@ -150,8 +154,11 @@ fn shear_and_moment_of_a_beam_in_space_are_those_of_statics_and_of_the_plane() {
             [[[x, -0.2, 1.5], [x, 1.2, 1.5]], [[x, 0.5, 0.7], [x, 0.5, 2.3]]],
         );
         let flat = cut(&plane, [[[x, 0.7], [x, 2.3]]]);
-        let (beyond, weight) = (6.0 - x, DENSITY * G);
-        let (shear, moment, clamped) = (weight * beyond, 0.5 * weight * beyond * beyond, 18.0 * weight);
+        let beyond = 6.0 - x;
+        let weight = DENSITY * G;
+        let shear = weight * beyond;
+        let moment = 0.5 * weight * beyond * beyond;
+        let clamped = 18.0 * weight;
         let off = [
             found.normal / shear,
             found.shear[1] / -shear - 1.0,
@@ -174,7 +181,9 @@ fn shear_and_moment_of_a_beam_in_space_are_those_of_statics_and_of_the_plane() {
 #[test]
 fn the_six_forces_of_a_plane_are_the_integrals_of_the_stress_and_of_a_disc_those_of_a_shaft() {
     let [a, b, c, d, e, f] = [3.0, -2.0, 5.0, 0.7, -1.1, 2.3];
-    let (h, spacing, middle) = (0.25, 0.125, 1.5);
+    let h = 0.25;
+    let spacing = 0.125;
+    let middle = 1.5;
     let mut scene = Scene::<Solid, 3>::new(
         [12; 3].map(|cells| axis(h, cells, 2)),
         hencky(1.0, 0.0),
@@ -182,7 +191,8 @@ fn the_six_forces_of_a_plane_are_the_integrals_of_the_stress_and_of_a_disc_those
     )
     .body([1..11, 1..11, 1..11], 2, DENSITY, |x| x * 0.0);
     for n in 0..3 {
-        let (first, second) = ((n + 1) % 3, (n + 2) % 3);
+        let first = (n + 1) % 3;
+        let second = (n + 2) % 3;
         for p in 0..scene.points.len() {
             let [s1, s2] = [first, second].map(|axis| scene.points.x[p][axis] - middle);
             let mut stress = Tensor::zeros();
@@ -202,8 +212,10 @@ fn the_six_forces_of_a_plane_are_the_integrals_of_the_stress_and_of_a_disc_those
             section_forces::<Solid, 3>(&scene.model.grid, &scene.points, &section, &scene.halo())
         };
         let found = across([0.5, 0.75], false);
-        let (area, square) = (1.5, |width: f64| (width * width - spacing * spacing) / 12.0 * 1.5);
-        let (square1, square2) = (square(1.0), square(1.5));
+        let area = 1.5;
+        let square = |width: f64| (width * width - spacing * spacing) / 12.0 * 1.5;
+        let square1 = square(1.0);
+        let square2 = square(1.5);
         let expected = [
             a * area,
             d * area,
@@ -226,8 +238,10 @@ fn the_six_forces_of_a_plane_are_the_integrals_of_the_stress_and_of_a_disc_those
             println!("across axis {n}: {found} for {expected}");
             assert!((found - expected).abs() < 1e-10);
         }
-        let (radius, found) = (1.0_f64, across([1.0; 2], true));
-        let (area, square) = (PI * radius.powi(2), PI * radius.powi(4) / 4.0);
+        let radius = 1.0_f64;
+        let found = across([1.0; 2], true);
+        let area = PI * radius.powi(2);
+        let square = PI * radius.powi(4) / 4.0;
         let expected = [a * area, d * area, f * area, 2.0 * e * square, b * square, c * square];
         for (found, expected) in numbers(found).into_iter().zip(expected) {
             println!("disc across axis {n}: {:.1e}", found / expected - 1.0);
@@ -256,9 +270,11 @@ fn planes<K: Kinematics<D>, const D: usize>(cells: [usize; D]) {
     };
     let places: Vec<Vector<D>> = places.into_iter().map(place).collect();
     let linear = |place: &Vector<D>| 3.0 - 2.0 * place[0] + 7.0 * place[1] + 5.0 * place[D - 1];
-    let (grid, points, halo) = (&scene.model.grid, &scene.points, scene.halo());
+    let grid = &scene.model.grid;
+    let points = &scene.points;
+    let halo = scene.halo();
     let of_points = |p: usize| [linear(&(points.x[p] - points.u[p]))];
-    let found = place::values::<K, D, _>(grid, points, (&places, Configuration::Initial), of_points, &halo);
+    let found = place::values::<K, D, _>(grid, points, &places, Configuration::Initial, of_points, &halo);
     for (place, found) in places.iter().zip(&found) {
         let inside = (0..D - 1).all(|axis| place[axis] <= width) && place[D - 1] <= 3.0;
         assert_eq!(found.is_some(), inside, "{place}");
@@ -267,7 +283,7 @@ fn planes<K: Kinematics<D>, const D: usize>(cells: [usize; D]) {
         assert!(off < 1e-10, "{place} {found:?}");
     }
     let stress = |p: usize| [points.sigma.at(p).0[D - 1]];
-    let found = place::values::<K, D, _>(grid, points, (&places, Configuration::Initial), stress, &halo);
+    let found = place::values::<K, D, _>(grid, points, &places, Configuration::Initial, stress, &halo);
     for number in [0, 1, 2, 7] {
         let off = found[number].unwrap()[0] + DENSITY * G * (3.0 - places[number][D - 1]);
         let id = nearest(points, &places[number], |_| true, &halo).unwrap();

@@ -21,8 +21,10 @@ fn forces_of_a_beam_at_its_clamp_are_those_of_statics() {
         let mut largest = [0.0_f64; 3];
         for x in CELLS.map(|cells| cells * h) {
             let found = cut(&scene, [[[x, floor - 0.3], [x, floor + 1.3]]]);
-            let (beyond, weight) = (6.0 - x, DENSITY * G);
-            let (shear, moment) = (weight * beyond, 0.5 * weight * beyond * beyond);
+            let beyond = 6.0 - x;
+            let weight = DENSITY * G;
+            let shear = weight * beyond;
+            let moment = 0.5 * weight * beyond * beyond;
             let off = [found.normal, found.shear[0] + shear, (found.bending[0] - moment) / 3.0].map(|off| off / shear);
             println!(
                 "h {h} x {x}: N {:.1e}, Q {:.1e} of Q, M {:.1e} of that at the clamp",
@@ -101,7 +103,8 @@ fn forces_at_planes_of_symmetry_and_under_a_surcharge_are_those_of_the_load() {
         let scene = Scene::<PlaneStrain, 2>::new(grid, hencky(1e9, 0.3), Regime::QuasiStatic);
         let scene = scene.body([0..8, 0..8], 2, 0.0, |x| x * 0.0).load(load);
         let (scene, _) = supports.into_iter().fold(scene, Scene::support).solved(1.0, 1.0);
-        let (force, moment) = (80e3, slope * 8.0 / 12.0);
+        let force = 80e3;
+        let moment = slope * 8.0 / 12.0;
         let mut largest = [0.0_f64; 3];
         for y in CELLS
             .into_iter()

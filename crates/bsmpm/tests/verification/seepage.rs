@@ -7,6 +7,7 @@ use bsmpm::grid::Contributions;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::parallel::{LinearSolver, Symmetry};
+use bsmpm::schedule::TimeInterval;
 use bsmpm::tensor::Vector;
 use bsmpm::water::Water;
 use bsmpm::water::ambient::Ambient;
@@ -41,7 +42,8 @@ fn arc(radius: f64, fineness: usize) -> (Vec<SurfacePoint<2>>, Vec<Vector<2>>) {
 
 /// Steady excess pressures of a scene whose skeleton stays, Pa, nodal, and what its drains and inflows did in 1 s.
 fn steady(scene: &Plane) -> (Vec<f64>, [Vec<DrainReport>; 2]) {
-    let (grid, halo) = (&scene.model.grid, scene.halo());
+    let grid = &scene.model.grid;
+    let halo = scene.halo();
     let offsets = grid.lowered_offsets();
     let mut seen = vec![false; grid.nodes()];
     let cells: Vec<[usize; 2]> = scene.points.x.iter().map(|x| grid.locate(x).expect("inside")).collect();
@@ -53,7 +55,8 @@ fn steady(scene: &Plane) -> (Vec<f64>, [Vec<DrainReport>; 2]) {
     let drainage = Drainage::at(
         &scene.model,
         &scene.points,
-        ((0.0, 1.0), Differences::EULER),
+        TimeInterval { start: 0.0, dt: 1.0 },
+        Differences::EULER,
         |node| seen[node],
         |_| 0.0,
         &halo,
@@ -75,7 +78,8 @@ fn steady(scene: &Plane) -> (Vec<f64>, [Vec<DrainReport>; 2]) {
     }
     drainage.assemble(&vec![0.0; grid.nodes()], &mut solver);
     solver.finish(Symmetry::Definite).expect("definite");
-    let (mut out, mut p) = (Contributions::none(grid, 1, Vec::new()), vec![0.0; grid.nodes()]);
+    let mut out = Contributions::none(grid, 1, Vec::new());
+    let mut p = vec![0.0; grid.nodes()];
     drainage.add_to(&p, &mut out);
     let rhs: Vec<f64> = out.alone().iter().map(|out| -out).collect();
     solver.solve(&rhs, &mut p).expect("solved");
@@ -140,7 +144,8 @@ fn ring(fineness: usize, inner: Option<f64>) -> Plane {
 
 /// Largest and mean square error of the pressure at the points of a ring, over what is given at its inner arc, Pa.
 fn errors(scene: &Plane, p: &[f64]) -> [f64; 2] {
-    let (grid, offsets) = (&scene.model.grid, scene.model.grid.lowered_offsets());
+    let grid = &scene.model.grid;
+    let offsets = scene.model.grid.lowered_offsets();
     let error = |x: &Vector<2>| {
         let cell = grid.locate(x).expect("inside");
         let [a, b] = [0, 1].map(|axis| grid.axes()[axis].basis::<2>(x[axis], cell[axis]).0);

@@ -11,6 +11,7 @@ use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;
 use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::solve::linearised::Linearised;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::nodes::Nodes;
@@ -49,11 +50,10 @@ fn pressure(poisson: f64, t: f64) -> f64 {
 
 /// Steps to the end, or to a failure; `watch` sees the scene before each step, the step and its displacement.
 fn march(scene: &mut Plane, dt: f64, mut watch: impl FnMut(&Plane, &Accepted, &[f64]) -> bool) -> Option<Failure> {
-    let (halo, schedule) = (scene.halo(), Schedule::new(dt, 10.0, []));
-    let (mut solver, mut stepper) = (
-        Skyline::new(&scene.model.grid),
-        Stepper::new(scene.model.grid.nodes() * 2),
-    );
+    let halo = scene.halo();
+    let schedule = Schedule::new(dt, 10.0, []);
+    let mut solver = Skyline::new(&scene.model.grid);
+    let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     loop {
         let before = scene.clone();
         match stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver)? {
@@ -66,16 +66,15 @@ fn march(scene: &mut Plane, dt: f64, mut watch: impl FnMut(&Plane, &Accepted, &[
 
 /// Lowest eigenvalue of the symmetric part of the complete derivative under the displacement `u` of a step, N/m.
 fn lowest(before: &Plane, step: &Accepted, u: &[f64]) -> f64 {
-    let (Scene { model, points }, halo) = (before, before.halo());
-    let time = (step.t - step.dt, step.dt);
+    let Scene { model, points } = before;
+    let halo = before.halo();
+    let time = TimeInterval {
+        start: step.t - step.dt,
+        dt: step.dt,
+    };
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
     let nodes = Nodes::map(model, &shape, points, time, &halo).expect("a mapping");
-    let attachments = StripAttachments::at(
-        &model.boundary.strips,
-        &points.surface,
-        (&model.grid, &nodes.free),
-        time,
-    );
+    let attachments = StripAttachments::at(&model.boundary.strips, &points.surface, &model.grid, &nodes.free, time);
     let scene = Problem {
         model,
         shape: &shape,
@@ -87,7 +86,8 @@ fn lowest(before: &Plane, step: &Accepted, u: &[f64]) -> f64 {
     let residual = Residual::of(&scene, u);
     let linearised = Linearised::at(&scene, &residual);
     let free: Vec<usize> = (0..u.len()).filter(|&c| nodes.free[c]).collect();
-    let (mut unit, mut image) = (vec![0.0; u.len()], vec![0.0; u.len()]);
+    let mut unit = vec![0.0; u.len()];
+    let mut image = vec![0.0; u.len()];
     let mut matrix = DMatrix::zeros(free.len(), free.len());
     for (column, &c) in free.iter().enumerate() {
         unit[c] = 1.0;
@@ -104,7 +104,8 @@ fn lowest(before: &Plane, step: &Accepted, u: &[f64]) -> f64 {
 fn pressure_of_several_shear_moduli_is_unstable_with_few_points_a_cell() {
     // Newton's method keeps to the symmetric column, stable or not. Measured p/G: 4.0, 10, 22.
     for (per_axis, expected) in [(2, 3.0..5.0), (3, 8.0..11.0), (4, 20.0..24.0)] {
-        let (mut scene, mut critical) = (column(0.499, per_axis), f64::NAN);
+        let mut scene = column(0.499, per_axis);
+        let mut critical = f64::NAN;
         scene.model.nonlinear = Nonlinear::Newton;
         let failure = march(&mut scene, 0.1, |before, step, u| {
             critical = pressure(0.499, step.t);

@@ -16,7 +16,7 @@ const FRICTIONAL: Contact = Contact {
 };
 
 /// A quasi-static block of 1 m, its base held, at whose top from `from` to `to` a strip moves by these rows (m).
-fn pressed(law: Contact, (from, to): (f64, f64), rows: &[(f64, [f64; 2])]) -> Scene<PlaneStrain, 2> {
+fn pressed(law: Contact, from: f64, to: f64, rows: &[(f64, [f64; 2])]) -> Scene<PlaneStrain, 2> {
     let axes = [axis(CELL, 8, 2), axis(CELL, 6, 2)];
     let scene = Scene::new(axes, hencky(YOUNG, 0.2), Regime::QuasiStatic);
     let scene = scene
@@ -49,9 +49,10 @@ fn pressed(law: Contact, (from, to): (f64, f64), rows: &[(f64, [f64; 2])]) -> Sc
 fn a_dragged_block_sticks_below_mu_n_and_slides_at_mu_n() {
     let rows = [(0.2, [0.0, -1e-3]), (1.0, [2e-3, -1e-3])];
     for method in [Nonlinear::Auto, Nonlinear::Newton] {
-        let mut scene = pressed(FRICTIONAL, (0.5, 1.5), &rows);
+        let mut scene = pressed(FRICTIONAL, 0.5, 1.5, &rows);
         scene.model.nonlinear = method;
-        let (mut last, mut stuck) = (0.0, 0);
+        let mut last = 0.0;
+        let mut stuck = 0;
         scene.march(0.1, 1.0, |_, accepted| {
             let (strip, found) = of(accepted);
             last = strip.force[0] / -strip.force[1] / FRICTIONAL.friction;
@@ -67,7 +68,7 @@ fn a_dragged_block_sticks_below_mu_n_and_slides_at_mu_n() {
 fn a_strip_that_lifts_leaves_the_block_and_meets_it_where_it_left_it() {
     let rows = [(0.2, [0.0, -1e-3]), (0.5, [0.0, 2e-1]), (1.0, [0.0, -1e-3])];
     for method in [Nonlinear::Auto, Nonlinear::Newton] {
-        let mut scene = pressed(FRICTIONAL, (0.75, 1.25), &rows);
+        let mut scene = pressed(FRICTIONAL, 0.75, 1.25, &rows);
         scene.model.nonlinear = method;
         let mut pushed = Vec::new();
         scene.march(0.1, 1.0, |_, accepted| {
@@ -89,7 +90,8 @@ fn a_strip_that_lifts_leaves_the_block_and_meets_it_where_it_left_it() {
             }
         });
         // measured: off by 7e-5
-        let (first, again) = (pushed[pushed.len() - 2], pushed[pushed.len() - 1]);
+        let first = pushed[pushed.len() - 2];
+        let again = pushed[pushed.len() - 1];
         assert!((again / first - 1.0).abs() < 1e-3, "{pushed:?}");
     }
 }
@@ -102,7 +104,8 @@ fn a_strip_that_does_not_let_go_pulls() {
             lifts: false,
             ..FRICTIONAL
         },
-        (0.75, 1.25),
+        0.75,
+        1.25,
         &rows,
     )
     .solved(0.1, 1.0);

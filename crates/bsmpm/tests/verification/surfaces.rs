@@ -53,7 +53,8 @@ fn pressed(scene: Plane, depth: f64, rough: bool, penalty: f64) -> Plane {
 #[test]
 fn surface_points_share_the_length_of_their_segment_cell_by_cell() {
     let grid = block([4, 4], 2).model.grid;
-    let (from, to) = (at(0.1, 0.3), at(0.9, 0.7));
+    let from = at(0.1, 0.3);
+    let to = at(0.9, 0.7);
     let points = surface::along::<PlaneStrain, 2>(&grid, &from, &to, 3);
     let sum = |value: &dyn Fn(&Vector<2>) -> f64| points.iter().map(|point| point.area * value(&point.x)).sum::<f64>();
     let length = (to - from).norm();
@@ -84,7 +85,8 @@ fn a_platens_force_follows_the_exact_curve_across_cells_and_the_points_stress_le
         let mut scene = pressed(block([4, 4], 2), 0.4, rough, 1e7).stabilised(method);
         let M = scene.model.materials[0].elastic().oedometric();
         let mut worst = 0.0_f64;
-        let (mut slip, mut off) = (0.0, 0.0_f64);
+        let mut slip = 0.0;
+        let mut off = 0.0_f64;
         scene.march(0.05, 1.0, |points, accepted| {
             let l = 1.0 - 0.4 * accepted.t;
             let exact = M * l.ln() / l;
@@ -109,7 +111,9 @@ fn a_platens_force_follows_the_exact_curve_across_cells_and_the_points_stress_le
 fn what_a_strip_has_slipped_in_all_steps_is_its_pressure_over_the_penalty() {
     for penalty in [1e5, 1e6, 1e7] {
         let mut scene = pressed(block([4, 4], 2), 0.1, false, penalty);
-        let (mut slip, mut last, mut accumulated) = (0.0, 0.0_f64, 0.0);
+        let mut slip = 0.0;
+        let mut last = 0.0_f64;
+        let mut accumulated = 0.0;
         scene.march(0.1, 1.0, |_, accepted| {
             slip += accepted.report.strips[0].slip;
             last = -accepted.report.strips[0].force[1];
@@ -134,7 +138,8 @@ fn a_cut_step_follows_the_same_path() {
             .map(|accepted| accepted.report.strips[0].force[1])
             .expect("a step")
     };
-    let (coarse, fine) = (solved(0.25), solved(0.25 / 16.0));
+    let coarse = solved(0.25);
+    let fine = solved(0.25 / 16.0);
     println!("force with 4 steps {coarse:.6}, with 64 {fine:.6}");
     assert!((coarse / fine - 1.0).abs() <= 1.7e-3); // measured 1.3e-3
 }
@@ -147,7 +152,8 @@ fn a_uniform_traction_gives_uniform_stress_before_the_body_has_moved_and_follows
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &at(0.0, 1.0), &at(1.0, 1.0), 3);
     scene = scene.load(Load::dead(points, at(0.0, -100.0), 1.0));
     let M = scene.model.materials[0].elastic().oedometric();
-    let (mut first, mut last) = (f64::INFINITY, 0.0);
+    let mut first = f64::INFINITY;
+    let mut last = 0.0;
     scene.march(0.125, 1.0, |points, accepted| {
         let exact = -100.0 * accepted.t;
         let error = points
@@ -217,7 +223,8 @@ fn a_point_load_beside_a_plane_of_symmetry_an_axis_or_a_corner_stays_there() {
         )
         .body([0; D].map(|_| 0..2), 2, 1.0, |x| x * 0.0);
         scene = (0..D).fold(scene, |scene, axis| scene.support(Support::roller(axis, false)));
-        let (mut start, mut push) = (Vector::<D>::from_element(from), Vector::<D>::zeros());
+        let mut start = Vector::<D>::from_element(from);
+        let mut push = Vector::<D>::zeros();
         (start[D - 1], push[D - 1]) = (0.5, -2.0);
         scene = scene.load(Load::dead(vec![SurfacePoint::at(start, 1.0)], push, 1.0));
         scene.march(0.25, 1.0, |points, _| {
@@ -261,7 +268,8 @@ fn a_load_follows_its_amplitude() {
 fn a_load_without_material_is_an_error() {
     let load = Load::dead(vec![SurfacePoint::at(at(0.5, 1.8), 1.0)], at(0.0, -1.0), 0.0);
     let mut scene = block([4, 4], 2).load(load);
-    let (halo, schedule) = (scene.halo(), Schedule::new(1.0, 1.0, []));
+    let halo = scene.halo();
+    let schedule = Schedule::new(1.0, 1.0, []);
     let mut solver = crate::support::solver::Skyline::new(&scene.model.grid);
     let mut stepper = bsmpm::control::Stepper::new(scene.model.grid.nodes() * 2);
     let found = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver);
@@ -275,7 +283,8 @@ fn a_load_without_material_is_an_error() {
 #[test]
 fn a_place_beyond_a_face_by_rounding_is_on_it() {
     let scene = block([4, 4], 2);
-    let (grid, offsets) = (&scene.model.grid, scene.model.grid.offsets());
+    let grid = &scene.model.grid;
+    let offsets = scene.model.grid.offsets();
     let found = |x: f64, y: f64| surface::Attachment::at(grid, &offsets, |_| true, &at(x, y)).is_some();
     assert!(found(1.0, 2.0) && found(1.0 + 1e-15, 2.0 + 1e-14) && found(-1e-15, -1e-15));
     assert!(!found(1.0 + 1e-6, 1.0) && !found(0.5, -1e-6));
@@ -285,7 +294,8 @@ fn a_place_beyond_a_face_by_rounding_is_on_it() {
 fn the_reach_beyond_occupied_cells_is_that_of_the_documentation() {
     for (order, reach) in [(1, 0.75), (2, 1.0 + 1.0 - 0.5_f64.sqrt()), (3, 1.85)] {
         let scene = block([8, 8], order);
-        let (grid, offsets) = (&scene.model.grid, scene.model.grid.offsets());
+        let grid = &scene.model.grid;
+        let offsets = scene.model.grid.offsets();
         let active = |node: usize| grid.node_at(node)[1] < 8 + order; // of the cells below y = 2 m
         let found =
             |cells: f64| surface::Attachment::at(grid, &offsets, active, &at(1.1, 2.0 + 0.25 * cells)).is_some();

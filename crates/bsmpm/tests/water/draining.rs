@@ -54,7 +54,8 @@ fn a_drained_surface_that_settles_through_rows_of_cells_stays_drained() {
         scene = scene.background(Some(soft));
         scene.model.weighting = Weighting::Volume;
         (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
-        let (mut errors, mut iterations) = (Vec::new(), 0);
+        let mut errors = Vec::new();
+        let mut iterations = 0;
         run(&mut scene, steps(1e-4, 100, &times), |t, points, report| {
             iterations += report.iterations;
             let water = report.water.as_ref().expect("water flows");
@@ -138,7 +139,8 @@ impl Disc {
     fn new() -> Self {
         let f = |x: f64| bessel(0, x) - bessel(1, x) / x;
         let root = |k: i32| {
-            let (mut low, mut high) = (PI * f64::from(k) + 1.0, PI * f64::from(k) + 3.0);
+            let mut low = PI * f64::from(k) + 1.0;
+            let mut high = PI * f64::from(k) + 3.0;
             for _ in 0..60 {
                 let middle = 0.5 * (low + high);
                 if f(low) * f(middle) <= 0.0 {
@@ -185,7 +187,8 @@ fn a_disc_that_is_pressed_on_its_drained_rim_follows_its_closed_form() {
     };
     let mut scene = quarter(10, [0.0, 1.0], vec![drain]).load(load);
     let times = [0.05, 0.1, 0.2];
-    let (mut errors, mut iterations) = (Vec::new(), 0);
+    let mut errors = Vec::new();
+    let mut iterations = 0;
     run(&mut scene, steps(1e-3, 60, &times), |t, points, report| {
         iterations += report.iterations;
         if !times.contains(&t) {
@@ -232,7 +235,8 @@ fn water_flows_through_a_ring_between_its_drained_arcs() {
 
 /// Root mean square of the pressures about the quadratics through those of the cell and its neighbours, Pa.
 fn noise(scene: &Plane) -> f64 {
-    let (grid, points) = (&scene.model.grid, &scene.points);
+    let grid = &scene.model.grid;
+    let points = &scene.points;
     let pressures = points.pore_pressure.as_ref().expect("water flows");
     let cells: Vec<[usize; 2]> = points.x.iter().map(|x| grid.locate(x).expect("inside")).collect();
     let near = |a: &[usize; 2], b: &[usize; 2]| (0..2).all(|axis| a[axis].abs_diff(b[axis]) <= 1);
@@ -276,7 +280,8 @@ fn under_a_strip(x: f64, y: f64) -> f64 {
 /// strip is longer by the share `beyond` of a cell, and the layer's top row of cells is filled by the share `cut`. Also
 /// the iterations.
 fn under_strip(h: f64, [beyond, cut]: [f64; 2]) -> (Plane, usize) {
-    let (cells, end) = ((8.0 / h) as usize, 1.0 + beyond * h);
+    let cells = (8.0 / h) as usize;
+    let end = 1.0 + beyond * h;
     let mut scene = Plane::new(
         [axis(h, cells, 2), axis(h, cells + 1, 2)],
         hencky(M, 0.0),
@@ -285,7 +290,8 @@ fn under_strip(h: f64, [beyond, cut]: [f64; 2]) -> (Plane, usize) {
     .body([0..cells, 0..cells], 3, 1.0, |x| x * 0.0)
     .rollers([0])
     .support(Support::roller(1, false));
-    let (row, top) = (8.0 - h, 8.0 - h + cut * h);
+    let row = 8.0 - h;
+    let top = 8.0 - h + cut * h;
     for (x, volume) in scene
         .points
         .x

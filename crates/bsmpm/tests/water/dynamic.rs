@@ -46,8 +46,10 @@ fn water_damps_the_waves_of_a_column_as_the_telegraph_equation_says() {
             .along;
         *along *= 1.0 / (damping * along[1] * M / super::WEIGHT);
         scene.model.balances_energy = true;
-        let (mut found, mut iterations) = (Vec::new(), 0);
-        let (mut books, mut budget) = (Books::open(Stored::default()), Budget::open(Stored::default()));
+        let mut found = Vec::new();
+        let mut iterations = 0;
+        let mut books = Books::open(Stored::default());
+        let mut budget = Budget::open(Stored::default());
         let mut now = Stored::default();
         run(
             &mut scene,
@@ -70,7 +72,9 @@ fn water_damps_the_waves_of_a_column_as_the_telegraph_equation_says() {
             .fold(0.0, f64::max);
         println!("b = {damping}: {found:.5?} ({expected:?}), off by {off:.4}, {iterations} iterations in 1000 steps");
         assert!(off < 0.02);
-        let (given, closure, growth) = (books.flows.external, books.closure(now), budget.growth);
+        let given = books.flows.external;
+        let closure = books.closure(now);
+        let growth = budget.growth;
         let parts = [now.kinetic + now.elastic, books.flows.plastic, books.flows.numerical()].map(|part| part / given);
         println!(
             "  of {given:.4e} J stored, seepage, numerical {parts:.4?}, left {:.1e}, made {growth:.4}",

@@ -5,6 +5,7 @@ use crate::support::scene::{axis, hencky};
 use bsmpm::boundary::{Contact, Support};
 use bsmpm::grid::Shape;
 use bsmpm::model::Regime;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::water::carried;
 use bsmpm::water::flow::{Motion, PermeabilityLaw};
@@ -28,15 +29,22 @@ fn found<T>(friction: f64, of: impl Fn(&PorePressure<2>, &Plane, &Shape<2>) -> T
     scene.points.pore_pressure = Some(scene.points.x.iter().map(|x| 5e3 + 2e3 * x[0] - 3e3 * x[1]).collect());
     let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, &scene.points).expect("inside");
-    let nodes = Nodes::map(&scene.model, &shape, &scene.points, (0.0, 1.0), &halo).expect("no loads");
+    let nodes = Nodes::map(
+        &scene.model,
+        &shape,
+        &scene.points,
+        TimeInterval { start: 0.0, dt: 1.0 },
+        &halo,
+    )
+    .expect("no loads");
     nodes.pore_pressure.map(|pores| of(&pores, &scene, &shape))
 }
 
 #[test]
 fn excess_pore_pressure_is_taken_off_the_normal_force_of_a_face() {
     let force = |pores: &PorePressure<2>, scene: &Plane, shape: &Shape<2>| -> f64 {
-        let around = (shape, &scene.points);
-        let forces = carried::forces_on_faces(pores, &scene.model, around, &scene.points.volume, &scene.halo());
+        let Plane { model, points } = scene;
+        let forces = carried::forces_on_faces(pores, model, shape, points, &points.volume, &scene.halo());
         forces.iter().step_by(2).sum()
     };
     let found = found(0.3, force).expect("it has friction");

@@ -29,12 +29,15 @@ fn settling(cells: usize, load: f64, law: PermeabilityLaw) -> Plane {
 }
 
 /// Settlement of the surface over the height, and excess pressure at the base over M, of the table's times.
-fn consolidated(mut scene: Plane, (first, steps): (f64, usize)) -> Vec<[f64; 2]> {
+fn consolidated(mut scene: Plane, first: f64, steps: usize) -> Vec<[f64; 2]> {
     let mut times = geometric(first, 2.0, steps);
     times.extend(T);
     times.sort_by(f64::total_cmp);
     times.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-    let (mut found, mut iterations, mut steps, mut worst) = (Vec::new(), 0, 0, 0.0_f64);
+    let mut found = Vec::new();
+    let mut iterations = 0;
+    let mut steps = 0;
+    let mut worst = 0.0_f64;
     run(&mut scene, times, |t, points, report| {
         (iterations, steps) = (iterations + report.iterations, steps + 1);
         let water = report.water.as_ref().expect("water flows");
@@ -80,7 +83,7 @@ fn compare(name: &str, once: f64, found: &[[f64; 2]], expected: &[[f64; 2]]) -> 
 #[test]
 fn a_load_of_half_the_stiffness_settles_as_the_solution_by_lines() {
     let load = 0.5 * M;
-    let of = |law| consolidated(settling(20, load, law), (5e-3, 135));
+    let of = |law| consolidated(settling(20, load, law), 5e-3, 135);
     let constant = [
         [0.07348, 0.5],
         [0.11619, 0.49616],
@@ -128,7 +131,7 @@ fn weight_of_half_the_stiffness_settles_as_the_solution_by_lines() {
         [0.17177, 0.00295],
         [0.17281, 0.00001],
     ];
-    let off = compare("weight", 0.5, &consolidated(scene, (1e-4, 210)), &expected);
+    let off = compare("weight", 0.5, &consolidated(scene, 1e-4, 210), &expected);
     assert!(off.iter().all(|off| *off < 0.02));
 }
 
@@ -187,7 +190,8 @@ fn of_terzaghis_volume(load: f64) -> Vec<[f64; 2]> {
     times.extend(T);
     times.sort_by(f64::total_cmp);
     times.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-    let (mut found, mut t) = (Vec::new(), 0.0);
+    let mut found = Vec::new();
+    let mut t = 0.0;
     for next in times {
         let flow = scene
             .model
@@ -215,9 +219,11 @@ fn of_terzaghis_volume(load: f64) -> Vec<[f64; 2]> {
 /// longer fill evenly: ln(l)/l = -(q - p)/M, p linear in space, H = 1/int ds/l(p(s)), w = k p_base/(gamma_w H).
 #[test]
 fn what_flows_through_a_compressed_column_is_what_leaves_by_its_drain() {
-    let (load, base) = (0.5, 0.1);
+    let load = 0.5;
+    let base = 0.1;
     let stretch = |pressure: f64| {
-        let (mut low, mut high) = (0.4, 1.0_f64);
+        let mut low = 0.4;
+        let mut high = 1.0_f64;
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if middle.ln() / middle < pressure - load {
@@ -247,7 +253,8 @@ fn what_flows_through_a_compressed_column_is_what_leaves_by_its_drain() {
         given,
         acts: true,
     });
-    let (mut out, mut t) = (0.0, 0.0);
+    let mut out = 0.0;
+    let mut t = 0.0;
     run(&mut scene, geometric(5e-3, 4.0, 120), |now, _, report| {
         let crossed = &report.water.as_ref().expect("water flows").crossed;
         (out, t) = (crossed.drains[0] / (now - t), now);
@@ -260,7 +267,8 @@ fn what_flows_through_a_compressed_column_is_what_leaves_by_its_drain() {
         .expect("all inside");
     let settled = surface(&scene.points);
     let off = |value: f64| value / expected - 1.0;
-    let (mut worst, mut count) = (0.0_f64, 0);
+    let mut worst = 0.0_f64;
+    let mut count = 0;
     for (x, flux) in scene.points.x.iter().zip(&fluxes) {
         // The cell of the surface has ground on one side only.
         if x[1] < height - 1.5 * edge {

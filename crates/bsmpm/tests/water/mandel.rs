@@ -72,10 +72,12 @@ fn the_pressure_in_the_middle_rises_before_it_falls_and_the_plate_sinks() {
     let mut worst = [0.0_f64; 2];
     for (nu, pressure, way) in TABLE {
         let mut scene = block(cells, nu);
-        let (mut t, mut velocity, mut sunk) = (0.0, 0.0, 0.0);
+        let mut t = 0.0;
+        let mut velocity = 0.0;
+        let mut sunk = 0.0;
         for &next in &times {
             velocity = under(&scene, (t, next), velocity);
-            let [middle, _] = run_one(&mut scene, (t, next), velocity);
+            let [middle, _] = run_one(&mut scene, t, next, velocity);
             sunk += velocity * (next - t);
             t = next;
             let Some(row) = TIMES.iter().position(|time| (time - next).abs() < 1e-9) else {
@@ -98,12 +100,12 @@ fn the_pressure_in_the_middle_rises_before_it_falls_and_the_plate_sinks() {
 /// The velocity of the plate with which it takes its load in a step: the problem is linear, so that two trials tell.
 fn under(scene: &Plane, step: (f64, f64), guess: f64) -> f64 {
     let tried = [guess, guess + LOAD / (E * (step.1 - step.0))];
-    let [one, two] = tried.map(|velocity| run_one(&mut scene.clone(), step, velocity)[1]);
+    let [one, two] = tried.map(|velocity| run_one(&mut scene.clone(), step.0, step.1, velocity)[1]);
     tried[0] + (LOAD - one) / (two - one) * (tried[1] - tried[0])
 }
 
 /// One step with the plate at a velocity: the pressure in the middle, and the mean stress below the plate, Pa.
-fn run_one(scene: &mut Plane, (from, to): (f64, f64), velocity: f64) -> [f64; 2] {
+fn run_one(scene: &mut Plane, from: f64, to: f64, velocity: f64) -> [f64; 2] {
     scene.model.boundary.supports[2].velocity[1] = Some(-velocity);
     let mut found = [0.0; 2];
     super::run_from(scene, from, [to], |_, points, report| {
@@ -127,11 +129,12 @@ fn threads_change_no_bit() {
         pool.install(|| {
             let mut scene = block(6, 0.2);
             for k in 0..3 {
-                run_one(&mut scene, (f64::from(k), f64::from(k + 1)), 1e-6);
+                run_one(&mut scene, f64::from(k), f64::from(k + 1), 1e-6);
             }
             scene.points
         })
     };
-    let (one, three) = (of(1), of(3));
+    let one = of(1);
+    let three = of(3);
     assert!(one.pore_pressure.iter().flatten().any(|p| *p > 0.0) && one == three);
 }

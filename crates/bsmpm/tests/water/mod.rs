@@ -17,7 +17,9 @@ use bsmpm::background::Resisted;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
+use bsmpm::parallel::Backend;
 use bsmpm::points::Points;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::step::{Counts, StepReport, step};
 use bsmpm::tensor::Vector;
 use bsmpm::water::Water;
@@ -109,7 +111,8 @@ pub fn column_of([across, cells]: [usize; 2], cut: f64, load: f64, law: Permeabi
         });
         let top = cells as f64 - 1.0;
         // Rows of points that follow the surface: those of the cut cell fill its height.
-        let (mut x, mut volume) = (scene.points.x.clone(), scene.points.volume.clone());
+        let mut x = scene.points.x.clone();
+        let mut volume = scene.points.volume.clone();
         for (x, volume) in x.iter_mut().zip(&mut volume) {
             if x[1] > top * h {
                 x[1] = top * h + (x[1] - top * h) * cut;
@@ -148,9 +151,12 @@ pub fn run_from(
 ) {
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
-    let (mut guess, mut t, mut last) = (vec![0.0; scene.model.grid.nodes() * 2], from, 0.0);
+    let mut guess = vec![0.0; scene.model.grid.nodes() * 2];
+    let mut t = from;
+    let mut last = 0.0;
     for next in times {
-        let (dt, mut counts) = (next - t, Counts::default());
+        let dt = next - t;
+        let mut counts = Counts::default();
         if last > 0.0 {
             guess.iter_mut().for_each(|u| *u *= dt / last);
         }
@@ -158,9 +164,12 @@ pub fn run_from(
             &scene.model,
             &mut scene.points,
             &mut guess,
-            (t, dt),
+            TimeInterval { start: t, dt },
             Resisted::Displacement,
-            (&halo, &mut solver),
+            &mut Backend {
+                halo: &halo,
+                solver: &mut solver,
+            },
             &mut counts,
         )
         .unwrap_or_else(|error| panic!("from {t} to {next}: {error}"));

@@ -16,6 +16,8 @@ use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::{Criteria, Method, Nonlinear, QuasiNewton};
 use bsmpm::model::Regime;
 use bsmpm::observe::{Part, largest_displacement};
+use bsmpm::parallel::Backend;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::solve::linearised::Linearised;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::nodes::Nodes;
@@ -32,7 +34,8 @@ use bsmpm::water::retention::Retention;
 
 /// Soil of which some yields, with water that flows, a drain, a seepage face and rain that runs off.
 fn wet<K: Kinematics<D>, const D: usize>(
-    (method, regime): (Stabilisation, Regime),
+    method: Stabilisation,
+    regime: Regime,
     dilation: f64,
     retention: Option<Retention>,
 ) -> Scene<K, D> {
@@ -116,10 +119,18 @@ fn wet<K: Kinematics<D>, const D: usize>(
 /// the largest of its kind, about a mean excess pressure, Pa, under which all outlets are open or closed; points that
 /// yield, and all.
 fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f64) -> ([f64; 2], [usize; 2]) {
-    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, (0.0, 0.1), &halo).expect("no loads");
-    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 0.1));
+    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 0.1 }, &halo).expect("no loads");
+    let attachments = StripAttachments::at(
+        &[],
+        &points.surface,
+        &model.grid,
+        &nodes.free,
+        TimeInterval { start: 0.0, dt: 0.1 },
+    );
     let pieces = Problem {
         model,
         shape: &shape,
@@ -139,7 +150,8 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
         all.map(|(free, size)| if *free { size * random.signed() } else { 0.0 })
             .collect()
     };
-    let (mut x, v) = (free((0.01, 10.0)), free((1.0, 1e3)));
+    let mut x = free((0.01, 10.0));
+    let v = free((1.0, 1e3));
     for (x, free) in x[nodes.free.len()..].iter_mut().zip(&pores.free) {
         *x += if *free { mean } else { 0.0 };
     }
@@ -174,7 +186,8 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
             .chain(balance.water.iter().flat_map(|water| water.excess.iter().map(|R| -R)))
             .collect()
     };
-    let (after, before) = (lacking(step), lacking(-step));
+    let after = lacking(step);
+    let before = lacking(-step);
     let errors = [0..nodes.free.len(), nodes.free.len()..x.len()].map(|range| {
         let size = product[range.clone()]
             .iter()
@@ -197,14 +210,14 @@ fn the_product_is_the_derivative_of_both_balances() {
                 let found = [-30.0, 30.0].map(|mean| {
                     [
                         product_errors(
-                            &wet::<PlaneStrain, 2>((method, regime), dilation, retention.cloned()),
+                            &wet::<PlaneStrain, 2>(method, regime, dilation, retention.cloned()),
                             mean,
                         ),
                         product_errors(
-                            &wet::<Axisymmetric, 2>((method, regime), dilation, retention.cloned()),
+                            &wet::<Axisymmetric, 2>(method, regime, dilation, retention.cloned()),
                             mean,
                         ),
-                        product_errors(&wet::<Solid, 3>((method, regime), dilation, retention.cloned()), mean),
+                        product_errors(&wet::<Solid, 3>(method, regime, dilation, retention.cloned()), mean),
                     ]
                 });
                 println!("{method:?}, {regime:?}, {dilation}, {}: {found:?}", retention.is_some());
@@ -268,17 +281,23 @@ fn loaded(nonlinear: Nonlinear, method: Stabilisation, load: f64, law: Permeabil
 fn steps(scene: &mut Plane, times: &[f64]) -> Result<(f64, Vec<StepReport>, usize), StepError> {
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
-    let (mut guess, mut t, mut reports) = (vec![0.0; scene.model.grid.nodes() * 2], 0.0, Vec::new());
+    let mut guess = vec![0.0; scene.model.grid.nodes() * 2];
+    let mut t = 0.0;
+    let mut reports = Vec::new();
     let mut products = 0;
     for next in times {
-        let (dt, mut counts) = (next - t, Counts::default());
+        let dt = next - t;
+        let mut counts = Counts::default();
         reports.push(step(
             &scene.model,
             &mut scene.points,
             &mut guess,
-            (t, dt),
+            TimeInterval { start: t, dt },
             Resisted::Displacement,
-            (&halo, &mut solver),
+            &mut Backend {
+                halo: &halo,
+                solver: &mut solver,
+            },
             &mut counts,
         )?);
         products += counts.products;
@@ -327,7 +346,8 @@ fn forces_and_water_fall_with_their_squares() {
                 );
             }
             println!("displacement, iterations, products: {found:?}");
-            let ([newton, auto], [quick, slow]) = ([found[0].0, found[1].0], [found[0].1, found[1].1]);
+            let [newton, auto] = [found[0].0, found[1].0];
+            let [quick, slow] = [found[0].1, found[1].1];
             assert!(
                 (newton / auto - 1.0).abs() < 1e-6 && quick < slow,
                 "the same state in fewer iterations"

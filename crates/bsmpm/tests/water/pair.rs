@@ -10,6 +10,7 @@ use bsmpm::grid::transfer::scalars;
 use bsmpm::grid::{Shape, transfer};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
+use bsmpm::schedule::TimeInterval;
 use bsmpm::step::nodes::Nodes;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
@@ -50,7 +51,8 @@ fn afloat(cells: usize, off: Vector<2>, is_round: bool) -> Plane {
         hencky(1.0, 0.0),
         Regime::QuasiStatic,
     );
-    let (centre, off) = (at(0.5 + h, 0.5 + h), off * h);
+    let centre = at(0.5 + h, 0.5 + h);
+    let off = off * h;
     let mut scene = if is_round {
         let body = scene.body([0..cells + 2, 0..cells + 2], 3, 1.0, |x| x * 0.0);
         body.cut(|x| (x - centre - off).norm() < 0.5)
@@ -91,10 +93,18 @@ fn constants(mut scene: Plane) -> [f64; 2] {
         .and_then(|water| water.flow.as_mut())
         .expect("it flows");
     flow.soils[0].as_mut().expect("a soil").permeability = None;
-    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
-    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let attachments = StripAttachments::at(
+        &[],
+        &points.surface,
+        &model.grid,
+        &nodes.free,
+        TimeInterval { start: 0.0, dt: 1.0 },
+    );
     let problem = Problem {
         model,
         shape: &shape,
@@ -110,19 +120,17 @@ fn constants(mut scene: Plane) -> [f64; 2] {
     let mut unit = vec![0.0; nodes.free.len()];
     for (column, &component) in free.iter().enumerate() {
         unit[component] = 1.0;
-        let grad = transfer::gradients::<PlaneStrain, 2, _>((&shape, &points.x), &unit, |_, grad| grad);
+        let grad = transfer::gradients::<PlaneStrain, 2, _>(&shape, &points.x, &unit, |_, grad| grad);
         unit[component] = 0.0;
-        let force = transfer::divergence::<PlaneStrain, 2>((&shape, &points.x), |p| grad[p] * points.volume[p]).alone();
+        let force = transfer::divergence::<PlaneStrain, 2>(&shape, &points.x, |p| grad[p] * points.volume[p]).alone();
         free.iter()
             .enumerate()
             .for_each(|(row, &c)| stiffness[(row, column)] = force[c]);
     }
     let mut stand_in = Dense::of_pressures(&model.grid);
     matrix::assemble(&problem, pores, &pores.guess, &mut stand_in).expect("assembled");
-    let (mut q, mut mass) = (
-        DMatrix::zeros(free.len(), pressures.len()),
-        DMatrix::zeros(pressures.len(), pressures.len()),
-    );
+    let mut q = DMatrix::zeros(free.len(), pressures.len());
+    let mut mass = DMatrix::zeros(pressures.len(), pressures.len());
     let mut unit = vec![0.0; pores.free.len()];
     for (column, &function) in pressures.iter().enumerate() {
         unit[function] = 1.0;
@@ -199,10 +207,18 @@ fn the_tau_term_keeps_the_pair_stable_wherever_a_body_cuts_its_cells() {
 fn a_rotation_changes_neither_the_flow_nor_the_content_and_turns_the_forces() {
     let mut scene = square(4, 0.35);
     scene.model.boundary.supports.clear();
-    let (model, points, halo) = (&scene.model, &scene.points, scene.halo());
+    let model = &scene.model;
+    let points = &scene.points;
+    let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, (0.0, 1.0), &halo).expect("no loads");
-    let attachments = StripAttachments::at(&[], &points.surface, (&model.grid, &nodes.free), (0.0, 1.0));
+    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let attachments = StripAttachments::at(
+        &[],
+        &points.surface,
+        &model.grid,
+        &nodes.free,
+        TimeInterval { start: 0.0, dt: 1.0 },
+    );
     let problem = Problem {
         model,
         shape: &shape,
@@ -227,10 +243,8 @@ fn a_rotation_changes_neither_the_flow_nor_the_content_and_turns_the_forces() {
         let u = (0..model.grid.nodes()).flat_map(|node| [u(node)[0], u(node)[1]]);
         Residual::of(&problem, &u.chain(pressure.iter().copied()).collect::<Vec<_>>()).balance
     };
-    let (still, moved) = (
-        state(&|_| at(0.0, 0.0)),
-        state(&|node| turned(place(node)) - place(node)),
-    );
+    let still = state(&|_| at(0.0, 0.0));
+    let moved = state(&|node| turned(place(node)) - place(node));
     let excess = |balance: &bsmpm::step::residual::Balance| balance.water.as_ref().expect("it flows").excess.clone();
     let scale = excess(&still).iter().map(|value| value.abs()).fold(0.0, f64::max);
     let off = excess(&still)

@@ -73,7 +73,8 @@ fn mass(points: &Points<2>) -> f64 {
 fn richards(soil: &Retention, q: f64, heights: &[f64]) -> Vec<f64> {
     // q = -K k_r (psi' + 1)
     let slope = |psi: f64| -q / (K * soil.under(psi * WEIGHT, WEIGHT).permeability) - 1.0;
-    let (mut y, mut psi) = (0.0, 0.0);
+    let mut y = 0.0;
+    let mut psi = 0.0;
     let to = |height: &f64| {
         let parts = 200;
         let step = (height - y) / f64::from(parts);
@@ -145,7 +146,9 @@ fn steady_columns_follow_the_equation_of_richards() {
         for (cells, bound) in [10, 20].into_iter().zip(bounds) {
             let mut scene = column(cells, rate, false);
             let start = mass(&scene.points);
-            let (mut out, mut left, mut iterations) = (0.0, 0.0_f64, 0);
+            let mut out = 0.0;
+            let mut left = 0.0_f64;
+            let mut iterations = 0;
             run(&mut scene, doubling(100.0, 16), |_, _, report| {
                 let water = report.water.as_ref().expect("water flows");
                 out += water.crossed.out();
@@ -192,17 +195,17 @@ fn the_books_of_rain_close_with_what_suction_stores() {
             flow(&mut scene).faces[0].given = Given::StillWater;
         }
         scene.model.balances_energy = true;
-        let (model, halo) = (scene.model.clone(), scene.halo());
-        let stored = |points: &Points<2>, t: f64| Stored::of(&model, (points, t), &halo);
-        let (start, mut now) = (stored(&scene.points, 0.0), Stored::default());
+        let model = scene.model.clone(); let halo = scene.halo();
+        let stored = |points: &Points<2>, t: f64| Stored::of(&model, points, t, &halo);
+        let start = stored(&scene.points, 0.0); let mut now = Stored::default();
         let mut books = Books::open(start);
         run(&mut scene, (1..).map(|k| dt * f64::from(k)).take_while(|t| *t <= 20e3), |t, points, report| {
             books.flows += report.energy.expect("books are kept");
             now = stored(points, t);
         });
         let given = start.elastic - now.elastic;
-        let (spent, lost) = (books.flows.plastic / given, books.flows.numerical() / given);
-        let (put_in, left) = (books.flows.external / given, books.closure(now) / given);
+        let spent = books.flows.plastic / given; let lost = books.flows.numerical() / given;
+        let put_in = books.flows.external / given; let left = books.closure(now) / given;
         println!("{reported}: of {given:.4} J from pores, {put_in:.4} put in: seepage {spent:.4}, lost {lost:.4}, left {left:.1e}");
         assert!(given > 0.0 && spent > 0.0 && left.abs() < 1e-6);
         lost
@@ -240,7 +243,8 @@ fn a_front_of_rain_goes_down_without_oscillations() {
     scene.points.pore_pressure = Some(scene.points.x.iter().map(|_| dry).collect());
     flow(&mut scene).faces.clear();
     let start = mass(&scene.points);
-    let (mut iterations, mut worst) = (0, [0.0_f64; 2]);
+    let mut iterations = 0;
+    let mut worst = [0.0_f64; 2];
     run(
         &mut scene,
         (1..=60).map(|k| 400.0 * f64::from(k)),
@@ -278,7 +282,8 @@ fn a_front_of_rain_goes_down_without_oscillations() {
 fn suction_presses_the_skeleton_as_bishop_says() {
     // A column free on two sides, without weight and without flow: E ln J = 2 J chi p, and the water that it holds
     // stays.
-    let (young, start) = (1e6, -0.8 * WEIGHT);
+    let young = 1e6;
+    let start = -0.8 * WEIGHT;
     let mut scene = column(4, 0.0, false);
     scene.model.materials = vec![hencky(young, 0.0)];
     scene.model.gravity = None;
@@ -289,7 +294,8 @@ fn suction_presses_the_skeleton_as_bishop_says() {
         println!("{} iterations", report.iterations)
     });
     let held = |J: f64, p: f64| (J - 1.0 + POROSITY) * loam().under(p, WEIGHT).saturation;
-    let (mut low, mut high) = (start, 0.0);
+    let mut low = start;
+    let mut high = 0.0;
     let of = |p: f64| {
         // J by the fixed point of that, which contracts.
         (0..60).fold(1.0, |J: f64, _| {
@@ -304,7 +310,8 @@ fn suction_presses_the_skeleton_as_bishop_says() {
             high = p
         }
     }
-    let (J, p) = (of(low), low);
+    let J = of(low);
+    let p = low;
     let mut worst = 0.0_f64;
     for (point, found) in scene
         .points
@@ -314,7 +321,8 @@ fn suction_presses_the_skeleton_as_bishop_says() {
         .iter()
         .enumerate()
     {
-        let (found, F) = (found / p, scene.points.F.at(point).determinant());
+        let found = found / p;
+        let F = scene.points.F.at(point).determinant();
         worst = worst.max((found - 1.0).abs()).max(((F - 1.0) / (J - 1.0) - 1.0).abs());
         assert!(worst < 1e-6, "{found} {F} {J}");
     }
@@ -323,7 +331,8 @@ fn suction_presses_the_skeleton_as_bishop_says() {
 
 /// m  the integral of k_r over the suction head from so dry as makes no difference to `psi`, m.
 fn conducted(soil: &Retention, psi: f64) -> f64 {
-    let (parts, lowest) = (4000, -3.0);
+    let parts = 4000;
+    let lowest = -3.0;
     let step = (psi.min(0.0) - lowest) / f64::from(parts);
     let k = |i: i32| {
         soil.under((lowest + (f64::from(i) + 0.5) * step) * WEIGHT, WEIGHT)
@@ -336,7 +345,9 @@ fn conducted(soil: &Retention, psi: f64) -> f64 {
 #[test]
 fn a_dam_lets_through_what_dupuit_says() {
     // m
-    let (h1, h2, length) = (1.0, 0.25, 0.75);
+    let h1 = 1.0;
+    let h2 = 0.25;
+    let length = 0.75;
     let soil = Retention::van_genuchten(15.0, 3.0, 0.05);
     let dupuit = (h1 * h1 - h2 * h2) / (2.0 * length);
     for (cells, bound) in [(8, 0.01), (16, 0.005)] {
@@ -360,7 +371,8 @@ fn a_dam_lets_through_what_dupuit_says() {
             drain(length, h2, cells - below, Given::Seepage),
         ];
         scene.points.pore_pressure = Some(scene.points.x.iter().map(|x| WEIGHT * (h2 - x[1])).collect());
-        let (mut out, mut most) = (Vec::new(), 0);
+        let mut out = Vec::new();
+        let mut most = 0;
         run(&mut scene, doubling(100.0, 14), |_, _, report| {
             let water = report.water.as_ref().expect("water flows");
             assert!(water.crossed.drains[2] >= 0.0, "water only comes out of a seepage face");
@@ -370,10 +382,8 @@ fn a_dam_lets_through_what_dupuit_says() {
         // Charny's proof (1951), with the flow above the phreatic line: d/dx of the integral over the height of what
         // is conducted up to the pressure there is -Q/K. At the exit from the points next to it.
         let points = &scene.points;
-        let (pressures, gradients) = (
-            points.pore_pressure.as_ref().unwrap(),
-            points.pressure_gradient.as_ref().unwrap(),
-        );
+        let pressures = points.pore_pressure.as_ref().unwrap();
+        let gradients = points.pressure_gradient.as_ref().unwrap();
         let last = |p: &usize| points.x[*p][0] > length - h / 3.0;
         let at_exit = |p: usize| pressures[p] + gradients[p][0] * (length - points.x[p][0]);
         let exit: f64 = (0..points.len())

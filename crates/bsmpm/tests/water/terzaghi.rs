@@ -30,7 +30,10 @@ fn settlement_and_pressures_follow_the_closed_form() {
     times.sort_by(f64::total_cmp);
     times.dedup();
     let mut scene = column(20, 1.0, LOAD, PermeabilityLaw::Constant);
-    let (mut worst, mut iterations, mut steps, mut left) = ([0.0_f64; 2], 0, 0, 0.0_f64);
+    let mut worst = [0.0_f64; 2];
+    let mut iterations = 0;
+    let mut steps = 0;
+    let mut left = 0.0_f64;
     run(&mut scene, times, |t, points, report| {
         iterations += report.iterations;
         steps += 1;
@@ -156,7 +159,8 @@ fn a_line_across_which_strains_may_jump_does_not_tear_the_pressure() {
         });
         last
     };
-    let (whole, lined) = (of(false), of(true));
+    let whole = of(false);
+    let lined = of(true);
     let off = whole.iter().zip(&lined).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     println!("pressures and U(0.2) with a line at half the height: off by {off:.1e}");
     assert!(off < 5e-4);
@@ -181,7 +185,8 @@ fn books_hold_where_soil_that_lets_nothing_through_touches_soil_that_does() {
     for p in 0..scene.points.len() {
         scene.points.material[p] = u16::from(scene.points.x[p][1] < 0.45);
     }
-    let (mut out, mut worst) = (0.0, 0.0_f64);
+    let mut out = 0.0;
+    let mut worst = 0.0_f64;
     run(&mut scene, geometric(1e-3, 0.2, 30), |_, _, report| {
         let water = report.water.as_ref().expect("water flows");
         out += water.crossed.out();
@@ -211,10 +216,8 @@ fn steady_seepage_takes_what_drives_it() {
     });
     let mut last = [0.0; 3];
     run(&mut scene, geometric(1e-3, 8.0, 60), |_, _, report| {
-        let (energy, water) = (
-            report.energy.expect("books are kept"),
-            report.water.as_ref().expect("water flows"),
-        );
+        let energy = report.energy.expect("books are kept");
+        let water = report.water.as_ref().expect("water flows");
         last = [-LOAD * water.crossed.faces[1], energy.external, energy.plastic];
     });
     println!(
@@ -243,7 +246,8 @@ fn books_of_ground_that_a_part_is_taken_from_are_off_by_what_the_iterations_left
         given,
         acts: true,
     });
-    let (mut out, mut left) = (0.0, 0.0);
+    let mut out = 0.0;
+    let mut left = 0.0;
     let mut enter = |report: &StepReport| {
         let water = report.water.as_ref().expect("water flows");
         (out, left) = (out + water.crossed.out(), left + water.left);

@@ -28,17 +28,15 @@ pub(crate) struct Array {
 
 impl Array {
     /// Writes the rows from `start` on; all ranks together, also those without a row.
-    pub(crate) fn write(&self, (start, count, width): (u64, u64, u64), rows: &[u8]) -> Result<()> {
+    pub(crate) fn write(&self, start: u64, count: u64, width: u64, rows: &[u8]) -> Result<()> {
         assert_eq!(
             rows.len() as u64,
             count * width * self.number.bytes() as u64,
             "rows of another size"
         );
         let action = "write an array";
-        let (memory, place) = (
-            selection(&self.id, (0, count, width), true)?,
-            selection(&self.id, (start, count, width), false)?,
-        );
+        let memory = selection(&self.id, 0, count, width, true)?;
+        let place = selection(&self.id, start, count, width, false)?;
         // SAFETY: valid identifiers; the buffer has the bytes that the selection names, as asserted.
         unsafe {
             let transfer = Id::new(action, H5Pcreate(*H5P_CLS_DATASET_XFER))?;
@@ -61,7 +59,7 @@ impl Array {
     }
 
     /// Reads the rows from `start` on into a buffer of their size; each rank for itself.
-    pub(crate) fn read(&self, (start, count, width): (u64, u64, u64), rows: &mut [u8]) -> Result<()> {
+    pub(crate) fn read(&self, start: u64, count: u64, width: u64, rows: &mut [u8]) -> Result<()> {
         assert_eq!(
             rows.len() as u64,
             count * width * self.number.bytes() as u64,
@@ -70,10 +68,8 @@ impl Array {
         if count == 0 {
             return Ok(());
         }
-        let (memory, place) = (
-            selection(&self.id, (0, count, width), true)?,
-            selection(&self.id, (start, count, width), false)?,
-        );
+        let memory = selection(&self.id, 0, count, width, true)?;
+        let place = selection(&self.id, start, count, width, false)?;
         // SAFETY: valid identifiers; the buffer has the bytes that the selection names, as asserted.
         let read = unsafe {
             H5Dread(
@@ -97,7 +93,7 @@ pub(super) fn space(dims: [hsize_t; 2]) -> Result<Id> {
 }
 
 /// The rows from `start` on, in memory or in the file; nothing where there are none.
-fn selection(array: &Id, (start, count, width): (u64, u64, u64), in_memory: bool) -> Result<Id> {
+fn selection(array: &Id, start: u64, count: u64, width: u64, in_memory: bool) -> Result<Id> {
     let action = "select rows";
     // SAFETY: an open array or a new space, and arrays of two numbers.
     unsafe {
@@ -109,8 +105,10 @@ fn selection(array: &Id, (start, count, width): (u64, u64, u64), in_memory: bool
         if count == 0 {
             check(action, H5Sselect_none(chosen.0))?;
         } else {
-            let (from, size): ([hsize_t; 2], [hsize_t; 2]) = ([start, 0], [count, width]);
-            let (set, each) = (H5S_seloper_t::H5S_SELECT_SET, ptr::null());
+            let from: [hsize_t; 2] = [start, 0];
+            let size: [hsize_t; 2] = [count, width];
+            let set = H5S_seloper_t::H5S_SELECT_SET;
+            let each = ptr::null();
             check(
                 action,
                 H5Sselect_hyperslab(chosen.0, set, from.as_ptr(), each, size.as_ptr(), each),
@@ -168,7 +166,9 @@ pub(super) fn strange_storage(array: &Id, rows: u64) -> Result<Option<&'static s
         if H5Pget_nfilters(list.0) != c_int::from(rows > 0) {
             return Ok(Some("has other filters than a checksum"));
         }
-        let (mut flags, mut values, null) = (0, 0, ptr::null_mut());
+        let mut flags = 0;
+        let mut values = 0;
+        let null = ptr::null_mut();
         if rows > 0
             && H5Pget_filter2(
                 list.0,

@@ -11,10 +11,8 @@ impl Ksp<'_> {
     /// type, preconditioner and options stay, what was built is forgotten. Collective.
     pub fn set_shell_operator(&mut self, local_rows: usize) -> Result<()> {
         let shell = Shell::new(self.petsc, local_rows)?;
-        let (b, x) = (
-            Vector::new(self.petsc, local_rows)?,
-            Vector::new(self.petsc, local_rows)?,
-        );
+        let b = Vector::new(self.petsc, local_rows)?;
+        let x = Vector::new(self.petsc, local_rows)?;
         // SAFETY: the handle is valid; it refers to no older operator any more.
         check(unsafe { ffi::KSPReset(self.raw) })?;
         // SAFETY: both handles are valid; PETSc takes references of its own.
@@ -39,7 +37,8 @@ impl Ksp<'_> {
     /// [`Ksp::set_up_with_pc`] and [`Ksp::solve_with_pc`]. Collective.
     pub fn set_pc_shell(&mut self, name: &str) -> Result<()> {
         self.set_pc_type("shell")?;
-        let (name, pc) = (c_string(name)?, self.pc()?);
+        let name = c_string(name)?;
+        let pc = self.pc()?;
         let slot = self
             .pc_slot
             .get_or_insert_with(|| Slot::new(self.local_rows.unwrap_or(0)));
@@ -66,7 +65,8 @@ impl Ksp<'_> {
     /// Collective.
     pub fn solve_with_pc(
         &mut self,
-        (product, pc): (&mut Product<'_>, &mut dyn ShellPc),
+        product: &mut Product<'_>,
+        pc: &mut dyn ShellPc,
         fill: impl FnOnce(&mut [f64]),
     ) -> Result<SolveInfo> {
         if !self.is_ready {
@@ -76,12 +76,13 @@ impl Ksp<'_> {
         // Whatever happens below, only a solution says that the preconditioner is good.
         self.is_ready = false;
         let (shell, b, x) = self.shell()?;
-        let call = || {
-            // SAFETY: the handles are valid; the vectors were made with the operator, and are distinct.
-            check(unsafe { ffi::KSPSolve(self.raw, b.raw(), x.raw()) }).and_then(|()| self.verdict())
-        };
         let slot = self.lent_pc()?;
-        let outcome = shell.slot().lend_product(product, || slot.lend_pc(pc, call));
+        let outcome = shell.slot().lend_product(product, || {
+            slot.lend_pc(pc, || {
+                // SAFETY: the handles are valid; the vectors were made with the operator, and are distinct.
+                check(unsafe { ffi::KSPSolve(self.raw, b.raw(), x.raw()) }).and_then(|()| self.verdict())
+            })
+        });
         let outcome = self.conclude(outcome);
         self.is_ready = outcome.is_ok();
         outcome

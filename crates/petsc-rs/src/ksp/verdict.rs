@@ -13,7 +13,8 @@ const BROKEN: i32 = 2;
 impl Ksp<'_> {
     /// How the solve that has just returned ended.
     pub(super) fn verdict(&self) -> Result<SolveInfo> {
-        let (mut reason, mut count) = (0, 0);
+        let mut reason = 0;
+        let mut count = 0;
         // SAFETY: the handle and the pointers are valid.
         check(unsafe { ffi::KSPGetConvergedReason(self.raw, &mut reason) })?;
         // SAFETY: as above.
@@ -92,7 +93,8 @@ impl Ksp<'_> {
 
     /// Drops a factor that failed: PETSc would keep it, failed, for later values of the matrix.
     fn forget_factor(&mut self) -> Result<()> {
-        let (pc, mut matrix) = (self.pc()?, ptr::null_mut());
+        let pc = self.pc()?;
+        let mut matrix = ptr::null_mut();
         // SAFETY: the handle and the pointer are valid; the matrix stays PETSc's.
         check(unsafe { ffi::KSPGetOperators(self.raw, ptr::null_mut(), &mut matrix) })?;
         // SAFETY: a matrix is a PetscObject; this reference outlives the PC's, which ends next.

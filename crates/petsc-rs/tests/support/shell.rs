@@ -17,7 +17,8 @@ struct Inner<'p> {
 impl<'p> Inner<'p> {
     fn new(petsc: &'p Petsc, matrix: &Matrix<'p>) -> Result<Self, String> {
         let ksp = crate::solver(petsc, matrix, ["preonly", "cholesky", "mumps"])?;
-        let (b, x) = (wavy(petsc)?, wavy(petsc)?);
+        let b = wavy(petsc)?;
+        let x = wavy(petsc)?;
         Ok(Self {
             ksp,
             b,
@@ -71,7 +72,8 @@ fn outer<'p>(petsc: &'p Petsc, method: &str) -> Result<Ksp<'p>, String> {
 fn times<'a>(petsc: &'a Petsc, matrix: &'a Matrix<'_>, count: &'a mut usize) -> impl FnMut(&[f64], &mut [f64]) {
     move |x, y| {
         *count += 1;
-        let (mut from, mut to) = (Vector::new(petsc, LOCAL).unwrap(), Vector::new(petsc, LOCAL).unwrap());
+        let mut from = Vector::new(petsc, LOCAL).unwrap();
+        let mut to = Vector::new(petsc, LOCAL).unwrap();
         from.copy_from(x).unwrap();
         matrix.mult(&from, &mut to).unwrap();
         to.copy_to(y).unwrap();
@@ -80,13 +82,14 @@ fn times<'a>(petsc: &'a Petsc, matrix: &'a Matrix<'_>, count: &'a mut usize) -> 
 
 fn solve(
     ksp: &mut Ksp,
-    (product, pc): (&mut petsc_rs::Product<'_>, &mut dyn ShellPc),
+    product: &mut petsc_rs::Product<'_>,
+    pc: &mut dyn ShellPc,
     b: &Vector,
     x: &mut Vector,
 ) -> petsc_rs::Result<SolveInfo> {
     let mut right = vec![0.0; LOCAL];
     b.copy_to(&mut right)?;
-    let info = ksp.solve_with_pc((product, pc), |b| b.copy_from_slice(&right))?;
+    let info = ksp.solve_with_pc(product, pc, |b| b.copy_from_slice(&right))?;
     ksp.solution(|solution| x.copy_from(solution))??;
     Ok(info)
 }
@@ -98,9 +101,13 @@ fn relative_residual(petsc: &Petsc, matrix: &Matrix, b: &Vector, x: &Vector) -> 
 }
 
 pub fn shell_pc(petsc: &Petsc) -> Result<(), String> {
-    let (matrix, b, mut x) = (poisson(petsc)?, wavy(petsc)?, wavy(petsc)?);
+    let matrix = poisson(petsc)?;
+    let b = wavy(petsc)?;
+    let mut x = wavy(petsc)?;
     for (method, wanted, products) in [("preonly", "CONVERGED_ITS", 0), ("cg", "CONVERGED_RTOL", 1)] {
-        let (mut inner, mut ksp, mut count) = (Inner::new(petsc, &matrix)?, outer(petsc, method)?, 0);
+        let mut inner = Inner::new(petsc, &matrix)?;
+        let mut ksp = outer(petsc, method)?;
+        let mut count = 0;
         expect(
             ksp.type_name().map_err(text)?.as_deref() == Some(method),
             "the method's name",
@@ -115,7 +122,7 @@ pub fn shell_pc(petsc: &Petsc) -> Result<(), String> {
                 ksp.shell_operator_changed().map_err(text)?;
             }
             x.fill(0.0).map_err(text)?;
-            let info = solve(&mut ksp, (&mut product, &mut inner), &b, &mut x).map_err(text)?;
+            let info = solve(&mut ksp, &mut product, &mut inner, &b, &mut x).map_err(text)?;
             expect(info.iterations == 1, &format!("{method}: {info:?}"))?;
             let (reason, name) = ksp.converged_reason().map_err(text)?;
             expect(
@@ -141,34 +148,40 @@ pub fn shell_pc(petsc: &Petsc) -> Result<(), String> {
 
 /// Failures at set-up and in an application, of all ranks or the last one only, end the solve and leave no trace.
 pub fn shell_failures(petsc: &Petsc) -> Result<(), String> {
-    let (matrix, b, mut x) = (poisson(petsc)?, wavy(petsc)?, wavy(petsc)?);
+    let matrix = poisson(petsc)?;
+    let b = wavy(petsc)?;
+    let mut x = wavy(petsc)?;
     for method in ["preonly", "cg"] {
         for (which, failure, says) in [
             (0, PcFailure::ZeroPivot, "zero pivot"),
             (1, PcFailure::ZeroPivot, "zero pivot"),
             (1, PcFailure::Other, ""),
         ] {
-            let (mut inner, mut ksp, mut count) = (Inner::new(petsc, &matrix)?, outer(petsc, method)?, 0);
+            let mut inner = Inner::new(petsc, &matrix)?;
+            let mut ksp = outer(petsc, method)?;
+            let mut count = 0;
             let mut product = times(petsc, &matrix, &mut count);
             inner.failures[which] = Some(failure);
-            match solve(&mut ksp, (&mut product, &mut inner), &b, &mut x) {
+            match solve(&mut ksp, &mut product, &mut inner, &b, &mut x) {
                 Err(Error::Diverged { reason: -11, name, .. }) if name.contains(says) => {}
                 other => return Err(format!("{method}, {failure:?} in call {which}: {other:?}")),
             }
             let calls = inner.calls;
             expect(calls[which] == 1, &format!("{method}: {calls:?}"))?;
             inner.failures[which] = None;
-            solve(&mut ksp, (&mut product, &mut inner), &b, &mut x).map_err(text)?;
+            solve(&mut ksp, &mut product, &mut inner, &b, &mut x).map_err(text)?;
             let left = relative_residual(petsc, &matrix, &b, &x)?;
             expect(left < 1e-10, &format!("{method} leaves {left:e} after a failure"))?;
             expect(inner.calls[0] == 2, "what failed is built again")?;
         }
         // One rank alone: none may go on, whichever notices. Its set-up calls nothing collective.
-        let (mut inner, mut ksp, mut count) = (Inner::new(petsc, &matrix)?, outer(petsc, method)?, 0);
+        let mut inner = Inner::new(petsc, &matrix)?;
+        let mut ksp = outer(petsc, method)?;
+        let mut count = 0;
         let last = petsc.rank() + 1 == petsc.ranks();
         inner.failures[0] = last.then_some(PcFailure::Other);
         let mut product = times(petsc, &matrix, &mut count);
-        let verdict = solve(&mut ksp, (&mut product, &mut inner), &b, &mut x);
+        let verdict = solve(&mut ksp, &mut product, &mut inner, &b, &mut x);
         let right = match &verdict {
             Err(Error::Diverged { reason: -11, .. }) => true,
             Err(Error::OtherRank) => !last,
@@ -183,14 +196,18 @@ pub fn shell_failures(petsc: &Petsc) -> Result<(), String> {
 }
 
 pub fn panics(petsc: &Petsc) -> Result<(), String> {
-    let (matrix, b, mut x) = (poisson(petsc)?, wavy(petsc)?, wavy(petsc)?);
+    let matrix = poisson(petsc)?;
+    let b = wavy(petsc)?;
+    let mut x = wavy(petsc)?;
     std::panic::set_hook(Box::new(|_| ()));
     let mut ends = vec![];
     for which in [0, 1] {
-        let (mut inner, mut ksp, mut count) = (Inner::new(petsc, &matrix)?, outer(petsc, "preonly")?, 0);
+        let mut inner = Inner::new(petsc, &matrix)?;
+        let mut ksp = outer(petsc, "preonly")?;
+        let mut count = 0;
         inner.panics[which] = true;
         let mut product = times(petsc, &matrix, &mut count);
-        let attempt = || solve(&mut ksp, (&mut product, &mut inner), &b, &mut x).map(|_| ());
+        let attempt = || solve(&mut ksp, &mut product, &mut inner, &b, &mut x).map(|_| ());
         let end = catch_unwind(AssertUnwindSafe(attempt));
         ends.push(
             end.err()

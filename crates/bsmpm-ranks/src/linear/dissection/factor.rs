@@ -53,20 +53,20 @@ impl Factor {
 
     /// Solves with `columns` of a front of order `rows`, which begin at the number `start`, for the first entries of
     /// `x`, and takes their part from the others.
-    pub fn forward(&self, start: usize, (rows, columns): (usize, usize), x: &mut [f64]) {
+    pub fn forward(&self, start: usize, rows: usize, columns: usize, x: &mut [f64]) {
         let range = start..start + entries(rows, columns);
         match self {
-            Self::Single(numbers) => forward(&numbers[range], (rows, columns), x),
-            Self::Double(numbers) => forward(&numbers[range], (rows, columns), x),
+            Self::Single(numbers) => forward(&numbers[range], rows, columns, x),
+            Self::Double(numbers) => forward(&numbers[range], rows, columns, x),
         }
     }
 
     /// Solves with the transpose of these columns for the first entries of `x`; the others are known.
-    pub fn backward(&self, start: usize, (rows, columns): (usize, usize), x: &mut [f64]) {
+    pub fn backward(&self, start: usize, rows: usize, columns: usize, x: &mut [f64]) {
         let range = start..start + entries(rows, columns);
         match self {
-            Self::Single(numbers) => backward(&numbers[range], (rows, columns), x),
-            Self::Double(numbers) => backward(&numbers[range], (rows, columns), x),
+            Self::Single(numbers) => backward(&numbers[range], rows, columns, x),
+            Self::Double(numbers) => backward(&numbers[range], rows, columns, x),
         }
     }
 }
@@ -165,7 +165,7 @@ macro_rules! with_columns {
     };
 }
 
-fn forward<T: Scalar>(mut l: &[T], (rows, columns): (usize, usize), x: &mut [f64]) {
+fn forward<T: Scalar>(mut l: &[T], rows: usize, columns: usize, x: &mut [f64]) {
     for start in (0..columns).step_by(GROUP) {
         let width = GROUP.min(columns - start);
         let (group, rest) = l.split_at((rows - start) * width);
@@ -174,7 +174,7 @@ fn forward<T: Scalar>(mut l: &[T], (rows, columns): (usize, usize), x: &mut [f64
     }
 }
 
-fn backward<T: Scalar>(mut l: &[T], (rows, columns): (usize, usize), x: &mut [f64]) {
+fn backward<T: Scalar>(mut l: &[T], rows: usize, columns: usize, x: &mut [f64]) {
     for start in (0..columns).step_by(GROUP).rev() {
         let width = GROUP.min(columns - start);
         let (rest, group) = l.split_at(l.len() - (rows - start) * width);
@@ -201,7 +201,8 @@ fn backward_group<const W: usize, T: Scalar>(l: &[T], x: &mut [f64]) {
     let (own, others) = x.split_at_mut(W);
     // Two sums a column, so that one row need not wait for the other.
     let mut sums = [[0.0; W]; 2];
-    let ((pairs, last), (x_pairs, x_last)) = (below.as_chunks::<2>(), others.as_chunks::<2>());
+    let (pairs, last) = below.as_chunks::<2>();
+    let (x_pairs, x_last) = others.as_chunks::<2>();
     for (l, x) in pairs.iter().zip(x_pairs) {
         (0..W).for_each(|c| sums[0][c] += l[0][c].double() * x[0]);
         (0..W).for_each(|c| sums[1][c] += l[1][c].double() * x[1]);

@@ -14,7 +14,7 @@ pub fn factorise(a: &mut [f64], rows: usize) -> bool {
         let width = WIDTH.min(columns - start);
         let (done, rest) = a.split_at_mut(start * rows);
         let block = &mut rest[..width * rows];
-        subtract_product(done, (rows, start), start, &mut block[start..], (rows, width));
+        subtract_product(done, rows, start, start, &mut block[start..], rows, width);
         factorise_block(block, rows, start)
     })
 }
@@ -26,13 +26,12 @@ pub fn subtract_from_rest(l: &[f64], rows: usize, target: &mut [f64]) {
     for start in (0..order).step_by(2 * WIDTH) {
         let width = (2 * WIDTH).min(order - start);
         let block = &mut target[start * order + start..];
-        subtract_product(l, (rows, columns), columns + start, block, (order, width));
+        subtract_product(l, rows, columns, columns + start, block, order, width);
     }
 }
 
 /// C -= L_below L_at^T: rows from `first` on of the columns `l`, times the `width` rows that begin there.
-fn subtract_product(l: &[f64], (rows, columns): (usize, usize), first: usize, c: &mut [f64], target: (usize, usize)) {
-    let (stride, width) = target;
+fn subtract_product(l: &[f64], rows: usize, columns: usize, first: usize, c: &mut [f64], stride: usize, width: usize) {
     if columns == 0 || first == rows {
         return;
     }
@@ -62,12 +61,12 @@ fn factorise_block(block: &mut [f64], rows: usize, start: usize) -> bool {
 
 /// Subtracts up to four columns, each times its own entry in the row `first`, from `target`, which begins at that row.
 fn subtract_columns(columns: &[f64], rows: usize, first: usize, target: &mut [f64]) {
-    let by = |column: usize| columns[column * rows + first];
     if columns.len() == 4 * rows {
-        subtract_four(columns, rows, first, [by(0), by(1), by(2), by(3)], target);
+        let by = [0, 1, 2, 3].map(|column| columns[column * rows + first]);
+        subtract_four(columns, rows, first, by, target);
     } else {
-        for (column, values) in columns.chunks_exact(rows).enumerate() {
-            let factor = by(column);
+        for values in columns.chunks_exact(rows) {
+            let factor = values[first];
             target
                 .iter_mut()
                 .zip(&values[first..])
@@ -78,8 +77,8 @@ fn subtract_columns(columns: &[f64], rows: usize, first: usize, target: &mut [f6
 
 /// target -= the rows from `first` on of four columns, times four factors.
 fn subtract_four(columns: &[f64], rows: usize, first: usize, by: [f64; 4], target: &mut [f64]) {
-    let column = |column: usize| &columns[column * rows + first..(column + 1) * rows];
-    let pairs = column(0).iter().zip(column(1)).zip(column(2).iter().zip(column(3)));
+    let [a, b, c, d] = [0, 1, 2, 3].map(|column| &columns[column * rows + first..(column + 1) * rows]);
+    let pairs = a.iter().zip(b).zip(c.iter().zip(d));
     for (value, ((a, b), (c, d))) in target.iter_mut().zip(pairs) {
         *value -= (by[0] * a + by[1] * b) + (by[2] * c + by[3] * d);
     }

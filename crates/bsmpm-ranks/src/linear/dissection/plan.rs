@@ -34,11 +34,6 @@ impl Supernode {
         self.own.len() + self.rim.len()
     }
 
-    /// Order of its front, and columns that are factorised.
-    pub fn shape(&self) -> (usize, usize) {
-        (self.rows(), self.own.len())
-    }
-
     /// Where the columns of the next part begin.
     fn end(&self) -> usize {
         self.start + factor::entries(self.rows(), self.own.len())
@@ -117,20 +112,23 @@ impl Plan {
             let children: Vec<usize> = self.children(parent).collect();
             self.parts[parent].first = children.last().map_or(parent, |&child| self.parts[child].first);
             let Supernode { own, rim, .. } = &self.parts[parent];
-            let (own, rim) = (own.clone(), rim.clone());
+            let own = own.clone();
+            let rim = rim.clone();
             for child in children {
                 let mut at = 0;
-                let place = |&number: &u32| {
+                let mut above = Vec::with_capacity(self.parts[child].rim.len());
+                for &number in &self.parts[child].rim {
                     if own.contains(&(number as usize)) {
-                        return number as usize - own.start;
+                        above.push(number as usize - own.start);
+                        continue;
                     }
                     at += rim[at..]
                         .iter()
                         .position(|&other| other == number)
                         .expect("a rim lies in the front above");
-                    own.len() + at
-                };
-                self.parts[child].above = self.parts[child].rim.iter().map(place).collect();
+                    above.push(own.len() + at);
+                }
+                self.parts[child].above = above;
             }
         }
     }
@@ -194,21 +192,25 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
             return true;
         }
         let middle = self.middle(&region, axis);
-        let piece = |along: Range<usize>| {
-            let mut piece = region.clone();
-            piece[axis] = along;
-            piece
-        };
-        let left = self.cut(piece(region[axis].start..middle));
-        let right = self.cut(piece(middle + self.order..region[axis].end));
-        let separator = self.components(&piece(middle..middle + self.order));
+        let upper = middle + self.order;
+        let [low, separator, high] =
+            [region[axis].start..middle, middle..upper, upper..region[axis].end].map(|along| {
+                let mut piece = region.clone();
+                piece[axis] = along;
+                piece
+            });
+        let left = self.cut(low);
+        let right = self.cut(high);
+        let separator = self.components(&separator);
         self.part(separator, region, usize::from(left) + usize::from(right));
         true
     }
 
     /// The smallest box around the unknowns of a box, and their number; `None` if there are none.
     fn tight(&self, region: &[Range<usize>; D]) -> Option<([Range<usize>; D], usize)> {
-        let (mut least, mut most, mut count) = ([usize::MAX; D], [0; D], 0);
+        let mut least = [usize::MAX; D];
+        let mut most = [0; D];
+        let mut count = 0;
         each_node(region, |node| {
             let free = self.unknowns(self.index(&node)).count();
             if free > 0 {
@@ -228,7 +230,8 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
         each_node(region, |node| {
             layers[node[axis] - start] += self.unknowns(self.index(&node)).count()
         });
-        let (mut before, mut behind) = (layers[0], layers[1 + self.order..].iter().sum::<usize>());
+        let mut before = layers[0];
+        let mut behind = layers[1 + self.order..].iter().sum::<usize>();
         let mut at = 1;
         while at + self.order + 1 < layers.len() && before < behind {
             before += layers[at];
@@ -278,7 +281,8 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
         let mut start = 0;
         for (part, region) in (0..).zip(&self.boxes) {
             let around: [Range<usize>; D] = std::array::from_fn(|axis| {
-                let (start, end) = (region[axis].start, region[axis].end);
+                let start = region[axis].start;
+                let end = region[axis].end;
                 start.saturating_sub(self.order)..(end + self.order).min(self.counts[axis])
             });
             let mut rim = Vec::new();

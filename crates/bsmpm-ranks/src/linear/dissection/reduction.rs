@@ -32,7 +32,8 @@ fn holder(group: &Range<usize>) -> usize {
 
 /// The role of a rank of so many.
 pub fn role(ranks: usize, rank: usize) -> Role {
-    let (mut group, mut role) = (0..ranks, Role::default());
+    let mut group = 0..ranks;
+    let mut role = Role::default();
     while group.len() > 1 {
         let middle = holder(&group);
         if rank == middle {
@@ -75,7 +76,8 @@ impl TreeReduction {
     /// the ranks from the first to the last one that touch a component. Collective.
     pub fn new(
         link: &dyn Link,
-        (rank, role): (usize, Role),
+        rank: usize,
+        role: Role,
         shared: &[usize],
         touching: impl Fn(usize) -> Range<usize>,
     ) -> Self {
@@ -157,19 +159,21 @@ impl TreeReduction {
 impl Joint {
     /// Of two groups with their components; what is not eliminated here is left.
     fn new(join: Join, groups: &[Vec<usize>; 2], touching: impl Fn(usize) -> Range<usize>) -> (Self, Vec<usize>) {
-        let key = |&component: &usize| {
-            let ranks = touching(component);
-            (ranks.start < join.group.start || join.group.end < ranks.end, component) // what stays comes last
-        };
-        let mut all: Vec<(bool, usize)> = groups.iter().flatten().map(key).collect();
+        let keys = groups.each_ref().map(|group| {
+            let keys = group.iter().map(|&component| {
+                let ranks = touching(component);
+                (ranks.start < join.group.start || join.group.end < ranks.end, component) // what stays comes last
+            });
+            keys.collect::<Vec<(bool, usize)>>()
+        });
+        let mut all = keys.concat();
         all.sort_unstable();
         all.dedup();
         let own = all.partition_point(|(stays, _)| !stays);
-        let place = |component: &usize| {
-            let key = key(component);
-            all.partition_point(|other| *other < key)
-        };
-        let places = [0, 1].map(|group: usize| groups[group].iter().map(place).collect());
+        let places = keys.map(|keys| {
+            let places = keys.iter().map(|key| all.partition_point(|other| other < key));
+            places.collect()
+        });
         let left = all[own..].iter().map(|(_, component)| *component).collect();
         (
             Self {
@@ -187,9 +191,10 @@ impl Joint {
     /// packed.
     fn factorise(&mut self, precision: Precision, groups: [Vec<f64>; 2]) -> (bool, Vec<f64>) {
         let order = self.rows - self.own;
-        let (mut columns, mut rest) = (vec![0.0; self.own * self.rows], vec![0.0; order * order]);
+        let mut columns = vec![0.0; self.own * self.rows];
+        let mut rest = vec![0.0; order * order];
         for (places, packed) in self.places.iter().zip(groups) {
-            add_packed(&packed, places, (&mut columns, self.own), &mut rest);
+            add_packed(&packed, places, &mut columns, self.own, &mut rest);
         }
         let good = front::factorise(&mut columns, self.rows);
         front::subtract_from_rest(&columns, self.rows, &mut rest);
@@ -208,13 +213,13 @@ impl Joint {
                 .zip(values)
                 .for_each(|(&place, value)| all[place] += value);
         }
-        self.factor.forward(0, (self.rows, self.own), &mut all);
+        self.factor.forward(0, self.rows, self.own, &mut all);
         all
     }
 
     /// The solution of either group, from that of what is left.
     fn backward(&self, mut all: Vec<f64>) -> [Vec<f64>; 2] {
-        self.factor.backward(0, (self.rows, self.own), &mut all);
+        self.factor.backward(0, self.rows, self.own, &mut all);
         [0, 1].map(|group: usize| self.places[group].iter().map(|&place| all[place]).collect())
     }
 }
@@ -227,14 +232,15 @@ pub fn pack(matrix: &[f64], n: usize) -> Vec<f64> {
 }
 
 /// Adds a packed triangle whose rows stand at `places` of a front: `own` columns, and the rest's matrix.
-pub fn add_packed(packed: &[f64], places: &[usize], (columns, own): (&mut [f64], usize), rest: &mut [f64]) {
+pub fn add_packed(packed: &[f64], places: &[usize], columns: &mut [f64], own: usize, rest: &mut [f64]) {
     let mut start = 0;
     let rows = columns.len().checked_div(own).unwrap_or(0);
     let order = rest.len().isqrt();
     for (column, &place) in places.iter().enumerate() {
         let length = places.len() - column;
         for (value, &other) in packed[start..start + length].iter().zip(&places[column..]) {
-            let (i, j) = (place.max(other), place.min(other));
+            let i = place.max(other);
+            let j = place.min(other);
             if j < own {
                 columns[j * rows + i] += value;
             } else {

@@ -37,12 +37,12 @@ fn a_front_is_factorised_and_solved_as_a_dense_matrix() {
         let mut kept = Factor::default();
         kept.restart(Precision::Double, factor::entries(rows, own))
             .keep(0, columns.as_slice(), rows);
-        kept.forward(0, (rows, own), x.as_mut_slice());
+        kept.forward(0, rows, own, x.as_mut_slice());
         let mut below = x.rows_mut(own, rows - own);
         if own < rows {
             below.copy_from(&(corner * corner.transpose()).cholesky().unwrap().solve(&below));
         }
-        kept.backward(0, (rows, own), x.as_mut_slice());
+        kept.backward(0, rows, own, x.as_mut_slice());
         assert!((&matrix * &x - &b).amax() < 1e-10 * b.amax(), "{rows} {own}");
     }
 }
@@ -87,7 +87,8 @@ fn every_unknown_is_eliminated_once_and_before_what_receives_it() {
                 .iter()
                 .all(|&component| is_inner(component))
         );
-        let (mut next, mut stack): (usize, Vec<&Supernode>) = (0, Vec::new());
+        let mut next: usize = 0;
+        let mut stack: Vec<&Supernode> = Vec::new();
         for part in &plan.parts {
             assert_eq!(part.own.start, next);
             next = part.own.end;
@@ -121,7 +122,8 @@ fn every_unknown_is_eliminated_once_and_before_what_receives_it() {
 #[test]
 fn every_shared_node_is_eliminated_once_where_all_that_touch_it_have_met() {
     let of = |bounds: Vec<usize>| {
-        let (ranks, columns) = (bounds.len() - 1, bounds[bounds.len() - 1]);
+        let ranks = bounds.len() - 1;
+        let columns = bounds[bounds.len() - 1];
         Slabs::new(bounds, ranks, 0..columns).unwrap()
     };
     let unequal = [
@@ -161,7 +163,7 @@ fn every_shared_node_is_eliminated_once_where_all_that_touch_it_have_met() {
         for node in (0..columns + q).flat_map(|layer| (0..6 + q).map(move |row| [layer, row])) {
             let touched: Vec<usize> = (0..ranks)
                 .filter(|&rank| {
-                    let window = slabs.nodes(rank, (q, &(0..6)));
+                    let window = slabs.nodes(rank, q, &(0..6));
                     (0..2).all(|axis| window[axis].contains(&node[axis]))
                 })
                 .collect();
@@ -174,7 +176,8 @@ fn every_shared_node_is_eliminated_once_where_all_that_touch_it_have_met() {
             let smallest = (0..ranks).filter(all).min_by_key(|&rank| group(rank).unwrap().len());
             assert_eq!(smallest.is_some(), ranks > 1);
             if let (Some(rank), true) = (smallest, touched.len() > 1) {
-                let (group, middle) = (group(rank).unwrap(), rank);
+                let group = group(rank).unwrap();
+                let middle = rank;
                 assert!(touched.iter().all(|rank| group.contains(rank)));
                 assert!(touched.iter().any(|&rank| rank < middle) && touched.iter().any(|&rank| rank >= middle));
             }
@@ -273,7 +276,8 @@ fn solutions_repeat_to_the_bit_however_late_messages_are_and_agree_where_slabs_m
     assert!((2..6).all(|delay| bits(delay) == first));
     let layer = system.grid.layer_nodes() * 2;
     for rank in 0..3 {
-        let (own, next) = (system.slabs.layers(rank, 2), system.slabs.layers(rank + 1, 2));
+        let own = system.slabs.layers(rank, 2);
+        let next = system.slabs.layers(rank + 1, 2);
         let common = (own.end - next.start) * layer;
         assert_eq!(first[rank][first[rank].len() - common..], first[rank + 1][..common]);
     }

@@ -76,12 +76,11 @@ impl<const D: usize, const C: usize> Elimination<'_, D, C> {
             return self.in_order(root..root + 1, rest, left);
         };
         let (high, own) = rest.split_at(self.plan.columns_to(last).len());
-        let other = || {
-            let mut left = Left::nothing();
-            self.subtree(last, high, &mut left);
-            left
-        };
-        let ((), mut other) = rayon::join(|| self.subtree(first, low, left), other);
+        let mut other = Left::nothing();
+        rayon::join(
+            || self.subtree(first, low, left),
+            || self.subtree(last, high, &mut other),
+        );
         left.packed.append(&mut other.packed);
         left.good &= other.good;
         self.in_order(root..root + 1, own, left);
@@ -111,7 +110,7 @@ impl<const D: usize, const C: usize> Elimination<'_, D, C> {
             self.take(index, places, columns, matrix);
             for child in self.plan.children(index) {
                 let left = packed.pop().expect("children come right before their parent");
-                add_packed(&left, &self.plan.parts[child].above, (columns, part.own.len()), matrix);
+                add_packed(&left, &self.plan.parts[child].above, columns, part.own.len(), matrix);
             }
             *good &= front::factorise(columns, part.rows());
             front::subtract_from_rest(columns, part.rows(), matrix);
@@ -127,7 +126,8 @@ impl<const D: usize, const C: usize> Elimination<'_, D, C> {
             plan, stencil, scale, ..
         } = *self;
         let part = &plan.parts[index];
-        let (rows, order) = (part.rows(), part.rim.len());
+        let rows = part.rows();
+        let order = part.rim.len();
         // Between two bodies a separator may be without unknowns, too.
         let last = index + 1 == plan.parts.len();
         let numbers = if last {
@@ -197,13 +197,12 @@ impl Triangles<'_> {
             return self.forward_in_order(root..root + 1, rest, scratch);
         };
         let (high, own) = rest.split_at_mut(self.plan.numbers_to(last).len());
-        let other = || {
-            let mut scratch = Scratch::default();
-            self.forward_to(last, high, &mut scratch);
-            scratch.rims
-        };
-        let ((), other) = rayon::join(|| self.forward_to(first, low, scratch), other);
-        scratch.rims.extend(other);
+        let mut other = Scratch::default();
+        rayon::join(
+            || self.forward_to(first, low, scratch),
+            || self.forward_to(last, high, &mut other),
+        );
+        scratch.rims.extend(other.rims);
         self.forward_in_order(root..root + 1, own, scratch);
     }
 
@@ -224,7 +223,7 @@ impl Triangles<'_> {
                     .for_each(|(&place, taken)| x[place] += taken);
                 rims.truncate(start);
             }
-            self.factor.forward(part.start, part.shape(), x);
+            self.factor.forward(part.start, part.rows(), part.own.len(), x);
             own.copy_from_slice(&x[..own.len()]);
             rims.extend_from_slice(&x[own.len()..]);
         }
@@ -263,7 +262,7 @@ impl Triangles<'_> {
             x.extend_from_slice(own);
             x.extend_from_slice(&rims[start..]);
             rims.truncate(start);
-            self.factor.backward(part.start, part.shape(), x);
+            self.factor.backward(part.start, part.rows(), part.own.len(), x);
             own.copy_from_slice(&x[..own.len()]);
             // The last child is the next one.
             let children: [Option<usize>; 2] = {

@@ -19,7 +19,8 @@ impl Patches {
     pub fn new<const D: usize, const C: usize>(
         operator: Operator<'_, D, C>,
         along: [usize; D],
-        (side, apart): (usize, usize),
+        side: usize,
+        apart: usize,
     ) -> Option<Self> {
         let mut patches = Self {
             members: Vec::new(),
@@ -30,31 +31,35 @@ impl Patches {
         // Another box begins where the last one does not reach the end.
         let boxes = along.map(|nodes| nodes.saturating_sub(side).div_ceil(apart) + 1);
         for number in 0..boxes.iter().product() {
-            let (mut rest, mut lower) = (number, [0; D]);
+            let mut rest = number;
+            let mut lower = [0; D];
             for axis in (0..D).rev() {
                 lower[axis] = rest % boxes[axis] * apart;
                 rest /= boxes[axis];
             }
             let upper: [usize; D] = std::array::from_fn(|axis| along[axis].min(lower[axis] + side));
-            patches.add_box(operator, along, (lower, upper), &mut places)?;
+            patches.add_box(operator, along, lower, upper, &mut places)?;
         }
         Some(patches)
     }
 
     fn add_box<const D: usize, const C: usize>(
         &mut self,
-        (stencil, free): Operator<'_, D, C>,
+        operator: Operator<'_, D, C>,
         along: [usize; D],
-        (lower, upper): ([usize; D], [usize; D]),
+        lower: [usize; D],
+        upper: [usize; D],
         places: &mut [u32],
     ) -> Option<()> {
-        let width = |axis: usize| upper[axis] - lower[axis];
+        let Operator { stencil, free } = operator;
+        let widths: [usize; D] = std::array::from_fn(|axis| upper[axis] - lower[axis]);
         let first = self.members.len();
-        for number in 0..(0..D).map(width).product() {
-            let (mut rest, mut at) = (number, [0; D]);
+        for number in 0..widths.iter().product() {
+            let mut rest = number;
+            let mut at = [0; D];
             for axis in (0..D).rev() {
-                at[axis] = lower[axis] + rest % width(axis);
-                rest /= width(axis);
+                at[axis] = lower[axis] + rest % widths[axis];
+                rest /= widths[axis];
             }
             let node = (0..D).fold(0, |node, axis| node * along[axis] + at[axis]);
             self.members.extend(
@@ -95,7 +100,8 @@ impl Patches {
 
     /// z += the sum of the boxes' solutions for r.
     pub fn add(&self, r: &[f64], z: &mut [f64]) {
-        let (mut members, mut factors) = (&self.members[..], &self.factors[..]);
+        let mut members = &self.members[..];
+        let mut factors = &self.factors[..];
         // Single precision has a short range: about 1 whatever the units are.
         let scale = r.iter().fold(0.0_f64, |largest, r| largest.max(r.abs()));
         if scale == 0.0 {
@@ -138,7 +144,8 @@ fn solve(factor: &[f32], x: &mut [f32]) {
 /// a . b by lanes.
 fn product(a: &[f32], b: &[f32]) -> f32 {
     let mut sums = [0.0; LANES];
-    let (blocks, others) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let blocks = a.chunks_exact(LANES);
+    let others = b.chunks_exact(LANES);
     let rest: f32 = blocks
         .remainder()
         .iter()

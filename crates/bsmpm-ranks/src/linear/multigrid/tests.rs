@@ -7,15 +7,15 @@ use bsmpm::grid::KnotVector;
 fn ball(cells: usize, poisson: f64) -> (Grid<3>, Stencil<3, 3>, Vec<bool>) {
     let axis = || KnotVector::uniform(1.0, cells, 2).unwrap();
     let grid = Grid::new([axis(), axis(), axis()]).unwrap();
-    let (lambda, mu) = (
-        poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),
-        0.5 / (1.0 + poisson),
-    );
-    let (mut blocks, mut free) = (Vec::new(), vec![false; grid.nodes() * 3]);
+    let lambda = poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+    let mu = 0.5 / (1.0 + poisson);
+    let mut blocks = Vec::new();
+    let mut free = vec![false; grid.nodes() * 3];
     let middle = 0.5 * cells as f64;
     for number in 0..grid.cells() {
         let cell = grid.cell_at(number);
-        let (mut block, mut inside) = (vec![0.0; 81 * 81], 0);
+        let mut block = vec![0.0; 81 * 81];
+        let mut inside = 0;
         for place in 0..27 {
             let off = [place / 9, place / 3 % 3, place % 3].map(|k| (k as f64 + 0.5) / 3.0);
             let x: [f64; 3] = std::array::from_fn(|axis| cell[axis] as f64 + off[axis]);
@@ -32,7 +32,8 @@ fn ball(cells: usize, poisson: f64) -> (Grid<3>, Stencil<3, 3>, Vec<bool>) {
                 })
             };
             for (a, b) in (0..27 * 27).map(|pair| (pair / 27, pair % 27)) {
-                let (g, h) = (gradient(a), gradient(b));
+                let g = gradient(a);
+                let h = gradient(b);
                 let dot: f64 = (0..3).map(|k| g[k] * h[k]).sum();
                 for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
                     let same = f64::from(u8::from(i == j));
@@ -74,12 +75,18 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// Conjugate gradients around one cycle until 1e-6 of the right-hand side is left.
 fn iterations(cells: usize, poisson: f64) -> usize {
     let (grid, stencil, free) = ball(cells, poisson);
-    let operator = (&stencil, &free[..]);
+    let operator = Operator {
+        stencil: &stencil,
+        free: &free,
+    };
     let multigrid = Multigrid::new(&grid, operator).unwrap();
     let b = noise(&free, 1);
-    let (mut r, mut z, mut image) = (b.clone(), vec![0.0; b.len()], vec![0.0; b.len()]);
+    let mut r = b.clone();
+    let mut z = vec![0.0; b.len()];
+    let mut image = vec![0.0; b.len()];
     multigrid.apply(operator, 1, &r, &mut z);
-    let (mut p, mut rz) = (z.clone(), dot(&r, &z));
+    let mut p = z.clone();
+    let mut rz = dot(&r, &z);
     for iteration in 1..200 {
         stencil.multiply(&free, &p, &mut image);
         let alpha = rz / dot(&p, &image);
@@ -105,7 +112,10 @@ fn iterations_grow_neither_with_the_cells_nor_with_the_bulk_modulus() {
 #[test]
 fn cycles_are_symmetric_and_linear() {
     let (grid, stencil, free) = ball(8, 0.4);
-    let operator = (&stencil, &free[..]);
+    let operator = Operator {
+        stencil: &stencil,
+        free: &free,
+    };
     let multigrid = Multigrid::new(&grid, operator).unwrap();
     assert!(multigrid.levels.len() > 1);
     let [x, y] = [noise(&free, 2), noise(&free, 3)];
@@ -114,7 +124,8 @@ fn cycles_are_symmetric_and_linear() {
         multigrid.apply(operator, 2, x, &mut image);
         image
     };
-    let (bx, by) = (image(&x), image(&y));
+    let bx = image(&x);
+    let by = image(&y);
     assert!((dot(&bx, &y) - dot(&x, &by)).abs() <= 1e-5 * dot(&bx, &x), "symmetric");
     let sum: Vec<f64> = x.iter().zip(&y).map(|(x, y)| 3.0 * x - y).collect();
     let off = image(&sum)

@@ -1,8 +1,9 @@
 //! Transfers nodal values between a grid and the next coarser multigrid level.
 
-use super::Operator;
+use super::{CoarseOperator, Operator};
 use crate::stencil::Stencil;
 use bsmpm::grid::{Grid, KnotVector};
+use std::ops::Range;
 
 /// Cells along an axis that is not made coarser.
 const FEWEST: usize = 4;
@@ -80,11 +81,8 @@ impl<const D: usize> Transfer<D> {
     }
 
     /// P^T A P, and its unknowns: components without stiffness are none.
-    pub fn galerkin<const C: usize>(
-        &self,
-        (stencil, free): Operator<'_, D, C>,
-        coarse: &Grid<D>,
-    ) -> (Stencil<D, C>, Vec<bool>) {
+    pub fn galerkin<const C: usize>(&self, operator: Operator<'_, D, C>, coarse: &Grid<D>) -> CoarseOperator<D, C> {
+        let Operator { stencil, free } = operator;
         let mut made = Stencil::<D, C>::new(coarse);
         let mut reached = vec![false; coarse.nodes()];
         let nodes: usize = self.parents.iter().map(Vec::len).product();
@@ -94,24 +92,15 @@ impl<const D: usize> Transfer<D> {
         made.keep(|node| reached[node]);
         let mut sums = Vec::new();
         for node in 0..nodes {
-            let around: Vec<([usize; D], usize, &[f64])> = stencil
-                .blocks(node)
-                .map(|(other, block)| (self.split(other), other, block))
-                .collect();
+            let around: Vec<[usize; D]> = stencil.blocks(node).map(|(other, _)| self.split(other)).collect();
             if around.is_empty() {
                 continue;
             }
-            // The box of coarse nodes that the neighbours are made of.
-            let ends: [(usize, usize); D] = std::array::from_fn(|axis| {
-                let parents = around.iter().flat_map(|(at, ..)| &self.parents[axis][at[axis]]);
-                parents.fold((usize::MAX, 0), |(first, last), (at, _)| {
-                    (first.min(*at), last.max(*at))
-                })
-            });
-            let width = |axis: usize| ends[axis].1 - ends[axis].0 + 1;
+            let parents = self.parents_around(&around);
+            let widths = parents.each_ref().map(Range::len);
             sums.clear();
-            sums.resize((0..D).map(width).product::<usize>() * C * C, 0.0);
-            for (at, other, block) in around {
+            sums.resize(widths.iter().product::<usize>() * C * C, 0.0);
+            for (other, block) in stencil.blocks(node) {
                 let mut known = [[0.0; C]; C];
                 for (i, j) in (0..C * C).map(|k| (k / C, k % C)) {
                     known[i][j] = if free[node * C + i] && free[other * C + j] {
@@ -121,8 +110,10 @@ impl<const D: usize> Transfer<D> {
                     };
                 }
                 let known = known.as_flattened();
-                self.parents_of(at, |_, place, weight| {
-                    let local = (0..D).fold(0, |local, axis| local * width(axis) + place[axis] - ends[axis].0);
+                self.parents_of(self.split(other), |_, place, weight| {
+                    let local = (0..D).fold(0, |local, axis| {
+                        local * widths[axis] + place[axis] - parents[axis].start
+                    });
                     let sums = &mut sums[local * C * C..][..C * C];
                     sums.iter_mut()
                         .zip(known)
@@ -134,8 +125,8 @@ impl<const D: usize> Transfer<D> {
                     let mut rest = local;
                     let mut place = [0; D];
                     for axis in (0..D).rev() {
-                        place[axis] = ends[axis].0 + rest % width(axis);
-                        rest /= width(axis);
+                        place[axis] = parents[axis].start + rest % widths[axis];
+                        rest /= widths[axis];
                     }
                     made.add_block(parent, self.joined(&place), weight, sum);
                 }
@@ -145,14 +136,27 @@ impl<const D: usize> Transfer<D> {
         let free = (0..coarse.nodes() * C)
             .map(|component| made.on_diagonal(component) > least)
             .collect();
-        (made, free)
+        CoarseOperator { stencil: made, free }
+    }
+
+    /// The box of coarse nodes that the nodes at these places of the window are made of.
+    fn parents_around(&self, places: &[[usize; D]]) -> [Range<usize>; D] {
+        std::array::from_fn(|axis| {
+            let parents = places.iter().flat_map(|at| &self.parents[axis][at[axis]]);
+            let (first, last) = parents.fold((usize::MAX, 0), |(first, last), (at, _)| {
+                (first.min(*at), last.max(*at))
+            });
+            first..last + 1
+        })
     }
 
     /// Visits the coarse nodes that a node is made of: their numbers, places and weights.
     fn parents_of(&self, at: [usize; D], mut visit: impl FnMut(usize, [usize; D], f64)) {
         let lists: [&[(usize, f64)]; D] = std::array::from_fn(|axis| &self.parents[axis][at[axis]][..]);
         for number in 0..lists.iter().map(|list| list.len()).product() {
-            let (mut rest, mut weight, mut place) = (number, 1.0, [0; D]);
+            let mut rest = number;
+            let mut weight = 1.0;
+            let mut place = [0; D];
             for axis in (0..D).rev() {
                 let (parent, part) = lists[axis][rest % lists[axis].len()];
                 rest /= lists[axis].len();
@@ -195,32 +199,36 @@ fn coarser(axis: &KnotVector) -> KnotVector {
     KnotVector::graded(&kept, axis.order()).unwrap_or_else(|_| axis.clone())
 }
 
+/// Position of `x` between the knots `j` and `j + degree`, as a part of their distance; 0 where they coincide.
+fn part(coarse: &KnotVector, j: usize, degree: usize, x: f64) -> f64 {
+    let length = coarse.knot(j + degree) - coarse.knot(j);
+    if length > 0.0 {
+        (x - coarse.knot(j)) / length
+    } else {
+        0.0
+    }
+}
+
 /// Weights of a function in the coarse ones, its discrete B-splines (Cohen, Lyche and Riesenfeld 1980, Comput. Graph.
 /// Image Process. 14, 87-111).
 fn weights(fine: &KnotVector, coarse: &KnotVector, number: usize) -> Vec<(usize, f64)> {
-    let (q, knot) = (fine.order(), |j: usize| coarse.knot(j));
+    let q = fine.order();
     // The last coarse cell with a length that begins at or before the function does.
     let begins = (q..coarse.functions())
         .rev()
-        .find(|&j| knot(j) <= fine.knot(number))
+        .find(|&j| coarse.knot(j) <= fine.knot(number))
         .unwrap_or(q);
     let mut found = vec![1.0];
     for degree in 1..=q {
         let x = fine.knot(number + degree);
         let first = begins - degree;
-        let part = |j: usize| {
-            let length = knot(j + degree) - knot(j);
-            if length > 0.0 { (x - knot(j)) / length } else { 0.0 }
-        };
-        let old = |j: usize| {
-            if j > first && j <= begins {
-                found[j - first - 1]
-            } else {
-                0.0
-            }
-        };
+        // Weights of the degree before, which the functions from `first + 1` to `begins` have, between zeros.
+        let old = [&[0.0], &found[..], &[0.0]].concat();
         found = (first..=begins)
-            .map(|j| part(j) * old(j) + (1.0 - part(j + 1)) * old(j + 1))
+            .map(|j| {
+                let [rising, falling] = [j, j + 1].map(|j| part(coarse, j, degree, x));
+                rising * old[j - first] + (1.0 - falling) * old[j + 1 - first]
+            })
             .collect();
     }
     found

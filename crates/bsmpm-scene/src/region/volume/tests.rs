@@ -130,7 +130,8 @@ fn spheres_and_turned_outlines_are_scaled_to_their_volume() {
 /// An octahedron: its volume is 4/3 of its radius cubed.
 #[test]
 fn surfaces_of_triangles_are_scaled_to_their_volume() {
-    let (center, radius) = ([2.0, 1.5, 1.6], 1.2);
+    let center = [2.0, 1.5, 1.6];
+    let radius = 1.2;
     let tip = |axis: usize, sign: f64| {
         let mut at = center;
         at[axis] += sign * radius;

@@ -1,12 +1,13 @@
 //! Checks that drains and inflows do not contradict each other, and that the ground can absorb the inflow.
 
+use super::is_permeable;
 use crate::case::{Acting, Case, Drain, DrainSite, Face, Flow, LoadedLine, Plate, Site};
 use crate::record::Record;
 use crate::report::{Report, listed};
 use crate::validate::side::side;
 use crate::validate::site::normal_of;
 use crate::validate::{place, site};
-use bsmpm::water::flow::{Given, Soil};
+use bsmpm::water::flow::Given;
 
 /// Parts of a cell by which surfaces may be apart and still be one, and by which they overlap at least to be reported.
 const APART: f64 = 0.05;
@@ -16,7 +17,7 @@ const OVERLAP: f64 = 0.25;
 const PARTS_OF_FACE: usize = 64;
 
 /// A surface that water crosses, with what is given there: a pressure, or else a rate.
-struct Crossing<'a> {
+struct CrossedSurface<'a> {
     record: &'a Record,
     called: String,
     what: Acting,
@@ -50,28 +51,19 @@ pub(super) fn check(case: &Case, flow: &Flow, root: &Record, report: &mut Report
 /// Ground of the start that its water cannot leave: permeable bodies that touch each other, with no drain on any. Those
 /// whose rectangles touch are taken to.
 fn closed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
-    let flows = |body: usize| {
-        flow.soils[case.bodies[body].material]
-            .as_ref()
-            .is_some_and(|of| of.permeability.is_some())
-    };
     let mut left: Vec<usize> = (0..case.bodies.len())
-        .filter(|&body| flows(body) && case.is_there(body, 0.0))
+        .filter(|&body| is_permeable(&flow.soils, case.bodies[body].material) && case.is_there(body, 0.0))
         .collect();
     let near = 0.5 * case.grid.shortest();
-    let touch = |one: usize, other: usize| {
-        let [a, b] = [one, other].map(|body| case.bodies[body].region.corners());
-        (0..case.grid.dims()).all(|axis| a[0][axis] <= b[1][axis] + near && b[0][axis] <= a[1][axis] + near)
-    };
     while !left.is_empty() {
         let mut joined = vec![left.remove(0)];
         let mut next = 0;
         while let Some(&one) = joined.get(next) {
-            joined.extend(left.extract_if(.., |other| touch(one, *other)));
+            joined.extend(left.extract_if(.., |other| touch(case, one, *other, near)));
             next += 1;
         }
-        let is_on = |at: &[f64; 3]| is_beside(case, at, |body| joined.contains(&body));
-        if !flow.drains.iter().any(|drain| places(drain, case).iter().any(is_on)) {
+        let mut drained = flow.drains.iter().flat_map(|drain| places(drain, case));
+        if !drained.any(|at| is_beside(case, &at, |body| joined.contains(&body))) {
             let all: Vec<String> = joined.iter().map(|body| format!("body.{body}")).collect();
             report.warn(format!(
                 "W0530: no drain lies at {}, so no water leaves this soil and its excess pore pressure remains. Add a \
@@ -82,9 +74,15 @@ fn closed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     }
 }
 
-fn all<'a>(case: &Case, flow: &'a Flow, root: &'a Record) -> Vec<Crossing<'a>> {
+/// Whether the boxes around two bodies are nowhere farther apart than `near`, m.
+fn touch(case: &Case, one: usize, other: usize, near: f64) -> bool {
+    let [a, b] = [one, other].map(|body| case.bodies[body].region.corners());
+    (0..case.grid.dims()).all(|axis| a[0][axis] <= b[1][axis] + near && b[0][axis] <= a[1][axis] + near)
+}
+
+fn all<'a>(case: &Case, flow: &'a Flow, root: &'a Record) -> Vec<CrossedSurface<'a>> {
     let drains = flow.drains.iter().zip(root.records("drain")).enumerate();
-    let drains = drains.map(|(number, (drain, record))| Crossing {
+    let drains = drains.map(|(number, (drain, record))| CrossedSurface {
         record,
         called: drain.name.clone().unwrap_or_else(|| format!("drain.{number}")),
         what: Acting::Drain(number),
@@ -92,7 +90,7 @@ fn all<'a>(case: &Case, flow: &'a Flow, root: &'a Record) -> Vec<Crossing<'a>> {
         given: Some(&drain.given),
     });
     let inflows = flow.inflows.iter().zip(root.records("inflow")).enumerate();
-    let inflows = inflows.map(|(number, (inflow, record))| Crossing {
+    let inflows = inflows.map(|(number, (inflow, record))| CrossedSurface {
         record,
         called: format!("inflow.{number}"),
         what: Acting::Inflow(number),
@@ -130,7 +128,7 @@ fn parts(site: &DrainSite, case: &Case) -> Vec<SurfacePart> {
 
 /// What two that lie on one part of a surface say against each other. Rates add up; what a seepage face lets out may
 /// have rained on it.
-fn contradiction(one: &Crossing<'_>, other: &Crossing<'_>) -> Option<String> {
+fn contradiction(one: &CrossedSurface<'_>, other: &CrossedSurface<'_>) -> Option<String> {
     let name = &other.called;
     match (one.given, other.given) {
         (Some(a), Some(b)) if a != b => Some(format!(
@@ -146,7 +144,7 @@ fn contradiction(one: &Crossing<'_>, other: &Crossing<'_>) -> Option<String> {
 }
 
 /// Whether two overlap while both act.
-fn meet(case: &Case, one: &Crossing<'_>, other: &Crossing<'_>) -> bool {
+fn meet(case: &Case, one: &CrossedSurface<'_>, other: &CrossedSurface<'_>) -> bool {
     let mut times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
     let cell = case.grid.shortest();
     times.any(|t| {
@@ -168,15 +166,20 @@ fn overlap(case: &Case, a: SurfacePart, b: SurfacePart, cell: f64) -> bool {
         (SurfacePart::Plate(a), SurfacePart::Plate(b)) => {
             let axis = a.normal();
             let is_one = axis == b.normal() && (a.lower[axis] - b.lower[axis]).abs() < APART * cell;
-            let covers = |b: Plate, at: [f64; 3]| {
-                let within = |k: usize| k == axis || (b.lower[k] < at[k] && at[k] < b.upper[k]);
-                (0..3).all(within) && b.covers(at)
-            };
-            let places = |plate: Plate| site::places(Site::Plate(plate), &case.grid).into_iter();
-            is_one && (places(a).any(|at| covers(b, at)) || places(b).any(|at| covers(a, at)))
+            is_one && (reaches_into(a, b, case) || reaches_into(b, a, case))
         }
         _ => false,
     }
+}
+
+/// Whether the middle of a piece of one plate is inside another, which has the same normal.
+fn reaches_into(one: Plate, other: Plate, case: &Case) -> bool {
+    let normal = one.normal();
+    let mut places = site::places(Site::Plate(one), &case.grid).into_iter();
+    places.any(|at| {
+        let mut axes = (0..3).filter(|&axis| axis != normal);
+        axes.all(|axis| other.lower[axis] < at[axis] && at[axis] < other.upper[axis]) && other.covers(at)
+    })
 }
 
 /// m  of one line that lie on another, to so much aside
@@ -187,11 +190,15 @@ fn shared(a: [[f64; 2]; 2], b: [[f64; 2]; 2], aside: f64) -> f64 {
         [along[0] / length, along[1] / length],
         [-along[1] / length, along[0] / length],
     ];
-    let from = |at: [f64; 2], axis: [f64; 2]| (at[0] - a[0][0]) * axis[0] + (at[1] - a[0][1]) * axis[1];
-    if b.iter().any(|end| from(*end, n).abs() > aside) {
+    // The ends of `b` along `a` and aside of it, from the start of `a`.
+    let ends = b.map(|end| {
+        let off = [end[0] - a[0][0], end[1] - a[0][1]];
+        [e, n].map(|axis| off[0] * axis[0] + off[1] * axis[1])
+    });
+    if ends.iter().any(|end| end[1].abs() > aside) {
         return 0.0;
     }
-    let [p, q] = b.map(|end| from(end, e).clamp(0.0, length));
+    let [p, q] = ends.map(|end| end[0].clamp(0.0, length));
     (p - q).abs()
 }
 
@@ -206,22 +213,7 @@ fn lifted(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         if side(&line, &case.grid, case.bodies.iter()).is_none() {
             continue; // a well inside the ground
         }
-        let normal = normal_of(inflow.site);
-        let across = |soil: &Soil<3>| {
-            soil.permeability
-                .as_ref()
-                .map(|k| (0..3).map(|axis| normal[axis].powi(2) * k.along[axis]).sum::<f64>())
-        };
-        let places = site::places(inflow.site, &case.grid);
-        let is_there = |body: &crate::case::Body| {
-            places
-                .iter()
-                .any(|at| place::is_at(std::slice::from_ref(body), &case.grid, *at))
-        };
-        let under = case.bodies.iter().filter(|body| is_there(body));
-        let least = under
-            .filter_map(|body| Some((across(flow.soils[body.material].as_ref()?)?, body.material)))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let least = least_across(case, flow, inflow.site);
         let rate = inflow.rate.0.iter().map(|row| row.1).fold(0.0, f64::max);
         if let Some((least, material)) = least.filter(|(least, _)| rate > *least) {
             report.warn(format!(
@@ -231,6 +223,22 @@ fn lifted(case: &Case, flow: &Flow, report: &mut Report<'_>) {
             ));
         }
     }
+}
+
+/// The least permeability (m/s) along the normal of a site in the bodies at it, and the number of its material.
+fn least_across(case: &Case, flow: &Flow, site: Site) -> Option<(f64, usize)> {
+    let normal = normal_of(site);
+    let places = site::places(site, &case.grid);
+    let under = case.bodies.iter().filter(|body| {
+        let body = std::slice::from_ref(*body);
+        places.iter().any(|at| place::is_at(body, &case.grid, *at))
+    });
+    let across = under.filter_map(|body| {
+        let permeability = flow.soils[body.material].as_ref()?.permeability.as_ref()?;
+        let parts = (0..3).map(|axis| normal[axis].powi(2) * permeability.along[axis]);
+        Some((parts.sum::<f64>(), body.material))
+    });
+    across.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// Whether a body that is `wanted`, by its number, is at a place.
@@ -245,22 +253,24 @@ pub(super) fn places(drain: &Drain, case: &Case) -> Vec<[f64; 3]> {
         DrainSite::Lines(lines) => lines.iter().flatten().map(|[x, y]| [*x, *y, 0.0]).collect(),
         DrainSite::Circle { center, radius } => place::ring(*center, *radius).map(|[x, y]| [x, y, 0.0]).collect(),
         DrainSite::Plate(plate) => site::places(Site::Plate(*plate), &case.grid),
-        DrainSite::Face(Face { axis, upper }) => {
-            let ends = [case.grid.lower(), case.grid.upper()];
-            let middle = |axis: usize, k: usize| {
-                let count = PARTS_OF_FACE as f64;
-                ends[0][axis] + (ends[1][axis] - ends[0][axis]) * (k as f64 + 0.5) / count
-            };
-            let across: Vec<usize> = (0..case.grid.dims()).filter(|other| other != axis).collect();
-            let place = |number: usize| {
-                let mut at = ends[usize::from(*upper)];
-                for (which, &other) in across.iter().enumerate() {
-                    at[other] = middle(other, number / PARTS_OF_FACE.pow(which as u32) % PARTS_OF_FACE);
-                }
-                at
-            };
-            let all = (0..PARTS_OF_FACE.pow(across.len() as u32)).map(place);
-            all.filter(|at| place::is_at(&case.bodies, &case.grid, *at)).collect()
+        DrainSite::Face(face) => places_at_face(*face, case),
+    }
+}
+
+/// m  where bodies are in the middles of equal pieces of a face of the grid
+fn places_at_face(face: Face, case: &Case) -> Vec<[f64; 3]> {
+    let ends = [case.grid.lower(), case.grid.upper()];
+    let across: Vec<usize> = (0..case.grid.dims()).filter(|axis| *axis != face.axis).collect();
+    let mut places = Vec::new();
+    for number in 0..PARTS_OF_FACE.pow(across.len() as u32) {
+        let mut at = ends[usize::from(face.upper)];
+        for (which, &axis) in across.iter().enumerate() {
+            let k = number / PARTS_OF_FACE.pow(which as u32) % PARTS_OF_FACE;
+            at[axis] = ends[0][axis] + (ends[1][axis] - ends[0][axis]) * (k as f64 + 0.5) / PARTS_OF_FACE as f64;
+        }
+        if place::is_at(&case.bodies, &case.grid, at) {
+            places.push(at);
         }
     }
+    places
 }

@@ -1,9 +1,10 @@
 //! Warns of interfaces and thin walls if the grid cannot resolve the change of pore pressure across them.
 
+use super::is_permeable;
 use crate::case::{Body, Case, Flow, Quantity};
-use crate::grid::GridAxis;
 use crate::region::Edge;
 use crate::report::Report;
+use crate::validate::gap::cell_at;
 use crate::validate::lines;
 use crate::validate::place::{beyond, is_beyond, is_in};
 use crate::validate::site::normal;
@@ -46,12 +47,7 @@ pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         }
     }
     for ((a, b), (ratio, at)) in leaks {
-        let has_flow = |soil: &Soil<3>| soil.permeability.is_some();
-        let (wet, dry) = if flow.soils[a].as_ref().is_some_and(has_flow) {
-            (a, b)
-        } else {
-            (b, a)
-        };
+        let (wet, dry) = if is_permeable(&flow.soils, a) { (a, b) } else { (b, a) };
         let [a, b, wet, dry] = [a, b, wet, dry].map(|material| &case.materials[material].name);
         report.warn(match ratio.is_infinite() {
             true => format!(
@@ -69,9 +65,6 @@ pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 
 /// Warns of histories of the flux in the cells of a surface.
 fn at_surfaces(case: &Case, report: &mut Report<'_>) {
-    let grid = &case.grid;
-    let is_bare =
-        |place: [f64; 3]| is_beyond(grid, place).is_none() && !case.bodies.iter().any(|body| is_in(body, grid, place));
     for history in &case.histories {
         let Quantity::Pore {
             what: Measurement::Flux,
@@ -81,66 +74,60 @@ fn at_surfaces(case: &Case, report: &mut Report<'_>) {
         else {
             continue;
         };
-        // Of the cell of the place, which lies in the ground if it lies at its edge.
-        let edge = |axis: &GridAxis, x: f64| {
-            let cell = axis.first_cell(|cell| axis.breakpoint(cell + 1) > x - axis.lower());
-            axis.cell(cell.min(axis.cells() - 1)) * (1.0 - 1e-9)
-        };
-        let cell: Vec<f64> = grid.axes.iter().zip(at).map(|(axis, x)| edge(axis, x)).collect();
-        let around = (0..3_i32.pow(grid.dims() as u32)).map(|n| [n % 3, n / 3 % 3, n / 9].map(|k| f64::from(k) - 1.0));
-        let aside = |off: [f64; 3], axis: usize| {
-            if axis < grid.dims() {
-                cell[axis] * off[axis]
-            } else {
-                0.0
-            }
-        };
-        let mut places = around.map(|off| std::array::from_fn(|axis| at[axis] + aside(off, axis)));
-        if places.any(is_bare) {
+        if is_near_surface(case, at) {
             report.warn(format!(
                 "W0532: history `{}`: the point {:.3?} m is less than a cell from a surface of the soil, where the \
                  flux is unreliable. Move the point into the soil, or record \"water-outflow\" of the drain.",
                 history.name,
-                &at[..grid.dims()]
+                &at[..case.grid.dims()]
             ));
         }
     }
 }
 
+/// Whether one of the places a cell aside of `at` (m), along any of the axes, lies in the grid but in no body.
+fn is_near_surface(case: &Case, at: [f64; 3]) -> bool {
+    let grid = &case.grid;
+    // Of the cell of the place, which lies in the ground if it lies at its edge.
+    let cells = (0..grid.dims()).map(|axis| cell_at(grid, axis, at[axis] - grid.axes[axis].lower()));
+    let cells: Vec<f64> = cells.map(|cell| cell * (1.0 - 1e-9)).collect();
+    (0..3_i32.pow(grid.dims() as u32)).any(|n| {
+        let steps = [n % 3, n / 3 % 3, n / 9].map(|k| f64::from(k) - 1.0);
+        let mut place = at;
+        (0..grid.dims()).for_each(|axis| place[axis] += cells[axis] * steps[axis]);
+        is_beyond(grid, place).is_none() && !case.bodies.iter().any(|body| is_in(body, grid, place))
+    })
+}
+
 /// Warns of walls and gaps between bodies in which water flows that are so thin that it goes through them.
 fn thin(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let cell = case.grid.shortest();
-    let flows = |body: &Body| {
-        flow.soils[body.material]
-            .as_ref()
-            .is_some_and(|soil| soil.permeability.is_some())
-    };
     let mut walls: BTreeMap<Option<usize>, (f64, [f64; 2])> = BTreeMap::new();
     for t in std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at)) {
         let there: Vec<&Body> = (0..case.bodies.len())
             .filter(|k| case.is_there(*k, t))
             .map(|k| &case.bodies[k])
             .collect();
-        let at = |place: [f64; 2]| there.iter().filter(move |body| body.region.contains(place));
-        let flows_at = |place: [f64; 2]| at(place).any(|body| flows(body));
         for edge in there
             .iter()
-            .filter(|body| flows(body))
+            .filter(|body| is_permeable(&flow.soils, body.material))
             .flat_map(|body| body.region.edges(&case.grid).0)
         {
-            let (start, across) = (places_along(case, &edge), normal(edge.a, edge.b));
+            let start = places_along(case, &edge);
+            let across = normal(edge.a, edge.b);
             for (start, side) in start.flat_map(|at| [(at, 1.0), (at, -1.0)]) {
-                let away = |far: f64| [0, 1].map(|axis| start[axis] + side * far * cell * across[axis]);
-                let beside = away(BESIDE);
-                if flows_at(beside) {
+                let beside = aside(start, across, side * BESIDE * cell);
+                if flows_at(flow, &there, beside) {
                     continue;
                 }
-                let mut far = (1..(REACH * LOOKS as f64) as usize).map(|k| k as f64 / LOOKS as f64);
+                let far = (1..(REACH * LOOKS as f64) as usize).map(|k| k as f64 / LOOKS as f64);
                 let met = far
-                    .find(|far| flows_at(away(*far)))
-                    .filter(|far| beyond(&case.grid, away(*far)).is_none());
-                if let Some(far) = met {
-                    let wall = at(beside).next().map(|body| body.material);
+                    .map(|far| (far, aside(start, across, side * far * cell)))
+                    .find(|(_, place)| flows_at(flow, &there, *place))
+                    .filter(|(_, place)| beyond(&case.grid, *place).is_none());
+                if let Some((far, _)) = met {
+                    let wall = there.iter().find(|body| body.region.contains(beside));
+                    let wall = wall.map(|body| body.material);
                     let least = walls.entry(wall).or_insert((far, start));
                     if far < least.0 {
                         *least = (far, start);
@@ -161,9 +148,21 @@ fn thin(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     }
 }
 
+/// The place at a distance (m) from `start` along a direction.
+fn aside(start: [f64; 2], direction: [f64; 2], distance: f64) -> [f64; 2] {
+    [0, 1].map(|axis| start[axis] + distance * direction[axis])
+}
+
+/// Whether a body at a place lets water through.
+fn flows_at(flow: &Flow, bodies: &[&Body], place: [f64; 2]) -> bool {
+    let mut at = bodies.iter().filter(|body| body.region.contains(place));
+    at.any(|body| is_permeable(&flow.soils, body.material))
+}
+
 /// Places along an edge.
 fn places_along(case: &Case, edge: &Edge) -> impl Iterator<Item = [f64; 2]> + use<> {
-    let (lower, edge) = (case.grid.lower(), *edge);
+    let lower = case.grid.lower();
+    let edge = *edge;
     (0..LOOKS).map(move |k| {
         let part = (k as f64 + 0.5) / LOOKS as f64;
         let x = edge.a[0] + part * (edge.b[0] - edge.a[0]);

@@ -15,15 +15,19 @@ pub(super) fn permeability(record: &Record, report: &mut Report<'_>) -> Option<P
     // Of a plane the third one moves nothing.
     let along = [0, 1, 2].map(|axis| given[axis.min(given.len() - 1)]);
     // A value with a unit is taken as it is meant.
-    let unitless = || along.into_iter().filter(|_| !record.has_unit("permeability"));
-    if let Some(much) = unitless().find(|k| *k > MOST_PERMEABLE) {
+    let unitless = if record.has_unit("permeability") {
+        &[][..]
+    } else {
+        &along
+    };
+    if let Some(much) = unitless.iter().find(|k| **k > MOST_PERMEABLE) {
         let path = record.path_of("permeability");
         report.warn(format!(
             "W0109: {path}: a permeability of {much} m/s is above that of gravel (up to {MOST_PERMEABLE} m/s), so the \
              soil would drain at once. Check the value, and write its unit, such as \"1e-5 m/s\"."
         ));
     }
-    if let Some(little) = unitless().find(|k| *k > 0.0 && *k < LEAST_PERMEABLE) {
+    if let Some(little) = unitless.iter().find(|k| **k > 0.0 && **k < LEAST_PERMEABLE) {
         report.warn(format!(
             "W0109: {}: a permeability of {little:e} m/s is below that of bentonite (1e-14 m/s). If the value is an \
              intrinsic permeability in m2, multiply the value by 1e7 to convert it to m/s.",

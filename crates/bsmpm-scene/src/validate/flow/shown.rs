@@ -1,6 +1,7 @@
 //! Refuses options that are not verified for cases with pore-water flow.
 
-use crate::case::{Acting, Body, Case, Drain, DrainSite, Flow, Initial, Stage, Support};
+use super::is_permeable;
+use crate::case::{Acting, Case, DrainSite, Flow, Initial, Stage, Support, Water};
 use crate::grid::GridAxis;
 use crate::record::Record;
 use crate::report::Report;
@@ -12,7 +13,7 @@ use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::water::flow::{Course, Given, Motion, Soil};
+use bsmpm::water::flow::{Course, Given, Motion};
 
 /// Points along each axis of a cell with cubic splines: with fewer the pressure oscillates at surfaces that cut cells.
 const POINTS_OF_CUBIC: usize = 4;
@@ -103,18 +104,11 @@ fn narrow(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 /// Loads that take much of the height of the soil that they consolidate: its surface leaves the cells behind, and may
 /// go sideways.
 fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
-    let consolidates = |number: usize| {
-        flow.soils[number]
-            .as_ref()
-            .is_some_and(|soil| soil.permeability.is_some())
-    };
-    let soils = case
-        .bodies
-        .iter()
-        .map(|body| body.material)
-        .filter(|number| consolidates(*number));
-    let stiffness = |number: usize| case.materials[number].material.elastic().oedometric();
-    let softest = soils.map(stiffness).fold(f64::INFINITY, f64::min);
+    let soils = case.bodies.iter().map(|body| body.material);
+    let softest = soils
+        .filter(|&number| is_permeable(&flow.soils, number))
+        .map(|number| case.materials[number].material.elastic().oedometric())
+        .fold(f64::INFINITY, f64::min);
     let load = case
         .tractions
         .iter()
@@ -154,9 +148,8 @@ fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
                        too inaccurate. Use \"quadratic\".";
         grid.error("degree", message, report);
     }
-    let few = |body: &Body| body.points_per_cell < POINTS_OF_CUBIC;
     for (body, record) in case.bodies.iter().zip(root.records("body")) {
-        if case.grid.order == 3 && few(body) {
+        if case.grid.order == 3 && body.points_per_cell < POINTS_OF_CUBIC {
             let message = format!(
                 "E0542: {} material points along each axis of a cell are too few for cubic splines, so the pore \
                  pressure would oscillate. Use at least {POINTS_OF_CUBIC}, or grid.degree = \"quadratic\".",
@@ -189,12 +182,11 @@ fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
 
 /// Laws of effective stress, and soils side by side.
 fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
-    let made = |number: usize| case.bodies.iter().any(|body| body.material == number);
     let named = root
         .named("material")
         .iter()
         .enumerate()
-        .filter(|(number, _)| made(*number));
+        .filter(|(number, _)| case.bodies.iter().any(|body| body.material == *number));
     for (number, (name, record)) in named {
         let Some(law) = record.word::<LawName>("model") else {
             continue;
@@ -228,7 +220,7 @@ fn not_available(what: &str, instead: &str) -> String {
 }
 
 /// What a stage changes.
-fn of_stage(case: &Case, (number, record): (usize, &Record), report: &mut Report<'_>) {
+fn of_stage(case: &Case, number: usize, record: &Record, report: &mut Report<'_>) {
     if record.gives("remove") && case.analysis.regime != Regime::QuasiStatic {
         let message = not_available(
             "removal of bodies in a dynamic analysis",
@@ -248,7 +240,7 @@ fn of_stage(case: &Case, (number, record): (usize, &Record), report: &mut Report
     case.stages
         .get(number)
         .into_iter()
-        .for_each(|stage| goes(case, (number, stage), report));
+        .for_each(|stage| goes(case, number, stage, report));
     if record.gives("add") && case.analysis.regime != Regime::QuasiStatic {
         let message = not_available(
             "placement of bodies in a dynamic analysis",
@@ -256,7 +248,7 @@ fn of_stage(case: &Case, (number, record): (usize, &Record), report: &mut Report
         );
         record.error("add", message, report);
     } else if let Some(stage) = case.stages.get(number) {
-        placed(case, (number, stage), report);
+        placed(case, number, stage, report);
     }
     let changes = [
         (
@@ -281,38 +273,28 @@ fn of_stage(case: &Case, (number, record): (usize, &Record), report: &mut Report
 }
 
 /// What a stage places, and what that covers.
-fn placed(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>) {
+fn placed(case: &Case, number: usize, stage: &Stage, report: &mut Report<'_>) {
     let Some(flow) = &case.flow else { return };
-    let soil = |body: &usize| flow.soils[case.bodies[*body].material].as_ref();
-    let acts = |drain: usize, t: f64| case.acts_since(Acting::Drain(drain), t).is_some();
-    for body in stage
-        .add
-        .iter()
-        .filter(|body| soil(body).is_some_and(|soil| soil.permeability.is_some()))
-    {
-        let drains = |(drain, of): (usize, &Drain)| {
-            acts(drain, stage.at)
+    for &body in &stage.add {
+        if !is_permeable(&flow.soils, case.bodies[body].material) {
+            continue;
+        }
+        let is_drained = flow.drains.iter().enumerate().any(|(drain, of)| {
+            acts_at(case, drain, stage.at)
                 && places(of, case)
                     .iter()
-                    .any(|at| is_beside(case, at, |other| other == *body))
-        };
-        if !flow.drains.iter().enumerate().any(drains) {
+                    .any(|at| is_beside(case, at, |other| other == body))
+        });
+        if !is_drained {
             report.warn(format!(
                 "W0544: stage.{number}.add: the added body.{body} has no drain, so its surface is impermeable. Add a \
                  [[drain]] along this surface, and list the drain in `activate` of this stage."
             ));
         }
     }
-    let covers = |at: &[f64; 3]| {
-        let comes = |body: usize| stage.add.contains(&body) && soil(&body).is_some();
-        let was = |body: usize| case.is_there(body, case.just_before(stage.at));
-        is_beside(case, at, comes) && is_beside(case, at, was)
-    };
     for (drain, of) in flow.drains.iter().enumerate() {
-        let stays = [case.just_before(stage.at), stage.at]
-            .into_iter()
-            .all(|t| acts(drain, t));
-        if stays && places(of, case).iter().any(covers) {
+        let stays = acts_at(case, drain, case.just_before(stage.at)) && acts_at(case, drain, stage.at);
+        if stays && places(of, case).iter().any(|at| is_covered(case, flow, stage, at)) {
             report.warn(format!(
                 "W0545: stage.{number}.add: drain.{drain} keeps draining below the added soil, like a drainage \
                  blanket. If there is no blanket, list the drain in `deactivate` of this stage."
@@ -321,18 +303,33 @@ fn placed(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>
     }
 }
 
+/// Whether a drain acts at a time.
+fn acts_at(case: &Case, drain: usize, t: f64) -> bool {
+    case.acts_since(Acting::Drain(drain), t).is_some()
+}
+
+/// Whether a body is at a place at a time.
+fn is_ground(case: &Case, at: &[f64; 3], t: f64) -> bool {
+    is_beside(case, at, |body| case.is_there(body, t))
+}
+
+/// Whether a stage adds soil with pore water at a place of ground.
+fn is_covered(case: &Case, flow: &Flow, stage: &Stage, at: &[f64; 3]) -> bool {
+    is_beside(case, at, |body| {
+        stage.add.contains(&body) && flow.soils[case.bodies[body].material].is_some()
+    }) && is_ground(case, at, case.just_before(stage.at))
+}
+
 /// Warns of drains whose ground goes with what a stage removes.
-fn goes(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>) {
+fn goes(case: &Case, number: usize, stage: &Stage, report: &mut Report<'_>) {
     let before = case.just_before(stage.at);
     for (drain, of) in case.flow.iter().flat_map(|flow| flow.drains.iter().enumerate()) {
-        let acts = [before, stage.at]
-            .into_iter()
-            .all(|t| case.acts_since(Acting::Drain(drain), t).is_some());
-        let is_gone = |at: &[f64; 3]| {
-            let beside = |t: f64| is_beside(case, at, |body| case.is_there(body, t));
-            beside(before) && !beside(stage.at)
-        };
-        if acts && matches!(of.site, DrainSite::Lines(_) | DrainSite::Plate(_)) && places(of, case).iter().all(is_gone)
+        let acts = acts_at(case, drain, before) && acts_at(case, drain, stage.at);
+        if acts
+            && matches!(of.site, DrainSite::Lines(_) | DrainSite::Plate(_))
+            && places(of, case)
+                .iter()
+                .all(|at| is_ground(case, at, before) && !is_ground(case, at, stage.at))
         {
             report.warn(format!(
                 "W0546: stage.{number}.remove: drain.{drain} is removed with its soil, so the new surface is \
@@ -344,26 +341,24 @@ fn goes(case: &Case, (number, stage): (usize, &Stage), report: &mut Report<'_>) 
 
 /// Whether a drain lies between what a stage removes and what stays.
 fn drains_what_is_bare(case: &Case, stage: &Stage) -> bool {
-    let is_gone = |number: usize| stage.remove.contains(&number);
-    let beside = |at: &[f64; 3], gone: bool| is_beside(case, at, |number| is_gone(number) == gone);
-    let between = |drain: &Drain| {
-        places(drain, case)
-            .iter()
-            .all(|at| beside(at, true) && beside(at, false))
-    };
-    case.flow.iter().flat_map(|flow| &flow.drains).any(between)
+    let mut drains = case.flow.iter().flat_map(|flow| &flow.drains);
+    drains.any(|drain| {
+        places(drain, case).iter().all(|at| {
+            is_beside(case, at, |number| stage.remove.contains(&number))
+                && is_beside(case, at, |number| !stage.remove.contains(&number))
+        })
+    })
 }
 
 /// Whether a drain lies between bodies of a material and others through which water flows.
 fn drains_where_they_meet(case: &Case, flow: &Flow, material: usize) -> bool {
-    let of = |number: usize| case.bodies[number].material;
-    let flows = |number: usize| {
-        flow.soils[of(number)]
-            .as_ref()
-            .is_some_and(|soil| soil.permeability.is_some())
-    };
-    let between = |at: &[f64; 3]| is_beside(case, at, |number| of(number) == material) && is_beside(case, at, flows);
-    flow.drains.iter().any(|drain| places(drain, case).iter().any(between))
+    let mut places = flow.drains.iter().flat_map(|drain| places(drain, case));
+    places.any(|at| {
+        is_beside(case, &at, |number| case.bodies[number].material == material)
+            && is_beside(case, &at, |number| {
+                is_permeable(&flow.soils, case.bodies[number].material)
+            })
+    })
 }
 
 /// What acts on the bodies.
@@ -372,25 +367,7 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
         let message = not_available("a rigid body", "Use a [footing] or a [[prescribed]] displacement.");
         report.error(rigid.origin, &rigid.path, message);
     }
-    for (side, support) in Side::of(case.geometry)
-        .iter()
-        .flatten()
-        .zip(case.boundary.into_iter().flatten())
-    {
-        let side = side.word();
-        if let Some(boundary) = root.record("boundary") {
-            match support {
-                Support::Fixed | Support::Roller | Support::Free => {}
-                Support::Contact | Support::Absorbing | Support::FreeField | Support::Outflow => {
-                    let message = not_available(
-                        &format!("the boundary condition \"{support}\""),
-                        "Use \"roller\" or \"fixed\".",
-                    );
-                    boundary.error(side, message, report);
-                }
-            }
-        }
-    }
+    refuse_supports(case, root, report);
     let have_contact = case
         .footing
         .iter()
@@ -407,7 +384,7 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
     root.records("stage")
         .iter()
         .enumerate()
-        .for_each(|stage| of_stage(case, stage, report));
+        .for_each(|(number, stage)| of_stage(case, number, stage, report));
     if let Some(record) = root
         .record("gravity")
         .filter(|record| record.number("ramp").is_some_and(|ramp| ramp > 0.0))
@@ -429,6 +406,29 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
             "Remove it, or use drainage = \"hydrostatic\" with undrained strengths.",
         );
         report.error(shaking.origin, &shaking.path, message);
+    }
+}
+
+/// Refuses supports of the grid's faces other than a roller, a fixed or a free face.
+fn refuse_supports(case: &Case, root: &Record, report: &mut Report<'_>) {
+    for (side, support) in Side::of(case.geometry)
+        .iter()
+        .flatten()
+        .zip(case.boundary.into_iter().flatten())
+    {
+        let side = side.word();
+        if let Some(boundary) = root.record("boundary") {
+            match support {
+                Support::Fixed | Support::Roller | Support::Free => {}
+                Support::Contact | Support::Absorbing | Support::FreeField | Support::Outflow => {
+                    let message = not_available(
+                        &format!("the boundary condition \"{support}\""),
+                        "Use \"roller\" or \"fixed\".",
+                    );
+                    boundary.error(side, message, report);
+                }
+            }
+        }
     }
 }
 
@@ -490,12 +490,13 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     } else {
         f64::INFINITY
     };
-    let dry = |at: &[f64; 3]| {
-        let table = |t: f64| water.table.table(at[0], t).map_or(none, |(height, _)| height);
-        at[case.grid.dims() - 1] > times.iter().map(|t| table(*t)).fold(f64::INFINITY, f64::min) + 0.5 * cell
-    };
-    let permeability = |soil: &Soil<3>| soil.permeability.as_ref().map_or(0.0, |k| k.along.max());
-    let most = flow.soils.iter().flatten().map(permeability).fold(0.0, f64::max);
+    let up = case.grid.dims() - 1;
+    let permeable = flow
+        .soils
+        .iter()
+        .flatten()
+        .filter_map(|soil| soil.permeability.as_ref());
+    let most = permeable.map(|k| k.along.max()).fold(0.0, f64::max);
     let end = case.analysis.end;
     let dt = case
         .analysis
@@ -514,7 +515,11 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         .enumerate()
         .filter(|(_, drain)| drain.given == Given::StillWater)
     {
-        if height > FILM && places(drain, case).iter().any(dry) {
+        let is_dry = height > FILM
+            && places(drain, case)
+                .iter()
+                .any(|at| at[up] > lowest_table(water, &times, at[0], none) + 0.5 * cell);
+        if is_dry {
             report.warn(format!(
                 "W0552: drain.{number}: above the water table soil suction draws water from this drain, a layer up to \
                  {height:.1} cells high {period}. Set `seepage = true`, or for a pond give its `head`."
@@ -523,16 +528,27 @@ fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     }
 }
 
+/// m  lowest water table at x over some times, `none` when there is none
+fn lowest_table(water: &Water, times: &[f64], x: f64, none: f64) -> f64 {
+    let heights = times.iter().map(|t| water.table.table(x, *t));
+    heights
+        .map(|table| table.map_or(none, |(height, _)| height))
+        .fold(f64::INFINITY, f64::min)
+}
+
 /// Ground above the water table whose pores stay full all the same: the water in them hangs on its skeleton.
 fn hanging(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     let Some(water) = case.water.as_ref().filter(|_| case.grid.dims() == 2) else {
         return;
     };
-    let (lower, cell) = (case.grid.lower(), case.grid.shortest());
+    let lower = case.grid.lower();
+    let cell = case.grid.shortest();
     let times: Vec<f64> = water.table.levels().into_iter().flatten().map(|row| row.0).collect();
     for (number, named) in case.materials.iter().enumerate() {
-        let keeps = |soil: &Soil<3>| soil.permeability.is_some() && soil.retention.is_none();
-        if !flow.soils[number].as_ref().is_some_and(keeps) {
+        let is_full = flow.soils[number]
+            .as_ref()
+            .is_some_and(|soil| soil.permeability.is_some() && soil.retention.is_none());
+        if !is_full {
             continue;
         }
         let made = case.bodies.iter().filter(|body| body.material == number);
@@ -557,25 +573,13 @@ fn hanging(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 
 /// Heads above a body's surface, where water would stand on it and press; but for what still water presses.
 fn weightless(case: &Case, flow: &Flow, report: &mut Report<'_>) {
-    let (up, cell) = (
-        case.grid.dims() - 1,
-        case.grid
-            .axes
-            .iter()
-            .map(GridAxis::shortest)
-            .fold(f64::INFINITY, f64::min),
-    );
-    let still = |x: f64| {
-        let water = case.water.iter().flat_map(|water| {
-            water
-                .table
-                .levels()
-                .into_iter()
-                .flatten()
-                .filter_map(move |row| water.table.table(x, row.0))
-        });
-        water.map(|(height, _)| height).fold(f64::NEG_INFINITY, f64::max)
-    };
+    let up = case.grid.dims() - 1;
+    let cell = case
+        .grid
+        .axes
+        .iter()
+        .map(GridAxis::shortest)
+        .fold(f64::INFINITY, f64::min);
     for (number, drain) in flow.drains.iter().enumerate() {
         let Given::Head(Course(rows)) = &drain.given else {
             continue;
@@ -588,8 +592,10 @@ fn weightless(case: &Case, flow: &Flow, report: &mut Report<'_>) {
             continue; // a face of the grid, or a well inside the ground
         }
         let highest = rows.iter().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
-        let above = |at: &[f64; 3]| highest - at[up].max(still(at[0]));
-        let most = places(drain, case).iter().map(above).fold(0.0, f64::max);
+        let above = places(drain, case)
+            .into_iter()
+            .map(|at| highest - at[up].max(still_water(case, at[0])));
+        let most = above.fold(0.0, f64::max);
         if most > 0.5 * cell {
             report.warn(format!(
                 "W0554: drain.{number}: the head is up to {most:.3} m above the surface of the soil, but no water \
@@ -597,4 +603,14 @@ fn weightless(case: &Case, flow: &Flow, report: &mut Report<'_>) {
             ));
         }
     }
+}
+
+/// m  the highest level of the still water at x
+fn still_water(case: &Case, x: f64) -> f64 {
+    let tables = case.water.iter().map(|water| &water.table);
+    let heights = tables.flat_map(|table| {
+        let rows = table.levels().into_iter().flatten();
+        rows.filter_map(move |row| table.table(x, row.0))
+    });
+    heights.map(|(height, _)| height).fold(f64::NEG_INFINITY, f64::max)
 }

@@ -9,7 +9,8 @@ use crate::words::{Geometry, Side};
 
 /// Lines of a section, and whether it is a disc: in a plane itself, of a solid the middle lines of a plate.
 pub(super) fn section(
-    (root, record): (&Record, &Record),
+    root: &Record,
+    record: &Record,
     grid: Option<&GridSpec>,
     report: &mut Report<'_>,
 ) -> Option<(Vec<[[f64; 3]; 2]>, bool)> {
@@ -51,7 +52,8 @@ pub(in crate::validate) fn ends(
 
 /// The face of a history.
 pub(super) fn face(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<Face> {
-    let (side, geometry) = (record.word::<Side>("face")?, root.word::<Geometry>("geometry")?);
+    let side = record.word::<Side>("face")?;
+    let geometry = root.word::<Geometry>("geometry")?;
     let face = Face::of(side, geometry);
     if face.is_none() {
         let message = format!(
@@ -86,10 +88,12 @@ pub(super) fn at_x(record: &Record, grid: Option<&GridSpec>, report: &mut Report
 
 /// A box that has something in common with the grid.
 pub(super) fn within(record: &Record, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
-    let (lower, upper) = (record.vector("lower")?, record.vector("upper")?);
+    let lower = record.vector("lower")?;
+    let upper = record.vector("upper")?;
     if let Some(grid) = grid {
         let axes = grid.dims();
-        let (low, high) = (&lower[..axes], &upper[..axes]);
+        let low = &lower[..axes];
+        let high = &upper[..axes];
         if (0..axes).any(|axis| lower[axis] >= upper[axis]) {
             let message = format!(
                 "E0651: the box is empty, because along each axis `upper` = {high:?} must be larger than `lower` = \
@@ -97,7 +101,8 @@ pub(super) fn within(record: &Record, grid: Option<&GridSpec>, report: &mut Repo
             );
             record.error("upper", message, report);
         }
-        let (start, end) = (grid.lower(), grid.upper());
+        let start = grid.lower();
+        let end = grid.upper();
         if (0..axes).any(|axis| upper[axis] <= start[axis] || lower[axis] >= end[axis]) {
             let message = format!(
                 "E0650: the box lies outside the grid, which extends from {:?} m to {:?} m. Move the box into the \

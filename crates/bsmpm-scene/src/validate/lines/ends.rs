@@ -2,7 +2,7 @@
 
 use super::{BESIDE, BEYOND, FoundLine, NAMES, grid_line};
 use crate::case::{Case, LoadedLine, MotionPath, Rigid, RigidShape, RigidSolid, Site};
-use crate::validate::place::{is_in, over, ring};
+use crate::validate::place::{flat, is_in, over, ring};
 
 /// A strip or a loaded segment.
 struct Segment<'a> {
@@ -21,7 +21,17 @@ fn stays(case: &Case, path: &MotionPath, axis: usize) -> bool {
     path.rows.iter().all(|(_, moved)| moved[axis].abs() <= least)
 }
 
-impl Segment<'_> {
+impl<'a> Segment<'a> {
+    /// A strip, the one with a number in a table; `None` unless it lies along a segment.
+    fn of_strip(name: String, table: &'static str, number: usize, site: Site, path: &'a MotionPath) -> Option<Self> {
+        Some(Self {
+            name,
+            table: (table, number),
+            ends: site.ends()?.map(flat),
+            path: Some(path),
+        })
+    }
+
     /// Whether it stays where it is along an axis.
     fn stays(&self, case: &Case, axis: usize) -> bool {
         self.path.is_none_or(|path| stays(case, path, axis))
@@ -47,20 +57,21 @@ struct FaceEnd {
 
 impl FaceEnd {
     /// The four edges of a face normal to an axis, given by its lower and upper corner.
-    fn of_face(normal: usize, lower: [f64; 3], upper: [f64; 3]) -> impl Iterator<Item = Self> {
-        let along = (0..3).filter(move |axis| *axis != normal);
-        along.flat_map(move |along| {
+    fn of_face(normal: usize, lower: [f64; 3], upper: [f64; 3]) -> Vec<Self> {
+        let mut ends = Vec::new();
+        for along in (0..3).filter(|axis| *axis != normal) {
             let length = upper[along] - lower[along];
-            [(lower[along], -length), (upper[along], length)].map(|(at, outward)| {
+            for (at, outward) in [(lower[along], -length), (upper[along], length)] {
                 let edge = [lower, upper].map(|corner| replaced(corner, along, at));
-                Self {
+                ends.push(Self {
                     normal,
                     along,
                     edge,
                     outward,
-                }
-            })
-        })
+                });
+            }
+        }
+        ends
     }
 
     fn middle(&self) -> [f64; 3] {
@@ -70,51 +81,34 @@ impl FaceEnd {
     /// Whether soil lies beyond some place of it.
     fn has_soil_beyond(&self, case: &Case) -> bool {
         let shift = self.outward.signum() * BEYOND * case.grid.axes[self.along].shortest();
-        let beyond = |at: [f64; 3]| replaced(at, self.along, at[self.along] + shift);
-        over(self.edge).any(|at| has_material(case, beyond(at), self.normal))
+        over(self.edge).any(|at| has_material(case, replaced(at, self.along, at[self.along] + shift), self.normal))
     }
 }
 
 /// A place with another coordinate along an axis.
-fn replaced(mut place: [f64; 3], axis: usize, coordinate: f64) -> [f64; 3] {
+pub(super) fn replaced(mut place: [f64; 3], axis: usize, coordinate: f64) -> [f64; 3] {
     place[axis] = coordinate;
     place
 }
 
-/// A place of a plane.
-fn flat([x, y]: [f64; 2]) -> [f64; 3] {
-    [x, y, 0.0]
-}
-
 fn all_segments(case: &Case) -> Vec<Segment<'_>> {
-    let footing = case.footing.iter().filter_map(|footing| {
-        let (table, path) = (("footing", 0), Some(&footing.path));
-        footing.site.ends().map(|ends| Segment {
-            name: "footing".into(),
-            table,
-            ends: ends.map(flat),
-            path,
-        })
-    });
-    let prescribed = case.prescribed.iter().enumerate().filter_map(|(number, prescribed)| {
-        let (table, path) = (("prescribed", number), Some(&prescribed.path));
-        prescribed.site.ends().map(|ends| Segment {
-            name: format!("prescribed.{number}"),
-            table,
-            ends: ends.map(flat),
-            path,
-        })
-    });
-    let tractions = case.tractions.iter().enumerate().filter_map(|(number, traction)| {
-        let ends = traction.ends()?.map(flat);
-        Some(Segment {
+    let mut all = Vec::new();
+    if let Some(of) = &case.footing {
+        all.extend(Segment::of_strip("footing".into(), "footing", 0, of.site, &of.path));
+    }
+    for (number, of) in case.prescribed.iter().enumerate() {
+        let name = format!("prescribed.{number}");
+        all.extend(Segment::of_strip(name, "prescribed", number, of.site, &of.path));
+    }
+    for (number, traction) in case.tractions.iter().enumerate() {
+        all.extend(traction.ends().map(|ends| Segment {
             name: format!("traction.{number}"),
             table: ("traction", number),
-            ends,
+            ends: ends.map(flat),
             path: None,
-        })
-    });
-    footing.chain(prescribed).chain(tractions).collect()
+        }));
+    }
+    all
 }
 
 /// Edges of rectangular plates and loads of a solid beyond which the surface goes on; of a disc there is
@@ -155,7 +149,7 @@ pub(super) fn plates(case: &Case, found: &mut FoundLine) {
             path,
         };
         for of in FaceEnd::of_face(plate.normal(), plate.lower, plate.upper) {
-            end(case, &segment, (of.along, of.normal), (of.middle(), of.outward), found);
+            end(case, &segment, of.along, of.normal, of.middle(), of.outward, found);
         }
     }
 }
@@ -179,13 +173,7 @@ pub(super) fn segments(case: &Case, found: &mut FoundLine) {
             continue;
         };
         for (at, other) in [(segment.ends[0], segment.ends[1]), (segment.ends[1], segment.ends[0])] {
-            end(
-                case,
-                &segment,
-                (along, 1 - along),
-                (at, at[along] - other[along]),
-                found,
-            );
+            end(case, &segment, along, 1 - along, at, at[along] - other[along], found);
         }
         wall(case, &segment, 1 - along, found);
     }
@@ -235,7 +223,7 @@ fn polygon(case: &Case, rigid: &Rigid, corners: &[[f64; 2]], found: &mut FoundLi
         .filter(|along| !moves(case, rigid, *along) && pushes(rigid, 1 - along))
     {
         for outward in [-1.0, 1.0] {
-            widest(case, rigid, (corners, along, outward), found);
+            widest(case, rigid, corners, along, outward, found);
         }
     }
 }
@@ -251,13 +239,16 @@ fn in_plane(along: usize, at: [f64; 2], outward: f64) -> FaceEnd {
 }
 
 /// The lines through the corners that are outermost along an axis, of edges that lead there and that soil lies at.
-fn widest(case: &Case, rigid: &Rigid, (corners, along, outward): (&[[f64; 2]], usize, f64), found: &mut FoundLine) {
-    let out = |corner: &[f64; 2]| outward * corner[along];
-    let most = corners.iter().map(out).fold(f64::NEG_INFINITY, f64::max);
+fn widest(case: &Case, rigid: &Rigid, corners: &[[f64; 2]], along: usize, outward: f64, found: &mut FoundLine) {
+    let most = corners
+        .iter()
+        .map(|corner| outward * corner[along])
+        .fold(f64::NEG_INFINITY, f64::max);
     for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
         let middle = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
-        if (out(from) == most) != (out(to) == most) && has_material(case, flat(middle), 1 - along) {
-            let at = if out(from) == most { *from } else { *to };
+        let is_outermost = [from, to].map(|corner| outward * corner[along] == most);
+        if is_outermost[0] != is_outermost[1] && has_material(case, flat(middle), 1 - along) {
+            let at = if is_outermost[0] { *from } else { *to };
             corner(case, rigid, &in_plane(along, at, outward), found);
         }
     }
@@ -277,9 +268,9 @@ fn cuboid(case: &Case, rigid: &Rigid, lower: [f64; 3], upper: [f64; 3], found: &
             if !over([lower, upper]).any(|place| has_material(case, place, normal)) {
                 continue;
             }
-            let stays = |of: &FaceEnd| !moves(case, rigid, of.along);
-            for of in FaceEnd::of_face(normal, lower, upper).filter(stays) {
-                corner(case, rigid, &of, found);
+            let ends = FaceEnd::of_face(normal, lower, upper);
+            for of in ends.iter().filter(|of| !moves(case, rigid, of.along)) {
+                corner(case, rigid, of, found);
             }
         }
     }
@@ -287,13 +278,18 @@ fn cuboid(case: &Case, rigid: &Rigid, lower: [f64; 3], upper: [f64; 3], found: &
 
 /// Rims of flat faces that a body of revolution pushes along its axis, where soil lies on both sides of them.
 fn rims(case: &Case, rigid: &Rigid, about: [f64; 2], corners: &[[f64; 2]], found: &mut FoundLine) {
-    let is_flat = |(from, to): &(&[f64; 2], &[f64; 2])| from[1] == to[1];
+    if !pushes(rigid, 2) {
+        return;
+    }
     let cell = case.grid.shortest();
-    for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)).filter(is_flat) {
+    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+    for (from, to) in edges.filter(|(from, to)| from[1] == to[1]) {
         let radius = from[0].max(to[0]);
-        let has_soil = |[x, y]: [f64; 2]| has_material(case, [x, y, from[1]], 2);
-        let is_at = |shift: f64| ring(about, radius + shift * BEYOND * cell).any(has_soil);
-        if pushes(rigid, 2) && is_at(-1.0) && is_at(1.0) {
+        let has_soil = [-1.0, 1.0].iter().all(|shift| {
+            let mut places = ring(about, radius + shift * BEYOND * cell);
+            places.any(|[x, y]| has_material(case, [x, y, from[1]], 2))
+        });
+        if has_soil {
             doubt_rim(&format!("rigid body `{}`", rigid.name), found);
         }
     }
@@ -313,7 +309,9 @@ fn corner(case: &Case, rigid: &Rigid, of: &FaceEnd, found: &mut FoundLine) {
     if !of.has_soil_beyond(case) {
         return;
     }
-    let (axis, at, name) = (&case.grid.axes[of.along], of.edge[0][of.along], &rigid.name);
+    let axis = &case.grid.axes[of.along];
+    let at = of.edge[0][of.along];
+    let name = &rigid.name;
     let what = if case.grid.dims() == 2 { "corner" } else { "edge" };
     match grid_line(case, of.along, at - axis.lower()) {
         Some(line) if line == 0 || line == axis.cells() => {}
@@ -333,11 +331,14 @@ fn corner(case: &Case, rigid: &Rigid, of: &FaceEnd, found: &mut FoundLine) {
 fn end(
     case: &Case,
     segment: &Segment<'_>,
-    (along, normal): (usize, usize),
-    (at, outward): ([f64; 3], f64),
+    along: usize,
+    normal: usize,
+    at: [f64; 3],
+    outward: f64,
     found: &mut FoundLine,
 ) {
-    let (axis, name) = (&case.grid.axes[along], &segment.name);
+    let axis = &case.grid.axes[along];
+    let name = &segment.name;
     let mut beyond = at;
     beyond[along] += outward.signum() * BEYOND * axis.shortest();
     if !has_material(case, beyond, normal) {
@@ -397,12 +398,12 @@ fn wall(case: &Case, segment: &Segment<'_>, normal: usize, found: &mut FoundLine
         return;
     };
     let [from, to] = segment.ends;
-    let beside = |shift: f64| {
+    let has_soil = [-1.0, 1.0].iter().all(|shift| {
         let mut middle = [0, 1, 2].map(|k| 0.5 * (from[k] + to[k]));
         middle[normal] += shift * BEYOND * axis.shortest();
         case.bodies.iter().any(|body| is_in(body, &case.grid, middle))
-    };
-    if beside(-1.0) && beside(1.0) {
+    });
+    if has_soil {
         let reason = format!("`{}` restrains the soil on both sides", segment.name);
         found.lines.entry((normal, line)).or_insert(reason);
     }

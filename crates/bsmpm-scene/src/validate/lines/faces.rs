@@ -1,5 +1,6 @@
 //! Places C0 planes (repeated breakpoints) between bodies of different stiffness or density in 3-D.
 
+use super::ends::replaced;
 use super::{BESIDE, FoundLine, ROUNDING, UNLIKE, differ, doubt, grid_line, interface_of};
 use crate::case::{Body, Case};
 
@@ -10,7 +11,7 @@ const MOST_RAYS: usize = 40;
 const SIDEWAYS: f64 = 0.25;
 
 /// A place where two bodies meet, as a ray along an axis passes from one into the other.
-struct Meeting {
+struct MeetingPlace {
     axis: usize,
     at: [f64; 3],
     /// whether they meet on a plane across the axis there
@@ -19,11 +20,9 @@ struct Meeting {
 
 /// Where bodies of a solid of unlike stiffness or density meet; such that may do so elsewhere are doubted.
 pub(super) fn interfaces(case: &Case, found: &mut FoundLine) {
-    let times = || std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
-    let together = |i: usize, j: usize| times().any(|t| case.is_there(i, t) && case.is_there(j, t));
     for (i, a) in case.bodies.iter().enumerate() {
         for (j, b) in case.bodies[..i].iter().enumerate() {
-            let Some(ratios) = differ(case, (a.material, b.material), None).filter(|_| together(i, j)) else {
+            let Some(ratios) = differ(case, a.material, b.material, None).filter(|_| are_together(case, i, j)) else {
                 continue;
             };
             let Some(within) = shared(case, [a, b]) else { continue };
@@ -42,11 +41,17 @@ pub(super) fn interfaces(case: &Case, found: &mut FoundLine) {
     }
 }
 
+/// Whether two bodies are there together at some time.
+fn are_together(case: &Case, one: usize, other: usize) -> bool {
+    let mut times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
+    times.any(|t| case.is_there(one, t) && case.is_there(other, t))
+}
+
 /// Takes the plane of the grid that the bodies meet on, or doubts what they do inside cells.
-fn note(case: &Case, bodies: [&Body; 2], meeting: &Meeting, found: &mut FoundLine) {
-    let Meeting { axis, at, flat } = *meeting;
+fn note(case: &Case, bodies: [&Body; 2], meeting: &MeetingPlace, found: &mut FoundLine) {
+    let MeetingPlace { axis, at, flat } = *meeting;
     let height = at[2] - case.grid.lower()[2];
-    let Some(ratios) = differ(case, (bodies[0].material, bodies[1].material), Some(height)) else {
+    let Some(ratios) = differ(case, bodies[0].material, bodies[1].material, Some(height)) else {
         return;
     };
     let [a, b] = bodies.map(|body| &case.materials[body.material]);
@@ -54,7 +59,7 @@ fn note(case: &Case, bodies: [&Body; 2], meeting: &Meeting, found: &mut FoundLin
     if let Some(line) = line {
         found.lines.entry((axis, line)).or_insert_with(|| interface_of(a, b));
     }
-    if let Some(doubt) = doubt([a, b], (line.is_some(), case.stabilisation.averages()), (&at, ratios)) {
+    if let Some(doubt) = doubt([a, b], line.is_some(), case.stabilisation.averages(), &at, ratios) {
         found
             .doubts
             .entry(format!("{} {} {}", a.name, b.name, line.is_some()))
@@ -72,49 +77,60 @@ fn shared(case: &Case, bodies: [&Body; 2]) -> Option<[[f64; 3]; 2]> {
 }
 
 /// Where rays along the axes pass from one of two bodies into the other within a box.
-fn meetings(case: &Case, bodies: [&Body; 2], [lower, upper]: [[f64; 3]; 2]) -> Vec<Meeting> {
+fn meetings(case: &Case, bodies: [&Body; 2], [lower, upper]: [[f64; 3]; 2]) -> Vec<MeetingPlace> {
     let shortest = case.grid.shortest();
-    let part =
-        |axis: usize, k: usize, of: usize| lower[axis] + (k as f64 + 0.5) / of as f64 * (upper[axis] - lower[axis]);
-    let parts = |axis: usize, a_cell: f64| (a_cell * (upper[axis] - lower[axis]) / shortest).ceil() as usize;
-    let inside = |at: [f64; 3]| bodies.iter().position(|body| body.region.contains_in_space(at));
+    let lengths: [f64; 3] = std::array::from_fn(|axis| upper[axis] - lower[axis]);
     let mut all = Vec::new();
     for axis in 0..3 {
         let others = [(axis + 1) % 3, (axis + 2) % 3];
-        let rays = others.map(|axis| parts(axis, RAYS_A_CELL).clamp(2, MOST_RAYS));
-        let steps = parts(axis, 4.0).max(2);
+        let rays = others.map(|axis| ((RAYS_A_CELL * lengths[axis] / shortest).ceil() as usize).clamp(2, MOST_RAYS));
+        let steps = ((4.0 * lengths[axis] / shortest).ceil() as usize).max(2);
         for ray in 0..rays[0] * rays[1] {
             let mut at = [0.0; 3];
-            at[others[0]] = part(others[0], ray / rays[1], rays[0]);
-            at[others[1]] = part(others[1], ray % rays[1], rays[1]);
-            let place = |x: f64| std::array::from_fn(|k| if k == axis { x } else { at[k] });
-            let ends: Vec<f64> = (0..steps).map(|k| part(axis, k, steps)).collect();
-            let found = ends
-                .windows(2)
-                .filter_map(|pair| pass([pair[0], pair[1]], shortest, |x| inside(place(x))));
-            all.extend(found.filter_map(|x| meeting(axis, place(x), shortest, inside)));
+            at[others[0]] = middle_of_part(lower[others[0]], lengths[others[0]], ray / rays[1], rays[0]);
+            at[others[1]] = middle_of_part(lower[others[1]], lengths[others[1]], ray % rays[1], rays[1]);
+            let ends: Vec<f64> = (0..steps)
+                .map(|k| middle_of_part(lower[axis], lengths[axis], k, steps))
+                .collect();
+            let found = ends.windows(2).filter_map(|pair| {
+                let ends = [pair[0], pair[1]];
+                pass(ends, shortest, |x| body_at(bodies, replaced(at, axis, x)))
+            });
+            all.extend(found.filter_map(|x| meeting(bodies, axis, replaced(at, axis, x), shortest)));
         }
     }
     all
 }
 
+/// The middle of the k-th of equal parts of a length from `lower` on, m.
+fn middle_of_part(lower: f64, length: f64, k: usize, parts: usize) -> f64 {
+    lower + (k as f64 + 0.5) / parts as f64 * length
+}
+
+/// Which of two bodies is at a place, if one is.
+fn body_at(bodies: [&Body; 2], at: [f64; 3]) -> Option<usize> {
+    bodies.iter().position(|body| body.region.contains_in_space(at))
+}
+
+/// Which bodies are on both sides of a place along an axis.
+fn sides(bodies: [&Body; 2], axis: usize, at: [f64; 3], shortest: f64) -> [Option<usize>; 2] {
+    [-1.0, 1.0].map(|side| {
+        let mut at = at;
+        at[axis] += side * 2.0 * BESIDE * shortest;
+        body_at(bodies, at)
+    })
+}
+
 /// The meeting at a place: on a plane if both bodies are on their sides of it beside the place, too; none where it is
 /// not known as one of them ends there.
-fn meeting(axis: usize, at: [f64; 3], shortest: f64, inside: impl Fn([f64; 3]) -> Option<usize>) -> Option<Meeting> {
-    let sides = |at: [f64; 3]| {
-        [-1.0, 1.0].map(|side| {
-            let mut at = at;
-            at[axis] += side * 2.0 * BESIDE * shortest;
-            inside(at)
-        })
-    };
-    let own = sides(at);
+fn meeting(bodies: [&Body; 2], axis: usize, at: [f64; 3], shortest: f64) -> Option<MeetingPlace> {
+    let own = sides(bodies, axis, at, shortest);
     let mut flat = true;
     for across in [(axis + 1) % 3, (axis + 2) % 3] {
         let beside = [-1.0, 1.0].map(|way| {
             let mut beside = at;
             beside[across] += way * SIDEWAYS * shortest;
-            sides(beside)
+            sides(bodies, axis, beside, shortest)
         });
         if beside.contains(&own) {
             continue; // on one side at least: the other may be around a corner
@@ -124,17 +140,19 @@ fn meeting(axis: usize, at: [f64; 3], shortest: f64, inside: impl Fn([f64; 3]) -
         }
         flat = false;
     }
-    Some(Meeting { axis, at, flat })
+    Some(MeetingPlace { axis, at, flat })
 }
 
 /// Where a ray that is in one body at the first of two places and in another at the second passes from one to the
 /// other, if nothing lies between them.
 fn pass([from, to]: [f64; 2], shortest: f64, inside: impl Fn(f64) -> Option<usize>) -> Option<f64> {
-    let (first, second) = (inside(from)?, inside(to)?);
+    let first = inside(from)?;
+    let second = inside(to)?;
     if first == second {
         return None;
     }
-    let (mut before, mut after) = (from, to);
+    let mut before = from;
+    let mut after = to;
     while after - before > 0.1 * ROUNDING * shortest {
         let middle = 0.5 * (before + after);
         if middle <= before || middle >= after {

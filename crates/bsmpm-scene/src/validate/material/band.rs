@@ -1,7 +1,7 @@
 //! Warns of settings for which `band_width` is not verified.
 
 use super::law::CELLS_OF_BAND;
-use crate::case::{Case, Geometry, Rigid, Site};
+use crate::case::{Case, Geometry, Site};
 use crate::record::Record;
 use crate::report::Report;
 use crate::validate::place::is_at;
@@ -12,11 +12,11 @@ use bsmpm::stabilisation::Stabilisation;
 
 /// Warns of every material with a `band_width` outside of what was verified.
 pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
-    let softens = |number: usize, record: &Record| {
-        record.gives("band_width") && case.is_followed(number) && falls(&case.materials[number].material)
-    };
-    let named = root.named("material").iter().enumerate();
-    for (_, (_, record)) in named.filter(|(number, (_, of))| softens(*number, of)) {
+    for (number, (_, record)) in root.named("material").iter().enumerate() {
+        let is_used = record.gives("band_width") && case.is_followed(number);
+        if !is_used || !falls(&case.materials[number].material) {
+            continue;
+        }
         let settings: Vec<String> = unverified_settings(case)
             .into_iter()
             .chain(unlike_a_band(case))
@@ -35,21 +35,24 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
 /// Whether some strength is less in the end; what hardens has no bands.
 fn falls(material: &Material) -> bool {
     let law = material.at(0.0);
-    let numbers = law.parameters();
-    let of = |key: &str| {
-        let place = law.parameter_names().iter().position(|parameter| parameter.name == key);
-        place.map_or(0.0, |place| numbers[place])
-    };
     ["friction_angle", "cohesion"]
         .into_iter()
-        .any(|key| of(key) > of(&format!("residual_{key}")))
+        .any(|key| parameter(&law, key) > parameter(&law, &format!("residual_{key}")))
+}
+
+/// The parameter of a law with a name; 0 where it has none.
+fn parameter(law: &Material, name: &str) -> f64 {
+    let names = law.parameter_names().iter().map(|parameter| parameter.name);
+    names
+        .zip(law.parameters())
+        .find(|(own, _)| *own == name)
+        .map_or(0.0, |(_, value)| value)
 }
 
 /// Geometry, stabilisation and splines with which the width is not verified, with the error of the dissipated energy
 /// where that was measured.
 fn unverified_settings(case: &Case) -> Vec<String> {
     let mut settings = Vec::new();
-    let error = |cells: f64| format!("(dissipation {:+.0} %)", 100.0 * (cells / CELLS_OF_BAND - 1.0));
     if case.geometry != Geometry::PlaneStrain {
         settings.push(format!("for geometry = \"{}\"", case.geometry.word()));
     }
@@ -65,6 +68,11 @@ fn unverified_settings(case: &Case) -> Vec<String> {
     settings
 }
 
+/// The error of the dissipated energy with bands so many cells wide, in words.
+fn error(cells: f64) -> String {
+    format!("(dissipation {:+.0} %)", 100.0 * (cells / CELLS_OF_BAND - 1.0))
+}
+
 /// A footing or rigid body that pushes into the ground, below which the soil yields in a wider zone than one band.
 fn unlike_a_band(case: &Case) -> Option<String> {
     let mut strips = case
@@ -72,20 +80,26 @@ fn unlike_a_band(case: &Case) -> Option<String> {
         .iter()
         .map(|of| of.site)
         .chain(case.prescribed.iter().map(|of| of.site));
-    let is_narrow = |site: Site| {
-        if matches!(site, Site::Face(_)) {
-            return false;
-        }
-        let [from, to] = corners(site, &case.grid);
-        let beyond = |part: f64| [0, 1, 2].map(|axis| from[axis] + part * (to[axis] - from[axis]));
-        [-0.25, 1.25]
-            .into_iter()
-            .any(|part| is_at(&case.bodies, &case.grid, beyond(part)))
-            && places(site, &case.grid)
-                .into_iter()
-                .any(|at| is_at(&case.bodies, &case.grid, at))
-    };
-    let is_driven = |body: &Rigid| body.is_moved() || body.free.contains(&true) || body.force != [0.0; 3];
-    let pushes = strips.any(is_narrow) || case.rigid.iter().any(is_driven);
+    let pushes = strips.any(|site| is_narrow(case, site))
+        || case
+            .rigid
+            .iter()
+            .any(|body| body.is_moved() || body.free.contains(&true) || body.force != [0.0; 3]);
     pushes.then(|| "below a footing or rigid body".to_owned())
+}
+
+/// Whether a strip on the ground ends beside ground.
+fn is_narrow(case: &Case, site: Site) -> bool {
+    if matches!(site, Site::Face(_)) {
+        return false;
+    }
+    let [from, to] = corners(site, &case.grid);
+    let goes_on = [-0.25, 1.25].into_iter().any(|part| {
+        let beyond = [0, 1, 2].map(|axis| from[axis] + part * (to[axis] - from[axis]));
+        is_at(&case.bodies, &case.grid, beyond)
+    });
+    goes_on
+        && places(site, &case.grid)
+            .into_iter()
+            .any(|at| is_at(&case.bodies, &case.grid, at))
 }

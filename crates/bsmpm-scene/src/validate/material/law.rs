@@ -12,7 +12,13 @@ use bsmpm::material::{CamClay, Decay, Elastic, Graded, Match, Material, Profile,
 /// A law and its numbers, by the height in the case's coordinates and units.
 pub(super) struct Parameters {
     model: LawName,
-    values: Vec<(&'static str, Profile)>,
+    values: Vec<KeyProfile>,
+}
+
+/// A parameter by the height, and its key.
+struct KeyProfile {
+    key: &'static str,
+    profile: Profile,
 }
 
 impl Parameters {
@@ -25,21 +31,29 @@ impl Parameters {
     }
 
     fn is_graded(&self) -> bool {
-        self.values.iter().any(|(_, profile)| profile.per_metre != 0.0)
+        self.values.iter().any(|own| own.profile.per_metre != 0.0)
     }
 
     /// Its profile of a key, 0 of one that it has not.
     fn of(&self, key: &str) -> Profile {
-        let found = self.values.iter().find(|(name, _)| *name == key);
-        found.map_or(Profile::constant(0.0), |(_, profile)| *profile)
+        let found = self.values.iter().find(|own| own.key == key);
+        found.map_or(Profile::constant(0.0), |own| own.profile)
+    }
+
+    /// Least and largest value of a key within a layer; without a layer those at the profile's own height.
+    fn bounds(&self, key: &str, layer: Option<&Layer>) -> (f64, f64) {
+        let profile = self.of(key);
+        profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()))
     }
 
     /// The material, its strength divided by `factor`.
     pub(super) fn material(
         &self,
         record: &Record,
-        (young, poisson): (Profile, f64),
-        (layer, factor): (Option<&Layer>, f64),
+        young: Profile,
+        poisson: f64,
+        layer: Option<&Layer>,
+        factor: f64,
     ) -> Option<Material> {
         let law = self.model.chosen(
             record,
@@ -58,19 +72,26 @@ impl Parameters {
             return Some(law.with(law.elastic().clone(), &values).reduced(factor));
         }
         let layer = layer?;
-        let relative = |profile: Profile| Profile {
-            at: profile.at - layer.base,
-            ..profile
-        };
         let heights = layer.heights.start - layer.base..layer.heights.end - layer.base;
-        let parameters = parameters.into_iter().map(relative).collect();
+        let parameters = parameters
+            .into_iter()
+            .map(|profile| relative(profile, layer.base))
+            .collect();
         Some(Material::Graded(Graded::new(
             &law,
-            relative(young),
+            relative(young, layer.base),
             parameters,
             heights,
             factor,
         )))
+    }
+}
+
+/// A profile by the height above a base, m.
+fn relative(profile: Profile, base: f64) -> Profile {
+    Profile {
+        at: profile.at - base,
+        ..profile
     }
 }
 
@@ -89,33 +110,16 @@ fn in_si(key: &str, profile: Profile) -> Profile {
 /// The law of a material; `None` after an error.
 pub(super) fn law(
     record: &Record,
-    (layer, grid, geometry): (Option<&Layer>, Option<&GridSpec>, Option<Geometry>),
+    layer: Option<&Layer>,
+    grid: Option<&GridSpec>,
+    geometry: Option<Geometry>,
     report: &mut Report<'_>,
 ) -> Option<Parameters> {
     let model: LawName = record.word("model")?;
-    let (required, known) = model.keys();
-    let mut whole = true;
-    let all = all_keys();
-    let unused = all.iter().filter(|key| !required.contains(key) && !known.contains(key));
-    for key in unused.filter(|key| record.gives(key) && !zero_angle(record, model, key)) {
-        let message = format!(
-            "E0304: the model \"{model}\" has no parameter `{key}`. Remove the key, or choose another \
-                     `model`."
-        );
-        record.error(key, message, report);
-        whole = false;
-    }
-    for key in required.iter().filter(|key| !record.gives(key)) {
-        let message = format!(
-            "E0305: the model \"{model}\" needs the parameter `{key}`, which is missing. Add \
-                               `{key}`."
-        );
-        report.error(record.origin, &record.path_of(key), message);
-        whole = false;
-    }
-    if !whole {
+    if !has_its_keys(record, model, report) {
         return None;
     }
+    let (required, known) = model.keys();
     let mut values = Vec::new();
     for &key in required.iter().chain(known).filter(|key| record.gives(key)) {
         let (profile, range) = match MATERIAL.key(key).map(|key| &key.kind) {
@@ -124,9 +128,9 @@ pub(super) fn law(
             _ => continue,
         };
         if let Some(layer) = layer {
-            layer.check(record, (key, range), &profile, report);
+            layer.check(record, key, range, &profile, report);
         }
-        values.push((key, profile));
+        values.push(KeyProfile { key, profile });
     }
     if model == LawName::CamClay {
         star(record, &mut values, report)?;
@@ -156,10 +160,36 @@ pub(super) fn law(
     Some(parameters)
 }
 
+/// Whether a record gives all keys of its model, and none that this has not.
+fn has_its_keys(record: &Record, model: LawName, report: &mut Report<'_>) -> bool {
+    let (required, known) = model.keys();
+    let mut whole = true;
+    let all = all_keys();
+    let unused = all.iter().filter(|key| !required.contains(key) && !known.contains(key));
+    for key in unused.filter(|key| record.gives(key) && !zero_angle(record, model, key)) {
+        let message = format!(
+            "E0304: the model \"{model}\" has no parameter `{key}`. Remove the key, or choose another \
+                     `model`."
+        );
+        record.error(key, message, report);
+        whole = false;
+    }
+    for key in required.iter().filter(|key| !record.gives(key)) {
+        let message = format!(
+            "E0305: the model \"{model}\" needs the parameter `{key}`, which is missing. Add \
+                               `{key}`."
+        );
+        report.error(record.origin, &record.path_of(key), message);
+        whole = false;
+    }
+    whole
+}
+
 /// Cohesion that falls faster than shear stress does where material unloads: the point has no path, it drops at once.
 /// How fast friction falls depends on the pressure, and is not looked at.
 fn warn_of_collapse(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut Report<'_>) {
-    let (Some(young), Some(poisson)) = (profile(record, "young"), record.number("poisson")) else {
+    let Some(young) = profile(record, "young") else { return };
+    let Some(poisson) = record.number("poisson") else {
         return;
     };
     // An exponential decay begins three times as fast as it goes on the whole.
@@ -187,15 +217,19 @@ fn warn_of_collapse(record: &Record, law: &Parameters, layer: Option<&Layer>, re
 /// The numbers of softening that sensitive clay's are (Einav and Randolph, 2005): in shear without change of volume the
 /// largest shear is √3 times the plastic strain that the law has. `None` after an error.
 fn remould(record: &Record, law: &mut Parameters, report: &mut Report<'_>) -> Option<()> {
-    let (cohesion, sensitivity) = (law.of("cohesion"), law.of("sensitivity").value);
+    let cohesion = law.of("cohesion");
+    let sensitivity = law.of("sensitivity").value;
     let remoulded = Profile {
         value: cohesion.value / sensitivity,
         per_metre: cohesion.per_metre / sensitivity,
         ..cohesion
     };
-    law.values.push(("residual_cohesion", remoulded));
-    let (_, strain) = law.values.iter_mut().find(|(key, _)| *key == "softening_strain")?;
-    strain.value /= 3.0_f64.sqrt();
+    law.values.push(KeyProfile {
+        key: "residual_cohesion",
+        profile: remoulded,
+    });
+    let strain = law.values.iter_mut().find(|own| own.key == "softening_strain")?;
+    strain.profile.value /= 3.0_f64.sqrt();
     if record.gives("rate_parameter") != record.gives("reference_rate") {
         let missing = if record.gives("rate_parameter") {
             "reference_rate"
@@ -212,7 +246,7 @@ fn remould(record: &Record, law: &mut Parameters, report: &mut Report<'_>) -> Op
 }
 
 /// The slopes in ln v over ln p', from those in v over ln p' where they are given instead; `None` after an error.
-fn star(record: &Record, values: &mut Vec<(&'static str, Profile)>, report: &mut Report<'_>) -> Option<()> {
+fn star(record: &Record, values: &mut Vec<KeyProfile>, report: &mut Report<'_>) -> Option<()> {
     const SLOPES: [[&str; 2]; 2] = [["kappa_star", "kappa"], ["lambda_star", "lambda"]];
     let of_volume = SLOPES.into_iter().find(|[_, slope]| record.gives(slope));
     if let Some([_, slope]) = of_volume.filter(|_| !record.gives("void_ratio")) {
@@ -238,7 +272,10 @@ fn star(record: &Record, values: &mut Vec<(&'static str, Profile)>, report: &mut
                 value.to_string(),
                 format!("{slope} / (1 + void_ratio)"),
             );
-            values.push((starred, Profile::constant(value)));
+            values.push(KeyProfile {
+                key: starred,
+                profile: Profile::constant(value),
+            });
         }
     }
     Some(())
@@ -262,7 +299,8 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
         report.error(record.origin, &record.path_of("preconsolidation"), message);
         return None;
     }
-    let (young, poisson) = (profile(record, "young")?, record.number("poisson")?);
+    let young = profile(record, "young")?;
+    let poisson = record.number("poisson")?;
     let clay = CamClay::new(
         Elastic {
             young: young.value,
@@ -318,10 +356,8 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
         return Some(());
     };
     let axes = &grid?.axes;
-    let (shortest, longest) = (
-        axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min),
-        axes.iter().map(GridAxis::longest).fold(0.0, f64::max),
-    );
+    let shortest = axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
+    let longest = axes.iter().map(GridAxis::longest).fold(0.0, f64::max);
     if longest > SQUARE * shortest {
         let message = format!(
             "E0316: `band_width` needs cells of equal size, but the cells of the grid are {shortest} to {longest} m \
@@ -332,17 +368,16 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
     }
     // What happens in a band is smeared over two cells: its strain, and how fast it grows.
     let smeared = CELLS_OF_BAND * longest;
-    for (key, number) in law
-        .values
-        .iter_mut()
-        .filter(|(key, _)| ["softening_strain", "reference_rate"].contains(key))
-    {
-        let of_band = number.value;
-        number.value *= width / smeared;
+    for KeyProfile { key, profile } in &mut law.values {
+        if !["softening_strain", "reference_rate"].contains(key) {
+            continue;
+        }
+        let of_band = profile.value;
+        profile.value *= width / smeared;
         if of_band > 0.0 {
             report.note(
                 record.path_of(key),
-                number.value.to_string(),
+                profile.value.to_string(),
                 format!("{of_band} in a band of {width} m, which is {smeared} m wide in cells of {longest} m"),
             );
         }
@@ -352,8 +387,8 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
 
 /// All keys that some laws have and others have not.
 fn all_keys() -> Vec<&'static str> {
-    let of = |word| LawName::of(word).map_or(Vec::new(), |law| [law.keys().0, law.keys().1].concat());
-    let mut all: Vec<&str> = LawName::WORDS.words().flat_map(of).collect();
+    let laws = LawName::WORDS.words().filter_map(LawName::of);
+    let mut all: Vec<&str> = laws.flat_map(|law| [law.keys().0, law.keys().1].concat()).collect();
     all.sort_unstable();
     all.dedup();
     all
@@ -372,11 +407,9 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
     if !law.model.keys().0.contains(&"cohesion") {
         return Some(());
     }
-    let bounds = |key| {
-        let profile = law.of(key);
-        profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()))
-    };
-    let (friction, dilation, cohesion) = (bounds("friction_angle"), bounds("dilation_angle"), bounds("cohesion"));
+    let friction = law.bounds("friction_angle", layer);
+    let dilation = law.bounds("dilation_angle", layer);
+    let cohesion = law.bounds("cohesion", layer);
     let last = ["residual_dilation_angle", "residual_friction_angle"].map(|key| law.of(key));
     let ends = layer.map_or([0.0, 0.0], |layer| [layer.heights.start, layer.heights.end]);
     if let Some(y) = ends.into_iter().find(|&y| last[0].at(y) > last[1].at(y)) {
@@ -423,17 +456,15 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
 /// A cone that has another strength in plane strain than the pyramid it is to stand for; in other geometries one that
 /// is matched there by default.
 fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, report: &mut Report<'_>) {
-    let elastic = (Profile::constant(1.0), 0.0);
-    let uniform = law
-        .values
-        .iter()
-        .map(|(key, profile)| (*key, Profile::constant(profile.value)))
-        .collect();
+    let values = law.values.iter().map(|own| KeyProfile {
+        key: own.key,
+        profile: Profile::constant(own.profile.value),
+    });
     let uniform = Parameters {
         model: law.model,
-        values: uniform,
+        values: values.collect(),
     };
-    let Some(Material::DruckerPrager(cone)) = uniform.material(record, elastic, (None, 1.0)) else {
+    let Some(Material::DruckerPrager(cone)) = uniform.material(record, Profile::constant(1.0), 0.0, None, 1.0) else {
         return;
     };
     if geometry.is_some_and(|geometry| geometry != Geometry::PlaneStrain) {

@@ -11,15 +11,15 @@ const LEVEL: f64 = 1e-6;
 /// Warns of gravity that points upwards, or along a horizontal axis.
 pub(super) fn gravity(case: &Case, report: &mut Report<'_>) {
     let Some(gravity) = &case.gravity else { return };
-    let (acceleration, dims) = (gravity.acceleration, case.grid.dims());
-    let (vertical, size) = (acceleration[dims - 1], length(acceleration));
+    let acceleration = gravity.acceleration;
+    let dims = case.grid.dims();
+    let vertical = acceleration[dims - 1];
+    let size = length(acceleration);
     if size == 0.0 || vertical < -LEVEL * size || rests(case, acceleration) {
         return;
     }
-    let (points, name) = (
-        if vertical > LEVEL * size { "upwards" } else { "sideways" },
-        ["x", "y", "z"][dims - 1],
-    );
+    let points = if vertical > LEVEL * size { "upwards" } else { "sideways" };
+    let name = ["x", "y", "z"][dims - 1];
     let down = if dims == 3 { "[0, 0, -9.81]" } else { "[0, -9.81]" };
     report.warn(format!(
         "W0104: gravity.acceleration: gravity of {:?} m/s2 points {points}, away from the supports ({name} is \

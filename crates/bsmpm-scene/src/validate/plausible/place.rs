@@ -13,20 +13,17 @@ const DISTANCES: [f64; 6] = [0.0, 0.05, 0.25, 0.5, 0.75, 1.0];
 /// Warns of bodies that are tiny in their grid.
 pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
     let dims = case.grid.dims();
-    let is_tiny = |body: &Body| {
-        let [lower, upper] = body.region.corners();
-        let part = |axis: usize| (upper[axis] - lower[axis]) / case.grid.axes[axis].length();
-        (0..dims).map(part).fold(0.0, f64::max) < TINY
-    };
     let all = case.bodies.iter().zip(root.records("body"));
-    let tiny: Vec<(&Body, &Record)> = all.filter(|(body, _)| is_tiny(body)).collect();
+    let tiny: Vec<(&Body, &Record)> = all.filter(|(body, _)| is_tiny(body, case)).collect();
     let Some((first, _)) = tiny.first() else { return };
     let paths: Vec<String> = tiny.iter().map(|(_, record)| record.path.clone()).collect();
     let [lower, upper] = first.region.corners();
-    let size = |axis: usize| format!("{} m", brief(upper[axis] - lower[axis]));
-    let length = |axis: usize| format!("{} m", brief(case.grid.axes[axis].length()));
-    let sizes: Vec<String> = (0..dims).map(size).collect();
-    let lengths: Vec<String> = (0..dims).map(length).collect();
+    let sizes: Vec<String> = (0..dims)
+        .map(|axis| format!("{} m", brief(upper[axis] - lower[axis])))
+        .collect();
+    let lengths: Vec<String> = (0..dims)
+        .map(|axis| format!("{} m", brief(case.grid.axes[axis].length())))
+        .collect();
     report.warn(format!(
         "W0105: {}: the body is tiny: {} in a grid of {}. Correct its coordinates (in m, unless each has a unit), or \
          use a smaller grid (grid.lower, grid.upper).",
@@ -34,6 +31,13 @@ pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
         sizes.join(" x "),
         lengths.join(" x "),
     ));
+}
+
+/// Whether a body is tiny in the grid.
+fn is_tiny(body: &Body, case: &Case) -> bool {
+    let [lower, upper] = body.region.corners();
+    let parts = (0..case.grid.dims()).map(|axis| (upper[axis] - lower[axis]) / case.grid.axes[axis].length());
+    parts.fold(0.0, f64::max) < TINY
 }
 
 /// Warns of histories at places from which all bodies are more than a cell away.
@@ -55,17 +59,22 @@ pub(super) fn histories(case: &Case, root: &Record, report: &mut Report<'_>) {
 
 /// Whether a body is within `reach` (m) of a place.
 fn is_near(body: &Body, case: &Case, at: [f64; 3], reach: f64) -> bool {
-    let ([lower, upper], dims) = (body.region.corners(), case.grid.dims());
+    let [lower, upper] = body.region.corners();
+    let dims = case.grid.dims();
     if (0..dims).any(|axis| at[axis] < lower[axis] - reach || at[axis] > upper[axis] + reach) {
         return false;
     }
-    let steps = |axis: usize| if axis < dims { -2..=2 } else { 0..=0 };
-    let directions = steps(0).flat_map(|x| steps(1).flat_map(move |y| steps(2).map(move |z| [x, y, z])));
-    let places = |direction: [i32; 3]| {
-        let largest = direction.iter().map(|part| part.abs()).max().unwrap_or(0).max(1);
-        DISTANCES.map(|part| {
-            std::array::from_fn(|axis| at[axis] + part * reach * f64::from(direction[axis]) / f64::from(largest))
-        })
-    };
-    directions.flat_map(places).any(|place| is_in(body, &case.grid, place))
+    // Of a cube of 5 x 5 x 5 directions, in a plane those in it.
+    let cube = (0..125).map(|n| [n / 25 - 2, n / 5 % 5 - 2, n % 5 - 2]);
+    let directions = cube.filter(|direction| dims == 3 || direction[2] == 0);
+    let mut places = directions.flat_map(|direction| places(at, direction, reach));
+    places.any(|place| is_in(body, &case.grid, place))
+}
+
+/// Places around another one in a direction, up to `reach` (m) away along an axis.
+fn places(at: [f64; 3], direction: [i32; 3], reach: f64) -> [[f64; 3]; DISTANCES.len()] {
+    let largest = direction.iter().map(|part| part.abs()).max().unwrap_or(0).max(1);
+    DISTANCES.map(|part| {
+        std::array::from_fn(|axis| at[axis] + part * reach * f64::from(direction[axis]) / f64::from(largest))
+    })
 }

@@ -41,14 +41,14 @@ pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
 /// Degrees  Inclinations of the parts of a body's upper surface that no other body covers.
 fn slopes(case: &Case, body: &Body) -> Vec<f64> {
     let lower = case.grid.lower();
-    let is_in_soil = |at: [f64; 2]| case.bodies.iter().any(|body| body.region.contains(at));
     let mut slopes = Vec::new();
     for edge in body.region.edges(&case.grid).0 {
         let [across, up] = [edge.b[0] - edge.a[0], edge.b[1] - edge.a[1]];
         let middle = [lower[0] + edge.a[0] + across / 2.0, lower[1] + edge.a[1] + up / 2.0];
         let off = OFF * across.hypot(up);
         let is_surface = body.region.contains([middle[0], middle[1] - off]);
-        if is_surface && !is_in_soil([middle[0], middle[1] + off]) {
+        let above = [middle[0], middle[1] + off];
+        if is_surface && !case.bodies.iter().any(|body| body.region.contains(above)) {
             slopes.push(up.abs().atan2(across.abs()).to_degrees());
         }
     }

@@ -32,9 +32,8 @@ pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
         let mut alone = case.clone();
         for piece in pieces {
             alone.bodies = piece.iter().map(|&body| case.bodies[body].clone()).collect();
-            let is_held = |axis: &usize| holds_at_rest(&alone, *axis, None);
             let free: Vec<&str> = (0..case.grid.dims())
-                .filter(|axis| !is_held(axis))
+                .filter(|axis| !holds_at_rest(&alone, *axis, None))
                 .map(|axis| ["x", "y", "z"][axis])
                 .collect();
             if free.is_empty() || piece.iter().any(|body| known.contains(body)) {
@@ -47,13 +46,12 @@ pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
 }
 
 fn warn(root: &Record, piece: &[usize], free: &[&str], stage: Option<&Stage>, report: &mut Report<'_>) {
-    let named = |body: &usize| {
-        let record = &root.records("body")[*body];
-        record
-            .text("name")
-            .map_or_else(|| record.path.clone(), |name| format!("{} `{name}`", record.path))
-    };
-    let names: Vec<String> = piece.iter().map(named).collect();
+    let records = piece.iter().map(|body| &root.records("body")[*body]);
+    let names = records.map(|record| match record.text("name") {
+        Some(name) => format!("{} `{name}`", record.path),
+        None => record.path.clone(),
+    });
+    let names: Vec<String> = names.collect();
     let since = stage.map_or(String::new(), |stage| format!(" from t = {} on", stage.at));
     report.warn(format!(
         "W0107: nothing restrains {} along {}{since}, so a quasi-static analysis has no solution. Move the body onto \
@@ -67,17 +65,16 @@ fn warn(root: &Record, piece: &[usize], free: &[&str], stage: Option<&Stage>, re
 fn pieces(case: &Case, there: &[usize]) -> Vec<Vec<usize>> {
     let bounds: Vec<[[f64; 3]; 2]> = there.iter().map(|&body| case.bodies[body].region.corners()).collect();
     let reach = case.grid.axes.iter().map(|axis| axis.longest()).fold(0.0, f64::max);
-    let is_near = |one: usize, other: usize| {
-        let [a, b] = [&bounds[one], &bounds[other]];
-        (0..case.grid.dims()).all(|axis| a[0][axis].max(b[0][axis]) - a[1][axis].min(b[1][axis]) <= reach)
-    };
     let mut work = 0;
-    let mut act =
-        |one: usize, other: usize| is_near(one, other) && !are_apart(case, [there[one], there[other]], &mut work);
-    let pairs: Vec<[usize; 2]> = near_pairs(&bounds, reach)
-        .filter(|&(one, other)| act(one, other))
-        .map(|(one, other)| [one, other])
-        .collect();
+    let mut pairs: Vec<[usize; 2]> = Vec::new();
+    for (one, other) in near_pairs(&bounds, reach) {
+        let [a, b] = [&bounds[one], &bounds[other]];
+        let is_near =
+            (0..case.grid.dims()).all(|axis| a[0][axis].max(b[0][axis]) - a[1][axis].min(b[1][axis]) <= reach);
+        if is_near && !are_apart(case, [there[one], there[other]], &mut work) {
+            pairs.push([one, other]);
+        }
+    }
     let pieces = pieces_of_pairs(there.len(), pairs.into_iter());
     pieces
         .into_iter()

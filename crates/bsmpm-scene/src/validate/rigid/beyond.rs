@@ -47,25 +47,30 @@ fn stays_outside(case: &Case, rigid: &Rigid) -> bool {
     if matches!(outline, Outline::Terrain(_)) {
         return false;
     }
-    let (lower, upper, reach) = (case.grid.lower(), case.grid.upper(), outline.radius());
+    let lower = case.grid.lower();
+    let upper = case.grid.upper();
+    let reach = outline.radius();
     let rows: Vec<[f64; 3]> = std::iter::once([0.0; 3])
         .chain(rigid.path.rows.iter().map(|row| row.1))
         .collect();
-    let misses = |axis: usize, from: f64, to: f64| {
-        let is_free = case.grid.dims() == 2 && rigid.free[axis];
-        let (from, to) = (reference[axis] + from, reference[axis] + to);
-        !is_free && (from.max(to) + reach <= lower[axis] || from.min(to) - reach >= upper[axis])
-    };
-    let pieces = rows.iter().zip(rows.iter().skip(1).chain(rows.last()));
-    let mut pieces = pieces.map(|(from, to)| (0..case.grid.dims()).any(|axis| misses(axis, from[axis], to[axis])));
-    pieces.all(|misses| misses)
+    for (from, to) in rows.iter().zip(rows.iter().skip(1).chain(rows.last())) {
+        let misses = (0..case.grid.dims()).any(|axis| {
+            let is_free = case.grid.dims() == 2 && rigid.free[axis];
+            let from = reference[axis] + from[axis];
+            let to = reference[axis] + to[axis];
+            !is_free && (from.max(to) + reach <= lower[axis] || from.min(to) - reach >= upper[axis])
+        });
+        if !misses {
+            return false;
+        }
+    }
+    true
 }
 
 /// The first roller that a body in the plane lies on both sides of; the axis of a body of revolution is none.
 fn cut(case: &Case, rigid: &Rigid) -> Option<Face> {
     let slack = OVERLAP * case.grid.shortest();
-    let mut faces = (0..2).flat_map(|axis| [false, true].map(|upper| Face { axis, upper }));
-    faces.find(|face| {
+    for face in (0..2).flat_map(|axis| [false, true].map(|upper| Face { axis, upper })) {
         let bound = if face.upper {
             case.grid.upper()
         } else {
@@ -74,8 +79,11 @@ fn cut(case: &Case, rigid: &Rigid) -> Option<Face> {
         let [least, most] = extent(rigid, face.axis);
         let is_axis = case.geometry == Geometry::Axisymmetric && face.axis == 0;
         let rolls = case.boundary[face.axis][usize::from(face.upper)] == Support::Roller;
-        rolls && !is_axis && least < bound[face.axis] - slack && most > bound[face.axis] + slack
-    })
+        if rolls && !is_axis && least < bound[face.axis] - slack && most > bound[face.axis] + slack {
+            return Some(face);
+        }
+    }
+    None
 }
 
 /// The first face within a tenth of a cell of which a body in the plane lies, and to which a free motion goes by what
@@ -84,10 +92,11 @@ fn touched(case: &Case, rigid: &Rigid) -> Option<(Face, f64)> {
     if matches!(rigid.shape, RigidShape::InSpace(_)) {
         return None;
     }
-    let mut faces = (0..2)
+    let faces = (0..2)
         .filter(|&axis| rigid.free[axis])
-        .flat_map(|axis| [false, true].map(|upper| (axis, upper)));
-    faces.find_map(|(axis, upper)| {
+        .flat_map(|axis| [false, true].map(|upper| Face { axis, upper }));
+    for face in faces {
+        let Face { axis, upper } = face;
         let [least, most] = extent(rigid, axis);
         let (distance, sign) = match upper {
             true => (case.grid.upper()[axis] - most, 1.0),
@@ -105,9 +114,11 @@ fn touched(case: &Case, rigid: &Rigid) -> Option<(Face, f64)> {
             rigid.force[axis] + weight
         };
         let slack = OVERLAP * case.grid.shortest();
-        ((-slack..TOUCHING * cell).contains(&distance) && sign * drive > 0.0)
-            .then_some((Face { axis, upper }, distance.max(0.0)))
-    })
+        if (-slack..TOUCHING * cell).contains(&distance) && sign * drive > 0.0 {
+            return Some((face, distance.max(0.0)));
+        }
+    }
+    None
 }
 
 /// m  from where to where a body in the plane reaches at the start.
@@ -115,10 +126,10 @@ fn extent(rigid: &Rigid, axis: usize) -> [f64; 2] {
     match &rigid.shape {
         RigidShape::Circle { center, radius } => [center[axis] - radius, center[axis] + radius],
         RigidShape::Polygon(corners) => {
-            let along = || corners.iter().map(|corner| corner[axis]);
+            let along = corners.iter().map(|corner| corner[axis]);
             [
-                along().fold(f64::INFINITY, f64::min),
-                along().fold(f64::NEG_INFINITY, f64::max),
+                along.clone().fold(f64::INFINITY, f64::min),
+                along.fold(f64::NEG_INFINITY, f64::max),
             ]
         }
         RigidShape::InSpace(_) => [0.0; 2],

@@ -6,6 +6,7 @@ use super::{OVERLAP, Solidity, friction, way};
 use crate::case::{Case, Rigid, RigidShape, RigidSolid};
 use crate::record::Record;
 use crate::report::Report;
+use bsmpm::boundary::RigidBody;
 use bsmpm::boundary::rigid::Outline;
 use bsmpm::tensor::Vector;
 
@@ -49,7 +50,8 @@ pub(super) fn read(
         record.error(key, message, report);
         return None;
     }
-    let (shape, path) = (shape(record, report), way(record, around.end, report));
+    let shape = shape(record, report);
+    let path = way(record, around.end, report);
     let rigid = Rigid {
         name: record.text("name")?.to_owned(),
         shape: RigidShape::InSpace(shape?),
@@ -145,7 +147,9 @@ pub(super) fn solidity(solid: &RigidSolid) -> Solidity {
 /// No body is in it when that comes, and its outline lies within the heights that are given.
 pub(super) fn check(
     case: &Case,
-    (place, rigid, solid): (usize, &Rigid, &RigidSolid),
+    place: usize,
+    rigid: &Rigid,
+    solid: &RigidSolid,
     record: &Record,
     report: &mut Report<'_>,
 ) {
@@ -160,28 +164,21 @@ pub(super) fn check(
             continue;
         };
         let moved = body.on_path(stage.map_or(0.0, |stage| stage.at));
-        let depth = |at: [f64; 3]| {
-            -body
-                .outline
-                .nearest(&body.pose(&moved).seen(&Vector::from(at)))
-                .distance
-        };
-        let is_in = |at: &[f64; 3]| of.region.contains_in_space(*at) && depth(*at) > OVERLAP * cell;
-        if let Some([x, y, z]) = places(solid, &moved, of.region.corners(), cell).into_iter().find(is_in) {
-            let message = super::inside(case, (place, number), &format!("{x:.4}, {y:.4}, {z:.4}"));
+        let mut places = places(solid, &moved, of.region.corners(), cell).into_iter();
+        let found = places.find(|at| of.region.contains_in_space(*at) && depth(&body, &moved, *at) > OVERLAP * cell);
+        if let Some([x, y, z]) = found {
+            let message = super::inside(case, place, number, &format!("{x:.4}, {y:.4}, {z:.4}"));
             record.error(key, message, report);
         }
     }
     let RigidSolid::Terrain(terrain) = solid else { return };
-    let far = |axis: usize| terrain.lower[axis] + (terrain.count[axis] - 1) as f64 * terrain.spacing[axis];
-    let outside = |axis: usize| {
-        let (lower, upper) = (
-            case.grid.axes[axis].lower(),
-            case.grid.axes[axis].lower() + case.grid.axes[axis].length(),
-        );
-        terrain.lower[axis] > lower + 0.5 * cell || far(axis) < upper - 0.5 * cell
-    };
-    if (0..2).any(outside) {
+    let ends_inside = (0..2).any(|axis| {
+        let lower = case.grid.axes[axis].lower();
+        let upper = case.grid.axes[axis].lower() + case.grid.axes[axis].length();
+        let far = terrain.lower[axis] + (terrain.count[axis] - 1) as f64 * terrain.spacing[axis];
+        terrain.lower[axis] > lower + 0.5 * cell || far < upper - 0.5 * cell
+    });
+    if ends_inside {
         report.warn(format!(
             "W0420: {}: the terrain heights end inside the grid, and the terrain continues horizontally from there. \
              Give heights up to the edges of the grid.",
@@ -190,27 +187,34 @@ pub(super) fn check(
     }
 }
 
+/// How deep a place is in a rigid body that has moved, m.
+fn depth(body: &RigidBody<3>, moved: &Vector<3>, at: [f64; 3]) -> f64 {
+    let seen = body.pose(moved).seen(&Vector::from(at));
+    -body.outline.nearest(&seen).distance
+}
+
 /// Places at which a body between two corners is looked for in a rigid one that has moved: all over what their boxes
 /// share, and below the posts of terrain, whose ridges may be narrower than that.
 fn places(solid: &RigidSolid, moved: &Vector<3>, of: [[f64; 3]; 2], cell: f64) -> Vec<[f64; 3]> {
     let own = solid.corners();
     let lower: [f64; 3] = std::array::from_fn(|axis| of[0][axis].max(own[0][axis] + moved[axis]));
     let edges: [f64; 3] = std::array::from_fn(|axis| of[1][axis].min(own[1][axis] + moved[axis]) - lower[axis]);
-    let place = |n: usize| -> [f64; 3] {
-        let k = [n / PLACES / PLACES, n / PLACES % PLACES, n % PLACES];
-        std::array::from_fn(|axis| lower[axis] + (k[axis] as f64 + 0.5) / PLACES as f64 * edges[axis])
-    };
     let count = if edges.iter().all(|edge| *edge > 0.0) {
         PLACES.pow(3)
     } else {
         0
     };
-    let mut places: Vec<[f64; 3]> = (0..count).map(place).collect();
+    let places = (0..count).map(|n| {
+        let k = [n / PLACES / PLACES, n / PLACES % PLACES, n % PLACES];
+        std::array::from_fn(|axis| lower[axis] + (k[axis] as f64 + 0.5) / PLACES as f64 * edges[axis])
+    });
+    let mut places: Vec<[f64; 3]> = places.collect();
     if let RigidSolid::Terrain(terrain) = solid {
         places.extend(terrain.heights.iter().enumerate().map(|(n, height)| {
             let post = [n % terrain.count[0], n / terrain.count[0]];
-            let at = |axis: usize| terrain.lower[axis] + post[axis] as f64 * terrain.spacing[axis] + moved[axis];
-            [at(0), at(1), height + moved[2] - 2.0 * OVERLAP * cell]
+            let [x, y] =
+                [0, 1].map(|axis| terrain.lower[axis] + post[axis] as f64 * terrain.spacing[axis] + moved[axis]);
+            [x, y, height + moved[2] - 2.0 * OVERLAP * cell]
         }));
     }
     places

@@ -16,7 +16,8 @@ const SCALED: f64 = 0.1;
 /// What a body of a solid fills.
 pub(super) fn region(
     body: &Record,
-    (grid, points_per_cell): (Option<&GridSpec>, Option<usize>),
+    grid: Option<&GridSpec>,
+    points_per_cell: Option<usize>,
     boundary: Option<[[Support; 2]; 3]>,
     report: &mut Report<'_>,
 ) -> Option<Region> {
@@ -26,7 +27,10 @@ pub(super) fn region(
         .iter()
         .map(|record| read(record, report))
         .collect();
-    let (mut whole, mut cut, grid, key) = (whole?, cut?, grid?, key(body));
+    let mut whole = whole?;
+    let mut cut = cut?;
+    let grid = grid?;
+    let key = key(body);
     if body.gives("subtract") && cut.len() != body.records("subtract").len() {
         return None;
     }
@@ -45,10 +49,9 @@ pub(super) fn region(
         body.error(key, reach(&whole).unwrap_or_else(|| outside.into()), report);
         return None;
     }
-    let lower = grid.lower();
-    let local = |shape: SolidShape| shape.moved(lower.map(|by| -by));
-    let cut = cut.into_iter().map(local).collect();
-    match Volume::new(local(whole), cut, &grid.axes, points_per_cell?) {
+    let shift = grid.lower().map(|by| -by);
+    let cut = cut.into_iter().map(|shape| shape.moved(shift)).collect();
+    match Volume::new(whole.moved(shift), cut, &grid.axes, points_per_cell?) {
         Ok(volume) => {
             if (volume.scale() - 1.0).abs() > SCALED {
                 report.warn(format!(
@@ -83,11 +86,11 @@ fn reach(shape: &SolidShape) -> Option<String> {
 /// negative volume.
 fn is_turned(rows: &[ListRow]) -> bool {
     let Some(first) = rows.first() else { return false };
-    let six = |row: &ListRow| {
+    let six_times = rows.iter().map(|row| {
         let [a, b, c] = [0, 3, 6].map(|k| [0, 1, 2].map(|axis| row.numbers[k + axis] - first.numbers[axis]));
         a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
-    };
-    rows.iter().map(six).sum::<f64>() < 0.0
+    });
+    six_times.sum::<f64>() < 0.0
 }
 
 /// The key that gives a body's or a cut's shape.
@@ -107,66 +110,16 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
         });
     }
     if let Some(shape) = record.record("extrude").filter(|_| record.gives("extrude")) {
-        let outline = section(shape, report)?;
-        let (along, from, to) = (shape.word::<Axis>("along")?, shape.number("from")?, shape.number("to")?);
-        if from >= to {
-            let message = format!(
-                "E0203: to = {to} m is not above from = {from} m, so the body has no length. Exchange or correct \
-                 `from` and `to`."
-            );
-            shape.error("to", message, report);
-            return None;
-        }
-        let along = [Axis::X, Axis::Y, Axis::Z].iter().position(|axis| *axis == along)?;
-        return Some(SolidShape::Prism {
-            outline,
-            along,
-            ends: [from, to],
-        });
+        return extruded(shape, report);
     }
     if let Some(shape) = record.record("revolve").filter(|_| record.gives("revolve")) {
-        let outline = section(shape, report)?;
-        if outline.bounds[0][0] < 0.0 {
-            let message = format!(
-                "E0224: the outline crosses the axis of revolution: its smallest radius is {} m. Correct the outline \
-                 so that all radii are at least 0.",
-                outline.bounds[0][0]
-            );
-            shape.error(
-                if shape.gives("circle") { "circle" } else { "polygon" },
-                message,
-                report,
-            );
-            return None;
-        }
-        return Some(SolidShape::Revolved {
-            outline,
-            about: shape.pair("about")?,
-        });
+        return revolved(shape, report);
     }
     if let Some(shape) = record.record("terrain").filter(|_| record.gives("terrain")) {
         return terrain(shape, report);
     }
     if let Some(shape) = record.record("surface").filter(|_| record.gives("surface")) {
-        let scale = shape.number("scale")?;
-        let rows = shape.rows("triangles")?;
-        let scaled = rows.iter().map(|row| std::array::from_fn(|k| scale * row.numbers[k]));
-        return match Surface::new(scaled) {
-            Ok(surface) => {
-                if is_turned(rows) {
-                    report.warn(format!(
-                        "W0215: {}: the normals of all triangles point inwards. The enclosed volume is taken as the \
-                         body. If the triangles describe a hole, use `subtract`; otherwise reverse the normals.",
-                        shape.path_of("triangles")
-                    ));
-                }
-                Some(SolidShape::Surface(Box::new(surface)))
-            }
-            Err(message) => {
-                shape.error("triangles", message, report);
-                None
-            }
-        };
+        return enclosed(shape, report);
     }
     if let Some(key) = ["polygon", "circle"].into_iter().find(|key| record.gives(key)) {
         record.error(
@@ -182,10 +135,75 @@ fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
     })
 }
 
+/// A prism: an outline along an axis.
+fn extruded(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
+    let outline = section(shape, report)?;
+    let along = shape.word::<Axis>("along")?;
+    let from = shape.number("from")?;
+    let to = shape.number("to")?;
+    if from >= to {
+        let message = format!(
+            "E0203: to = {to} m is not above from = {from} m, so the body has no length. Exchange or correct \
+             `from` and `to`."
+        );
+        shape.error("to", message, report);
+        return None;
+    }
+    let along = [Axis::X, Axis::Y, Axis::Z].iter().position(|axis| *axis == along)?;
+    Some(SolidShape::Prism {
+        outline,
+        along,
+        ends: [from, to],
+    })
+}
+
+/// An outline about a vertical axis.
+fn revolved(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
+    let outline = section(shape, report)?;
+    if outline.bounds[0][0] < 0.0 {
+        let message = format!(
+            "E0224: the outline crosses the axis of revolution: its smallest radius is {} m. Correct the outline \
+             so that all radii are at least 0.",
+            outline.bounds[0][0]
+        );
+        let key = if shape.gives("circle") { "circle" } else { "polygon" };
+        shape.error(key, message, report);
+        return None;
+    }
+    Some(SolidShape::Revolved {
+        outline,
+        about: shape.pair("about")?,
+    })
+}
+
+/// What a surface of triangles encloses.
+fn enclosed(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
+    let scale = shape.number("scale")?;
+    let rows = shape.rows("triangles")?;
+    let scaled = rows.iter().map(|row| std::array::from_fn(|k| scale * row.numbers[k]));
+    match Surface::new(scaled) {
+        Ok(surface) => {
+            if is_turned(rows) {
+                report.warn(format!(
+                    "W0215: {}: the normals of all triangles point inwards. The enclosed volume is taken as the \
+                     body. If the triangles describe a hole, use `subtract`; otherwise reverse the normals.",
+                    shape.path_of("triangles")
+                ));
+            }
+            Some(SolidShape::Surface(Box::new(surface)))
+        }
+        Err(message) => {
+            shape.error("triangles", message, report);
+            None
+        }
+    }
+}
+
 /// Lower and upper corner of a record's box.
 pub(in super::super) fn cuboid(record: &Record, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
     let shape = record.record("box")?;
-    let (lower, upper) = (shape.vector("lower")?, shape.vector("upper")?);
+    let lower = shape.vector("lower")?;
+    let upper = shape.vector("upper")?;
     if (0..3).any(|axis| lower[axis] >= upper[axis]) {
         shape.error("upper", super::empty_box(&lower, &upper), report);
         return None;

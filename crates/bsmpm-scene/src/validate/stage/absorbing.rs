@@ -1,6 +1,6 @@
 //! Checks stages with absorbing or free-field boundaries.
 
-use crate::case::{Acting, Case, Stage, Support};
+use crate::case::{Acting, Case, Face, Stage, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::validate::free_field;
@@ -9,9 +9,9 @@ use crate::words::Word;
 /// The forces that absorbing faces carry are found again as a stage begins, for ground at rest under constant loads and
 /// next to columns of the free field that the stage does not change.
 pub(super) fn check(case: &Case, stage: &Stage, record: &Record, report: &mut Report<'_>) {
-    let absorbs = |support: Support| matches!(support, Support::Absorbing | Support::FreeField);
     let faces = case.faces_at(stage.at);
-    if stage.only_resets() || !faces.iter().any(|of| absorbs(of.support)) {
+    let mut supports = faces.iter().map(|of| of.support);
+    if stage.only_resets() || !supports.any(|support| matches!(support, Support::Absorbing | Support::FreeField)) {
         return;
     }
     let mut refuse = |key: &str, message: &str| record.error(key, message, report);
@@ -36,11 +36,11 @@ pub(super) fn check(case: &Case, stage: &Stage, record: &Record, report: &mut Re
              rigid bodies. Make the absorbing boundaries \"fixed\".",
         );
     }
-    let grows = |what: Acting| match what {
+    let grows = stage.apply.iter().any(|(_, what)| match *what {
         Acting::Load(load) => case.grows_from(load),
         _ => true,
-    };
-    if case.still_grows(stage.at) || stage.apply.iter().any(|(_, what)| grows(*what)) {
+    });
+    if case.still_grows(stage.at) || grows {
         refuse(
             "at",
             "E0627: with absorbing boundaries all loads must be constant when a stage begins. End the `ramp` or \
@@ -55,35 +55,33 @@ pub(super) fn check(case: &Case, stage: &Stage, record: &Record, report: &mut Re
         );
     }
     for of in faces.iter().filter(|of| of.support == Support::FreeField) {
-        let (lower, higher) = free_field::column(case, of.face.upper);
-        let is_in = |body: &usize| {
-            let [from, to] = case.bodies[*body].bounds();
-            from[0] < higher && to[0] > lower
-        };
-        for key in ["add", "remove"] {
-            let bodies = if key == "add" { &stage.add } else { &stage.remove };
-            if bodies.iter().any(is_in) {
-                let message = format!(
-                    "E0628: this body, which a stage changes, lies in the cells next to the free-field boundary `{}`, \
-                     where stages may change nothing. Keep the body one cell away from the boundary.",
-                    of.face.side(case.geometry).word()
-                );
-                refuse(key, &message);
-            }
-        }
-        if !stage.materials.is_empty() {
-            refuse(
-                "materials",
-                "E0628: a stage cannot change materials if a side is \"free-field\", because the soil column of the \
-                 free field keeps its materials. Make the side \"fixed\" or \"roller\".",
+        check_column(case, stage, of.face, record, report);
+    }
+}
+
+/// Refuses a stage that changes the column of the free field at a face, or the left or right boundary.
+fn check_column(case: &Case, stage: &Stage, face: Face, record: &Record, report: &mut Report<'_>) {
+    let (lower, higher) = free_field::column(case, face.upper);
+    for key in ["add", "remove"] {
+        let bodies = if key == "add" { &stage.add } else { &stage.remove };
+        let mut bounds = bodies.iter().map(|body| case.bodies[*body].bounds());
+        if bounds.any(|[from, to]| from[0] < higher && to[0] > lower) {
+            let message = format!(
+                "E0628: this body, which a stage changes, lies in the cells next to the free-field boundary `{}`, \
+                 where stages may change nothing. Keep the body one cell away from the boundary.",
+                face.side(case.geometry).word()
             );
+            record.error(key, message, report);
         }
-        if stage.faces.iter().any(|of| of.face.axis == 0) {
-            refuse(
-                "boundary",
-                "E0628: a stage cannot change the left or right boundary if a side is \"free-field\". Change \
-                 \"bottom\" or \"top\" only.",
-            );
-        }
+    }
+    if !stage.materials.is_empty() {
+        let message = "E0628: a stage cannot change materials if a side is \"free-field\", because the soil column of the \
+             free field keeps its materials. Make the side \"fixed\" or \"roller\".";
+        record.error("materials", message, report);
+    }
+    if stage.faces.iter().any(|of| of.face.axis == 0) {
+        let message = "E0628: a stage cannot change the left or right boundary if a side is \"free-field\". Change \
+             \"bottom\" or \"top\" only.";
+        record.error("boundary", message, report);
     }
 }

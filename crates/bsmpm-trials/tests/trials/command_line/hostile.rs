@@ -331,8 +331,10 @@ fn s3_what_libraries_read_by_themselves_has_no_effect() {
     }
     let before = scratch.entries();
     let line = options.replace('\n', " ");
-    let (home, plugins) = (scratch.path(""), scratch.path("plugins"));
-    let (home, plugins) = (home.to_str().unwrap(), plugins.to_str().unwrap());
+    let home = scratch.path("");
+    let plugins = scratch.path("plugins");
+    let home = home.to_str().unwrap();
+    let plugins = plugins.to_str().unwrap();
     let variables = [
         ("HOME", home),
         ("PETSC_OPTIONS", line.as_str()),

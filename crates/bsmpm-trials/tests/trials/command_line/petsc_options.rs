@@ -13,10 +13,8 @@ fn options_after_two_dashes_reach_the_solver() {
             .mpirun(ranks, &[&["case.toml", "-q", "--force"], &options[..]].concat())
             .expect(0);
         let steps = steps(&scratch.path("case.out"));
-        let (linear, nonlinear) = (
-            steps.get("linear_iterations").unwrap(),
-            steps.get("iterations").unwrap(),
-        );
+        let linear = steps.get("linear_iterations").unwrap();
+        let nonlinear = steps.get("iterations").unwrap();
         let many = linear
             .iter()
             .zip(nonlinear)
@@ -39,7 +37,8 @@ fn ksp_reports_every_solve_of_a_default_run() {
         let output = scratch
             .mpirun(ranks, &[&["case.toml", "-q", "--force"], &options[..]].concat())
             .expect(0);
-        let (manifest, steps) = (manifest(&scratch.path("case.out")), steps(&scratch.path("case.out")));
+        let manifest = manifest(&scratch.path("case.out"));
+        let steps = steps(&scratch.path("case.out"));
         let linear = &manifest.linear["stiffness"];
         assert_eq!((&*linear.ksp, &*linear.pc), ("preonly", "shell (dissection)"));
         let solves = linear.reasons["CONVERGED_ITS"];
@@ -84,7 +83,8 @@ fn conjugate_gradients_take_the_default_preconditioner() {
             linear.reasons.len() == 1 && linear.reasons.contains_key("CONVERGED_RTOL"),
             "{linear:?}"
         );
-        let (iterations, solves) = (manifest.summary.linear_iterations, linear.reasons["CONVERGED_RTOL"]);
+        let iterations = manifest.summary.linear_iterations;
+        let solves = linear.reasons["CONVERGED_RTOL"];
         assert!(
             iterations > solves && iterations <= 4 * solves,
             "{iterations} iterations in {solves} solves"

@@ -1,9 +1,9 @@
 //! Computes the gap between the material and a face of the grid, theory-manual equation (T7.4).
 
 use crate::boundary::Boundary;
-use crate::grid::{Grid, Shape};
+use crate::grid::{Grid, digit};
 use crate::parallel::Halo;
-use crate::points::Points;
+use crate::points::MappedPoints;
 
 /// Part of a cell below which a gap, and a displacement against what is allowed, is round-off.
 pub(super) const ROUNDING: f64 = 1e-9;
@@ -18,19 +18,19 @@ pub(in crate::boundary) fn face_cell<const D: usize>(grid: &Grid<D>, axis: usize
 /// m  per node of the window: how far the nearest material is from a face; infinite but at nodes of the face that see
 /// some. A point reaches as far as its box in the lattice of the cell that it was in at the start, deformed by its F.
 pub(super) fn gaps<const D: usize>(
-    (boundary, grid, shape, points): (&Boundary<D>, &Grid<D>, &Shape<D>, &Points<D>),
-    (axis, upper): (usize, bool),
+    boundary: &Boundary<D>,
+    grid: &Grid<D>,
+    mapped: MappedPoints<'_, D>,
+    axis: usize,
+    upper: bool,
     halo: &dyn Halo,
 ) -> Vec<f64> {
+    let MappedPoints { shape, points } = mapped;
     let width = grid.order() + 1;
-    let on_face = |k: usize| k / width.pow((D - 1 - axis) as u32) % width == if upper { width - 1 } else { 0 };
-    let offsets: Vec<usize> = shape
-        .offsets()
-        .iter()
-        .enumerate()
-        .filter(|(k, _)| on_face(*k))
-        .map(|(_, o)| *o)
-        .collect();
+    let of_face = if upper { width - 1 } else { 0 };
+    let offsets = shape.offsets().iter().enumerate();
+    let on_face = offsets.filter(|(k, _)| digit::<D>(*k, axis, width) == of_face);
+    let offsets: Vec<usize> = on_face.map(|(_, offset)| *offset).collect();
     let knots = &grid.axes()[axis];
     let last = if upper { knots.cells() - 1 } else { 0 };
     let mut near = vec![f64::NEG_INFINITY; grid.nodes()];
@@ -39,15 +39,13 @@ pub(super) fn gaps<const D: usize>(
         if cell[axis] != last {
             continue;
         }
-        let clear = |p: usize| {
-            let from_face = if upper {
-                knots.length() - points.x[p][axis]
-            } else {
-                points.x[p][axis]
-            };
-            from_face - boundary.reach_along(grid, points, p, axis)
-        };
-        let least = patch.points.clone().map(clear).fold(f64::INFINITY, f64::min).max(0.0);
+        let mut least = f64::INFINITY;
+        for p in patch.points.clone() {
+            let x = points.x[p][axis];
+            let from_face = if upper { knots.length() - x } else { x };
+            least = least.min(from_face - boundary.reach_along(grid, points, p, axis));
+        }
+        let least = least.max(0.0);
         let least = if least < ROUNDING * face_cell(grid, axis, upper) {
             0.0
         } else {

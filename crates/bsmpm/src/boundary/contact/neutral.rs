@@ -46,12 +46,6 @@ impl<const D: usize> Contacts<D> {
             .enumerate()
             .map(|(number, at)| ((at.support, at.node), number));
         let numbers: BTreeMap<(usize, usize), usize> = numbered.collect();
-        let direction = |number: usize, axis: usize| match self.nodes[number].status {
-            Status::Slip(direction) => direction[axis],
-            Status::Open | Status::Stick => 0.0,
-        };
-        // What has just come to slide would stick at its limit again.
-        let order = |number: usize| (self.released[number], self.nodes[number].slip(u).norm());
         let mut found = Vec::new();
         for (number, at) in self.nodes.iter().enumerate() {
             for axis in (0..D).filter(|axis| *axis != at.axis) {
@@ -60,13 +54,29 @@ impl<const D: usize> Contacts<D> {
                 let next = grid
                     .node_index(&beyond)
                     .and_then(|node| numbers.get(&(at.support, node)));
-                let Some(&next) = next.filter(|next| direction(number, axis) * direction(**next, axis) < 0.0) else {
-                    continue;
-                };
-                found.push(if order(next) < order(number) { next } else { number });
+                let opposite = next.filter(|next| self.direction(number, axis) * self.direction(**next, axis) < 0.0);
+                let Some(&next) = opposite else { continue };
+                found.push(if self.order(next, u) < self.order(number, u) {
+                    next
+                } else {
+                    number
+                });
             }
         }
         found
+    }
+
+    /// Component along an axis of the direction in which a node slides, 0 where it does not.
+    fn direction(&self, number: usize, axis: usize) -> f64 {
+        match self.nodes[number].status {
+            Status::Slip(direction) => direction[axis],
+            Status::Open | Status::Stick => 0.0,
+        }
+    }
+
+    /// Order in which nodes are taken to stick: what has just come to slide would stick at its limit again.
+    fn order(&self, number: usize, u: &[f64]) -> (bool, f64) {
+        (self.released[number], self.nodes[number].slip(u).norm())
     }
 }
 

@@ -60,13 +60,13 @@ pub(super) struct Asked<const D: usize> {
 impl<const D: usize> ContactNode<D> {
     /// The status that the last displacement had, and which components were at rest; `edge` is that of the cell, m,
     /// `had_material` whether something moved behind the node: where nothing was, nothing rested.
-    pub fn recall(&mut self, (t, guess): (f64, &[f64]), edge: f64, had_material: bool) {
-        let of = |component: usize| guess.get(Nodal::<D>::at(self.node, component)).copied().unwrap_or(0.0);
-        let normal = self.inward * of(self.axis);
+    pub fn recall(&mut self, t: f64, guess: &[f64], edge: f64, had_material: bool) {
+        let last = Vector::<D>::from_fn(|c, _| guess.get(Nodal::<D>::at(self.node, c)).copied().unwrap_or(0.0));
+        let normal = self.inward * last[self.axis];
         if t > 0.0 && had_material && normal == 0.0 && self.gap < KEPT * edge {
             self.gap = 0.0;
         }
-        let slip = Vector::from_fn(|component, _| if self.along[component] { of(component) } else { 0.0 });
+        let slip = Vector::from_fn(|component, _| if self.along[component] { last[component] } else { 0.0 });
         self.status = if self.law.lifts && normal > -self.gap {
             Status::Open
         } else {
@@ -76,7 +76,7 @@ impl<const D: usize> ContactNode<D> {
         let has_friction = self.law.friction > 0.0;
         self.rested = std::array::from_fn(|component| {
             let held = component == self.axis || has_friction && self.along[component];
-            t > 0.0 && had_material && self.gap == 0.0 && held && of(component) == 0.0
+            t > 0.0 && had_material && self.gap == 0.0 && held && last[component] == 0.0
         });
     }
 
@@ -118,22 +118,31 @@ impl<const D: usize> ContactNode<D> {
         self.law.friction * (self.pushed(reaction) - self.water_force).max(0.0)
     }
 
-    /// N  force of the face along itself on the body.
-    pub fn friction(&self, reaction: &[f64]) -> Vector<D> {
-        let on = |component: usize| self.along[component] && self.status != Status::Open;
+    /// The components along the face of a nodal array.
+    fn tangential(&self, nodal: &[f64]) -> Vector<D> {
         Vector::from_fn(|c, _| {
-            if on(c) {
-                reaction[Nodal::<D>::at(self.node, c)]
+            if self.along[c] {
+                nodal[Nodal::<D>::at(self.node, c)]
             } else {
                 0.0
             }
         })
     }
 
+    /// N  force of the face along itself on the body.
+    pub fn friction(&self, reaction: &[f64]) -> Vector<D> {
+        match self.status {
+            Status::Open => Vector::zeros(),
+            Status::Stick | Status::Slip(_) => self.tangential(reaction),
+        }
+    }
+
     /// m  displacement along the face.
     pub fn slip(&self, u: &[f64]) -> Vector<D> {
-        let on = |component: usize| self.along[component] && self.status != Status::Open;
-        Vector::from_fn(|c, _| if on(c) { u[Nodal::<D>::at(self.node, c)] } else { 0.0 })
+        match self.status {
+            Status::Open => Vector::zeros(),
+            Status::Stick | Status::Slip(_) => self.tangential(u),
+        }
     }
 
     /// Whether friction about `direction` is off Coulomb's law for the slip by more than the forces are known, N, and
@@ -141,9 +150,11 @@ impl<const D: usize> ContactNode<D> {
     fn is_off(
         &self,
         direction: &Vector<D>,
-        (slip, now): (&Vector<D>, Vector<D>),
+        slip: &Vector<D>,
+        now: Vector<D>,
         limit: f64,
-        (force, length): (f64, f64),
+        force: f64,
+        length: f64,
     ) -> bool {
         let beside = transverse(slip, direction).norm();
         let off = self.friction_force(direction, slip, limit) + now * limit;
@@ -165,12 +176,13 @@ impl<const D: usize> ContactNode<D> {
         let Status::Slip(direction) = self.status else {
             return None;
         };
-        let on = |component: usize| f64::from(u8::from(self.along[component]));
-        let of = |k: usize| {
-            let (i, j) = (k / D, k % D);
-            self.transverse_stiffness * (on(i) * f64::from(u8::from(i == j)) - direction[i] * direction[j])
-        };
-        (self.transverse_stiffness > 0.0).then(|| (0..D * D).map(of).collect())
+        let along = self.along.map(|is_along| f64::from(u8::from(is_along)));
+        let entries = (0..D * D).map(|k| {
+            let i = k / D;
+            let j = k % D;
+            self.transverse_stiffness * (along[i] * f64::from(u8::from(i == j)) - direction[i] * direction[j])
+        });
+        (self.transverse_stiffness > 0.0).then(|| entries.collect())
     }
 
     /// A status with what then resists a slip beside it, linear about a slip of `slip_length`, m.
@@ -185,35 +197,23 @@ impl<const D: usize> ContactNode<D> {
     }
 
     /// What displacement and reaction ask for.
-    pub fn corrected(&self, u: &[f64], reaction: &[f64], (force, length): (f64, f64)) -> Asked<D> {
-        let Self {
-            status,
-            transverse_stiffness,
-            slip_length,
-            ..
-        } = *self;
-        let (least, kept) = (
-            LEAST * length,
-            Asked {
-                status,
-                transverse_stiffness,
-                slip_length,
-            },
-        );
-        let of = |status: Status<D>| self.linearised(status, least, reaction);
+    pub fn corrected(&self, u: &[f64], reaction: &[f64], force: f64, length: f64) -> Asked<D> {
+        let least = LEAST * length;
+        let kept = Asked {
+            status: self.status,
+            transverse_stiffness: self.transverse_stiffness,
+            slip_length: self.slip_length,
+        };
         if self.status == Status::Open {
             let beyond = -self.gap - self.inward * u[Nodal::<D>::at(self.node, self.axis)];
-            let slip = Vector::from_fn(|c, _| {
-                if self.along[c] {
-                    u[Nodal::<D>::at(self.node, c)]
-                } else {
-                    0.0
-                }
-            });
-            return if beyond > length { of(self.met(&slip)) } else { kept };
+            return if beyond > length {
+                self.linearised(self.met(&self.tangential(u)), least, reaction)
+            } else {
+                kept
+            };
         }
         if self.law.lifts && self.pushed(reaction) < -force {
-            return of(Status::Open);
+            return self.linearised(Status::Open, least, reaction);
         }
         match self.status {
             Status::Stick => {
@@ -221,7 +221,7 @@ impl<const D: usize> ContactNode<D> {
                 let doubt = if self.is_neutral { TURNED * force } else { force };
                 let slips = held.norm() > self.limit(reaction) + doubt;
                 if slips {
-                    of(Status::Slip(-held.normalize()))
+                    self.linearised(Status::Slip(-held.normalize()), least, reaction)
                 } else {
                     kept
                 }
@@ -230,15 +230,15 @@ impl<const D: usize> ContactNode<D> {
                 let slip = self.slip(u);
                 let along = slip.dot(&direction);
                 if along < -length {
-                    return of(Status::Stick);
+                    return self.linearised(Status::Stick, least, reaction);
                 }
                 // In space friction turns with the slip: once it resists what is beside it, as else a node that hardly
                 // slips would go where friction does not look. On a line there is nothing to turn.
-                if D > 2 && transverse_stiffness == 0.0 && self.limit(reaction) > force {
-                    return self.linearised(self.status, slip_length.max(least), reaction);
+                if D > 2 && self.transverse_stiffness == 0.0 && self.limit(reaction) > force {
+                    return self.linearised(self.status, self.slip_length.max(least), reaction);
                 }
                 match slip.try_normalize(0.0) {
-                    Some(now) if self.is_off(&direction, (&slip, now), self.limit(reaction), (force, length)) => {
+                    Some(now) if self.is_off(&direction, &slip, now, self.limit(reaction), force, length) => {
                         let length = along.max(least);
                         let turned = (direction * (length - along) + slip).normalize();
                         self.linearised(Status::Slip(turned), length, reaction)

@@ -30,21 +30,18 @@ impl<const D: usize> LoadCorners<D> {
     fn of(loads: &[Load<D>]) -> Self {
         let mut corners = Self::default();
         for load in loads.iter().filter(|load| load.follows) {
-            let pieces = || load.points.iter().map(|point| point.corners);
-            let near = SAME
-                * pieces()
-                    .map(|piece| (piece[2] - piece[0]).amax())
-                    .fold(f64::MIN_POSITIVE, f64::max);
+            let sizes = load
+                .points
+                .iter()
+                .map(|point| (point.corners[2] - point.corners[0]).amax());
+            let near = SAME * sizes.fold(f64::MIN_POSITIVE, f64::max);
             let mut known = BTreeMap::new();
-            for piece in pieces() {
-                corners.of_piece.push(piece.map(|x| {
+            for point in &load.points {
+                let numbers = point.corners.map(|x| {
                     let place: [i64; D] = std::array::from_fn(|axis| (x[axis] / near).round() as i64);
-                    *known.entry(place).or_insert_with(|| {
-                        corners.start.push(x);
-                        corners.pieces.push(0);
-                        corners.start.len() - 1
-                    })
-                }));
+                    *known.entry(place).or_insert_with(|| corners.add(x))
+                });
+                corners.of_piece.push(numbers);
             }
         }
         corners
@@ -53,6 +50,13 @@ impl<const D: usize> LoadCorners<D> {
             .flatten()
             .for_each(|&corner| corners.pieces[corner] += 1);
         corners
+    }
+
+    /// Adds a corner at `x`, m, and returns its number.
+    fn add(&mut self, x: Vector<D>) -> usize {
+        self.start.push(x);
+        self.pieces.push(0);
+        self.start.len() - 1
     }
 
     /// Where these `carriers` bring the corners, m, to the places and by the deformation that `material` has of a point
@@ -84,23 +88,31 @@ impl<const D: usize> LoadCorners<D> {
     /// start, with the corners at these places; empty for the others.
     fn tractions<K: Kinematics<D>>(&self, loads: &[Load<D>], corners: &[Vector<D>]) -> Vec<Vec<Vector<D>>> {
         let mut pieces = self.of_piece.iter();
-        let mut traction = |(traction, point): (&Vector<D>, &SurfacePoint<D>)| {
-            let Some(piece) = pieces.next() else { return *traction };
-            // By its own corners, as the point's share is: a thin piece may have none of its own left.
-            let start = weighed::<K, D>(point.corners);
-            let size = start.norm();
-            // On an axis there is no area.
-            if size == 0.0 {
-                return *traction;
+        let mut tractions = vec![Vec::new(); loads.len()];
+        for (load, tractions) in loads.iter().zip(&mut tractions).filter(|(load, _)| load.follows) {
+            for (traction, point) in load.traction.iter().zip(&load.points) {
+                let piece = pieces.next().map(|piece| piece.map(|corner| corners[corner]));
+                tractions.push(piece.map_or(*traction, |piece| turned::<K, D>(traction, point, piece)));
             }
-            weighed::<K, D>(piece.map(|corner| corners[corner])) * (traction.dot(&start) / size.powi(2))
-        };
-        let of = |load: &Load<D>| match load.follows {
-            true => load.traction.iter().zip(&load.points).map(&mut traction).collect(),
-            false => Vec::new(),
-        };
-        loads.iter().map(of).collect()
+        }
+        tractions
     }
+}
+
+/// A point's traction per area of the start, with the corners of its piece at these places.
+fn turned<K: Kinematics<D>, const D: usize>(
+    traction: &Vector<D>,
+    point: &SurfacePoint<D>,
+    corners: [Vector<D>; CORNERS],
+) -> Vector<D> {
+    // By its own corners, as the point's share is: a thin piece may have none of its own left.
+    let start = weighed::<K, D>(point.corners);
+    let size = start.norm();
+    // On an axis there is no area.
+    if size == 0.0 {
+        return *traction;
+    }
+    weighed::<K, D>(corners) * (traction.dot(&start) / size.powi(2))
 }
 
 /// Area of a piece as it weighs, a vector along its normal.
@@ -120,21 +132,30 @@ struct Carrier<const D: usize> {
     seen: Attachment,
 }
 
+/// A point of a load that follows the surface, attached to the nodes.
+#[derive(Clone, Debug)]
+pub(super) struct AttachedPoint {
+    pub load: usize,
+    pub point: usize, // of the load
+    pub area: f64,    // m^(D-1)  times the share that acts at the step's end
+    pub attachment: Attachment,
+}
+
 /// Follower loads of a step, attached to the nodes.
 #[derive(Clone, Debug, Default)]
 pub struct FollowerLoads<const D: usize> {
     corners: LoadCorners<D>,
     carriers: Vec<Carrier<D>>,
-    /// load, point of it, m^(D-1) times the share that acts at the step's end, and where its force goes
-    pushed: Vec<(usize, usize, f64, Attachment)>,
+    pushed: Vec<AttachedPoint>,
 }
 
 impl<const D: usize> FollowerLoads<D> {
     /// Of the loads that follow the surface, which are `pushed` as said there; nothing without any.
     pub(super) fn of(
         loads: &[Load<D>],
-        pushed: Vec<(usize, usize, f64, Attachment)>,
-        (grid, anchors): (&Grid<D>, &Anchors),
+        pushed: Vec<AttachedPoint>,
+        grid: &Grid<D>,
+        anchors: &Anchors,
         points: Anchored<'_, D>,
     ) -> Self {
         if !loads.iter().any(|load| load.follows) {
@@ -142,7 +163,7 @@ impl<const D: usize> FollowerLoads<D> {
         }
         Self {
             corners: LoadCorners::of(loads),
-            carriers: carriers(loads, (grid, anchors), points),
+            carriers: carriers(loads, grid, anchors, points),
             pushed,
         }
     }
@@ -173,28 +194,33 @@ impl<const D: usize> FollowerLoads<D> {
     /// start, after the nodal displacement `u` of the step, m, that deforms a point by `dF`. One reduction.
     pub fn tractions<K: Kinematics<D>>(
         &self,
-        (loads, grid): (&[Load<D>], &Grid<D>),
+        loads: &[Load<D>],
+        grid: &Grid<D>,
         points: &Points<D>,
-        (u, dF): (&[f64], &dyn Fn(usize) -> Tensor),
+        u: &[f64],
+        dF: &dyn Fn(usize) -> Tensor,
         halo: &dyn Halo,
     ) -> Vec<Vec<Vector<D>>> {
         let offsets = grid.offsets();
-        let material = |carrier: &Carrier<D>| {
-            let p = carrier.point;
-            (
-                points.x[p] + carrier.seen.displacement::<D>(&offsets, u),
-                dF(p) * points.F.at(p),
-            )
-        };
-        self.corners
-            .tractions::<K>(loads, &self.corners.carried(&self.carriers, material, halo))
+        let corners = self.corners.carried(
+            &self.carriers,
+            |carrier| {
+                let p = carrier.point;
+                let x = points.x[p] + carrier.seen.displacement::<D>(&offsets, u);
+                (x, dF(p) * points.F.at(p))
+            },
+            halo,
+        );
+        self.corners.tractions::<K>(loads, &corners)
     }
 
     /// Nodal forces of these tractions, N. One exchange with the neighbours.
     pub fn forces(&self, traction: &[Vec<Vector<D>>], grid: &Grid<D>, halo: &dyn Halo) -> Vec<f64> {
-        let (offsets, mut force) = (grid.offsets(), Contributions::none(grid, D, Vec::new()));
-        for (load, k, area, attachment) in &self.pushed {
-            attachment.scatter(&offsets, &(traction[*load][*k] * *area), &mut force);
+        let offsets = grid.offsets();
+        let mut force = Contributions::none(grid, D, Vec::new());
+        for at in &self.pushed {
+            at.attachment
+                .scatter(&offsets, &(traction[at.load][at.point] * at.area), &mut force);
         }
         halo.sum(&force)
     }
@@ -204,42 +230,42 @@ impl<const D: usize> FollowerLoads<D> {
 /// follows.
 pub fn now<K: Kinematics<D>, const D: usize>(
     loads: &[Load<D>],
-    (grid, anchors): (&Grid<D>, &Anchors),
+    grid: &Grid<D>,
+    anchors: &Anchors,
     points: Anchored<'_, D>,
     halo: &dyn Halo,
 ) -> Vec<Vec<Vector<D>>> {
-    let pressures = FollowerLoads::of(loads, Vec::new(), (grid, anchors), points);
+    let pressures = FollowerLoads::of(loads, Vec::new(), grid, anchors, points);
     if pressures.is_empty() {
         return vec![Vec::new(); loads.len()];
     }
-    let material = |carrier: &Carrier<D>| (points.x[carrier.point], points.F.at(carrier.point));
-    let corners = pressures.corners.carried(&pressures.carriers, material, halo);
+    let corners = pressures.corners.carried(
+        &pressures.carriers,
+        |carrier| (points.x[carrier.point], points.F.at(carrier.point)),
+        halo,
+    );
     pressures.corners.tractions::<K>(loads, &corners)
 }
 
 /// The points of this rank that pieces are anchored to.
 fn carriers<const D: usize>(
     loads: &[Load<D>],
-    (grid, anchors): (&Grid<D>, &Anchors),
+    grid: &Grid<D>,
+    anchors: &Anchors,
     points: Anchored<'_, D>,
 ) -> Vec<Carrier<D>> {
-    let (offsets, mut carriers) = (grid.offsets(), Vec::new());
-    let following = || {
-        loads
-            .iter()
-            .zip(&anchors.loads)
-            .filter(|(load, _)| load.follows)
-            .flat_map(|(_, ids)| ids)
-    };
-    points.visit(following(), |point, piece| {
-        if let Some(seen) = Attachment::at(grid, &offsets, |_| true, &points.x[point]) {
-            carriers.push(Carrier {
-                point,
-                start: points.x[point] - points.u[point],
-                piece,
-                seen,
-            });
-        }
+    let offsets = grid.offsets();
+    let mut carriers = Vec::new();
+    let following = loads.iter().zip(&anchors.loads).filter(|(load, _)| load.follows);
+    points.visit(following.flat_map(|(_, ids)| ids), |point, piece| {
+        let start = points.x[point] - points.u[point];
+        let seen = Attachment::at(grid, &offsets, |_| true, &points.x[point]);
+        carriers.extend(seen.map(|seen| Carrier {
+            point,
+            start,
+            piece,
+            seen,
+        }));
     });
     carriers
 }

@@ -1,7 +1,7 @@
 //! Data of a rigid body: position, motion, mass, and all forces except those of the soil.
 
 use super::outline::Outline;
-use crate::schedule::between;
+use crate::schedule::{Row, between};
 use crate::tensor::Vector;
 
 /// Part of a body's size by which another one that only touches it may be in it.
@@ -71,6 +71,11 @@ impl<const D: usize> RigidBody<D> {
         course(&self.path, t)
     }
 
+    /// Motions that the path prescribes at time `t`; 0 of those that are free.
+    pub fn prescribed(&self, t: f64) -> Vector<3> {
+        self.pick(&Vector::zeros(), &self.on_path(t))
+    }
+
     /// What acts on it at time `t` but for the soil: its load, and the force per mass `g`, m/s2.
     pub fn acting(&self, t: f64, g: &Vector<D>) -> Vector<3> {
         course(&self.load, t) + Vector::<3>::from_fn(|k, _| if k < D { self.mass[k] * g[k] } else { 0.0 })
@@ -81,6 +86,11 @@ impl<const D: usize> RigidBody<D> {
         self.free.contains(&true)
     }
 
+    /// 1 of motions that are free, 0 of the others.
+    pub fn freedom(&self) -> [f64; MOTIONS] {
+        self.free.map(|is_free| if is_free { 1.0 } else { 0.0 })
+    }
+
     /// Of motions that are free those of one, else those of the other.
     pub fn pick(&self, free: &Vector<3>, other: &Vector<3>) -> Vector<3> {
         Vector::from_fn(|k, _| if self.free[k] { free[k] } else { other[k] })
@@ -88,14 +98,16 @@ impl<const D: usize> RigidBody<D> {
 
     /// Whether its outline, once it has `moved`, has a part inside of another body's, which has moved, too: looked for
     /// at places along it.
-    pub fn reaches_into(&self, moved: &Vector<3>, (other, there): (&Self, &Vector<3>)) -> bool {
-        let (own, others) = (self.pose(moved), other.pose(there));
+    pub fn reaches_into(&self, moved: &Vector<3>, other: &Self, there: &Vector<3>) -> bool {
+        let own = self.pose(moved);
+        let others = other.pose(there);
         let apart = (own.center - others.center).norm() - self.outline.radius() - other.outline.radius();
         let both = self.acts && other.acts;
-        let is_inside = |x: &Vector<D>| {
-            other.outline.nearest(&others.seen(&own.place(x))).distance < -TOUCHING * other.outline.radius()
-        };
-        both && apart < 0.0 && self.outline.places().iter().any(is_inside)
+        both && apart < 0.0
+            && self.outline.places().iter().any(|x| {
+                let near = other.outline.nearest(&others.seen(&own.place(x)));
+                near.distance < -TOUCHING * other.outline.radius()
+            })
     }
 
     /// m  the least and the largest coordinate of its outline along an axis of the plane once it has `moved`, from the
@@ -122,12 +134,13 @@ impl<const D: usize> RigidBody<D> {
 /// The first pair of bodies that overlap, if any do. Such a pair that has not moved against each other since the start
 /// does not count: it may be drawn so, as parts of one shape.
 pub fn overlapping<const D: usize>(bodies: &[RigidBody<D>], states: &[RigidState]) -> Option<[usize; 2]> {
-    let overlap = |a: usize, b: usize| {
-        let [one, other] = [a, b].map(|number| (&bodies[number], &states[number].moved));
-        one.1 != other.1 && (one.0.reaches_into(one.1, other) || other.0.reaches_into(other.1, one))
-    };
     let mut pairs = (0..states.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
-    pairs.find(|&[a, b]| overlap(a, b))
+    pairs.find(|&[a, b]| {
+        let [moved_a, moved_b] = [a, b].map(|number| &states[number].moved);
+        moved_a != moved_b
+            && (bodies[a].reaches_into(moved_a, &bodies[b], moved_b)
+                || bodies[b].reaches_into(moved_b, &bodies[a], moved_a))
+    })
 }
 
 impl<const D: usize> Pose<D> {
@@ -156,7 +169,6 @@ impl<const D: usize> Pose<D> {
 }
 
 /// Linear between rows, from zero at time 0, constant after the last.
-fn course(rows: &[(f64, Vector<3>)], t: f64) -> Vector<3> {
-    let stays = || rows.last().map_or_else(Vector::zeros, |(_, value)| *value);
-    between(rows, Vector::zeros(), t).unwrap_or_else(stays)
+fn course(rows: &[Row<Vector<3>>], t: f64) -> Vector<3> {
+    between(rows, Vector::zeros(), t).unwrap_or_else(|| rows.last().map_or_else(Vector::zeros, |(_, value)| *value))
 }

@@ -5,7 +5,7 @@ use super::ROUNDING;
 use super::RigidContacts;
 use super::body::{Pose, RigidBody, RigidState};
 use super::near::{longest_edge, reach};
-use super::point::{ContactStatus, RigidPoint, tangents};
+use super::point::{ContactStatus, tangents};
 use super::surroundings::Reaching;
 use crate::parallel::Halo;
 use crate::tensor::Vector;
@@ -29,16 +29,15 @@ impl<const D: usize> RigidContacts<D> {
     /// touch, or that is nearest. Those that touch two are left out.
     pub fn held(&self, u: &[f64], halo: &dyn Halo) -> Vec<Held> {
         let motions = self.found(u, halo);
-        let held = |near: &RigidPoint<D>| {
-            let gap = near.gap_after(&self.moved(near, u, &motions));
-            Held {
+        let mut all = Vec::with_capacity(self.points.len());
+        for near in &self.points {
+            all.push(Held {
                 point: near.point,
                 body: near.body,
-                gap,
+                gap: near.gap_after(&self.moved(near, u, &motions)),
                 touches: near.status != ContactStatus::Open,
-            }
-        };
-        let mut all: Vec<Held> = self.points.iter().map(held).collect();
+            });
+        }
         all.sort_by(|a, b| {
             a.point
                 .cmp(&b.point)
@@ -65,10 +64,8 @@ impl<const D: usize> RigidContacts<D> {
             .clone()
             .unwrap_or_else(|| vec![1.0; after.points.len()]);
         for Held { point, body, gap, .. } in held.iter().copied() {
-            let (pose, outline) = (
-                self.bodies[body].body.pose(&states[body].moved),
-                &self.bodies[body].body.outline,
-            );
+            let pose = self.bodies[body].body.pose(&states[body].moved);
+            let outline = &self.bodies[body].body.outline;
             let near = outline.nearest(&pose.seen(&after.points.x[point]));
             let (whole, _) = reach(after, point, &pose.turned(&near.normal));
             let extent = &mut extents[point];
@@ -83,15 +80,17 @@ impl<const D: usize> RigidContacts<D> {
 /// outline, `is_soil` just off it, and no point reaches there, as in lattices that an outline is inclined to, the
 /// nearest do. Corners touch nothing beside them so.
 pub fn extents<const D: usize>(
-    (bodies, states): (&[RigidBody<D>], &[RigidState]),
+    bodies: &[RigidBody<D>],
+    states: &[RigidState],
     reaching: &Reaching<'_, D>,
     is_soil: impl Fn(&Vector<D>) -> bool,
 ) -> Vec<f64> {
     let Reaching { grid, points, .. } = reaching;
     let longest = (0..D).map(|axis| longest_edge(grid, axis)).fold(0.0, f64::max);
-    let of = |p: usize| {
-        let x = points.x[p];
-        let (mut cut, mut flush) = (1.0_f64, EXTENT[1]);
+    let mut extents = Vec::with_capacity(points.len());
+    for (p, &x) in points.x.iter().enumerate() {
+        let mut cut = 1.0_f64;
+        let mut flush = EXTENT[1];
         for (body, state) in bodies.iter().zip(states) {
             let pose = body.pose(&state.moved);
             if (x - pose.center).norm() > body.outline.radius() + 2.0 * longest {
@@ -102,14 +101,14 @@ pub fn extents<const D: usize>(
             let (reach, _) = reach(reaching, p, &normal);
             let share = near.distance / reach;
             cut = cut.min(share.max(0.0));
-            if share > 1.0 + ROUNDING && share < flush && is_beside_a_side(body, &pose, &x, (&normal, near.distance)) {
+            if share > 1.0 + ROUNDING && share < flush && is_beside_a_side(body, &pose, &x, &normal, near.distance) {
                 let off_it = x - normal * (near.distance - ROUNDING * reach);
                 flush = if is_soil(&off_it) { share } else { flush };
             }
         }
-        if cut < 1.0 || flush == EXTENT[1] { cut } else { flush }
-    };
-    (0..points.len()).map(of).collect()
+        extents.push(if cut < 1.0 || flush == EXTENT[1] { cut } else { flush });
+    }
+    extents
 }
 
 /// Whether what of an outline is nearest to a place moves with the place along it: that of a side does, that of a
@@ -118,7 +117,8 @@ fn is_beside_a_side<const D: usize>(
     body: &RigidBody<D>,
     pose: &Pose<D>,
     x: &Vector<D>,
-    (normal, distance): (&Vector<D>, f64),
+    normal: &Vector<D>,
+    distance: f64,
 ) -> bool {
     let foot = x - normal * distance;
     tangents(normal)[..D - 1]

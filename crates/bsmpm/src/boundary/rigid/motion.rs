@@ -85,8 +85,9 @@ impl<const D: usize> BodyInStep<D> {
             return Vector::zeros();
         };
         Vector::from_fn(|k, _| {
-            let (v, a) = (self.before.velocity[k], self.acceleration[k]);
-            let resists = newmark.acting(a, newmark.acceleration(dt, 0.0, (v, a)));
+            let v = self.before.velocity[k];
+            let a = self.acceleration[k];
+            let resists = newmark.acting(a, newmark.acceleration(dt, 0.0, v, a));
             (self.external[k] / self.body.mass[k] - resists) / newmark.factor(dt)
         })
     }
@@ -130,16 +131,18 @@ impl<const D: usize> BodyInStep<D> {
 
     /// Velocity and acceleration of free motions after a `step` (m, m, rad).
     fn motion_after(&self, step: &Vector<3>, length: f64) -> (Vector<3>, Option<Vector<3>>) {
-        let free = |a: Vector<3>| self.body.pick(&a, &Vector::zeros());
+        let zero = Vector::zeros();
         if let Some(end) = self.flight {
-            return (end, Some(free(self.external.component_div(&self.body.mass))));
+            let acceleration = self.external.component_div(&self.body.mass);
+            return (end, Some(self.body.pick(&acceleration, &zero)));
         }
         let Some(newmark) = self.newmark else {
             return (step / length, None);
         };
-        let (v, a) = (&self.before.velocity, &self.acceleration);
-        let end = Vector::<3>::from_fn(|k, _| newmark.acceleration(length, step[k], (v[k], a[k])));
+        let v = &self.before.velocity;
+        let a = &self.acceleration;
+        let end = Vector::<3>::from_fn(|k, _| newmark.acceleration(length, step[k], v[k], a[k]));
         let velocity = Vector::from_fn(|k, _| v[k] + newmark.gained(length, a[k], end[k]));
-        (velocity, (!self.is_struck).then(|| free(end)))
+        (velocity, (!self.is_struck).then(|| self.body.pick(&end, &zero)))
     }
 }

@@ -9,6 +9,7 @@ use crate::error::StepError;
 use crate::grid::{Grid, Shape};
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
+use crate::schedule::TimeInterval;
 use crate::tensor::Vector;
 use crate::water::pore_pressure::PorePressure;
 
@@ -27,11 +28,12 @@ impl<const D: usize> RigidContacts<D> {
     pub fn of(
         around: &Surroundings<'_, D>,
         young: impl Fn(usize) -> f64,
-        (t, dt): (f64, f64),
+        interval: TimeInterval,
         guess: &[f64],
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
-        let (bodies, states) = around.bodies;
+        let (bodies, _) = around.bodies;
+        let dt = interval.dt;
         if bodies.is_empty() || dt == 0.0 {
             return Ok(Self::default());
         }
@@ -44,88 +46,101 @@ impl<const D: usize> RigidContacts<D> {
             edge: around.reaching.grid.smallest_edge(),
             moving: Vec::new(),
         };
-        let mut moving = vec![
-            0.0;
-            if around.newmark.is_some() {
-                around.reaching.grid.nodes()
-            } else {
-                0
-            }
-        ];
-        let mut near = vec![0.0; 2 * bodies.len()];
-        for (number, (body, state)) in bodies.iter().zip(states).enumerate() {
-            let mut at = BodyInStep::of(body, state, t, dt, around);
-            let found = contacts.points.len();
-            if body.acts {
-                at.least = contacts.gather((number, &at), (around, &young), dt);
-            }
-            for point in &contacts.points[found..] {
-                if around.newmark.is_none()
-                    || point.gap > MEETING * comes(point, &at, around, dt) + CLOSE * contacts.edge
-                {
-                    continue;
-                }
-                near[2 * number] = 1.0;
-                let seen = point.N.iter().zip(&contacts.offsets).filter(|(N, _)| **N > SEEN);
-                seen.for_each(|(_, offset)| moving[point.first_node + offset] = 1.0);
-            }
-            near[2 * number + 1] = -at.least;
-            contacts.bodies.push(at);
-        }
-        halo.maximum(&mut near);
-        for (at, near) in contacts.bodies.iter_mut().zip(near.chunks_exact(2)) {
-            at.least = -near[1];
-            if around.newmark.is_some() && near[0] == 0.0 {
-                at.fly(dt);
-            }
-        }
-        let Self { points, bodies: at, .. } = &mut contacts;
-        points.retain(|point| at[point.body].flight.is_none());
+        let mut moving = contacts.gather(around, young, interval, halo);
         if around.newmark.is_some() {
             halo.max(&mut moving, 1);
-            let marked = |(c, free): (usize, &bool)| *free && moving[Nodal::<D>::node(c)] > 0.0;
-            contacts.moving = around.free.iter().enumerate().map(marked).collect();
+            let free = around.free.iter().enumerate();
+            let marked = free.map(|(c, free)| *free && moving[Nodal::<D>::node(c)] > 0.0);
+            contacts.moving = marked.collect();
         }
-        let motions = vec![Vector::zeros(); bodies.len()];
-        let status = |point: &RigidPoint<D>| {
-            let moved = contacts.moved(point, guess, &motions);
-            // What touches as the step begins goes on to: a body that goes away faster than the guess followed would
-            // let go of all that it holds, which soil that yields cannot stand.
-            let is_met = point.gap_after(&moved).min(point.gap_before()) <= CLOSE * contacts.edge;
-            (if is_met { point.met(&moved) } else { ContactStatus::Open }, moved)
-        };
-        let statuses: Vec<(ContactStatus, Vector<D>)> = contacts.points.iter().map(status).collect();
-        contacts
-            .points
-            .iter_mut()
-            .zip(&statuses)
-            .for_each(|(point, (status, moved))| point.take(*status, moved));
-        let moved: Vec<Vector<D>> = statuses.iter().map(|(_, moved)| *moved).collect();
+        let moved = contacts.recall(guess);
         contacts.hold_neutral(&moved, &vec![false; moved.len()], halo);
         contacts.strike(halo);
         contacts.settle(halo)?;
         Ok(contacts)
     }
 
-    /// Adds the points near a body; the distance of the nearest, m.
+    /// Adds the bodies with the points near them, and returns marks of the nodes that they may stop; none without
+    /// inertia. One reduction.
     fn gather(
         &mut self,
-        (number, at): (usize, &BodyInStep<D>),
-        (around, young): (&Surroundings<'_, D>, &impl Fn(usize) -> f64),
+        around: &Surroundings<'_, D>,
+        young: impl Fn(usize) -> f64,
+        interval: TimeInterval,
+        halo: &dyn Halo,
+    ) -> Vec<f64> {
+        let (bodies, states) = around.bodies;
+        let dt = interval.dt;
+        let is_dynamic = around.newmark.is_some();
+        let mut moving = vec![0.0; if is_dynamic { around.reaching.grid.nodes() } else { 0 }];
+        let mut near = vec![0.0; 2 * bodies.len()];
+        for (number, (body, state)) in bodies.iter().zip(states).enumerate() {
+            let mut at = BodyInStep::of(body, state, interval.start, dt, around);
+            let found = self.points.len();
+            if body.acts {
+                at.least = self.gather_at(number, &at, around, &young, dt);
+            }
+            for point in &self.points[found..] {
+                if !is_dynamic || point.gap > MEETING * comes(point, &at, around, dt) + CLOSE * self.edge {
+                    continue;
+                }
+                near[2 * number] = 1.0;
+                let seen = point.N.iter().zip(&self.offsets).filter(|(N, _)| **N > SEEN);
+                seen.for_each(|(_, offset)| moving[point.first_node + offset] = 1.0);
+            }
+            near[2 * number + 1] = -at.least;
+            self.bodies.push(at);
+        }
+        halo.maximum(&mut near);
+        for (at, near) in self.bodies.iter_mut().zip(near.chunks_exact(2)) {
+            at.least = -near[1];
+            if is_dynamic && near[0] == 0.0 {
+                at.fly(dt);
+            }
+        }
+        let bodies = &self.bodies;
+        self.points.retain(|point| bodies[point.body].flight.is_none());
+        moving
+    }
+
+    /// Gives every point the status that the last displacement, `guess`, asks for, and returns how the material at it
+    /// moves then as seen from its body, m.
+    fn recall(&mut self, guess: &[f64]) -> Vec<Vector<D>> {
+        let motions = vec![Vector::zeros(); self.bodies.len()];
+        let moved = self.points.iter().map(|point| self.moved(point, guess, &motions));
+        let moved: Vec<Vector<D>> = moved.collect();
+        for (point, moved) in self.points.iter_mut().zip(&moved) {
+            // What touches as the step begins goes on to: a body that goes away faster than the guess followed would
+            // let go of all that it holds, which soil that yields cannot stand.
+            let is_met = point.gap_after(moved).min(point.gap_before()) <= CLOSE * self.edge;
+            let status = if is_met { point.met(moved) } else { ContactStatus::Open };
+            point.take(status, moved);
+        }
+        moved
+    }
+
+    /// Adds the points near a body; the distance of the nearest, m.
+    fn gather_at(
+        &mut self,
+        number: usize,
+        at: &BodyInStep<D>,
+        around: &Surroundings<'_, D>,
+        young: &impl Fn(usize) -> f64,
         dt: f64,
     ) -> f64 {
-        let (body, before, after) = (&at.body, at.body.pose(&at.before.moved), at.body.pose(&at.predicted));
-        let (shape, Reaching { grid, points, .. }, mut least) = (around.shape, around.reaching, f64::INFINITY);
+        let outline = &at.body.outline;
+        let after = at.body.pose(&at.predicted);
+        let Reaching { grid, points, .. } = around.reaching;
+        let mut least = f64::INFINITY;
         let longest = (0..D).map(|axis| longest_edge(grid, axis)).fold(0.0, f64::max);
-        let radius = body.outline.radius();
-        for patch in shape.patches() {
+        for patch in around.shape.patches() {
             for p in patch.points.clone() {
                 let x = points.x[p];
-                let bound = (x - after.center).norm() - radius - 2.0 * longest;
+                let bound = (x - after.center).norm() - outline.radius() - 2.0 * longest;
                 if bound > least.max(longest) {
                     continue;
                 }
-                let near = body.outline.nearest(&after.seen(&x));
+                let near = outline.nearest(&after.seen(&x));
                 let normal = after.turned(&near.normal);
                 let (whole, edge) = reach(&around.reaching, p, &normal);
                 let extent = points.extent.as_ref().map_or(1.0, |extent| extent[p]);
@@ -140,40 +155,63 @@ impl<const D: usize> RigidContacts<D> {
                 if around.newmark.is_some() {
                     stiffness += points.mass[p] / (dt * dt);
                 }
-                let place = x - normal * reach;
-                let seen = before.seen(&place);
-                let tangents = tangents(&normal);
-                let step = after.place(&seen) - place;
-                let N = values(shape, p, &(place - x));
-                let pores = around.pore_pressure.filter(|_| body.friction > 0.0);
-                let water = pores.map_or(0.0, |pores| {
-                    pressing(pores, around, (patch.first_node, p), (&normal, &place))
-                });
-                let carried = points
-                    .tangential_force
-                    .as_ref()
-                    .map_or([0.0; 2], |carried| along(&tangents, &carried[p]));
-                self.points.push(RigidPoint {
-                    body: number,
-                    point: p,
-                    first_node: patch.first_node,
-                    N,
+                let foot = Foot {
+                    place: x - normal * reach,
                     normal,
                     gap,
-                    motion: along(&tangents, &step),
-                    approach: normal.dot(&step),
-                    way: step.norm(),
-                    arm: after.turned(&seen),
                     stiffness: PENALTY * stiffness,
-                    friction: body.friction,
-                    water,
-                    carried,
-                    status: ContactStatus::Open,
-                    transverse_share: 0.0,
-                });
+                };
+                self.points
+                    .push(rigid_point(number, at, around, patch.first_node, p, &foot));
             }
         }
         least
+    }
+}
+
+/// Where a point comes nearest to a body at the end of its motion.
+struct Foot<const D: usize> {
+    place: Vector<D>,  // m
+    normal: Vector<D>, // unit vector out of the body
+    gap: f64,          // m
+    stiffness: f64,    // N/m  of the contact there
+}
+
+/// A point, off the body of that number, of the cell whose functions begin with a node.
+fn rigid_point<const D: usize>(
+    number: usize,
+    at: &BodyInStep<D>,
+    around: &Surroundings<'_, D>,
+    first_node: usize,
+    p: usize,
+    foot: &Foot<D>,
+) -> RigidPoint<D> {
+    let Foot { place, normal, .. } = *foot;
+    let points = around.reaching.points;
+    let seen = at.body.pose(&at.before.moved).seen(&place);
+    let after = at.body.pose(&at.predicted);
+    let tangents = tangents(&normal);
+    let step = after.place(&seen) - place;
+    let pores = around.pore_pressure.filter(|_| at.body.friction > 0.0);
+    let water = pores.map_or(0.0, |pores| pressing(pores, around, first_node, p, &normal, &place));
+    let carried = points.tangential_force.as_ref();
+    RigidPoint {
+        body: number,
+        point: p,
+        first_node,
+        N: values(around.shape, p, &(place - points.x[p])),
+        normal,
+        gap: foot.gap,
+        motion: along(&tangents, &step),
+        approach: normal.dot(&step),
+        way: step.norm(),
+        arm: after.turned(&seen),
+        stiffness: foot.stiffness,
+        friction: at.body.friction,
+        water,
+        carried: carried.map_or([0.0; 2], |carried| along(&tangents, &carried[p])),
+        status: ContactStatus::Open,
+        transverse_share: 0.0,
     }
 }
 
@@ -209,10 +247,13 @@ pub(super) fn reach<const D: usize>(around: &Reaching<'_, D>, p: usize, normal: 
 fn pressing<const D: usize>(
     pores: &PorePressure<D>,
     around: &Surroundings<'_, D>,
-    (first_node, p): (usize, usize),
-    (normal, place): (&Vector<D>, &Vector<D>),
+    first_node: usize,
+    p: usize,
+    normal: &Vector<D>,
+    place: &Vector<D>,
 ) -> f64 {
-    let (shape, points) = (around.shape, around.reaching.points);
+    let shape = around.shape;
+    let points = around.reaching.points;
     let values = shape.of(p).into_iter().zip(shape.offsets());
     let pressure = pores.at(values.map(|((N, _), offset)| (first_node + offset, N)), place);
     pressure * points.volume[p] * points.F.at(p).determinant() / column(&around.reaching, p, normal)
@@ -250,8 +291,11 @@ fn half_edges<const D: usize>(around: &Reaching<'_, D>, p: usize, normal: &Vecto
             .min(1.0)
             .powf(1.0 / D as f64);
     let F = points.F.at(p);
-    let along = |j: usize| (0..D).map(|i| F[(i, j)] * normal[i]).sum::<f64>() * share * size[j];
-    (Vector::from_fn(|j, _| along(j)), size * share, size.min())
+    let along = Vector::from_fn(|j, _| {
+        let along = (0..D).map(|i| F[(i, j)] * normal[i]).sum::<f64>();
+        along * share * size[j]
+    });
+    (along, size * share, size.min())
 }
 
 /// What the nodes of a point's cell have to say of a place beside it: N_I + grad N_I . (place - x), so that a force
@@ -259,6 +303,6 @@ fn half_edges<const D: usize>(around: &Reaching<'_, D>, p: usize, normal: &Vecto
 /// touches take up all that is asked there; linear ones do so either way, and speak of the point alone.
 fn values<const D: usize>(shape: &Shape<D>, p: usize, offset: &Vector<D>) -> Vec<f64> {
     let reaches = if shape.width() > 2 { 1.0 } else { 0.0 };
-    let of = |(N, grad): (f64, Vector<D>)| N + reaches * grad.dot(offset);
-    shape.of(p).into_iter().map(of).collect()
+    let functions = shape.of(p).into_iter();
+    functions.map(|(N, grad)| N + reaches * grad.dot(offset)).collect()
 }

@@ -55,8 +55,7 @@ impl<const D: usize> RigidContacts<D> {
             let mut count = [0.0];
             for (point, sliding) in self.points.iter_mut().zip(&sliding) {
                 let [towards, against, least] = [0, 1, 2].map(|k| extremes[3 * point.body + k]);
-                let is_neutral = |slip: f64| slip <= -least;
-                if towards > 0.0 && against > 0.0 && sliding.is_some_and(|sliding| is_neutral(sliding.slip)) {
+                if towards > 0.0 && against > 0.0 && sliding.is_some_and(|sliding| sliding.slip <= -least) {
                     point.status = ContactStatus::Stick;
                     count[0] += 1.0;
                 }
@@ -72,12 +71,10 @@ impl<const D: usize> RigidContacts<D> {
 
     /// Of every body the motion that resists least, if it is loose.
     fn loose_motions(&self, halo: &dyn Halo) -> Vec<Option<Vector<3>>> {
-        let (stuck, now) = (
-            self.stiffness_by(RigidPoint::rate_if_stuck, halo),
-            self.stiffness(false, halo),
-        );
-        let of = |((at, stuck), now): ((&BodyInStep<D>, &Matrix3<f64>), &Matrix3<f64>)| loosest(at, stuck, now);
-        self.bodies.iter().zip(&stuck).zip(&now).map(of).collect()
+        let stuck = self.stiffness_by(RigidPoint::rate_if_stuck, halo);
+        let now = self.stiffness(false, halo);
+        let bodies = self.bodies.iter().zip(stuck.iter().zip(&now));
+        bodies.map(|(at, (stuck, now))| loosest(at, stuck, now)).collect()
     }
 }
 
@@ -86,14 +83,18 @@ fn loosest<const D: usize>(at: &BodyInStep<D>, stuck: &Matrix3<f64>, now: &Matri
     if !at.body.is_free() {
         return None;
     }
-    let free = |k: usize| if at.body.free[k] { 1.0 } else { 0.0 };
-    let of_free = |matrix: &Matrix3<f64>, k: usize, l: usize| matrix[(k, l)] * free(k) * free(l);
-    let whole = Matrix3::from_fn(|k, l| of_free(stuck, k, l) + if k == l { 1.0 - free(k) } else { 0.0 });
-    let part = Matrix3::from_fn(|k, l| of_free(now, k, l) + if k == l { 1.0 - free(k) } else { 0.0 });
+    let free = at.body.freedom();
+    let whole = among_free(stuck, free);
+    let part = among_free(now, free);
     let inverse = whole.cholesky()?.l().try_inverse()?;
     let eigen = (inverse * part * inverse.transpose()).symmetric_eigen();
     let least = eigen.eigenvalues.imin();
     (eigen.eigenvalues[least] < LOOSE).then(|| inverse.transpose() * eigen.eigenvectors.column(least))
+}
+
+/// The stiffness of the free motions; 1 of each of the others by itself.
+fn among_free(stiffness: &Matrix3<f64>, free: [f64; MOTIONS]) -> Matrix3<f64> {
+    Matrix3::from_fn(|k, l| stiffness[(k, l)] * free[k] * free[l] + if k == l { 1.0 - free[k] } else { 0.0 })
 }
 
 /// Of a point that slides along the loose motion of its body.

@@ -70,10 +70,9 @@ impl Outline {
                 let r = x[0].hypot(x[1]);
                 let Nearest { distance, normal } = nearest_of(corners, &Vector::<2>::new(r, x[D - 1]));
                 let out = if r > 0.0 { [x[0] / r, x[1] / r] } else { [1.0, 0.0] };
-                let of = |k: usize| if k + 1 == D { normal[1] } else { normal[0] * out[k] };
                 Nearest {
                     distance,
-                    normal: Vector::from_fn(|k, _| of(k)),
+                    normal: Vector::from_fn(|k, _| if k + 1 == D { normal[1] } else { normal[0] * out[k] }),
                 }
             }
             Self::Terrain(terrain) => {
@@ -99,18 +98,18 @@ impl Outline {
             _ if D != 2 => Vec::new(),
             Self::Box(_) | Self::Revolved(_) | Self::Terrain(_) => Vec::new(),
             Self::Circle(radius) => {
-                let place = |k: usize| (k as f64 / PLACES as f64 * 2.0 * PI).sin_cos();
-                (0..PLACES)
-                    .map(place)
+                let directions = (0..PLACES).map(|k| (k as f64 / PLACES as f64 * 2.0 * PI).sin_cos());
+                directions
                     .map(|(sin, cos)| Vector::<2>::new(cos, sin) * *radius)
                     .collect()
             }
             Self::Polygon(corners) => {
-                let along = |(a, b): (&Vector<2>, &Vector<2>)| {
-                    let (from, way) = (*a, b - a);
+                let places = edges(corners).flat_map(|(a, b)| {
+                    let from = *a;
+                    let way = b - a;
                     (0..PLACES).map(move |k| from + way * (k as f64 / PLACES as f64))
-                };
-                edges(corners).flat_map(along).collect()
+                });
+                places.collect()
             }
         };
         places
@@ -124,26 +123,9 @@ impl Outline {
     pub fn swept(&self, axis: f64) -> f64 {
         match self {
             Self::Circle(radius) => {
-                let upto = |s: f64| {
-                    let half = (radius.powi(2) - s.powi(2)).max(0.0).sqrt();
-                    -axis * (s * half + radius.powi(2) * (s / radius).asin()) - 2.0 / 3.0 * half.powi(3)
-                };
-                upto(*radius) - upto(axis.clamp(-radius, *radius))
+                swept_by_circle(*radius, axis, *radius) - swept_by_circle(*radius, axis, axis.clamp(-radius, *radius))
             }
-            Self::Polygon(corners) => {
-                let from_axis = |x: &Vector<2>| Vector::<2>::new(x[0] - axis, x[1]);
-                let beyond = |(a, b): (&Vector<2>, &Vector<2>)| {
-                    let (a, b) = (from_axis(a), from_axis(b));
-                    let cut = a + (b - a) * (a[0] / (a[0] - b[0]));
-                    match (a[0] > 0.0, b[0] > 0.0) {
-                        (true, true) => moment_about_y(&a, &b),
-                        (true, false) => moment_about_y(&a, &cut),
-                        (false, true) => moment_about_y(&cut, &b),
-                        (false, false) => 0.0,
-                    }
-                };
-                edges(corners).map(beyond).sum()
-            }
+            Self::Polygon(corners) => edges(corners).map(|(a, b)| moment_beyond(axis, a, b)).sum(),
             Self::Box(_) | Self::Revolved(_) | Self::Terrain(_) => 0.0,
         }
     }
@@ -157,7 +139,9 @@ impl Outline {
                 polar: 0.5 * PI * radius.powi(4),
             },
             Self::Polygon(corners) => {
-                let (mut area, mut first, mut second) = (0.0, Vector::<2>::zeros(), 0.0);
+                let mut area = 0.0;
+                let mut first = Vector::<2>::zeros();
+                let mut second = 0.0;
                 for (a, b) in edges(corners) {
                     let cross = a.perp(b);
                     area += 0.5 * cross;
@@ -180,20 +164,38 @@ impl Outline {
     }
 }
 
+/// What a circle sweeps about the axis x = `axis` with its part up to x = `s`, but for a constant.
+fn swept_by_circle(radius: f64, axis: f64, s: f64) -> f64 {
+    let half = (radius.powi(2) - s.powi(2)).max(0.0).sqrt();
+    -axis * (s * half + radius.powi(2) * (s / radius).asin()) - 2.0 / 3.0 * half.powi(3)
+}
+
+/// Part of an edge in the integral of x - `axis` over what of a polygon is beyond x = `axis`.
+fn moment_beyond(axis: f64, a: &Vector<2>, b: &Vector<2>) -> f64 {
+    let [a, b] = [a, b].map(|x| Vector::<2>::new(x[0] - axis, x[1]));
+    let cut = a + (b - a) * (a[0] / (a[0] - b[0]));
+    match (a[0] > 0.0, b[0] > 0.0) {
+        (true, true) => moment_about_y(&a, &b),
+        (true, false) => moment_about_y(&a, &cut),
+        (false, true) => moment_about_y(&cut, &b),
+        (false, false) => 0.0,
+    }
+}
+
 fn nearest_of_box<const D: usize>(half: &[f64; 3], x: &Vector<D>) -> Nearest<D> {
     let beyond = Vector::<D>::from_fn(|k, _| x[k].abs() - half[k]);
     let outside = beyond.map(|part| part.max(0.0));
-    let sign = |k: usize| if x[k] < 0.0 { -1.0 } else { 1.0 };
+    let sign = x.map(|part| if part < 0.0 { -1.0 } else { 1.0 });
     if let Some(normal) = outside.try_normalize(0.0) {
         return Nearest {
             distance: outside.norm(),
-            normal: Vector::from_fn(|k, _| sign(k) * normal[k]),
+            normal: sign.component_mul(&normal),
         };
     }
     let face = beyond.imax();
     Nearest {
         distance: beyond[face],
-        normal: Vector::from_fn(|k, _| if k == face { sign(k) } else { 0.0 }),
+        normal: Vector::from_fn(|k, _| if k == face { sign[k] } else { 0.0 }),
     }
 }
 
@@ -208,10 +210,14 @@ fn moment_about_y(a: &Vector<2>, b: &Vector<2>) -> f64 {
 }
 
 fn nearest_of(corners: &[Vector<2>], x: &Vector<2>) -> Nearest {
-    let (mut least, mut foot, mut edge) = (f64::INFINITY, Vector::zeros(), Vector::<2>::x());
-    let (mut inside, mut size) = (false, 0.0_f64);
+    let mut least = f64::INFINITY;
+    let mut foot = Vector::zeros();
+    let mut edge = Vector::<2>::x();
+    let mut inside = false;
+    let mut size = 0.0_f64;
     for (a, b) in edges(corners) {
-        let (along, from) = (b - a, x - a);
+        let along = b - a;
+        let from = x - a;
         size = size.max(along.amax());
         let share = (from.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
         let on = a + along * share;

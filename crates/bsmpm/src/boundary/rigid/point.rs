@@ -83,8 +83,7 @@ pub(super) fn tangents<const D: usize>(normal: &Vector<D>) -> [Vector<D>; 2] {
     let mut axis = Vector::<D>::zeros();
     axis[least] = 1.0;
     let first = (axis - normal * normal[least]).normalize();
-    let across = |[i, j]: [usize; 2]| normal[i] * first[j] - normal[j] * first[i];
-    let second = [[1, 2], [2, 0], [0, 1]].map(across);
+    let second = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| normal[i] * first[j] - normal[j] * first[i]);
     [first, Vector::from_fn(|k, _| second[k])]
 }
 
@@ -197,10 +196,8 @@ impl<const D: usize> RigidPoint<D> {
 
     /// Takes a status that what has `moved` asks for.
     pub fn take(&mut self, status: ContactStatus, moved: &Vector<D>) {
-        let (held, limit) = (
-            size(self.held(moved)),
-            self.limit(-self.stiffness * self.gap_after(moved)),
-        );
+        let held = size(self.held(moved));
+        let limit = self.limit(-self.stiffness * self.gap_after(moved));
         let turns = D > 2 && matches!(status, ContactStatus::Slip(_)) && held > 0.0;
         self.status = status;
         self.transverse_share = if turns { (limit.max(0.0) / held).min(1.0) } else { 0.0 };
@@ -243,8 +240,9 @@ impl<const D: usize> RigidPoint<D> {
             ContactStatus::Open => Vector::zeros(),
             ContactStatus::Stick => self.rate_if_held(moved),
             ContactStatus::Slip(towards) => {
-                let held = || self.components(moved).map(|along| -self.stiffness * along);
-                let beside = self.vector(self.transverse(towards, held));
+                let transverse =
+                    self.transverse(towards, || self.components(moved).map(|along| -self.stiffness * along));
+                let beside = self.vector(transverse);
                 let friction_force = if whole { self.friction * normal } else { 0.0 };
                 self.normal * normal + self.vector(towards.map(|part| part * friction_force)) + beside
             }
@@ -275,7 +273,8 @@ impl<const D: usize> RigidPoint<D> {
 
     /// The status that a displacement asks for that closes the gap.
     pub fn met(&self, moved: &Vector<D>) -> ContactStatus {
-        let (held, limit) = (self.held(moved), self.limit(-self.stiffness * self.gap_after(moved)));
+        let held = self.held(moved);
+        let limit = self.limit(-self.stiffness * self.gap_after(moved));
         match self.friction {
             0.0 => ContactStatus::Slip([0.0; 2]),
             _ if size(held) > limit.max(0.0) => ContactStatus::Slip(held.map(|part| part / size(held))),
@@ -311,7 +310,8 @@ impl<const D: usize> RigidPoint<D> {
 
     /// As [`Self::corrected`] of a point that slips `towards`; `limit`: the largest friction force, N.
     fn slip_on(&self, towards: Along, moved: &Vector<D>, limit: f64, force: f64) -> (ContactStatus, f64) {
-        let (soil, held) = (1.0 / super::PENALTY, self.held(moved));
+        let soil = 1.0 / super::PENALTY;
+        let held = self.held(moved);
         let against = product(towards, held);
         let sticks = if D == 2 {
             against < limit - force
@@ -339,8 +339,10 @@ impl<const D: usize> RigidPoint<D> {
     pub fn block(&self) -> Vec<f64> {
         let order = self.N.len() * D;
         let mut block = vec![0.0; order * order];
-        let across = |j: usize| -self.rate(&Vector::from_fn(|i, _| f64::from(u8::from(i == j))), false);
-        let columns: [Vector<D>; D] = std::array::from_fn(across);
+        let columns: [Vector<D>; D] = std::array::from_fn(|j| {
+            let unit = Vector::from_fn(|i, _| f64::from(u8::from(i == j)));
+            -self.rate(&unit, false)
+        });
         for (a, N_a) in self.N.iter().enumerate() {
             for (b, N_b) in self.N.iter().enumerate() {
                 for (j, column) in columns.iter().enumerate() {

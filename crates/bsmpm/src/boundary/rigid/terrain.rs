@@ -28,15 +28,21 @@ impl Terrain {
     }
 
     /// Bilinear between what posts have.
-    fn between(&self, [x, y]: [f64; 2], of: impl Fn(usize, usize) -> f64) -> f64 {
-        let ((i, s), (j, t)) = (self.post(0, x), self.post(1, y));
-        let row = |j: usize| (1.0 - s) * of(i, j) + s * of(i + 1, j);
-        (1.0 - t) * row(j) + t * row(j + 1)
+    fn between(&self, [x, y]: [f64; 2], of: impl Fn([usize; 2]) -> f64) -> f64 {
+        let (i, s) = self.post(0, x);
+        let (j, t) = self.post(1, y);
+        let [row, next] = [j, j + 1].map(|j| (1.0 - s) * of([i, j]) + s * of([i + 1, j]));
+        (1.0 - t) * row + t * next
+    }
+
+    /// m  at a post.
+    fn height_at(&self, [i, j]: [usize; 2]) -> f64 {
+        self.heights[j * self.count[0] + i]
     }
 
     /// m  over a place, m from the grid's lower corner.
     pub fn height(&self, at: [f64; 2]) -> f64 {
-        self.between(at, |i, j| self.heights[j * self.count[0] + i])
+        self.between(at, |post| self.height_at(post))
     }
 
     /// Slope along an axis: central differences at the posts, bilinear between them, so that normals do not jump where
@@ -46,16 +52,14 @@ impl Terrain {
         if at[axis] < self.lower[axis] || at[axis] > far {
             return 0.0;
         }
-        let of = |i: usize, j: usize| {
-            let post = [i, j];
-            let (before, after) = (post[axis].saturating_sub(1), (post[axis] + 1).min(self.count[axis] - 1));
-            let height = |k: usize| {
-                let [i, j] = if axis == 0 { [k, j] } else { [i, k] };
-                self.heights[j * self.count[0] + i]
-            };
-            (height(after) - height(before)) / ((after - before) as f64 * self.spacing[axis])
-        };
-        self.between(at, of)
+        self.between(at, |post| {
+            let mut before = post;
+            before[axis] = post[axis].saturating_sub(1);
+            let mut after = post;
+            after[axis] = (post[axis] + 1).min(self.count[axis] - 1);
+            let apart = (after[axis] - before[axis]) as f64 * self.spacing[axis];
+            (self.height_at(after) - self.height_at(before)) / apart
+        })
     }
 
     /// Distance (m) of a place (m, from the grid's lower corner) and the unit normal there: at the foot of a
@@ -64,7 +68,8 @@ impl Terrain {
         let mut foot = [x[0], x[1]];
         let mut found = (0.0, Vector::zeros());
         for _ in 0..SEARCHES {
-            let (height, slopes) = (self.height(foot), [0, 1].map(|axis| self.slope(foot, axis)));
+            let height = self.height(foot);
+            let slopes = [0, 1].map(|axis| self.slope(foot, axis));
             let size = (1.0 + slopes[0].powi(2) + slopes[1].powi(2)).sqrt();
             let normal = Vector::<D>::from_fn(|k, _| if k + 1 == D { 1.0 } else { -slopes[k] } / size);
             // The distance from the plane through the foot.

@@ -205,7 +205,8 @@ impl<const D: usize> ContactState<D> {
 
     /// Corrects the status that a `trial` contradicts by more than `doubt`, Pa; whether it did.
     pub fn correct(&mut self, trial: &Vector<D>, doubt: f64) -> bool {
-        let (before, status) = (self.status, self.corrected(trial, doubt));
+        let before = self.status;
+        let status = self.corrected(trial, doubt);
         if status != before {
             self.take(status, trial);
         }
@@ -234,13 +235,13 @@ impl<const D: usize> ContactState<D> {
                 let shear = trial - self.normal(trial);
                 let limit = self.limit(pressure);
                 let friction_force = self.traction(trial) - self.normal(trial);
-                let is_off = |now: Vector<D>| (friction_force - now * limit).norm() > TURNED * doubt;
+                let is_off = (friction_force - shear.normalize() * limit).norm() > TURNED * doubt;
                 match shear.dot(&along) {
                     _ if pressure < -doubt => Status::Slip(Vector::zeros()),
                     // Whoever slid against friction has to stick first: to turn it at once goes back and forth for
                     // ever.
                     slid if slid < limit - doubt => Status::Stick,
-                    _ if is_off(shear.normalize()) => Status::Slip(shear.normalize()),
+                    _ if is_off => Status::Slip(shear.normalize()),
                     _ => self.status,
                 }
             }
@@ -251,7 +252,8 @@ impl<const D: usize> ContactState<D> {
 
     /// On the material, under a `trial` of that pressure.
     fn met(&self, trial: &Vector<D>, pressure: f64, doubt: f64) -> Status<D> {
-        let (friction, shear) = (self.contact.law.friction, trial - self.normal(trial));
+        let friction = self.contact.law.friction;
+        let shear = trial - self.normal(trial);
         let limit = self.limit(pressure.max(0.0));
         match shear.try_normalize(0.0) {
             _ if friction == 0.0 || pressure < -doubt => Status::Slip(Vector::zeros()),

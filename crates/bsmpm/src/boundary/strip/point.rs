@@ -1,7 +1,7 @@
 //! A surface point of a footing during a step: its traction and its contribution to the footing's force.
 
 use super::ContactState;
-use crate::boundary::coulomb::{ContactReport, Status};
+use crate::boundary::coulomb::{ContactReport, Status, ratio};
 use crate::boundary::surface::Attachment;
 use crate::exact::Exact;
 use crate::grid::Contributions;
@@ -58,11 +58,10 @@ impl<const D: usize> StripPoint<D> {
 
     /// m  of the material at the point; zero in components that are not held.
     pub(super) fn displacement(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
-        let along = |component: usize| {
+        Vector::from_fn(|component, _| {
             let attachment = self.attachment[component].as_ref();
             attachment.map_or(0.0, |attachment| attachment.displacement::<D>(offsets, u)[component])
-        };
-        Vector::from_fn(|component, _| along(component))
+        })
     }
 
     /// m  what the material lags behind the strip.
@@ -101,28 +100,28 @@ impl<const D: usize> StripPoint<D> {
     /// m  slip, what has slipped in all steps, motion, and of a point in contact less the gap and the gap; what it adds
     /// to the sums. `edge`, m, is that of the shortest cell.
     pub(super) fn lengths(&self, offsets: &[usize], u: &[f64], edge: f64, sums: &mut StripSums) -> [f64; LENGTHS] {
-        let (motion, after) = (self.part(self.motion).norm(), self.traction(offsets, u));
-        let (slip, accumulated) = (self.slip(offsets, u).norm(), after.norm() / self.penalty);
+        let motion = self.part(self.motion).norm();
+        let after = self.traction(offsets, u);
+        let slip = self.slip(offsets, u).norm();
+        let accumulated = after.norm() / self.penalty;
         let Some(state) = &self.state else {
             return [slip, accumulated, motion, 0.0, 0.0];
         };
         let trial = self.trial(state, offsets, u);
-        let (slid, gap) = (
-            self.own(state.slid(&trial, self.penalty)),
-            state.gap(&trial, self.penalty),
-        );
+        let slid = self.own(state.slid(&trial, self.penalty));
+        let gap = state.gap(&trial, self.penalty);
         let pushed = state.pressure(&trial).max(0.0) * self.area;
-        let flag = |is: bool| f64::from(u8::from(is));
+        let is_closed = state.status != Status::Open;
         let far = state.moved_on(&self.carried, self.penalty) > FAR * edge;
         let friction_work = self.mean(offsets, u).dot(&slid);
         let sliding = if slid.norm() > 0.0 { pushed } else { 0.0 };
         let each = [
-            flag(state.status != Status::Open),
+            f64::from(u8::from(is_closed)),
             pushed,
             sliding,
             pushed * slid.norm(),
             friction_work,
-            flag(far),
+            f64::from(u8::from(far)),
         ];
         sums.contact
             .iter_mut()
@@ -148,20 +147,20 @@ impl<const D: usize> StripPoint<D> {
             return None;
         }
         let first = self.attachment.iter().flatten().next()?.first_node();
-        let direction = |j: usize| {
+        let directions: [Vector<D>; D] = std::array::from_fn(|j| {
             let mut unit = Vector::zeros();
             unit[j] = self.penalty * self.area;
             self.part(unit)
-        };
-        let directions: [Vector<D>; D] = std::array::from_fn(direction);
-        let N = |row: usize| {
-            self.attachment[row % D]
-                .as_ref()
-                .map_or(0.0, |attachment| attachment.N()[row / D])
-        };
+        });
         let order = size * D;
-        let entry = |at: usize| N(at / order) * N(at % order) * directions[at % order % D][at / order % D];
-        Some((first, (0..order * order).map(entry).collect()))
+        let functions = (0..order).map(|row| {
+            let attachment = self.attachment[row % D].as_ref();
+            attachment.map_or(0.0, |attachment| attachment.N()[row / D])
+        });
+        let N: Vec<f64> = functions.collect();
+        let places = (0..order * order).map(|at| [at / order, at % order]);
+        let block = places.map(|[i, j]| N[i] * N[j] * directions[j % D][i % D]);
+        Some((first, block.collect()))
     }
 }
 
@@ -175,14 +174,13 @@ impl StripSums {
 
 /// What the `totals` and the lengths of a strip's points say of its contact.
 pub(super) fn contact_report(strip: usize, totals: &[f64], lengths: &[f64]) -> ContactReport {
-    let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
     let [held, _, closed, pushed, sliding, slid, dissipated] = std::array::from_fn(|k| totals[k]);
     ContactReport {
         support: strip,
         nodes: held as usize,
-        closed: share(closed, held),
-        sliding: share(sliding, pushed),
-        slip: share(slid, pushed),
+        closed: ratio(closed, held),
+        sliding: ratio(sliding, pushed),
+        slip: ratio(slid, pushed),
         dissipated,
         gap: if held > 0.0 {
             [-lengths[3], lengths[4]]

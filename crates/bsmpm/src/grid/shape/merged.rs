@@ -1,9 +1,9 @@
 //! Splines for the average of `subgrid-f-bar`, theory-manual equation (T3.4), one degree below those of the grid. They
 //! are defined on pairs of cells inside a body, and on single cells at its edges.
 
-use super::Shape;
+use super::{Patch, Shape};
 use crate::grid::paired::Paired;
-use crate::grid::{Contributions, Grid};
+use crate::grid::{Contributions, Grid, digit};
 use crate::parallel::Halo;
 use crate::stabilisation::Grouped;
 
@@ -44,19 +44,26 @@ impl<const D: usize> Merged<D> {
             "functions on pairs are kept beyond their cells"
         );
         let axes = grid.axes().each_ref().map(Paired::of);
-        let (width, n, groups) = (lower.width(), lower.offsets().len(), grouped.count());
-        let (mut offsets, mut shares) = (Vec::new(), Vec::new());
-        let digit = |k: usize, axis: usize| k / width.pow((D - 1 - axis) as u32) % width;
+        let width = lower.width();
+        let n = lower.offsets().len();
+        let groups = grouped.count();
+        let mut offsets = Vec::new();
+        let mut shares = Vec::new();
         for patch in lower.patches() {
             let cell = grid.cell_at(patch.cell);
-            let along = |k: usize, axis: usize| {
-                let paired: &Paired = &axes[axis];
-                paired.slot(paired.function(cell[axis], digit(k, axis))) - cell[axis]
-            };
-            offsets.extend((0..n).map(|k| offset(grid, |axis| along(k, axis))));
-            let share =
-                |axis: usize, (k, h): (usize, usize)| axes[axis].share(cell[axis], (digit(k, axis), digit(h, axis)));
-            shares.extend((0..n * n).map(|at| (0..D).map(|axis| share(axis, (at / n, at % n))).product::<f64>()));
+            offsets.extend((0..n).map(|k| {
+                offset(grid, |axis| {
+                    let paired: &Paired = &axes[axis];
+                    paired.slot(paired.function(cell[axis], digit::<D>(k, axis, width))) - cell[axis]
+                })
+            }));
+            for (k, h) in (0..n).flat_map(|k| (0..n).map(move |h| (k, h))) {
+                let along = (0..D).map(|axis| {
+                    let pair = digit::<D>(k, axis, width);
+                    axes[axis].share(cell[axis], pair, digit::<D>(h, axis, width))
+                });
+                shares.push(along.product::<f64>());
+            }
         }
         let mut merged = Self {
             axes,
@@ -87,16 +94,16 @@ impl<const D: usize> Merged<D> {
         let mut inside = Vec::with_capacity(self.offsets.len() * self.groups);
         for (number, patch) in lower.patches().iter().enumerate() {
             for group in 0..self.groups {
-                inside.extend(self.offsets(number).iter().map(|offset| {
+                for offset in self.offsets(number) {
                     let node = patch.first_node + offset;
                     let at = grid.node_at(node);
-                    let cells = |axis: usize| {
-                        self.axes[axis]
-                            .at_slot(at[axis])
-                            .map_or(0, |k| self.axes[axis].cells_of(k))
-                    };
-                    counts[node * self.groups + group] == (0..D).map(cells).product::<usize>() as f64
-                }));
+                    let cells = self
+                        .axes
+                        .iter()
+                        .zip(at)
+                        .map(|(axis, at)| axis.at_slot(at).map_or(0, |k| axis.cells_of(k)));
+                    inside.push(counts[node * self.groups + group] == cells.product::<usize>() as f64);
+                }
             }
         }
         inside
@@ -108,7 +115,7 @@ impl<const D: usize> Merged<D> {
     }
 
     /// r of the functions k on pairs that a patch sees and that take part, with k, and those on cells.
-    pub(crate) fn rows(&self, (patch, group): (usize, usize)) -> impl Iterator<Item = (usize, &[f64])> {
+    pub(crate) fn rows(&self, patch: usize, group: usize) -> impl Iterator<Item = (usize, &[f64])> {
         let n = self.functions;
         let inside = &self.inside[(patch * self.groups + group) * n..][..n];
         let rows = self.shares[patch * n * n..(patch + 1) * n * n].chunks_exact(n);
@@ -119,7 +126,7 @@ impl<const D: usize> Merged<D> {
     }
 
     /// rho of function `h` on the cells: what functions on pairs that do not take part would have of it.
-    pub(crate) fn rest(&self, (patch, group): (usize, usize), h: usize) -> f64 {
+    pub(crate) fn rest(&self, patch: usize, group: usize, h: usize) -> f64 {
         let n = self.functions;
         let inside = &self.inside[(patch * self.groups + group) * n..][..n];
         (0..n)
@@ -138,15 +145,17 @@ impl<const D: usize> Merged<D> {
     /// Numbers of a patch's functions on the cells, as those of all functions that are merged: of cells, and of pairs.
     pub(crate) fn spread<const C: usize, const N: usize>(
         &self,
-        at: (usize, usize),
+        patch: usize,
+        group: usize,
         block: &[[f64; C]; N],
     ) -> [[[f64; C]; N]; 2] {
-        let (mut cells, mut pairs) = (*block, [[0.0; C]; N]);
+        let mut cells = *block;
+        let mut pairs = [[0.0; C]; N];
         for (h, numbers) in cells[..self.functions].iter_mut().enumerate() {
-            let rest = self.rest(at, h);
+            let rest = self.rest(patch, group, h);
             numbers.iter_mut().for_each(|number| *number *= rest);
         }
-        for (k, row) in self.rows(at) {
+        for (k, row) in self.rows(patch, group) {
             for (share, numbers) in row.iter().zip(block) {
                 (0..C).for_each(|c| pairs[k][c] += share * numbers[c]);
             }
@@ -157,14 +166,15 @@ impl<const D: usize> Merged<D> {
     /// The transpose of [`Merged::spread`]: values of the functions on the cells that make up all.
     pub(crate) fn combine<const C: usize, const N: usize>(
         &self,
-        at: (usize, usize),
+        patch: usize,
+        group: usize,
         [mut cells, pairs]: [[[f64; C]; N]; 2],
     ) -> [[f64; C]; N] {
         for (h, numbers) in cells[..self.functions].iter_mut().enumerate() {
-            let rest = self.rest(at, h);
+            let rest = self.rest(patch, group, h);
             numbers.iter_mut().for_each(|number| *number *= rest);
         }
-        for (k, row) in self.rows(at) {
+        for (k, row) in self.rows(patch, group) {
             for (share, numbers) in row.iter().zip(&mut cells) {
                 (0..C).for_each(|c| numbers[c] += share * pairs[k][c]);
             }
@@ -173,17 +183,21 @@ impl<const D: usize> Merged<D> {
     }
 }
 
+/// Whether a patch holds points of the group.
+fn holds(patch: &Patch, grouped: Grouped<'_>, group: usize) -> bool {
+    patch.points.clone().any(|p| grouped.of(p) == group)
+}
+
 /// Per patch and group: whether all cells about it hold points of the group, too. What lies behind a face of the grid
 /// or a repeated breakpoint does not count: an edge that lies there cuts no cell.
 fn inner_cells<const D: usize>(grid: &Grid<D>, lower: &Shape<D>, grouped: Grouped<'_>, halo: &dyn Halo) -> Vec<bool> {
     let groups = grouped.count();
     let columns = lower.columns().iter().map(|column| column.column).collect();
     let mut around = Contributions::none(grid, groups, columns);
-    let holds = |patch: &super::Patch, group: usize| patch.points.clone().any(|p| grouped.of(p) == group);
     for patch in lower.patches() {
         let cell = grid.cell_at(patch.cell);
         let sums = around.patch(patch.first_node);
-        for group in (0..groups).filter(|&group| holds(patch, group)) {
+        for group in (0..groups).filter(|&group| holds(patch, grouped, group)) {
             for k in (0..3_usize.pow(D as u32)).filter(|&k| neighbour(grid, &cell, k)) {
                 // The count of cell m is kept at node m + 1, that no column's reaches below itself.
                 let offset = offset(grid, |axis| k / 3_usize.pow(axis as u32) % 3);
@@ -191,7 +205,8 @@ fn inner_cells<const D: usize>(grid: &Grid<D>, lower: &Shape<D>, grouped: Groupe
             }
         }
     }
-    let (around, own) = (halo.sum(&around), offset(grid, |_| 1));
+    let around = halo.sum(&around);
+    let own = offset(grid, |_| 1);
     let mut inner = Vec::with_capacity(lower.patches().len() * groups);
     for patch in lower.patches() {
         let cell = grid.cell_at(patch.cell);
@@ -199,7 +214,7 @@ fn inner_cells<const D: usize>(grid: &Grid<D>, lower: &Shape<D>, grouped: Groupe
             .filter(|&k| neighbour(grid, &cell, k))
             .count() as f64;
         let counts = &around[(patch.first_node + own) * groups..][..groups];
-        inner.extend((0..groups).map(|group| counts[group] == all && holds(patch, group)));
+        inner.extend((0..groups).map(|group| counts[group] == all && holds(patch, grouped, group)));
     }
     inner
 }

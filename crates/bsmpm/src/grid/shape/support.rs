@@ -47,16 +47,19 @@ impl<const D: usize, const W: usize> PointSupport<'_, D, W> {
     /// grad N_Ip of local node `k`, 1/m.
     #[inline(always)]
     pub fn gradient(&self, k: usize) -> Vector<D> {
-        let row = |axis: usize, component: usize| {
-            let a = 2 * W * axis + Self::along(k, axis);
-            self.rows[if component == axis { a + W } else { a }]
-        };
         Vector::from_fn(|component, _| {
-            let mut product = row(0, component);
+            let mut product = self.factor(k, 0, component);
             for axis in 1..D {
-                product *= row(axis, component);
+                product *= self.factor(k, axis, component);
             }
             product
         })
+    }
+
+    /// Factor along `axis` of a component of the gradient: the function of one dimension, or its derivative.
+    #[inline(always)]
+    fn factor(&self, k: usize, axis: usize, component: usize) -> f64 {
+        let a = 2 * W * axis + Self::along(k, axis);
+        self.rows[if component == axis { a + W } else { a }]
     }
 }

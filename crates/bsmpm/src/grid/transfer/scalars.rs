@@ -15,14 +15,15 @@ pub fn scalars<const D: usize, T: Clone + Send>(
     nodal: &[f64],
     found: impl Fn(usize, f64, Vector<D>) -> T + Sync,
 ) -> Vec<T> {
-    let scratch = || [[0.0; 1]; MOST_NODES];
+    let scratch = [[0.0; 1]; MOST_NODES];
     type Block = PatchBlock<1>;
     with_width!(shape.width(), W => at_points(shape, scratch, |number, block: &mut Block, out: &mut Vec<T>| {
         let patch = &shape.patches()[number];
-        gather(nodal, shape.offsets(), patch.first_node, (0, 1), block);
+        gather(nodal, shape.offsets(), patch.first_node, 0, 1, block);
         for p in patch.points.clone() {
             let support = shape.support::<W>(p);
-            let (mut value, mut gradient) = (0.0, Vector::zeros());
+            let mut value = 0.0;
+            let mut gradient = Vector::zeros();
             for (k, [at_node]) in block[..const { W.pow(D as u32) }].iter().enumerate() {
                 value += support.value(k) * at_node;
                 gradient += support.gradient(k) * *at_node;
@@ -39,9 +40,11 @@ pub fn of_scalars<const D: usize, const C: usize>(
 ) -> Contributions {
     with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut PatchBlock<C>| {
         for p in points {
-            let (support, of_point) = (shape.support::<W>(p), of_point(p));
+            let support = shape.support::<W>(p);
+            let of_point = of_point(p);
             for (k, sums) in block[..const { W.pow(D as u32) }].iter_mut().enumerate() {
-                let (value, gradient) = (support.value(k), support.gradient(k));
+                let value = support.value(k);
+                let gradient = support.gradient(k);
                 for (sum, (of_value, flux)) in sums.iter_mut().zip(&of_point) {
                     *sum += value * of_value + gradient.dot(flux);
                 }
@@ -50,12 +53,33 @@ pub fn of_scalars<const D: usize, const C: usize>(
     }))
 }
 
-/// A_hp and grad A_hp of every function of point `p`, for pair sums over a patch; how many there are.
-pub fn functions_of<const D: usize>(shape: &Shape<D>, p: usize, out: &mut [(f64, Vector<D>)]) -> usize {
+/// A function of degree q - 1 at a point.
+#[derive(Clone, Copy)]
+pub struct FunctionAtPoint<const D: usize> {
+    /// Value A_hp, -.
+    pub value: f64,
+    /// Gradient grad A_hp, 1/m.
+    pub gradient: Vector<D>,
+}
+
+impl<const D: usize> FunctionAtPoint<D> {
+    /// A function that does not reach the point.
+    pub fn zero() -> Self {
+        Self {
+            value: 0.0,
+            gradient: Vector::zeros(),
+        }
+    }
+}
+
+/// Writes every function of point `p` to `out`, for pair sums over a patch; returns how many there are.
+pub fn functions_of<const D: usize>(shape: &Shape<D>, p: usize, out: &mut [FunctionAtPoint<D>]) -> usize {
     with_width!(shape.width(), W => {
         let support = shape.support::<W>(p);
         let count = const { W.pow(D as u32) };
-        out[..count].iter_mut().enumerate().for_each(|(k, of)| *of = (support.value(k), support.gradient(k)));
+        for (k, function) in out[..count].iter_mut().enumerate() {
+            *function = FunctionAtPoint { value: support.value(k), gradient: support.gradient(k) };
+        }
         count
     })
 }

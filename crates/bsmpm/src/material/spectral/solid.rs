@@ -1,6 +1,6 @@
 //! Eigenvalues and axes of any symmetric tensor without branches, after Scherzinger and Dohrmann (2008).
 
-use super::{Turn, tangent};
+use super::{EigenvalueSum, Turn, tangent};
 use crate::real::Real;
 
 /// Vectors, one a row.
@@ -15,26 +15,43 @@ const NEWTON: usize = 3;
 
 /// Eigenvalues, as sums, of the tensor with the components XX, YY, ZZ, XY, YZ, XZ, and its axes.
 #[inline(always)]
-pub(super) fn solid<R: Real>(b: [R; 6]) -> ([(R, R); 3], Rows<R>) {
+pub(super) fn solid<R: Real>(b: [R; 6]) -> ([EigenvalueSum<R>; 3], Rows<R>) {
     let [xx, yy, zz, xy, yz, xz] = b;
     let one = xx.like(1.0);
     let far = (xx - 1.0).magnitude() + (yy - 1.0).magnitude() + (zz - 1.0).magnitude();
     let start = R::choose(far.below(xx.like(NEAR)), one, xx.like(0.0));
     let mean = ((xx - start) + (yy - start) + (zz - start)) / 3.0;
-    let (a, b, c) = (xx - yy, yy - zz, zz - xx);
+    let a = xx - yy;
+    let b = yy - zz;
+    let c = zz - xx;
     let deviator = [(a - c) / 3.0, (b - a) / 3.0, (c - b) / 3.0, xy, yz, xz];
     let n = distinct(deviator);
     let (u, v) = beside(n);
-    let (of_n, of_u, of_v) = (times(deviator, n), times(deviator, u), times(deviator, v));
-    let (uu, vv, uv) = (dot(u, of_u), dot(v, of_v), dot(u, of_v));
+    let of_n = times(deviator, n);
+    let of_u = times(deviator, u);
+    let of_v = times(deviator, v);
+    let uu = dot(u, of_u);
+    let vv = dot(v, of_v);
+    let uv = dot(u, of_v);
     let tan = tangent((uu - vv) * 0.5, uv);
     let gain = tan * uv;
     let turn = Turn::by(tan);
-    let ((ux, vx), (uy, vy), (uz, vz)) = (turn.apply(u[0], v[0]), turn.apply(u[1], v[1]), turn.apply(u[2], v[2]));
+    let (ux, vx) = turn.apply(u[0], v[0]);
+    let (uy, vy) = turn.apply(u[1], v[1]);
+    let (uz, vz) = turn.apply(u[2], v[2]);
     let sums = [
-        (start, mean + dot(n, of_n)),
-        (start, mean + (uu + gain)),
-        (start, mean + (vv - gain)),
+        EigenvalueSum {
+            start,
+            gain: mean + dot(n, of_n),
+        },
+        EigenvalueSum {
+            start,
+            gain: mean + (uu + gain),
+        },
+        EigenvalueSum {
+            start,
+            gain: mean + (vv - gain),
+        },
     ];
     (sums, [n, [ux, uy, uz], [vx, vy, vz]])
 }
@@ -42,15 +59,22 @@ pub(super) fn solid<R: Real>(b: [R; 6]) -> ([(R, R); 3], Rows<R>) {
 /// Unit axis of the most distinct eigenvalue of a deviator; of none axis x.
 #[inline(always)]
 fn distinct<R: Real>([xx, yy, zz, xy, yz, xz]: [R; 6]) -> [R; 3] {
-    let (zero, one) = (xx.like(0.0), xx.like(1.0));
+    let zero = xx.like(0.0);
+    let one = xx.like(1.0);
     let squares = xx * xx + yy * yy + zz * zz + (xy * xy + yz * yz + xz * xz) * 2.0;
     let size = (squares / 6.0).root();
     let unit = R::choose(size.below(xx.like(NONE)), zero, one / size);
-    let (x, y, z) = (xx * unit, yy * unit, zz * unit);
-    let (p, q, s) = (xy * unit, yz * unit, xz * unit);
+    let x = xx * unit;
+    let y = yy * unit;
+    let z = zz * unit;
+    let p = xy * unit;
+    let q = yz * unit;
+    let s = xz * unit;
     let half = (x * (y * z - q * q) - p * (p * z - q * s) + s * (p * q - y * s)) * 0.5;
     let root = root(half.magnitude()).signed(half);
-    let (x, y, z) = (x - root, y - root, z - root);
+    let x = x - root;
+    let y = y - root;
+    let z = z - root;
     // Of the matrix with rows (x p s), (p y q), (s q z), whose rank is 2.
     let products = [
         [y * z - q * q, q * s - p * z, p * q - y * s],

@@ -11,7 +11,8 @@ fn jacobi(b: &Symmetric) -> Symmetric {
     let [xx, yy, zz, xy, yz, xz] = b.0;
     let start = [xx, yy, zz];
     // off[k] couples the two axes other than k; gain is what the rotations have added to the diagonal.
-    let (mut off, mut gain) = ([yz, xz, xy], [0.0; 3]);
+    let mut off = [yz, xz, xy];
+    let mut gain = [0.0; 3];
     let mut axis = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for _ in 0..SWEEPS {
         for (p, q, k) in [(0, 1, 2), (1, 2, 0), (0, 2, 1)] {
@@ -25,7 +26,10 @@ fn jacobi(b: &Symmetric) -> Symmetric {
             (axis[p], axis[q]) = (pair.map(|x| x.0), pair.map(|x| x.1));
         }
     }
-    let sums = [0, 1, 2].map(|k| (start[k], gain[k]));
+    let sums = [0, 1, 2].map(|k| EigenvalueSum {
+        start: start[k],
+        gain: gain[k],
+    });
     let spectrum = Spectrum::of_sums(sums, Axes::Solid(axis)).expect("positive definite");
     spectrum.assemble(spectrum.eps)
 }
@@ -64,7 +68,8 @@ fn the_strain_is_that_of_jacobi_rotations() {
                 ] {
                     let b = turned(values.map(|value| size * value), turn);
                     let spectrum = Spectrum::of(&b).expect("positive definite");
-                    let (found, exact) = (spectrum.assemble(spectrum.eps), jacobi(&b));
+                    let found = spectrum.assemble(spectrum.eps);
+                    let exact = jacobi(&b);
                     let apart = largest((0..6).map(|k| found.0[k] - exact.0[k]));
                     worst = worst.max(apart / largest(exact.0));
                 }

@@ -26,11 +26,15 @@ impl Measured {
             return [[last[1], 0.0], [last[2], 0.0]];
         };
         let from = &self.rows[above - 1];
-        let (length, t) = (to[0] - from[0], (s - from[0]) / (to[0] - from[0]));
+        let length = to[0] - from[0];
+        let t = (s - from[0]) / (to[0] - from[0]);
         [0, 1].map(|of| {
-            let (a, b) = (from[of + 1], to[of + 1]);
-            let (da, db) = (self.slopes[above - 1][of] * length, self.slopes[above][of] * length);
-            let (square, cube) = (3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db);
+            let a = from[of + 1];
+            let b = to[of + 1];
+            let da = self.slopes[above - 1][of] * length;
+            let db = self.slopes[above][of] * length;
+            let square = 3.0 * (b - a) - 2.0 * da - db;
+            let cube = 2.0 * (a - b) + da + db;
             [
                 a + t * (da + t * (square + t * cube)),
                 (da + t * (2.0 * square + 3.0 * t * cube)) / length,
@@ -44,23 +48,27 @@ impl Measured {
 fn slope_at(rows: &[[f64; 3]], k: usize, of: usize) -> f64 {
     let length = |k: usize| rows[k + 1][0] - rows[k][0];
     let chord = |k: usize| (rows[k + 1][of] - rows[k][of]) / length(k);
-    let end = |near: usize, next: usize| {
-        let (a, b) = (length(near), length(next));
-        let slope = ((2.0 * a + b) * chord(near) - a * chord(next)) / (a + b);
-        slope.clamp(3.0 * chord(near), 0.0)
-    };
     match (k, rows.len() - 1 - k) {
         (0, 1) => chord(0),
         (1, 0) => chord(0),
-        (0, _) => end(0, 1),
-        (_, 0) => end(k - 1, k - 2),
+        (0, _) => slope_at_end([length(0), length(1)], [chord(0), chord(1)]),
+        (_, 0) => slope_at_end([length(k - 1), length(k - 2)], [chord(k - 1), chord(k - 2)]),
         _ => {
-            let (a, b) = (chord(k - 1), chord(k));
+            let a = chord(k - 1);
+            let b = chord(k);
             if a * b <= 0.0 {
                 return 0.0;
             }
-            let (wa, wb) = (length(k - 1) + 2.0 * length(k), 2.0 * length(k - 1) + length(k));
+            let wa = length(k - 1) + 2.0 * length(k);
+            let wb = 2.0 * length(k - 1) + length(k);
             (wa + wb) / (wa / a + wb / b)
         }
     }
+}
+
+/// Slope of a parabola at its end, of the lengths a, b and the chords of the two intervals next to it; limited so that
+/// it keeps the sense.
+fn slope_at_end([a, b]: [f64; 2], [near, next]: [f64; 2]) -> f64 {
+    let slope = ((2.0 * a + b) * near - a * next) / (a + b);
+    slope.clamp(3.0 * near, 0.0)
 }

@@ -161,18 +161,20 @@ impl<const C: usize> System<C> {
     /// What the only rank finds with so many threads.
     pub fn on_threads(&self, threads: usize) -> Vec<f64> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| self.solution((0, Precision::Single), &wires(1, 1).remove(0)))
+        pool.install(|| self.solution(0, Precision::Single, &wires(1, 1).remove(0)))
     }
 
     /// What `rank` finds at the nodes of its window, after a first factorisation of another matrix in the other
     /// precision.
-    fn solution(&self, (rank, precision): (usize, Precision), wire: &Wire) -> Vec<f64> {
-        let (grid, free, rhs) = (self.window(rank), self.free(), self.rhs());
+    fn solution(&self, rank: usize, precision: Precision, wire: &Wire) -> Vec<f64> {
+        let grid = self.window(rank);
+        let free = self.free();
+        let rhs = self.rhs();
         let components = self.components(&grid);
         let free: Vec<bool> = components.iter().map(|&component| free[component]).collect();
         let rhs: Vec<f64> = components.iter().map(|&component| rhs[component]).collect();
         let mut direct = Dissection::default();
-        direct.plan::<2, C>(wire, (&self.slabs, rank), &grid, &free);
+        direct.plan::<2, C>(wire, &self.slabs, rank, &grid, &free);
         let mut stencil = Stencil::<2, C>::new(&grid);
         stencil.keep(|_| true);
         let other = if precision == Precision::Double {
@@ -190,7 +192,7 @@ impl<const C: usize> System<C> {
             }
             assert!(direct.factorise(wire, precision, &stencil, 3.0));
         }
-        let owned = grid.nodes_within(&self.slabs.owned(rank, (grid.order(), &grid.room()[1])));
+        let owned = grid.nodes_within(&self.slabs.owned(rank, grid.order(), &grid.room()[1]));
         let is_owned = |component: usize| owned.iter().any(|run| run.contains(&Nodal::<C>::node(component)));
         let mut solution = vec![f64::NAN; rhs.len()];
         direct.solve(wire, is_owned, &rhs, &mut solution);
@@ -231,7 +233,7 @@ impl<const C: usize> System<C> {
             let threads: Vec<_> = wires(ranks, delay)
                 .into_iter()
                 .enumerate()
-                .map(|(rank, wire)| scope.spawn(move || self.solution((rank, precision), &wire)))
+                .map(|(rank, wire)| scope.spawn(move || self.solution(rank, precision, &wire)))
                 .collect();
             threads.into_iter().map(|thread| thread.join().unwrap()).collect()
         })
