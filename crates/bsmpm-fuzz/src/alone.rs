@@ -1,13 +1,13 @@
 //! Runs a case on one rank, without MPI and PETSc, for the fuzz targets.
 
 use crate::solver::Skyline;
-use bsmpm::background::Resisted;
+use bsmpm::background::ResistedDisplacement;
 use bsmpm::error::{SolveError, StepError};
 use bsmpm::initial;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Model;
 use bsmpm::parallel::Backend;
-use bsmpm::parallel::{Alone, Krylov, LinearSolver, Solved, Symmetry};
+use bsmpm::parallel::{Alone, Krylov, LinearSolver, SolveReport, Symmetry};
 use bsmpm::points::Points;
 use bsmpm::schedule::TimeInterval;
 use bsmpm::step::{Counts, StepReport, step};
@@ -77,7 +77,7 @@ impl SerialRun {
             &mut self.points,
             &mut self.guess,
             TimeInterval { start: t, dt },
-            Resisted::Displacement,
+            ResistedDisplacement::Displacement,
             &mut Backend {
                 halo: &self.halo,
                 solver: &mut self.solver,
@@ -91,22 +91,22 @@ impl SerialRun {
 struct TrustedSolver(Skyline);
 
 impl LinearSolver for TrustedSolver {
-    fn begin(&mut self, free: &[bool]) {
-        self.0.begin(free);
+    fn reinit(&mut self, free: &[bool]) {
+        self.0.reinit(free);
     }
-    fn add(&mut self, first_node: usize, block: &[f64]) {
-        self.0.add(first_node, block);
+    fn add_block(&mut self, first_node: usize, block: &[f64]) {
+        self.0.add_block(first_node, block);
     }
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
-        self.0.add_among(nodes, block);
+    fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
+        self.0.add_block_among(nodes, block);
     }
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         self.0.add_diagonal(diagonal);
     }
-    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
-        self.0.finish(symmetry)
+    fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
+        self.0.factorise(symmetry)
     }
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         let solved = self.0.solve(rhs, solution)?;
         finite(solution).map(|()| solved)
     }

@@ -2,10 +2,11 @@
 
 use crate::draw;
 use arbitrary::{Result, Unstructured};
+use bsmpm::material::Moduli;
 use bsmpm::material::Strength;
 use bsmpm::material::{
-    CamClay, Decay, DruckerPrager, Elastic, Graded, Hencky, Law, Match, Material, MohrCoulomb, MuI, Profile, Response,
-    Separation, SofteningMohrCoulomb, VonMises,
+    CamClay, Decay, DruckerPrager, Elastic, GradedLaw, Hencky, Law, Match, Material, MohrCoulomb, MuI, Profile,
+    Response, Separation, SofteningMohrCoulomb, VonMises,
 };
 use bsmpm::tensor::{Symmetric, Tensor};
 use nalgebra::{Rotation3, Vector3};
@@ -28,7 +29,7 @@ fn draw(u: &mut Unstructured<'_>) -> Result<()> {
     let mut state = vec![0.0; material.state().len()];
     if !material.is_linear() {
         // A stress at the start: any pressure.
-        material.start([-draw::size(u, -3.0, 9.0)?; 3], &mut state);
+        material.initial_state([-draw::size(u, -3.0, 9.0)?; 3], &mut state);
     }
     while !u.is_empty() {
         let trial = trial(u)?;
@@ -94,7 +95,7 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
     }
     let young = Profile::constant(law.elastic().young);
     let parameters = law.parameters().into_iter().map(Profile::constant).collect();
-    Ok(Graded::new(&law, young, parameters, 0.0..1.0, reduction).at(draw::fraction(u)?))
+    Ok(GradedLaw::new(&law, young, parameters, 0.0..1.0, reduction).at(draw::fraction(u)?))
 }
 
 /// A strength that falls from its peak, or rises to it.
@@ -122,7 +123,7 @@ fn mu_i(u: &mut Unstructured<'_>, elastic: Elastic, friction: f64) -> Result<Mat
     let [diameter, density] = [draw::size(u, -9.0, 3.0)?, draw::size(u, -3.0, 6.0)?];
     let law = MuI::new(elastic, [friction, fast, i_0, diameter, density]);
     Ok(Material::MuI(
-        law.over(draw::size(u, -12.0, 6.0)?)
+        law.at_time_step(draw::size(u, -12.0, 6.0)?)
             .filter(|_| u.ratio(3, 4).unwrap_or(true))
             .unwrap_or(law),
     ))
@@ -194,23 +195,23 @@ fn check(material: &Material, trial: &Symmetric, response: &Response, state: &[f
         // Sheared at a rate it lies beyond its surface at rest, and within that of the fastest shear.
         let mut parameters = law.parameters();
         parameters[0] = parameters[1];
-        let fastest = material.with(law.elastic().clone(), &parameters);
+        let fastest = material.with_parameters(law.elastic().clone(), &parameters);
         // Of a pressure that is a small difference of large moduli no more is left than their rounding.
-        let (lambda, mu) = material.elastic().lame();
+        let Moduli { lambda, mu } = material.elastic().moduli();
         let strain = response
             .principal_eps_e()
             .iter()
             .fold(0.0_f64, |most, eps| most.max(eps.abs()));
         let rounding = 32.0 * f64::EPSILON * (3.0 * lambda.abs() + 2.0 * mu) * strain;
         assert!(
-            fastest.excess(principal, state) <= SAME * scale + rounding,
+            fastest.yield_function(principal, state) <= SAME * scale + rounding,
             "yield: {}",
             context()
         );
         return;
     }
     assert!(
-        material.excess(principal, state) <= SAME * scale,
+        material.yield_function(principal, state) <= SAME * scale,
         "yield: {}",
         context()
     );
@@ -220,7 +221,7 @@ fn check(material: &Material, trial: &Symmetric, response: &Response, state: &[f
 /// Size of the terms of the yield function, Pa.
 fn yield_scale(material: &Material, [first, second, third]: [f64; 3], state: &[f64]) -> f64 {
     let strength = if material.yields() {
-        material.excess([0.0; 3], state).abs()
+        material.yield_function([0.0; 3], state).abs()
     } else {
         0.0
     };
@@ -241,7 +242,7 @@ fn second_return(material: &Material, response: &Response, scale: f64, state: &[
     } else {
         scale / material.parameters()[0]
     };
-    let (lambda, mu) = material.elastic().lame();
+    let Moduli { lambda, mu } = material.elastic().moduli();
     let stiffness = 3.0 * (lambda.abs() + bulk) + 2.0 * mu;
     if !material.is_linear() && 32.0 * f64::EPSILON * condition * stiffness > SAME * scale {
         return;

@@ -24,7 +24,7 @@ const ENDINGS: [&str; 7] = ["csv", "pvd", "vtu", "vtkhdf", "png", "h5", "json"];
 
 /// What becomes of a run that is there already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Existing {
+pub enum ExistingRunPolicy {
     /// The directory is refused.
     Refuse,
     /// The files that its `run.json` names are deleted (`--force`).
@@ -73,19 +73,19 @@ impl OutputDirectory {
     /// Puts the first manifest of a new run there.
     ///
     /// # Errors
-    /// [`Error::Occupied`] by another run; with [`Existing::Delete`] only if there is a file of a run that no
+    /// [`Error::Occupied`] by another run; with [`ExistingRunPolicy::Delete`] only if there is a file of a run that no
     /// `run.json` names. [`Error::UnsafeOutput`] if the older `run.json` names what no run of ours wrote: nothing is
     /// deleted then. [`Error::Directory`] if it cannot be written to.
-    pub fn claim(mut self, existing: Existing, first: &Manifest) -> Result<Self, Error> {
+    pub fn claim(mut self, existing: ExistingRunPolicy, first: &Manifest) -> Result<Self, Error> {
         let path = &self.path;
         let held = run_files(path).map_err(Error::directory("read", path))?;
         match (held.first(), existing) {
             (None, _) => {}
-            (Some(found), Existing::Refuse) => {
+            (Some(found), ExistingRunPolicy::Refuse) => {
                 let advice = "Continue that run with `--restart auto`, replace it with `--force`, or choose another directory with `-o`";
                 return Err(occupied(path, found, advice));
             }
-            (Some(_), Existing::Delete) => delete_run(path, &held)?,
+            (Some(_), ExistingRunPolicy::Delete) => delete_run(path, &held)?,
         }
         first.write(path).map_err(|error| match error {
             Error::File { source, .. } => Error::directory("write to", path)(source),

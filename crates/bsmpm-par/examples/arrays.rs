@@ -1,7 +1,7 @@
 //! Prints hashes of a checkpoint's arrays and other state, to compare runs: `arrays FILE`.
 
 use bsmpm::points::Points;
-use bsmpm_par::checkpoint::{CheckpointState, Opened, Refusal, Wanted, find};
+use bsmpm_par::checkpoint::{CheckpointChoice, CheckpointState, OpenCheckpoint, Refusal, find};
 use bsmpm_par::launch;
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
@@ -25,9 +25,9 @@ fn main() -> ExitCode {
 
 fn print(universe: &Universe, file: &Path) -> Result<(), Refusal> {
     let hdf5 = Hdf5::initialize(universe).expect("HDF5 starts");
-    let (found, _) = find(&universe.world(), Wanted::Named(file))?;
+    let (found, _) = find(&universe.world(), CheckpointChoice::Named(file))?;
     let found = found.expect("a checkpoint that is named is found or refused");
-    let opened = Opened::new(&hdf5, universe.world(), &found)?;
+    let opened = OpenCheckpoint::new(&hdf5, universe.world(), &found)?;
     let law_state = found
         .record
         .arrays

@@ -7,7 +7,7 @@
 use bsmpm::points::{Points, Seed};
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
 use bsmpm_io::checkpoint::{Facts, Phase, Store};
-use bsmpm_par::checkpoint::{self, Contents, Opened, Refusal, Wanted};
+use bsmpm_par::checkpoint::{self, CheckpointChoice, Contents, OpenCheckpoint, Refusal};
 use bsmpm_par::launch;
 use hdf5_collective::Hdf5;
 use mpi::environment::Universe;
@@ -32,8 +32,18 @@ fn main() -> ExitCode {
         ["storm", directory, points] => {
             (1..).try_for_each(|step| write(&universe, &hdf5, directory, number(points), step, None))
         }
-        ["newest", folder, points] => read(&universe, &hdf5, Wanted::Newest(Path::new(folder)), number(points)),
-        ["named", file, points] => read(&universe, &hdf5, Wanted::Named(Path::new(file)), number(points)),
+        ["newest", folder, points] => read(
+            &universe,
+            &hdf5,
+            CheckpointChoice::Newest(Path::new(folder)),
+            number(points),
+        ),
+        ["named", file, points] => read(
+            &universe,
+            &hdf5,
+            CheckpointChoice::Named(Path::new(file)),
+            number(points),
+        ),
         _ => panic!("no task: {arguments:?}"),
     };
     let Err(refusal) = done else { return ExitCode::SUCCESS };
@@ -93,7 +103,7 @@ fn write(
     checkpoint::write(hdf5, &world, store.as_ref(), &facts, &contents, &strike).map(|_| ())
 }
 
-fn read(universe: &Universe, hdf5: &Hdf5<'_>, wanted: Wanted<'_>, count: u64) -> Result<(), Refusal> {
+fn read(universe: &Universe, hdf5: &Hdf5<'_>, wanted: CheckpointChoice<'_>, count: u64) -> Result<(), Refusal> {
     let world = universe.world();
     let (found, passed_over) = checkpoint::find(&world, wanted)?;
     passed_over
@@ -113,7 +123,7 @@ fn read(universe: &Universe, hdf5: &Hdf5<'_>, wanted: Wanted<'_>, count: u64) ->
         .map_or(0, |array| array.width as usize);
     let names: Vec<&str> = found.record.arrays.iter().map(|array| array.name.as_str()).collect();
     let mut held = Points::<2>::holding(&names, law_state);
-    let opened = Opened::new(hdf5, universe.world(), &found)?;
+    let opened = OpenCheckpoint::new(hdf5, universe.world(), &found)?;
     let text = opened.state()?;
     opened.points(held.named_columns())?;
     let layers = 2 * found.record.ranks as usize;

@@ -7,7 +7,7 @@ mod sanity;
 mod state;
 mod write;
 
-pub use read::{Opened, Wanted, find};
+pub use read::{CheckpointChoice, OpenCheckpoint, find};
 pub use refusal::Refusal;
 pub(crate) use refusal::{agree, broadcast};
 pub(crate) use sanity::require;

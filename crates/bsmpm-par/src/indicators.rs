@@ -11,7 +11,7 @@ pub use report::{acceptance, description, line};
 use crate::log::short;
 use crate::record::Recorder;
 use crate::setup;
-use bsmpm::energy::{Budget, Stored};
+use bsmpm::energy::{EnergyBound, StoredEnergy};
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::{Model, Regime};
@@ -111,7 +111,7 @@ impl IndicatorState {
         points: &Points<D>,
         t: f64,
         recorder: &Recorder<D>,
-        budget: Option<Budget>,
+        budget: Option<EnergyBound>,
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
         let defect = quadrature::defect(model, points, halo);
@@ -123,7 +123,7 @@ impl IndicatorState {
             .fold(0.0, f64::max);
         let noise = relative_pressure_noise(&model.grid, points, model.weighting, young, halo)?;
         let energy = recorder.books().map(|books| {
-            let now = Stored::of(model, points, t, halo);
+            let now = StoredEnergy::of(model, points, t, halo);
             let numbers = [
                 books.flows.external.abs(),
                 books.flows.plastic,
@@ -133,7 +133,7 @@ impl IndicatorState {
             let so_far = budget.map_or(f64::MIN_POSITIVE, |budget| budget.largest);
             let largest = numbers.into_iter().fold(so_far, f64::max);
             Energy {
-                closure: books.closure(now).abs() / largest,
+                closure: books.residual(now).abs() / largest,
                 loss: books.flows.numerical() / largest,
             }
         });

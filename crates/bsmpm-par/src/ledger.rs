@@ -8,7 +8,7 @@ pub(crate) use first::versions;
 
 use crate::cli::Arguments;
 use crate::restart::FreshStart;
-use bsmpm::control::Accepted;
+use bsmpm::control::AcceptedStep;
 use bsmpm::error::Measures;
 use bsmpm::method::Criteria;
 use bsmpm::method::Method;
@@ -29,7 +29,7 @@ use bsmpm_scene::Case;
 use bsmpm_scene::surfaces;
 
 /// The open files of a run, and what its manifest will say.
-pub struct Ledger {
+pub struct RunWriter {
     directory: OutputDirectory,
     manifest: Manifest,
     columns: Vec<TableColumn>,
@@ -99,7 +99,7 @@ impl Headings {
     }
 }
 
-impl Ledger {
+impl RunWriter {
     /// A new run in a directory that is held.
     pub fn open(
         held: OutputDirectory,
@@ -219,7 +219,7 @@ impl Ledger {
     }
 
     /// A row of `steps.csv`, its share of the totals, and the rows of its iterations where they are wanted.
-    pub fn step(&mut self, number: u64, accepted: &Accepted, cost: Cost, wall: f64) -> Result<(), Error> {
+    pub fn step(&mut self, number: u64, accepted: &AcceptedStep, cost: Cost, wall: f64) -> Result<(), Error> {
         let report = &accepted.report;
         self.manifest.summary.steps = number;
         self.attempts(accepted.rejected.len(), accepted.counts);
@@ -353,7 +353,7 @@ impl Ledger {
     }
 
     /// The rows of `residuals.csv`, if there is one.
-    fn residuals(&mut self, step: u64, accepted: &Accepted) -> Result<(), Error> {
+    fn residuals(&mut self, step: u64, accepted: &AcceptedStep) -> Result<(), Error> {
         let Some(table) = &mut self.residuals else {
             return Ok(());
         };

@@ -2,7 +2,7 @@
 
 use crate::cli::{Arguments, LogFormat, ProgressForm};
 use crate::launch;
-use bsmpm::control::Accepted;
+use bsmpm::control::AcceptedStep;
 use bsmpm::error::StepError;
 use bsmpm_messages::{code_of, headed};
 use bsmpm_scene::Case;
@@ -79,7 +79,7 @@ impl Log {
     }
 
     /// One accepted step, its number and the seconds since the start.
-    pub fn step(&mut self, number: u64, accepted: &Accepted, wall: f64) {
+    pub fn step(&mut self, number: u64, accepted: &AcceptedStep, wall: f64) {
         self.rejected(number, &accepted.rejected);
         let report = &accepted.report;
         let done = accepted.t / self.end;

@@ -5,7 +5,7 @@ mod reported;
 
 use crate::checkpoint::{BooksForm, Outlet, RecordState, Row};
 use crate::gather::shown;
-use bsmpm::energy::{Books, Stored};
+use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
@@ -17,7 +17,7 @@ use bsmpm::step::outflow::Outflow;
 use bsmpm::tensor::Vector;
 use bsmpm::water::observed::PoreWater;
 use bsmpm_scene::model::vector;
-use bsmpm_scene::surfaces::{self, DrainPlace, Gauge};
+use bsmpm_scene::surfaces::{self, DrainPlace, FootingMonitor};
 use bsmpm_scene::words::Measurement;
 use bsmpm_scene::{Case, GridSpec, History, Made, Quantity, Stage};
 use place::{
@@ -36,9 +36,9 @@ pub struct Recorder<const D: usize> {
     empty: Vec<usize>,  // those in whose box no point was at the last row
     followed: Vec<Option<u64>>,
     reacting: Vec<Option<usize>>, // strip whose force a reaction is
-    gauge: Option<Gauge>,
-    drains: Vec<DrainPlace>, // where the physics has each
-    books: Option<Books>,    // of energy, opened by the first row
+    gauge: Option<FootingMonitor>,
+    drains: Vec<DrainPlace>,       // where the physics has each
+    books: Option<EnergyAccounts>, // of energy, opened by the first row
     left: Outlet,
     work: Vec<f64>,  // J/m, of every strip; empty where no history wants it
     datum: Vec<Row>, // m, deg: of every history's displacement when they were last set to zero, if they ever were
@@ -96,7 +96,7 @@ impl<const D: usize> Recorder<D> {
             empty: Vec::new(),
             followed: state.followed,
             reacting: reacting.collect(),
-            gauge: Gauge::of(case),
+            gauge: FootingMonitor::of(case),
             drains: surfaces::drain_places(case),
             books: state.books.map(|BooksForm(books)| books),
             datum: state.datum,
@@ -194,12 +194,12 @@ impl<const D: usize> Recorder<D> {
     }
 
     /// Enters what a stage has changed the energy of the points by.
-    pub fn exchange(&mut self, before: Stored, after: Stored) {
+    pub fn exchange(&mut self, before: StoredEnergy, after: StoredEnergy) {
         self.books.iter_mut().for_each(|books| books.exchange(before, after));
     }
 
     /// The books of energy, if they are kept.
-    pub fn books(&self) -> Option<&Books> {
+    pub fn books(&self) -> Option<&EnergyAccounts> {
         self.books.as_ref()
     }
 
@@ -427,8 +427,8 @@ impl<const D: usize> Recorder<D> {
         report: &StepReport,
         halo: &dyn Halo,
     ) -> Vec<f64> {
-        let now = Stored::of(model, points, t, halo);
-        let books = self.books.get_or_insert_with(|| Books::open(now));
+        let now = StoredEnergy::of(model, points, t, halo);
+        let books = self.books.get_or_insert_with(|| EnergyAccounts::open(now));
         if let Some(step) = report.energy {
             books.flows += step;
         }
@@ -447,7 +447,7 @@ impl<const D: usize> Recorder<D> {
             flows.external,
             flows.numerical(),
         ];
-        whole.into_iter().chain(parts).chain([books.closure(now)]).collect()
+        whole.into_iter().chain(parts).chain([books.residual(now)]).collect()
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod there;
 
-use crate::checkpoint::{self, CheckpointState, Opened, Refusal, Wanted, agree, broadcast, find};
+use crate::checkpoint::{self, CheckpointChoice, CheckpointState, OpenCheckpoint, Refusal, agree, broadcast, find};
 use crate::cli::{Arguments, Restart};
 use bsmpm::boundary::Surface;
 use bsmpm::control::Stepper;
@@ -13,7 +13,7 @@ use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm_io::checkpoint::{FOLDER, FoundCheckpoint};
-use bsmpm_io::directory::{Existing, OutputDirectory};
+use bsmpm_io::directory::{ExistingRunPolicy, OutputDirectory};
 use bsmpm_io::exit;
 use bsmpm_io::manifest;
 use bsmpm_ranks::load;
@@ -54,7 +54,7 @@ impl RunStart<'_> {
 #[derive(Clone, Debug)]
 pub struct FreshStart {
     /// What becomes of a run that is there.
-    pub existing: Existing,
+    pub existing: ExistingRunPolicy,
     /// How often it has been started before, on the first rank.
     pub restarts: Vec<manifest::ManifestRestart>,
     /// What is to be reported, on the first rank.
@@ -64,7 +64,7 @@ pub struct FreshStart {
 impl Default for FreshStart {
     fn default() -> Self {
         Self {
-            existing: Existing::Refuse,
+            existing: ExistingRunPolicy::Refuse,
             restarts: Vec::new(),
             warnings: Vec::new(),
         }
@@ -83,7 +83,7 @@ pub struct ResumedRun<'h> {
     pub warnings: Vec<String>,
     /// Where the run went on before, on the first rank.
     pub restarts: Vec<manifest::ManifestRestart>,
-    opened: Opened<'h>,
+    opened: OpenCheckpoint<'h>,
 }
 
 /// Decides how the run starts, with everything verified that it starts from. `held` is the first rank's. Collective.
@@ -101,9 +101,9 @@ pub fn plan<'h>(
     let world = universe.world();
     let Some(restart) = &arguments.restart else {
         let existing = if arguments.force {
-            Existing::Delete
+            ExistingRunPolicy::Delete
         } else {
-            Existing::Refuse
+            ExistingRunPolicy::Refuse
         };
         return Ok(RunStart::New(FreshStart {
             existing,
@@ -128,8 +128,8 @@ pub fn plan<'h>(
     }
     let folder = arguments.directory().join(FOLDER);
     let (found, passed_over) = match restart {
-        Restart::From(file) => find(&world, Wanted::Named(file))?,
-        Restart::Auto => find(&world, Wanted::Newest(&folder))?,
+        Restart::From(file) => find(&world, CheckpointChoice::Named(file))?,
+        Restart::Auto => find(&world, CheckpointChoice::Newest(&folder))?,
     };
     let Some(found) = found else {
         let afresh = held.map_or_else(
@@ -159,7 +159,7 @@ fn resume<'h>(
     restarts: Vec<manifest::ManifestRestart>,
     case: &Case,
 ) -> Result<RunStart<'h>, Refusal> {
-    let opened = Opened::new(hdf5, universe.world(), &found)?;
+    let opened = OpenCheckpoint::new(hdf5, universe.world(), &found)?;
     let state = CheckpointState::parse(&found.path, &opened.state()?)?;
     let past = &state.files.manifest;
     let changed = there::admissible(&format!("checkpoint `{}`", found.path.display()), past, case)?;

@@ -13,10 +13,10 @@ mod summary;
 use crate::cli::Arguments;
 use crate::fault::Fault;
 use crate::launch;
-use crate::ledger::Ledger;
+use crate::ledger::RunWriter;
 use crate::log::Log;
 use crate::record::Recorder;
-use bsmpm::control::Accepted;
+use bsmpm::control::AcceptedStep;
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::parallel::Halo;
@@ -59,7 +59,7 @@ pub struct RunFiles<'p> {
     /// HDF5, initialised.
     pub hdf5: &'p Hdf5<'p>,
     /// Files of the run, on rank 0.
-    pub ledger: Option<Ledger>,
+    pub ledger: Option<RunWriter>,
     /// Messages on the terminal.
     pub log: Log,
 }
@@ -72,7 +72,7 @@ pub struct Run<'p, K, const D: usize> {
     fault: Option<Fault>,
     simulation: Simulation<'p, K, D>,
     recorder: Recorder<D>,
-    ledger: Option<Ledger>, // on rank 0
+    ledger: Option<RunWriter>, // on rank 0
     log: Log,
     timers: Rc<Timers>,
     start: Instant,
@@ -125,7 +125,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         let start = Instant::now();
         let frame_times = bsmpm_scene::model::frame_times(&case);
         let last_frame = before.last_frame;
-        let has_gaps = ledger.as_ref().is_some_and(Ledger::has_gaps);
+        let has_gaps = ledger.as_ref().is_some_and(RunWriter::has_gaps);
         let newest = (before.resumed && !before.is_branch).then(|| simulation.steps());
         let saving = SaveTimes::new(newest, before.is_branch || has_gaps, simulation.steps());
         Self {
@@ -216,7 +216,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
     }
 
     /// Fails on all ranks if a stage that begins then cannot.
-    fn accept(&mut self, accepted: &Accepted) -> Result<(), StepError> {
+    fn accept(&mut self, accepted: &AcceptedStep) -> Result<(), StepError> {
         let step = self.simulation.steps();
         let wall = self.wall();
         self.log.step(step, accepted, wall);

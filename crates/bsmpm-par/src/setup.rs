@@ -1,9 +1,9 @@
 //! Sets up grid division, initial stress and linear solver.
 
 use bsmpm::error::StepError;
-use bsmpm::initial::{Equilibrium, Settling};
+use bsmpm::initial::{Equilibrium, EquilibriumSearch};
 use bsmpm::kinematics::Kinematics;
-use bsmpm::model::Weighting;
+use bsmpm::model::AverageWeight;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::smooth;
 use bsmpm::tensor::Vector;
@@ -28,7 +28,7 @@ pub struct Cut {
 }
 
 /// A state at the start, and what leading it to equilibrium took, if the case wants that.
-pub type Start = (Equilibrium, Option<Settling>);
+pub type Start = (Equilibrium, Option<EquilibriumSearch>);
 
 /// Gives the points the stress that the case wants at the start, and reports how well it is balanced.
 pub fn start<K: Kinematics<D>, const D: usize>(
@@ -129,7 +129,7 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::M
         ));
     }
     choices.extend(linear_choices(case, &linear(case, ranks, options), ranks));
-    if weighting(case) == Weighting::Volume {
+    if weighting(case) == AverageWeight::Volume {
         choices.push(choice(
             "weights of averages",
             "volume",

@@ -84,12 +84,12 @@ fn measure(solver: &mut dyn LinearSolver, grid: &Grid<2>, halo: &dyn Halo, nu: f
     let mut spent = Vec::new();
     for _ in 0..2 {
         let mut start = 0.0;
-        solver.begin(&free);
+        solver.reinit(&free);
         for (cell, block) in blocks.iter().enumerate() {
-            solver.add(grid.first_node(&grid.cell_at(cell)), block);
+            solver.add_block(grid.first_node(&grid.cell_at(cell)), block);
         }
         start += cpu_seconds();
-        solver.finish(Symmetry::Definite).expect("a factorisation");
+        solver.factorise(Symmetry::Definite).expect("a factorisation");
         spent.push(cpu_seconds() - start);
     }
     let before = grid.layers().start * grid.layer_nodes() * 2;
@@ -112,8 +112,8 @@ fn measure(solver: &mut dyn LinearSolver, grid: &Grid<2>, halo: &dyn Halo, nu: f
     }
     spent.push((cpu_seconds() - start) / SOLVES as f64);
     let mut unknowns = [halo.owned().places::<2>().filter(|&c| free[c]).count() as f64];
-    halo.reduce(&mut unknowns);
-    halo.maximum(&mut spent);
+    halo.all_reduce_sum(&mut unknowns);
+    halo.all_reduce_max(&mut spent);
     let memory = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let peak = memory
         .lines()

@@ -264,7 +264,7 @@ impl Halo for MpiHalo {
         self.owned
     }
 
-    fn sum(&self, contributions: &Contributions) -> Vec<f64> {
+    fn assemble_ghosts(&self, contributions: &Contributions) -> Vec<f64> {
         if self.neighbours.is_empty() {
             return contributions.alone();
         }
@@ -291,7 +291,7 @@ impl Halo for MpiHalo {
         nodal
     }
 
-    fn share(&self, nodal: &mut [f64], width: usize) {
+    fn update_ghosts(&self, nodal: &mut [f64], width: usize) {
         if self.neighbours.is_empty() {
             return;
         }
@@ -307,11 +307,11 @@ impl Halo for MpiHalo {
         }
     }
 
-    fn max(&self, nodal: &mut [f64], width: usize) {
+    fn ghost_max(&self, nodal: &mut [f64], width: usize) {
         self.combine(TrafficKind::HaloMax, nodal, width, f64::max);
     }
 
-    fn reduce(&self, numbers: &mut [f64]) {
+    fn all_reduce_sum(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
         let own = [&*numbers, &self.requests.share()].concat();
         self.timers
@@ -326,7 +326,7 @@ impl Halo for MpiHalo {
         self.requests.agree(requested);
     }
 
-    fn total(&self, sums: &[Exact]) -> Vec<f64> {
+    fn reproducible_sum(&self, sums: &[Exact]) -> Vec<f64> {
         let _timed = self.timers.time("reduction");
         let mut own: Vec<i64> = sums.iter().flat_map(|sum| sum.words()).copied().collect();
         own.extend(self.requests.share().map(|count| count as i64));
@@ -344,7 +344,7 @@ impl Halo for MpiHalo {
             .collect()
     }
 
-    fn maximum(&self, numbers: &mut [f64]) {
+    fn all_reduce_max(&self, numbers: &mut [f64]) {
         let _timed = self.timers.time("reduction");
         let own = numbers.to_vec();
         self.timers

@@ -20,7 +20,7 @@ use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
 use bsmpm::nodal::Nodal;
-use bsmpm::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
+use bsmpm::parallel::{Halo, Krylov, LinearSolver, SolveReport, Symmetry};
 use cycles::CycleSystem;
 use direct::StiffnessOperator;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
@@ -135,7 +135,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
             next += 1;
             numbers[component] = next as f64;
         }
-        self.halo.share(&mut numbers, C);
+        self.halo.update_ghosts(&mut numbers, C);
         self.numbers = numbers
             .iter()
             .map(|&number| (number > 0.0).then(|| number as usize - 1))
@@ -148,7 +148,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
             self.number();
         }
         let halo = Rc::clone(&self.halo);
-        self.stencil.complete(|sums| halo.sum(sums));
+        self.stencil.complete(|sums| halo.assemble_ghosts(sums));
         let values = self.stencil.entries(&self.numbers, &self.free);
         let place = match symmetry {
             Symmetry::Definite => &mut self.definite,
@@ -205,7 +205,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         shell.set_up(matrix, tally)
     }
 
-    fn solve_shell(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve_shell(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         match self.shell_system() {
             Some((shell, matrix, tally)) if shell.is_ready() => shell.solve(matrix, rhs, solution, tally),
             _ => Err(missing()),
@@ -283,7 +283,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         by: impl FnOnce(&mut System<'p>, &[f64], &mut Tally) -> Result<(usize, Vec<f64>), SolveError>,
         rhs: &[f64],
         solution: &mut [f64],
-    ) -> Result<Solved, SolveError> {
+    ) -> Result<SolveReport, SolveError> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("linear solve");
         let unknowns = self.unknowns();
@@ -301,9 +301,9 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
                 .for_each(|(x, _)| *x = 0.0);
         }
         spread::<C>(&self.halo, &unknowns, &x, solution);
-        Ok(Solved {
+        Ok(SolveReport {
             iterations,
-            ..Solved::default()
+            ..SolveReport::default()
         })
     }
 
@@ -347,7 +347,7 @@ fn spread<const C: usize>(halo: &MpiHalo, unknowns: &[usize], values: &[f64], no
     for (&component, value) in unknowns.iter().zip(values) {
         nodal[component] = *value;
     }
-    halo.share(nodal, C);
+    halo.update_ghosts(nodal, C);
 }
 
 fn missing() -> SolveError {
@@ -355,9 +355,9 @@ fn missing() -> SolveError {
 }
 
 impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
-    fn begin(&mut self, free: &[bool]) {
+    fn reinit(&mut self, free: &[bool]) {
         let mut changed = [f64::from(self.free != free)];
-        self.halo.maximum(&mut changed);
+        self.halo.all_reduce_max(&mut changed);
         if changed[0] > 0.0 {
             (self.free, self.numbers) = (free.to_vec(), Numbering::new());
             (self.is_sized, self.definite, self.general) = (false, None, None);
@@ -367,11 +367,11 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
         self.stencil.clear();
     }
 
-    fn add(&mut self, first_node: usize, block: &[f64]) {
+    fn add_block(&mut self, first_node: usize, block: &[f64]) {
         self.stencil.add(first_node, block);
     }
 
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+    fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
         self.stencil.add_among(nodes, block);
     }
 
@@ -384,7 +384,7 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
         }
     }
 
-    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
+    fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
         if symmetry == Symmetry::Definite && self.choice.dissection {
             return self.set_up_shell();
         }
@@ -396,7 +396,7 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
         self.build(symmetry).map_err(failed)
     }
 
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         if self.choice.dissection {
             return self.solve_shell(rhs, solution);
         }
@@ -414,7 +414,7 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
         self.choice.is_rough()
     }
 
-    fn solve_to(&mut self, relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve_to(&mut self, relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         if self.choice.is_geometric() {
             let (cycles, matrix, tally) = self.cycle_system().ok_or_else(missing)?;
             return cycles.solve_to(relative, matrix, rhs, solution, tally);

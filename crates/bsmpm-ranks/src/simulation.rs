@@ -11,11 +11,11 @@ use crate::timers::Timers;
 use crate::traffic::{TrafficCounts, TrafficKind};
 use bsmpm::boundary::load::follower;
 use bsmpm::boundary::{Idle, Surface};
-use bsmpm::control::{Accepted, Failure, Progress, Stepper};
+use bsmpm::control::{AcceptedStep, Failure, Progress, Stepper};
 use bsmpm::error::StepError;
 use bsmpm::free_field;
 use bsmpm::grid::Grid;
-use bsmpm::initial::{self, Equilibrium, Settling};
+use bsmpm::initial::{self, Equilibrium, EquilibriumSearch};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::parallel::Halo;
@@ -144,7 +144,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         &mut self,
         start: StartStress<'_, D>,
         settles: bool,
-    ) -> Result<(Equilibrium, Option<Settling>), StepError> {
+    ) -> Result<(Equilibrium, Option<EquilibriumSearch>), StepError> {
         let Self {
             model,
             points,
@@ -223,7 +223,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     }
 
     /// One accepted step, after which every point is on the rank of its cell; `None` at the end.
-    pub fn advance(&mut self) -> Option<Result<Accepted, Failure>> {
+    pub fn advance(&mut self) -> Option<Result<AcceptedStep, Failure>> {
         let before = self.timers.traffic().counts();
         let load = load::of_rank(self.points.len(), self.model.grid.nodes());
         let outcome = {
@@ -291,7 +291,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
             (self.points.len() - left) as f64,
             f64::from(self.lacks_room()),
         ];
-        self.halo.reduce(&mut numbers);
+        self.halo.all_reduce_sum(&mut numbers);
         if numbers[1] > 0.0 {
             self.fill(left);
         }
@@ -406,7 +406,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         numbers[..2].copy_from_slice(&sent.sent().map(|count| count as f64));
         numbers[2] = f64::from(self.lacks_room());
         numbers[3 + self.libraries.petsc.rank()] = load;
-        self.halo.reduce(&mut numbers);
+        self.halo.all_reduce_sum(&mut numbers);
         let cost = Cost {
             reductions: sent.of(TrafficKind::Reduction).calls + 1,
             messages: numbers[0] as u64,
@@ -422,7 +422,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     fn balance(&mut self, evaluations: u64) -> bool {
         let grid = &self.model.grid;
         let mut counts = load::points_by_column(grid, &self.points);
-        self.halo.reduce(&mut counts);
+        self.halo.all_reduce_sum(&mut counts);
         let Some(better) = load::cut(grid, &counts, self.slabs.slabs()) else {
             return false;
         };
@@ -435,7 +435,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
                 return false;
             };
             let mut now = [load::of_rank(self.points.len(), grid.nodes())];
-            self.halo.maximum(&mut now);
+            self.halo.all_reduce_max(&mut now);
             let loads = [now[0], largest(load::of_parts(&counts, &better, grid))];
             (better, loads)
         };
@@ -450,7 +450,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     /// reported, too; one reduction.
     fn parted(&self, grid: &Grid<D>, slabs: Slabs) -> Option<(Slabs, Vec<f64>)> {
         let mut counts = load::points_by_row(grid, &slabs, &self.points);
-        self.halo.reduce(&mut counts);
+        self.halo.all_reduce_sum(&mut counts);
         let parted = load::parted(grid, slabs, &counts, self.slabs.parts_of_slab())?;
         Some((parted, counts))
     }
@@ -460,14 +460,14 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let occupied = self.model.grid.occupied(&self.points.x);
         let ends = occupied.map(|ranges| ranges.map(|range| [-(range.start as f64), range.end as f64]));
         let mut ends = ends.unwrap_or([[f64::NEG_INFINITY; 2]; D]);
-        self.halo.maximum(ends.as_flattened_mut());
+        self.halo.all_reduce_max(ends.as_flattened_mut());
         let occupied = ends.map(|[start, end]| -start as usize..end as usize);
         let grid = self
             .model
             .grid
             .with_room(&occupied, [self.slabs.slabs(), self.slabs.parts_of_slab()]);
         let mut counts = load::points_by_column(&grid, &self.points);
-        self.halo.reduce(&mut counts);
+        self.halo.all_reduce_sum(&mut counts);
         let slabs = load::cut(&grid, &counts, self.slabs.slabs());
         let slabs = match slabs {
             Some(slabs) if !self.slabs.parts().is_empty() => self.parted(&grid, slabs).map(|(parted, _)| parted),

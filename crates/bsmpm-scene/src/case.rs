@@ -13,15 +13,16 @@ mod water;
 pub use crate::words::{Base, Format, Geometry, Nonlinear, Support, Word};
 pub use element::{ElementStage, ElementTest};
 pub use flow::{Drain, DrainSite, Flow, Inflow};
-pub use history::{Check, Column, Counted, Face, History, Made, Quantity};
+pub use history::{Check, Column, Face, History, Made, PointSelection, Quantity};
 pub use limit_load::{LimitLoad, LoadWidth, SoughtLoad};
 pub(crate) use loads::keeps_direction;
 pub use loads::{
-    Footing, Initial, LoadedLine, MotionPath, Plate, PointLoad, Prescribed, Push, Shares, Site, Traction, Triangle,
+    Footing, Initial, LoadedLine, MotionPath, Plate, PointLoad, PrescribedMotion, Push, Shares, Site, Traction,
+    Triangle,
 };
 pub use profile::Profile;
 pub use rigid::{Rigid, RigidShape, RigidSolid};
-pub use stage::{Acting, FaceSupport, Stage};
+pub use stage::{ActiveLoads, FaceSupport, Stage};
 pub use water::Water;
 
 use crate::error::Choice;
@@ -73,7 +74,7 @@ pub struct Case {
     /// A rigid strip, if any.
     pub footing: Option<Footing>,
     /// Prescribed motions, in the order of the file.
-    pub prescribed: Vec<Prescribed>,
+    pub prescribed: Vec<PrescribedMotion>,
     /// Rigid bodies, in the order of the file.
     pub rigid: Vec<Rigid>,
     /// Tractions, in the order of the file.

@@ -43,11 +43,11 @@ pub use bsmpm::model::Regime;
 pub use bsmpm::points::Seed;
 pub use bsmpm::quadrature::Quadrature;
 pub use case::{
-    Acting, Analysis, Base, Body, Case, Check, Checkpoint, Column, Counted, Drain, DrainSite, ElementStage,
-    ElementTest, Every, Face, FaceSupport, Flow, Footing, Format, Geometry, Gravity, History, Inflow, Initial,
-    LimitLoad, Linear, LoadWidth, LoadedLine, MASS, Made, MotionPath, NamedMaterial, NarrowestOpening, Nonlinear,
-    Output, Plate, PointLoad, Prescribed, Profile, Push, Quantity, Rigid, RigidShape, Shares, Site, Solver, SoughtLoad,
-    Stage, Support, Traction, Triangle, Water,
+    ActiveLoads, Analysis, Base, Body, Case, Check, Checkpoint, Column, Drain, DrainSite, ElementStage, ElementTest,
+    Every, Face, FaceSupport, Flow, Footing, Format, Geometry, Gravity, History, Inflow, Initial, LimitLoad, Linear,
+    LoadWidth, LoadedLine, MASS, Made, MotionPath, NamedMaterial, NarrowestOpening, Nonlinear, Output, Plate,
+    PointLoad, PointSelection, PrescribedMotion, Profile, Push, Quantity, Rigid, RigidShape, Shares, Site, Solver,
+    SoughtLoad, Stage, Support, Traction, Triangle, Water,
 };
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};

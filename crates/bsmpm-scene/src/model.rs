@@ -2,9 +2,9 @@
 
 use crate::seed::seed_bodies;
 use crate::words::AnalysisType;
-use crate::{Acting, Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Shares, Stage, surfaces};
+use crate::{ActiveLoads, Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Shares, Stage, surfaces};
 use bsmpm::background::Background;
-use bsmpm::boundary::rigid::{self, Reaching, RigidBody, RigidState};
+use bsmpm::boundary::rigid::{self, ParticleDomains, RigidBody, RigidState};
 use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
 use bsmpm::grid::{Grid, KnotVector};
@@ -13,7 +13,7 @@ use bsmpm::material::state_width;
 use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;
 use bsmpm::method::QuasiNewton;
-use bsmpm::model::{Gravity, Model, Shaking, Weighting};
+use bsmpm::model::{AverageWeight, Gravity, Model, Shaking};
 use bsmpm::points::{Points, Seed};
 use bsmpm::schedule::{Growth, Schedule};
 use bsmpm::stabilisation::Groups;
@@ -265,7 +265,7 @@ fn extents<K: Kinematics<D>, const D: usize>(case: &Case, points: &Points<D>) ->
     let bodies = surfaces::rigid(case, 0.0);
     let grid = grid(case).ok().filter(|_| !bodies.is_empty())?;
     let states: Vec<RigidState> = bodies.iter().map(RigidBody::at_rest).collect();
-    let reaching = Reaching {
+    let reaching = ParticleDomains {
         grid: &grid,
         points,
         reach: &reach(case),
@@ -351,7 +351,7 @@ fn load_turns(case: &Case, load: usize, ramp: f64, shares: &Shares) -> Vec<f64> 
     let rows: Vec<f64> = shares.iter().map(|row| row.0).collect();
     let rows = if rows.is_empty() { vec![ramp] } else { rows };
     let times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
-    let begins = times.filter_map(|t| case.acts_since(Acting::Load(load), t));
+    let begins = times.filter_map(|t| case.acts_since(ActiveLoads::Load(load), t));
     begins
         .flat_map(|begin| rows.iter().map(move |row| begin + row))
         .collect()
@@ -433,15 +433,15 @@ fn groups_of(case: &Case, materials: &[NamedMaterial]) -> Groups {
 }
 
 /// What averages are weighted with: mass, or volume where materials differ in density or some have none.
-pub fn weighting(case: &Case) -> Weighting {
+pub fn weighting(case: &Case) -> AverageWeight {
     let mut materials = case.bodies.iter().map(|body| &case.materials[body.material]);
     let mut densities = materials.clone().map(|named| named.density);
     let is_wet = case.water.is_some();
     if is_wet && materials.any(|named| named.saturated.is_some_and(|wet| Some(wet) != named.density)) {
-        return Weighting::Volume;
+        return AverageWeight::Volume;
     }
     match densities.next() {
-        Some(Some(first)) if densities.all(|density| density == Some(first)) => Weighting::Mass,
-        _ => Weighting::Volume,
+        Some(Some(first)) if densities.all(|density| density == Some(first)) => AverageWeight::Mass,
+        _ => AverageWeight::Volume,
     }
 }

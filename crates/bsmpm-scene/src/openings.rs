@@ -63,7 +63,7 @@ pub(crate) struct MirrorPlane {
 
 /// An opening of a body: the narrowest pair of its walls.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Opening {
+pub(crate) struct OpeningGeometry {
     /// m
     pub width: f64,
     /// m  lower and upper corner of the box around its walls
@@ -112,7 +112,7 @@ pub(crate) struct Surroundings<'a> {
 
 impl Surroundings<'_> {
     /// The opening that the surface of a shape bounds, if there is one.
-    pub(crate) fn opening(&self, points: &[SurfacePoint]) -> Option<Opening> {
+    pub(crate) fn opening(&self, points: &[SurfacePoint]) -> Option<OpeningGeometry> {
         let size = (Vector::from(self.bounds[1]) - Vector::from(self.bounds[0])).norm();
         let mut walls: Vec<(usize, OpeningWall)> = Vec::new();
         let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
@@ -140,7 +140,7 @@ impl Surroundings<'_> {
         if points[0].kind == SurfaceKind::Round {
             walls.iter_mut().for_each(|wall| wall.width = width);
         }
-        Some(Opening { width, bounds, walls })
+        Some(OpeningGeometry { width, bounds, walls })
     }
 
     /// The wall at a piece of surface of a body of a size (m), if an opening begins there.

@@ -20,7 +20,7 @@ pub(crate) struct Report<'a> {
     assumed: Vec<String>,
     warnings: Vec<String>,
     pub(crate) notes: Vec<Choice>,
-    renamings: Vec<Renaming>,
+    renamings: Vec<KeyRenaming>,
 }
 
 /// An error with what it is about.
@@ -36,7 +36,7 @@ struct ReportedError {
 
 /// An earlier name that the case has, the name of now, and the key paths that have it.
 #[derive(Debug)]
-struct Renaming {
+struct KeyRenaming {
     earlier: String,
     now: String,
     paths: Vec<String>,
@@ -220,7 +220,7 @@ impl<'a> Report<'a> {
         match known {
             Some(known) if known.paths.iter().any(|other| other == path) => {}
             Some(known) => known.paths.push(path.to_owned()),
-            None => self.renamings.push(Renaming {
+            None => self.renamings.push(KeyRenaming {
                 earlier: earlier.to_owned(),
                 now: now.to_owned(),
                 paths: vec![path.to_owned()],
@@ -235,7 +235,7 @@ impl<'a> Report<'a> {
     /// Hands over what earlier names the case has: one sentence for each.
     pub(crate) fn take_renamings(&mut self) -> Vec<String> {
         let renamings = std::mem::take(&mut self.renamings).into_iter();
-        let sentences = renamings.map(|Renaming { earlier, now, paths }| {
+        let sentences = renamings.map(|KeyRenaming { earlier, now, paths }| {
             format!(
                 "{}: `{earlier}` is now called `{now}`. Replace the earlier name, which is still read.",
                 listed(&paths)

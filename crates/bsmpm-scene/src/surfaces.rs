@@ -8,7 +8,7 @@ pub use strips::{penalty, strips};
 
 use crate::case::{Traction, Triangle, keeps_direction};
 use crate::grid::vector;
-use crate::{Acting, Case, DrainSite, Face, Geometry, LoadedLine, Plate, Push, Rigid, RigidShape, Shares, Site};
+use crate::{ActiveLoads, Case, DrainSite, Face, Geometry, LoadedLine, Plate, Push, Rigid, RigidShape, Shares, Site};
 use bsmpm::boundary::rigid::Outline;
 use bsmpm::boundary::{Load, Path, RigidBody, StripReport, SurfacePoint, surface};
 use bsmpm::grid::Grid;
@@ -47,7 +47,7 @@ pub fn loads<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, t: f
     let mut all = Vec::new();
     let mut further = Vec::new();
     for (number, (load, shares)) in tractions.chain(forces).enumerate() {
-        let acting = match case.acts_since(Acting::Load(number), t) {
+        let acting = match case.acts_since(ActiveLoads::Load(number), t) {
             None => vec![(0.0, Vector::zeros())],
             Some(since) if since > 0.0 => course(load.ramp, shares, since),
             Some(_) => shares.clone(),
@@ -246,7 +246,7 @@ pub fn flow<K: Kinematics<D>, const D: usize>(
     let mut faces = Vec::new();
     for (number, drain) in flow.drains.iter().enumerate() {
         let given = given_above(&drain.given, base);
-        let acts = case.acts_since(Acting::Drain(number), t).is_some();
+        let acts = case.acts_since(ActiveLoads::Drain(number), t).is_some();
         if let DrainSite::Face(Face { axis, upper }) = drain.site {
             faces.push(DrainedFace {
                 axis,
@@ -281,7 +281,7 @@ pub fn flow<K: Kinematics<D>, const D: usize>(
             normals,
             rate: inflow.rate.clone(),
             runs_off: inflow.runs_off,
-            acts: case.acts_since(Acting::Inflow(number), t).is_some(),
+            acts: case.acts_since(ActiveLoads::Inflow(number), t).is_some(),
         });
     }
     Some(bsmpm::water::flow::Flow {
@@ -321,7 +321,7 @@ pub fn rigid<const D: usize>(case: &Case, t: f64) -> Vec<RigidBody<D>> {
     let divided = case.divided_at(t);
     let mut bodies = Vec::new();
     for (number, rigid) in case.rigid.iter().enumerate() {
-        let since = case.acts_since(Acting::Rigid(number), t);
+        let since = case.acts_since(ActiveLoads::Rigid(number), t);
         let begun = since.filter(|since| *since > 0.0 && rigid.force != [0.0; 3]);
         let later = begun.map(|since| Rigid {
             amplitude: course(rigid.ramp, &rigid.amplitude, since),
@@ -441,7 +441,7 @@ fn normal<const D: usize>(from: &Vector<D>, to: &Vector<D>) -> Vector<D> {
 
 /// What the footing's histories need.
 #[derive(Clone, Debug)]
-pub struct Gauge {
+pub struct FootingMonitor {
     path: Path<3>,
     area: f64,           // m per metre of thickness, or m2 per radian, or m2
     pressing: Vector<3>, // unit normal of the base, towards the material
@@ -449,7 +449,7 @@ pub struct Gauge {
     height: usize,       // the vertical axis
 }
 
-impl Gauge {
+impl FootingMonitor {
     /// The gauge of the case's footing, if there is one.
     pub fn of(case: &Case) -> Option<Self> {
         let footing = case.footing.as_ref()?;

@@ -1,6 +1,6 @@
 //! Tests material interfaces: averages, weights and warnings.
 
-use bsmpm::model::Weighting;
+use bsmpm::model::AverageWeight;
 use bsmpm_scene::{Case, model};
 
 /// The two layers of the validation, changed.
@@ -15,11 +15,11 @@ const EQUAL: &str = "material.light.unit_weight=20 kN/m3";
 #[test]
 fn averages_do_not_mix_materials_of_different_stiffness_and_weigh_different_densities_by_volume() {
     for (changes, groups, weighting) in [
-        (&[][..], 1, Weighting::Volume),
-        (&[EQUAL][..], 1, Weighting::Mass),
-        (&[EQUAL, "material.light.young=2e9"][..], 2, Weighting::Mass),
-        (&[EQUAL, "material.light.poisson=0.2"][..], 2, Weighting::Mass),
-        (&["material.light.young=2e9"][..], 2, Weighting::Volume),
+        (&[][..], 1, AverageWeight::Volume),
+        (&[EQUAL][..], 1, AverageWeight::Mass),
+        (&[EQUAL, "material.light.young=2e9"][..], 2, AverageWeight::Mass),
+        (&[EQUAL, "material.light.poisson=0.2"][..], 2, AverageWeight::Mass),
+        (&["material.light.young=2e9"][..], 2, AverageWeight::Volume),
     ] {
         let case = layers(changes);
         assert_eq!(

@@ -1,6 +1,6 @@
 //! Tests the cases in `cases/`, and their memory estimates.
 
-use bsmpm_scene::{Base, Case, Counted, GridAxis, Quantity, load};
+use bsmpm_scene::{Base, Case, GridAxis, PointSelection, Quantity, load};
 use std::path::{Path, PathBuf};
 
 fn cases() -> PathBuf {
@@ -580,9 +580,9 @@ fn the_footing_of_the_paper() {
         assert_eq!(
             case.histories[5].quantity,
             Quantity::PressureNoise {
-                of: Counted {
+                of: PointSelection {
                     within,
-                    ..Counted::default()
+                    ..PointSelection::default()
                 }
             }
         );

@@ -312,7 +312,8 @@ mod tests {
             upper: vec![5.0, 11.0],
             cell: vec![0.1; 2],
         });
-        let (directory, entries) = (PathBuf::new(), Vec::new());
+        let directory = PathBuf::new();
+        let entries = Vec::new();
         RunRecord {
             directory,
             manifest,

@@ -30,7 +30,8 @@ fn tokens(text: &str) -> Vec<&str> {
         text.find(|c: char| !c.is_alphanumeric() && c != '_')
             .unwrap_or(text.len())
     };
-    let (mut found, mut rest) = (Vec::new(), text);
+    let mut found = Vec::new();
+    let mut rest = text;
     while let Some(c) = rest.chars().next() {
         let up_to = |end: &str, from: usize| rest[from..].find(end).map_or(rest.len(), |at| from + at + end.len());
         let word = word_of(rest);
@@ -88,7 +89,9 @@ fn without_tests<'a>(mut tokens: &[&'a str]) -> Vec<&'a str> {
 
 /// Takes a `use` tree: its paths, each with the name that it gets (`*`: all names there). Gives the sign after it.
 fn leaves<'a>(rest: &mut &[&'a str], head: &[String], found: &mut Vec<(String, Segments)>) -> &'a str {
-    let (mut path, mut name, mut is_leaf) = (head.to_vec(), None, true);
+    let mut path = head.to_vec();
+    let mut name = None;
+    let mut is_leaf = true;
     while let Some(token) = rest.split_off_first() {
         match *token {
             "::" => {}
@@ -124,12 +127,15 @@ struct Module {
 
 impl Module {
     fn read(text: &str) -> Self {
-        let (mut module, mut before) = (Self::default(), "");
-        let (mut depth, mut inline) = (0, Vec::new()); // of braces, and of those around inline modules
+        let mut module = Self::default();
+        let mut before = "";
+        let mut depth = 0;
+        let mut inline = Vec::new(); // of braces, and of those around inline modules
         let tokens = without_tests(&tokens(text));
         let mut rest = &tokens[..];
         while let Some(&token) = rest.split_off_first() {
-            let (mut uses, mut path) = (Vec::new(), vec![token.to_owned()]);
+            let mut uses = Vec::new();
+            let mut path = vec![token.to_owned()];
             match (token, rest) {
                 ("{", _) => depth += 1,
                 ("}", _) => {
@@ -269,7 +275,8 @@ fn circles_from(sources: &Sources, root: &str) -> Vec<String> {
     );
     let arrows = tree.arrows();
     let reached = |from: &Segments| {
-        let (mut reached, mut next) = (BTreeSet::new(), vec![from.clone()]);
+        let mut reached = BTreeSet::new();
+        let mut next = vec![from.clone()];
         while let Some(at) = next.pop() {
             let ways = arrows.keys().filter(|(from, _)| *from == at).map(|(_, to)| to.clone());
             next.extend(ways.filter(|to| reached.insert(to.clone())));

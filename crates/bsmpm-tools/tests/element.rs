@@ -10,7 +10,8 @@ use bsmpm_tools::element::{ElementArguments, run};
 const CASE: &str = "../../cases/element_tests.toml";
 
 fn arguments(case: &Path, output: &Path) -> ElementArguments {
-    let (tests, set) = (Vec::new(), Vec::new());
+    let tests = Vec::new();
+    let set = Vec::new();
     ElementArguments {
         case: case.to_owned(),
         tests,
@@ -49,7 +50,8 @@ fn the_example_gives_the_strengths_that_its_comments_tell() {
     let volume = undrained.get("volume-strain").unwrap();
     assert!(water[100] == 0.0 && water[120] > 0.0 && (volume[200] - volume[100]).abs() < 1e-14);
     let oedometer = read("oedometer");
-    let (x, y) = (oedometer.get("stress-xx").unwrap(), oedometer.get("stress-yy").unwrap());
+    let x = oedometer.get("stress-xx").unwrap();
+    let y = oedometer.get("stress-yy").unwrap();
     // From p = 10 kPa on, K0 = ν/(1 - ν) of what is added, but for the volume: Kirchhoff's stress follows the law.
     let volume = oedometer.get("volume-strain").unwrap();
     let kirchhoff = |of: &[f64], row: usize| of[row] * volume[row].exp() + 1e4;
@@ -70,10 +72,8 @@ fn one_test_of_another_material_by_options() {
         "{table}"
     );
     let found = table::read(&files[0]).unwrap();
-    let (last, volume) = (
-        *found.get("deviator").unwrap().last().unwrap(),
-        found.get("volume-strain").unwrap(),
-    );
+    let last = *found.get("deviator").unwrap().last().unwrap();
+    let volume = found.get("volume-strain").unwrap();
     assert!((last * volume[100].exp() / 4e4 - 1.0).abs() < 1e-9, "{last}");
     arguments.tests = vec!["drained".to_owned()];
     assert!(matches!(run(&arguments, |_| {}), Err(Error::Usage { reason }) if reason.contains("drained-100")));
@@ -105,10 +105,8 @@ fn a_strength_by_depth_in_a_solid_is_that_of_the_height_along_z() {
     fs::write(&case, text).unwrap();
     let (_, files) = run(&arguments(&case, directory.path()), |_| {}).unwrap();
     let found = table::read(&files[0]).unwrap();
-    let (last, volume) = (
-        found.get("deviator").unwrap().last(),
-        found.get("volume-strain").unwrap().last(),
-    );
+    let last = found.get("deviator").unwrap().last();
+    let volume = found.get("volume-strain").unwrap().last();
     let kirchhoff = last.unwrap() * volume.unwrap().exp();
     assert!((kirchhoff / (2.0 * 26e3) - 1.0).abs() < 1e-9, "{kirchhoff}");
 }

@@ -6,7 +6,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use bsmpm_io::directory::{Existing, OutputDirectory};
+use bsmpm_io::directory::{ExistingRunPolicy, OutputDirectory};
 use bsmpm_io::lock::Unseen;
 use bsmpm_io::manifest::{Manifest, ManifestCase, Status};
 use bsmpm_io::steps::{STEPS, StepRow};
@@ -61,10 +61,12 @@ fn write_run(case: &bsmpm_scene::Case, directory: &Path, most: u64) -> bool {
     let reported = ManifestCase::new("column.toml", &case.title, "plane-strain", case.text.clone());
     let mut manifest = Manifest::begin("0.1.0", Vec::new(), reported);
     let directory = OutputDirectory::hold(directory, Unseen::Respect)
-        .and_then(|held| held.claim(Existing::Delete, &manifest))
+        .and_then(|held| held.claim(ExistingRunPolicy::Delete, &manifest))
         .unwrap();
     let mut table = CsvTable::create(&directory.path().join(STEPS), &StepRow::columns("s")).unwrap();
-    let (schedule, mut steps, mut time) = (schedule(case), 0, 0.0);
+    let schedule = schedule(case);
+    let mut steps = 0;
+    let mut time = 0.0;
     while let Some(next) = schedule.next(time).filter(|_| steps < most) {
         (steps, time) = (steps + 1, next);
         table.row(&row(steps, time, evaluations(case)).cells()).unwrap();

@@ -25,7 +25,7 @@ pub struct Background {
 
 /// What the background resists of the displacement of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Resisted {
+pub enum ResistedDisplacement {
     /// All of it.
     #[default]
     Displacement,

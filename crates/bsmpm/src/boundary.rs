@@ -26,7 +26,7 @@ use crate::nodal::Nodal;
 use crate::parallel::{Halo, OwnedNodes};
 use crate::points::Points;
 use crate::tensor::Vector;
-use crate::water::crossed::Crossed;
+use crate::water::crossed::CumulativeFlux;
 
 /// Motion of one face of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -218,7 +218,7 @@ impl<const D: usize> Boundary<D> {
             anchors: Anchors::default(),
             held: Vec::new(),
             bodies: self.rigid.iter().map(RigidBody::at_rest).collect(),
-            crossed: Crossed::default(),
+            crossed: CumulativeFlux::default(),
             flowed: None,
         }
     }
@@ -340,7 +340,10 @@ impl<const D: usize> Boundary<D> {
         for (number, _) in supports.iter().enumerate().filter(|(_, support)| support.absorbs) {
             sums.add(number, |_, _| true);
         }
-        halo.total(&sums.sums).chunks_exact(D).map(<[f64]>::to_vec).collect()
+        halo.reproducible_sum(&sums.sums)
+            .chunks_exact(D)
+            .map(<[f64]>::to_vec)
+            .collect()
     }
 }
 

@@ -1,8 +1,8 @@
 //! Step size control. A failed step is halved; the step size is doubled again after two easy steps. Step sizes are the
 //! nominal one divided by powers of two, so the nominal end is reached exactly.
 
-use crate::background::Resisted;
-use crate::energy::{Budget, Stored};
+use crate::background::ResistedDisplacement;
+use crate::energy::{EnergyBound, StoredEnergy};
 use crate::error::StepError;
 use crate::grid::extension::ExtendedSplines;
 use crate::kinematics::Kinematics;
@@ -24,7 +24,7 @@ const EASY: u32 = 2;
 
 /// A step that converged.
 #[derive(Clone, Debug)]
-pub struct Accepted {
+pub struct AcceptedStep {
     /// s  time at its end
     pub t: f64,
     /// s  its length
@@ -73,7 +73,7 @@ pub struct Progress {
     /// easy steps in a row
     pub easy: u32,
     /// J  bound on the energy, in dynamics, from the first step on
-    pub budget: Option<Budget>,
+    pub budget: Option<EnergyBound>,
 }
 
 /// Position within the current nominal step, and the state of the step-size control.
@@ -135,7 +135,7 @@ impl Stepper {
         points: &mut Points<D>,
         halo: &dyn Halo,
         solver: &mut dyn LinearSolver,
-    ) -> Option<Result<Accepted, Failure>> {
+    ) -> Option<Result<AcceptedStep, Failure>> {
         if let Err(made) = self.at.budget.map_or(Ok(()), |budget| budget.require()) {
             return Some(Err(self.failure(self.at.guess_dt, vec![made], Counts::default())));
         }
@@ -149,7 +149,7 @@ impl Stepper {
             let dt = end - self.at.t;
             let mut guess = self.scaled_guess(dt);
             let resisted = match has_drag {
-                true => Resisted::Displacement,
+                true => ResistedDisplacement::Displacement,
                 false => self.resisted(model, dt),
             };
             let model = self.with_sudden_forces(model.over(dt));
@@ -159,7 +159,7 @@ impl Stepper {
                 Ok(report) => {
                     (self.guess, self.at.guess_dt, self.at.t) = (guess, dt, end);
                     self.accept(&report, &model.criteria);
-                    return Some(Ok(Accepted {
+                    return Some(Ok(AcceptedStep {
                         t: end,
                         dt,
                         report,
@@ -176,7 +176,7 @@ impl Stepper {
                 (self.at.cuts, self.at.easy, self.at.budget) = before;
                 return Some(Err(self.failure(dt, rejected, counts)));
             }
-            has_drag = resisted == Resisted::Change && !is_hopeless;
+            has_drag = resisted == ResistedDisplacement::Change && !is_hopeless;
             if has_drag {
                 continue;
             }
@@ -204,7 +204,7 @@ impl Stepper {
         };
         self.at.nominal = Some(nominal);
         if model.regime == Regime::Dynamic && self.at.budget.is_none() {
-            self.at.budget = Some(Budget::open(Stored::of(model, points, self.at.t, halo)));
+            self.at.budget = Some(EnergyBound::open(StoredEnergy::of(model, points, self.at.t, halo)));
         }
         Some(nominal)
     }
@@ -236,7 +236,7 @@ impl Stepper {
         let begins = self.at.guess_dt == 0.0 && self.at.t > 0.0 && model.regime == Regime::Dynamic;
         if begins {
             Cow::Owned(Model {
-                newmark: Newmark::of_the_end(),
+                newmark: Newmark::dissipative_first_step(),
                 ..model.into_owned()
             })
         } else {
@@ -247,12 +247,12 @@ impl Stepper {
     /// What the background resists in a step of this length: the change from the last step where motion that is
     /// prescribed goes on steadily, and functions of nearly empty cells are tied. A load has no steady flow, and there
     /// all of the displacement is resisted.
-    fn resisted<K, const D: usize>(&self, model: &Model<K, D>, dt: f64) -> Resisted {
+    fn resisted<K, const D: usize>(&self, model: &Model<K, D>, dt: f64) -> ResistedDisplacement {
         let is_tied = model.background.is_some() && model.extended_splines == ExtendedSplines::Linear;
         let last_dt = self.at.guess_dt;
         match is_tied && last_dt > 0.0 && model.boundary.moves_steadily(self.at.t, last_dt, dt) {
-            true => Resisted::Change,
-            false => Resisted::Displacement,
+            true => ResistedDisplacement::Change,
+            false => ResistedDisplacement::Displacement,
         }
     }
 

@@ -187,7 +187,7 @@ impl Element {
                 let share = (step as f64 + (done + part).min(1.0)) / control.steps as f64;
                 let undrained = control.undrained.then_some(volume);
                 self.law = own
-                    .over(part * control.duration / control.steps as f64)
+                    .at_time_step(part * control.duration / control.steps as f64)
                     .unwrap_or_else(|| own.clone());
                 match self.solve(&control.wanted(&start, share), undrained) {
                     Ok(found) => {

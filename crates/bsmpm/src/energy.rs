@@ -1,11 +1,11 @@
-//! Energy balance of a run, theory-manual equations (T10.1) to (T10.3), in J (plane strain: J per metre). [`Draft`]
-//! computes each term of a step independently, so a small residual (`closure`) confirms the balance. [`Budget`] is the
-//! energy bound of dynamic runs.
+//! Energy balance of a run, theory-manual equations (T10.1) to (T10.3), in J (plane strain: J per metre).
+//! [`StepEnergy`] computes each term of a step independently, so a small residual confirms the balance.
+//! [`EnergyBound`] is the energy bound of dynamic runs.
 
 mod budget;
 
 use crate::schedule::TimeInterval;
-pub use budget::{Budget, Turnover};
+pub use budget::{EnergyBound, Turnover};
 
 use crate::boundary::{Surface, load};
 use crate::exact::Exact;
@@ -14,9 +14,9 @@ use crate::kinematics::{Gradient, Kinematics};
 use crate::model::Model;
 use crate::parallel::{Halo, over_layers};
 use crate::points::Points;
-use crate::solve::found::Found;
+use crate::solve::found::StepSolution;
 use crate::step::adjoint::Pressures;
-use crate::step::commit::Answer;
+use crate::step::commit::PointUpdate;
 use crate::step::problem::Problem;
 use crate::tensor::Vector;
 use crate::threads;
@@ -86,7 +86,7 @@ impl AddAssign for Flows {
 
 /// Energy in the points, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Stored {
+pub struct StoredEnergy {
     /// `Σ ½ m |v|²`
     pub kinetic: f64,
     /// `Σ V0 (½ λ tr(ε)² + μ ε : ε)`, ε = ½ ln bᵉ, of water that flows `Σ V0 n p²/(2 K_w)`,
@@ -94,7 +94,7 @@ pub struct Stored {
     pub elastic: f64,
 }
 
-impl Stored {
+impl StoredEnergy {
     /// Of the points of all ranks at time `t`, s.
     pub fn of<K: Kinematics<D>, const D: usize>(
         model: &Model<K, D>,
@@ -102,7 +102,7 @@ impl Stored {
         t: f64,
         halo: &dyn Halo,
     ) -> Self {
-        let sums = halo.total(&[kinetic(points), elastic(model, points, t)]);
+        let sums = halo.reproducible_sum(&[kinetic(points), elastic(model, points, t)]);
         Self {
             kinetic: sums[0],
             elastic: sums[1],
@@ -112,16 +112,16 @@ impl Stored {
 
 /// The books of a run: all that must be kept to go on with them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Books {
+pub struct EnergyAccounts {
     /// J  kinetic and elastic energy when they were opened
     pub start: f64,
     /// all flows since
     pub flows: Flows,
 }
 
-impl Books {
+impl EnergyAccounts {
     /// Opened in a state.
-    pub fn open(stored: Stored) -> Self {
+    pub fn open(stored: StoredEnergy) -> Self {
         Self {
             start: stored.kinetic + stored.elastic,
             flows: Flows::default(),
@@ -129,12 +129,12 @@ impl Books {
     }
 
     /// Enters what points that were placed bring along, and those that were removed take away.
-    pub fn exchange(&mut self, before: Stored, after: Stored) {
+    pub fn exchange(&mut self, before: StoredEnergy, after: StoredEnergy) {
         self.start += (after.kinetic + after.elastic) - (before.kinetic + before.elastic);
     }
 
     /// What is left over in a state: `external - Δ(T + E) - plastic - numerical`.
-    pub fn closure(&self, now: Stored) -> f64 {
+    pub fn residual(&self, now: StoredEnergy) -> f64 {
         let spent = self.flows.plastic + self.flows.numerical();
         (self.flows.external - spent) - ((now.kinetic + now.elastic) - self.start)
     }
@@ -142,7 +142,7 @@ impl Books {
 
 /// The flows of a step on this rank, before its state is saved into the points.
 #[derive(Clone, Debug)]
-pub struct Draft {
+pub struct StepEnergy {
     flows: Flows<Exact>,
     damped: Exact, // part of what is dissipated
     elastic: Exact,
@@ -151,13 +151,13 @@ pub struct Draft {
     interval: TimeInterval,
 }
 
-impl Draft {
+impl StepEnergy {
     /// Everything but what the points are in the end; of a model that does not balance its energy only what a
-    /// [`Budget`] is made of.
+    /// [`EnergyBound`] is made of.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        found: &Found<K, D>,
-        answers: &[Answer],
+        found: &StepSolution<K, D>,
+        answers: &[PointUpdate],
         interval: TimeInterval,
     ) -> Self {
         let Problem {
@@ -212,8 +212,8 @@ impl Draft {
     fn add_losses<K: Kinematics<D>, const D: usize>(
         &mut self,
         problem: &Problem<'_, K, D>,
-        found: &Found<K, D>,
-        answers: &[Answer],
+        found: &StepSolution<K, D>,
+        answers: &[PointUpdate],
     ) {
         let Problem {
             model,
@@ -284,14 +284,14 @@ impl Draft {
             own.smoothing -= &elastic(model, points, interval.end());
             sums.extend(own.each().map(|flow| flow.clone()));
         }
-        let sums = halo.total(&sums);
+        let sums = halo.reproducible_sum(&sums);
         // The loads' points are the same on every rank.
         let (loads, loads_grown) = load::work(&model.boundary.loads, &points.surface, surface, interval);
         let turnover = Turnover {
             external: sums[0] + loads,
             plastic: sums[1],
             damped: sums[2],
-            stored: Stored {
+            stored: StoredEnergy {
                 kinetic: sums[3],
                 elastic: sums[4],
             },
@@ -348,7 +348,7 @@ fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Point
 fn add_contact<K: Kinematics<D>, const D: usize>(
     flows: &mut Flows<Exact>,
     problem: &Problem<'_, K, D>,
-    found: &Found<K, D>,
+    found: &StepSolution<K, D>,
 ) -> Exact {
     let Problem { nodes, halo, .. } = *problem;
     let u = &found.u[..];

@@ -3,7 +3,7 @@
 
 mod tied;
 
-use crate::boundary::strip::StripAttachments;
+use crate::boundary::strip::StripConstraints;
 use crate::boundary::{Boundary, Support};
 use crate::error::StepError;
 use crate::grid::{Grid, KnotVector, Shape, transfer};
@@ -18,10 +18,10 @@ use crate::solve;
 use crate::step::adjoint::Pressures;
 use crate::step::commit;
 use crate::step::newmark::Newmark;
-use crate::step::nodes::Nodes;
+use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 use crate::step::report::Counts;
-use crate::step::trial::Trial;
+use crate::step::trial::DeformationIncrement;
 use crate::tensor::Vector;
 use tied::{Band, TiedHalo};
 
@@ -67,7 +67,7 @@ impl<const D: usize> FreeField<D> {
     }
 
     /// Drives the sides in the step.
-    pub fn drive(&self, nodes: &mut Nodes<D>) {
+    pub fn drive(&self, nodes: &mut GridState<D>) {
         for Beside {
             face,
             force,
@@ -192,8 +192,8 @@ fn hold<K: Kinematics<D>, const D: usize>(
     }
     let shape = Shape::at(&alone.grid, column)?;
     let instant = TimeInterval { start: t, dt: 0.0 };
-    let nodes = Nodes::map(alone, &shape, column, instant, &tied)?;
-    let attachments = StripAttachments::at(&[], &column.surface, &alone.grid, &nodes.free, instant);
+    let nodes = GridState::from_points(alone, &shape, column, instant, &tied)?;
+    let attachments = StripConstraints::at(&[], &column.surface, &alone.grid, &nodes.free, instant);
     let problem = Problem {
         model: alone,
         shape: &shape,
@@ -202,7 +202,7 @@ fn hold<K: Kinematics<D>, const D: usize>(
         points: column,
         halo: &tied,
     };
-    let trial = Trial::of(alone, &shape, &nodes, column, &vec![0.0; nodes.free.len()], &tied);
+    let trial = DeformationIncrement::of(alone, &shape, &nodes, column, &vec![0.0; nodes.free.len()], &tied);
     force(&problem, &trial, face)
 }
 
@@ -213,10 +213,10 @@ fn everywhere<const D: usize>(mut own: Points<D>, halo: &dyn Halo) -> Points<D> 
         own.columns().into_iter().for_each(|column| column.put(p, &mut message));
     }
     let mut length = [message.len() as f64];
-    halo.reduce(&mut length);
+    halo.all_reduce_sum(&mut length);
     let mut bytes: Vec<f64> = message.iter().map(|&byte| f64::from(byte)).collect();
     bytes.resize(length[0] as usize, 0.0);
-    halo.reduce(&mut bytes);
+    halo.all_reduce_sum(&mut bytes);
     let message: Vec<u8> = bytes.iter().map(|&byte| byte as u8).collect();
     let mut all = own.only(&[]);
     let mut rest = &message[..];
@@ -237,7 +237,7 @@ fn advance<K: Kinematics<D>, const D: usize>(
     let mut solver = Band::of(&alone.grid);
     let shape = Shape::at(&alone.grid, &column)?;
     let nodes = mapped(alone, &shape, &column, interval, &tied)?;
-    let attachments = StripAttachments::at(&[], &column.surface, &alone.grid, &nodes.free, interval);
+    let attachments = StripConstraints::at(&[], &column.surface, &alone.grid, &nodes.free, interval);
     let problem = Problem {
         model: alone,
         shape: &shape,
@@ -261,7 +261,7 @@ fn advance<K: Kinematics<D>, const D: usize>(
     let velocity = velocity.chunks_exact(D).map(Vector::from_column_slice).collect();
     let update = commit::constitutive_update(alone, &found.trial, &column, &tied)?;
     let across: Vec<f64> = column.x.iter().map(|x| x[face.axis]).collect();
-    commit::commit(alone, &shape, &nodes, found, update, &mut column, &tied);
+    commit::update_points(alone, &shape, &nodes, found, update, &mut column, &tied);
     // Nothing differs across the column: its material stays before the face.
     column
         .x
@@ -280,19 +280,20 @@ fn advance<K: Kinematics<D>, const D: usize>(
     ))
 }
 
-/// The nodes of a column in a step, which in its first one begins with the forces at its end if they are out of balance.
+/// The nodes of a column in a step, which in its first one begins with the forces at its end if they are out of
+/// balance.
 fn mapped<K: Kinematics<D>, const D: usize>(
     alone: &Model<K, D>,
     shape: &Shape<D>,
     column: &Points<D>,
     interval: TimeInterval,
     tied: &TiedHalo,
-) -> Result<Nodes<D>, StepError> {
-    let mut nodes = Nodes::map(alone, shape, column, interval, tied)?;
+) -> Result<GridState<D>, StepError> {
+    let mut nodes = GridState::from_points(alone, shape, column, interval, tied)?;
     if let Some(inertia) = nodes.inertia.as_mut().filter(|_| interval.start == 0.0)
         && initial::is_pushed(alone, column, tied)?
     {
-        inertia.newmark = Newmark::of_the_end();
+        inertia.newmark = Newmark::dissipative_first_step();
     }
     Ok(nodes)
 }
@@ -301,7 +302,7 @@ fn mapped<K: Kinematics<D>, const D: usize>(
 /// ground have, so that these balance where the ground moves as the column does.
 fn force<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    trial: &Trial<K, D>,
+    trial: &DeformationIncrement<K, D>,
     face: &Support<D>,
 ) -> Result<Vec<Vector<D>>, StepError> {
     let Problem {
@@ -326,7 +327,7 @@ fn force<K: Kinematics<D>, const D: usize>(
         let flux = K::flux(&trial.damped(model, points, p, &response, tau), &trial.dF(p));
         fluxes.push(std::array::from_fn(|i| outward * flux[(i, face.axis)] * volume / width));
     }
-    let nodal = halo.sum(&transfer::to_nodes::<D, D>(shape, |p| fluxes[p]));
+    let nodal = halo.assemble_ghosts(&transfer::to_nodes::<D, D>(shape, |p| fluxes[p]));
     Ok(halo
         .owned()
         .nodes()

@@ -20,7 +20,7 @@ use crate::tensor::Vector;
 use std::ops::Range;
 
 /// What has places in a grid: the points, as the grid sees them.
-pub trait Located<const D: usize> {
+pub trait PointPositions<const D: usize> {
     /// m  places from the grid's lower corner
     fn places(&self) -> &[Vector<D>];
     /// Number by which an error names the one at `p`.

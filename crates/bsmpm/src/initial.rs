@@ -3,25 +3,26 @@
 
 mod settle;
 
+use crate::material::Moduli;
 use crate::parallel::Backend;
 use crate::points::MappedPoints;
 use crate::schedule::TimeInterval;
-pub use settle::{Settling, set_spread, settle};
+pub use settle::{EquilibriumSearch, set_spread, settle};
 
 use crate::boundary::StripReport;
-use crate::boundary::strip::StripAttachments;
+use crate::boundary::strip::StripConstraints;
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::material::{Branch, Elastic, Material, Separation};
 use crate::model::Model;
 use crate::parallel::{Halo, LinearSolver, agreed};
-use crate::points::{Packed, Points};
+use crate::points::{PackedTensors, Points};
 use crate::solve::contact;
-use crate::solve::found::Found;
+use crate::solve::found::StepSolution;
 use crate::solve::round_off::RoundOff;
 use crate::step::Counts;
-use crate::step::nodes::Nodes;
+use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 use crate::step::residual::{Balance, Residual};
 use crate::step::stiffness;
@@ -59,7 +60,7 @@ pub fn set_stress<K: Kinematics<D>, const D: usize>(
     for p in 0..points.len() {
         let stress = sigma(points.material[p], &points.x[p]);
         assert!(
-            Packed::<D, Symmetric>::holds(&stress),
+            PackedTensors::<D, Symmetric>::holds(&stress),
             "a stress at the start leaves the plane: {stress:?}"
         );
         let law = model.materials[usize::from(points.material[p])].at(points.height(p));
@@ -124,7 +125,7 @@ pub fn b_e_of(law: &Material, stress: &Symmetric, state: &mut [f64]) -> Symmetri
     let spectrum = stress.full().symmetric_eigen();
     let mut axes = [0, 1, 2];
     axes.sort_by(|&a, &b| spectrum.eigenvalues[b].total_cmp(&spectrum.eigenvalues[a]));
-    let strain = law.start(axes.map(|k| spectrum.eigenvalues[k]), state);
+    let strain = law.initial_state(axes.map(|k| spectrum.eigenvalues[k]), state);
     let dyads = axes.iter().zip(strain).map(|(&k, eps)| {
         let axis = spectrum.eigenvectors.column(k);
         axis * axis.transpose() * (2.0 * eps).exp()
@@ -141,7 +142,7 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
 ) -> Result<(), StepError> {
     let model = &model.settling();
-    let start = Undeformed::of(model, points, halo)?;
+    let start = UndeformedState::of(model, points, halo)?;
     let problem = start.problem(model, points, halo);
     stiffness::assemble(&problem, None, solver)?;
     let mut u = vec![0.0; model.grid.nodes() * D];
@@ -164,7 +165,7 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     }
     let (_, traction) = start
         .attachments
-        .conclude(&model.boundary.strips, &model.grid, &points.surface, &u, halo);
+        .finish_step(&model.boundary.strips, &model.grid, &points.surface, &u, halo);
     points.surface.traction = traction;
     for (p, strain) in strains.iter().enumerate() {
         points.b_e.set(p, exponential(strain));
@@ -198,7 +199,7 @@ pub fn hold_at<K: Kinematics<D>, const D: usize>(
         return Ok(());
     }
     let at_rest = &model.at_rest();
-    let mut start = Undeformed::at(at_rest, points, t, halo)?;
+    let mut start = UndeformedState::at(at_rest, points, t, halo)?;
     let backend = &mut Backend { halo, solver };
     let found = start.find(at_rest, points, backend, &mut Counts::default())?;
     points.surface.held = model.boundary.held(&model.grid, &found.reaction, halo);
@@ -218,14 +219,15 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
         Ok(sum + f64::from(u32::from(yields)))
     });
     let mut yielding = [agreed(halo, counted, StepError::OtherRank)?];
-    let start = Undeformed::of(model, points, halo)?;
+    let start = UndeformedState::of(model, points, halo)?;
     let at_rest = vec![0.0; model.grid.nodes() * D];
     let balance = Residual::of(&start.problem(model, points, halo), &at_rest).balance;
-    halo.reduce(&mut yielding);
+    halo.all_reduce_sum(&mut yielding);
     let reactions = model.boundary.reactions(&model.grid, &balance.reaction, halo);
-    let (strips, _) = start
-        .attachments
-        .conclude(&model.boundary.strips, &model.grid, &points.surface, &at_rest, halo);
+    let (strips, _) =
+        start
+            .attachments
+            .finish_step(&model.boundary.strips, &model.grid, &points.surface, &at_rest, halo);
     Ok(Equilibrium {
         force: balance.measure(),
         yielding: yielding[0] as u64,
@@ -259,20 +261,20 @@ pub fn is_pushed<K: Kinematics<D>, const D: usize>(
         shaking,
         ..model.at_rest()
     };
-    let start = Undeformed::of(model, points, halo)?;
+    let start = UndeformedState::of(model, points, halo)?;
     let problem = start.problem(model, points, halo);
     let balance = Residual::of(&problem, &vec![0.0; model.grid.nodes() * D]).balance;
     Ok(balance.measure() > model.criteria.force && !RoundOff::of(&problem).covers(&balance, &problem))
 }
 
 /// Steps (1) and (2) at a time, without motion.
-struct Undeformed<const D: usize> {
+struct UndeformedState<const D: usize> {
     shape: Shape<D>,
-    nodes: Nodes<D>,
-    attachments: StripAttachments<D>,
+    nodes: GridState<D>,
+    attachments: StripConstraints<D>,
 }
 
-impl<const D: usize> Undeformed<D> {
+impl<const D: usize> UndeformedState<D> {
     fn of<K: Kinematics<D>>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> Result<Self, StepError> {
         Self::at(model, points, 0.0, halo)
     }
@@ -285,7 +287,7 @@ impl<const D: usize> Undeformed<D> {
     ) -> Result<Self, StepError> {
         let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?;
         let instant = TimeInterval { start: t, dt: 0.0 };
-        let mut nodes = Nodes::map(model, &shape, points, instant, halo)?;
+        let mut nodes = GridState::from_points(model, &shape, points, instant, halo)?;
         // The displacements of a start are none: what it seeks is a stress.
         let followers = std::mem::take(&mut nodes.followers);
         if !followers.is_empty() {
@@ -298,7 +300,7 @@ impl<const D: usize> Undeformed<D> {
         }
         let movable = nodes.movable();
         let mut attachments =
-            StripAttachments::at(&model.boundary.strips, &points.surface, &model.grid, &movable, instant);
+            StripConstraints::at(&model.boundary.strips, &points.surface, &model.grid, &movable, instant);
         attachments.wet(nodes.pore_pressure.as_ref());
         Ok(Self {
             shape,
@@ -314,7 +316,7 @@ impl<const D: usize> Undeformed<D> {
         points: &Points<D>,
         backend: &mut Backend<'_>,
         counts: &mut Counts,
-    ) -> Result<Found<K, D>, StepError> {
+    ) -> Result<StepSolution<K, D>, StepError> {
         let shape = &self.shape;
         let mapped = MappedPoints { shape, points };
         let guess = vec![0.0; model.grid.nodes() * D];
@@ -357,7 +359,13 @@ fn elastic_residual<K: Kinematics<D>, const D: usize>(
         let tau = stress_of(&elastic_at(problem.model, problem.points, p), &strains[p]);
         K::flux(&tau, &Tensor::identity()) * volume[p]
     });
-    Balance::of(problem, u, &|_| Tensor::identity(), problem.halo.sum(&f_int), 0)
+    Balance::of(
+        problem,
+        u,
+        &|_| Tensor::identity(),
+        problem.halo.assemble_ghosts(&f_int),
+        0,
+    )
 }
 
 fn elastic_at<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, p: usize) -> Elastic {
@@ -369,7 +377,7 @@ fn elastic_at<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Po
 
 /// D eps: lambda tr(eps) I + 2 mu eps, Pa.
 fn stress_of(elastic: &Elastic, strain: &Symmetric) -> Symmetric {
-    let (lambda, mu) = elastic.lame();
+    let Moduli { lambda, mu } = elastic.moduli();
     let [xx, yy, zz, ..] = strain.0;
     let mut stress = strain.scaled(2.0 * mu);
     stress.0[..3]

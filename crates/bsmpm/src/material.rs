@@ -23,7 +23,7 @@ mod von_mises;
 pub use cam_clay::CamClay;
 pub use drucker_prager::{DruckerPrager, Match};
 pub use elastic::{Elastic, Moduli};
-pub use graded::{Graded, Profile};
+pub use graded::{GradedLaw, Profile};
 pub use hencky::Hencky;
 pub use law::{Branch, Law, Projection, Separation, Variable, split};
 pub use mohr_coulomb::MohrCoulomb;
@@ -47,7 +47,7 @@ macro_rules! laws {
         pub enum Material {
             $($(#[$doc])* $Law($module::$Law),)*
             /// One of the others, with parameters that depend on the height.
-            Graded(Graded),
+            Graded(GradedLaw),
         }
 
         /// What the return of a response left; elastic without one.
@@ -125,13 +125,13 @@ macro_rules! laws {
 
             /// Principal elastic strains of a stress at the start (Pa), and the law's state there, in the place of
             /// zeros; of a graded law through [`Material::at`] only. No numbers where the law has no such stress.
-            pub fn start(&self, tau: [f64; 3], state: &mut [f64]) -> [f64; 3] {
+            pub fn initial_state(&self, tau: [f64; 3], state: &mut [f64]) -> [f64; 3] {
                 match self {
                     $(Self::$Law(law) => {
-                        law.start(tau, state);
+                        law.initial_state(tau, state);
                         law.strain(tau)
                     })*
-                    Self::Graded(law) => law.most().start(tau, state),
+                    Self::Graded(law) => law.most().initial_state(tau, state),
                 }
             }
 
@@ -159,19 +159,19 @@ macro_rules! laws {
                 }
             }
 
-            /// The law with other numbers, the same at all heights; see [`Law::with`].
-            pub fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+            /// The law with other numbers, the same at all heights; see [`Law::with_parameters`].
+            pub fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self {
                 match self {
-                    $(Self::$Law(law) => Self::$Law(law.with(elastic, parameters)),)*
-                    Self::Graded(law) => law.most().with(elastic, parameters),
+                    $(Self::$Law(law) => Self::$Law(law.with_parameters(elastic, parameters)),)*
+                    Self::Graded(law) => law.most().with_parameters(elastic, parameters),
                 }
             }
 
             /// The law in a step of the length `dt`, s; `None` where that does not matter to it.
-            pub fn over(&self, dt: f64) -> Option<Self> {
+            pub fn at_time_step(&self, dt: f64) -> Option<Self> {
                 match self {
-                    $(Self::$Law(law) => law.over(dt).map(Self::$Law),)*
-                    Self::Graded(law) => law.over(dt).map(Self::Graded),
+                    $(Self::$Law(law) => law.at_time_step(dt).map(Self::$Law),)*
+                    Self::Graded(law) => law.at_time_step(dt).map(Self::Graded),
                 }
             }
 
@@ -193,10 +193,10 @@ macro_rules! laws {
 
             /// The yield function of a principal stress (Pa, descending) in a `state`, Pa: positive outside; of a
             /// graded law that of the largest parameters.
-            pub fn excess(&self, tau: [f64; 3], state: &[f64]) -> f64 {
+            pub fn yield_function(&self, tau: [f64; 3], state: &[f64]) -> f64 {
                 match self {
-                    $(Self::$Law(law) => law.excess(tau, state),)*
-                    Self::Graded(law) => law.most().excess(tau, state),
+                    $(Self::$Law(law) => law.yield_function(tau, state),)*
+                    Self::Graded(law) => law.most().yield_function(tau, state),
                 }
             }
 
@@ -223,7 +223,7 @@ macro_rules! laws {
             #[inline(always)]
             fn stress_of<R: Real>(&self, spectrum: &Spectrum<R>, state: &[R]) -> Option<Symmetric<R>> {
                 let tau = match self {
-                    $(Self::$Law(law) if <$module::$Law as Law>::IN_LANES => law.project(law.stress(spectrum.eps), state).tau,)*
+                    $(Self::$Law(law) if <$module::$Law as Law>::IN_LANES => law.return_map(law.stress(spectrum.eps), state).tau,)*
                     _ => return None,
                 };
                 Some(spectrum.assemble(tau))
@@ -242,7 +242,7 @@ macro_rules! laws {
                 let (moduli, tau, flowed) = match self {
                     $(Self::$Law(law) => {
                         let moduli = law.moduli();
-                        let Projection { tau, yields, flow } = law.project(law.stress(spectrum.eps), state);
+                        let Projection { tau, yields, flow } = law.return_map(law.stress(spectrum.eps), state);
                         let linear = <$module::$Law as Law>::LINEAR;
                         if !linear && !(tau[0].is_finite() && tau[2].is_finite()) {
                             return Err(MaterialError::NoStress(spectrum.eps));
@@ -278,11 +278,11 @@ macro_rules! laws {
                 }
             }
 
-            /// See [`Law::chord`]; 2μ if elastic.
-            pub fn chord(&self, moduli: Moduli, tau: f64, eps: f64) -> f64 {
+            /// See [`Law::secant_modulus`]; 2μ if elastic.
+            pub fn secant_modulus(&self, moduli: Moduli, tau: f64, eps: f64) -> f64 {
                 match self {
                     Self::Elastic => 2.0 * moduli.mu,
-                    $(Self::$Law(flow) => $module::$Law::chord(flow, moduli, tau, eps),)*
+                    $(Self::$Law(flow) => $module::$Law::secant_modulus(flow, moduli, tau, eps),)*
                 }
             }
 

@@ -3,16 +3,17 @@
 use crate::background::Background;
 use crate::boundary::Boundary;
 use crate::boundary::anchor::Surfaces;
-use crate::boundary::rigid::Reaching;
+use crate::boundary::rigid::ParticleDomains;
 use crate::grid::Grid;
 use crate::grid::extension::ExtendedSplines;
 use crate::kinematics::Kinematics;
+use crate::material::Moduli;
 use crate::material::{Material, MaterialError, Response};
 use crate::method::{Criteria, Nonlinear};
 use crate::points::Points;
 use crate::quadrature::Quadrature;
 use crate::schedule::between;
-use crate::stabilisation::{Grouped, Groups, Stabilisation};
+use crate::stabilisation::{GroupedPoints, Groups, Stabilisation};
 use crate::step::mass::MassMatrix;
 use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
@@ -35,7 +36,7 @@ pub enum Regime {
 ///
 /// Where the density is the same everywhere both are one; where it is not, dilations are averaged better by volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Weighting {
+pub enum AverageWeight {
     /// The points' mass, as in the paper.
     Mass,
     /// The points' reference volume, where a scene has materials of different density, or weightless ones.
@@ -125,7 +126,7 @@ pub struct Model<K, const D: usize> {
     /// Which velocity points near fixed faces keep in dynamics.
     pub wall_velocity: WallVelocity,
     /// Weights of the averages.
-    pub weighting: Weighting,
+    pub weighting: AverageWeight,
     /// Body force, if any.
     pub gravity: Option<Gravity<D>>,
     /// Motion of the ground, if any.
@@ -207,11 +208,15 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
     where
         K: Clone,
     {
-        if self.materials.iter().all(|material| material.over(dt).is_none()) {
+        if self
+            .materials
+            .iter()
+            .all(|material| material.at_time_step(dt).is_none())
+        {
             return Cow::Borrowed(self);
         }
         let materials = self.materials.iter();
-        let materials = materials.map(|material| material.over(dt).unwrap_or_else(|| material.clone()));
+        let materials = materials.map(|material| material.at_time_step(dt).unwrap_or_else(|| material.clone()));
         Cow::Owned(Self {
             materials: materials.collect(),
             ..self.clone()
@@ -231,7 +236,7 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
     /// kg m/s  mass of point `p` times the speed of compression waves, and of shear waves, of its elastic stiffness.
     pub fn impedance(&self, points: &Points<D>, p: usize) -> [f64; 2] {
         let material = &self.materials[usize::from(points.material[p])];
-        let (lambda, mu) = material.elastic().lame();
+        let Moduli { lambda, mu } = material.elastic().moduli();
         let relative = material.relative_stiffness(points.height(p));
         [lambda + 2.0 * mu, mu].map(|modulus| (points.mass[p] * points.volume[p] * relative * modulus).sqrt())
     }
@@ -298,8 +303,8 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
     }
 
     /// What shows how far the points reach.
-    pub fn reaching<'a>(&'a self, points: &'a Points<D>) -> Reaching<'a, D> {
-        Reaching {
+    pub fn reaching<'a>(&'a self, points: &'a Points<D>) -> ParticleDomains<'a, D> {
+        ParticleDomains {
             grid: &self.grid,
             points,
             reach: &self.boundary.reach,
@@ -331,16 +336,16 @@ impl<K, const D: usize> Model<K, D> {
     }
 
     /// What the nodes' own weights are made of: mass in dynamics.
-    pub fn inertial_weighting(&self) -> Weighting {
+    pub fn inertial_weighting(&self) -> AverageWeight {
         if self.regime == Regime::Dynamic {
-            Weighting::Mass
+            AverageWeight::Mass
         } else {
             self.weighting
         }
     }
 
     /// The points in the groups that averages may mix.
-    pub fn grouped<'a>(&'a self, points: &'a Points<D>) -> Grouped<'a> {
-        Grouped::by(&self.groups, &points.material)
+    pub fn grouped<'a>(&'a self, points: &'a Points<D>) -> GroupedPoints<'a> {
+        GroupedPoints::by(&self.groups, &points.material)
     }
 }

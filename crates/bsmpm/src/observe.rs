@@ -39,7 +39,7 @@ fn largest<const D: usize>(
     let mut largest = [threads::largest(points.len(), |p| {
         if part.holds(points, p) { value(p) } else { 0.0 }
     })];
-    halo.maximum(&mut largest);
+    halo.all_reduce_max(&mut largest);
     largest[0]
 }
 
@@ -52,14 +52,14 @@ pub fn percentile<const D: usize>(
     halo: &dyn Halo,
 ) -> f64 {
     let mut count = [part.of(points).count() as f64];
-    halo.reduce(&mut count);
+    halo.all_reduce_sum(&mut count);
     let wanted = percentile / 100.0 * count[0];
     let mut lower = 0.0;
     let mut upper = farthest(points, part, axis, halo);
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (lower + upper);
         let mut below = [part.of(points).filter(|&p| points.x[p][axis] <= middle).count() as f64];
-        halo.reduce(&mut below);
+        halo.all_reduce_sum(&mut below);
         if below[0] >= wanted {
             upper = middle
         } else {
@@ -103,7 +103,7 @@ fn total<const D: usize, const N: usize>(
     let sums = threads::sums::<N>(points.len(), |p| {
         std::array::from_fn(|k| if part.holds(points, p) { term(p, k) } else { 0.0 })
     });
-    let sums = halo.total(&sums);
+    let sums = halo.reproducible_sum(&sums);
     std::array::from_fn(|k| sums[k])
 }
 
@@ -193,7 +193,7 @@ fn means<const D: usize, const N: usize>(
 /// Whether a part has any point.
 pub fn is_occupied<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> bool {
     let mut any = [if part.of(points).next().is_some() { 1.0 } else { 0.0 }];
-    halo.maximum(&mut any);
+    halo.all_reduce_max(&mut any);
     any[0] > 0.0
 }
 
@@ -242,12 +242,12 @@ pub fn nearest<const D: usize>(
 /// Id of the point whose `distance` is the smallest, if that is finite; of equally near ones the smallest id.
 fn nearest_by<const D: usize>(points: &Points<D>, distance: impl Fn(usize) -> f64, halo: &dyn Halo) -> Option<u64> {
     let mut closest = [-(0..points.len()).map(&distance).fold(f64::INFINITY, f64::min)];
-    halo.maximum(&mut closest);
+    halo.all_reduce_max(&mut closest);
     let candidates = (0..points.len()).filter(|&p| closest[0].is_finite() && -distance(p) == closest[0]);
     let mut id = [candidates
         .map(|p| -(points.id[p] as f64))
         .fold(f64::NEG_INFINITY, f64::max)];
-    halo.maximum(&mut id);
+    halo.all_reduce_max(&mut id);
     id[0].is_finite().then(|| -id[0] as u64)
 }
 
@@ -275,6 +275,6 @@ pub fn at_point<const D: usize, const C: usize>(
     value: impl Fn(usize) -> [f64; C],
 ) -> [f64; C] {
     let mut found = points.id.iter().position(|&own| own == id).map_or([0.0; C], value);
-    halo.reduce(&mut found);
+    halo.all_reduce_sum(&mut found);
     found
 }

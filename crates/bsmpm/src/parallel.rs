@@ -56,17 +56,17 @@ pub trait Halo {
     fn owned(&self) -> OwnedNodes;
     /// Nodal sums of what the columns of all ranks contribute, right at ghost nodes too: the same bits on any number of
     /// ranks.
-    fn sum(&self, contributions: &Contributions) -> Vec<f64>;
+    fn assemble_ghosts(&self, contributions: &Contributions) -> Vec<f64>;
     /// Replaces the numbers of every node that ranks share by those of its owner.
-    fn share(&self, nodal: &mut [f64], width: usize);
+    fn update_ghosts(&self, nodal: &mut [f64], width: usize);
     /// Replaces each number of the nodes that ranks share by the largest of theirs.
-    fn max(&self, nodal: &mut [f64], width: usize);
+    fn ghost_max(&self, nodal: &mut [f64], width: usize);
     /// Replaces each number by its sum over the ranks. For counts and what one rank alone has, which are exact.
-    fn reduce(&self, numbers: &mut [f64]);
+    fn all_reduce_sum(&self, numbers: &mut [f64]);
     /// The values of sums over all ranks: the same bits on any number of ranks.
-    fn total(&self, sums: &[Exact]) -> Vec<f64>;
+    fn reproducible_sum(&self, sums: &[Exact]) -> Vec<f64>;
     /// Replaces each number by its largest over the ranks.
-    fn maximum(&self, numbers: &mut [f64]);
+    fn all_reduce_max(&self, numbers: &mut [f64]);
     /// The numbers of all ranks, those of one rank behind those of the rank before it; ranks may have different counts.
     fn gather(&self, numbers: &[f64]) -> Vec<f64> {
         numbers.to_vec()
@@ -76,8 +76,8 @@ pub trait Halo {
     fn is_private(&self, _node: usize) -> bool {
         true
     }
-    /// Whether somebody outside wants the step to be given up. Changes in [`reduce`](Self::reduce) and
-    /// [`total`](Self::total) only, so that all ranks see it between the same two reductions.
+    /// Whether somebody outside wants the step to be given up. Changes in [`all_reduce_sum`](Self::all_reduce_sum) and
+    /// [`reproducible_sum`](Self::reproducible_sum) only, so that all ranks see it between the same two reductions.
     fn is_interrupted(&self) -> bool {
         false
     }
@@ -94,7 +94,7 @@ pub type VectorPair<'a> = (&'a [f64], &'a [f64]);
 /// Dot products of nodal vectors (`width` numbers a node) over all nodes, each counted once, in one reduction.
 pub fn dots(halo: &dyn Halo, width: usize, pairs: &[VectorPair<'_>]) -> Vec<f64> {
     let sums = pairs.iter().map(|(a, b)| over_layers(halo, width, |c| a[c] * b[c]));
-    halo.total(&sums.collect::<Vec<_>>())
+    halo.reproducible_sum(&sums.collect::<Vec<_>>())
 }
 
 /// Sum over the components of this rank's own nodes, `width` a node: plainly within a layer, exactly over the layers.
@@ -108,7 +108,7 @@ pub fn over_layers(halo: &dyn Halo, width: usize, term: impl Fn(usize) -> f64) -
 /// The outcome of this rank, or `other` where only another rank failed: nobody goes on while another has returned.
 pub fn agreed<T, E>(halo: &dyn Halo, mine: Result<T, E>, other: E) -> Result<T, E> {
     let mut failed = [f64::from(u8::from(mine.is_err()))];
-    halo.maximum(&mut failed);
+    halo.all_reduce_max(&mut failed);
     if failed[0] > 0.0 { mine.and(Err(other)) } else { mine }
 }
 
@@ -116,21 +116,21 @@ pub fn agreed<T, E>(halo: &dyn Halo, mine: Result<T, E>, other: E) -> Result<T, 
 pub trait LinearSolver {
     /// Starts a matrix whose unknowns are the components marked `free` (D per local node, equal on all ranks that
     /// share the node).
-    fn begin(&mut self, free: &[bool]);
+    fn reinit(&mut self, free: &[bool]);
     /// Adds the dense row-major block of a patch: D unknowns for each of its (q+1)^D nodes, counted from `first_node`.
-    fn add(&mut self, first_node: usize, block: &[f64]);
+    fn add_block(&mut self, first_node: usize, block: &[f64]);
     /// Adds a dense row-major block of D unknowns for each of `nodes`, the lowest first: what couples neighbouring
     /// patches, of a grid that reaches so far ([`Grid::reaching`](crate::grid::Grid::reaching)).
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]);
+    fn add_block_among(&mut self, nodes: &[usize], block: &[f64]);
     /// Adds to the diagonal, D numbers per local node; those of owned nodes count.
     fn add_diagonal(&mut self, diagonal: &[f64]);
     /// Completes and factorises the matrix.
-    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError>;
-    /// Solves for a nodal right-hand side; the solution is zero at components that are not free, and right at
-    /// ghost nodes too. It is a direction, the same linear, symmetric and positive function of all right-hand sides up
-    /// to round-off, and no answer: what it leaves of the first one after [`LinearSolver::finish`] is a hundredth of it
+    fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError>;
+    /// Solves for a nodal right-hand side; the solution is zero at components that are not free, and right at ghost
+    /// nodes too. It is a direction, the same linear, symmetric and positive function of all right-hand sides up to
+    /// round-off, and no answer: what it leaves of the first one after [`LinearSolver::factorise`] is a hundredth of it
     /// at most, unless the solver [is rough](LinearSolver::is_rough).
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError>;
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError>;
     /// Whether [`LinearSolver::solve`] is a preconditioner, applied a fixed number of times: secants correct that, too.
     /// Newton's directions are then sought around it, without a general matrix.
     fn is_rough(&self) -> bool {
@@ -138,7 +138,7 @@ pub trait LinearSolver {
     }
     /// As [`LinearSolver::solve`], to the residual `relative` to the right-hand side at most: by conjugate gradients
     /// around it where that is rough.
-    fn solve_to(&mut self, _relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve_to(&mut self, _relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         self.solve(rhs, solution)
     }
     /// Solves for an operator known by its product (nodal arrays, zero where not free; collective), by a Krylov method
@@ -168,7 +168,7 @@ pub enum Symmetry {
 
 /// What a solution took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Solved {
+pub struct SolveReport {
     /// iterations of the linear solver
     pub iterations: usize,
     /// further factorisations, as the first one did not do
@@ -197,16 +197,16 @@ impl Halo for Alone {
     fn owned(&self) -> OwnedNodes {
         OwnedNodes::first(self.nodes)
     }
-    fn sum(&self, contributions: &Contributions) -> Vec<f64> {
+    fn assemble_ghosts(&self, contributions: &Contributions) -> Vec<f64> {
         contributions.alone()
     }
-    fn share(&self, _nodal: &mut [f64], _width: usize) {}
-    fn max(&self, _nodal: &mut [f64], _width: usize) {}
-    fn reduce(&self, _numbers: &mut [f64]) {}
-    fn total(&self, sums: &[Exact]) -> Vec<f64> {
+    fn update_ghosts(&self, _nodal: &mut [f64], _width: usize) {}
+    fn ghost_max(&self, _nodal: &mut [f64], _width: usize) {}
+    fn all_reduce_sum(&self, _numbers: &mut [f64]) {}
+    fn reproducible_sum(&self, sums: &[Exact]) -> Vec<f64> {
         sums.iter().map(Exact::value).collect()
     }
-    fn maximum(&self, _numbers: &mut [f64]) {}
+    fn all_reduce_max(&self, _numbers: &mut [f64]) {}
 }
 
 /// Communication between the ranks, and the solver of the linear systems.

@@ -4,11 +4,11 @@ mod column;
 mod packed;
 
 pub use column::{Column, Number, Rows};
-pub use packed::{Components, Packed};
+pub use packed::{Components, PackedTensors};
 
 use crate::boundary::Surface;
-use crate::boundary::anchor::Anchored;
-use crate::grid::{Grid, Located, Shape};
+use crate::boundary::anchor::AnchorCandidates;
+use crate::grid::{Grid, PointPositions, Shape};
 use crate::tensor::{Symmetric, Tensor, Vector};
 use crate::threads;
 use rayon::prelude::*;
@@ -155,11 +155,11 @@ columns! {
         /// m^D  reference volume V0; the current one is det F V0
         volume: Vec<f64>, "m^D", None, |seed| seed.volume;
         /// -  deformation gradient
-        F: Packed<D, Tensor>, "-", None, |_seed| Tensor::identity();
+        F: PackedTensors<D, Tensor>, "-", None, |_seed| Tensor::identity();
         /// -  elastic left Cauchy-Green tensor that the next step starts from (smoothed under some F-bar methods)
-        b_e: Packed<D, Symmetric>, "-", None, |_seed| Symmetric::IDENTITY;
+        b_e: PackedTensors<D, Symmetric>, "-", None, |_seed| Symmetric::IDENTITY;
         /// Pa  Cauchy stress of the last converged step
-        sigma: Packed<D, Symmetric>, "Pa", Some("stress"), |_seed| Symmetric::default();
+        sigma: PackedTensors<D, Symmetric>, "Pa", Some("stress"), |_seed| Symmetric::default();
         /// -  accumulated plastic strain
         eps_p: Vec<f64>, "-", Some("plastic_strain"), |_seed| 0.0;
     }
@@ -175,7 +175,7 @@ columns! {
         dilation: Vec<f64>, "-", None, || 1.0;
         /// -  b^e after smoothing by that before, a left Cauchy-Green tensor, in the last step, where damped points are
         ///   smoothed; before that it is the identity
-        smoothing: Packed<D, Symmetric>, "-", None, || Symmetric::IDENTITY;
+        smoothing: PackedTensors<D, Symmetric>, "-", None, || Symmetric::IDENTITY;
         /// -  logarithm of the volume of the gap, where a material closes its gaps, from its first step on; before that
         ///   it is 0
         gap: Vec<f64>, "-", None, || 0.0;
@@ -219,7 +219,7 @@ pub struct Seed<const D: usize> {
     pub v: Vector<D>,
 }
 
-impl<const D: usize> Located<D> for Points<D> {
+impl<const D: usize> PointPositions<D> for Points<D> {
     fn places(&self) -> &[Vector<D>] {
         &self.x
     }
@@ -230,8 +230,8 @@ impl<const D: usize> Located<D> for Points<D> {
 
 impl<const D: usize> Points<D> {
     /// The points as surfaces are anchored to them.
-    pub fn anchored(&self) -> Anchored<'_, D> {
-        Anchored {
+    pub fn anchored(&self) -> AnchorCandidates<'_, D> {
+        AnchorCandidates {
             id: &self.id,
             material: &self.material,
             x: &self.x,
@@ -351,7 +351,7 @@ impl<const D: usize> Points<D> {
         self.columns().iter().map(|column| column.bytes()).sum()
     }
 
-    /// Bytes of one point in memory: fewer where the dimension leaves components out, see [`Packed`].
+    /// Bytes of one point in memory: fewer where the dimension leaves components out, see [`PackedTensors`].
     pub fn memory(&mut self) -> usize {
         self.columns().iter().map(|column| column.memory()).sum()
     }

@@ -3,7 +3,7 @@
 //! theory-manual equation (T2.9).
 
 use crate::boundary::Boundary;
-use crate::grid::occupied::Occupied;
+use crate::grid::occupied::OccupiedCells;
 use crate::grid::{Grid, Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::parallel::Halo;
@@ -38,7 +38,7 @@ pub fn fitted<K: Kinematics<D>, const D: usize>(
     let volume: Vec<f64> = (0..points.len())
         .map(|p| points.volume[p] * points.F.at(p).determinant())
         .collect();
-    let own = halo.sum(&transfer::to_nodes(&lower, |p| [volume[p]]));
+    let own = halo.assemble_ghosts(&transfer::to_nodes(&lower, |p| [volume[p]]));
     let outside = outside(grid, boundary, &lower, halo);
     let missing: Vec<f64> = (0..own.len())
         .map(|node| grid.lowered_volume::<K>(node) - own[node])
@@ -47,7 +47,7 @@ pub fn fitted<K: Kinematics<D>, const D: usize>(
     let mut found = vec![0.0; own.len()];
     for _ in 0..PASSES {
         let change: Vec<f64> = transfer::to_points::<D, 1, _>(&lower, &found, |_, [change]| change);
-        let changed = halo.sum(&transfer::to_nodes(&lower, |p| [volume[p] * change[p]]));
+        let changed = halo.assemble_ghosts(&transfer::to_nodes(&lower, |p| [volume[p] * change[p]]));
         chebyshev.advance(&mut found, |node| {
             let is_inside = !outside[node] && own[node] > 0.0;
             if is_inside {
@@ -65,7 +65,7 @@ pub fn fitted<K: Kinematics<D>, const D: usize>(
 
 /// Which functions reach into cells that have empty neighbours.
 fn outside<const D: usize>(grid: &Grid<D>, boundary: &Boundary<D>, lower: &Shape<D>, halo: &dyn Halo) -> Vec<bool> {
-    let occupied = Occupied::of(grid, lower.patches().iter().map(|patch| patch.cell), halo);
+    let occupied = OccupiedCells::of(grid, lower.patches().iter().map(|patch| patch.cell), halo);
     let closed = boundary.closed();
     let mut marks = vec![0.0; grid.nodes()];
     for patch in lower.patches() {
@@ -76,7 +76,7 @@ fn outside<const D: usize>(grid: &Grid<D>, boundary: &Boundary<D>, lower: &Shape
                 .for_each(|offset| marks[patch.first_node + offset] = 1.0);
         }
     }
-    halo.max(&mut marks, 1);
+    halo.ghost_max(&mut marks, 1);
     marks.iter().map(|&mark| mark > 0.0).collect()
 }
 

@@ -19,15 +19,15 @@ use crate::kinematics::Kinematics;
 use crate::method::{Nonlinear, QuasiNewton};
 use crate::parallel::LinearSolver;
 use crate::solve::quasi_newton::SecantMethod;
-use crate::step::nodes::Nodes;
+use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 use crate::step::report::Counts;
 use crate::step::residual::Residual;
 use crate::step::stiffness;
 use crate::water::{matrix, split};
 use convergence::{Convergence, inverted};
-use found::Found;
-use quasi_newton::Stopped;
+use found::StepSolution;
+use quasi_newton::FailedIteration;
 
 /// Finds equilibrium from the last displacement `guess` (step 3b); if that fails, from zero.
 pub fn find<K: Kinematics<D>, const D: usize>(
@@ -35,11 +35,11 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     guess: &[f64],
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
-) -> Result<Found<K, D>, StepError> {
+) -> Result<StepSolution<K, D>, StepError> {
     let last = admissible(problem.nodes, guess);
     let zero = admissible(problem.nodes, &vec![0.0; guess.len()]);
     let mut differs = [f64::from(u8::from(last != zero))];
-    problem.halo.maximum(&mut differs);
+    problem.halo.all_reduce_max(&mut differs);
     let flows = problem.nodes.pores.is_some();
     let method = match problem.model.nonlinear {
         // A rank-one update does not know of pressures; an exact iteration takes as long as 6 to 23 of secants.
@@ -59,7 +59,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         } else {
             method
         };
-        found = search(problem, method, zero, solver, counts).map(|found| Found {
+        found = search(problem, method, zero, solver, counts).map(|found| StepSolution {
             first_guess: false,
             ..found
         });
@@ -82,7 +82,7 @@ fn search<K: Kinematics<D>, const D: usize>(
     u: Vec<f64>,
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
-) -> Result<Found<K, D>, StepError> {
+) -> Result<StepSolution<K, D>, StepError> {
     let mut convergence = Convergence::new(problem);
     let update = match method {
         Nonlinear::Newton => {
@@ -129,10 +129,10 @@ fn search<K: Kinematics<D>, const D: usize>(
 /// The first state of an iteration that led on no further whose forces balance far below their tolerance.
 fn settled<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    failure: Stopped,
+    failure: FailedIteration,
     counts: &mut Counts,
     convergence: &Convergence,
-) -> Result<Found<K, D>, Stopped> {
+) -> Result<StepSolution<K, D>, FailedIteration> {
     if failure.error.is_final() {
         return Err(failure);
     }
@@ -140,9 +140,9 @@ fn settled<K: Kinematics<D>, const D: usize>(
         return Err(failure);
     };
     let residual = evaluate(problem, u, counts);
-    Ok(Found {
+    Ok(StepSolution {
         settled: true,
-        ..Found::new(u.clone(), residual, convergence)
+        ..StepSolution::new(u.clone(), residual, convergence)
     })
 }
 
@@ -154,7 +154,7 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
     convergence: &mut Convergence,
-) -> Result<Found<K, D>, Stopped> {
+) -> Result<StepSolution<K, D>, FailedIteration> {
     let residual = evaluate(problem, &u, counts);
     if !residual.balance.is_sound() {
         return Err(inverted(problem, &residual, convergence.iterations()).into());
@@ -172,7 +172,7 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
 
 /// The guess where it is free, the prescribed values, zero elsewhere; behind it the pressures that the points have,
 /// where water flows.
-fn admissible<const D: usize>(nodes: &Nodes<D>, guess: &[f64]) -> Vec<f64> {
+fn admissible<const D: usize>(nodes: &GridState<D>, guess: &[f64]) -> Vec<f64> {
     let displacements = guess.iter().enumerate().map(|(c, &value)| match nodes.prescribed[c] {
         Some(prescribed) => prescribed,
         None if nodes.free[c] => value,

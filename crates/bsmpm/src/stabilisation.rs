@@ -69,11 +69,11 @@ impl Groups {
 
 /// Points in groups, whose nodal values stand side by side: numbers of group g at place g of a node.
 #[derive(Clone, Copy)]
-pub struct Grouped<'a> {
+pub struct GroupedPoints<'a> {
     by: Option<(&'a Groups, &'a [u16])>, // with the materials of the points; several groups
 }
 
-impl<'a> Grouped<'a> {
+impl<'a> GroupedPoints<'a> {
     /// All points in one group.
     pub const NOT: Self = Self { by: None };
 

@@ -25,10 +25,10 @@ pub mod walls;
 use crate::schedule::TimeInterval;
 pub use report::{Counts, StepReport};
 
-use crate::background::Resisted;
-use crate::boundary::strip::StripAttachments;
+use crate::background::ResistedDisplacement;
+use crate::boundary::strip::StripConstraints;
 use crate::boundary::{Anchors, Surface, load, rigid};
-use crate::energy::Draft;
+use crate::energy::StepEnergy;
 use crate::error::StepError;
 use crate::free_field::FreeField;
 use crate::grid::Shape;
@@ -37,12 +37,12 @@ use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime};
 use crate::parallel::{Backend, Halo, agreed};
 use crate::points::{MappedPoints, Points};
-use crate::solve::{self, found::Found};
+use crate::solve::{self, found::StepSolution};
 use crate::water::backward::is_smooth;
-use crate::water::crossed::Flowed;
+use crate::water::crossed::PreviousFlow;
 use commit::ConstitutiveUpdate;
 use newmark::Newmark;
-use nodes::Nodes;
+use nodes::GridState;
 use outflow::Outflow;
 use problem::Problem;
 
@@ -54,7 +54,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     points: &mut Points<D>,
     guess: &mut Vec<f64>,
     interval: TimeInterval,
-    resisted: Resisted,
+    resisted: ResistedDisplacement,
     backend: &mut Backend<'_>,
     counts: &mut Counts,
 ) -> Result<StepReport, StepError> {
@@ -63,7 +63,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     let (mut nodes, free_field) = start(model, &shape, points, guess, interval, resisted, halo)?; // (2)
     let movable = nodes.movable();
     let mut attachments =
-        StripAttachments::at(&model.boundary.strips, &points.surface, &model.grid, &movable, interval);
+        StripConstraints::at(&model.boundary.strips, &points.surface, &model.grid, &movable, interval);
     attachments.wet(nodes.pore_pressure.as_ref());
     let mapped = MappedPoints { shape: &shape, points };
     let found = solve::contact::find(model, mapped, &mut nodes, &mut attachments, guess, backend, counts)?; // (3)-(9)
@@ -83,7 +83,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     } = Outcome::of(&problem, &found, interval)?;
     let carried = nodes.rigid.carried(&found.u, points.len(), halo);
     let held = nodes.rigid.held(&found.u, halo);
-    let committed = commit::commit(model, &shape, &nodes, found, update, points, halo); // (10), (11)
+    let committed = commit::update_points(model, &shape, &nodes, found, update, points, halo); // (10), (11)
     *guess = committed.u;
     let reaching = model.reaching(points);
     let extent = nodes.rigid.extents_after(&held, &surface.bodies, &reaching);
@@ -115,11 +115,11 @@ fn start<K: Kinematics<D>, const D: usize>(
     points: &Points<D>,
     guess: &[f64],
     interval: TimeInterval,
-    resisted: Resisted,
+    resisted: ResistedDisplacement,
     halo: &dyn Halo,
-) -> Result<(Nodes<D>, FreeField<D>), StepError> {
-    let mut nodes = Nodes::after(model, shape, points, guess, interval, halo)?;
-    if resisted == Resisted::Change {
+) -> Result<(GridState<D>, FreeField<D>), StepError> {
+    let mut nodes = GridState::from_points_after(model, shape, points, guess, interval, halo)?;
+    if resisted == ResistedDisplacement::Change {
         nodes.resist_change_from(guess, &model.grid, halo);
     }
     let free_field = FreeField::after(model, points, interval, halo)?;
@@ -127,7 +127,7 @@ fn start<K: Kinematics<D>, const D: usize>(
     if let Some(inertia) = nodes.inertia.as_mut().filter(|_| interval.start == 0.0)
         && initial::is_pushed(model, points, halo)?
     {
-        inertia.newmark = Newmark::of_the_end();
+        inertia.newmark = Newmark::dissipative_first_step();
     }
     Ok((nodes, free_field))
 }
@@ -137,7 +137,7 @@ struct Outcome<const D: usize> {
     report: StepReport,
     surface: Surface<D>, // at the end of the step
     update: ConstitutiveUpdate,
-    draft: Option<Draft>, // of the energy, if it is asked for
+    draft: Option<StepEnergy>, // of the energy, if it is asked for
 }
 
 impl<const D: usize> Outcome<D> {
@@ -145,7 +145,7 @@ impl<const D: usize> Outcome<D> {
     /// interrupted.
     fn of<K: Kinematics<D>>(
         problem: &Problem<'_, K, D>,
-        found: &Found<K, D>,
+        found: &StepSolution<K, D>,
         interval: TimeInterval,
     ) -> Result<Self, StepError> {
         let Problem { model, nodes, halo, .. } = *problem;
@@ -155,8 +155,8 @@ impl<const D: usize> Outcome<D> {
         let start = &points.surface;
         let (strips, traction) = problem
             .attachments
-            .conclude(&boundary.strips, grid, start, &found.u, halo);
-        let (rigid, bodies) = nodes.rigid.conclude(&found.u, halo);
+            .finish_step(&boundary.strips, grid, start, &found.u, halo);
+        let (rigid, bodies) = nodes.rigid.finish_step(&found.u, halo);
         if let Some(bodies) = rigid::overlapping(&boundary.rigid, &bodies) {
             return Err(StepError::Overlapping { bodies });
         }
@@ -190,7 +190,7 @@ impl<const D: usize> Outcome<D> {
             *internal = internal.max(commit::stress_work(&found.trial, points, &update.answers, halo));
         }
         let accounts = model.balances_energy || model.regime == Regime::Dynamic;
-        let draft = accounts.then(|| Draft::of(problem, found, &update.answers, interval));
+        let draft = accounts.then(|| StepEnergy::of(problem, found, &update.answers, interval));
         if halo.rejects() {
             return Err(StepError::Interrupted);
         }
@@ -225,7 +225,7 @@ fn settle<K, const D: usize>(
     if let Some(water) = &mut report.water {
         water.stored = content;
         surface.crossed.add(1.0, &water.crossed);
-        surface.flowed = is_smooth(model).then(|| Flowed {
+        surface.flowed = is_smooth(model).then(|| PreviousFlow {
             dt: report.dt,
             crossed: water.crossed.clone(),
             left: water.left,

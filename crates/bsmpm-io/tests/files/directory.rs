@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use bsmpm_io::Error;
-use bsmpm_io::directory::{Existing, OutputDirectory};
+use bsmpm_io::directory::{ExistingRunPolicy, OutputDirectory};
 use bsmpm_io::lock::Unseen;
 use bsmpm_io::manifest::{Manifest, ManifestCase};
 
@@ -20,7 +20,7 @@ fn manifest(outputs: &[&str]) -> Manifest {
     manifest
 }
 
-fn claim(path: &Path, existing: Existing) -> Result<OutputDirectory, Error> {
+fn claim(path: &Path, existing: ExistingRunPolicy) -> Result<OutputDirectory, Error> {
     OutputDirectory::hold(path, Unseen::Respect).and_then(|held| held.claim(existing, &manifest(&[])))
 }
 
@@ -52,9 +52,9 @@ fn run() -> tempfile::TempDir {
 fn a_new_directory_is_made_and_claimed_once() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("deep/er.out");
-    assert_eq!(claim(&path, Existing::Refuse).unwrap().path(), path);
+    assert_eq!(claim(&path, ExistingRunPolicy::Refuse).unwrap().path(), path);
     assert_eq!(listing(&path), ["run.json"]);
-    let error = claim(&path, Existing::Refuse).unwrap_err();
+    let error = claim(&path, ExistingRunPolicy::Refuse).unwrap_err();
     assert!(matches!(&error, Error::Occupied { found, .. } if found == "run.json"));
     assert_eq!(error.exit_code(), 73);
 }
@@ -64,7 +64,7 @@ fn of_many_that_claim_at_once_one_succeeds() {
     let dir = tempfile::tempdir().unwrap();
     let attempts = std::thread::scope(|scope| {
         let threads: Vec<_> = (0..8)
-            .map(|_| scope.spawn(|| claim(dir.path(), Existing::Refuse).is_ok()))
+            .map(|_| scope.spawn(|| claim(dir.path(), ExistingRunPolicy::Refuse).is_ok()))
             .collect();
         threads
             .into_iter()
@@ -92,21 +92,24 @@ fn any_file_of_a_run_is_enough_to_refuse() {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(&path, "").unwrap();
         assert!(
-            matches!(claim(dir.path(), Existing::Refuse), Err(Error::Occupied { .. })),
+            matches!(
+                claim(dir.path(), ExistingRunPolicy::Refuse),
+                Err(Error::Occupied { .. })
+            ),
             "{file}"
         );
-        assert!(claim(dir.path(), Existing::Delete).is_err(), "{file}");
+        assert!(claim(dir.path(), ExistingRunPolicy::Delete).is_err(), "{file}");
         assert!(path.exists());
     }
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("notes.txt"), "").unwrap();
-    claim(dir.path(), Existing::Refuse).unwrap();
+    claim(dir.path(), ExistingRunPolicy::Refuse).unwrap();
 }
 
 #[test]
 fn force_deletes_what_is_named_and_nothing_else() {
     let dir = run();
-    claim(dir.path(), Existing::Delete).unwrap();
+    claim(dir.path(), ExistingRunPolicy::Delete).unwrap();
     assert_eq!(
         listing(dir.path()),
         ["frames/notes.txt", "mine.csv", "notes.txt", "run.json"]
@@ -119,7 +122,9 @@ fn force_stops_at_a_file_of_a_run_that_is_not_named() {
     let dir = run();
     fs::write(dir.path().join("steps.csv"), "").unwrap();
     let before = listing(dir.path());
-    assert!(matches!(claim(dir.path(), Existing::Delete), Err(Error::Occupied { found, .. }) if found == "steps.csv"));
+    assert!(
+        matches!(claim(dir.path(), ExistingRunPolicy::Delete), Err(Error::Occupied { found, .. }) if found == "steps.csv")
+    );
     assert_eq!(listing(dir.path()), before);
 }
 
@@ -150,7 +155,7 @@ fn a_hostile_manifest_deletes_nothing() {
         }
         fs::create_dir(dir.path().join("folder.csv")).unwrap();
         manifest(&["history.csv", name]).write(dir.path()).unwrap();
-        let error = claim(dir.path(), Existing::Delete).unwrap_err();
+        let error = claim(dir.path(), ExistingRunPolicy::Delete).unwrap_err();
         assert!(
             matches!(&error, Error::UnsafeOutput { name: reported, .. } if reported == name),
             "{name}: {error}"
@@ -167,10 +172,10 @@ fn a_path_that_is_a_file_is_refused() {
     let path = dir.path().join("file");
     fs::write(&path, "").unwrap();
     assert!(matches!(
-        claim(&path, Existing::Delete),
+        claim(&path, ExistingRunPolicy::Delete),
         Err(Error::NotDirectory { .. })
     ));
-    let error = claim(&path.join("below"), Existing::Refuse).unwrap_err();
+    let error = claim(&path.join("below"), ExistingRunPolicy::Refuse).unwrap_err();
     assert!(matches!(&error, Error::Directory { action: "create", .. }), "{error}");
     assert_eq!(error.exit_code(), 73);
 }

@@ -1,19 +1,19 @@
 //! Measures the loops of a step.
 
-use bsmpm::boundary::strip::StripAttachments;
+use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::error::{SolveError, StepError};
 use bsmpm::free_field::FreeField;
 use bsmpm::grid::{Shape, transfer};
 use bsmpm::kinematics::{Gradient, Kinematics};
 use bsmpm::model::Model;
-use bsmpm::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
+use bsmpm::parallel::{Halo, Krylov, LinearSolver, SolveReport, Symmetry};
 use bsmpm::points::Points;
 use bsmpm::schedule::TimeInterval;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::{InternalForce, Residual};
 use bsmpm::step::stiffness;
-use bsmpm::step::trial::Trial;
+use bsmpm::step::trial::DeformationIncrement;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -54,10 +54,10 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
             ..
         } = *self;
         let shape = Shape::at(&model.grid, points)?;
-        let mut nodes = Nodes::map(model, &shape, points, interval, halo)?;
+        let mut nodes = GridState::from_points(model, &shape, points, interval, halo)?;
         let field = FreeField::after(model, points, interval, halo)?;
         field.drive(&mut nodes);
-        let attachments = StripAttachments::at(
+        let attachments = StripConstraints::at(
             &model.boundary.strips,
             &points.surface,
             &model.grid,
@@ -83,7 +83,7 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
             drop(black_box(Shape::at(&model.grid, points)))
         });
         self.row("(2) points to nodes", None, || {
-            drop(black_box(Nodes::map(model, &shape, points, interval, halo)))
+            drop(black_box(GridState::from_points(model, &shape, points, interval, halo)))
         });
         if !field.columns.is_empty() {
             self.row("columns of the free field", None, || {
@@ -103,7 +103,7 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
                 drop(black_box(nodes.mean_dilation(model, &shape, points, halo, |_| 1.0)));
             });
         }
-        let trial = Trial::of(model, &shape, &nodes, points, &u, halo);
+        let trial = DeformationIncrement::of(model, &shape, &nodes, points, &u, halo);
         self.row(
             "(4f-i), (5a) constitution in lanes, and scatter of the internal force",
             Some(traffic.force),
@@ -201,21 +201,21 @@ pub fn bytes<K: Kinematics<D>, const D: usize>(mut points: Points<D>, model: &Mo
 struct Nowhere;
 
 impl LinearSolver for Nowhere {
-    fn begin(&mut self, _free: &[bool]) {}
-    fn add(&mut self, _first_node: usize, block: &[f64]) {
+    fn reinit(&mut self, _free: &[bool]) {}
+    fn add_block(&mut self, _first_node: usize, block: &[f64]) {
         black_box(block);
     }
-    fn add_among(&mut self, _nodes: &[usize], block: &[f64]) {
+    fn add_block_among(&mut self, _nodes: &[usize], block: &[f64]) {
         black_box(block);
     }
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         black_box(diagonal);
     }
-    fn finish(&mut self, _symmetry: Symmetry) -> Result<(), SolveError> {
+    fn factorise(&mut self, _symmetry: Symmetry) -> Result<(), SolveError> {
         Ok(())
     }
-    fn solve(&mut self, _rhs: &[f64], _solution: &mut [f64]) -> Result<Solved, SolveError> {
-        Ok(Solved::default())
+    fn solve(&mut self, _rhs: &[f64], _solution: &mut [f64]) -> Result<SolveReport, SolveError> {
+        Ok(SolveReport::default())
     }
     fn solve_with(
         &mut self,

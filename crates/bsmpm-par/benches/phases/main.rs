@@ -7,7 +7,7 @@ use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Model;
 use bsmpm::points::Points;
 use bsmpm::schedule::TimeInterval;
-use bsmpm_par::checkpoint::{self, Opened, Wanted};
+use bsmpm_par::checkpoint::{self, CheckpointChoice, OpenCheckpoint};
 use bsmpm_par::{launch, setup};
 use bsmpm_ranks::halo::MpiHalo;
 use bsmpm_ranks::linear::KspSolver;
@@ -58,12 +58,12 @@ fn state<K: Kinematics<D>, const D: usize>(
 ) -> Result<State<D>, Box<dyn Error>> {
     let hdf5 = Hdf5::initialize(universe)?;
     let refused = |refusal: checkpoint::Refusal| refusal.reason;
-    let (found, _) = checkpoint::find(&universe.world(), Wanted::Named(path)).map_err(refused)?;
+    let (found, _) = checkpoint::find(&universe.world(), CheckpointChoice::Named(path)).map_err(refused)?;
     let found = found.ok_or("there is no checkpoint")?;
     let names: Vec<&str> = found.record.arrays.iter().map(|array| array.name.as_str()).collect();
     let width = bsmpm::material::state_width(&model.materials);
     let mut points = Points::holding(&names, width);
-    let opened = Opened::new(&hdf5, universe.world(), &found).map_err(refused)?;
+    let opened = OpenCheckpoint::new(&hdf5, universe.world(), &found).map_err(refused)?;
     opened.points(points.named_columns()).map_err(refused)?;
     let state = opened
         .state()

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 /// Which checkpoint is to be gone on from.
 #[derive(Clone, Copy, Debug)]
-pub enum Wanted<'a> {
+pub enum CheckpointChoice<'a> {
     /// The newest good one in a folder.
     Newest(&'a Path),
     /// This one and no other.
@@ -26,7 +26,10 @@ pub enum Wanted<'a> {
 ///
 /// # Errors
 /// The same on all ranks: a checkpoint that was named is missing or damaged (76).
-pub fn find(world: &SimpleCommunicator, wanted: Wanted<'_>) -> Result<(Option<FoundCheckpoint>, Vec<String>), Refusal> {
+pub fn find(
+    world: &SimpleCommunicator,
+    wanted: CheckpointChoice<'_>,
+) -> Result<(Option<FoundCheckpoint>, Vec<String>), Refusal> {
     let first = world.rank() == 0;
     let looked = if first { look(wanted) } else { Ok((None, Vec::new())) };
     let (found, passed_over) = agree(world, looked)?;
@@ -52,25 +55,25 @@ fn unsent(error: &serde_json::Error) -> Refusal {
     Refusal::new(exit::BUG, format!("a record cannot be sent to all ranks: {error}"))
 }
 
-fn look(wanted: Wanted<'_>) -> Result<(Option<FoundCheckpoint>, Vec<String>), Refusal> {
+fn look(wanted: CheckpointChoice<'_>) -> Result<(Option<FoundCheckpoint>, Vec<String>), Refusal> {
     Ok(match wanted {
-        Wanted::Newest(folder) => {
+        CheckpointChoice::Newest(folder) => {
             let (found, damaged) = checkpoint::newest(folder)?;
             (found, damaged.iter().map(ToString::to_string).collect())
         }
-        Wanted::Named(path) => (Some(checkpoint::named(path)?), Vec::new()),
+        CheckpointChoice::Named(path) => (Some(checkpoint::named(path)?), Vec::new()),
     })
 }
 
 /// A checkpoint whose arrays are those of its record.
-pub struct Opened<'h> {
+pub struct OpenCheckpoint<'h> {
     reader: Reader<'h>,
     world: SimpleCommunicator,
     arrays: Vec<(String, Shape)>,
     path: PathBuf,
 }
 
-impl<'h> Opened<'h> {
+impl<'h> OpenCheckpoint<'h> {
     /// Opens a checkpoint that was found. Collective.
     ///
     /// # Errors

@@ -7,10 +7,10 @@ pub use free_field::FreeFieldState;
 use super::Refusal;
 use bsmpm::boundary::{Anchors, RigidState, Surface};
 use bsmpm::control::Progress;
-use bsmpm::energy::{Books, Budget, Flows};
+use bsmpm::energy::{EnergyAccounts, EnergyBound, Flows};
 use bsmpm::grid::Grid;
 use bsmpm::tensor::Vector;
-use bsmpm::water::crossed::{Crossed, Flowed};
+use bsmpm::water::crossed::{CumulativeFlux, PreviousFlow};
 use bsmpm_io::exit;
 use bsmpm_io::frames::Entry;
 use bsmpm_io::manifest::Manifest;
@@ -107,7 +107,7 @@ pub struct FlowedState {
 }
 
 impl FlowedState {
-    pub(crate) fn of(Flowed { dt, crossed, left }: &Flowed) -> Self {
+    pub(crate) fn of(PreviousFlow { dt, crossed, left }: &PreviousFlow) -> Self {
         Self {
             dt: *dt,
             crossed: CrossedState::of(crossed),
@@ -115,8 +115,8 @@ impl FlowedState {
         }
     }
 
-    fn flow(&self) -> Flowed {
-        Flowed {
+    fn flow(&self) -> PreviousFlow {
+        PreviousFlow {
             dt: self.dt,
             crossed: self.crossed.volumes(),
             left: self.left,
@@ -151,12 +151,12 @@ pub struct CrossedState {
 
 impl CrossedState {
     pub(crate) fn of(
-        Crossed {
+        CumulativeFlux {
             drains,
             faces,
             inflows,
             removed,
-        }: &Crossed,
+        }: &CumulativeFlux,
     ) -> Self {
         Self {
             drains: drains.clone(),
@@ -166,14 +166,14 @@ impl CrossedState {
         }
     }
 
-    fn volumes(&self) -> Crossed {
+    fn volumes(&self) -> CumulativeFlux {
         let Self {
             drains,
             faces,
             inflows,
             removed,
         } = self.clone();
-        Crossed {
+        CumulativeFlux {
             drains,
             faces,
             inflows,
@@ -398,11 +398,11 @@ struct ProgressForm {
     cuts: u32,
     easy: u32,
     #[serde(default, with = "budget")]
-    budget: Option<Budget>,
+    budget: Option<EnergyBound>,
 }
 
 #[derive(Serialize, Deserialize)]
-#[serde(remote = "Budget", deny_unknown_fields)]
+#[serde(remote = "EnergyBound", deny_unknown_fields)]
 struct BudgetFields {
     start: f64,
     external: f64,
@@ -413,31 +413,31 @@ struct BudgetFields {
     growth: f64,
 }
 
-/// [`Budget`] in a checkpoint; none in quasi-static analysis, and of a version that kept none.
+/// [`EnergyBound`] in a checkpoint; none in quasi-static analysis, and of a version that kept none.
 mod budget {
-    use super::{Budget, BudgetFields};
+    use super::{BudgetFields, EnergyBound};
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     #[derive(Serialize, Deserialize)]
     #[serde(transparent)]
-    struct StateForm(#[serde(with = "BudgetFields")] Budget);
+    struct StateForm(#[serde(with = "BudgetFields")] EnergyBound);
 
-    pub(super) fn serialize<S: Serializer>(budget: &Option<Budget>, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(super) fn serialize<S: Serializer>(budget: &Option<EnergyBound>, serializer: S) -> Result<S::Ok, S::Error> {
         budget.map(StateForm).serialize(serializer)
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Budget>, D::Error> {
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<EnergyBound>, D::Error> {
         Ok(Option::<StateForm>::deserialize(deserializer)?.map(|StateForm(budget)| budget))
     }
 }
 
-/// [`Books`] in a checkpoint.
+/// [`EnergyAccounts`] in a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct BooksForm(#[serde(with = "BooksFields")] pub Books);
+pub struct BooksForm(#[serde(with = "BooksFields")] pub EnergyAccounts);
 
 #[derive(Serialize, Deserialize)]
-#[serde(remote = "Books", deny_unknown_fields)]
+#[serde(remote = "EnergyAccounts", deny_unknown_fields)]
 struct BooksFields {
     start: f64,
     #[serde(with = "FlowsFields")]
@@ -466,7 +466,7 @@ mod tests {
 
     #[test]
     fn step_control_reads_back_and_that_of_a_version_without_a_budget_is_read() {
-        let budget = Budget {
+        let budget = EnergyBound {
             start: 0.1,
             external: 1.0 / 3.0,
             plastic: 2e-17,
@@ -499,9 +499,9 @@ mod tests {
         let flow = serde_json::from_str::<FlowedState>(&kept(0.5)).unwrap().flow();
         assert_eq!(
             flow,
-            Flowed {
+            PreviousFlow {
                 dt: 0.5,
-                ..Flowed::default()
+                ..PreviousFlow::default()
             }
         );
         let refused = serde_json::from_str::<FlowedState>(&kept(0.0)).unwrap_err();

@@ -1,12 +1,12 @@
 //! Continues the files of a run after a restart.
 
-use super::{Headings, Ledger, first};
+use super::{Headings, RunWriter, first};
 use crate::checkpoint::{CheckpointState, Files};
 use crate::cli::Arguments;
 use crate::restart::ResumedRun;
 use bsmpm_io::Error;
 use bsmpm_io::checkpoint::{self, FoundCheckpoint, Store};
-use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
+use bsmpm_io::directory::{ExistingRunPolicy, HISTORY, OutputDirectory};
 use bsmpm_io::failure::FAILURE;
 use bsmpm_io::frames::Frames;
 use bsmpm_io::manifest::{Manifest, ManifestRestart};
@@ -17,7 +17,7 @@ use bsmpm_scene::Case;
 use std::fs;
 use std::path::Path;
 
-impl Ledger {
+impl RunWriter {
     /// Goes on with the files of a run as they were at a checkpoint: what was written later goes. From a checkpoint in
     /// another directory a new run begins there with the older one's rows.
     pub fn resume(
@@ -211,7 +211,7 @@ fn claim(
         .as_ref()
         .map_or(Ok(()), |there| headings.verify(there, &resumed.state.files))?;
     manifest.outputs.retain(|output| !output.path.contains('/'));
-    let directory = held.claim(Existing::Refuse, manifest)?;
+    let directory = held.claim(ExistingRunPolicy::Refuse, manifest)?;
     there.map_or(Ok(()), |there| copy_tables(&there, &here, headings))?;
     Ok(directory)
 }

@@ -1,9 +1,9 @@
 //! Indicator `stiffness-loss`, theory-manual equation (T10.15): second-order work of elastic soil divided by the actual
 //! second-order work (Hill, 1958). It is 1 in elastic soil.
 
-use super::Ledger;
+use super::RunWriter;
 use crate::indicators::STIFFNESS_LOSS;
-use bsmpm::control::Accepted;
+use bsmpm::control::AcceptedStep;
 use bsmpm_io::manifest::ManifestStage;
 
 /// Part of the mean rate of displacement in a stage above which a step is judged. Stable ground comes to rest under a
@@ -15,11 +15,11 @@ const LEAST_ADVANCE: f64 = 1e-3;
 /// The largest loss of stiffness: of steps in which no load changes, and of ground that softens.
 const MOST_LOSS: f64 = 1e6;
 
-impl Ledger {
+impl RunWriter {
     /// Notes the loss of stiffness in a step. Two kinds of steps are not judged: those that redistribute stress under
     /// constant loads, as the first one with a stress at the start and the one after a change of strength, and those
     /// that move the ground by little.
-    pub(super) fn stiffness(&mut self, number: u64, accepted: &Accepted) {
+    pub(super) fn stiffness(&mut self, number: u64, accepted: &AcceptedStep) {
         let report = &accepted.report;
         let Some([elastic, actual]) = report.second_order_works.filter(|_| self.judges_stiffness) else {
             return;

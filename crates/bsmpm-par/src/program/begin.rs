@@ -4,7 +4,7 @@ use super::refuse;
 use crate::checkpoint::{Refusal, agree};
 use crate::cli::Arguments;
 use crate::launch;
-use crate::ledger::Ledger;
+use crate::ledger::RunWriter;
 use crate::log::Log;
 use crate::machine;
 use crate::record::Recorder;
@@ -242,12 +242,12 @@ fn ledger(
     case: &bsmpm_scene::Case,
     columns: Vec<TableColumn>,
     start: &RunStart<'_>,
-) -> Result<Option<Ledger>, Refusal> {
+) -> Result<Option<RunWriter>, Refusal> {
     let world = universe.world();
     let ranks = world.size().unsigned_abs() as usize;
     let opened = held.map(|held| match start {
-        RunStart::New(beginning) => Ledger::open(held, beginning, arguments, case, ranks, columns),
-        RunStart::Resumed(resumed) => Ledger::resume(held, arguments, case, ranks, columns, resumed),
+        RunStart::New(beginning) => RunWriter::open(held, beginning, arguments, case, ranks, columns),
+        RunStart::Resumed(resumed) => RunWriter::resume(held, arguments, case, ranks, columns, resumed),
         RunStart::Complete(_) => unreachable!("such a run does not begin"),
     });
     agree(&world, opened.transpose().map_err(Refusal::from))

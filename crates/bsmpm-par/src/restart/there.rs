@@ -7,7 +7,7 @@ use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::step::mass::MassMatrix;
 use bsmpm_io::checkpoint::FoundCheckpoint;
-use bsmpm_io::directory::Existing;
+use bsmpm_io::directory::ExistingRunPolicy;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::{Manifest, ManifestRestart, Status};
 use bsmpm_messages::without_code;
@@ -105,7 +105,7 @@ pub(super) fn afresh(run: Option<&Manifest>, passed_over: &[String], ranks: i32)
         changed: Vec::new(),
     };
     Ok(FreshStart {
-        existing: Existing::Delete,
+        existing: ExistingRunPolicy::Delete,
         restarts: run.restarts.iter().cloned().chain([restart]).collect(),
         warnings: vec![
             "W0730: the earlier run ended before its first checkpoint. This run begins at the first step. Write \

@@ -81,7 +81,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 run.log.cause("acceptance", &indicators::acceptance(&names));
             }
         }
-        run.simulation.halo.maximum(&mut failed);
+        run.simulation.halo.all_reduce_max(&mut failed);
         let (status, code) = match failed.map(|failed| failed > 0.0) {
             [true, _] => (Status::Failed, exit::CHECK),
             [false, true] => (Status::Failed, exit::INDICATOR),
@@ -152,8 +152,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let own: Vec<f64> = self.timers.traffic().counts().numbers().collect();
         let mut total = [&[cpu], &own[..]].concat();
         let mut most = own;
-        self.simulation.halo.reduce(&mut total);
-        self.simulation.halo.maximum(&mut most);
+        self.simulation.halo.all_reduce_sum(&mut total);
+        self.simulation.halo.all_reduce_max(&mut most);
         let wall = self.wall();
         let tallies = &self.simulation.tallies();
         let Some(ledger) = &mut self.ledger else { return };

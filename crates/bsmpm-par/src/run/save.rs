@@ -76,7 +76,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             f64::from(soon),
             f64::from(reject),
         ];
-        self.simulation.halo.maximum(&mut clock);
+        self.simulation.halo.all_reduce_max(&mut clock);
         let counted = wanted
             .every_steps
             .is_some_and(|every| steps > 0 && steps.is_multiple_of(every));
@@ -158,7 +158,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let store = self
             .ledger
             .as_mut()
-            .map(super::Ledger::store)
+            .map(super::RunWriter::store)
             .transpose()
             .map_err(Refusal::from);
         let store = checkpoint::agree(&world, store)?;

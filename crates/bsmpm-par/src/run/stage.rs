@@ -3,7 +3,7 @@
 
 use super::Run;
 use crate::launch;
-use bsmpm::energy::Stored;
+use bsmpm::energy::StoredEnergy;
 use bsmpm::error::StepError;
 use bsmpm::kinematics::Kinematics;
 use bsmpm_io::exit;
@@ -49,11 +49,13 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     }
 
     /// The energy at `t`, where it is balanced. Collective.
-    fn stored(&self, t: f64) -> Option<Stored> {
+    fn stored(&self, t: f64) -> Option<StoredEnergy> {
         let Simulation {
             model, points, halo, ..
         } = &self.simulation;
-        model.balances_energy.then(|| Stored::of(model, points, t, &**halo))
+        model
+            .balances_energy
+            .then(|| StoredEnergy::of(model, points, t, &**halo))
     }
 
     /// Says and notes what a stage has changed, with the numbers of points that it has `removed` and `added`.

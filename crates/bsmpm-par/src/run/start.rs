@@ -4,7 +4,7 @@ use super::Run;
 use crate::machine;
 use crate::setup::{self, Start};
 use bsmpm::error::StepError;
-use bsmpm::initial::Settling;
+use bsmpm::initial::EquilibriumSearch;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::step::StepReport;
 use bsmpm_io::manifest::{ManifestInitial, ManifestSettling};
@@ -66,7 +66,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     fn tell_start(&mut self, (start, settling): &Start) {
         let unbalance = start.force;
         let yielding = start.yielding;
-        let settling = settling.map(|Settling { rounds, evaluations }| ManifestSettling { rounds, evaluations });
+        let settling =
+            settling.map(|EquilibriumSearch { rounds, evaluations }| ManifestSettling { rounds, evaluations });
         if let Some(ledger) = &mut self.ledger {
             ledger.manifest().initial = Some(ManifestInitial {
                 unbalance,

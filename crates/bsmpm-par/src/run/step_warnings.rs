@@ -2,7 +2,7 @@
 
 use super::Run;
 use crate::checkpoint::Outlet;
-use bsmpm::control::Accepted;
+use bsmpm::control::AcceptedStep;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::tensor::Vector;
 use bsmpm::water::flow::Motion;
@@ -44,7 +44,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     }
 
     /// A rigid body that comes so fast that points are met too late, or so light a penalty that they go into it.
-    pub(super) fn tell_rigid(&mut self, accepted: &Accepted) {
+    pub(super) fn tell_rigid(&mut self, accepted: &AcceptedStep) {
         for (number, report) in accepted.report.rigid.iter().enumerate() {
             let name = self.case.rigid[number].name.clone();
             let t = self.moment(accepted.t);
@@ -68,7 +68,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     }
 
     /// Faces of the grid hold material, and let rigid bodies through.
-    pub(super) fn tell_let_through(&mut self, accepted: &Accepted) {
+    pub(super) fn tell_let_through(&mut self, accepted: &AcceptedStep) {
         let count = self.case.rigid.len();
         for (number, report) in accepted.report.rigid.iter().enumerate() {
             let body = &self.simulation.model.boundary.rigid[number];
@@ -102,7 +102,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
 
     /// A strip that holds nothing, or no longer the material that it held, does nothing of what it is there for, which
     /// no other number shows.
-    pub(super) fn tell_strips_without_material(&mut self, accepted: &Accepted) {
+    pub(super) fn tell_strips_without_material(&mut self, accepted: &AcceptedStep) {
         for (number, strip) in accepted.report.strips.iter().enumerate() {
             let on = &self.simulation.model.boundary.strips[number];
             if !on.acts() {
@@ -139,7 +139,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     }
 
     /// A drain or an inflow most of which has no ground near lets nothing through there.
-    pub(super) fn tell_drains(&mut self, accepted: &Accepted) {
+    pub(super) fn tell_drains(&mut self, accepted: &AcceptedStep) {
         let Some(water) = &accepted.report.water else {
             return;
         };
@@ -176,7 +176,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     }
 
     /// Ground that goes away from a drained face of the grid leaves its drain there. `known`: of the first.
-    fn tell_drained_faces(&mut self, accepted: &Accepted, known: usize) {
+    fn tell_drained_faces(&mut self, accepted: &AcceptedStep, known: usize) {
         let Some(water) = &accepted.report.water else {
             return;
         };
@@ -220,7 +220,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     }
 
     /// Material that leaves is reported when the first does, and counted in the manifest.
-    pub(super) fn tell_outflow(&mut self, accepted: &Accepted) {
+    pub(super) fn tell_outflow(&mut self, accepted: &AcceptedStep) {
         let Some(outflow) = &accepted.report.outflow else {
             return;
         };

@@ -5,7 +5,7 @@ use crate::halo::MpiHalo;
 use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::model::Model;
-use bsmpm::parallel::{Krylov, LinearSolver, Solved, Symmetry};
+use bsmpm::parallel::{Krylov, LinearSolver, SolveReport, Symmetry};
 use petsc_rs::Petsc;
 use std::rc::Rc;
 
@@ -53,27 +53,27 @@ impl<'p, const D: usize> Solvers<'p, D> {
 }
 
 impl<const D: usize> LinearSolver for Solvers<'_, D> {
-    fn begin(&mut self, free: &[bool]) {
-        self.displacements.begin(free);
+    fn reinit(&mut self, free: &[bool]) {
+        self.displacements.reinit(free);
     }
 
-    fn add(&mut self, first_node: usize, block: &[f64]) {
-        self.displacements.add(first_node, block);
+    fn add_block(&mut self, first_node: usize, block: &[f64]) {
+        self.displacements.add_block(first_node, block);
     }
 
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
-        self.displacements.add_among(nodes, block);
+    fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
+        self.displacements.add_block_among(nodes, block);
     }
 
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         self.displacements.add_diagonal(diagonal);
     }
 
-    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
-        self.displacements.finish(symmetry)
+    fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
+        self.displacements.factorise(symmetry)
     }
 
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         self.displacements.solve(rhs, solution)
     }
 
@@ -81,7 +81,7 @@ impl<const D: usize> LinearSolver for Solvers<'_, D> {
         self.displacements.is_rough()
     }
 
-    fn solve_to(&mut self, relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve_to(&mut self, relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         self.displacements.solve_to(relative, rhs, solution)
     }
 

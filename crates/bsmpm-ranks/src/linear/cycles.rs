@@ -7,7 +7,7 @@ use super::spread;
 use super::system::{MOST_ITERATIONS, failed, trusted};
 use super::tally::Tally;
 use bsmpm::error::SolveError;
-use bsmpm::parallel::{Solved, Symmetry};
+use bsmpm::parallel::{SolveReport, Symmetry};
 use petsc_rs::{Ksp, NormType, PcFailure, Petsc, ShellPc, Tolerances};
 
 /// The system with its solver, which stay when the unknowns change.
@@ -81,7 +81,7 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         rhs: &[f64],
         solution: &mut [f64],
         tally: &mut Tally,
-    ) -> Result<Solved, SolveError> {
+    ) -> Result<SolveReport, SolveError> {
         let Self {
             ksp,
             multigrid,
@@ -103,7 +103,7 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         if ksp_type == PREONLY {
             let finite = solution.iter().all(|x| x.is_finite());
             return if finite {
-                Ok(Solved::default())
+                Ok(SolveReport::default())
             } else {
                 Err(SolveError::NotFinite)
             };
@@ -111,7 +111,7 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         let (left, right) = matrix.norms(rhs, solution);
         trusted(left, right)?;
         let residual = (right > 0.0).then(|| left / right);
-        Ok(Solved {
+        Ok(SolveReport {
             iterations: info.iterations,
             factorisations: 0,
             residual,
@@ -126,7 +126,7 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         rhs: &[f64],
         solution: &mut [f64],
         tally: &mut Tally,
-    ) -> Result<Solved, SolveError> {
+    ) -> Result<SolveReport, SolveError> {
         let tolerances = Tolerances {
             relative: 0.1 * relative,
             absolute: 0.0,

@@ -63,7 +63,7 @@ impl<const D: usize, const C: usize> StiffnessOperator<'_, D, C> {
         self.multiply_nodal(solution, &mut image);
         let left = over_layers(self.halo, C, |c| square(self.free[c], rhs[c] - image[c]));
         let right = over_layers(self.halo, C, |c| square(self.free[c], rhs[c]));
-        let squares = self.halo.total(&[left, right]);
+        let squares = self.halo.reproducible_sum(&[left, right]);
         (squares[0].sqrt(), squares[1].sqrt())
     }
 }
@@ -136,7 +136,7 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
             self.factor.is_planned = true;
         }
         let mut largest = [stencil.largest_diagonal()];
-        halo.maximum(&mut largest);
+        halo.all_reduce_max(&mut largest);
         let good = self.factor.dissection.factorise(&link, precision, stencil, largest[0]);
         self.factor.standing = FactorState::Untried;
         let [here, elsewhere] = ["here", "of another rank"].map(|place| {

@@ -6,7 +6,7 @@ use super::spread;
 use super::system::{failed, trusted};
 use super::tally::Tally;
 use bsmpm::error::SolveError;
-use bsmpm::parallel::{Solved, Symmetry};
+use bsmpm::parallel::{SolveReport, Symmetry};
 use petsc_rs::{Ksp, Petsc};
 
 /// The system with its solver, which stay when the unknowns change.
@@ -81,7 +81,7 @@ impl<'p> ShellSystem<'p> {
         rhs: &[f64],
         solution: &mut [f64],
         tally: &mut Tally,
-    ) -> Result<Solved, SolveError> {
+    ) -> Result<SolveReport, SolveError> {
         let Self {
             ksp, factor, unknowns, ..
         } = self;
@@ -102,7 +102,7 @@ impl<'p> ShellSystem<'p> {
             trusted(left, right)?;
             residual = (right > 0.0).then(|| left / right);
         }
-        Ok(Solved {
+        Ok(SolveReport {
             iterations: info.iterations,
             factorisations: factor.further,
             residual,

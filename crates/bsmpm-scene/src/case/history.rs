@@ -19,7 +19,7 @@ pub struct History {
 
 /// The points that a history counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Counted {
+pub struct PointSelection {
     /// by what they are made of
     pub made: Made,
     /// m  lower and upper corner of the box that they are in at that time, in the case's coordinates; `None`: anywhere
@@ -46,7 +46,7 @@ pub enum Quantity {
         /// %  100: the farthest point
         percentile: f64,
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// m  the farthest x of the lowest occupied row up to which the last cell's length is at least half filled
     Front,
@@ -55,57 +55,57 @@ pub enum Quantity {
         /// m  of the points within half a cell of this x; `None`: of all
         at_x: Option<f64>,
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// m  the largest displacement of any point
     MaxDisplacement {
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// kg/m
     Mass {
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// kg/s  per metre of thickness (kg m/s per m)
     Momentum {
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// m  in the case's coordinates
     CentreOfMass {
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// kg m/s  about the origin of the case's coordinates, per metre of thickness (kg m2/s per m)
     AngularMomentum {
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// J/m
     KineticEnergy {
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// Pa  positive in tension
     MeanStress {
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// m
     MeanDisplacement {
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// m/s
     MeanVelocity {
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// -  mean and largest
     PlasticStrain {
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// N/m, N/m, N m/m  normal force, shear force and moment; in space N, N m of three forces and three moments
     SectionForces {
@@ -150,7 +150,7 @@ pub enum Quantity {
     /// Pa  of the water in the pores of all points that count, positive in compression: mean, least, largest
     PorePressures {
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// of the pore water of the point nearest to `at` at the start: excess pressure, porosity or flux
     Pore {
@@ -173,12 +173,12 @@ pub enum Quantity {
     /// Pa  oscillation of the pressure about its average over the grid and about a plane
     PressureNoise {
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// m  the largest upward displacement of any point
     Heave {
         /// the points that count
-        of: Counted,
+        of: PointSelection,
     },
     /// Pa  mean normal pressure on the footing's base
     FootingPressure,
@@ -264,14 +264,14 @@ pub struct Column {
 
 impl Quantity {
     /// The points that it counts.
-    pub fn counted(&self) -> Counted {
+    pub fn counted(&self) -> PointSelection {
         match *self {
             Self::Mass { of } | Self::Momentum { of } | Self::CentreOfMass { of } | Self::AngularMomentum { of } => of,
             Self::KineticEnergy { of } | Self::MeanStress { of } | Self::Runout { of, .. } => of,
             Self::MeanDisplacement { of } | Self::MeanVelocity { of } | Self::PlasticStrain { of } => of,
             Self::PorePressures { of } | Self::PressureNoise { of } => of,
             Self::Height { of, .. } | Self::MaxDisplacement { of } | Self::Heave { of } => of,
-            _ => Counted::default(),
+            _ => PointSelection::default(),
         }
     }
 

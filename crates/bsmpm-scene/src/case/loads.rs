@@ -129,7 +129,7 @@ pub struct Footing {
 
 /// Prescribed motion of what lies at a face of the grid or at a segment.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Prescribed {
+pub struct PrescribedMotion {
     /// where
     pub site: Site,
     /// its motion

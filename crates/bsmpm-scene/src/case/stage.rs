@@ -18,9 +18,9 @@ pub struct Stage {
     /// Numbers of the bodies that are placed.
     pub add: Vec<usize>,
     /// Names of what acts from here on, and what that is.
-    pub apply: Vec<(String, Acting)>,
+    pub apply: Vec<(String, ActiveLoads)>,
     /// The same of what acts no longer.
-    pub release: Vec<(String, Acting)>,
+    pub release: Vec<(String, ActiveLoads)>,
     /// Faces of the grid that change.
     pub faces: Vec<FaceSupport>,
     /// Numbers of materials, and of those whose laws their bodies follow from here on.
@@ -49,7 +49,7 @@ impl Stage {
     }
 
     /// Whether it releases, and whether it applies something.
-    pub fn switches(&self, what: Acting) -> [bool; 2] {
+    pub fn switches(&self, what: ActiveLoads) -> [bool; 2] {
         [&self.release, &self.apply].map(|list| list.iter().any(|(_, other)| *other == what))
     }
 }
@@ -67,7 +67,7 @@ pub struct FaceSupport {
 
 /// What stages apply and release.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Acting {
+pub enum ActiveLoads {
     /// The number of a strip: the footing, then the prescribed motions in the order of the file.
     Strip(usize),
     /// The number of a load: tractions, then point loads, in the order of the file.
@@ -101,7 +101,7 @@ impl Case {
 
     /// Since when something that stages apply and release acts (s, or pseudo-time) once the stages until the time `t`
     /// have begun; `None` if it does not. What a stage applies before any has released it does not act at the start.
-    pub fn acts_since(&self, what: Acting, t: f64) -> Option<f64> {
+    pub fn acts_since(&self, what: ActiveLoads, t: f64) -> Option<f64> {
         let comes_later = self.stages.iter().find_map(|stage| {
             let named = stage.switches(what);
             (named != [false; 2]).then_some(!named[0])
@@ -124,7 +124,7 @@ impl Case {
     /// bodies, then inflows.
     pub fn idle_before(&self, t: f64) -> Idle {
         let before = self.just_before(t);
-        let is_idle = |what: Acting| self.acts_since(what, before).is_none();
+        let is_idle = |what: ActiveLoads| self.acts_since(what, before).is_none();
         let (drains, inflows) = self
             .flow
             .as_ref()
@@ -134,12 +134,12 @@ impl Case {
         Idle {
             loads: loads
                 .chain(self.turning_loads())
-                .map(Acting::Load)
+                .map(ActiveLoads::Load)
                 .map(is_idle)
                 .collect(),
             water: surfaces
-                .map(Acting::Drain)
-                .chain((0..inflows).map(Acting::Inflow))
+                .map(ActiveLoads::Drain)
+                .chain((0..inflows).map(ActiveLoads::Inflow))
                 .map(is_idle)
                 .collect(),
         }
@@ -167,7 +167,7 @@ impl Case {
         let forces = forces.map(|(k, of)| (format!("point_load.{k}"), of.ramp, &of.amplitude));
         let all = tractions.chain(forces).enumerate();
         let sudden = all.filter(|(load, (_, ramp, amplitude))| {
-            is_sudden(*ramp, amplitude) && self.acts_since(Acting::Load(*load), 0.0).is_some()
+            is_sudden(*ramp, amplitude) && self.acts_since(ActiveLoads::Load(*load), 0.0).is_some()
         });
         let pushes = self
             .gravity
@@ -178,7 +178,7 @@ impl Case {
     }
 
     /// Whether bodies that are there as long as a strip or load acts satisfy `holds`.
-    pub(crate) fn is_held(&self, what: Acting, holds: impl Fn(&Body) -> bool) -> bool {
+    pub(crate) fn is_held(&self, what: ActiveLoads, holds: impl Fn(&Body) -> bool) -> bool {
         let times = std::iter::once(0.0).chain(self.stages.iter().map(|stage| stage.at));
         let acting: Vec<f64> = times.filter(|t| self.acts_since(what, *t).is_some()).collect();
         (0..self.bodies.len())
@@ -221,10 +221,13 @@ impl Case {
         let acting = loads
             .map(|(ramp, amplitude)| ramp.max(rests_from(amplitude)))
             .enumerate()
-            .filter_map(|(load, grows)| self.acts_since(Acting::Load(load), before).map(|since| since + grows));
+            .filter_map(|(load, grows)| {
+                self.acts_since(ActiveLoads::Load(load), before)
+                    .map(|since| since + grows)
+            });
         let rigid = self.rigid.iter().enumerate().filter(|(_, of)| of.force != [0.0; 3]);
         let rigid = rigid.filter_map(|(number, of)| {
-            let since = self.acts_since(Acting::Rigid(number), before)?;
+            let since = self.acts_since(ActiveLoads::Rigid(number), before)?;
             Some(since + of.ramp.max(rests_from(&of.amplitude)))
         });
         let gravity = self.gravity.iter().map(|gravity| gravity.ramp);
@@ -256,7 +259,7 @@ impl Case {
         let paths = footing.chain(self.prescribed.iter().map(|of| &of.path));
         let acting = paths
             .enumerate()
-            .filter(|(strip, _)| self.acts_since(Acting::Strip(*strip), before).is_some());
+            .filter(|(strip, _)| self.acts_since(ActiveLoads::Strip(*strip), before).is_some());
         acting.map(|(_, path)| path).any(|path| {
             let next = path.rows.partition_point(|row| row.0 <= until * (1.0 + 1e-9));
             let last = next.checked_sub(1).map_or([0.0; 3], |last| path.rows[last].1);
@@ -332,13 +335,13 @@ impl Case {
         let strips = footing
             .chain(self.prescribed.iter().map(|prescribed| prescribed.contact))
             .enumerate();
-        let strips = strips.filter(|(number, _)| self.acts_since(Acting::Strip(*number), t).is_some());
+        let strips = strips.filter(|(number, _)| self.acts_since(ActiveLoads::Strip(*number), t).is_some());
         let strips = strips.filter_map(|(_, contact)| Some(contact?.law.friction));
         let rigid = self
             .rigid
             .iter()
             .enumerate()
-            .filter(|(number, _)| self.acts_since(Acting::Rigid(*number), t).is_some());
+            .filter(|(number, _)| self.acts_since(ActiveLoads::Rigid(*number), t).is_some());
         let faces = self
             .faces_at(t)
             .into_iter()

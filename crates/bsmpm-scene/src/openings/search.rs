@@ -2,7 +2,7 @@
 
 use super::plane::{PlaneBody, PlaneShape};
 use super::solid::surface_points;
-use super::{MirrorPlane, Opening, Surroundings};
+use super::{MirrorPlane, OpeningGeometry, Surroundings};
 use crate::case::{Case, RigidShape};
 use crate::record::Record;
 use crate::words::Support;
@@ -51,7 +51,7 @@ pub(crate) struct BodyOpening {
     pub body: usize,
     /// The shape that is cut out, by its number; `None`: the outline of the body itself.
     pub cut: Option<usize>,
-    pub opening: Opening,
+    pub opening: OpeningGeometry,
 }
 
 /// Those of the bodies of a plane.
@@ -136,7 +136,7 @@ fn solid_corners(shape: &RigidShape) -> Option<[[f64; 3]; 2]> {
 }
 
 /// Adds the opening of a shape of a body (0: the outline), unless it is known from an earlier phase.
-fn add(found: &mut Vec<BodyOpening>, body: usize, shape: usize, search: impl Fn() -> Option<Opening>) {
+fn add(found: &mut Vec<BodyOpening>, body: usize, shape: usize, search: impl Fn() -> Option<OpeningGeometry>) {
     let cut = shape.checked_sub(1);
     if found.iter().any(|known| known.body == body && known.cut == cut) {
         return;

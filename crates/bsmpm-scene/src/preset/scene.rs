@@ -1,5 +1,5 @@
-//! Collects the data of a case from which a preset (key `accuracy`) chooses the cell size and the step size, if the case
-//! does not give them.
+//! Collects the data of a case from which a preset (key `accuracy`) chooses the cell size and the step size, if the
+//! case does not give them.
 
 use super::Preset;
 use super::rigid::{self, RigidExtent};

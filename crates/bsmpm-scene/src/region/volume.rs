@@ -17,14 +17,14 @@ pub struct Volume {
     whole: SolidShape,
     cut: Vec<SolidShape>,
     bounds: [[f64; 3]; 2], // m  lower and upper corner of the cuboid around it
-    filling: Filling,
+    filling: FillPattern,
     volume: f64, // m³
     tally: SlabTally,
 }
 
 /// How it is filled with points.
 #[derive(Clone, Debug, PartialEq)]
-enum Filling {
+enum FillPattern {
     /// A lattice in the part of every cell that a cuboid covers.
     Box,
     /// The points of an outline in the plane beside an axis, a lattice in the part of every cell along it: the volumes
@@ -59,7 +59,7 @@ impl Volume {
     pub(crate) fn new(whole: SolidShape, cut: Vec<SolidShape>, axes: &[GridAxis], n: usize) -> Result<Self, String> {
         let origin = [0, 1, 2].map(|axis| axes[axis].lower());
         let bounds = bounds(&whole, &cut);
-        let filling = Filling::of(&whole, &cut, bounds, axes, n)?;
+        let filling = FillPattern::of(&whole, &cut, bounds, axes, n)?;
         let volume = whole.volume();
         let mut made = Self {
             origin,
@@ -73,7 +73,7 @@ impl Volume {
         made.count(axes, n);
         let unseen = made.tally.cells == 0 && made.volume > 0.0;
         // A factor below zero: cells that seem whole hold more than the body.
-        if matches!(made.filling, Filling::Lattice { .. }) && (unseen || made.scale() <= 0.0) {
+        if matches!(made.filling, FillPattern::Lattice { .. }) && (unseen || made.scale() <= 0.0) {
             return Err(
                 "E0037: the shape is too thin for the size of the cells, so its volume cannot be calculated. Use \
                  smaller cells, or make the shape thicker."
@@ -97,12 +97,12 @@ impl Volume {
 
     /// Whether it is a cuboid with nothing cut out.
     pub fn is_box(&self) -> bool {
-        self.filling == Filling::Box
+        self.filling == FillPattern::Box
     }
 
     /// By what the volumes of points in cells that are cut were multiplied: far from 1 the lines do not see the shape.
     pub(crate) fn scale(&self) -> f64 {
-        if let Filling::Lattice { scale } = self.filling {
+        if let FillPattern::Lattice { scale } = self.filling {
             scale
         } else {
             1.0
@@ -144,8 +144,8 @@ impl Volume {
     /// Points of slab `i` of the cells along axis 0.
     pub(crate) fn slab(&self, axes: &[GridAxis], n: usize, i: usize) -> Vec<CellPlace<3>> {
         match &self.filling {
-            Filling::Box => self.slab_of_box(axes, n, i),
-            Filling::Prism {
+            FillPattern::Box => self.slab_of_box(axes, n, i),
+            FillPattern::Prism {
                 outline,
                 plane,
                 along,
@@ -154,7 +154,7 @@ impl Volume {
                 let extent = AxisExtent::between(&axes[*along], *ends);
                 prism_slab(outline, plane, *along, &extent, n, i)
             }
-            Filling::Lattice { scale } => {
+            FillPattern::Lattice { scale } => {
                 let cells = self.lattice_slab(axes, n, i).into_iter();
                 let places = cells.flat_map(|(_, cell)| {
                     let by = if cell.whole { 1.0 } else { *scale };
@@ -209,7 +209,7 @@ impl Volume {
         let [lower, upper] = self.bounds;
         let extent = |axis: usize| AxisExtent::between(&axes[axis], [lower[axis], upper[axis]]).cells;
         match &self.filling {
-            Filling::Box => {
+            FillPattern::Box => {
                 let occupied = [0, 1, 2].map(extent);
                 let in_slab = (occupied[1].len() * occupied[2].len()) as u64;
                 let before = (0..=occupied[0].len() as u64)
@@ -222,13 +222,13 @@ impl Volume {
                     alone: 0.0,
                 };
             }
-            Filling::Prism {
+            FillPattern::Prism {
                 outline, along, ends, ..
             } => {
                 self.tally = prism_tally(outline, *along, extent(*along), ends[1] - ends[0], n);
                 self.volume = outline.area * (ends[1] - ends[0]);
             }
-            Filling::Lattice { .. } => self.count_lattice(axes, n),
+            FillPattern::Lattice { .. } => self.count_lattice(axes, n),
         }
     }
 
@@ -273,7 +273,7 @@ impl Volume {
         }
         if partly > 0.0 {
             let scale = (self.volume - wholly) / partly;
-            self.filling = Filling::Lattice { scale };
+            self.filling = FillPattern::Lattice { scale };
             self.tally.alone *= scale;
         } else if wholly > 0.0 {
             self.volume = wholly;
@@ -294,7 +294,7 @@ impl Volume {
     }
 }
 
-impl Filling {
+impl FillPattern {
     fn of(
         whole: &SolidShape,
         cut: &[SolidShape],

@@ -5,7 +5,7 @@ use super::transition::{self, Neighbour};
 use super::{normal, on_plate, unit};
 use crate::grid::vector;
 use crate::validate::normal_of_site;
-use crate::{Acting, Base, Case, Site};
+use crate::{ActiveLoads, Base, Case, Site};
 use bsmpm::boundary::{Path, Strip, StripContact, SurfacePoint, surface};
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::Kinematics;
@@ -41,7 +41,7 @@ pub fn strips<K: Kinematics<D>, const D: usize>(case: &Case, grid: &Grid<D>, pen
             let inward = vector::<D, 3>(inward.into());
             StripContact { law, inward }
         });
-        let acts = case.acts_since(Acting::Strip(number), t).is_some();
+        let acts = case.acts_since(ActiveLoads::Strip(number), t).is_some();
         strips.push(Strip {
             points,
             normal: (base == Base::Smooth && contact.is_none()).then_some(normal),
@@ -67,7 +67,7 @@ pub(crate) fn neighbours<const D: usize>(case: &Case, t: f64) -> Vec<Neighbour<D
     let sites = footing.chain(case.prescribed.iter().map(|prescribed| prescribed.site));
     let neighbours = sites.enumerate().map(|(number, site)| Neighbour {
         normal: vector(normal_of_site(site)),
-        since: case.acts_since(Acting::Strip(number), t),
+        since: case.acts_since(ActiveLoads::Strip(number), t),
     });
     neighbours.collect()
 }

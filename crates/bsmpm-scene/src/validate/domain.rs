@@ -6,7 +6,8 @@ use super::material::{CaseFacts, Reduction};
 use super::site::AroundStrip;
 use super::{analysis, body, boundary, contacts, grid, load, material, reduction, rigid, stage, strip};
 use crate::case::{
-    Analysis, Body, Footing, Gravity, Initial, NamedMaterial, PointLoad, Prescribed, Rigid, Stage, Support, Traction,
+    Analysis, Body, Footing, Gravity, Initial, NamedMaterial, PointLoad, PrescribedMotion, Rigid, Stage, Support,
+    Traction,
 };
 use crate::grid::GridSpec;
 use crate::record::Record;
@@ -104,7 +105,7 @@ impl Domain {
 /// What moves or holds soil beside the faces of the grid.
 pub(super) struct Structures {
     pub(super) footing: Option<Footing>,
-    pub(super) prescribed: Vec<Prescribed>,
+    pub(super) prescribed: Vec<PrescribedMotion>,
     pub(super) rigid: Vec<Rigid>,
     /// By which Young's moduli are multiplied for a limit load, whose displacements are divided by it.
     pub(super) stiffness: f64,

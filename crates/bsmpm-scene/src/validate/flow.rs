@@ -13,7 +13,9 @@ use super::STANDARD_GRAVITY;
 use super::load::{circle, increasing};
 use super::place;
 use super::site::{AroundStrip, places, plate, segment};
-use crate::case::{Acting, Body, Drain, DrainSite, Face, Flow, Inflow, NamedMaterial, Plate, Site, Stage, Support};
+use crate::case::{
+    ActiveLoads, Body, Drain, DrainSite, Face, Flow, Inflow, NamedMaterial, Plate, Site, Stage, Support,
+};
 use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
@@ -22,7 +24,7 @@ use crate::report::Report;
 use crate::words::{AnalysisType, Drainage, Geometry, Side};
 use bsmpm::model::Regime;
 use bsmpm::water::flow::{Course, Given, Motion, Soil};
-use bsmpm::water::retention::{Curve, Measured, Retention};
+use bsmpm::water::retention::{Curve, MeasuredCurve, Retention};
 
 /// N/m3  of water, unless a case gives it.
 const WATER: f64 = 9810.0;
@@ -70,13 +72,13 @@ pub(super) fn read(
     };
     let mut drains = Vec::new();
     for (number, record) in root.records("drain").iter().enumerate() {
-        let there = &there(Acting::Drain(number), stages, bodies);
+        let there = &there(ActiveLoads::Drain(number), stages, bodies);
         drains.push(drain(record, Ground { there, ..ground }, report));
     }
     named(root, report);
     let mut inflows = Vec::new();
     for (number, record) in root.records("inflow").iter().enumerate() {
-        let there = &there(Acting::Inflow(number), stages, bodies);
+        let there = &there(ActiveLoads::Inflow(number), stages, bodies);
         inflows.push(inflow(record, Ground { there, ..ground }, report));
     }
     let drains = drains.into_iter().collect::<Option<_>>()?;
@@ -226,7 +228,7 @@ fn retention(of: &Record, report: &mut Report<'_>) -> Option<Retention> {
         return None;
     }
     let rows = measured(of, residual, report)?;
-    Some(Retention::new(Curve::Measured(Measured::new(rows)), residual))
+    Some(Retention::new(Curve::Measured(MeasuredCurve::new(rows)), residual))
 }
 
 /// Rows of a measured curve: suction head, effective saturation, relative permeability.
@@ -275,7 +277,7 @@ fn measured(of: &Record, residual: f64, report: &mut Report<'_>) -> Option<Vec<[
 }
 
 /// The bodies that are there when something begins to act: at the start, or once a stage has applied it.
-fn there(what: Acting, stages: &[Stage], bodies: &[Body]) -> Vec<Body> {
+fn there(what: ActiveLoads, stages: &[Stage], bodies: &[Body]) -> Vec<Body> {
     let first = stages.iter().position(|stage| stage.switches(what) != [false; 2]);
     let applied = first.filter(|&first| stages[first].switches(what)[1]);
     let begun = &stages[..applied.map_or(0, |first| first + 1)];

@@ -5,7 +5,7 @@ mod location;
 pub(super) use location::ends;
 
 use super::flow;
-use crate::case::{Body, Check, Column, Counted, Face, History, Made, NamedMaterial, Quantity, Support};
+use crate::case::{Body, Check, Column, Face, History, Made, NamedMaterial, PointSelection, Quantity, Support};
 use crate::grid::GridSpec;
 use crate::nearest::{nearest, unknown_name};
 use crate::record::Record;
@@ -445,7 +445,7 @@ fn counted(
     grid: Option<&GridSpec>,
     made: Option<CaseBodies<'_>>,
     report: &mut Report<'_>,
-) -> Option<Counted> {
+) -> Option<PointSelection> {
     let within = if record.gives("box") {
         Some(within(record.record("box")?, grid, report)?)
     } else {
@@ -456,7 +456,7 @@ fn counted(
         (_, true) => Made::Body(body(record, made?.bodies, report)?),
         _ => Made::All,
     };
-    Some(Counted { made, within })
+    Some(PointSelection { made, within })
 }
 
 /// Number of the history's material, which a body is made of.
@@ -491,7 +491,12 @@ fn body(record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<usi
 }
 
 /// The points that count, if they have mass.
-fn weighing(of: Counted, record: &Record, made: Option<CaseBodies<'_>>, report: &mut Report<'_>) -> Option<Counted> {
+fn weighing(
+    of: PointSelection,
+    record: &Record,
+    made: Option<CaseBodies<'_>>,
+    report: &mut Report<'_>,
+) -> Option<PointSelection> {
     let CaseBodies { materials, bodies } = made?;
     let mut counted = bodies.iter().enumerate().filter(|(number, body)| match of.made {
         Made::All => true,

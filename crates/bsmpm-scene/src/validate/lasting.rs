@@ -4,7 +4,7 @@
 use super::physics::{ALONG, holds_at_rest};
 use super::place::{along, ring};
 use super::site::{normal, normal_of};
-use crate::case::{Acting, Case, Initial, LoadedLine, MotionPath, Push, Rigid, Shares, Site, Support, Traction};
+use crate::case::{ActiveLoads, Case, Initial, LoadedLine, MotionPath, Push, Rigid, Shares, Site, Support, Traction};
 use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces::name_of_strip;
@@ -44,7 +44,7 @@ fn loads(case: &Case, axis: usize) -> impl Iterator<Item = String> {
     let forces = forces.map(move |(k, of)| (format!("point_load.{k}"), of.ramp, &of.amplitude, of.force[axis] != 0.0));
     let all = tractions.chain(forces).enumerate();
     let lasting = all.filter(move |(number, (_, ramp, amplitude, pushes))| {
-        let acts = case.acts_since(Acting::Load(*number), 0.0) == Some(0.0);
+        let acts = case.acts_since(ActiveLoads::Load(*number), 0.0) == Some(0.0);
         *pushes && lasts(case, *ramp, amplitude, axis, acts)
     });
     lasting.map(|(_, (name, ..))| name)
@@ -108,7 +108,7 @@ fn rigid(case: &Case, root: &Record, axis: usize) -> impl Iterator<Item = String
 /// the ground there.
 fn pushes(case: &Case, number: usize, of: &Rigid, axis: usize) -> bool {
     let moves = stays_away(&of.path, axis);
-    let acting = Acting::Rigid(number);
+    let acting = ActiveLoads::Rigid(number);
     let acts = case.acts_since(acting, 0.0) == Some(0.0);
     let pushes = moves || of.force[axis] != 0.0 && lasts(case, of.ramp, &of.amplitude, axis, acts);
     pushes && !holds_at_rest(case, axis, Some(acting))
@@ -123,7 +123,7 @@ fn strips(case: &Case, axis: usize) -> impl Iterator<Item = String> {
     let lasting = all.filter(move |(number, (site, path))| {
         // What is stuck to a face goes along with it, and what lies before it is pushed.
         let pushes = !matches!(site, Site::Face(_)) || normal_of(*site)[axis] != 0.0;
-        pushes && stays_away(path, axis) && !holds_at_rest(case, axis, Some(Acting::Strip(*number)))
+        pushes && stays_away(path, axis) && !holds_at_rest(case, axis, Some(ActiveLoads::Strip(*number)))
     });
     lasting.map(move |(number, _)| name_of_strip(case, number))
 }

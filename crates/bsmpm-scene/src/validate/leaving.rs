@@ -62,8 +62,8 @@ fn is_open(case: &Case, face: Face) -> bool {
     !is_axis && is_free && !has_terrain_above(case, face) && !physics::holds_at_rest(case, face.axis, None)
 }
 
-/// Whether a face is the bottom of the grid and the case has rigid terrain, which lies above it: the terrain is level beyond its
-/// raster, so that every body comes to rest on it.
+/// Whether a face is the bottom of the grid and the case has rigid terrain, which lies above it: the terrain is level
+/// beyond its raster, so that every body comes to rest on it.
 fn has_terrain_above(case: &Case, face: Face) -> bool {
     let is_bottom = face.axis == case.grid.dims() - 1 && !face.upper;
     let mut shapes = case.rigid.iter().map(|rigid| &rigid.shape);

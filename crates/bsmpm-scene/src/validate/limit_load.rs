@@ -4,7 +4,8 @@
 use super::place::flat;
 use super::site;
 use crate::case::{
-    Case, Footing, History, LimitLoad, LoadWidth, MotionPath, Prescribed, Quantity, Rigid, RigidShape, Site, SoughtLoad,
+    Case, Footing, History, LimitLoad, LoadWidth, MotionPath, PrescribedMotion, Quantity, Rigid, RigidShape, Site,
+    SoughtLoad,
 };
 use crate::grid::GridSpec;
 use crate::record::Record;
@@ -36,7 +37,7 @@ const KEY: &str = "purpose";
 /// Everything that a case moves, or may move.
 pub(super) struct MovedBodies<'a> {
     pub(super) footing: Option<&'a mut Footing>,
-    pub(super) prescribed: &'a mut [Prescribed],
+    pub(super) prescribed: &'a mut [PrescribedMotion],
     pub(super) rigid: &'a mut [Rigid],
 }
 

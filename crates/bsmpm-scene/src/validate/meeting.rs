@@ -2,7 +2,7 @@
 //! displacements.
 
 use super::place::is_in;
-use crate::case::{Acting, Case};
+use crate::case::{ActiveLoads, Case};
 use crate::record::Record;
 use crate::report::{Report, brief};
 use crate::surfaces::transition::{ROUNDING, apart_at_corner, holds_all, meet};
@@ -193,7 +193,7 @@ fn meetings<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Vec<StripM
             found.push(StripMeeting { strip, other });
         }
         for (number, body) in bodies.iter().enumerate() {
-            let acts = case.acts_since(Acting::Rigid(number), t).is_some();
+            let acts = case.acts_since(ActiveLoads::Rigid(number), t).is_some();
             let Some(inward) = inward::<D>(case, of, &neighbours[strip].normal, &grid) else {
                 continue;
             };

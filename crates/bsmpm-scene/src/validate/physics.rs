@@ -5,7 +5,7 @@ use super::place;
 use super::rigid;
 use super::site::{normal_of, places};
 use super::strip::{moves, with_body};
-use crate::case::{Acting, Base, Body, Case, Geometry, Initial, Quantity, Site, Support};
+use crate::case::{ActiveLoads, Base, Body, Case, Geometry, Initial, Quantity, Site, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{AnalysisType, Measurement, Side, Word};
@@ -95,7 +95,7 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
         let kind = case.analysis.kind;
         let is_of_clay = written.gives("rate_parameter");
         let is_timed = kind == AnalysisType::Dynamic || kind == AnalysisType::InTime && is_of_clay;
-        if !is_timed && named.material.over(1.0).is_some() {
+        if !is_timed && named.material.at_time_step(1.0).is_some() {
             let message = match (kind, is_of_clay) {
                 (AnalysisType::Consolidation, true) => {
                     "E0319: a rate-dependent strength is not available in a consolidation analysis. Remove \
@@ -281,7 +281,7 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         .map(|of| lies_on_ground(case, of.site, down, &bodies))
         .collect();
     // What else would not stand it holds at the start, too.
-    let stands = (0..case.grid.dims()).all(|axis| holds_at_rest(case, axis, Some(Acting::Strip(0))));
+    let stands = (0..case.grid.dims()).all(|axis| holds_at_rest(case, axis, Some(ActiveLoads::Strip(0))));
     case.footing.iter_mut().for_each(|of| of.rests = footing && stands);
     let is_sought = case.settles || case.initial == Some(Initial::Elastic);
     if footing && !stands && is_sought {
@@ -293,7 +293,7 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
     for (number, (record, lies)) in root.records("prescribed").iter().zip(prescribed).enumerate() {
         let lifts = case.prescribed[number].contact.is_some_and(|contact| contact.law.lifts);
         case.prescribed[number].rests = lies && lifts;
-        let strip = Acting::Strip(number + usize::from(case.footing.is_some()));
+        let strip = ActiveLoads::Strip(number + usize::from(case.footing.is_some()));
         if lies && !lifts && is_sought && case.acts_since(strip, 0.0).is_some() {
             report.warn(format!(
                 "W0672: {}: in the initial equilibrium this prescribed motion carries a part of the ground in \
@@ -314,7 +314,7 @@ fn lies_on_ground(case: &Case, site: Site, gravity: Vector<3>, bodies: &[&Body])
 }
 
 /// Whether something other than `except` holds a component of a body for as long as that takes.
-pub(super) fn holds_at_rest(case: &Case, component: usize, except: Option<Acting>) -> bool {
+pub(super) fn holds_at_rest(case: &Case, component: usize, except: Option<ActiveLoads>) -> bool {
     // All around an axis no body goes along the radius as a whole.
     if case.geometry == Geometry::Axisymmetric && component == 0 {
         return true;
@@ -339,15 +339,16 @@ fn face_holds(case: &Case, axis: usize, upper: bool, component: usize) -> bool {
 }
 
 /// Whether the footing or a prescribed motion other than `except` holds a component of a body.
-fn held_by_strip(case: &Case, component: usize, except: Option<Acting>) -> bool {
+fn held_by_strip(case: &Case, component: usize, except: Option<ActiveLoads>) -> bool {
     let footing = case.footing.iter().map(|footing| (footing.base, footing.site));
     let all = footing.chain(
         case.prescribed
             .iter()
             .map(|prescribed| (prescribed.base, prescribed.site)),
     );
-    all.enumerate()
-        .any(|(number, (base, site))| Some(Acting::Strip(number)) != except && strip_holds(case, base, site, component))
+    all.enumerate().any(|(number, (base, site))| {
+        Some(ActiveLoads::Strip(number)) != except && strip_holds(case, base, site, component)
+    })
 }
 
 /// Whether a strip holds a component of a body at it.

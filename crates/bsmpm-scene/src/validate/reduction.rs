@@ -1,6 +1,8 @@
 //! Validates strength reduction.
 
-use crate::case::{Acting, Case, Counted, Gravity, NamedMaterial, PointLoad, Quantity, Rigid, Stage, Traction};
+use crate::case::{
+    ActiveLoads, Case, Gravity, NamedMaterial, PointLoad, PointSelection, Quantity, Rigid, Stage, Traction,
+};
 use crate::nearest::unknown_name;
 use crate::record::Record;
 use crate::report::Report;
@@ -212,16 +214,16 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     let strips = usize::from(case.footing.is_some());
     let tractions = case.tractions.len();
     let loads = tractions + case.point_loads.len();
-    let has_footing = case.acts_since(Acting::Strip(0), until).is_some();
+    let has_footing = case.acts_since(ActiveLoads::Strip(0), until).is_some();
     let footing = case.footing.clone().filter(|_| has_footing);
     let prescribed = act_at(
         case,
         until,
-        (0..case.prescribed.len()).map(|k| Acting::Strip(strips + k)),
+        (0..case.prescribed.len()).map(|k| ActiveLoads::Strip(strips + k)),
     );
-    let points = act_at(case, until, (tractions..loads).map(Acting::Load));
-    let loads = act_at(case, until, (0..tractions).map(Acting::Load));
-    let rigid = act_at(case, until, (0..case.rigid.len()).map(Acting::Rigid));
+    let points = act_at(case, until, (tractions..loads).map(ActiveLoads::Load));
+    let loads = act_at(case, until, (0..tractions).map(ActiveLoads::Load));
+    let rigid = act_at(case, until, (0..case.rigid.len()).map(ActiveLoads::Rigid));
     let bodies: Vec<bool> = (0..case.bodies.len()).map(|body| case.is_there(body, until)).collect();
     let end = steps.max(1) as f64 * case.analysis.dt;
     settle(case, until, end);
@@ -245,8 +247,12 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     case.stages.clear();
     case.flow.iter_mut().for_each(|flow| flow.motion = Motion::Held);
     // Others may be of what is not there.
-    case.histories
-        .retain(|history| history.quantity == Quantity::MaxDisplacement { of: Counted::default() });
+    case.histories.retain(|history| {
+        history.quantity
+            == Quantity::MaxDisplacement {
+                of: PointSelection::default(),
+            }
+    });
     case.analysis.end = end;
     let ramps = (case.gravity.iter_mut().map(|Gravity { ramp, .. }| ramp))
         .chain(case.tractions.iter_mut().map(|Traction { ramp, .. }| ramp))
@@ -256,7 +262,7 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
 }
 
 /// Which of some loads, strips or rigid bodies act at a time.
-fn act_at(case: &Case, t: f64, all: impl Iterator<Item = Acting>) -> Vec<bool> {
+fn act_at(case: &Case, t: f64, all: impl Iterator<Item = ActiveLoads>) -> Vec<bool> {
     all.map(|acting| case.acts_since(acting, t).is_some()).collect()
 }
 
@@ -278,8 +284,8 @@ fn settle(case: &mut Case, until: f64, end: f64) {
     for rows in case.water.iter_mut().flat_map(|water| water.table.levels_mut()) {
         rows.drain(..rows.len() - 1);
     }
-    let loads = (0..case.tractions.len() + case.point_loads.len()).map(Acting::Load);
-    let loads = loads.chain((0..case.rigid.len()).map(Acting::Rigid));
+    let loads = (0..case.tractions.len() + case.point_loads.len()).map(ActiveLoads::Load);
+    let loads = loads.chain((0..case.rigid.len()).map(ActiveLoads::Rigid));
     let ages: Vec<f64> = loads
         .map(|load| until - case.acts_since(load, until).unwrap_or(until))
         .collect();
@@ -383,7 +389,7 @@ mod tests {
         );
         assert_eq!(there(&case, 0.0), [true, false, false]);
         assert_eq!(there(&case, 3.5), [true, true, false]);
-        assert_eq!(case.acts_since(Acting::Load(0), 3.5), None);
+        assert_eq!(case.acts_since(ActiveLoads::Load(0), 3.5), None);
         let resets: Vec<f64> = case
             .stages
             .iter()

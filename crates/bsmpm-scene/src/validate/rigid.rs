@@ -8,7 +8,7 @@ use self::outline::{sharpest, thickness};
 use super::site::{AroundStrip, normal};
 use super::strip;
 use super::{MOST_SHOWN_FRICTION, NO_INERTIA, load, place, shape};
-use crate::case::{Acting, Body, Case, Initial, MotionPath, Rigid, RigidShape, Stage, Support};
+use crate::case::{ActiveLoads, Body, Case, Initial, MotionPath, Rigid, RigidShape, Stage, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces;
@@ -398,7 +398,7 @@ pub(super) fn has_moved(rigid: &Rigid, t: f64) -> bool {
 /// What the rest of the case says to rigid bodies.
 pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (number, (rigid, record)) in case.rigid.iter().zip(root.records("rigid")).enumerate() {
-        if rigid.velocity != [0.0; 3] && case.acts_since(Acting::Rigid(number), 0.0).is_none() {
+        if rigid.velocity != [0.0; 3] && case.acts_since(ActiveLoads::Rigid(number), 0.0).is_none() {
             let key = if record.gives("start_velocity") {
                 "start_velocity"
             } else {
@@ -439,7 +439,8 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
 /// The stage with which a body and a rigid one are there together first; `Some(None)`: from the start on.
 fn together(case: &Case, rigid: usize, body: usize) -> Option<Option<&Stage>> {
     let mut times = std::iter::once((0.0, None)).chain(case.stages.iter().map(|stage| (stage.at, Some(stage))));
-    let first = times.find(|(t, _)| case.is_there(body, *t) && case.acts_since(Acting::Rigid(rigid), *t).is_some());
+    let first =
+        times.find(|(t, _)| case.is_there(body, *t) && case.acts_since(ActiveLoads::Rigid(rigid), *t).is_some());
     first.map(|(_, stage)| stage)
 }
 
@@ -503,9 +504,9 @@ fn longest(case: &Case) -> f64 {
 
 /// Whether a rigid body other than `except` that rests or is moved holds a component of a body that lies at it from the
 /// start on.
-pub(super) fn hold(case: &Case, component: usize, except: Option<Acting>) -> bool {
+pub(super) fn hold(case: &Case, component: usize, except: Option<ActiveLoads>) -> bool {
     case.rigid.iter().enumerate().any(|(number, rigid)| {
-        let acting = Acting::Rigid(number);
+        let acting = ActiveLoads::Rigid(number);
         let may_hold = !rigid.free.contains(&true) && Some(acting) != except;
         may_hold && case.acts_since(acting, 0.0).is_some() && holds(case, rigid, component)
     })

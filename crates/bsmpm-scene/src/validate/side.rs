@@ -3,7 +3,7 @@
 use super::place::{along, beside, ring, side_of_bodies};
 use super::sheet::middle;
 use super::site::places;
-use crate::case::{Acting, Body, Case, LoadedLine, Push, Site};
+use crate::case::{ActiveLoads, Body, Case, LoadedLine, Push, Site};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
@@ -74,7 +74,7 @@ pub(super) fn of_pressures(case: &mut Case, root: &Record, report: &mut Report<'
             continue;
         };
         let times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
-        let acting = times.filter(|t| case.acts_since(Acting::Load(number), *t).is_some());
+        let acting = times.filter(|t| case.acts_since(ActiveLoads::Load(number), *t).is_some());
         let sides = acting.map(|t| {
             let bodies = case.bodies.iter().enumerate();
             let there = bodies.filter(|(body, _)| case.is_there(*body, t));

@@ -4,7 +4,7 @@ mod absorbing;
 
 use super::history::NAMELESS;
 use super::{place, reduction, rigid, sheet, site, strip};
-use crate::case::{Acting, Body, Case, Face, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
+use crate::case::{ActiveLoads, Body, Case, Face, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
 use crate::nearest::unknown_name;
 use crate::record::Record;
 use crate::report::{Report, shortened};
@@ -67,7 +67,7 @@ struct NamedItem<'a, T> {
 }
 
 /// Strips and loads with names, which are unique, rigid bodies, and what water crosses.
-fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<NamedItem<'a, Acting>> {
+fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<NamedItem<'a, ActiveLoads>> {
     let strips = root
         .records("footing")
         .iter()
@@ -78,9 +78,9 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<NamedItem<'a, Ac
         .iter()
         .chain(root.records("point_load"))
         .enumerate();
-    let strips = strips.map(|(number, record)| (record, Acting::Strip(number)));
-    let all = strips.chain(loads.map(|(number, record)| (record, Acting::Load(number))));
-    let mut found: Vec<(&str, Acting, &Record)> = Vec::new();
+    let strips = strips.map(|(number, record)| (record, ActiveLoads::Strip(number)));
+    let all = strips.chain(loads.map(|(number, record)| (record, ActiveLoads::Load(number))));
+    let mut found: Vec<(&str, ActiveLoads, &Record)> = Vec::new();
     for (record, acting) in all {
         let Some(name) = record.text("name") else { continue };
         if let Some((.., first)) = found.iter().find(|(other, ..)| *other == name) {
@@ -97,23 +97,23 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<NamedItem<'a, Ac
         found.push((name, acting, record));
     }
     let rigid = root.records("rigid").iter().enumerate();
-    let rigid = rigid.map(|(number, record)| (record, Acting::Rigid(number)));
+    let rigid = rigid.map(|(number, record)| (record, ActiveLoads::Rigid(number)));
     let drains = root
         .records("drain")
         .iter()
         .zip(0..)
-        .map(|(record, number)| (record, Acting::Drain(number)));
+        .map(|(record, number)| (record, ActiveLoads::Drain(number)));
     let inflows = root
         .records("inflow")
         .iter()
         .zip(0..)
-        .map(|(record, number)| (record, Acting::Inflow(number)));
+        .map(|(record, number)| (record, ActiveLoads::Inflow(number)));
     let others = rigid.chain(drains).chain(inflows).filter_map(|(record, what)| {
         let name = record.text("name")?;
         Some(NamedItem { name, what })
     });
     let unique = found.into_iter().map(|(name, what, _)| NamedItem { name, what });
-    let mut all: Vec<NamedItem<'_, Acting>> = unique.chain(others).collect();
+    let mut all: Vec<NamedItem<'_, ActiveLoads>> = unique.chain(others).collect();
     // As histories call one without a name.
     let is_nameless = root
         .record("footing")
@@ -121,7 +121,7 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<NamedItem<'a, Ac
     if is_nameless && all.iter().all(|named| named.name != NAMELESS) {
         all.push(NamedItem {
             name: NAMELESS,
-            what: Acting::Strip(0),
+            what: ActiveLoads::Strip(0),
         });
     }
     all
@@ -132,7 +132,7 @@ fn stage(
     factor: Option<f64>,
     root: &Record,
     bodies: &[Body],
-    acting: &[NamedItem<'_, Acting>],
+    acting: &[NamedItem<'_, ActiveLoads>],
     report: &mut Report<'_>,
 ) -> Option<Stage> {
     let bodies = bodies.iter().enumerate().filter_map(|(what, body)| {
@@ -289,7 +289,7 @@ fn number_of_material(pair: &Record, key: &str, root: &Record, report: &mut Repo
 }
 
 /// Only what is active is deactivated, and only what is inactive is activated.
-fn in_turn(named: &NamedItem<'_, Acting>, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
+fn in_turn(named: &NamedItem<'_, ActiveLoads>, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
     let name = named.name;
     let mut acts: Option<bool> = None;
     for (stage, record) in stages.iter().zip(root.records("stage")) {
@@ -388,9 +388,9 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         }
         for (name, what) in &stage.apply {
             let has_moved = match *what {
-                Acting::Strip(number) => strip::has_moved(case, number, stage.at),
-                Acting::Rigid(number) => rigid::has_moved(&case.rigid[number], stage.at),
-                Acting::Load(_) | Acting::Drain(_) | Acting::Inflow(_) => false,
+                ActiveLoads::Strip(number) => strip::has_moved(case, number, stage.at),
+                ActiveLoads::Rigid(number) => rigid::has_moved(&case.rigid[number], stage.at),
+                ActiveLoads::Load(_) | ActiveLoads::Drain(_) | ActiveLoads::Inflow(_) => false,
             };
             if has_moved {
                 let message = format!(
@@ -436,7 +436,7 @@ fn check_surfaces(case: &Case, lasting: &[Body], root: &Record, report: &mut Rep
     for (what, record, key, places) in surfaces(case, root) {
         let mut at_bodies = places.into_iter().filter(|at| place::is_at(&case.bodies, grid, *at));
         let (lost, duration) = match what {
-            Acting::Strip(_) => (
+            ActiveLoads::Strip(_) => (
                 at_bodies.find(|at| !place::is_at(lasting, grid, *at)),
                 "during the whole run",
             ),
@@ -514,7 +514,10 @@ fn follow(case: &mut Case, lasting: &[Body]) {
 }
 
 /// What acts: strips and loads with their records, the key of their place, and places along them.
-pub(super) fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(Acting, &'a Record, &'static str, Vec<[f64; 3]>)> {
+pub(super) fn surfaces<'a>(
+    case: &Case,
+    root: &'a Record,
+) -> Vec<(ActiveLoads, &'a Record, &'static str, Vec<[f64; 3]>)> {
     let mut found = Vec::new();
     let held = case.footing.iter().map(|footing| footing.site);
     let held = held.chain(case.prescribed.iter().map(|prescribed| prescribed.site));
@@ -522,7 +525,7 @@ pub(super) fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(Acting, &'a Re
     for (number, (site, record)) in held.zip(strips).enumerate() {
         if !matches!(site, Site::Face(_)) {
             found.push((
-                Acting::Strip(number),
+                ActiveLoads::Strip(number),
                 record,
                 key(record),
                 site::places(site, &case.grid),
@@ -536,10 +539,15 @@ pub(super) fn surfaces<'a>(case: &Case, root: &'a Record) -> Vec<(Acting, &'a Re
             LoadedLine::Plate(plate) => site::places(Site::Plate(*plate), &case.grid),
             LoadedLine::Triangles(all) => all.iter().map(sheet::middle).collect(),
         };
-        found.push((Acting::Load(number), record, key(record), places));
+        found.push((ActiveLoads::Load(number), record, key(record), places));
     }
     for (number, (of, record)) in case.point_loads.iter().zip(root.records("point_load")).enumerate() {
-        found.push((Acting::Load(case.tractions.len() + number), record, "at", vec![of.at]));
+        found.push((
+            ActiveLoads::Load(case.tractions.len() + number),
+            record,
+            "at",
+            vec![of.at],
+        ));
     }
     found
 }

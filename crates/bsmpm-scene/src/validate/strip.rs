@@ -3,7 +3,7 @@
 use super::load::{not_increasing, warn_of_late};
 use super::place::{is_beyond, is_in, side_of_bodies};
 use super::site::{AroundStrip, corners, normal_of, places, site};
-use crate::case::{Base, Body, Case, Face, Footing, History, MotionPath, Prescribed, Quantity, Site};
+use crate::case::{Base, Body, Case, Face, Footing, History, MotionPath, PrescribedMotion, Quantity, Site};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
@@ -43,8 +43,8 @@ pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Repor
 }
 
 /// All prescribed motions in the order of the file, without those that have an error.
-pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<Prescribed> {
-    let mut found: Vec<Prescribed> = Vec::new();
+pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<PrescribedMotion> {
+    let mut found: Vec<PrescribedMotion> = Vec::new();
     for record in root.records("prescribed") {
         let path = path(record, around.end, report);
         let site = site(record, around, report);
@@ -77,7 +77,7 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
             Some(None) => continue,
             None => (record.word("components").unwrap_or(Components::All).base(), None),
         };
-        found.push(Prescribed {
+        found.push(PrescribedMotion {
             site,
             path,
             base,

@@ -5,6 +5,7 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::waves::{WaveInput, fewest_cells, inputs};
 use crate::words::Word;
+use bsmpm::material::Moduli;
 use bsmpm::model::Regime;
 use bsmpm::step::mass::MassMatrix;
 
@@ -92,7 +93,7 @@ fn speed(case: &Case, body: &Body, compresses: bool) -> Option<f64> {
     let stiffness = named
         .material
         .relative_stiffness(0.5 * (lower + upper) - case.grid.lower()[vertical]);
-    let (lambda, mu) = named.material.elastic().lame();
+    let Moduli { lambda, mu } = named.material.elastic().moduli();
     let soil = case
         .flow
         .as_ref()

@@ -4,7 +4,7 @@ use super::{FULL, STATIC, doubts, set, valid};
 use bsmpm::boundary::Load;
 use bsmpm::kinematics::{PlaneStrain, Solid};
 use bsmpm::material::Profile;
-use bsmpm_scene::{Acting, Base, Face, Initial, LoadedLine, Push, Site};
+use bsmpm_scene::{ActiveLoads, Base, Face, Initial, LoadedLine, Push, Site};
 
 #[test]
 fn strips_loads_and_initial_stress_arrive() {
@@ -504,10 +504,10 @@ fn names_and_ramps_of_what_has_none() {
     let named = "traction.0={ name = \"footing\", from = [0, 1], to = [2, 1], stress = [0, -1] }";
     let release = "stage=[{ at = 0.5, deactivate = [\"footing\"] }]";
     let released = |set: &[&str]| valid(STATIC, &[set, &[release]].concat()).stages[0].release.clone();
-    assert_eq!(released(&[footing]), [("footing".to_owned(), Acting::Strip(0))]);
+    assert_eq!(released(&[footing]), [("footing".to_owned(), ActiveLoads::Strip(0))]);
     assert_eq!(
         released(&[footing, named]),
-        [("footing".to_owned(), Acting::Load(0))],
+        [("footing".to_owned(), ActiveLoads::Load(0))],
         "what was given the name"
     );
     let block = |more: &str| {

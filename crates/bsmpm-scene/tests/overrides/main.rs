@@ -11,7 +11,8 @@ use bsmpm::tensor::Vector;
 use bsmpm::water::flow::Motion;
 use bsmpm_scene::words::{Factor, Ksp, Pc};
 use bsmpm_scene::{
-    Case, Counted, Error, Every, Face, GridAxis, Made, Place, Quadrature, Quantity, Site, Support, differences, seed,
+    Case, Error, Every, Face, GridAxis, Made, Place, PointSelection, Quadrature, Quantity, Site, Support, differences,
+    seed,
 };
 
 const FULL: &str = include_str!("../full.toml");
@@ -337,7 +338,7 @@ fn the_full_case_in_si() {
     assert_eq!(
         case.histories[6].quantity,
         Quantity::CentreOfMass {
-            of: Counted {
+            of: PointSelection {
                 made: Made::Material(0),
                 within: None
             }
@@ -347,7 +348,7 @@ fn the_full_case_in_si() {
     assert_eq!(
         case.histories[4].quantity,
         Quantity::PressureNoise {
-            of: Counted {
+            of: PointSelection {
                 made: Made::All,
                 within
             }

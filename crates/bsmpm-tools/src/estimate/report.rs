@@ -266,7 +266,10 @@ mod tests {
     #[test]
     fn what_a_run_took_stands_beside_it() {
         let mut report = report();
-        let (points, unknowns, steps, evaluations) = (800, 300, 1214, 16_000);
+        let points = 800;
+        let unknowns = 300;
+        let steps = 1214;
+        let evaluations = 16_000;
         let actual = Actual {
             complete: true,
             ranks: 2,

@@ -226,7 +226,8 @@ mod tests {
     fn a_smooth_growth_has_its_kink_where_the_branch_leads_back() {
         // A parabola from 1.3 on, of which a chord between 5 and 20 leads back to where both square roots meet.
         let curve = curve(0.5, 1.7, 0.005, |factor| 1.0 + 200.0 * (factor - 1.3).max(0.0).powi(2));
-        let (bent, fallen) = ((4.0_f64 / 200.0).sqrt(), (19.0_f64 / 200.0).sqrt());
+        let bent = (4.0_f64 / 200.0).sqrt();
+        let fallen = (19.0_f64 / 200.0).sqrt();
         let wanted = 1.3 + bent * fallen / (bent + fallen);
         let found = curve.kink().unwrap().factor;
         assert!((found - wanted).abs() < 2e-3, "{found} {wanted}");

@@ -110,7 +110,8 @@ mod tests {
 
     /// Rounds of a search in each of which so many trials are made, and how many those are in all.
     fn rounds(kink: f64, most: usize) -> (usize, usize) {
-        let (mut made, mut rounds): (Vec<CurveState>, usize) = (Vec::new(), 0);
+        let mut made: Vec<CurveState> = Vec::new();
+        let mut rounds: usize = 0;
         loop {
             let wanted = ahead(
                 PLAN,

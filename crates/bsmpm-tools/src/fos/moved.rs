@@ -259,7 +259,8 @@ mod tests {
 
     #[test]
     fn displacements_are_superposed_point_by_point_in_whatever_order() {
-        let (still, mut moved) = (ground(), ground());
+        let still = ground();
+        let mut moved = ground();
         moved
             .points
             .iter_mut()

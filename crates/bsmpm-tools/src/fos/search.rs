@@ -253,7 +253,8 @@ pub(super) mod tests {
             let (curve, asked) = searched(PLAN, hockey(kink));
             let curve = curve.unwrap();
             for band in [curve.kinked(), curve.crossing(DOUBLED)] {
-                let (low, high) = (band.last_stable.unwrap(), band.first_failed.unwrap());
+                let low = band.last_stable.unwrap();
+                let high = band.first_failed.unwrap();
                 assert!(high - low <= PLAN.width + 1e-9, "{band:?}");
             }
             let found = curve.kink().unwrap().factor;
@@ -329,7 +330,8 @@ pub(super) mod tests {
     fn a_body_without_equilibrium_after_failure_has_its_band_there() {
         let (curve, _) = searched(PLAN, |factor| (1.0, factor < 1.373));
         let band = curve.unwrap().kinked();
-        let (low, high) = (band.last_stable.unwrap(), band.first_failed.unwrap());
+        let low = band.last_stable.unwrap();
+        let high = band.first_failed.unwrap();
         assert!(
             low < 1.373 && 1.373 <= high && high - low <= PLAN.width + 1e-9,
             "{band:?}"

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use bsmpm::water::flow::Motion;
 use bsmpm_scene::words::{Geometry, Side, Support, Word};
-use bsmpm_scene::{Case, Counted, NamedMaterial, Quantity, Rigid, RigidShape, Traction};
+use bsmpm_scene::{Case, NamedMaterial, PointSelection, Quantity, Rigid, RigidShape, Traction};
 use serde::Serialize;
 
 use super::moved::{CountedPoints, HoldingSide};
@@ -170,7 +170,9 @@ impl Subject {
                 reasons,
             });
         }
-        let whole = Quantity::MaxDisplacement { of: Counted::default() };
+        let whole = Quantity::MaxDisplacement {
+            of: PointSelection::default(),
+        };
         let mut recorded: Vec<_> = case
             .histories
             .iter()

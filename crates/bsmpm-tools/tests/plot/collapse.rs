@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
+use bsmpm_io::directory::{ExistingRunPolicy, HISTORY, OutputDirectory};
 use bsmpm_io::frame::{Field, FieldValues, Frame};
 use bsmpm_io::frames::{COLLECTION, Frames};
 use bsmpm_io::lock::Unseen;
@@ -43,7 +43,7 @@ impl Collapse {
             cell: vec![self.cell; 2],
         });
         let directory = OutputDirectory::hold(directory, Unseen::Respect)
-            .and_then(|held| held.claim(Existing::Refuse, &manifest))?;
+            .and_then(|held| held.claim(ExistingRunPolicy::Refuse, &manifest))?;
         let mut frames = Frames::create(directory.path())?;
         for index in 0..FRAMES {
             let frame = self.frame(index, volumes);
@@ -67,7 +67,8 @@ impl Collapse {
     fn place(&self, [x, y]: [f64; 2], progress: f64) -> [f64; 2] {
         let [width, height] = self.body;
         let spread = (self.grid[0] / width - 1.0) * 0.75 * progress;
-        let (right, up) = (x / width, y / height);
+        let right = x / width;
+        let up = y / height;
         let sink = 1.0 - 0.45 * progress - 0.35 * progress * right * right;
         [x * (1.0 + spread * right * (1.0 - up).powi(2)), y * sink]
     }

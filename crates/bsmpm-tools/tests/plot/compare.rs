@@ -188,7 +188,8 @@ fn last_rows_of_one_label_are_a_curve() {
 /// Step 7 of a run by Newton's method, and by secants until forces are balanced to round-off.
 fn iterated(directory: &Path) {
     footings(directory);
-    let (newton, secants) = (Some(ResidualMethod::Newton), Some(ResidualMethod::Multisecant));
+    let newton = Some(ResidualMethod::Newton);
+    let secants = Some(ResidualMethod::Multisecant);
     let courses = [
         ("new.out", [(newton, 0.1), (newton, 1e-2), (newton, 1e-4)]),
         ("old.out", [(secants, 0.1), (secants, 1e-2), (None, 1e-12)]),

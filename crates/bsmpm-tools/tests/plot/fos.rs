@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::Duration;
 
-use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
+use bsmpm_io::directory::{ExistingRunPolicy, HISTORY, OutputDirectory};
 use bsmpm_io::frame::{Field, Frame};
 use bsmpm_io::frames::{COLLECTION, Frames};
 use bsmpm_io::lock::Unseen;
@@ -109,7 +109,7 @@ fn write_run(
         cell: vec![1.0; 2],
     });
     let directory = OutputDirectory::hold(directory, Unseen::Respect)
-        .and_then(|held| held.claim(Existing::Delete, &manifest))
+        .and_then(|held| held.claim(ExistingRunPolicy::Delete, &manifest))
         .unwrap();
     let mut headings = vec![TableColumn::new("step", ""), TableColumn::new("time", "")];
     let columns = case.histories.iter().flat_map(bsmpm_scene::History::columns);
@@ -566,7 +566,8 @@ fn a_region_is_judged_alone() {
         assert!(output.status.success(), "{output:?}");
         bench.found()
     };
-    let (whole, lower) = (of(&[]), of(&["--region", "0,0,10,5"]));
+    let whole = of(&[]);
+    let lower = of(&["--region", "0,0,10,5"]);
     let displacement = |found: &Value| found["elastic_displacement"].as_f64().unwrap();
     assert!(displacement(&lower) < 0.8 * displacement(&whole), "{lower}");
     assert!((displacement(&lower) - displacement(&whole)).abs() > 0.0 && whole["region"].is_null());

@@ -13,7 +13,7 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use bsmpm_io::directory::{Existing, OutputDirectory};
+use bsmpm_io::directory::{ExistingRunPolicy, OutputDirectory};
 use bsmpm_io::lock::Unseen;
 use bsmpm_io::manifest::Manifest;
 use bsmpm_tools::plot::{PlotArguments, draw, run};
@@ -114,7 +114,7 @@ fn every_picture_of_a_run_is_drawn_and_named() {
             .count();
         assert_eq!(named, 9);
         OutputDirectory::hold(dir.path(), Unseen::Respect)
-            .and_then(|held| held.claim(Existing::Delete, &manifest))
+            .and_then(|held| held.claim(ExistingRunPolicy::Delete, &manifest))
             .unwrap();
         assert!(paths.iter().all(|path| !path.exists()));
     }
@@ -137,7 +137,8 @@ fn the_body_is_filled_and_its_colours_mean_the_same_at_all_times() {
         for picture in &pictures {
             // Above the bar of colours, every row of this body is one piece, but for the scallops of its rim.
             let bodies = picture.rows().rev().skip(150).filter(|row| row.iter().any(is_coloured));
-            let (mut filled, mut white) = (0, 0);
+            let mut filled = 0;
+            let mut white = 0;
             for row in bodies {
                 let first = row.iter().position(is_coloured).unwrap();
                 let last = row.iter().rposition(is_coloured).unwrap();

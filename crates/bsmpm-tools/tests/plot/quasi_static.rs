@@ -112,7 +112,8 @@ fn a_body_goes_up_to_the_walls_that_hold_it() {
         .filter(|row| row.iter().any(is_coloured));
     let begins: Vec<usize> = body.map(|row| row.iter().position(is_coloured).unwrap()).collect();
     // The uppermost rows are the scallops of the free surface.
-    let (first, rest) = (begins.iter().min().unwrap(), &begins[begins.len() / 10..]);
+    let first = begins.iter().min().unwrap();
+    let rest = &begins[begins.len() / 10..];
     assert!(rest.iter().all(|begin| begin - first <= 1), "{begins:?}");
 }
 

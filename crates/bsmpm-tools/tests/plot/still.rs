@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use bsmpm_io::directory::{Existing, HISTORY, OutputDirectory};
+use bsmpm_io::directory::{ExistingRunPolicy, HISTORY, OutputDirectory};
 use bsmpm_io::frame::{Field, Frame};
 use bsmpm_io::frames::{COLLECTION, Frames};
 use bsmpm_io::lock::Unseen;
@@ -55,7 +55,7 @@ impl Still {
             cell: vec![2.0 * self.spacing; 2],
         });
         let directory = OutputDirectory::hold(directory, Unseen::Respect)
-            .and_then(|held| held.claim(Existing::Refuse, &manifest))?;
+            .and_then(|held| held.claim(ExistingRunPolicy::Refuse, &manifest))?;
         let mut frames = Frames::create(directory.path())?;
         for step in (0..=self.steps).step_by(STEPS_PER_FRAME as usize) {
             manifest.name_output(&Frames::file(step));
@@ -144,7 +144,10 @@ impl Still {
         };
         let count = |length: f64| (length / self.spacing).round() as usize;
         let mut position = Vec::new();
-        let (mut displacement, mut stress, mut strain, mut pressure) = (vec![], vec![], vec![], vec![]);
+        let mut displacement = vec![];
+        let mut stress = vec![];
+        let mut strain = vec![];
+        let mut pressure = vec![];
         for index in 0..count(width) * count(height) {
             let start = [index / count(height), index % count(height)].map(|i| (i as f64 + 0.5) * self.spacing);
             if !self.has(start) {

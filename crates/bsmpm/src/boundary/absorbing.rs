@@ -46,7 +46,7 @@ impl Dashpots {
         for (number, face) in boundary.absorbing().enumerate() {
             let edge = face_cell(grid, face.axis, face.upper);
             let last = face.last_cell(grid);
-            let nodal = halo.sum(&transfer::to_nodes(shape, |p| match grid.locate(&points.x[p]) {
+            let nodal = halo.assemble_ghosts(&transfer::to_nodes(shape, |p| match grid.locate(&points.x[p]) {
                 Some(cell) if cell[face.axis] == last => {
                     let weight = weight_on::<K, D>(grid, face, &points.x[p]);
                     impedance(p).map(|of| of / edge * weight)
@@ -182,7 +182,7 @@ impl<const D: usize> Boundary<D> {
                     }
                 }
             }
-            halo.reduce(&mut forces); // of one rank each: exact
+            halo.all_reduce_sum(&mut forces); // of one rank each: exact
             held.push(forces.chunks_exact(D).map(Vector::from_column_slice).collect());
         }
         held

@@ -6,7 +6,7 @@ use super::surface::{Anchors, SurfacePoint};
 use super::{Boundary, Support};
 use crate::grid::Grid;
 use crate::parallel::Halo;
-use crate::points::Packed;
+use crate::points::PackedTensors;
 use crate::tensor::{Tensor, Vector};
 
 /// Parts of the grid's length within which a point is on a face.
@@ -14,7 +14,7 @@ const ON: f64 = 1e-9;
 
 /// What surfaces are anchored to: the points of this rank.
 #[derive(Clone, Copy)]
-pub struct Anchored<'a, const D: usize> {
+pub struct AnchorCandidates<'a, const D: usize> {
     /// global ids
     pub id: &'a [u64],
     /// numbers of the materials
@@ -24,7 +24,7 @@ pub struct Anchored<'a, const D: usize> {
     /// m  displacements since the start
     pub u: &'a [Vector<D>],
     /// -  deformation gradients
-    pub F: &'a Packed<D, Tensor>,
+    pub F: &'a PackedTensors<D, Tensor>,
 }
 
 /// A surface point's place at the start, m, and whether water crosses there.
@@ -76,7 +76,7 @@ impl Anchors {
     pub fn of<const D: usize>(
         surfaces: &Surfaces<'_, D>,
         carried: &Self,
-        points: Anchored<'_, D>,
+        points: AnchorCandidates<'_, D>,
         halo: &dyn Halo,
     ) -> Self {
         let boundary = surfaces.boundary;
@@ -107,7 +107,7 @@ impl Anchors {
         &self,
         surfaces: &Surfaces<'_, D>,
         gone: impl Fn(u64) -> bool,
-        points: Anchored<'_, D>,
+        points: AnchorCandidates<'_, D>,
         halo: &dyn Halo,
     ) -> Self {
         let mut anchors = self.clone();
@@ -134,7 +134,7 @@ impl Anchors {
         &self,
         surfaces: &Surfaces<'_, D>,
         idle: &Idle,
-        points: Anchored<'_, D>,
+        points: AnchorCandidates<'_, D>,
         halo: &dyn Halo,
     ) -> Self {
         let mut anchors = self.clone();
@@ -173,7 +173,7 @@ impl Anchors {
         &self,
         boundary: &Boundary<D>,
         grid: &Grid<D>,
-        points: Anchored<'_, D>,
+        points: AnchorCandidates<'_, D>,
         halo: &dyn Halo,
     ) -> AnchorPlaces<D> {
         let starts = starts(boundary);
@@ -220,7 +220,7 @@ impl<const D: usize> AnchorPlaces<D> {
     }
 }
 
-impl<const D: usize> Anchored<'_, D> {
+impl<const D: usize> AnchorCandidates<'_, D> {
     /// Calls with every one of these ids that is of a point of this rank: the point, and which one of the ids.
     pub(crate) fn visit<'i>(&self, ids: impl Iterator<Item = &'i u64>, mut each: impl FnMut(usize, usize)) {
         let mut anchored: Vec<(u64, usize)> = ids.copied().zip(0..).collect();
@@ -300,7 +300,12 @@ fn starts<const D: usize>(boundary: &Boundary<D>) -> Vec<Vector<D>> {
 
 /// Ids of the points that were nearest to places at the start; of equally near ones the smallest. Where water crosses,
 /// of those whose material is not `dry`.
-fn nearest<const D: usize>(at: &[StartPlace<D>], dry: &[bool], points: Anchored<'_, D>, halo: &dyn Halo) -> Vec<u64> {
+fn nearest<const D: usize>(
+    at: &[StartPlace<D>],
+    dry: &[bool],
+    points: AnchorCandidates<'_, D>,
+    halo: &dyn Halo,
+) -> Vec<u64> {
     let mut least = vec![f64::INFINITY; at.len()];
     let mut ids = vec![u64::MAX; at.len()];
     for p in 0..points.id.len() {
@@ -315,12 +320,12 @@ fn nearest<const D: usize>(at: &[StartPlace<D>], dry: &[bool], points: Anchored<
     }
     let own = least.clone();
     least.iter_mut().for_each(|distance| *distance = -*distance);
-    halo.maximum(&mut least);
+    halo.all_reduce_max(&mut least);
     let candidates = (0..at.len()).map(|k| match -least[k] == own[k] {
         true => -(ids[k] as f64),
         false => f64::NEG_INFINITY,
     });
     let mut smallest: Vec<f64> = candidates.collect();
-    halo.maximum(&mut smallest);
+    halo.all_reduce_max(&mut smallest);
     smallest.into_iter().map(|id| -id as u64).collect()
 }

@@ -77,7 +77,7 @@ impl<const D: usize> Contacts<D> {
                     slip_length: 0.0,
                 };
                 let had_material = had_material(grid, face, node, guess);
-                at.recall(t, guess, face_cell(grid, face.axis, face.upper), had_material);
+                at.predict_status(t, guess, face_cell(grid, face.axis, face.upper), had_material);
                 nodes.push(at);
             }
         }
@@ -180,7 +180,7 @@ impl<const D: usize> Contacts<D> {
         let owned = halo.owned();
         for at in self.nodes.iter().filter(|at| owned.contains(at.node)) {
             if let Some(block) = at.resists() {
-                solver.add_among(&[at.node], &block);
+                solver.add_block_among(&[at.node], &block);
             }
         }
     }
@@ -199,7 +199,7 @@ impl<const D: usize> Contacts<D> {
             (at.status, at.transverse_stiffness, at.slip_length) =
                 (asked.status, asked.transverse_stiffness, asked.slip_length);
         }
-        halo.reduce(&mut corrected);
+        halo.all_reduce_sum(&mut corrected);
         corrected[0] as usize
     }
 
@@ -249,8 +249,8 @@ impl<const D: usize> Contacts<D> {
                 ends = [ends[0].max(-gap), ends[1].max(gap)];
             }
             let [nodes, closed, pushed, sliding, slipped, dissipated] =
-                halo.total(&sums).try_into().unwrap_or([0.0; 6]);
-            halo.maximum(&mut ends);
+                halo.reproducible_sum(&sums).try_into().unwrap_or([0.0; 6]);
+            halo.all_reduce_max(&mut ends);
             let gap = if nodes > 0.0 { [-ends[0], ends[1]] } else { [0.0; 2] };
             let closed = ratio(closed, nodes);
             let sliding = ratio(sliding, pushed);

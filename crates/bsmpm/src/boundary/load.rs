@@ -3,7 +3,7 @@
 
 pub mod follower;
 
-use super::anchor::{Anchored, Surfaces};
+use super::anchor::{AnchorCandidates, Surfaces};
 use super::strip::reduce;
 use super::surface::{Anchors, Attachment, Surface, SurfacePoint};
 use crate::error::StepError;
@@ -89,7 +89,7 @@ pub struct LoadForces<const D: usize> {
 pub fn forces<const D: usize>(
     surfaces: &Surfaces<'_, D>,
     surface: &Surface<D>,
-    points: Anchored<'_, D>,
+    points: AnchorCandidates<'_, D>,
     grid: &Grid<D>,
     active: &[bool],
     t: f64,
@@ -131,12 +131,12 @@ pub fn forces<const D: usize>(
         FollowerLoads::default()
     };
     applied.extend(followers.carried(loads));
-    halo.reduce(&mut applied);
+    halo.all_reduce_sum(&mut applied);
     if let Some(error) = lost_load(loads, &applied) {
         return Err(error);
     }
     Ok(LoadForces {
-        dead: halo.sum(&force),
+        dead: halo.assemble_ghosts(&force),
         followers,
     })
 }

@@ -16,7 +16,7 @@ pub use body::{MOTIONS, RigidBody, RigidState, overlapping};
 pub use extent::extents;
 pub use outline::{Nearest, Outline, Sizes};
 pub use point::{Along, ContactStatus};
-pub use surroundings::{Reaching, Surroundings};
+pub use surroundings::{ParticleDomains, Surroundings};
 pub use terrain::Terrain;
 
 use crate::error::StepError;
@@ -103,7 +103,7 @@ impl<const D: usize> RigidContacts<D> {
                 .iter()
                 .for_each(|offset| marks[point.first_node + offset] = 1.0);
         }
-        halo.max(&mut marks, 1);
+        halo.ghost_max(&mut marks, 1);
         marks.into_iter().map(|mark| mark > 0.0).collect()
     }
 
@@ -161,7 +161,7 @@ impl<const D: usize> RigidContacts<D> {
                 }
             }
         }
-        halo.total(&sums)
+        halo.reproducible_sum(&sums)
             .chunks_exact(MOTIONS * MOTIONS)
             .map(Matrix3::from_row_slice)
             .collect()
@@ -200,7 +200,7 @@ impl<const D: usize> RigidContacts<D> {
             let on = point.on_motions(&-force(point));
             (0..MOTIONS).for_each(|k| sums[point.body * MOTIONS + k].add(on[k]));
         }
-        halo.total(&sums)
+        halo.reproducible_sum(&sums)
             .chunks_exact(MOTIONS)
             .map(Vector::<3>::from_column_slice)
             .collect()
@@ -236,7 +236,7 @@ impl<const D: usize> RigidContacts<D> {
     /// Adds the symmetric part of the stiffness of all points, the bodies held, to the matrix.
     pub fn assemble(&self, solver: &mut dyn LinearSolver) {
         for point in self.points.iter().filter(|point| point.status != ContactStatus::Open) {
-            solver.add(point.first_node, &point.block());
+            solver.add_block(point.first_node, &point.block());
         }
     }
 
@@ -263,7 +263,7 @@ impl<const D: usize> RigidContacts<D> {
             },
             &mut out,
         );
-        halo.sum(&out)
+        halo.assemble_ghosts(&out)
     }
 
     /// Body and number of every free motion.
@@ -307,7 +307,7 @@ impl<const D: usize> RigidContacts<D> {
             1.0
         };
         let mut most = [statuses.iter().map(|(_, by)| *by).fold(0.0, f64::max)];
-        halo.maximum(&mut most);
+        halo.all_reduce_max(&mut most);
         let mut corrected = [0.0];
         let mut released = vec![false; self.points.len()];
         for (number, (status, by)) in statuses.into_iter().enumerate() {
@@ -318,7 +318,7 @@ impl<const D: usize> RigidContacts<D> {
                 point.take(status, &moved[number]);
             }
         }
-        halo.reduce(&mut corrected);
+        halo.all_reduce_sum(&mut corrected);
         let held = if corrected[0] > 0.0 {
             self.hold_neutral(&moved, &released, halo)
         } else {
@@ -339,7 +339,7 @@ impl<const D: usize> RigidContacts<D> {
         for point in touching.filter(|point| point.gap_before() > CLOSE * self.edge) {
             met[point.body] = 1.0;
         }
-        halo.maximum(&mut met);
+        halo.all_reduce_max(&mut met);
         for (at, _) in self.bodies.iter_mut().zip(met).filter(|(_, met)| *met > 0.0) {
             at.strike(self.dt);
         }
@@ -384,7 +384,7 @@ impl<const D: usize> RigidContacts<D> {
     }
 
     /// What every body did under the converged displacement `u`, and its state then.
-    pub fn conclude(&self, u: &[f64], halo: &dyn Halo) -> (Vec<RigidReport>, Vec<RigidState>) {
+    pub fn finish_step(&self, u: &[f64], halo: &dyn Halo) -> (Vec<RigidReport>, Vec<RigidState>) {
         if self.is_empty() {
             return (Vec::new(), Vec::new());
         }
@@ -415,8 +415,8 @@ impl<const D: usize> RigidContacts<D> {
                 .zip(each)
                 .for_each(|(most, value)| *most = most.max(value));
         }
-        let sums = halo.total(&sums);
-        halo.maximum(&mut most);
+        let sums = halo.reproducible_sum(&sums);
+        halo.all_reduce_max(&mut most);
         let reports = (0..count).map(|number| {
             let sums = &sums[5 * number..][..5];
             let most = &most[3 * number..][..3];

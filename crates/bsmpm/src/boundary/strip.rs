@@ -215,13 +215,13 @@ pub struct StripWork {
 
 /// The strips' points of this rank in one step.
 #[derive(Clone, Debug)]
-pub struct StripAttachments<const D: usize> {
+pub struct StripConstraints<const D: usize> {
     offsets: Vec<usize>,
     interval: TimeInterval,
     held: Vec<StripPoint<D>>,
 }
 
-impl<const D: usize> StripAttachments<D> {
+impl<const D: usize> StripConstraints<D> {
     /// Attaches the strips at their places at time `t`, to move until `t + dt`, by the components that are `free`:
     /// where a support of the grid holds a node, it stays the one that does.
     pub fn at(
@@ -287,7 +287,7 @@ impl<const D: usize> StripAttachments<D> {
     }
 
     /// Expects of points in contact what the last displacement, `guess`, makes likely.
-    pub fn recall(&mut self, guess: &[f64]) {
+    pub fn predict_status(&mut self, guess: &[f64]) {
         let offsets = &self.offsets;
         for held in &mut self.held {
             let Some(mut state) = held.state else { continue };
@@ -308,7 +308,7 @@ impl<const D: usize> StripAttachments<D> {
             corrected[0] += f64::from(u8::from(is_corrected));
             held.state = Some(state);
         }
-        halo.reduce(&mut corrected);
+        halo.all_reduce_sum(&mut corrected);
         corrected[0] as usize
     }
 
@@ -319,7 +319,7 @@ impl<const D: usize> StripAttachments<D> {
         }
     }
 
-    /// Adds the product of [`StripAttachments::assemble`]'s stiffness with `v`; other ranks' parts are not yet in it.
+    /// Adds the product of [`StripConstraints::assemble`]'s stiffness with `v`; other ranks' parts are not yet in it.
     pub fn multiply(&self, v: &[f64], out: &mut Contributions) {
         for held in &self.held {
             let moved = held.displacement(&self.offsets, v);
@@ -335,7 +335,7 @@ impl<const D: usize> StripAttachments<D> {
     /// Adds beta A N_a N_b, in the held direction, to the stiffness.
     pub fn assemble(&self, solver: &mut dyn LinearSolver) {
         for (first_node, block) in self.held.iter().filter_map(|held| held.block(self.offsets.len())) {
-            solver.add(first_node, &block);
+            solver.add_block(first_node, &block);
         }
     }
 
@@ -371,7 +371,7 @@ impl<const D: usize> StripAttachments<D> {
     }
 
     /// What every strip did under the converged displacement `u`, and the tractions that the next step starts from.
-    pub fn conclude(
+    pub fn finish_step(
         &self,
         strips: &[Strip<D>],
         grid: &Grid<D>,
@@ -409,9 +409,9 @@ impl<const D: usize> StripAttachments<D> {
                 there[0] = 1.0;
             }
         }
-        halo.maximum(&mut longest);
+        halo.all_reduce_max(&mut longest);
         let contact = strips.iter().any(|strip| strip.contact.is_some());
-        let totals = halo.total(&sums.iter().flat_map(|sums| sums.each(contact)).collect::<Vec<_>>());
+        let totals = halo.reproducible_sum(&sums.iter().flat_map(|sums| sums.each(contact)).collect::<Vec<_>>());
         let count = traction.len();
         traction.extend(there);
         reduce(&mut traction, halo);
@@ -499,7 +499,7 @@ pub(super) fn reduce<const D: usize>(lists: &mut [Vec<Vector<D>>], halo: &dyn Ha
         .flatten()
         .flat_map(|vector| vector.iter().copied())
         .collect();
-    halo.reduce(&mut flat);
+    halo.all_reduce_sum(&mut flat);
     let summed = flat.chunks_exact(D).map(Vector::from_column_slice);
     lists
         .iter_mut()

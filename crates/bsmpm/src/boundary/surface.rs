@@ -7,7 +7,7 @@ use crate::grid::{Contributions, Grid, KnotVector, digit};
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;
 use crate::tensor::Vector;
-use crate::water::crossed::{Crossed, Flowed};
+use crate::water::crossed::{CumulativeFlux, PreviousFlow};
 
 /// Share of a surface point's shape functions that the nodes that count must have: below it no material is near enough.
 /// It sets the reach beyond the cells that hold points: 0.75, 1.29 and 1.85 cells for the orders 1, 2 and 3. With a
@@ -283,9 +283,9 @@ pub struct Surface<const D: usize> {
     /// motions of every rigid body
     pub bodies: Vec<RigidState>,
     /// water that has gone through drains and inflows since the start
-    pub crossed: Crossed,
+    pub crossed: CumulativeFlux,
     /// what flowed in the last step, where the next one goes on with it
-    pub flowed: Option<Flowed>,
+    pub flowed: Option<PreviousFlow>,
 }
 
 /// Ids of the points that the points of all surfaces are anchored to; the same on every rank, and empty before the

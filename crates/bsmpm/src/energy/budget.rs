@@ -1,7 +1,7 @@
 //! Energy bound of dynamic runs, theory-manual equation (T10.4): kinetic energy, elastic energy and dissipation must
 //! not exceed the initial energy plus the external work.
 
-use super::Stored;
+use super::StoredEnergy;
 use crate::error::StepError;
 
 /// Part of the largest energy by which a right run may seem to have grown: mean forces, mapped
@@ -21,14 +21,14 @@ pub struct Turnover {
     /// part of it by damping
     pub damped: f64,
     /// energy of the points; the elastic one is that of the stress in equilibrium, before any smoothing
-    pub stored: Stored,
+    pub stored: StoredEnergy,
     /// energies below this are round-off: that of a strain of 1e-12 in all points
     pub round_off: f64,
 }
 
 /// The bound on the energy of a run: all that must be kept to go on with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Budget {
+pub struct EnergyBound {
     /// J  kinetic and elastic energy when it was opened; without any then, with what the first step seemed to make
     pub start: f64,
     /// J  work of gravity, loads and what moves since
@@ -43,9 +43,9 @@ pub struct Budget {
     pub growth: f64,
 }
 
-impl Budget {
+impl EnergyBound {
     /// Opened in a state.
-    pub fn open(stored: Stored) -> Self {
+    pub fn open(stored: StoredEnergy) -> Self {
         let start = stored.kinetic + stored.elastic;
         Self {
             start,
@@ -96,7 +96,7 @@ impl Budget {
 
     /// Takes what points that have left had with them, once the step in which they did is entered: energy before, and
     /// after they were taken away.
-    pub fn exchange(&mut self, [before, after]: &[Stored; 2]) {
+    pub fn exchange(&mut self, [before, after]: &[StoredEnergy; 2]) {
         self.start += (after.kinetic + after.elastic) - (before.kinetic + before.elastic);
     }
 
@@ -123,9 +123,9 @@ mod tests {
     fn turnover(external: f64, kinetic: f64) -> Turnover {
         Turnover {
             external,
-            stored: Stored {
+            stored: StoredEnergy {
                 kinetic,
-                ..Stored::default()
+                ..StoredEnergy::default()
             },
             ..Turnover::default()
         }
@@ -133,24 +133,24 @@ mod tests {
 
     #[test]
     fn round_off_of_ground_at_rest_is_no_growth() {
-        let mut budget = Budget::open(Stored::default());
+        let mut budget = EnergyBound::open(StoredEnergy::default());
         let at_rest = Turnover {
             round_off: 1e-17,
             ..turnover(1e-26, 5e-26)
         };
         budget.enter(&at_rest);
-        assert_eq!(budget, Budget::default());
+        assert_eq!(budget, EnergyBound::default());
         budget.enter(&Turnover {
-            stored: Stored {
+            stored: StoredEnergy {
                 kinetic: 2e-17,
-                ..Stored::default()
+                ..StoredEnergy::default()
             },
             ..at_rest
         });
         budget.enter(&Turnover {
-            stored: Stored {
+            stored: StoredEnergy {
                 kinetic: 4e-17,
-                ..Stored::default()
+                ..StoredEnergy::default()
             },
             ..at_rest
         });
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn a_first_step_from_nothing_opens_the_books_and_what_is_made_later_is_found() {
-        let mut budget = Budget::open(Stored::default());
+        let mut budget = EnergyBound::open(StoredEnergy::default());
         // A mass under a force that grows by 1 N a second, steps of 1 s, spectral radius 0.5.
         for step in [turnover(0.1667, 0.1953), turnover(2.02, 2.2)] {
             budget.enter(&step);
@@ -168,7 +168,7 @@ mod tests {
         budget.enter(&turnover(0.0, 2.4));
         assert!(budget.require().is_err(), "{budget:?}");
         // A mass of 1 on a dashpot of 30 under 1 N, in steps of 0.1 s.
-        let mut damped = Budget::open(Stored::default());
+        let mut damped = EnergyBound::open(StoredEnergy::default());
         let mut v = 0.0;
         let mut a = 1.0;
         let dt = 0.1;
@@ -185,9 +185,9 @@ mod tests {
             });
             assert!(damped.growth <= 1e-12, "{damped:?}");
         }
-        let mut moving = Budget::open(Stored {
+        let mut moving = EnergyBound::open(StoredEnergy {
             kinetic: 1.0,
-            ..Stored::default()
+            ..StoredEnergy::default()
         });
         moving.enter(&turnover(0.0, 1.1));
         assert!(moving.require().is_err());

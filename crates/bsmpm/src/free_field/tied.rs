@@ -3,7 +3,7 @@
 use crate::error::SolveError;
 use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
-use crate::parallel::{Halo, Krylov, LinearSolver, OwnedNodes, Solved, Symmetry};
+use crate::parallel::{Halo, Krylov, LinearSolver, OwnedNodes, SolveReport, Symmetry};
 
 /// Corrections after which a product is solved no better.
 const CORRECTIONS: usize = 100;
@@ -41,22 +41,22 @@ impl Halo for TiedHalo {
     fn owned(&self) -> OwnedNodes {
         OwnedNodes::first(self.layer)
     }
-    fn sum(&self, contributions: &Contributions) -> Vec<f64> {
+    fn assemble_ghosts(&self, contributions: &Contributions) -> Vec<f64> {
         let mut nodal = contributions.alone();
         self.fold(&mut nodal, contributions.width(), |a, b| a + b);
         nodal
     }
-    fn share(&self, nodal: &mut [f64], width: usize) {
+    fn update_ghosts(&self, nodal: &mut [f64], width: usize) {
         self.fold(nodal, width, |own, _| own);
     }
-    fn max(&self, nodal: &mut [f64], width: usize) {
+    fn ghost_max(&self, nodal: &mut [f64], width: usize) {
         self.fold(nodal, width, f64::max);
     }
-    fn reduce(&self, _numbers: &mut [f64]) {}
-    fn total(&self, sums: &[Exact]) -> Vec<f64> {
+    fn all_reduce_sum(&self, _numbers: &mut [f64]) {}
+    fn reproducible_sum(&self, sums: &[Exact]) -> Vec<f64> {
         sums.iter().map(Exact::value).collect()
     }
-    fn maximum(&self, _numbers: &mut [f64]) {}
+    fn all_reduce_max(&self, _numbers: &mut [f64]) {}
 }
 
 /// L U of the band of a column's matrix, without pivoting; what the unknowns of a row share is summed.
@@ -129,7 +129,7 @@ impl Band {
 }
 
 impl LinearSolver for Band {
-    fn begin(&mut self, free: &[bool]) {
+    fn reinit(&mut self, free: &[bool]) {
         let mut count = 0;
         let numbered = free[..self.layer].iter().map(|&free| {
             count += usize::from(free);
@@ -139,12 +139,12 @@ impl LinearSolver for Band {
         self.rows = vec![0.0; count * (2 * self.half + 1)];
     }
 
-    fn add(&mut self, first_node: usize, block: &[f64]) {
+    fn add_block(&mut self, first_node: usize, block: &[f64]) {
         let nodes: Vec<usize> = self.offsets.iter().map(|offset| first_node + offset).collect();
-        self.add_among(&nodes, block);
+        self.add_block_among(&nodes, block);
     }
 
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+    fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
         let components = self.components;
         let of_nodes = nodes
             .iter()
@@ -169,7 +169,7 @@ impl LinearSolver for Band {
         }
     }
 
-    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
+    fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
         let n = self.unknowns();
         for k in 0..n {
             let pivot = self.rows[self.at(k, k)];
@@ -199,15 +199,15 @@ impl LinearSolver for Band {
         Ok(())
     }
 
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         let x = self.substituted(self.picked(rhs));
         if !x.iter().all(|x| x.is_finite()) {
             return Err(SolveError::NotFinite);
         }
         self.spread(&x, solution);
-        Ok(Solved {
+        Ok(SolveReport {
             iterations: 1,
-            ..Solved::default()
+            ..SolveReport::default()
         })
     }
 

@@ -7,13 +7,13 @@ use crate::parallel::Halo;
 const SIDE: usize = 3;
 
 /// Which cells hold points, those beside this rank's columns included.
-pub(crate) struct Occupied<'a, const D: usize> {
+pub(crate) struct OccupiedCells<'a, const D: usize> {
     grid: &'a Grid<D>,
     width: [usize; 2],
     marks: Vec<f64>, // per node: whether the cell (k, l) before that of its number holds points, k and l from 0 to q
 }
 
-impl<'a, const D: usize> Occupied<'a, D> {
+impl<'a, const D: usize> OccupiedCells<'a, D> {
     /// Of this rank's `cells`, by their index in the window; one exchange with the neighbours.
     ///
     /// Neighbouring slabs share layers of nodes, not of cells: a cell is noted at the node of its own number, which the
@@ -33,7 +33,7 @@ impl<'a, const D: usize> Occupied<'a, D> {
                 occupied.marks[place] = 1.0;
             }
         }
-        halo.max(&mut occupied.marks, marks);
+        halo.ghost_max(&mut occupied.marks, marks);
         occupied
     }
 

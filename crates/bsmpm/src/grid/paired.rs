@@ -7,7 +7,7 @@ use std::ops::Range;
 /// One axis whose neighbouring cells are paired, from the lower end of every stretch on in which no breakpoint is
 /// repeated; an odd last one stays alone, and so do cells without length.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Paired {
+pub(crate) struct CellPairs {
     degree: usize,
     of_cell: Vec<usize>,        // first function on the pairs that a cell sees
     shares: Vec<f64>,           // per cell: r of its functions on the pairs, row by row of those on the cells
@@ -17,7 +17,7 @@ pub(crate) struct Paired {
     of_slot: Vec<Option<usize>>,
 }
 
-impl Paired {
+impl CellPairs {
     pub fn of(axis: &KnotVector) -> Self {
         let degree = axis.order() - 1;
         let cells = axis.cells();

@@ -3,12 +3,12 @@
 pub mod merged;
 mod support;
 
-use super::{Grid, Located};
+use super::{Grid, PointPositions};
 use crate::error::StepError;
 use crate::grid::ColumnExtent;
 use crate::tensor::Vector;
 use crate::threads;
-use merged::Merged;
+use merged::MergedFunctions;
 use std::ops::Range;
 use std::sync::Mutex;
 pub(crate) use support::{PointSupport, Values};
@@ -45,7 +45,7 @@ pub struct Shape<const D: usize> {
     extent: ColumnExtent,
     rows: Vec<f64>, // per point and axis: q + 1 values, q + 1 derivatives (1/m) but for lowered ones; then zeros
     stride: usize,  // numbers of a row
-    pub(super) merged: Option<Merged<D>>, // of lowered functions: those inside a body with their neighbours
+    pub(super) merged: Option<MergedFunctions<D>>, // of lowered functions: those inside a body with their neighbours
 }
 
 /// Zeros behind the rows, of which four numbers are read from any place.
@@ -85,7 +85,7 @@ pub(crate) use with_width;
 
 impl<const D: usize> Shape<D> {
     /// Evaluates the functions at all points, which must be sorted by cell. Fails on a point outside the window.
-    pub fn at(grid: &Grid<D>, points: &impl Located<D>) -> Result<Self, StepError> {
+    pub fn at(grid: &Grid<D>, points: &impl PointPositions<D>) -> Result<Self, StepError> {
         let width = grid.order() + 1;
         let mut shape = Self {
             width,
@@ -102,7 +102,7 @@ impl<const D: usize> Shape<D> {
         Ok(shape)
     }
 
-    fn evaluate<const W: usize>(&mut self, grid: &Grid<D>, points: &impl Located<D>) -> Result<(), StepError> {
+    fn evaluate<const W: usize>(&mut self, grid: &Grid<D>, points: &impl PointPositions<D>) -> Result<(), StepError> {
         let x = points.places();
         let cells = threads::each(x.len(), |p| grid.locate(&x[p]).filter(|cell| grid.holds(cell)));
         for (p, located) in cells.iter().enumerate() {
@@ -141,16 +141,16 @@ impl<const D: usize> Shape<D> {
     ///
     /// Function `a` of a cell is number `cell + a` in either degree, so that the lower ones are numbered as the first
     /// q + (cells - 1) nodes along an axis, and nodal arrays and their exchange serve both.
-    pub fn lowered(&self, grid: &Grid<D>, points: &impl Located<D>) -> Self {
+    pub fn lowered(&self, grid: &Grid<D>, points: &impl PointPositions<D>) -> Self {
         self.lower(grid, points, false)
     }
 
     /// The same with their derivatives.
-    pub fn lowered_with_derivatives(&self, grid: &Grid<D>, points: &impl Located<D>) -> Self {
+    pub fn lowered_with_derivatives(&self, grid: &Grid<D>, points: &impl PointPositions<D>) -> Self {
         self.lower(grid, points, true)
     }
 
-    fn lower(&self, grid: &Grid<D>, points: &impl Located<D>, derivatives: bool) -> Self {
+    fn lower(&self, grid: &Grid<D>, points: &impl PointPositions<D>, derivatives: bool) -> Self {
         let width = self.width - 1;
         let stride = if derivatives { 2 * width } else { width };
         let mut lower = Self {
@@ -170,7 +170,7 @@ impl<const D: usize> Shape<D> {
         lower
     }
 
-    fn evaluate_lower<const W: usize>(&mut self, grid: &Grid<D>, points: &impl Located<D>) {
+    fn evaluate_lower<const W: usize>(&mut self, grid: &Grid<D>, points: &impl PointPositions<D>) {
         let x = points.places();
         let stride = self.stride;
         let patches = &self.patches;

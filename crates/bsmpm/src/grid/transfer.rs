@@ -8,7 +8,7 @@ use super::contributions::Contributions;
 use super::shape::{Patch, PatchColumn, Shape, with_width};
 use crate::kinematics::{Kinematics, Slope};
 use crate::lanes;
-use crate::stabilisation::Grouped;
+use crate::stabilisation::GroupedPoints;
 use crate::tensor::Vector;
 use crate::threads::{CHUNK, share};
 use patch::{Divergence, Gradients, PatchSums};
@@ -28,13 +28,13 @@ pub fn to_nodes<const D: usize, const C: usize>(
     shape: &Shape<D>,
     value: impl Fn(usize) -> [f64; C] + Sync,
 ) -> Contributions {
-    to_nodes_grouped(shape, Grouped::NOT, value)
+    to_nodes_grouped(shape, GroupedPoints::NOT, value)
 }
 
 /// [`to_nodes`] of every group by itself.
 pub fn to_nodes_grouped<const D: usize, const C: usize>(
     shape: &Shape<D>,
-    grouped: Grouped<'_>,
+    grouped: GroupedPoints<'_>,
     value: impl Fn(usize) -> [f64; C] + Sync,
 ) -> Contributions {
     let (rows, stride) = shape.rows();
@@ -52,7 +52,7 @@ pub fn to_nodes_grouped<const D: usize, const C: usize>(
 /// Largest value among the points of a group that a node sees, those with N_Ip > 0; zero where none is larger.
 pub fn largest_to_nodes<const D: usize>(
     shape: &Shape<D>,
-    grouped: Grouped<'_>,
+    grouped: GroupedPoints<'_>,
     value: impl Fn(usize) -> f64 + Sync,
 ) -> Vec<f64> {
     let count = grouped.count();
@@ -85,13 +85,13 @@ pub fn to_points<const D: usize, const C: usize, T: Clone + Send>(
     nodal: &[f64],
     found: impl Fn(usize, [f64; C]) -> T + Sync,
 ) -> Vec<T> {
-    to_points_grouped(shape, Grouped::NOT, nodal, found)
+    to_points_grouped(shape, GroupedPoints::NOT, nodal, found)
 }
 
 /// [`to_points`] from the nodal values of each point's group.
 pub fn to_points_grouped<const D: usize, const C: usize, T: Clone + Send>(
     shape: &Shape<D>,
-    grouped: Grouped<'_>,
+    grouped: GroupedPoints<'_>,
     nodal: &[f64],
     found: impl Fn(usize, [f64; C]) -> T + Sync,
 ) -> Vec<T> {
@@ -148,7 +148,7 @@ pub fn divergence_of<K: Kinematics<D>, const D: usize>(
     x: &[Vector<D>],
     flux: impl Fn(Range<usize>, &mut Vec<K::Gradient>) + Sync,
 ) -> Contributions {
-    with_width!(shape.width(), W => scatter_columns(shape, Grouped::NOT, |column| {
+    with_width!(shape.width(), W => scatter_columns(shape, GroupedPoints::NOT, |column| {
         let first = column.points.start;
         let mut fluxes = Vec::with_capacity(column.points.len());
         flux(column.points.clone(), &mut fluxes);
@@ -161,7 +161,7 @@ pub fn divergence_of<K: Kinematics<D>, const D: usize>(
 
 /// Scatter of squared gradients: sum_p weight_p |grad N_Ip|^2; shows nodes that have stiffness but no mass.
 pub fn squared_gradients<const D: usize>(shape: &Shape<D>, weight: impl Fn(usize) -> f64 + Sync) -> Contributions {
-    with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut PatchBlock<1>| {
+    with_width!(shape.width(), W => scatter(shape, GroupedPoints::NOT, |points, block: &mut PatchBlock<1>| {
         for p in points {
             let support = shape.support::<W>(p);
             let weight = weight(p);
@@ -191,7 +191,7 @@ pub(crate) fn slopes_of<K: Kinematics<D>, const D: usize>(
 /// What the patches contribute, the points of every group by filling a block of zeros.
 fn scatter<const D: usize, const C: usize>(
     shape: &Shape<D>,
-    grouped: Grouped<'_>,
+    grouped: GroupedPoints<'_>,
     fill: impl Fn(Range<usize>, &mut PatchBlock<C>) + Sync,
 ) -> Contributions {
     scatter_columns(shape, grouped, |_| &fill)
@@ -200,7 +200,7 @@ fn scatter<const D: usize, const C: usize>(
 /// The same by what fills the blocks of a column.
 fn scatter_columns<const D: usize, const C: usize, F: FnMut(Range<usize>, &mut PatchBlock<C>)>(
     shape: &Shape<D>,
-    grouped: Grouped<'_>,
+    grouped: GroupedPoints<'_>,
     filling: impl Fn(&PatchColumn) -> F + Sync,
 ) -> Contributions {
     let count = grouped.count();

@@ -1,7 +1,7 @@
 //! Brings the initial stress to equilibrium with the constitutive laws: removes the out-of-balance force in parts,
 //! theory-manual equation (T9.4).
 
-use super::{Undeformed, b_e_of, set_elastic};
+use super::{UndeformedState, b_e_of, set_elastic};
 use crate::error::StepError;
 use crate::kinematics::Kinematics;
 use crate::method::Criteria;
@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::parallel::{Backend, Halo, LinearSolver};
 use crate::points::Points;
 use crate::solve::convergence::worst_nodes;
-use crate::solve::found::Found;
+use crate::solve::found::StepSolution;
 use crate::solve::round_off::RoundOff;
 use crate::step::commit;
 use crate::step::commit::ConstitutiveUpdate;
@@ -31,7 +31,7 @@ const PRESSED: f64 = 1e-2;
 
 /// What a search for equilibrium took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Settling {
+pub struct EquilibriumSearch {
     /// equilibria that were found on the way
     pub rounds: usize,
     /// evaluations of the forces
@@ -51,7 +51,7 @@ pub fn set_spread<K: Kinematics<D>, const D: usize>(
 ) -> Result<(), StepError> {
     set_elastic(model, points, halo, solver)?;
     let mut most = [points.sigma.iter().map(|stress| -stress.0[D - 1]).fold(0.0, f64::max)];
-    halo.maximum(&mut most);
+    halo.all_reduce_max(&mut most);
     for p in 0..points.len() {
         let mut stress = points.sigma.at(p);
         // A law that has no state without pressure cannot start where elastic soil is pulled, as at a slope's top.
@@ -77,7 +77,7 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
     points: &mut Points<D>,
     halo: &dyn Halo,
     solver: &mut dyn LinearSolver,
-) -> Result<Settling, StepError> {
+) -> Result<EquilibriumSearch, StepError> {
     let model = &model.settling();
     let sought = &of_a_round(model);
     let at_rest = vec![0.0; model.grid.nodes() * D];
@@ -87,13 +87,13 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
     let mut left = 1.0_f64;
     let mut part = 1.0_f64;
     loop {
-        let mut start = Undeformed::of(model, points, halo)?;
+        let mut start = UndeformedState::of(model, points, halo)?;
         let problem = start.problem(model, points, halo);
         let balance = Residual::of(&problem, &at_rest).balance;
         let is_balanced =
             balance.measure() <= model.criteria.force || RoundOff::of(&problem).covers(&balance, &problem);
         if is_balanced && (left == 0.0 || rounds == 0 && super::balance(model, points, halo)?.yielding == 0) {
-            return Ok(Settling {
+            return Ok(EquilibriumSearch {
                 rounds,
                 evaluations: counts.evaluations,
             });
@@ -137,16 +137,16 @@ fn of_a_round<K: Kinematics<D>, const D: usize>(model: &Model<K, D>) -> Model<K,
 /// Gives the points the stress and the laws' state of an equilibrium, and strips their tractions.
 fn take<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    start: &Undeformed<D>,
+    start: &UndeformedState<D>,
     points: &mut Points<D>,
-    found: &Found<K, D>,
+    found: &StepSolution<K, D>,
     halo: &dyn Halo,
 ) -> Result<(), StepError> {
     let ConstitutiveUpdate { answers, state } = commit::constitutive_update(model, &found.trial, points, halo)?;
     let (_, traction) =
         start
             .attachments
-            .conclude(&model.boundary.strips, &model.grid, &points.surface, &found.u, halo);
+            .finish_step(&model.boundary.strips, &model.grid, &points.surface, &found.u, halo);
     points.surface.traction = traction;
     for (p, answer) in answers.iter().enumerate() {
         points.b_e.set(p, answer.b_e);

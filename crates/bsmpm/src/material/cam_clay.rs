@@ -80,7 +80,7 @@ impl CamClay {
 impl Constants {
     /// `f/p_c`, Pa.
     #[inline(always)]
-    fn excess<R: Real>(&self, pressure: R, deviator: R, preconsolidation: R) -> R {
+    fn yield_function<R: Real>(&self, pressure: R, deviator: R, preconsolidation: R) -> R {
         let slope = deviator / self.ratio;
         slope * slope / preconsolidation + pressure * (pressure / preconsolidation - 1.0)
     }
@@ -171,7 +171,7 @@ impl Law for CamClay {
         self.numbers.to_vec()
     }
 
-    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+    fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self {
         Self::new(elastic, std::array::from_fn(|k| parameters[k]))
     }
 
@@ -202,7 +202,7 @@ impl Law for CamClay {
         swelling * reference * (-volume / swelling).exp() + mu * squares
     }
 
-    fn start(&self, tau: [f64; 3], state: &mut [f64]) {
+    fn initial_state(&self, tau: [f64; 3], state: &mut [f64]) {
         let (mean, _, norm) = split(tau);
         let [.., preconsolidation, ocr] = self.numbers;
         let slope = 1.5_f64.sqrt() * norm / self.constants.ratio;
@@ -214,20 +214,20 @@ impl Law for CamClay {
     }
 
     #[inline(always)]
-    fn excess<R: Real>(&self, tau: [R; 3], state: &[R]) -> R {
+    fn yield_function<R: Real>(&self, tau: [R; 3], state: &[R]) -> R {
         let (mean, _, norm) = split(tau);
-        self.constants.excess(-mean, norm * 1.5_f64.sqrt(), state[0])
+        self.constants.yield_function(-mean, norm * 1.5_f64.sqrt(), state[0])
     }
 
     #[inline(never)]
-    fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, CamClayReturn<R>> {
+    fn return_map<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, CamClayReturn<R>> {
         let constants = self.constants;
         let before = state[0];
         let (mean, part, norm) = split(trial);
         let none = mean.like(0.0);
         let pressure = -mean;
         let q = norm * 1.5_f64.sqrt();
-        let yields = !constants.excess(pressure, q, before).at_most(none);
+        let yields = !constants.yield_function(pressure, q, before).at_most(none);
         let shear = q / (3.0 * constants.mu);
         let r = if R::any(yields) {
             constants.solve(pressure, shear, before)
@@ -315,7 +315,7 @@ impl Law for CamClay {
     }
 
     /// All differences are kept alike.
-    fn chord(flow: &CamClayReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
+    fn secant_modulus(flow: &CamClayReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
         2.0 * moduli.mu * flow.kept()
     }
 

@@ -139,14 +139,14 @@ impl Law for DruckerPrager {
     }
 
     /// ψ is at most φ.
-    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+    fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self {
         let [friction, dilation, cohesion] = frictional(parameters);
         Self::new(elastic, friction, dilation, cohesion, self.fit)
     }
 
     /// `f = √J₂ + η p - ξ c`.
     #[inline(always)]
-    fn excess<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
+    fn yield_function<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
         let (mean, _, norm) = split(tau);
         norm * std::f64::consts::FRAC_1_SQRT_2 + mean * self.slopes[0] - self.strength
     }
@@ -154,7 +154,7 @@ impl Law for DruckerPrager {
     /// `Δγ = (√J₂ + η p - ξ c)/(μ + K η η_ψ)`, `p - K η_ψ Δγ`, and √J₂ from f = 0; where that is negative the tip,
     /// p = ξ c/η.
     #[inline(always)]
-    fn project<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, DruckerPragerReturn<R>> {
+    fn return_map<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, DruckerPragerReturn<R>> {
         let Moduli { mu, .. } = self.moduli;
         let [eta, eta_psi] = self.slopes;
         let (mean, deviator, norm) = split(trial);
@@ -227,7 +227,7 @@ impl Law for DruckerPrager {
     }
 
     /// All differences are kept alike.
-    fn chord(flow: &DruckerPragerReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
+    fn secant_modulus(flow: &DruckerPragerReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
         if flow.apex { 0.0 } else { 2.0 * moduli.mu * flow.kept }
     }
 

@@ -13,23 +13,17 @@ pub struct Elastic {
 }
 
 impl Elastic {
-    /// The Lamé constants in Pa: `λ = E ν/((1 + ν)(1 - 2ν))`, `μ = E/(2(1 + ν))`.
-    #[inline]
-    pub fn lame(&self) -> (f64, f64) {
-        let mu = 0.5 * self.young / (1.0 + self.poisson);
-        (2.0 * mu * self.poisson / (1.0 - 2.0 * self.poisson), mu)
-    }
-
     /// The constrained modulus in Pa, stress over strain without lateral strain: `M = λ + 2μ`.
     pub fn oedometric(&self) -> f64 {
-        let (lambda, mu) = self.lame();
+        let Moduli { lambda, mu } = self.moduli();
         lambda + 2.0 * mu
     }
 
-    /// Returns the Lamé constants, Pa.
+    /// Returns the Lamé constants: `λ = E ν/((1 + ν)(1 - 2ν))`, `μ = E/(2(1 + ν))`.
     #[inline]
     pub fn moduli(&self) -> Moduli {
-        let (lambda, mu) = self.lame();
+        let mu = 0.5 * self.young / (1.0 + self.poisson);
+        let lambda = 2.0 * mu * self.poisson / (1.0 - 2.0 * self.poisson);
         Moduli { lambda, mu }
     }
 }

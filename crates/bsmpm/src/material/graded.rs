@@ -42,7 +42,7 @@ impl Profile {
 
 /// A law whose parameters depend on the height.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Graded {
+pub struct GradedLaw {
     young: Profile,
     stiffest: Elastic,
     parameters: Vec<Profile>,
@@ -50,7 +50,7 @@ pub struct Graded {
     reduction: f64,
 }
 
-impl Graded {
+impl GradedLaw {
     /// The `law` with other numbers: Young's modulus (Pa) and its parameters by the height, for points that are placed
     /// at `heights` (m from the grid's lower corner); its strength divided by `reduction` (section 3.2).
     pub fn new(law: &Material, young: Profile, parameters: Vec<Profile>, heights: Range<f64>, reduction: f64) -> Self {
@@ -64,7 +64,7 @@ impl Graded {
             .collect();
         Self {
             young,
-            law: Box::new(law.with(stiffest.clone(), &most)),
+            law: Box::new(law.with_parameters(stiffest.clone(), &most)),
             stiffest,
             parameters,
             reduction,
@@ -72,9 +72,9 @@ impl Graded {
     }
 
     /// The same in a step of the length `dt`, s; `None` where that does not matter to it.
-    pub(super) fn over(&self, dt: f64) -> Option<Self> {
+    pub(super) fn at_time_step(&self, dt: f64) -> Option<Self> {
         Some(Self {
-            law: Box::new(self.law.over(dt)?),
+            law: Box::new(self.law.at_time_step(dt)?),
             ..self.clone()
         })
     }
@@ -120,7 +120,7 @@ impl Graded {
             *parameter = profile.at(height);
         }
         self.law
-            .with(elastic, &parameters[..self.parameters.len()])
+            .with_parameters(elastic, &parameters[..self.parameters.len()])
             .reduced(self.reduction)
     }
 }

@@ -29,16 +29,16 @@ impl Law for Hencky {
         Vec::new()
     }
 
-    fn with(&self, elastic: Elastic, _parameters: &[f64]) -> Self {
+    fn with_parameters(&self, elastic: Elastic, _parameters: &[f64]) -> Self {
         Self { elastic }
     }
 
-    fn excess<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
+    fn yield_function<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
         tau[0].like(f64::NEG_INFINITY)
     }
 
     #[inline(always)]
-    fn project<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, ()> {
+    fn return_map<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, ()> {
         let never = trial[0].like(1.0).below(trial[0].like(0.0));
         Projection {
             tau: trial,

@@ -49,7 +49,7 @@ pub trait Law {
     fn parameters(&self) -> Vec<f64>;
 
     /// The law with other numbers, in the order of [`Law::PARAMETERS`]; what is no number stays.
-    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self;
+    fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self;
 
     /// Its moduli; of elasticity that is not linear those at b_e = I.
     fn moduli(&self) -> Moduli;
@@ -72,10 +72,10 @@ pub trait Law {
 
     /// Puts the state that belongs to a principal stress at the start, Pa, into the place of zeros; of a law whose
     /// elasticity is not linear.
-    fn start(&self, _tau: [f64; 3], _state: &mut [f64]) {}
+    fn initial_state(&self, _tau: [f64; 3], _state: &mut [f64]) {}
 
     /// The law in a step of the length `dt`, s; `None` where that does not matter to it.
-    fn over(&self, _dt: f64) -> Option<Self>
+    fn at_time_step(&self, _dt: f64) -> Option<Self>
     where
         Self: Sized,
     {
@@ -83,12 +83,12 @@ pub trait Law {
     }
 
     /// The yield function of a stress, Pa; positive where that is outside.
-    fn excess<R: Real>(&self, tau: [R; 3], state: &[R]) -> R;
+    fn yield_function<R: Real>(&self, tau: [R; 3], state: &[R]) -> R;
 
     /// The return of an elastic trial stress, Pa. `state` is that of the last step, in the order of [`Law::STATE`].
     ///
     /// It runs on vectors if it and all that it calls are `#[inline(always)]`. A trial that is not a number yields.
-    fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, Self::Flow<R>>;
+    fn return_map<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, Self::Flow<R>>;
 
     /// Where on the yield surface the stress lies after a return.
     fn branch(flow: &Self::Flow<f64>) -> Branch;
@@ -100,7 +100,7 @@ pub trait Law {
     ///
     /// In 0..2μ, since returns shrink stress differences; here 0 of equal strains, as what is near an edge returns to
     /// it. The bounds keep rounding of a tiny difference inside.
-    fn chord(_flow: &Self::Flow<f64>, moduli: Moduli, tau: f64, eps: f64) -> f64 {
+    fn secant_modulus(_flow: &Self::Flow<f64>, moduli: Moduli, tau: f64, eps: f64) -> f64 {
         if eps > 0.0 {
             (tau / eps).max(0.0).min(2.0 * moduli.mu)
         } else {

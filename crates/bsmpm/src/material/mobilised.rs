@@ -18,7 +18,7 @@ impl Material {
         if !self.yields() || self.is_graded() {
             return 0.0;
         }
-        let outside = |share: f64| self.clone().reduced(1.0 / share).excess(tau, state) > 0.0;
+        let outside = |share: f64| self.clone().reduced(1.0 / share).yield_function(tau, state) > 0.0;
         let mut upper = 1.0;
         while outside(upper) && upper < MOST {
             upper *= 2.0;

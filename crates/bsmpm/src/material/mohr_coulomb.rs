@@ -30,12 +30,12 @@ pub(super) struct Pyramid<P: Real = f64> {
 }
 
 /// Points that are computed with numbers as wide as they are, or with one for all.
-pub(super) trait With<P>:
+pub(super) trait ParameterArithmetic<P>:
     Real + Add<P, Output = Self> + Sub<P, Output = Self> + Mul<P, Output = Self> + Div<P, Output = Self>
 {
 }
 
-impl<P, R> With<P> for R where
+impl<P, R> ParameterArithmetic<P> for R where
     R: Real + Add<P, Output = R> + Sub<P, Output = R> + Mul<P, Output = R> + Div<P, Output = R>
 {
 }
@@ -173,7 +173,7 @@ impl<P: Real> YieldEdge<P> {
 
     /// τ₃ after the return to this edge: `τ₃ = w · (τ_trial - o)/(w · along)`, o the edge's point where τ₃ = 0.
     #[inline(always)]
-    fn third<R: With<P>>(&self, trial: [R; 3], origin: [P; 3]) -> R {
+    fn third<R: ParameterArithmetic<P>>(&self, trial: [R; 3], origin: [P; 3]) -> R {
         let [first, second, third] = [trial[0] - origin[0], trial[1] - origin[1], trial[2]];
         (first * self.weight[0] + second * self.weight[1] + third * self.weight[2]) / self.slope
     }
@@ -195,7 +195,7 @@ impl<P: Real> Pyramid<P> {
 
     /// `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ`.
     #[inline(always)]
-    pub(super) fn excess<R: With<P>>(&self, tau: [R; 3]) -> R {
+    pub(super) fn yield_function<R: ParameterArithmetic<P>>(&self, tau: [R; 3]) -> R {
         (tau[0] - tau[2]) + (tau[0] + tau[2]) * self.slopes.sin_phi - self.strength * 2.0
     }
 
@@ -204,8 +204,8 @@ impl<P: Real> Pyramid<P> {
     /// τ₁ is always taken from τ₃ by f = 0, so the result satisfies yield and order to the last digits even where it
     /// is much smaller than the trial.
     #[inline(always)]
-    pub(super) fn project<R: With<P>>(&self, trial: [R; 3]) -> ([R; 3], R::Mask, Corners<R>) {
-        let excess = self.excess(trial);
+    pub(super) fn return_map<R: ParameterArithmetic<P>>(&self, trial: [R; 3]) -> ([R; 3], R::Mask, Corners<R>) {
+        let excess = self.yield_function(trial);
         let inside = excess.at_most(excess.like(0.0));
         let none = inside & !inside;
         let mut corners = Corners {
@@ -233,7 +233,7 @@ impl<P: Real> Pyramid<P> {
     /// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`, and where it keeps the
     /// order.
     #[inline(always)]
-    fn face<R: With<P>>(&self, trial: [R; 3], excess: R) -> ([R; 3], R::Mask) {
+    fn face<R: ParameterArithmetic<P>>(&self, trial: [R; 3], excess: R) -> ([R; 3], R::Mask) {
         let Moduli { lambda, mu } = self.moduli;
         let sin_psi = self.slopes.sin_psi;
         let half = excess * self.slope;
@@ -247,7 +247,7 @@ impl<P: Real> Pyramid<P> {
     /// Return to the edge that the face return crosses first, whether that is the right one, and where it is not beyond
     /// the apex (never when sin φ = 0).
     #[inline(always)]
-    fn edge<R: With<P>>(&self, trial: [R; 3]) -> ([R; 3], R::Mask, R::Mask) {
+    fn edge<R: ParameterArithmetic<P>>(&self, trial: [R; 3]) -> ([R; 3], R::Mask, R::Mask) {
         let Self {
             slopes, moduli, shift, ..
         } = *self;
@@ -310,19 +310,19 @@ impl Law for MohrCoulomb {
     }
 
     /// ψ is at most φ.
-    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+    fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self {
         let [friction, dilation, cohesion] = frictional(parameters);
         Self::new(elastic, friction, dilation, cohesion).separating(self.separation)
     }
 
     #[inline(always)]
-    fn excess<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
-        self.pyramid.excess(tau)
+    fn yield_function<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
+        self.pyramid.yield_function(tau)
     }
 
     #[inline(always)]
-    fn project<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, MohrCoulombReturn<R>> {
-        let (tau, yields, corners) = self.pyramid.project(trial);
+    fn return_map<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, MohrCoulombReturn<R>> {
+        let (tau, yields, corners) = self.pyramid.return_map(trial);
         Projection {
             tau,
             yields,

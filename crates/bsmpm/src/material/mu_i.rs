@@ -90,7 +90,7 @@ impl Law for MuI {
     }
 
     /// μ_2 is at least μ_s.
-    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+    fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self {
         let mut own: [f64; 5] = std::array::from_fn(|k| parameters[k]);
         own[1] = own[1].max(own[0]);
         Self {
@@ -99,7 +99,7 @@ impl Law for MuI {
         }
     }
 
-    fn over(&self, dt: f64) -> Option<Self> {
+    fn at_time_step(&self, dt: f64) -> Option<Self> {
         let [.., diameter, density] = self.parameters;
         Some(Self {
             quickness: diameter * density.sqrt() / dt,
@@ -109,14 +109,14 @@ impl Law for MuI {
 
     /// `f = √J₂ - μ_s p`.
     #[inline(always)]
-    fn excess<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
+    fn yield_function<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
         let (mean, _, norm) = split(tau);
         norm / SQRT_2 + mean * self.parameters[0]
     }
 
     /// Along the deviator at constant pressure; without pressure to the tip, τ = 0.
     #[inline(always)]
-    fn project<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, MuIReturn<R>> {
+    fn return_map<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, MuIReturn<R>> {
         let (mean, deviator, norm) = split(trial);
         let root = norm / SQRT_2;
         let pressure = -mean;
@@ -167,7 +167,7 @@ impl Law for MuI {
     }
 
     /// All differences are kept alike.
-    fn chord(flow: &MuIReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
+    fn secant_modulus(flow: &MuIReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
         if flow.apex { 0.0 } else { 2.0 * moduli.mu * flow.kept }
     }
 

@@ -186,7 +186,7 @@ impl SofteningMohrCoulomb {
         let mut found = none.like(f64::NAN);
         let mut sought = none.at_most(none);
         for _ in 0..EVALUATIONS {
-            let made = self.growth(trial, self.pyramid(kappa + growth, growth).project(trial).0);
+            let made = self.growth(trial, self.pyramid(kappa + growth, growth).return_map(trial).0);
             let gap = made - growth;
             // Where strength falls faster than stress does, the bounds meet before the two agree to all digits.
             let met = high.below(none.like(f64::INFINITY)) & (high - low).at_most(high * 4e-16);
@@ -252,7 +252,7 @@ impl Law for SofteningMohrCoulomb {
     }
 
     /// ψ is at most φ.
-    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+    fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self {
         let peak = strength(&parameters[..3]);
         let residual = strength(&parameters[3..6]);
         let strain = parameters[6];
@@ -263,19 +263,19 @@ impl Law for SofteningMohrCoulomb {
         }
     }
 
-    fn over(&self, dt: f64) -> Option<Self> {
+    fn at_time_step(&self, dt: f64) -> Option<Self> {
         self.rate.map(|_| Self { dt, ..self.clone() })
     }
 
     #[inline(always)]
-    fn excess<R: Real>(&self, tau: [R; 3], state: &[R]) -> R {
-        self.pyramid(state[0], state[0].like(0.0)).excess(tau)
+    fn yield_function<R: Real>(&self, tau: [R; 3], state: &[R]) -> R {
+        self.pyramid(state[0], state[0].like(0.0)).yield_function(tau)
     }
 
     #[inline(never)]
-    fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, SofteningReturn<R>> {
+    fn return_map<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, SofteningReturn<R>> {
         let kappa = state[0];
-        let (_, yields, _) = self.pyramid(kappa, kappa.like(0.0)).project(trial);
+        let (_, yields, _) = self.pyramid(kappa, kappa.like(0.0)).return_map(trial);
         let growth = if R::any(yields) {
             self.solve(trial, kappa)
         } else {
@@ -284,7 +284,7 @@ impl Law for SofteningMohrCoulomb {
         let growth = R::choose(yields, growth, kappa.like(0.0));
         let pyramid = self.pyramid(kappa + growth, growth);
         let (_, rate) = self.progress(kappa + growth);
-        let (projected, _, corners) = pyramid.project(trial);
+        let (projected, _, corners) = pyramid.return_map(trial);
         let tau = three(|k| R::choose(yields, projected[k], trial[k]));
         let mut rates = three(|k| rate * self.change[k]);
         if self.rate.is_some() {

@@ -39,7 +39,7 @@ impl Tangent {
             axes: Tensor::from_fn(|i, j| axis[i][j]),
             b: response.trial.b,
             principal: response.flowed.tangent(response.moduli),
-            chord: PAIRS.map(|(a, b)| chord(response, a, b)),
+            chord: PAIRS.map(|(a, b)| secant_modulus(response, a, b)),
         }
     }
 
@@ -60,7 +60,7 @@ impl Tangent {
 /// `(τ_A - τ_B)/(b_A - b_B) = (τ_A - τ_B)/(ε_A - ε_B) · ln(1 + x)/(2 x b_B)`, x = b_A/b_B - 1.
 ///
 /// The second factor tends to 1/(2b) for equal eigenvalues.
-fn chord(response: &Response, a: usize, b: usize) -> f64 {
+fn secant_modulus(response: &Response, a: usize, b: usize) -> f64 {
     let trial = &response.trial;
     let x = (trial.b[a] - trial.b[b]) / trial.b[b];
     let log = if x == 0.0 { 1.0 } else { x.ln_1p() / x };
@@ -71,5 +71,7 @@ fn chord(response: &Response, a: usize, b: usize) -> f64 {
 pub(super) fn slope(response: &Response, a: usize, b: usize) -> f64 {
     let tau = response.tau;
     let eps = response.trial.eps;
-    response.flowed.chord(response.moduli, tau[a] - tau[b], eps[a] - eps[b])
+    response
+        .flowed
+        .secant_modulus(response.moduli, tau[a] - tau[b], eps[a] - eps[b])
 }

@@ -64,19 +64,19 @@ impl Law for VonMises {
         vec![self.yield_stress, self.hardening]
     }
 
-    fn with(&self, elastic: Elastic, parameters: &[f64]) -> Self {
+    fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self {
         Self::new(elastic, parameters[0], parameters[1])
     }
 
     /// `f = q - σ_y - H κ`.
     #[inline(always)]
-    fn excess<R: Real>(&self, tau: [R; 3], state: &[R]) -> R {
+    fn yield_function<R: Real>(&self, tau: [R; 3], state: &[R]) -> R {
         split(tau).2 * 1.5_f64.sqrt() - self.strength(state)
     }
 
     /// `Δκ = (q_trial - σ_y - H κ)/(3μ + H)`, `s = s_trial (1 - 3μ Δκ/q_trial)`.
     #[inline(always)]
-    fn project<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, VonMisesReturn<R>> {
+    fn return_map<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, VonMisesReturn<R>> {
         let (mean, deviator, norm) = split(trial);
         let q = norm * 1.5_f64.sqrt();
         let strength = self.strength(state);
@@ -132,7 +132,7 @@ impl Law for VonMises {
     }
 
     /// All differences are kept alike.
-    fn chord(flow: &VonMisesReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
+    fn secant_modulus(flow: &VonMisesReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
         2.0 * moduli.mu * flow.kept
     }
 

@@ -36,7 +36,7 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
         [points.len() as f64, volume]
     });
     let mut sums: Vec<f64> = own.collect();
-    halo.reduce(&mut sums);
+    halo.all_reduce_sum(&mut sums);
     let mut front = 0.0_f64;
     for at in (0..held.len()).rev() {
         if front > 0.0 && (at + 1).is_multiple_of(strands) {
@@ -76,7 +76,7 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
 
 fn lowest_row<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> usize {
     let mut lowest = [points.x.iter().map(|x| -x[D - 1]).fold(f64::NEG_INFINITY, f64::max)];
-    halo.maximum(&mut lowest);
+    halo.all_reduce_max(&mut lowest);
     grid.axes()[D - 1].cell_of(-lowest[0]).unwrap_or(0)
 }
 
@@ -91,7 +91,7 @@ fn of_all_ranks(held: &[CellPoints], sums: &[f64], cells: &[Option<usize>], halo
             .zip(held[cell].as_flattened())
             .for_each(|(slot, number)| *slot = *number);
     }
-    halo.reduce(&mut numbers);
+    halo.all_reduce_sum(&mut numbers);
     let mut all: CellPoints = numbers.chunks_exact(2).map(|point| [point[0], point[1]]).collect();
     all.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     all

@@ -4,7 +4,7 @@
 use crate::error::StepError;
 use crate::exact::Exact;
 use crate::grid::{Contributions, Grid, Shape, transfer};
-use crate::model::Weighting;
+use crate::model::AverageWeight;
 use crate::observe::Part;
 use crate::parallel::{Halo, agreed};
 use crate::points::Points;
@@ -34,7 +34,7 @@ const SINGULAR: f64 = 1e-9;
 pub fn stress_noise<const D: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
-    weighting: Weighting,
+    weighting: AverageWeight,
     component: usize,
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
@@ -58,7 +58,7 @@ pub fn pressure_noise<const D: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
     part: &Part,
-    weighting: Weighting,
+    weighting: AverageWeight,
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
     Ok(Squares::of(grid, points, part, weighting, &|p| pressure(points, p), halo)?.noise(1.0))
@@ -72,7 +72,7 @@ const ROUNDING: f64 = 1e-13;
 pub fn relative_pressure_noise<const D: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
-    weighting: Weighting,
+    weighting: AverageWeight,
     young: f64,
     halo: &dyn Halo,
 ) -> Result<Noise, StepError> {
@@ -101,7 +101,7 @@ impl Squares {
         grid: &Grid<D>,
         points: &Points<D>,
         part: &Part,
-        weighting: Weighting,
+        weighting: AverageWeight,
         stress: &(impl Fn(usize) -> f64 + Sync),
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
@@ -124,7 +124,7 @@ impl Squares {
             }
             sums
         });
-        let sums = halo.total(&sums);
+        let sums = halo.reproducible_sum(&sums);
         let [count, absolute, average, plane] = [0, 1, 2, 3].map(|k| sums[k]);
         let [mean, average, plane] = [absolute, average, plane].map(|sum| if count > 0.0 { sum / count } else { 0.0 });
         Ok(Self { mean, average, plane })
@@ -141,15 +141,15 @@ impl Squares {
 fn averaged<const D: usize>(
     shape: &Shape<D>,
     points: &Points<D>,
-    weighting: Weighting,
+    weighting: AverageWeight,
     stress: &(impl Fn(usize) -> f64 + Sync),
     halo: &dyn Halo,
 ) -> Vec<f64> {
     let weights = match weighting {
-        Weighting::Mass => &points.mass,
-        Weighting::Volume => &points.volume,
+        AverageWeight::Mass => &points.mass,
+        AverageWeight::Volume => &points.volume,
     };
-    let nodal = halo.sum(&transfer::to_nodes(shape, |p| [weights[p], weights[p] * stress(p)]));
+    let nodal = halo.assemble_ghosts(&transfer::to_nodes(shape, |p| [weights[p], weights[p] * stress(p)]));
     let pairs = nodal.chunks_exact(2);
     let means = pairs.map(|pair| if pair[0] > 0.0 { pair[1] / pair[0] } else { 0.0 });
     let nodal: Vec<f64> = means.collect();
@@ -206,7 +206,7 @@ fn planes<const D: usize>(
             );
         }
     }
-    let sums = halo.sum(&sums);
+    let sums = halo.assemble_ghosts(&sums);
     let middle_offset = shape.offsets()[(0..D).fold(0, |k, _| k * shape.width() + middle)];
     threads::each(shape.patches().len(), |number| {
         let node = shape.patches()[number].first_node + middle_offset;

@@ -71,7 +71,7 @@ pub fn values<K: Kinematics<D>, const D: usize, const C: usize>(
             }
         }
     }
-    let totals = halo.total(&sums);
+    let totals = halo.reproducible_sum(&sums);
     let values = totals.chunks_exact(width).zip(&materials).map(|(totals, material)| {
         let is_in_material = material.is_some() && totals[0] > 0.0;
         is_in_material.then(|| solved::<D, C>(totals))
@@ -139,19 +139,19 @@ impl<const D: usize> Fit<'_, D> {
             }
         }
         let mut closest: Vec<f64> = nearest.iter().map(|(apart, ..)| -apart).collect();
-        halo.maximum(&mut closest);
+        halo.all_reduce_max(&mut closest);
         let ids = nearest.iter().zip(&closest).map(|(&(apart, id, _), closest)| {
             let is_nearest = apart.is_finite() && -apart == *closest;
             if is_nearest { -(id as f64) } else { f64::NEG_INFINITY }
         });
         let mut ids: Vec<f64> = ids.collect();
-        halo.maximum(&mut ids);
+        halo.all_reduce_max(&mut ids);
         let materials = nearest.iter().zip(&ids).map(|(&(_, id, material), first)| {
             let is_first = -(id as f64) == *first;
             if is_first { f64::from(material) } else { -1.0 }
         });
         let mut materials: Vec<f64> = materials.collect();
-        halo.maximum(&mut materials);
+        halo.all_reduce_max(&mut materials);
         materials
             .iter()
             .map(|&material| (material >= 0.0).then_some(material as u16))

@@ -22,7 +22,7 @@ pub fn projected_pressure<K, const D: usize>(
         let volume = points.volume[p] * points.F.at(p).determinant();
         [volume, volume * pressure(points, p)]
     });
-    let mut nodal = halo.sum(&moments);
+    let mut nodal = halo.assemble_ghosts(&moments);
     for sums in nodal.chunks_exact_mut(2) {
         sums[1] = if sums[0] > 0.0 { sums[1] / sums[0] } else { 0.0 };
     }

@@ -1,7 +1,7 @@
 //! Quadrature defect of a cell: the total volume of its material points divided by the cell volume, minus one.
 
 use crate::exact::Exact;
-use crate::grid::occupied::Occupied;
+use crate::grid::occupied::OccupiedCells;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::parallel::Halo;
@@ -38,7 +38,7 @@ pub fn defect<K: Kinematics<D>, const D: usize>(
         }
     }
     let filled = held.iter().enumerate().filter(|(_, volume)| **volume > 0.0);
-    let occupied = Occupied::of(grid, filled.map(|(index, _)| index), halo);
+    let occupied = OccupiedCells::of(grid, filled.map(|(index, _)| index), halo);
     let mut squares = Exact::ZERO;
     let mut largest = [0.0_f64];
     let mut numbers = [0.0; 2];
@@ -51,9 +51,9 @@ pub fn defect<K: Kinematics<D>, const D: usize>(
             numbers = [numbers[0] + 1.0, numbers[1] + f64::from(counts[index])];
         }
     }
-    halo.reduce(&mut numbers);
-    halo.maximum(&mut largest);
-    let squares = halo.total(&[squares])[0];
+    halo.all_reduce_sum(&mut numbers);
+    halo.all_reduce_max(&mut largest);
+    let squares = halo.reproducible_sum(&[squares])[0];
     let [cells, held] = numbers;
     (cells > 0.0).then(|| Defect {
         cells: cells as u64,
@@ -73,7 +73,7 @@ pub fn compression<const D: usize>(points: &Points<D>, materials: usize, halo: &
         volumes[at].add(points.volume[p]);
         volumes[at + 1].add(points.volume[p] * points.F.at(p).determinant());
     }
-    let volumes = halo.total(&volumes);
+    let volumes = halo.reproducible_sum(&volumes);
     let pairs = volumes.chunks_exact(2);
     pairs
         .map(|pair| if pair[0] > 0.0 { 1.0 - pair[1] / pair[0] } else { 0.0 })

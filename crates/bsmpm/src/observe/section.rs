@@ -58,7 +58,7 @@ pub fn section_forces<K: Kinematics<D>, const D: usize>(
             }
         }
     }
-    let sums = halo.total(&sums);
+    let sums = halo.reproducible_sum(&sums);
     SectionForces {
         normal: sums[0],
         shear: [sums[1], sums[2]],
@@ -186,7 +186,7 @@ impl<const D: usize> SectionPlane<D> {
                 ends = [ends[0].max(half - apart), ends[1].max(half + apart)];
             }
         }
-        halo.maximum(&mut ends);
+        halo.all_reduce_max(&mut ends);
         [0, 1].map(|side| {
             let face = self.to_face(grid, side == 1);
             let room = ends[side];

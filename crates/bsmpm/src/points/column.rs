@@ -1,7 +1,7 @@
 //! Treats each array of the material points (one per quantity, one row per point) as rows of bytes, so that sorting,
 //! migration between ranks and checkpoints need not know the type of the quantity.
 
-use super::packed::{Components, Packed};
+use super::packed::{Components, PackedTensors};
 use crate::tensor::Symmetric;
 use nalgebra::SMatrix;
 use rayon::prelude::*;
@@ -154,7 +154,7 @@ impl<T: MessageRow> Column for Vec<T> {
     }
 }
 
-impl<const D: usize, T: MessageRow + Components> Column for Packed<D, T> {
+impl<const D: usize, T: MessageRow + Components> Column for PackedTensors<D, T> {
     fn number(&self) -> Number {
         T::NUMBER
     }

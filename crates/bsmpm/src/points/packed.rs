@@ -62,12 +62,12 @@ impl Components for Symmetric {
 /// An array of tensors: 5 numbers of 9, and 4 of 6 symmetric ones, if `D` is 2, else all. The sign of a zero that is
 /// not held is lost.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Packed<const D: usize, T> {
+pub struct PackedTensors<const D: usize, T> {
     numbers: Vec<f64>, // those that are held, tensor by tensor
     whole: PhantomData<T>,
 }
 
-impl<const D: usize, T: Components> Packed<D, T> {
+impl<const D: usize, T: Components> PackedTensors<D, T> {
     /// Places of the numbers that are held.
     const PLACES: &'static [usize] = if D == 2 { T::IN_PLANE } else { T::ALL };
     /// Numbers from one tensor to the next.
@@ -173,17 +173,17 @@ impl<const D: usize, T: Components> PackedChunk<'_, D, T> {
     /// The tensor `k` of them.
     #[inline(always)]
     pub fn at(&self, k: usize) -> T {
-        Packed::<D, T>::read(self.numbers, k)
+        PackedTensors::<D, T>::read(self.numbers, k)
     }
 
     /// Puts a tensor in the place `k`, which must be zero where nothing is held.
     #[inline(always)]
     pub fn set(&mut self, k: usize, tensor: T) {
-        Packed::<D, T>::keep(self.numbers, k, tensor);
+        PackedTensors::<D, T>::keep(self.numbers, k, tensor);
     }
 }
 
-impl<const D: usize, T: Components> FromIterator<T> for Packed<D, T> {
+impl<const D: usize, T: Components> FromIterator<T> for PackedTensors<D, T> {
     fn from_iter<I: IntoIterator<Item = T>>(tensors: I) -> Self {
         let tensors = tensors.into_iter();
         let numbers = Vec::with_capacity(tensors.size_hint().0 * Self::STRIDE);
@@ -196,7 +196,7 @@ impl<const D: usize, T: Components> FromIterator<T> for Packed<D, T> {
     }
 }
 
-impl<const D: usize> Packed<D, Symmetric> {
+impl<const D: usize> PackedTensors<D, Symmetric> {
     /// Components XX, YY, ZZ, XY of every tensor, where these are all that there is.
     #[inline(always)]
     pub fn planar(&self) -> Option<&[[f64; 4]]> {

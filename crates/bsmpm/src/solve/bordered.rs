@@ -3,12 +3,12 @@
 
 use crate::boundary::rigid::MOTIONS;
 use crate::error::SolveError;
-use crate::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry, dots};
+use crate::parallel::{Halo, Krylov, LinearSolver, SolveReport, Symmetry, dots};
 use crate::step::problem::Problem;
 use nalgebra::{DMatrix, DVector};
 
 /// K - C B^-1 C^T behind a solver that knows K: C couples nodes and motions, B is what the motions resist with.
-pub struct Bordered<'a, const D: usize> {
+pub struct BorderedSolver<'a, const D: usize> {
     solver: &'a mut dyn LinearSolver,
     halo: &'a dyn Halo,
     columns: Vec<Vec<f64>>,        // C
@@ -17,7 +17,7 @@ pub struct Bordered<'a, const D: usize> {
     inverse: Option<DMatrix<f64>>, // of B - C^T K^-1 C
 }
 
-impl<'a, const D: usize> Bordered<'a, D> {
+impl<'a, const D: usize> BorderedSolver<'a, D> {
     /// Of a problem whose bodies move freely.
     pub fn of<K>(problem: &Problem<'a, K, D>, solver: &'a mut dyn LinearSolver) -> Self {
         let rigid = &problem.nodes.rigid;
@@ -55,25 +55,25 @@ impl<'a, const D: usize> Bordered<'a, D> {
     }
 }
 
-impl<const D: usize> LinearSolver for Bordered<'_, D> {
-    fn begin(&mut self, free: &[bool]) {
-        self.solver.begin(free);
+impl<const D: usize> LinearSolver for BorderedSolver<'_, D> {
+    fn reinit(&mut self, free: &[bool]) {
+        self.solver.reinit(free);
     }
 
-    fn add(&mut self, first_node: usize, block: &[f64]) {
-        self.solver.add(first_node, block);
+    fn add_block(&mut self, first_node: usize, block: &[f64]) {
+        self.solver.add_block(first_node, block);
     }
 
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
-        self.solver.add_among(nodes, block);
+    fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
+        self.solver.add_block_among(nodes, block);
     }
 
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         self.solver.add_diagonal(diagonal);
     }
 
-    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
-        self.solver.finish(symmetry)?;
+    fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
+        self.solver.factorise(symmetry)?;
         (self.solved, self.inverse) = (Vec::new(), None);
         if symmetry == Symmetry::General {
             return Ok(());
@@ -83,7 +83,7 @@ impl<const D: usize> LinearSolver for Bordered<'_, D> {
             let mut solved = vec![0.0; column.len()];
             // All ranks or none: a body that touches nothing couples nothing.
             let mut couples = [f64::from(u8::from(column.iter().any(|entry| *entry != 0.0)))];
-            self.halo.maximum(&mut couples);
+            self.halo.all_reduce_max(&mut couples);
             if couples[0] > 0.0 {
                 self.solver.solve(column, &mut solved)?;
             }
@@ -99,7 +99,7 @@ impl<const D: usize> LinearSolver for Bordered<'_, D> {
         Ok(())
     }
 
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         let solved = self.solver.solve(rhs, solution)?;
         if let Some(inverse) = &self.inverse {
             let motions = inverse * DVector::from_vec(self.seen(solution));

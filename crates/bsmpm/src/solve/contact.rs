@@ -1,16 +1,16 @@
 //! Active-set method for contact, theory-manual equations (T7.1), (T7.2): finds equilibrium with fixed contact
 //! statuses, then corrects wrong statuses.
 
-use crate::boundary::strip::StripAttachments;
+use crate::boundary::strip::StripConstraints;
 use crate::error::StepError;
 use crate::kinematics::Kinematics;
 use crate::method::Criteria;
 use crate::model::Model;
 use crate::parallel::{Backend, Halo};
 use crate::points::MappedPoints;
-use crate::solve::bordered::Bordered;
-use crate::solve::found::Found;
-use crate::step::nodes::Nodes;
+use crate::solve::bordered::BorderedSolver;
+use crate::solve::found::StepSolution;
+use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 use crate::step::report::Counts;
 
@@ -28,19 +28,19 @@ const ROUGH: f64 = 1e-2;
 pub fn find<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     mapped: MappedPoints<'_, D>,
-    nodes: &mut Nodes<D>,
-    attachments: &mut StripAttachments<D>,
+    nodes: &mut GridState<D>,
+    attachments: &mut StripConstraints<D>,
     guess: &[f64],
     backend: &mut Backend<'_>,
     counts: &mut Counts,
-) -> Result<Found<K, D>, StepError> {
+) -> Result<StepSolution<K, D>, StepError> {
     let halo = backend.halo;
     let faces = model.boundary.has_contact();
     let strips = model.boundary.has_strip_contact();
     if !faces && !strips && nodes.rigid.is_empty() {
         return find_at_statuses(model, mapped, nodes, attachments, guess, backend, counts);
     }
-    attachments.recall(guess);
+    attachments.predict_status(guess);
     let rough = rough(model);
     let mut u = guess.to_vec();
     let mut history = Vec::new();
@@ -56,7 +56,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
                 return Err(error);
             }
             Err(_) => {
-                nodes.meet();
+                nodes.apply_contact_statuses();
                 nodes.count(halo);
                 continue;
             }
@@ -65,7 +65,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         first_guess &= found.first_guess;
         let corrected = correct(judged, nodes, attachments, &found, pass, halo)?;
         if corrected == 0 && !is_rough {
-            return Ok(Found {
+            return Ok(StepSolution {
                 history,
                 first_guess,
                 ..found
@@ -81,12 +81,12 @@ pub fn find<K: Kinematics<D>, const D: usize>(
 fn find_at_statuses<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     mapped: MappedPoints<'_, D>,
-    nodes: &Nodes<D>,
-    attachments: &StripAttachments<D>,
+    nodes: &GridState<D>,
+    attachments: &StripConstraints<D>,
     u: &[f64],
     backend: &mut Backend<'_>,
     counts: &mut Counts,
-) -> Result<Found<K, D>, StepError> {
+) -> Result<StepSolution<K, D>, StepError> {
     let problem = Problem {
         model,
         shape: mapped.shape,
@@ -97,7 +97,7 @@ fn find_at_statuses<K: Kinematics<D>, const D: usize>(
     };
     let solver = &mut *backend.solver;
     match nodes.rigid.is_coupled() {
-        true => super::find(&problem, u, &mut Bordered::of(&problem, solver), counts),
+        true => super::find(&problem, u, &mut BorderedSolver::of(&problem, solver), counts),
         false => super::find(&problem, u, solver, counts),
     }
 }
@@ -119,9 +119,9 @@ fn rough<K: Kinematics<D>, const D: usize>(model: &Model<K, D>) -> Model<K, D> {
 /// judged by.
 fn correct<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    nodes: &mut Nodes<D>,
-    attachments: &mut StripAttachments<D>,
-    found: &Found<K, D>,
+    nodes: &mut GridState<D>,
+    attachments: &mut StripConstraints<D>,
+    found: &StepSolution<K, D>,
     pass: usize,
     halo: &dyn Halo,
 ) -> Result<usize, StepError> {
@@ -135,7 +135,7 @@ fn correct<K: Kinematics<D>, const D: usize>(
     if model.boundary.has_contact() {
         let edge = model.grid.smallest_edge();
         corrected += nodes.contacts.correct(&found.u, &found.reaction, doubt, edge, halo);
-        nodes.meet();
+        nodes.apply_contact_statuses();
         nodes.count(halo);
     }
     Ok(corrected)

@@ -188,7 +188,7 @@ pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D
     problem.nodes.extend(&problem.model.grid, &mut du, problem.halo);
     let mut penalty = problem.attachments.energy(&du);
     penalty += &rigid.energy(&du, problem.halo);
-    let penalty = problem.halo.total(&[penalty]);
+    let penalty = problem.halo.reproducible_sum(&[penalty]);
     (work - penalty[0]).abs()
 }
 

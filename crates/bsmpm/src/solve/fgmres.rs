@@ -18,7 +18,7 @@ pub fn solve(
     b: &[f64],
     relative: f64,
 ) -> Result<(Vec<f64>, Krylov), SolveError> {
-    let norm = |a: &[f64]| halo.total(&unknowns.dots([a], a))[0].sqrt();
+    let norm = |a: &[f64]| halo.reproducible_sum(&unknowns.dots([a], a))[0].sqrt();
     let size = norm(b);
     if !size.is_finite() {
         return Err(SolveError::NotFinite);
@@ -72,7 +72,7 @@ fn orthogonalise(basis: &[Vec<f64>], image: &mut [f64], unknowns: &Unknowns, hal
     // Twice: once leaves what rounding makes of nearly parallel vectors.
     for _ in 0..2 {
         let products: Vec<Exact> = basis.iter().flat_map(|v| unknowns.dots([v], image)).collect();
-        let along = halo.total(&products);
+        let along = halo.reproducible_sum(&products);
         for ((v, along), entry) in basis.iter().zip(&along).zip(&mut column) {
             *entry += along;
             image.iter_mut().zip(v).for_each(|(image, v)| *image -= along * v);

@@ -4,12 +4,12 @@ use crate::error::Measures;
 use crate::kinematics::Kinematics;
 use crate::solve::convergence::Convergence;
 use crate::step::residual::Residual;
-use crate::step::trial::Trial;
+use crate::step::trial::DeformationIncrement;
 use crate::water::residual::WaterBalance;
 
 /// A converged displacement.
 #[derive(Clone, Debug)]
-pub struct Found<K: Kinematics<D>, const D: usize> {
+pub struct StepSolution<K: Kinematics<D>, const D: usize> {
     /// m, nodal
     pub u: Vec<f64>,
     /// Pa, nodal  excess pore pressure, where water flows
@@ -17,7 +17,7 @@ pub struct Found<K: Kinematics<D>, const D: usize> {
     /// balance of the water, where it flows
     pub water: Option<WaterBalance>,
     /// deformation under `u`
-    pub trial: Trial<K, D>,
+    pub trial: DeformationIncrement<K, D>,
     /// N  force of the supports on the body, nodal
     pub reaction: Vec<f64>,
     /// both measures of every iteration
@@ -40,7 +40,7 @@ pub struct Found<K: Kinematics<D>, const D: usize> {
     pub first_guess: bool,
 }
 
-impl<K: Kinematics<D>, const D: usize> Found<K, D> {
+impl<K: Kinematics<D>, const D: usize> StepSolution<K, D> {
     /// The state that an iteration reached: displacements, and pressures behind them where water flows.
     pub fn new(mut u: Vec<f64>, residual: Residual<K, D>, convergence: &Convergence) -> Self {
         let newton_iterations = convergence.by_newton();

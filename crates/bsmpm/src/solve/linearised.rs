@@ -8,20 +8,20 @@ use crate::material::Tangent;
 use crate::parallel::{LinearSolver, Symmetry};
 use crate::step::adjoint::{Adjoint, Pressures, transposed, works};
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
-use crate::step::coupling::{Coupling, Dilations, Raised, Share};
+use crate::step::coupling::{Coupling, DilationForce, Dilations, Share};
 use crate::step::inertia::Inertia;
 use crate::step::problem::Problem;
 use crate::step::reduced_system::ReducedSystem;
 use crate::step::residual::Residual;
-use crate::step::trial::Trial;
+use crate::step::trial::DeformationIncrement;
 use crate::tensor::{Tensor, Vector};
-use crate::water::linearised::LinearisedWater;
+use crate::water::linearised::WaterTangent;
 use std::borrow::Cow;
 
 /// The derivative at one displacement.
-pub struct Linearised<'a, K: Kinematics<D>, const D: usize> {
+pub struct ForceTangent<'a, K: Kinematics<D>, const D: usize> {
     problem: &'a Problem<'a, K, D>,
-    trial: &'a Trial<K, D>,
+    trial: &'a DeformationIncrement<K, D>,
     reaction: &'a [f64], // N
     /// N m  V0 d(tau dF^-T)/d(grad v), one unit gradient after the other
     moduli: Vec<GradientModuli<K, D>>,
@@ -30,7 +30,7 @@ pub struct Linearised<'a, K: Kinematics<D>, const D: usize> {
     /// under consistent F-bar in dilatant material; of all points
     adjoint: Option<(Adjoint, Vec<Pressure<K::Gradient>>)>,
     /// where water flows
-    water: Option<LinearisedWater<'a, D>>,
+    water: Option<WaterTangent<'a, D>>,
 }
 
 /// What the adjoint force adds at a point: its pressure is that of an average.
@@ -116,7 +116,7 @@ impl<G> Pressure<G> {
     }
 }
 
-impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
+impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
     /// The derivative where `residual` was evaluated; no point of it may have inverted.
     pub fn at(problem: &'a Problem<'a, K, D>, residual: &'a Residual<K, D>) -> Self {
         let trial = &residual.trial;
@@ -175,7 +175,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         self.water = nodes
             .pores
             .as_ref()
-            .map(|pores| LinearisedWater::at(self.problem, pores, self.trial, p));
+            .map(|pores| WaterTangent::at(self.problem, pores, self.trial, p));
         self
     }
 
@@ -229,7 +229,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         }
         self.problem.attachments.multiply(v, &mut force);
         nodes.rigid.multiply(v, &mut force, halo);
-        out.copy_from_slice(&halo.sum(&force));
+        out.copy_from_slice(&halo.assemble_ghosts(&force));
         nodes.reduce(&mut [&mut *out], halo);
         if let Some(inertia) = &nodes.inertia {
             self.add_inertia(inertia, v, out);
@@ -284,12 +284,12 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
         let Problem {
             shape, nodes, points, ..
         } = *self.problem;
-        solver.begin(&nodes.free);
+        solver.reinit(&nodes.free);
         let size = shape.offsets().len();
         let mut slopes = [K::Gradient::NO_SLOPE; MOST];
         let slopes = &mut slopes[..size];
         let mut block = vec![0.0; (size * D).pow(2)];
-        let mut coupling = Coupling::of(self.problem.model, nodes, Raised::Own);
+        let mut coupling = Coupling::of(self.problem.model, nodes, DilationForce::Own);
         for (number, patch) in shape.patches().iter().enumerate() {
             block.fill(0.0);
             let mut dilations = coupling.as_ref().map(Coupling::of_patch);
@@ -314,7 +314,7 @@ impl<'a, K: Kinematics<D>, const D: usize> Linearised<'a, K, D> {
                 &self.problem.points.mass,
                 &mut block,
             );
-            solver.add(patch.first_node, &block);
+            solver.add_block(patch.first_node, &block);
         }
         if let Some(coupling) = coupling {
             coupling.assemble(self.problem.halo, solver);

@@ -110,7 +110,7 @@ impl Multisecant {
         });
         let mut sums: Vec<Exact> = of_secants.into_iter().flatten().collect();
         sums.extend(unknowns.dots([w], f));
-        let sums = halo.total(&sums);
+        let sums = halo.reproducible_sum(&sums);
         let every_third = |from: usize| sums[..3 * count].iter().skip(from).step_by(3).copied().collect();
         if count > 0 {
             self.products.push(every_third(0));

@@ -8,9 +8,9 @@ use crate::parallel::{Krylov, LinearSolver, dots};
 use crate::solve::convergence::{Convergence, first_energy, inverted};
 use crate::solve::evaluate;
 use crate::solve::fgmres;
-use crate::solve::found::Found;
-use crate::solve::linearised::Linearised;
-use crate::solve::quasi_newton::Stopped;
+use crate::solve::found::StepSolution;
+use crate::solve::linearised::ForceTangent;
+use crate::solve::quasi_newton::FailedIteration;
 use crate::solve::stability;
 use crate::solve::unknowns::Unknowns;
 use crate::step::problem::Problem;
@@ -41,7 +41,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
     convergence: &mut Convergence,
-) -> Result<Found<K, D>, Stopped> {
+) -> Result<StepSolution<K, D>, FailedIteration> {
     let mut residual = evaluate(problem, &u, counts);
     if !residual.balance.is_sound() {
         return Err(inverted(problem, &residual, convergence.iterations()).into());
@@ -49,7 +49,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     // The state that the last direction leads to is judged, too.
     for iteration in 0..=MOST {
         if convergence.is_balanced(&residual.balance, problem) {
-            return Ok(Found::new(u, residual, convergence));
+            return Ok(StepSolution::new(u, residual, convergence));
         }
         if problem.halo.is_interrupted() {
             return Err(StepError::Interrupted.into());
@@ -57,14 +57,20 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         let (du, energy) = match direction(problem, &u, &residual, solver, counts) {
             Ok(found) => found,
             Err(unsolved) => {
-                return Err(Stopped::without_direction(problem, u, &residual, convergence, unsolved));
+                return Err(FailedIteration::without_direction(
+                    problem,
+                    u,
+                    &residual,
+                    convergence,
+                    unsolved,
+                ));
             }
         };
         if !convergence.has_begun() {
             convergence.begin(first_energy(problem, &du[..problem.nodes.free.len()], energy));
         }
         if convergence.reaches(Method::Newton, energy.abs(), &u, &residual.balance) {
-            return Ok(Found::new(u, residual, convergence));
+            return Ok(StepSolution::new(u, residual, convergence));
         }
         if iteration == MOST {
             break;
@@ -76,7 +82,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         stability::check(problem, convergence, &du, work, &found.balance)?;
         (u, residual) = (next, found);
     }
-    Err(Stopped {
+    Err(FailedIteration {
         error: Box::new(convergence.failed(problem, &residual, None)),
         best: Some(u),
     })
@@ -111,7 +117,7 @@ fn direction<K: Kinematics<D>, const D: usize>(
     let (du, krylov) = if solver.is_rough() || D == 3 {
         around_stiffness(problem, residual, measure.clamp(FORCING.0, LOOSE), solver)?
     } else {
-        let linearised = Linearised::at(problem, residual);
+        let linearised = ForceTangent::at(problem, residual);
         linearised.factorise(solver)?;
         let mut du = vec![0.0; residual.balance.f_oob.len()];
         let krylov = solver.solve_with(
@@ -141,7 +147,7 @@ fn around_stiffness<K: Kinematics<D>, const D: usize>(
 ) -> Result<(Vec<f64>, Krylov), SolveError> {
     let halo = problem.halo;
     let f = &residual.balance.f_oob;
-    let linearised = Linearised::at(problem, residual);
+    let linearised = ForceTangent::at(problem, residual);
     stiffness::assemble(problem, Some(&residual.trial), solver)?;
     let unknowns = Unknowns::of::<D>(&problem.nodes.free, halo);
     let mut nodal = vec![0.0; f.len()];

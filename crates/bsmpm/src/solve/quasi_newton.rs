@@ -3,11 +3,11 @@
 use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;
 use crate::method::{Method, QuasiNewton};
-use crate::parallel::{Halo, LinearSolver, Solved, dots};
+use crate::parallel::{Halo, LinearSolver, SolveReport, dots};
 use crate::solve::broyden::Broyden;
 use crate::solve::convergence::{Convergence, first_energy, inverted};
 use crate::solve::evaluate;
-use crate::solve::found::Found;
+use crate::solve::found::StepSolution;
 use crate::solve::multisecant::Multisecant;
 use crate::solve::stability;
 use crate::solve::unknowns::Unknowns;
@@ -28,7 +28,7 @@ pub struct Direction {
     /// du . f, N m
     pub energy: f64,
     /// what the solution with K_0 took
-    pub solved: Solved,
+    pub solved: SolveReport,
 }
 
 /// The state of one iteration; both methods cost one solve with K_0 a direction.
@@ -91,7 +91,13 @@ impl Secants {
     }
 
     /// Direction from w = K_0^-1 f.
-    fn corrected<const D: usize>(&mut self, mut w: Vec<f64>, f: &[f64], halo: &dyn Halo, solved: Solved) -> Direction {
+    fn corrected<const D: usize>(
+        &mut self,
+        mut w: Vec<f64>,
+        f: &[f64],
+        halo: &dyn Halo,
+        solved: SolveReport,
+    ) -> Direction {
         let (du, energy) = match self {
             Self::Multisecant(secants) => {
                 let energy = secants.correct(&mut w, f, halo);
@@ -117,14 +123,14 @@ impl Secants {
 
 /// An iteration that did not converge.
 #[derive(Clone, Debug)]
-pub struct Stopped {
+pub struct FailedIteration {
     /// why
     pub error: Box<StepError>,
     /// m, nodal  the displacement with the smallest out-of-balance force, if any was sound
     pub best: Option<Vec<f64>>,
 }
 
-impl Stopped {
+impl FailedIteration {
     /// An iteration whose linear system could not be solved at a state; where nothing was iterated before, the system
     /// itself is at fault.
     pub fn without_direction<K: Kinematics<D>, const D: usize>(
@@ -149,7 +155,7 @@ impl Stopped {
     }
 }
 
-impl<E: Into<StepError>> From<E> for Stopped {
+impl<E: Into<StepError>> From<E> for FailedIteration {
     fn from(error: E) -> Self {
         Self {
             error: Box::new(error.into()),
@@ -177,7 +183,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
     convergence: &mut Convergence,
-) -> Result<Found<K, D>, Stopped> {
+) -> Result<StepSolution<K, D>, FailedIteration> {
     let mut secants = Secants::of(method.update, problem);
     let mut follow = Follow::of(problem, &u);
     let mut best = u.clone();
@@ -186,7 +192,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         && (method.is_patient || !convergence.stalls())
     {
         if convergence.is_balanced(&residual.balance, problem) {
-            return Ok(Found::new(u, residual, convergence));
+            return Ok(StepSolution::new(u, residual, convergence));
         }
         if problem.halo.is_interrupted() {
             return Err(StepError::Interrupted.into());
@@ -194,7 +200,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         let mut direction = next_direction(problem, &mut secants, &residual, &best, solver, counts, convergence)?;
         let energy = direction.energy.abs();
         if convergence.reaches(Method::QuasiNewton(method.update), energy, &u, &residual.balance) {
-            return Ok(Found::new(u, residual, convergence)); // (9)
+            return Ok(StepSolution::new(u, residual, convergence)); // (9)
         }
         // The direction's own energy is a sum of products with secants, whose round-off is another.
         let work = stability::is_decisive(problem, &residual.balance)
@@ -205,7 +211,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         }
         match advance(problem, &mut u, &direction.du, &mut residual, counts) {
             Ok(length) => secants.took(length), // (8), (4), (5)
-            Err(inverted) => return Err(Stopped::with_best(inverted, best)),
+            Err(inverted) => return Err(FailedIteration::with_best(inverted, best)),
         }
         stability::check(problem, convergence, &direction.du, work, &residual.balance)?;
         if let Some(pores) = &problem.nodes.pores {
@@ -219,7 +225,10 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             (least, best) = (residual.balance.norm, u.clone());
         }
     }
-    Err(Stopped::with_best(convergence.failed(problem, &residual, None), best))
+    Err(FailedIteration::with_best(
+        convergence.failed(problem, &residual, None),
+        best,
+    ))
 }
 
 /// Steps (6), (7): solves for the next direction. Fails with the `best` displacement so far where the linear system
@@ -232,10 +241,12 @@ fn next_direction<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
     convergence: &mut Convergence,
-) -> Result<Direction, Stopped> {
+) -> Result<Direction, FailedIteration> {
     let direction = secants
         .towards(problem, &residual.balance, solver)
-        .map_err(|unsolved| Stopped::without_direction(problem, best.to_vec(), residual, convergence, unsolved))?;
+        .map_err(|unsolved| {
+            FailedIteration::without_direction(problem, best.to_vec(), residual, convergence, unsolved)
+        })?;
     counts.iterations += 1;
     counts.linear_iterations += direction.solved.iterations;
     counts.factorisations += direction.solved.factorisations;

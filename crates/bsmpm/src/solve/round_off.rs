@@ -48,7 +48,7 @@ impl RoundOff {
                 .iter()
                 .flat_map(|apart| apart.sums(problem.halo, D, |c| [force[c].powi(2)])),
         );
-        let sums = problem.halo.total(&sums);
+        let sums = problem.halo.reproducible_sum(&sums);
         let norm = sums[0].sqrt();
         let apart = sums[1..].iter().map(|sum| sum.sqrt()).collect();
         let water = nodes.pores.as_ref().map_or(0.0, |pores| pores.round_off);
@@ -91,7 +91,7 @@ impl RoundOff {
         }
         let mut own = problem.halo.owned().places::<D>();
         let mut beyond = [f64::from(u8::from(own.any(|c| balance.f_oob[c].abs() > self.force[c])))];
-        problem.halo.maximum(&mut beyond);
+        problem.halo.all_reduce_max(&mut beyond);
         beyond[0] == 0.0
     }
 }
@@ -113,6 +113,6 @@ fn largest_moduli<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>)
             *node = node.max(young);
         }
     }
-    problem.halo.max(&mut moduli, 1);
+    problem.halo.ghost_max(&mut moduli, 1);
     moduli
 }

@@ -6,7 +6,7 @@ use crate::material::Material;
 use crate::model::Model;
 use crate::points::Points;
 use crate::step::problem::Problem;
-use crate::step::trial::Trial;
+use crate::step::trial::DeformationIncrement;
 use crate::tensor::{Symmetric, Tensor};
 
 /// Dilation angle beyond which it is used, rad: 6 degrees. In the short collapse it has less noise from between 5 and
@@ -52,7 +52,10 @@ pub struct Pressures(Option<Vec<Option<f64>>>);
 
 impl Pressures {
     /// Under a trial; one exchange with the neighbours where anything has the adjoint force.
-    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, trial: &Trial<K, D>) -> Self {
+    pub fn of<K: Kinematics<D>, const D: usize>(
+        problem: &Problem<'_, K, D>,
+        trial: &DeformationIncrement<K, D>,
+    ) -> Self {
         let Some(adjoint) = Adjoint::of(problem.model) else {
             return Self(None);
         };
@@ -90,7 +93,7 @@ impl Pressures {
 pub fn transposed<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     adjoint: &Adjoint,
-    trial: &Trial<K, D>,
+    trial: &DeformationIncrement<K, D>,
     value: impl Fn(usize) -> f64 + Sync,
 ) -> Vec<f64> {
     let Problem {

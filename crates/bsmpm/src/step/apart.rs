@@ -8,13 +8,13 @@ use crate::points::Points;
 
 /// Which nodes are a material's own, in a scene of several.
 #[derive(Clone, Debug)]
-pub struct Apart {
+pub struct MaterialNodeSets {
     /// number of materials
     pub materials: usize,
     of: Vec<Option<u16>>, // per node of the window
 }
 
-impl Apart {
+impl MaterialNodeSets {
     /// Of `nodes` nodes, the same on all ranks; one exchange. `None` where there is one material only.
     pub fn of<const D: usize>(
         materials: usize,
@@ -38,7 +38,7 @@ impl Apart {
                 (ends[0], ends[1]) = (ends[0].max(f64::from(most)), ends[1].max(-f64::from(least)));
             }
         }
-        halo.max(&mut ends, 2);
+        halo.ghost_max(&mut ends, 2);
         let of = ends
             .chunks_exact(2)
             .map(|ends| (ends[0] == -ends[1]).then_some(ends[0] as u16))

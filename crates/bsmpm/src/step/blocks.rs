@@ -8,7 +8,7 @@ use crate::kinematics::{Gradient, GradientModuli, Kinematics, Slope};
 use crate::nodal::Nodal;
 use crate::parallel::{LinearSolver, Symmetry};
 use crate::step::mass::{MassMatrix, SHARE};
-use crate::step::nodes::Nodes;
+use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 
 /// Nodes of a point, at most: cubic splines in three dimensions.
@@ -72,13 +72,13 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
             .for_each(|(component, stiffness)| diagonal[component] += stiffness);
         solver.add_diagonal(&diagonal);
     }
-    solver.finish(symmetry)
+    solver.factorise(symmetry)
 }
 
 /// Adds what couples the nodes of a patch by their mass, if that is consistent; [`complete`] adds the diagonal.
 pub fn add_mass<const D: usize>(
     matrix: MassMatrix,
-    nodes: &Nodes<D>,
+    nodes: &GridState<D>,
     shape: &Shape<D>,
     patch: &Patch,
     mass: &[f64],

@@ -8,13 +8,13 @@ use crate::material::{Material, MaterialError, Response, Separation};
 use crate::model::{Model, Regime};
 use crate::parallel::{Halo, agreed};
 use crate::points::{Points, Rows};
-use crate::solve::found::Found;
+use crate::solve::found::StepSolution;
 use crate::stabilisation::Stabilisation;
 use crate::step::inertia::Inertia;
 use crate::step::mass::MassMatrix;
-use crate::step::nodes::Nodes;
+use crate::step::nodes::GridState;
 use crate::step::smooth;
-use crate::step::trial::Trial;
+use crate::step::trial::DeformationIncrement;
 use crate::step::walls;
 use crate::tensor::{Symmetric, Tensor, Vector};
 use crate::threads;
@@ -54,7 +54,7 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
     let mut counts = [(points.len() - leaves.len()) as f64, 0.0, leaves.len() as f64];
     leaves.retain(|(p, _, out)| !out || acting.iter().any(|ids| ids.contains(&points.id[*p])));
     counts[1] = leaves.len() as f64;
-    halo.reduce(&mut counts);
+    halo.all_reduce_sum(&mut counts);
     if counts[1] > 0.0 {
         let first = leaves
             .into_iter()
@@ -74,7 +74,7 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
 }
 
 /// What a saved step leaves besides the points.
-pub struct Committed {
+pub struct StepUpdate {
     /// m  its nodal displacement
     pub u: Vec<f64>,
     /// share of a pass of S by which the elastic state was smoothed afterwards, mean over the points; 0 if it was not
@@ -90,7 +90,7 @@ pub struct Committed {
 
 /// What is kept of the constitution's answer to the converged step at a point.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Answer {
+pub struct PointUpdate {
     /// Pa  Kirchhoff stress
     pub tau: Symmetric,
     /// -  elastic left Cauchy-Green tensor
@@ -109,7 +109,7 @@ pub struct Answer {
     flow: smooth::PlasticFlow,
 }
 
-impl Answer {
+impl PointUpdate {
     /// Of a response of a point whose `gap` was open before.
     fn of(response: &Response, gap: f64) -> Self {
         Self {
@@ -128,7 +128,7 @@ impl Answer {
 /// What the laws make of a converged step.
 pub struct ConstitutiveUpdate {
     /// Of every point.
-    pub answers: Vec<Answer>,
+    pub answers: Vec<PointUpdate>,
     /// State variables of the laws after the step, if they have any.
     pub state: Option<Rows>,
 }
@@ -137,7 +137,7 @@ pub struct ConstitutiveUpdate {
 /// during the iteration.
 pub fn constitutive_update<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    trial: &Trial<K, D>,
+    trial: &DeformationIncrement<K, D>,
     points: &Points<D>,
     halo: &dyn Halo,
 ) -> Result<ConstitutiveUpdate, StepError> {
@@ -149,7 +149,7 @@ pub fn constitutive_update<K: Kinematics<D>, const D: usize>(
         asks: has_second_order_works(model),
         refused: Mutex::new(None),
     };
-    let answers: Vec<Answer> = match &mut state {
+    let answers: Vec<PointUpdate> = match &mut state {
         Some(state) => state
             .par_rows_mut()
             .enumerate()
@@ -173,7 +173,7 @@ pub fn constitutive_update<K: Kinematics<D>, const D: usize>(
 /// The laws of the points at a converged state.
 struct LawsOfPoints<'a, K: Kinematics<D>, const D: usize> {
     model: &'a Model<K, D>,
-    trial: &'a Trial<K, D>,
+    trial: &'a DeformationIncrement<K, D>,
     points: &'a Points<D>,
     asks: bool,                                     // for second-order works
     refused: Mutex<Option<(usize, MaterialError)>>, // the first point that a law refused, and why
@@ -181,7 +181,7 @@ struct LawsOfPoints<'a, K: Kinematics<D>, const D: usize> {
 
 impl<K: Kinematics<D>, const D: usize> LawsOfPoints<'_, K, D> {
     /// Returns the answer at point `p`, whose state variables are its `row`, if its law has any; remembers a refusal.
-    fn answer(&self, p: usize, row: Option<&mut [f64]>) -> Answer {
+    fn answer(&self, p: usize, row: Option<&mut [f64]>) -> PointUpdate {
         let response = match self.trial.respond(self.model, self.points, p) {
             Ok(response) => response,
             Err(source) => {
@@ -189,12 +189,12 @@ impl<K: Kinematics<D>, const D: usize> LawsOfPoints<'_, K, D> {
                 if refused.as_ref().is_none_or(|(first, _)| p < *first) {
                     *refused = Some((p, source));
                 }
-                return Answer::default();
+                return PointUpdate::default();
             }
         };
         row.into_iter().for_each(|row| response.advance(row));
         let gap = self.points.gap_of(p);
-        let mut answer = Answer::of(&response, gap);
+        let mut answer = PointUpdate::of(&response, gap);
         if self.asks
             && let Some(strain) = self.trial.strain(self.model, self.points, p)
         {
@@ -217,7 +217,7 @@ fn has_second_order_works<K, const D: usize>(model: &Model<K, D>) -> bool {
 pub fn second_order_works<K, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
-    answers: &[Answer],
+    answers: &[PointUpdate],
     halo: &dyn Halo,
 ) -> Option<[f64; 2]> {
     if !has_second_order_works(model) {
@@ -226,37 +226,37 @@ pub fn second_order_works<K, const D: usize>(
     let sums = threads::sums(points.len(), |p| {
         answers[p].second_order_works.map(|dense| points.volume[p] * dense)
     });
-    let total = halo.total(&sums);
+    let total = halo.reproducible_sum(&sums);
     Some([total[0], total[1]])
 }
 
 /// Magnitudes of the works of the points' stresses in a step over all points of all ranks, J: `Σ V0 |τ : Δε|`. Unlike
 /// the works of nodal forces, these do not vanish in a body whose internal forces balance at each node.
 pub fn stress_work<K: Kinematics<D>, const D: usize>(
-    trial: &Trial<K, D>,
+    trial: &DeformationIncrement<K, D>,
     points: &Points<D>,
-    answers: &[Answer],
+    answers: &[PointUpdate],
     halo: &dyn Halo,
 ) -> f64 {
     let sum = threads::sum(points.len(), |p| {
         let strain = Symmetric::of(&(trial.dF(p) - Tensor::identity()));
         points.volume[p] * answers[p].tau.double_dot(&strain).abs()
     });
-    halo.total(&[sum])[0]
+    halo.reproducible_sum(&[sum])[0]
 }
 
 /// Saves the converged step and the update of the laws into the points.
-pub fn commit<K: Kinematics<D>, const D: usize>(
+pub fn update_points<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
-    nodes: &Nodes<D>,
-    found: Found<K, D>,
+    nodes: &GridState<D>,
+    found: StepSolution<K, D>,
     update: ConstitutiveUpdate,
     points: &mut Points<D>,
     halo: &dyn Halo,
-) -> Committed {
+) -> StepUpdate {
     let ConstitutiveUpdate { answers, state } = update;
-    let Found {
+    let StepSolution {
         u, p: pressures, trial, ..
     } = found;
     if let Some(inertia) = &nodes.inertia {
@@ -264,7 +264,7 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     }
     let du = transfer::to_points::<D, D, _>(shape, &u, |_, du| Vector::from(du));
     let mut advance = [threads::largest(du.len(), |p| du[p].norm_squared()).sqrt()];
-    halo.maximum(&mut advance);
+    halo.all_reduce_max(&mut advance);
     let beside_fixed = nodes.inertia.as_ref().and_then(|inertia| {
         walls::relax(model, points, &du, inertia.dt);
         walls::excess(model, points, &du, inertia.dt, halo)
@@ -292,7 +292,7 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
     };
     points.smoothing = before.map(|before| smooth::change(&before, &points.b_e));
     points.gap = gaps(model, points, &answers);
-    Committed {
+    StepUpdate {
         u,
         advance: advance[0],
         smoothed,
@@ -304,8 +304,8 @@ pub fn commit<K: Kinematics<D>, const D: usize>(
 /// Deformation, stress, elastic and plastic strain of every point.
 fn keep<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    trial: &Trial<K, D>,
-    answers: &[Answer],
+    trial: &DeformationIncrement<K, D>,
+    answers: &[PointUpdate],
     points: &mut Points<D>,
 ) {
     let averages = model.stabilisation.averages();
@@ -344,7 +344,7 @@ fn keep<K: Kinematics<D>, const D: usize>(
 }
 
 /// Gap of every point after the step, if some material closes its gaps.
-fn gaps<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, answers: &[Answer]) -> Option<Vec<f64>> {
+fn gaps<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, answers: &[PointUpdate]) -> Option<Vec<f64>> {
     let closes: Vec<bool> = model
         .materials
         .iter()

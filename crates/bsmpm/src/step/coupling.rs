@@ -3,12 +3,12 @@
 use crate::grid::{Contributions, Grid, Shape, digit};
 use crate::model::Model;
 use crate::parallel::{Halo, LinearSolver, OwnedNodes};
-use crate::step::nodes::Nodes;
+use crate::step::nodes::GridState;
 use crate::tensor::Vector;
 
 /// What one unit of dilation raises.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Raised {
+pub enum DilationForce {
     /// The force of the dilation itself, times the mean stiffness of the points.
     Along,
     /// A force of its own.
@@ -21,7 +21,7 @@ pub struct Coupling<'a, const D: usize> {
     lower: &'a Shape<D>,
     cells: FunctionSums,
     pairs: Option<FunctionSums>, // where functions are merged
-    raised: Raised,
+    raised: DilationForce,
 }
 
 /// Functions on cells, or on pairs of cells.
@@ -61,7 +61,7 @@ pub struct Share<'a, const D: usize> {
 
 impl Dilations {
     /// Adds point `p`.
-    pub fn add<const D: usize>(&mut self, nodes: &Nodes<D>, p: usize, share: &Share<D>) {
+    pub fn add<const D: usize>(&mut self, nodes: &GridState<D>, p: usize, share: &Share<D>) {
         let Some(lower) = nodes.lowered() else { return };
         let mut values = [0.0; 27];
         let values = &mut values[..lower.offsets().len()];
@@ -84,7 +84,7 @@ impl Dilations {
 impl<'a, const D: usize> Coupling<'a, D> {
     /// No sums yet; `None` where dilations are not averaged by functions of a lower degree, or windows do not reach as
     /// far as these couple ([`Grid::reaching`]).
-    pub fn of<K>(model: &'a Model<K, D>, nodes: &'a Nodes<D>, raised: Raised) -> Option<Self> {
+    pub fn of<K>(model: &'a Model<K, D>, nodes: &'a GridState<D>, raised: DilationForce) -> Option<Self> {
         let grid = &model.grid;
         let groups = model.groups.count();
         let lower = nodes.lowered().filter(|_| grid.beyond() + 1 >= grid.order())?;
@@ -185,7 +185,7 @@ impl<'a, const D: usize> Coupling<'a, D> {
     ) {
         let width = sums.width();
         let grid = self.grid;
-        let sums = halo.sum(sums);
+        let sums = halo.assemble_ghosts(sums);
         let owned = halo.owned();
         let mut nodes = Vec::new();
         let mut g = Vec::new();
@@ -210,27 +210,31 @@ impl<'a, const D: usize> Coupling<'a, D> {
                 if let Some(node) = node {
                     nodes.push(node);
                     g.extend_from_slice(along);
-                    f.extend_from_slice(if self.raised == Raised::Own {
+                    f.extend_from_slice(if self.raised == DilationForce::Own {
                         &force[place * D..][..D]
                     } else {
                         along
                     });
                 }
             }
-            let factor = if self.raised == Raised::Own { 1.0 } else { bulk / weight };
+            let factor = if self.raised == DilationForce::Own {
+                1.0
+            } else {
+                bulk / weight
+            };
             block.clear();
             for f in &f {
                 let scaled = factor / weight * f;
                 block.extend(g.iter().map(|g| scaled * g));
             }
-            solver.add_among(&nodes, &block);
+            solver.add_block_among(&nodes, &block);
         }
     }
 }
 
 impl FunctionSums {
     /// Zeros of functions whose cells touch `side` nodes along an axis.
-    fn of<const D: usize>(grid: &Grid<D>, groups: usize, side: usize, raised: Raised) -> Self {
+    fn of<const D: usize>(grid: &Grid<D>, groups: usize, side: usize, raised: DilationForce) -> Self {
         let width = HEAD + raised.vectors() * side.pow(D as u32) * D;
         let places = (0..grid.cell_nodes())
             .map(|node| (0..D).fold(0, |place, axis| place * side + digit::<D>(node, axis, grid.order() + 1)));
@@ -288,7 +292,7 @@ fn node_at<const D: usize>(grid: &Grid<D>, along: impl Fn(usize) -> Option<isize
     grid.node_index(&node)
 }
 
-impl Raised {
+impl DilationForce {
     /// Vectors of the nodes that a function keeps: g, and f.
     fn vectors(self) -> usize {
         if self == Self::Own { 2 } else { 1 }

@@ -5,7 +5,7 @@ use crate::material::Moduli;
 use crate::material::{MaterialError, Response};
 use crate::model::Model;
 use crate::points::Points;
-use crate::step::nodes::Nodes;
+use crate::step::nodes::GridState;
 use crate::tensor::{Symmetric, Tensor};
 
 /// β/Δt of every material; empty where none has any.
@@ -22,7 +22,7 @@ pub struct Viscous {
 
 impl Damping {
     /// Of a step; none without inertia, whose time is none, and of a state that no step has led to.
-    pub fn of<K, const D: usize>(model: &Model<K, D>, nodes: &Nodes<D>) -> Self {
+    pub fn of<K, const D: usize>(model: &Model<K, D>, nodes: &GridState<D>) -> Self {
         match &nodes.inertia {
             Some(inertia) if inertia.dt > 0.0 => Self(model.damping.iter().map(|time| time / inertia.dt).collect()),
             _ => Self::default(),

@@ -85,7 +85,7 @@ impl<const D: usize> Extension<D> {
             .collect();
         let mut outer: Vec<usize> = halo.owned().nodes().filter(|&node| is_outer[node]).collect();
         let mut counts = [outer.len() as f64, 0.0];
-        halo.reduce(&mut counts[..1]);
+        halo.all_reduce_sum(&mut counts[..1]);
         if counts[0] == 0.0 {
             return None;
         }
@@ -109,7 +109,7 @@ impl<const D: usize> Extension<D> {
                 .for_each(|i| free[Nodal::<D>::at(node, i)] = false);
             counts[1] += f64::from(u8::from(halo.owned().contains(node)));
         }
-        halo.reduce(&mut counts[1..]);
+        halo.all_reduce_sum(&mut counts[1..]);
         extension.ties = ties;
         extension.loose = (0..grid.nodes())
             .filter(|&node| is_outer[node] && !at_bodies[node] && extension.of_node[node] == 0)
@@ -274,7 +274,7 @@ fn inner_functions<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, full: &[boo
             .iter()
             .for_each(|offset| marks[patch.first_node + offset] = 1.0);
     }
-    halo.max(&mut marks, 1);
+    halo.ghost_max(&mut marks, 1);
     marks.into_iter().map(|mark| mark > 0.0).collect()
 }
 

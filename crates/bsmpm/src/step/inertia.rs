@@ -144,7 +144,7 @@ pub(super) fn map<const D: usize>(
         prescribed.iter().any(Option::is_some),
     ];
     let mut flags = flags.map(|flag| f64::from(u8::from(flag)));
-    mass.halo.maximum(&mut flags);
+    mass.halo.all_reduce_max(&mut flags);
     let [moves, holds] = flags.map(|flag| flag > 0.0);
     let consistent = mass.matrix == MassMatrix::Consistent;
     if moves || consistent && holds {
@@ -167,7 +167,7 @@ pub(super) fn map<const D: usize>(
 
 /// Nodal sums of m_p times a `field` of the points, D numbers a node.
 fn momentum<const D: usize>(mass: &Mass<'_, D>, points: &Points<D>, field: &[Vector<D>]) -> Vec<f64> {
-    mass.halo.sum(&transfer::to_nodes::<D, D>(mass.shape, |p| {
+    mass.halo.assemble_ghosts(&transfer::to_nodes::<D, D>(mass.shape, |p| {
         (field[p] * points.mass[p]).into()
     }))
 }

@@ -53,7 +53,9 @@ impl<const D: usize> Mass<'_, D> {
             return lumped.collect();
         }
         let carried = transfer::to_points::<D, D, _>(self.shape, field, |p, v| v.map(|v| v * self.of_points[p]));
-        let mut product = self.halo.sum(&transfer::to_nodes::<D, D>(self.shape, |p| carried[p]));
+        let mut product = self
+            .halo
+            .assemble_ghosts(&transfer::to_nodes::<D, D>(self.shape, |p| carried[p]));
         for (sum, lumped) in product.iter_mut().zip(lumped) {
             *sum = SHARE * *sum + (1.0 - SHARE) * lumped;
         }

@@ -43,7 +43,7 @@ impl Newmark {
     /// step under a force that acts at once: the points' a = 0 there would let it come half a step late. `M a = f` at
     /// the start instead makes what is stiff swing about its equilibrium in steps that do not resolve it, where this
     /// one damps it.
-    pub fn of_the_end() -> Self {
+    pub fn dissipative_first_step() -> Self {
         Self {
             alpha: 0.0,
             beta: 0.5,

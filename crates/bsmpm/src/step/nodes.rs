@@ -11,22 +11,22 @@ use crate::boundary::strip;
 use crate::error::StepError;
 use crate::grid::{Grid, Shape, transfer};
 use crate::kinematics::Kinematics;
-use crate::model::{Model, Regime, Weighting};
+use crate::model::{AverageWeight, Model, Regime};
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
 use crate::points::MappedPoints;
 use crate::points::Points;
 use crate::quadrature::{self, Quadrature};
 use crate::schedule::TimeInterval;
-use crate::stabilisation::Grouped;
+use crate::stabilisation::GroupedPoints;
 use crate::stabilisation::Stabilisation;
-use crate::step::apart::Apart;
+use crate::step::apart::MaterialNodeSets;
 use crate::step::extension::Extension;
 use crate::step::inertia::{self, Inertia};
 use crate::step::mass::Mass;
 use crate::tensor::Vector;
 use crate::water::carried;
-use crate::water::nodes::Pores;
+use crate::water::nodes::PoreField;
 use crate::water::pore_pressure::PorePressure;
 use std::borrow::Cow;
 
@@ -50,7 +50,7 @@ struct Averages<const D: usize> {
 
 /// Nodal quantities of one step; flat arrays over the window's nodes, the same on every rank that shares a node.
 #[derive(Clone, Debug)]
-pub struct Nodes<const D: usize> {
+pub struct GridState<const D: usize> {
     /// kg (or m^D, see `Model::inertial_weighting`)  m_I = sum_p N_Ip m_p
     pub weight: Vec<f64>,
     /// present in dynamics; then `weight` is the mass
@@ -74,9 +74,9 @@ pub struct Nodes<const D: usize> {
     /// of faces that absorb waves
     pub dashpots: Dashpots,
     /// nodes of one material alone, in a scene of several
-    pub apart: Option<Apart>,
+    pub apart: Option<MaterialNodeSets>,
     /// pressures of the pore water, where it flows
-    pub pores: Option<Pores<D>>,
+    pub pores: Option<PoreField<D>>,
     /// soft background of the step
     pub background: Option<Blocks>,
     /// m  part of the step's displacement that the background does not resist, D numbers a node; `None`: it resists all
@@ -98,21 +98,21 @@ pub struct Nodes<const D: usize> {
     fitted: Option<Vec<f64>>,
 }
 
-impl<const D: usize> Nodes<D> {
+impl<const D: usize> GridState<D> {
     /// Maps the points to the nodes for the step from `t` to `t + dt`. Fails if a load has lost its material.
-    pub fn map<K: Kinematics<D>>(
+    pub fn from_points<K: Kinematics<D>>(
         model: &Model<K, D>,
         shape: &Shape<D>,
         points: &Points<D>,
         interval: TimeInterval,
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
-        Self::after(model, shape, points, &[], interval, halo)
+        Self::from_points_after(model, shape, points, &[], interval, halo)
     }
 
     /// The same after a step that had the displacement `last`, m, nodal, up to a factor: faces with contact go on as
     /// they were in it.
-    pub fn after<K: Kinematics<D>>(
+    pub fn from_points_after<K: Kinematics<D>>(
         model: &Model<K, D>,
         shape: &Shape<D>,
         points: &Points<D>,
@@ -131,8 +131,8 @@ impl<const D: usize> Nodes<D> {
         nodes.dashpots = nodes.dashpots(model, shape, points, halo);
         nodes.inertia = nodes.start_inertia(model, shape, points, interval.dt, halo);
         nodes.load(model, shape, points, interval.end(), halo)?;
-        nodes.pores = Pores::of(model, shape, points, interval, halo)?;
-        nodes.meet();
+        nodes.pores = PoreField::of(model, shape, points, interval, halo)?;
+        nodes.apply_contact_statuses();
         nodes.count(halo);
         Ok(nodes)
     }
@@ -161,7 +161,7 @@ impl<const D: usize> Nodes<D> {
             *free = velocities[c].is_none() && active[node] && (weight[node] > threshold || stiff[node]);
         }
         Self {
-            apart: Apart::of(model.materials.len(), shape, points, model.grid.nodes(), halo),
+            apart: MaterialNodeSets::of(model.materials.len(), shape, points, model.grid.nodes(), halo),
             averages: Averages::of(model, shape, points, threshold, halo),
             pore_pressure: carried::pore_pressure(model, shape, points, volume, interval.end(), halo),
             prescribed: velocities
@@ -298,7 +298,7 @@ impl<const D: usize> Nodes<D> {
         if let Some(force) = carried::force(model, shape, points, self.volume(points), t) {
             f_ext
                 .iter_mut()
-                .zip(halo.sum(&force))
+                .zip(halo.assemble_ghosts(&force))
                 .for_each(|(all, force)| *all += force);
         }
         let LoadForces { dead, followers } = load::forces(
@@ -365,7 +365,7 @@ impl<const D: usize> Nodes<D> {
     }
 
     /// Holds, stops and frees the nodes on faces with contact as their statuses say.
-    pub fn meet(&mut self) {
+    pub fn apply_contact_statuses(&mut self) {
         self.contacts.apply(&mut self.free, &mut self.prescribed);
         if let Some(inertia) = &mut self.inertia {
             inertia.stopped = inertia
@@ -478,7 +478,7 @@ impl<const D: usize> Nodes<D> {
             massless.count() as f64,
             self.background.as_ref().map_or(0, Blocks::count) as f64,
         ];
-        halo.reduce(&mut counts);
+        halo.all_reduce_sum(&mut counts);
         [
             self.active_nodes,
             self.unknowns,
@@ -499,13 +499,13 @@ impl<const D: usize> Projection<'_, D> {
     /// Returns what `found` makes of the projected `value` at every point. `weights` are those of the points.
     fn average<const C: usize, T: Clone + Send>(
         &self,
-        grouped: Grouped<'_>,
+        grouped: GroupedPoints<'_>,
         weights: &[f64],
         halo: &dyn Halo,
         value: impl Fn(usize) -> [f64; C] + Sync,
         found: impl Fn(usize, [f64; C]) -> T + Sync,
     ) -> Vec<T> {
-        let mut nodal = halo.sum(&transfer::to_nodes_grouped(self.shape, grouped, |p| {
+        let mut nodal = halo.assemble_ghosts(&transfer::to_nodes_grouped(self.shape, grouped, |p| {
             value(p).map(|v| weights[p] * v)
         }));
         transfer::divide(&mut nodal, self.weight, self.threshold);
@@ -547,31 +547,31 @@ impl<const D: usize> Averages<D> {
     }
 }
 
-fn weights<const D: usize>(weighting: Weighting, points: &Points<D>) -> &[f64] {
+fn weights<const D: usize>(weighting: AverageWeight, points: &Points<D>) -> &[f64] {
     match weighting {
-        Weighting::Mass => &points.mass,
-        Weighting::Volume => &points.volume,
+        AverageWeight::Mass => &points.mass,
+        AverageWeight::Volume => &points.volume,
     }
 }
 
 fn scatter_weight<const D: usize>(
-    weighting: Weighting,
+    weighting: AverageWeight,
     shape: &Shape<D>,
     points: &Points<D>,
     halo: &dyn Halo,
 ) -> Vec<f64> {
     let weights = weights(weighting, points);
-    halo.sum(&transfer::to_nodes(shape, |p| [weights[p]]))
+    halo.assemble_ghosts(&transfer::to_nodes(shape, |p| [weights[p]]))
 }
 
 /// Nodal sums of the points' `weights`, of every group of materials by itself.
 fn scatter_grouped<const D: usize>(
     shape: &Shape<D>,
-    grouped: Grouped<'_>,
+    grouped: GroupedPoints<'_>,
     weights: &[f64],
     halo: &dyn Halo,
 ) -> Vec<f64> {
-    halo.sum(&transfer::to_nodes_grouped(shape, grouped, |p| [weights[p]]))
+    halo.assemble_ghosts(&transfer::to_nodes_grouped(shape, grouped, |p| [weights[p]]))
 }
 
 /// Per node: touched by an occupied cell, and: touched by a point with a gradient or by a background, so that its
@@ -590,11 +590,11 @@ fn supported<const D: usize>(
             .iter()
             .for_each(|offset| touched[patch.first_node + offset] = 1.0);
     }
-    halo.max(&mut touched, 1);
+    halo.ghost_max(&mut touched, 1);
     let touched: Vec<bool> = touched.into_iter().map(|mark| mark > 0.0).collect();
-    let stiff = halo.sum(&transfer::squared_gradients(shape, |p| volume[p]));
+    let stiff = halo.assemble_ghosts(&transfer::squared_gradients(shape, |p| volume[p]));
     let mut stiffest = [stiff.iter().copied().fold(0.0, f64::max)];
-    halo.maximum(&mut stiffest);
+    halo.all_reduce_max(&mut stiffest);
     let above = MASSLESS * stiffest[0];
     let stiff = stiff
         .iter()
@@ -617,9 +617,9 @@ fn external_force<K: Kinematics<D>, const D: usize>(
     if let Some(g) = model.body_force(t) {
         let own;
         let mass = match model.inertial_weighting() {
-            Weighting::Mass => weight,
-            Weighting::Volume => {
-                own = scatter_weight(Weighting::Mass, shape, points, halo);
+            AverageWeight::Mass => weight,
+            AverageWeight::Volume => {
+                own = scatter_weight(AverageWeight::Mass, shape, points, halo);
                 &own
             }
         };
@@ -630,7 +630,7 @@ fn external_force<K: Kinematics<D>, const D: usize>(
         }
     }
     if let Some(water) = model.still_water(t) {
-        let force = halo.sum(&transfer::to_nodes(shape, |p| {
+        let force = halo.assemble_ghosts(&transfer::to_nodes(shape, |p| {
             <[f64; D]>::from(water.force(points, p, model.span(points, p), model.follows_water(points, p)))
         }));
         f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
@@ -641,6 +641,6 @@ fn external_force<K: Kinematics<D>, const D: usize>(
 /// Weight at and below which a node counts as massless.
 fn threshold(weight: &[f64], halo: &dyn Halo) -> f64 {
     let mut heaviest = [weight.iter().copied().fold(0.0, f64::max)];
-    halo.maximum(&mut heaviest);
+    halo.all_reduce_max(&mut heaviest);
     MASSLESS * heaviest[0]
 }

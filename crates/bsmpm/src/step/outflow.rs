@@ -1,6 +1,6 @@
 //! Removes material beyond outflow faces after a step.
 
-use crate::energy::Stored;
+use crate::energy::StoredEnergy;
 use crate::exact::Exact;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
@@ -16,7 +16,7 @@ pub struct Outflow {
     /// kg
     pub mass: f64,
     /// J  energy of the points with it, and without it
-    pub stored: [Stored; 2],
+    pub stored: [StoredEnergy; 2],
 }
 
 impl Outflow {
@@ -35,14 +35,14 @@ impl Outflow {
             .filter(|&p| model.boundary.lets_out(&model.grid, &points.x[p]))
             .collect();
         let mass: Exact = out.iter().map(|&p| points.mass[p]).collect();
-        let sums = halo.total(&[[out.len() as f64].into_iter().collect(), mass]);
+        let sums = halo.reproducible_sum(&[[out.len() as f64].into_iter().collect(), mass]);
         if sums[0] == 0.0 {
             return None;
         }
-        let before = Stored::of(model, points, t, halo);
+        let before = StoredEnergy::of(model, points, t, halo);
         let gone: HashSet<u64> = out.iter().map(|&p| points.id[p]).collect();
         points.remove(|id| gone.contains(&id));
-        let stored = [before, Stored::of(model, points, t, halo)];
+        let stored = [before, StoredEnergy::of(model, points, t, halo)];
         Some(Self {
             points: sums[0] as u64,
             mass: sums[1],

@@ -1,12 +1,12 @@
 //! Data of a step that do not change during its iterations.
 
-use crate::boundary::strip::StripAttachments;
+use crate::boundary::strip::StripConstraints;
 use crate::grid::Shape;
 use crate::model::Model;
 use crate::parallel::Halo;
 use crate::points::Points;
 use crate::step::mass::Mass;
-use crate::step::nodes::Nodes;
+use crate::step::nodes::GridState;
 
 /// Everything that is fixed while a step is iterated.
 pub struct Problem<'a, K, const D: usize> {
@@ -15,9 +15,9 @@ pub struct Problem<'a, K, const D: usize> {
     /// step (1)
     pub shape: &'a Shape<D>,
     /// step (2)
-    pub nodes: &'a Nodes<D>,
+    pub nodes: &'a GridState<D>,
     /// strips, attached to the nodes
-    pub attachments: &'a StripAttachments<D>,
+    pub attachments: &'a StripConstraints<D>,
     /// state at t
     pub points: &'a Points<D>,
     /// the other ranks

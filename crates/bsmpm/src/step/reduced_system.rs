@@ -11,7 +11,7 @@
 use crate::error::SolveError;
 use crate::grid::Grid;
 use crate::nodal::Nodal;
-use crate::parallel::{Halo, Krylov, LinearSolver, Solved, Symmetry};
+use crate::parallel::{Halo, Krylov, LinearSolver, SolveReport, Symmetry};
 use crate::step::extension::{Extension, InnerFunction, Tie};
 use crate::tensor::{Square, Vector};
 use std::collections::BTreeMap;
@@ -182,7 +182,7 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
                 continue;
             };
             if row == column {
-                self.solver.add_among(&[row], block.transpose().as_slice());
+                self.solver.add_block_among(&[row], block.transpose().as_slice());
             } else {
                 self.add_pair([row, column], [block, mirror]);
             }
@@ -215,7 +215,7 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
                 pair[(D + i) * 2 * D + j] = blocks[1][(i, j)];
             }
         }
-        self.solver.add_among(&nodes, &pair);
+        self.solver.add_block_among(&nodes, &pair);
     }
 }
 
@@ -251,24 +251,24 @@ fn weights<const D: usize>(tie: &Tie<D>, inner: &InnerFunction) -> Square<D> {
 }
 
 impl<const D: usize> LinearSolver for ReducedSystem<'_, D> {
-    fn begin(&mut self, free: &[bool]) {
+    fn reinit(&mut self, free: &[bool]) {
         self.kept = vec![KeptBlocks::default(); self.extension.ties().len()];
-        self.solver.begin(free);
+        self.solver.reinit(free);
     }
 
-    fn add(&mut self, first_node: usize, block: &[f64]) {
+    fn add_block(&mut self, first_node: usize, block: &[f64]) {
         let nodes = self.offsets.iter().map(|offset| first_node + offset);
         if nodes.clone().any(|node| self.extension.place_of(node).is_some()) {
             self.keep(&nodes.collect::<Vec<usize>>(), block);
         }
-        self.solver.add(first_node, block);
+        self.solver.add_block(first_node, block);
     }
 
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+    fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
         if nodes.iter().any(|&node| self.extension.place_of(node).is_some()) {
             self.keep(nodes, block);
         }
-        self.solver.add_among(nodes, block);
+        self.solver.add_block_among(nodes, block);
     }
 
     /// Of nodes that are not tied: without inertia no others have any.
@@ -276,12 +276,12 @@ impl<const D: usize> LinearSolver for ReducedSystem<'_, D> {
         self.solver.add_diagonal(diagonal);
     }
 
-    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
+    fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
         self.add_carried_blocks();
-        self.solver.finish(symmetry)
+        self.solver.factorise(symmetry)
     }
 
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         self.solver.solve(rhs, solution)
     }
 
@@ -289,7 +289,7 @@ impl<const D: usize> LinearSolver for ReducedSystem<'_, D> {
         self.solver.is_rough()
     }
 
-    fn solve_to(&mut self, relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve_to(&mut self, relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         self.solver.solve_to(relative, rhs, solution)
     }
 

@@ -6,7 +6,7 @@ use crate::error::Measures;
 use crate::grid::Contributions;
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;
-use crate::solve::found::Found;
+use crate::solve::found::StepSolution;
 use crate::step::outflow::Outflow;
 use crate::step::problem::Problem;
 use crate::water::saved::WaterReport;
@@ -96,7 +96,7 @@ pub struct StepReport {
 impl StepReport {
     /// Of a displacement that was found, before the points have taken it; one reduction for the supports' forces, and
     /// one with a background.
-    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Self {
+    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &StepSolution<K, D>) -> Self {
         let nodes = problem.nodes;
         let resisted = nodes.resisted(&found.u);
         let soft = nodes
@@ -127,7 +127,7 @@ impl StepReport {
                 .report(&problem.model.boundary, &found.u, &found.reaction, problem.halo),
             rigid: Vec::new(),
             strips: Vec::new(),
-            background: soft.map(|work| [problem.halo.total(&[work])[0], found.work]),
+            background: soft.map(|work| [problem.halo.reproducible_sum(&[work])[0], found.work]),
             background_share: None,
             second_order_works: None,
             energy: None,
@@ -147,7 +147,7 @@ impl StepReport {
 /// One exchange with the neighbours, one reduction, and one gathering where ties are published.
 pub fn background_share<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    found: &Found<K, D>,
+    found: &StepSolution<K, D>,
 ) -> Option<f64> {
     let Problem {
         model,
@@ -159,14 +159,14 @@ pub fn background_share<K: Kinematics<D>, const D: usize>(
     let blocks = nodes.background.as_ref()?;
     let mut force = Contributions::none(&model.grid, D, Vec::new());
     blocks.multiply::<D>(shape, &nodes.resisted(&found.u), &mut force);
-    let mut force = halo.sum(&force);
+    let mut force = halo.assemble_ghosts(&force);
     nodes.reduce(&mut [&mut force], halo);
     let sizes = halo.owned().nodes().map(|node| {
         let free = Nodal::<D>::of(node).filter(|&at| nodes.free[at]);
         free.map(|at| force[at].powi(2)).sum::<f64>().sqrt()
     });
     let mut largest = [sizes.fold(0.0, f64::max)];
-    halo.maximum(&mut largest);
+    halo.all_reduce_max(&mut largest);
     let mean = found.scale / (nodes.active_nodes.max(1) as f64).sqrt();
     (mean > 0.0).then(|| largest[0] / mean)
 }

@@ -11,7 +11,7 @@ use crate::parallel::over_layers;
 use crate::points::Points;
 use crate::step::adjoint::Pressures;
 use crate::step::problem::Problem;
-use crate::step::trial::Trial;
+use crate::step::trial::DeformationIncrement;
 use crate::tensor::Tensor;
 use crate::water::residual::WaterBalance;
 use std::borrow::Cow;
@@ -23,7 +23,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize};
 #[derive(Clone, Debug)]
 pub struct Residual<K: Kinematics<D>, const D: usize> {
     /// deformation that they follow from
-    pub trial: Trial<K, D>,
+    pub trial: DeformationIncrement<K, D>,
     /// the nodes
     pub balance: Balance,
     /// the first point of this rank that inverted or is not finite
@@ -75,7 +75,7 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
             extension.extend(&model.grid, extended.to_mut(), halo);
         }
         let u = &extended[..];
-        let mut trial = Trial::of(model, shape, nodes, points, u, halo);
+        let mut trial = DeformationIncrement::of(model, shape, nodes, points, u, halo);
         let water = nodes.pores.as_ref().map(|pores| match p {
             [] => WaterBalance::of(problem, pores, &mut trial, &vec![0.0; pores.free.len()]),
             p => WaterBalance::of(problem, pores, &mut trial, p),
@@ -90,7 +90,7 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
         }
         let balance = Balance {
             water,
-            ..Balance::of(problem, u, &|p| trial.dF(p), halo.sum(&f_int), inverted)
+            ..Balance::of(problem, u, &|p| trial.dF(p), halo.assemble_ghosts(&f_int), inverted)
         };
         Self {
             trial,
@@ -112,7 +112,10 @@ pub struct InternalForce {
 
 impl InternalForce {
     /// Under a trial; one exchange with the neighbours where a point has the adjoint force.
-    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, trial: &Trial<K, D>) -> Self {
+    pub fn of<K: Kinematics<D>, const D: usize>(
+        problem: &Problem<'_, K, D>,
+        trial: &DeformationIncrement<K, D>,
+    ) -> Self {
         let Problem {
             model, shape, points, ..
         } = *problem;
@@ -145,7 +148,7 @@ impl InternalForce {
 struct Fluxes<'a, K: Kinematics<D>, const D: usize> {
     model: &'a Model<K, D>,
     points: &'a Points<D>,
-    trial: &'a Trial<K, D>,
+    trial: &'a DeformationIncrement<K, D>,
     pressures: &'a Pressures,
     volume: &'a [f64],
     inverted: &'a AtomicU64,
@@ -247,7 +250,7 @@ impl Balance {
                 [out, external, internal, inertial, supporting(c)]
             })
         });
-        let sums = problem.halo.total(&[&whole[..], &apart].concat());
+        let sums = problem.halo.reproducible_sum(&[&whole[..], &apart].concat());
         let (sums, apart) = sums.split_at(whole.len());
         let [norm, scale] = norms(&sums[1..=kinds]);
         // Where nothing but stress acts on a material's own nodes, that is all out of balance: no scale to judge it by.
@@ -321,7 +324,7 @@ fn force_of_strips<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>
     let mut force = Contributions::none(&problem.model.grid, D, Vec::new());
     problem.attachments.add_forces(u, &mut force);
     problem.nodes.rigid.add_forces(u, &mut force, problem.halo);
-    problem.halo.sum(&force)
+    problem.halo.assemble_ghosts(&force)
 }
 
 /// Norm of the force out of balance and the largest of the others', of the sums of their squares.

@@ -6,8 +6,8 @@ use crate::grid::{Shape, transfer};
 use crate::material::Response;
 use crate::model::Model;
 use crate::parallel::Halo;
-use crate::points::{Packed, Points};
-use crate::step::nodes::Nodes;
+use crate::points::{PackedTensors, Points};
+use crate::step::nodes::GridState;
 use crate::tensor::Symmetric;
 use crate::threads;
 
@@ -21,13 +21,13 @@ pub fn length(order: usize, h: f64, passes: f64) -> f64 {
 pub fn average_b_e<K, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
-    nodes: &Nodes<D>,
+    nodes: &GridState<D>,
     points: &mut Points<D>,
     halo: &dyn Halo,
 ) {
     let b_e = &points.b_e;
     let averaged = nodes.average(model, shape, points, halo, |p| b_e.at(p).0, |_, b_e| Symmetric(b_e));
-    let averaged: Packed<D, Symmetric> = averaged.into_iter().collect();
+    let averaged: PackedTensors<D, Symmetric> = averaged.into_iter().collect();
     if let Some(dilation) = &mut points.dilation {
         for ((dilation, after), before) in dilation.iter_mut().zip(averaged.iter()).zip(points.b_e.iter()) {
             *dilation *= (after.full().determinant() / before.full().determinant()).sqrt();
@@ -38,7 +38,10 @@ pub fn average_b_e<K, const D: usize>(
 
 /// What smoothing made of elastic strains: of b^e before and after it the left Cauchy-Green tensor that leads from the
 /// one to the other, L^-1 b^e L^-T with the Cholesky factor L of that before; where nothing changed it is the identity.
-pub fn change<const D: usize>(before: &Packed<D, Symmetric>, after: &Packed<D, Symmetric>) -> Packed<D, Symmetric> {
+pub fn change<const D: usize>(
+    before: &PackedTensors<D, Symmetric>,
+    after: &PackedTensors<D, Symmetric>,
+) -> PackedTensors<D, Symmetric> {
     threads::each(before.len(), |p| {
         change_of_point(before.at(p), after.at(p)).unwrap_or(Symmetric::IDENTITY)
     })
@@ -95,19 +98,19 @@ const RENEWING: f64 = 0.01;
 pub fn filter_dilation<K, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
-    nodes: &Nodes<D>,
+    nodes: &GridState<D>,
     points: &mut Points<D>,
     flow: &[PlasticFlow],
     halo: &dyn Halo,
 ) -> f64 {
     let mut flowing = [threads::largest(flow.len(), |p| flow[p].plastic)];
-    halo.maximum(&mut flowing);
+    halo.all_reduce_max(&mut flowing);
     if flowing[0] == 0.0 {
         return 0.0;
     }
     let grouped = model.grouped(points);
     let mut chi = transfer::largest_to_nodes(shape, grouped, |p| flow[p].plastic);
-    halo.max(&mut chi, grouped.count());
+    halo.ghost_max(&mut chi, grouped.count());
     let share = transfer::to_points_grouped(shape, grouped, &chi, |_, [x]| -(-x / RENEWING).exp_m1());
     let b_e = &points.b_e;
     let filtered = nodes.average(
@@ -137,6 +140,6 @@ pub fn filter_dilation<K, const D: usize>(
     });
     let [shares] = threads::added(shares);
     let count = std::iter::once(filtered.len() as f64).collect();
-    let sums = halo.total(&[shares, count]);
+    let sums = halo.reproducible_sum(&[shares, count]);
     sums[0] / sums[1]
 }

@@ -11,12 +11,12 @@ use crate::model::Model;
 use crate::parallel::{LinearSolver, Symmetry};
 use crate::points::Points;
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
-use crate::step::coupling::{Coupling, Dilations, Raised, Share};
+use crate::step::coupling::{Coupling, DilationForce, Dilations, Share};
 use crate::step::damping::Damping;
-use crate::step::nodes::Nodes;
+use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 use crate::step::reduced_system::ReducedSystem;
-use crate::step::trial::Trial;
+use crate::step::trial::DeformationIncrement;
 use crate::tensor::{Tensor, Vector};
 use nalgebra::SMatrix;
 use rayon::prelude::*;
@@ -25,7 +25,7 @@ use rayon::prelude::*;
 /// material whose dilation is not averaged. One exchange with the neighbours where the average couples patches.
 pub fn assemble<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    at: Option<&Trial<K, D>>,
+    at: Option<&DeformationIncrement<K, D>>,
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
     let Some(extension) = &problem.nodes.extension else {
@@ -37,7 +37,7 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
 
 fn assemble_into<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    at: Option<&Trial<K, D>>,
+    at: Option<&DeformationIncrement<K, D>>,
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
     let Problem {
@@ -49,9 +49,9 @@ fn assemble_into<K: Kinematics<D>, const D: usize>(
         ..
     } = *problem;
     let volume = problem.volume();
-    solver.begin(&nodes.free);
+    solver.reinit(&nodes.free);
     let damping = Damping::of(model, nodes);
-    let mut coupling = at.and_then(|_| Coupling::of(model, nodes, Raised::Along));
+    let mut coupling = at.and_then(|_| Coupling::of(model, nodes, DilationForce::Along));
     // Threads work on a column each; what they found is added in the order of the patches.
     for columns in shape.columns().chunks(columns_at_a_time(shape)) {
         let state = Assembly {
@@ -71,7 +71,7 @@ fn assemble_into<K: Kinematics<D>, const D: usize>(
             .collect();
         let patches = columns.iter().flat_map(|column| column.patches.clone());
         for (patch, part) in patches.zip(parts.into_iter().flatten()) {
-            solver.add(shape.patches()[patch].first_node, &part.block);
+            solver.add_block(shape.patches()[patch].first_node, &part.block);
             if let (Some(coupling), Some(dilations)) = (&mut coupling, &part.dilations) {
                 coupling.add(patch, dilations);
             }
@@ -110,10 +110,10 @@ struct PatchPart {
 struct Assembly<'a, K: Kinematics<D>, const D: usize> {
     model: &'a Model<K, D>,
     shape: &'a Shape<D>,
-    nodes: &'a Nodes<D>,
+    nodes: &'a GridState<D>,
     points: &'a Points<D>,
     volume: &'a [f64],
-    at: Option<&'a Trial<K, D>>,
+    at: Option<&'a DeformationIncrement<K, D>>,
     coupling: Option<&'a Coupling<'a, D>>,
     damping: &'a Damping,
 }

@@ -12,7 +12,7 @@ use crate::points::Points;
 use crate::real::Real;
 use crate::stabilisation::Stabilisation;
 use crate::step::damping::{Damping, Viscous};
-use crate::step::nodes::Nodes;
+use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 use crate::tensor::{Symmetric, Tensor};
 
@@ -21,7 +21,7 @@ pub type Stressed<R> = (Tensor<R>, Symmetric<R>);
 
 /// Increment of the deformation of every point.
 #[derive(Clone, Debug)]
-pub struct Trial<K: Kinematics<D>, const D: usize> {
+pub struct DeformationIncrement<K: Kinematics<D>, const D: usize> {
     /// -  grad u of the step (step 4a); not a number at a point that inverted
     grad: Vec<K::Gradient>,
     /// -  S(w dJ) of every point, w dJ: dJ, or J under Zhao's F-bar (steps 4c, 4e); under F-bar only
@@ -32,13 +32,13 @@ pub struct Trial<K: Kinematics<D>, const D: usize> {
     pub(crate) pore: Option<Vec<f64>>,
 }
 
-impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
+impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
     /// Deformation under the nodal displacement `u`. A point that inverted gets a dF that is not finite, which the
     /// constitution refuses: all ranks decide together once the residual's norms are reduced.
     pub fn of(
         model: &Model<K, D>,
         shape: &Shape<D>,
-        nodes: &Nodes<D>,
+        nodes: &GridState<D>,
         points: &Points<D>,
         u: &[f64],
         halo: &dyn Halo,
@@ -141,8 +141,9 @@ impl<K: Kinematics<D>, const D: usize> Trial<K, D> {
         self.mean.is_some()
     }
 
-    /// Steps (4f)-(4i) of eight points: dF and the stress. `None` where [`Trial::respond`] has to answer: of points of
-    /// several materials, of graded and damped ones, of those that gape, and where the material says so.
+    /// Steps (4f)-(4i) of eight points: dF and the stress. `None` where [`DeformationIncrement::respond`] has to
+    /// answer: of points of several materials, of graded and damped ones, of those that gape, and where the material
+    /// says so.
     #[inline(always)]
     pub fn respond_in_lanes<S: Simd>(
         &self,

@@ -119,5 +119,5 @@ pub fn excess<K, const D: usize>(
             sum.add(0.5 * points.mass[p] * (v[p].norm_squared() - (du[p] / dt).norm_squared()));
         }
     }
-    Some(halo.total(&[sum])[0])
+    Some(halo.reproducible_sum(&[sum])[0])
 }

@@ -74,7 +74,7 @@ pub fn forces_on_faces<K: Kinematics<D>, const D: usize>(
     volume: &[f64],
     halo: &dyn Halo,
 ) -> Vec<f64> {
-    let areas = halo.sum(&transfer::divergence::<K, D>(shape, &points.x, |p| {
+    let areas = halo.assemble_ghosts(&transfer::divergence::<K, D>(shape, &points.x, |p| {
         K::working(&(Tensor::identity() * weight(points, volume, p)))
     }));
     let mut forces = vec![0.0; areas.len()];

@@ -1,7 +1,7 @@
 //! Water content of a soil, theory-manual equation (T8.5).
 
 use crate::water::flow::Soil;
-use crate::water::retention::{Retained, RetainedChange};
+use crate::water::retention::{RetainedChange, RetentionState};
 
 impl<const D: usize> Soil<D> {
     /// Water per volume of the start, of soil that has become `J` times that volume, under the excess pressure `p`, Pa;
@@ -13,10 +13,10 @@ impl<const D: usize> Soil<D> {
 
     /// Under the whole pore pressure `p`, Pa, of water of the unit weight `weight`, N/m3.
     #[inline]
-    pub fn retained(&self, p: f64, weight: f64) -> Retained {
+    pub fn retained(&self, p: f64, weight: f64) -> RetentionState {
         self.retention
             .as_ref()
-            .map_or(Retained::FULL, |retention| retention.under(p, weight))
+            .map_or(RetentionState::FULL, |retention| retention.under(p, weight))
     }
 
     /// What those change by with the whole pore pressure, which was `before`, Pa.

@@ -2,7 +2,7 @@
 
 /// m3 (per metre in plane strain)  volumes of water, per surface
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Crossed {
+pub struct CumulativeFlux {
     /// out of the ground, through every drain
     pub drains: Vec<f64>,
     /// out of the ground, through every drained face of the grid
@@ -14,7 +14,7 @@ pub struct Crossed {
     pub removed: f64,
 }
 
-impl Crossed {
+impl CumulativeFlux {
     /// Adds `times` as much as has gone through since.
     pub fn add(&mut self, times: f64, more: &Self) {
         let lists = [&mut self.drains, &mut self.faces, &mut self.inflows];
@@ -47,11 +47,11 @@ impl Crossed {
 
 /// The last step's flow, which the next one goes on with; what points took in stands with them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Flowed {
+pub struct PreviousFlow {
     /// s  length of the step
     pub dt: f64,
     /// m3  that crossed the surface of the ground in it
-    pub crossed: Crossed,
+    pub crossed: CumulativeFlux,
     /// m3  that it left out of balance
     pub left: f64,
 }

@@ -234,7 +234,7 @@ impl Drainage {
                 .iter()
                 .flat_map(|row| N.iter().map(move |column| outlet.conductance * row * column))
                 .collect();
-            solver.add(outlet.attachment.first_node(), &block);
+            solver.add_block(outlet.attachment.first_node(), &block);
         }
     }
 
@@ -258,7 +258,7 @@ impl Drainage {
             sums[2 * outlet.surface].add(if outlet.surface < self.of[0] { out } else { -out });
             sums[2 * outlet.surface + 1].add(1.0);
         }
-        let totals = halo.total(&sums);
+        let totals = halo.reproducible_sum(&sums);
         let mut each = totals.chunks_exact(2).map(|sums| DrainReport {
             through: sums[0],
             held: sums[1] as usize,
@@ -349,7 +349,7 @@ fn places<const D: usize>(
             .for_each(|(number, value)| *number = value);
     });
     // Each number is of one rank alone.
-    halo.reduce(&mut numbers);
+    halo.all_reduce_sum(&mut numbers);
     let places = numbers.chunks_exact(width).map(|numbers| {
         let [x, normal, permeability] = [0, 1, 2].map(|k| Vector::from_column_slice(&numbers[k * D..][..D]));
         SurfacePlace {

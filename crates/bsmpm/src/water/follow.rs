@@ -5,7 +5,7 @@ use crate::kinematics::Kinematics;
 use crate::parallel::LinearSolver;
 use crate::step::problem::Problem;
 use crate::water::matrix;
-use crate::water::nodes::Pores;
+use crate::water::nodes::PoreField;
 use crate::water::split;
 
 /// Iterations that pores which empty are followed for.
@@ -44,7 +44,7 @@ impl Follow {
     pub fn tame<K, const D: usize>(
         &mut self,
         problem: &Problem<'_, K, D>,
-        pores: &Pores<D>,
+        pores: &PoreField<D>,
         x: &[f64],
         dx: &mut [f64],
         measure: f64,
@@ -76,7 +76,7 @@ impl Follow {
     pub fn up<K: Kinematics<D>, const D: usize>(
         &mut self,
         problem: &Problem<'_, K, D>,
-        pores: &Pores<D>,
+        pores: &PoreField<D>,
         x: &[f64],
         measure: f64,
         solver: &mut dyn LinearSolver,
@@ -90,7 +90,7 @@ impl Follow {
         let p = &x[problem.nodes.free.len()..];
         let open = pores.drainage.open(p);
         let mut changed = [open != self.open, self.tamed].map(|is| f64::from(u8::from(is)));
-        problem.halo.maximum(&mut changed);
+        problem.halo.all_reduce_max(&mut changed);
         let first = flow.retains() && self.first < FIRST && (measure > NEAR || changed[1] > 0.0);
         let change = changed[0] > 0.0 && self.changes < CHANGES;
         if !first && !change {

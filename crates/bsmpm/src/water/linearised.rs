@@ -15,14 +15,14 @@ use crate::kinematics::{Gradient, Kinematics};
 use crate::model::Model;
 use crate::points::Points;
 use crate::step::problem::Problem;
-use crate::step::trial::Trial;
+use crate::step::trial::DeformationIncrement;
 use crate::tensor::{Tensor, Vector};
-use crate::water::nodes::{Pores, Wet};
-use crate::water::residual::{ExcessPressure, Flowing, pushed};
+use crate::water::nodes::{PoreField, SaturatedPoint};
+use crate::water::residual::{ExcessPressure, FlowState, pushed};
 
 /// The derivative at one state.
-pub struct LinearisedWater<'a, const D: usize> {
-    pores: &'a Pores<D>,
+pub struct WaterTangent<'a, const D: usize> {
+    pores: &'a PoreField<D>,
     p: &'a [f64], // Pa, nodal
     points: Vec<Option<Change<D>>>,
 }
@@ -42,19 +42,19 @@ struct Change<const D: usize> {
 }
 
 /// Changes at a point for displacements and pressures.
-pub struct Changed<const D: usize> {
+pub struct FlowChange<const D: usize> {
     /// m3
     pub stored: f64,
     /// m3 m  what flows in the step, and the tau term
     pub flux: Vector<D>,
 }
 
-impl<'a, const D: usize> LinearisedWater<'a, D> {
+impl<'a, const D: usize> WaterTangent<'a, D> {
     /// Where the nodal excess pressures are `p`, Pa.
     pub fn at<K: Kinematics<D>>(
         problem: &Problem<'_, K, D>,
-        pores: &'a Pores<D>,
-        trial: &Trial<K, D>,
+        pores: &'a PoreField<D>,
+        trial: &DeformationIncrement<K, D>,
         p: &'a [f64],
     ) -> Self {
         let points = scalars::scalars(&pores.shape, p, |p, value, gradient| {
@@ -85,11 +85,11 @@ impl<'a, const D: usize> LinearisedWater<'a, D> {
             };
             let l = K::gradient::<f64>(&grad[p]) * change.inverse;
             let averaged = averaged.map_or(0.0, |rate| rate[p]);
-            let Changed { stored, flux } = change.of(&l, averaged, pressures[p], wet, pores.duration);
+            let FlowChange { stored, flux } = change.of(&l, averaged, pressures[p], wet, pores.duration);
             [(stored, flux)]
         });
         pores.drainage.add_changes(self.p, v, &mut sums);
-        let mut sums = problem.halo.sum(&sums);
+        let mut sums = problem.halo.assemble_ghosts(&sums);
         pores.ties.add_to(v, &mut sums, |node| node);
         sums.iter_mut()
             .zip(&pores.free)
@@ -119,16 +119,16 @@ impl<const D: usize> Change<D> {
         model: &Model<K, D>,
         points: &Points<D>,
         p: usize,
-        wet: &Wet<D>,
+        wet: &SaturatedPoint<D>,
         dF: &Tensor,
         dilation: f64,
         excess: ExcessPressure<D>,
     ) -> Option<Self> {
-        let state = Flowing::at(model, points, p, wet, dF, dilation, excess)?;
+        let state = FlowState::at(model, points, p, wet, dF, dilation, excess)?;
         let water = model.water.as_ref()?;
         let flow = water.flow.as_ref()?;
         let soil = flow.soils[usize::from(points.material[p])].as_ref()?;
-        let Flowing {
+        let FlowState {
             J,
             whole,
             retained,
@@ -162,7 +162,14 @@ impl<const D: usize> Change<D> {
         })
     }
 
-    fn of(&self, l: &Tensor, averaged: f64, excess: ExcessPressure<D>, wet: &Wet<D>, duration: f64) -> Changed<D> {
+    fn of(
+        &self,
+        l: &Tensor,
+        averaged: f64,
+        excess: ExcessPressure<D>,
+        wet: &SaturatedPoint<D>,
+        duration: f64,
+    ) -> FlowChange<D> {
         let ExcessPressure {
             value: pressure,
             gradient,
@@ -176,7 +183,7 @@ impl<const D: usize> Change<D> {
         let flux = Vector::from_fn(|i, _| self.J * (0..D).map(|j| self.inverse[(i, j)] * w[j]).sum::<f64>());
         let stored = wet.volume * (self.stored.0 * trace + self.stored.1 * pressure);
         let tau = self.tau.0.component_mul(&gradient) + self.tau.1 * pressure;
-        Changed {
+        FlowChange {
             stored,
             flux: tau - flux * (duration * wet.volume),
         }

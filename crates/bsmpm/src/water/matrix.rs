@@ -8,13 +8,13 @@ use crate::step::problem::Problem;
 use crate::tensor::Vector;
 use crate::water::Water;
 use crate::water::flow::Flow;
-use crate::water::nodes::{Pores, SHORTEST_WAVE};
+use crate::water::nodes::{PoreField, SHORTEST_WAVE};
 
 /// Assembles S at the state of the step's start into `solver` and factorises it; pores empty and seepage faces are open
 /// as under the nodal excess pressures `p`, Pa.
 pub fn assemble<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    pores: &Pores<D>,
+    pores: &PoreField<D>,
     p: &[f64],
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
@@ -26,7 +26,7 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     else {
         return Ok(());
     };
-    solver.begin(&pores.free);
+    solver.reinit(&pores.free);
     let pressures = if flow.retains() {
         scalars::scalars(&pores.shape, p, |_, value, _| value)
     } else {
@@ -51,11 +51,11 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
                     .for_each(|(entry, other)| *entry += A * other.value + gradient.dot(&other.gradient));
             }
         }
-        solver.add(patch.first_node, &block);
+        solver.add_block(patch.first_node, &block);
     }
     pores.drainage.assemble(p, solver);
     pores.ties.assemble(problem.halo, solver);
-    solver.finish(Symmetry::Definite)
+    solver.factorise(Symmetry::Definite)
 }
 
 /// What a point adds to S.
@@ -69,7 +69,7 @@ impl<const D: usize> MatrixFactors<D> {
     /// Pa, and `wave` 1/k^2 of the shortest wave, m2.
     fn of<K: Kinematics<D>>(
         problem: &Problem<'_, K, D>,
-        pores: &Pores<D>,
+        pores: &PoreField<D>,
         water: &Water<D>,
         flow: &Flow<D>,
         pressures: &[f64],

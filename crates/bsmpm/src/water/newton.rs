@@ -5,13 +5,13 @@ use crate::error::SolveError;
 use crate::kinematics::Kinematics;
 use crate::parallel::{Krylov, LinearSolver, dots};
 use crate::solve::fgmres;
-use crate::solve::linearised::Linearised;
+use crate::solve::linearised::ForceTangent;
 use crate::solve::unknowns::Unknowns;
 use crate::step::problem::Problem;
 use crate::step::residual::{Balance, Residual};
 use crate::step::stiffness;
 use crate::water::matrix;
-use crate::water::nodes::Pores;
+use crate::water::nodes::PoreField;
 use crate::water::residual::WaterBalance;
 use crate::water::split::{Split, system};
 
@@ -59,7 +59,7 @@ pub struct Exact {
 /// The direction at the state `x` to the residual `relative`, by systems that are assembled there.
 pub fn direction<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    pores: &Pores<D>,
+    pores: &PoreField<D>,
     x: &[f64],
     residual: &Residual<K, D>,
     water: &WaterBalance,
@@ -69,7 +69,7 @@ pub fn direction<K: Kinematics<D>, const D: usize>(
     let components = problem.nodes.free.len();
     let halo = problem.halo;
     let balance = &residual.balance;
-    let linearised = Linearised::at(problem, residual).with_water(x);
+    let linearised = ForceTangent::at(problem, residual).with_water(x);
     stiffness::assemble(problem, Some(&residual.trial), solver)?;
     matrix::assemble(problem, pores, &x[components..], system(solver)?)?;
     let scales = Scales::of(problem, balance);

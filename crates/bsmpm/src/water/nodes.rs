@@ -30,7 +30,7 @@ const SUMS: usize = 3;
 
 /// A point that water flows through, at the start of a step.
 #[derive(Clone, Copy, Debug)]
-pub struct Wet<const D: usize> {
+pub struct SaturatedPoint<const D: usize> {
     /// m^D  reference volume
     pub volume: f64,
     /// -  J at t
@@ -63,7 +63,7 @@ pub struct Wet<const D: usize> {
 
 /// The pore pressures of one step; nodal arrays of one number a node, by the functions of degree q - 1.
 #[derive(Clone, Debug)]
-pub struct Pores<const D: usize> {
+pub struct PoreField<const D: usize> {
     /// those functions at the points
     pub shape: Shape<D>,
     /// per node: points see it
@@ -77,7 +77,7 @@ pub struct Pores<const D: usize> {
     /// Pa  still water at the functions' places, where pores may empty; else none
     pub still: Vec<f64>,
     /// per point: of those that water flows through
-    pub wet: Vec<Option<Wet<D>>>,
+    pub wet: Vec<Option<SaturatedPoint<D>>>,
     /// drains and inflows
     pub drainage: Drainage,
     /// across lines where strains may jump
@@ -94,7 +94,7 @@ pub struct Pores<const D: usize> {
     pub round_off: f64,
 }
 
-impl<const D: usize> Pores<D> {
+impl<const D: usize> PoreField<D> {
     /// Of the step from `t` to `t + dt`; `None` where no water flows, or its pressures are held. Fails where a drain is
     /// on tight material.
     pub fn of<K: Kinematics<D>>(
@@ -113,10 +113,10 @@ impl<const D: usize> Pores<D> {
         let differences = Differences::of(model, points, interval);
         let duration = differences.now * interval.dt;
         let ground = FlowingGround::of(model, water, flow, points, interval, differences.last);
-        let wet: Vec<Option<Wet<D>>> = (0..points.len()).map(|p| ground.wet(p)).collect();
-        let sums = halo.sum(&ground.sums(&shape, &wet, duration));
+        let wet: Vec<Option<SaturatedPoint<D>>> = (0..points.len()).map(|p| ground.wet(p)).collect();
+        let sums = halo.assemble_ghosts(&ground.sums(&shape, &wet, duration));
         let mut largest = [sums.chunks_exact(SUMS).map(|of| of[0]).fold(0.0, f64::max)];
-        halo.maximum(&mut largest);
+        halo.all_reduce_max(&mut largest);
         let seen: Vec<bool> = sums.chunks_exact(SUMS).map(|of| of[0] > UNSEEN * largest[0]).collect();
         let prescribed = given(&model.grid, water, flow, end);
         let free: Vec<bool> = (0..seen.len())
@@ -135,7 +135,7 @@ impl<const D: usize> Pores<D> {
         let ties = Ties::of(&model.grid, &seen, &takes);
         let round_off = round_off(&sums, &free, halo);
         let mut unknowns = [halo.owned().nodes().filter(|&node| free[node]).count() as f64];
-        halo.reduce(&mut unknowns);
+        halo.all_reduce_sum(&mut unknowns);
         Ok(Some(Self {
             guess: guess(&sums, &seen, &prescribed),
             shape,
@@ -184,7 +184,7 @@ fn round_off(sums: &[f64], free: &[bool], halo: &dyn Halo) -> f64 {
             0.0
         }
     });
-    halo.total(&[squares])[0].sqrt()
+    halo.reproducible_sum(&[squares])[0].sqrt()
 }
 
 /// Pa  pressure of the still water at the places of the functions of degree q - 1, nodal; none where all pores stay
@@ -237,7 +237,7 @@ impl<'a, K: Kinematics<D>, const D: usize> FlowingGround<'a, K, D> {
     }
 
     /// The numbers that every function sums up, see [`SUMS`].
-    fn sums(&self, shape: &Shape<D>, wet: &[Option<Wet<D>>], duration: f64) -> Contributions {
+    fn sums(&self, shape: &Shape<D>, wet: &[Option<SaturatedPoint<D>>], duration: f64) -> Contributions {
         let Self { model, water, flow, .. } = *self;
         scalars::of_scalars(shape, |p| {
             let wet = wet[p].as_ref();
@@ -268,7 +268,7 @@ impl<'a, K: Kinematics<D>, const D: usize> FlowingGround<'a, K, D> {
     }
 
     /// The state of point `p` at the start of the step; `None` if no water flows through its material.
-    fn wet(&self, p: usize) -> Option<Wet<D>> {
+    fn wet(&self, p: usize) -> Option<SaturatedPoint<D>> {
         let Self {
             model,
             water,
@@ -307,7 +307,7 @@ impl<'a, K: Kinematics<D>, const D: usize> FlowingGround<'a, K, D> {
         } else {
             0.0
         };
-        Some(Wet {
+        Some(SaturatedPoint {
             volume,
             J,
             mean_J: J * points.dilation_of(p),
@@ -329,7 +329,7 @@ impl<'a, K: Kinematics<D>, const D: usize> FlowingGround<'a, K, D> {
     }
 }
 
-impl<const D: usize> Wet<D> {
+impl<const D: usize> SaturatedPoint<D> {
     /// m3 m  what the tau term makes of the gradient of the excess pressure, Pa/m, where nothing is lumped besides
     pub fn tau_of(&self, gradient: Vector<D>) -> Vector<D> {
         self.tau.component_mul(&(gradient + self.still - self.before))

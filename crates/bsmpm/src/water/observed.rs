@@ -83,12 +83,12 @@ impl<'a, const D: usize> PoreWater<'a, D> {
     pub fn range(&self, part: &Part, halo: &dyn Halo) -> [f64; 3] {
         let weighted = part.of(self.points).map(|p| self.volume(p) * self.pressure(p));
         let volumes = part.of(self.points).map(|p| self.volume(p));
-        let sums = halo.total(&[weighted.collect(), volumes.collect()]);
+        let sums = halo.reproducible_sum(&[weighted.collect(), volumes.collect()]);
         let mut ends = [f64::NEG_INFINITY; 2];
         for pressure in part.of(self.points).map(|p| self.pressure(p)) {
             ends = [ends[0].max(-pressure), ends[1].max(pressure)];
         }
-        halo.maximum(&mut ends);
+        halo.all_reduce_max(&mut ends);
         if sums[1] > 0.0 {
             [sums[0] / sums[1], -ends[0], ends[1]]
         } else {
@@ -171,7 +171,7 @@ impl<'a, const D: usize> PoreWater<'a, D> {
                     .map_or(0.0, |(_, soil)| self.points.volume[p] * soil.porosity)
             })
             .collect();
-        let sums = halo.total(&[self.taken().collect(), self.taken().map(f64::abs).collect(), pores]);
+        let sums = halo.reproducible_sum(&[self.taken().collect(), self.taken().map(f64::abs).collect(), pores]);
         let crossed = &self.points.surface.crossed;
         let out = crossed.out() + crossed.removed;
         let scale = sums[1]
@@ -195,7 +195,7 @@ impl<'a, const D: usize> PoreWater<'a, D> {
             .filter(|(id, _)| wanted(**id))
             .map(|of| of.1)
             .collect();
-        halo.total(&[own])[0]
+        halo.reproducible_sum(&[own])[0]
     }
 
     /// m3  (per metre in plane strain)  of water that every point has taken in since the start, at its density then
@@ -228,7 +228,7 @@ fn inside<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, halo: &dyn Halo) -> 
         let counts = counts.patch(patch.first_node);
         shape.offsets().iter().for_each(|&offset| counts[offset] += 1.0);
     }
-    let counts = halo.sum(&counts);
+    let counts = halo.assemble_ghosts(&counts);
     let is_full: Vec<bool> = counts
         .iter()
         .enumerate()

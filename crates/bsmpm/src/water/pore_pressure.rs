@@ -22,7 +22,7 @@ impl<const D: usize> PorePressure<D> {
             _ => transfer::to_nodes(shape, |p| moments_of::<D, 11>(weights[p], &places[p], pressures[p])),
         };
         Self {
-            moments: halo.sum(&moments),
+            moments: halo.assemble_ghosts(&moments),
         }
     }
 

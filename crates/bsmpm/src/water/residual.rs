@@ -7,10 +7,10 @@ use crate::model::Model;
 use crate::parallel::over_layers;
 use crate::points::Points;
 use crate::step::problem::Problem;
-use crate::step::trial::Trial;
+use crate::step::trial::DeformationIncrement;
 use crate::tensor::{Tensor, Vector};
-use crate::water::nodes::{Pores, Wet};
-use crate::water::retention::Retained;
+use crate::water::nodes::{PoreField, SaturatedPoint};
+use crate::water::retention::RetentionState;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -43,8 +43,8 @@ impl WaterBalance {
     /// water presses with. One exchange with the neighbours and one reduction.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        pores: &Pores<D>,
-        trial: &mut Trial<K, D>,
+        pores: &PoreField<D>,
+        trial: &mut DeformationIncrement<K, D>,
         p: &[f64],
     ) -> Self {
         let Problem {
@@ -58,7 +58,7 @@ impl WaterBalance {
             };
             let dilation = trial.dilation(model, points, p);
             let zero = Vector::zeros();
-            let Some(state) = Flowing::at(model, points, p, wet, &trial.dF(p), dilation, pressures[p]) else {
+            let Some(state) = FlowState::at(model, points, p, wet, &trial.dF(p), dilation, pressures[p]) else {
                 closed.fetch_add(1, Relaxed);
                 return [(f64::NAN, zero); TERMS];
             };
@@ -76,12 +76,17 @@ impl WaterBalance {
         });
         pores.drainage.add_to(p, &mut sums);
         trial.pore = Some(of_points(problem, pores, trial, &pressures));
-        let mut sums = halo.sum(&sums);
+        let mut sums = halo.assemble_ghosts(&sums);
         pores.ties.add_to(p, &mut sums, |node| node * TERMS + FLOWS);
         Self::at_nodes(problem, pores, &sums, closed.into_inner())
     }
 
-    fn at_nodes<K, const D: usize>(problem: &Problem<'_, K, D>, pores: &Pores<D>, sums: &[f64], closed: u64) -> Self {
+    fn at_nodes<K, const D: usize>(
+        problem: &Problem<'_, K, D>,
+        pores: &PoreField<D>,
+        sums: &[f64],
+        closed: u64,
+    ) -> Self {
         let halo = problem.halo;
         let mut excess = vec![0.0; pores.free.len()];
         let mut out = vec![0.0; pores.free.len()];
@@ -94,7 +99,7 @@ impl WaterBalance {
             }
         }
         let term = |k: usize| over_layers(halo, 1, |node| sums[node * TERMS + k].powi(2));
-        let totals = halo.total(&[
+        let totals = halo.reproducible_sum(&[
             over_layers(halo, 1, |node| excess[node].powi(2)),
             over_layers(halo, 1, |node| excess[node]),
             std::iter::once(closed as f64).collect(),
@@ -128,8 +133,8 @@ impl WaterBalance {
 /// does not fill chi p, less what acts as a force of its own.
 fn of_points<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    pores: &Pores<D>,
-    trial: &Trial<K, D>,
+    pores: &PoreField<D>,
+    trial: &DeformationIncrement<K, D>,
     pressures: &[ExcessPressure<D>],
 ) -> Vec<f64> {
     let of_points = pores.wet.iter().enumerate().map(|(p, wet)| {
@@ -142,13 +147,13 @@ fn of_points<K: Kinematics<D>, const D: usize>(
 }
 
 /// The water of a material under the whole pore pressure `p`, Pa.
-fn retained<K, const D: usize>(model: &Model<K, D>, material: u16, p: f64) -> Retained {
+fn retained<K, const D: usize>(model: &Model<K, D>, material: u16, p: f64) -> RetentionState {
     let Some(water) = &model.water else {
-        return Retained::FULL;
+        return RetentionState::FULL;
     };
     let flow = water.flow.as_ref();
     let soil = flow.and_then(|flow| flow.soils[usize::from(material)].as_ref());
-    soil.map_or(Retained::FULL, |soil| soil.retained(p, water.unit_weight))
+    soil.map_or(RetentionState::FULL, |soil| soil.retained(p, water.unit_weight))
 }
 
 /// Excess pore pressure at a point, or a change of it.
@@ -162,7 +167,7 @@ pub struct ExcessPressure<const D: usize> {
 
 /// What water does at a point under a trial.
 #[derive(Clone)]
-pub struct Flowing<const D: usize> {
+pub struct FlowState<const D: usize> {
     /// -  pores per reference volume, by J-bar: those that the skeleton's stress has felt
     pub pores: f64,
     /// -  water per reference volume
@@ -178,7 +183,7 @@ pub struct Flowing<const D: usize> {
     /// m/s  permeability of full pores along the axes; zero where nothing flows
     pub permeability: Vector<D>,
     /// what the pores keep
-    pub retained: Retained,
+    pub retained: RetentionState,
     /// Pa  whole pore pressure; of pores that stay full the excess alone
     pub whole: f64,
     /// -
@@ -187,7 +192,7 @@ pub struct Flowing<const D: usize> {
     pub inverse: Tensor,
 }
 
-impl<const D: usize> Flowing<D> {
+impl<const D: usize> FlowState<D> {
     /// Of a wet point with dF and J-bar/J at the end of the step, and with the excess pressure, Pa, and its gradient by
     /// the places at t, Pa/m; `None` where dF has no inverse.
     #[inline]
@@ -195,7 +200,7 @@ impl<const D: usize> Flowing<D> {
         model: &Model<K, D>,
         points: &Points<D>,
         p: usize,
-        wet: &Wet<D>,
+        wet: &SaturatedPoint<D>,
         dF: &Tensor,
         dilation: f64,
         excess: ExcessPressure<D>,
@@ -242,7 +247,7 @@ pub fn pushed<const D: usize>(inverse: &Tensor, gradient: &Vector<D>) -> Vector<
 /// t (Q p), N, of this rank's and the others' points.
 pub fn pressing<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    pores: &Pores<D>,
+    pores: &PoreField<D>,
     p: &[f64],
 ) -> Vec<f64> {
     let at_points = scalars::scalars(&pores.shape, p, |_, value, _| value);
@@ -255,7 +260,7 @@ pub fn pressing<K: Kinematics<D>, const D: usize>(
         let chi = retained(problem.model, problem.points.material[p], wet.pressure).effective;
         identity * (volume[p] * wet.J * (chi * at_points[p]))
     });
-    let mut force = problem.halo.sum(&force);
+    let mut force = problem.halo.assemble_ghosts(&force);
     problem.nodes.reduce(&mut [&mut force], problem.halo);
     force
         .iter_mut()

@@ -2,7 +2,7 @@
 
 mod measured;
 
-pub use measured::Measured;
+pub use measured::MeasuredCurve;
 
 use crate::gauss::GAUSS;
 
@@ -37,14 +37,14 @@ pub enum Curve {
         n: f64,
     },
     /// rows as measured
-    Measured(Measured),
+    Measured(MeasuredCurve),
 }
 
 /// Heads at most up to which a curve is integrated once for all.
 const BENDS: usize = 32;
 
 /// What a curve says under one suction.
-struct Drawn {
+struct RetentionPoint {
     /// -
     effective: f64,
     /// 1/m  what the effective saturation loses by suction, not negative
@@ -55,7 +55,7 @@ struct Drawn {
 
 /// A soil under a pore pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Retained {
+pub struct RetentionState {
     /// -  share of the pores that water fills
     pub saturation: f64,
     /// 1/Pa  its derivative by the pressure, not negative
@@ -77,7 +77,7 @@ pub struct RetainedChange {
     pub chord: f64,
 }
 
-impl Retained {
+impl RetentionState {
     /// All pores full of water.
     pub const FULL: Self = Self {
         saturation: 1.0,
@@ -124,7 +124,7 @@ impl Curve {
     }
 
     /// Under the suction head `s`, m, above 0.
-    fn drawn(&self, s: f64) -> Drawn {
+    fn drawn(&self, s: f64) -> RetentionPoint {
         match self {
             Self::VanGenuchten { alpha, n } => {
                 let m = 1.0 - 1.0 / n;
@@ -133,7 +133,7 @@ impl Curve {
                 let effective = (1.0 + drawn).powf(-m);
                 // 1 - Se^(1/m) = drawn/(1 + drawn), which does not cancel.
                 let wide = 1.0 - (drawn / (1.0 + drawn)).powf(m);
-                Drawn {
+                RetentionPoint {
                     effective,
                     // (alpha s)^(n-1): where n is near 1 and s near 0 the quotient of the powers has no meaning.
                     by_head: m * n * alpha * head.powf(n - 1.0) * effective / (1.0 + drawn),
@@ -142,7 +142,7 @@ impl Curve {
             }
             Self::Measured(of) => {
                 let [[effective, slope], [permeability, _]] = of.at(s);
-                Drawn {
+                RetentionPoint {
                     effective,
                     by_head: -slope,
                     permeability,
@@ -197,12 +197,12 @@ impl Retention {
     }
 
     /// Under the pore pressure `p`, Pa, of water of the unit weight `weight`, N/m3.
-    pub fn under(&self, p: f64, weight: f64) -> Retained {
+    pub fn under(&self, p: f64, weight: f64) -> RetentionState {
         if p >= 0.0 {
-            return Retained::FULL;
+            return RetentionState::FULL;
         }
         let found = self.curve.drawn(-p / weight);
-        Retained {
+        RetentionState {
             saturation: self.residual + (1.0 - self.residual) * found.effective,
             slope: (1.0 - self.residual) * found.by_head / weight,
             effective: found.effective,
@@ -300,7 +300,7 @@ mod tests {
             [head, 1.0 - left, 1.0 - 2.207 * left.powf(1.0121)]
         };
         Retention::new(
-            Curve::Measured(Measured::new(heads.into_iter().map(row).collect())),
+            Curve::Measured(MeasuredCurve::new(heads.into_iter().map(row).collect())),
             0.0,
         )
     }
@@ -318,8 +318,8 @@ mod tests {
                 assert!((found.saturation - soil.residual - (1.0 - soil.residual) * effective).abs() < 1e-14);
                 assert!((found.permeability / k.max(LEAST) - 1.0).abs() < 1e-9, "{found:?} {k}");
             }
-            assert_eq!(soil.under(0.0, WEIGHT), Retained::FULL);
-            assert_eq!(soil.under(1e4, WEIGHT), Retained::FULL);
+            assert_eq!(soil.under(0.0, WEIGHT), RetentionState::FULL);
+            assert_eq!(soil.under(1e4, WEIGHT), RetentionState::FULL);
         }
         // Half of what can leave has left where (alpha s)^n = 2^(1/m) - 1; fully dry soil keeps the residual water.
         assert!((sand().under(-1e12, WEIGHT).saturation - 0.1).abs() < 1e-6);
@@ -422,7 +422,7 @@ mod tests {
             [1.0, 0.4, 0.01],
             [1.1, 0.05, 0.0],
         ];
-        let stepped = Retention::new(Curve::Measured(Measured::new(steps)), 0.05);
+        let stepped = Retention::new(Curve::Measured(MeasuredCurve::new(steps)), 0.05);
         for soil in [measured([0.0, 0.2, 0.4, 0.7, 1.0]), measured([0.0, 1.0]), stepped] {
             let at = |s: f64| soil.under(-s * WEIGHT, WEIGHT);
             for k in 1..300 {
@@ -430,7 +430,8 @@ mod tests {
                 let step = 1e-6;
                 let found = at(s);
                 let change = soil.change(-WEIGHT, -s * WEIGHT, WEIGHT);
-                let by = |of: fn(&Retained) -> f64| (of(&at(s - step)) - of(&at(s + step))) / (2.0 * step * WEIGHT);
+                let by =
+                    |of: fn(&RetentionState) -> f64| (of(&at(s - step)) - of(&at(s + step))) / (2.0 * step * WEIGHT);
                 assert!((by(|of| of.saturation) - found.slope).abs() < 1e-6 / WEIGHT, "{s}");
                 assert!(found.slope >= 0.0 && change.permeability >= 0.0 && found.permeability >= LEAST);
                 if found.permeability > LEAST {

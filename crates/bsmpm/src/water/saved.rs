@@ -6,15 +6,15 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::parallel::Halo;
 use crate::points::Points;
-use crate::solve::found::Found;
+use crate::solve::found::StepSolution;
 use crate::step::problem::Problem;
-use crate::step::trial::Trial;
+use crate::step::trial::DeformationIncrement;
 use crate::tensor::Vector;
 use crate::water::backward::is_smooth;
-use crate::water::crossed::Crossed;
+use crate::water::crossed::CumulativeFlux;
 use crate::water::flow::{DrainedFace, Flow};
-use crate::water::nodes::{Pores, face_functions};
-use crate::water::residual::{ExcessPressure, Flowing};
+use crate::water::nodes::{PoreField, face_functions};
+use crate::water::residual::{ExcessPressure, FlowState};
 
 /// Part of a cell by which ground is off a drained face when it is reported: a column that had settled by 0.1 of a
 /// cell was 1 % short of its settlement, by 0.3 of a cell 4 %, and by one it settled no more.
@@ -39,7 +39,7 @@ pub struct WaterReport {
     /// m3  that the points took in: what they hold now less what they held before
     pub stored: f64,
     /// m3  that crossed the surface of the ground, of second order with what goes on of the step before
-    pub crossed: Crossed,
+    pub crossed: CumulativeFlux,
     /// points of every drain with material near, then of every inflow
     pub held: Vec<usize>,
     /// cells between points of every drain, then of every inflow, that were neighbours on the surface at the start: the
@@ -58,7 +58,10 @@ pub struct WaterReport {
 impl WaterReport {
     /// Of what was found, before the points have taken it; `None` where no water flows. Two reductions,
     /// with drained faces three.
-    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Option<Self> {
+    pub fn of<K: Kinematics<D>, const D: usize>(
+        problem: &Problem<'_, K, D>,
+        found: &StepSolution<K, D>,
+    ) -> Option<Self> {
         let Problem { model, nodes, halo, .. } = *problem;
         let pores = nodes.pores.as_ref()?;
         let water = found.water.as_ref()?;
@@ -75,10 +78,10 @@ impl WaterReport {
                 }
             }
         }
-        let faces = halo.total(&sums);
+        let faces = halo.reproducible_sum(&sums);
         let [drains, inflows] = pores.drainage.report(&found.p, halo);
         let held = drains.iter().chain(&inflows).map(|report| report.held).collect();
-        let mut crossed = Crossed {
+        let mut crossed = CumulativeFlux {
             drains: drains.iter().map(|report| report.through).collect(),
             faces,
             inflows: inflows.iter().map(|report| report.through).collect(),
@@ -107,13 +110,13 @@ impl WaterReport {
 }
 
 /// The ground at the drained faces, before the step. One reduction, if there are some.
-fn at_faces<K, const D: usize>(problem: &Problem<'_, K, D>, pores: &Pores<D>, flow: &Flow<D>) -> Vec<FaceReport> {
+fn at_faces<K, const D: usize>(problem: &Problem<'_, K, D>, pores: &PoreField<D>, flow: &Flow<D>) -> Vec<FaceReport> {
     if flow.faces.is_empty() {
         return Vec::new();
     }
     let counts = flow.faces.iter().flat_map(|face| at_face(problem, pores, flow, face));
     let sums: Vec<Exact> = counts.collect();
-    let totals = problem.halo.total(&sums);
+    let totals = problem.halo.reproducible_sum(&sums);
     let reports = totals.chunks_exact(3).map(|counts| FaceReport {
         near: counts[0] as usize,
         off: counts[1] as usize,
@@ -125,7 +128,7 @@ fn at_faces<K, const D: usize>(problem: &Problem<'_, K, D>, pores: &Pores<D>, fl
 /// The numbers of a [`FaceReport`], on this rank.
 fn at_face<K, const D: usize>(
     problem: &Problem<'_, K, D>,
-    pores: &Pores<D>,
+    pores: &PoreField<D>,
     flow: &Flow<D>,
     face: &DrainedFace,
 ) -> [Exact; 3] {
@@ -155,8 +158,8 @@ fn at_face<K, const D: usize>(
 /// in; m3 of it, over all ranks.
 pub fn save<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    pores: &Pores<D>,
-    trial: &Trial<K, D>,
+    pores: &PoreField<D>,
+    trial: &DeformationIncrement<K, D>,
     p: &[f64],
     points: &mut Points<D>,
     halo: &dyn Halo,
@@ -169,7 +172,7 @@ pub fn save<K: Kinematics<D>, const D: usize>(
             value: pressure,
             gradient,
         };
-        let state = Flowing::at(model, points, p, wet, &trial.dF(p), dilation, excess)?;
+        let state = FlowState::at(model, points, p, wet, &trial.dF(p), dilation, excess)?;
         Some((pressure, state))
     });
     let density = water.density(model);
@@ -205,5 +208,5 @@ pub fn save<K: Kinematics<D>, const D: usize>(
     }
     (points.pore_pressure, points.pressure_gradient) = (Some(pressures), Some(gradients));
     (points.content_change, points.gradient_change) = goes_on.unzip();
-    halo.total(&[stored.into_iter().collect()])[0]
+    halo.reproducible_sum(&[stored.into_iter().collect()])[0]
 }

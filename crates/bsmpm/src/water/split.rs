@@ -3,9 +3,9 @@
 
 use crate::error::SolveError;
 use crate::kinematics::Kinematics;
-use crate::parallel::{LinearSolver, Solved};
+use crate::parallel::{LinearSolver, SolveReport};
 use crate::step::problem::Problem;
-use crate::water::nodes::Pores;
+use crate::water::nodes::PoreField;
 use crate::water::residual::pressing;
 
 /// A direction before secants, the forces that it balances, and what it took.
@@ -15,7 +15,7 @@ pub struct Split {
     /// N and m3, nodal
     pub f: Vec<f64>,
     /// both systems
-    pub solved: Solved,
+    pub solved: SolveReport,
 }
 
 impl Split {
@@ -23,7 +23,7 @@ impl Split {
     /// those of the solutions.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        pores: &Pores<D>,
+        pores: &PoreField<D>,
         out_of_balance: &[f64],
         solver: &mut dyn LinearSolver,
     ) -> Result<Self, SolveError> {

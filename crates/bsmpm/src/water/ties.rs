@@ -62,7 +62,7 @@ impl Ties {
     /// Adds its derivative, each pair on the rank that owns the first of them.
     pub fn assemble(&self, halo: &dyn Halo, solver: &mut dyn LinearSolver) {
         for Tie { nodes, flow } in self.pairs.iter().filter(|tie| halo.owned().contains(tie.nodes[0])) {
-            solver.add_among(nodes, &[*flow, -flow, -flow, *flow]);
+            solver.add_block_among(nodes, &[*flow, -flow, -flow, *flow]);
         }
     }
 }

@@ -6,11 +6,11 @@ use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::parallel::over_layers;
 use crate::points::Points;
-use crate::solve::found::Found;
+use crate::solve::found::StepSolution;
 use crate::step::problem::Problem;
 use crate::water::flow::{Flow, Soil};
 use crate::water::residual::ExcessPressure;
-use crate::water::residual::Flowing;
+use crate::water::residual::FlowState;
 
 /// J, on this rank; see the [books](crate::energy).
 #[derive(Clone, Debug)]
@@ -31,7 +31,10 @@ pub struct Work {
 
 impl Work {
     /// Of what was found, before the points have taken it; `None` where no water flows.
-    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &Found<K, D>) -> Option<Self> {
+    pub fn of<K: Kinematics<D>, const D: usize>(
+        problem: &Problem<'_, K, D>,
+        found: &StepSolution<K, D>,
+    ) -> Option<Self> {
         let Problem {
             model, points, halo, ..
         } = *problem;
@@ -50,7 +53,7 @@ impl Work {
                 value: pressure,
                 gradient,
             };
-            let Some(state) = Flowing::at(model, points, p, wet, &dF, dilation, excess) else {
+            let Some(state) = FlowState::at(model, points, p, wet, &dF, dilation, excess) else {
                 return [f64::NAN; 5];
             };
             let soil = flow.soils[usize::from(points.material[p])].as_ref();

@@ -1,13 +1,13 @@
 //! Tests that the number of memory allocations in a residual evaluation does not depend on the number of points.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
-use bsmpm::boundary::strip::StripAttachments;
+use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::tensor::Vector;
@@ -61,8 +61,9 @@ fn allocations(per_axis: usize, method: Stabilisation) -> usize {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
-    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 0.1 }, &halo).expect("no loads");
-    let attachments = StripAttachments::at(
+    let nodes =
+        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.1 }, &halo).expect("no loads");
+    let attachments = StripConstraints::at(
         &[],
         &points.surface,
         &model.grid,

@@ -56,11 +56,11 @@ fn returns_lie_on_the_ellipse_that_has_grown_and_flow_along_its_normal() {
         let tau = response.principal_tau();
         let (p, q) = invariants(tau);
         if response.branch() == Branch::Elastic {
-            assert!(material.excess(tau, &[before]) <= 1e-9 * before && after == before);
+            assert!(material.yield_function(tau, &[before]) <= 1e-9 * before && after == before);
             continue;
         }
         assert!(
-            p > 0.0 && material.excess(tau, &[after]).abs() <= 1e-11 * (p + q),
+            p > 0.0 && material.yield_function(tau, &[after]).abs() <= 1e-11 * (p + q),
             "{p} {q} {after}"
         );
         let trial = response.principal_eps_trial();
@@ -335,12 +335,12 @@ fn oedometer_tends_to_its_stress_ratio_and_slope() {
 fn the_start_gives_the_ellipse_and_no_pressure_gives_none() {
     let clay = law(3e6, 0.0, 2.0);
     let mut state = [0.0];
-    clay.start([-4e4, -4e4, -1e5], &mut state);
+    clay.initial_state([-4e4, -4e4, -1e5], &mut state);
     let p = 6e4;
     let q = 6e4;
     assert!((state[0] / (2.0 * (p + q * q / (M * M * p))) - 1.0).abs() < 1e-14);
     let given = law(3e6, 3e5, 0.0);
-    given.start([-4e4, -4e4, -1e5], &mut state);
+    given.initial_state([-4e4, -4e4, -1e5], &mut state);
     assert_eq!(state[0], 3e5);
     for mean in [0.0, 1e3] {
         let stress = Symmetric([mean, mean, mean, 0.0, 0.0, 0.0]);

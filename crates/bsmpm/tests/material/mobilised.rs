@@ -17,7 +17,7 @@ fn mobilised_strength_is_that_of_the_yield_function() {
         close(mohr_coulomb(1e3, 0.3, 30.0, 0.0, 0.0).mobilised(tau, &[]), mobilised);
         let both = mohr_coulomb(1e3, 0.3, 30.0, 0.0, 4.0);
         let share = both.mobilised(tau, &[]);
-        assert!(both.reduced(1.0 / share).excess(tau, &[]).abs() < 1e-5);
+        assert!(both.reduced(1.0 / share).yield_function(tau, &[]).abs() < 1e-5);
     }
     let mises = Material::VonMises(VonMises::new(
         Elastic {

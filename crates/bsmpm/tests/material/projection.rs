@@ -3,6 +3,7 @@
 
 use super::{Branch, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;
+use bsmpm::material::Moduli;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// The closest admissible point among the projections onto all sets of one, two and three of the six planes.
@@ -71,7 +72,7 @@ fn associated_return_is_the_closest_point() {
             continue;
         }
         tried += 1;
-        let (lambda, mu) = material.elastic().lame();
+        let Moduli { lambda, mu } = material.elastic().moduli();
         let stiffness = Matrix3::from_element(lambda) + Matrix3::identity() * (2.0 * mu);
         let trial = stiffness * Vector3::from(found.principal_eps_trial());
         let (sin, cos) = friction.to_radians().sin_cos();

@@ -2,6 +2,7 @@
 
 use super::{Branch, Material, difference, hencky, largest, mohr_coulomb, respond, stretched};
 use crate::random::Random;
+use bsmpm::material::Moduli;
 use bsmpm::tensor::Symmetric;
 
 /// φ, ψ (degrees) and c; principal strain; region; principal stress.
@@ -132,7 +133,7 @@ fn second_order_work_is_elastic_until_perfect_flow_leaves_none() {
 #[test]
 fn elastic_constants() {
     let material = hencky(1000.0, 0.25);
-    let (lambda, mu) = material.elastic().lame();
+    let Moduli { lambda, mu } = material.elastic().moduli();
     assert!((lambda - 400.0).abs() <= 1e-12 && (mu - 400.0).abs() <= 1e-12);
     assert!((material.elastic().oedometric() - 1200.0).abs() <= 1e-12);
     assert!(matches!(material, Material::Hencky(_)));

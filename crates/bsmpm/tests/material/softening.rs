@@ -49,7 +49,7 @@ fn returns_lie_on_the_surface_of_their_own_plastic_strain() {
         let (response, after) = answer(&material, &random.trial(-4.0, -0.7), before);
         let tau = response.principal_tau();
         let size = largest(&tau).max(1e-3);
-        let excess = material.excess(tau, &[after]);
+        let excess = material.yield_function(tau, &[after]);
         *seen.entry(format!("{:?}", response.branch())).or_insert(0) += 1;
         if response.branch() == Branch::Elastic {
             assert!(excess <= 0.0 && after == before);
@@ -110,7 +110,7 @@ fn tangent_is_the_derivative() {
         let law = if !rated {
             law
         } else {
-            law.at_rate(rate).over(1.0).expect("a rate")
+            law.at_rate(rate).at_time_step(1.0).expect("a rate")
         };
         let strain = law.parameters()[6];
         let before = 0.05 * random.unit();
@@ -155,11 +155,14 @@ fn a_strength_by_the_rate_is_found_whatever_the_plastic_strain() {
     let poisson = 0.49;
     let peak = 3.0;
     let per_decade = 0.1;
-    let shear = Elastic { young, poisson }.lame().1;
+    let shear = Elastic { young, poisson }.moduli().mu;
     let mut least = f64::INFINITY;
     for (k, reference) in (0..2_000).flat_map(|k| [1e-3, 1e-7, 1e-10, 1e-13].map(|reference| (k, reference))) {
         let law = law(poisson, [0.0, 0.0, peak], [0.0, 0.0, peak], 1.0, Decay::Exponential);
-        let law = law.at_rate(Rate { per_decade, reference }).over(1.0).expect("a rate");
+        let law = law
+            .at_rate(Rate { per_decade, reference })
+            .at_time_step(1.0)
+            .expect("a rate");
         let material = Material::SofteningMohrCoulomb(law);
         let beyond = peak * (1.0 + 2.2 * f64::from(k) / 2_000.0); // of the strength at rest
         let strain = beyond / (2.0 * shear);
@@ -184,7 +187,7 @@ fn pure_shear_softens_by_its_own_plastic_strain_in_any_number_of_steps() {
     let strain = 0.1;
     for (decay, way) in [(Decay::Linear, 0.05), (Decay::Linear, 0.3), (Decay::Exponential, 0.08)] {
         let law = law(0.3, [0.0, 0.0, peak], [0.0, 0.0, residual], strain, decay);
-        let shear = law.elastic().lame().1;
+        let shear = law.elastic().moduli().mu;
         let cohesion = |kappa: f64| match decay {
             Decay::Linear => peak + (residual - peak) * (kappa / strain).min(1.0),
             Decay::Exponential => residual + (peak - residual) * (-3.0 * kappa / strain).exp(),

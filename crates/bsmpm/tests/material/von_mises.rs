@@ -90,7 +90,7 @@ fn pure_shear_hardens_linearly_in_any_number_of_steps() {
     let hardening = 50.0;
     let way = 0.1; // principal strains ± way
     let law = law(0.3, hardening);
-    let shear = law.elastic().lame().1;
+    let shear = law.elastic().moduli().mu;
     // q = √3 τ₁, q = 3 μ (2/√3 way - κ) = σ_y + H κ.
     let kappa = (3.0 * shear * 2.0 / 3_f64.sqrt() * way - STRENGTH) / (3.0 * shear + hardening);
     let exact = (STRENGTH + hardening * kappa) / 3_f64.sqrt();

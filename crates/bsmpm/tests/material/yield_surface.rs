@@ -2,6 +2,7 @@
 
 use super::{Branch, difference, largest, mohr_coulomb, respond};
 use crate::random::Random;
+use bsmpm::material::Moduli;
 use bsmpm::material::{Law, Material, Response};
 
 const FRICTIONS: [f64; 6] = [0.0, 1e-9, 20.0, 45.0, 60.0, 89.9];
@@ -59,7 +60,7 @@ fn yield_is_satisfied_and_order_kept() {
 fn second_return_changes_nothing() {
     let change = worst(11, -0.5, |material, response| {
         let again = respond(material, &response.b_e());
-        let (lambda, mu) = material.elastic().lame();
+        let Moduli { lambda, mu } = material.elastic().moduli();
         let tau = response.tau();
         // What storing b to the last digit can change; the rest must be below 1e-10 of the stress.
         let stored = 1e-15 * (3.0 * lambda.abs() + 2.0 * mu);

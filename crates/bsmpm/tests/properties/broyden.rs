@@ -17,9 +17,9 @@ fn stiffness(random: &mut Random) -> DMatrix<f64> {
 /// The solver with `K` as its one patch.
 fn factorised(K: &DMatrix<f64>) -> Skyline {
     let mut solver = Skyline::of_patches(1, (0..N).collect());
-    solver.begin(&[true; N]);
-    solver.add(0, K.transpose().as_slice());
-    solver.finish(Symmetry::Definite).unwrap();
+    solver.reinit(&[true; N]);
+    solver.add_block(0, K.transpose().as_slice());
+    solver.factorise(Symmetry::Definite).unwrap();
     solver
 }
 

@@ -2,7 +2,7 @@
 
 use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis, hencky};
-use bsmpm::boundary::strip::StripAttachments;
+use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::grid::{Grid, KnotVector, Shape, transfer};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
@@ -10,10 +10,10 @@ use bsmpm::model::Regime;
 use bsmpm::points::{Points, Seed};
 use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::smooth;
-use bsmpm::step::trial::Trial;
+use bsmpm::step::trial::DeformationIncrement;
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
 
 /// Points of different mass at scattered places of a graded grid, deformed, with what Zhao's F-bar keeps.
@@ -43,8 +43,9 @@ fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisat
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
-    let attachments = StripAttachments::at(
+    let nodes =
+        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let attachments = StripConstraints::at(
         &[],
         &points.surface,
         &model.grid,
@@ -64,7 +65,7 @@ fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisat
     let du = random.array(u.len());
     let trial = |step: f64| {
         let u: Vec<f64> = u.iter().zip(&du).map(|(u, du)| u + step * du).collect();
-        Trial::of(model, &shape, &nodes, points, &u, &halo)
+        DeformationIncrement::of(model, &shape, &nodes, points, &u, &halo)
     };
     let at = trial(0.0);
     let trace = transfer::gradients::<K, D, _>(&shape, &scene.points.x, &du, |p, grad| {
@@ -210,7 +211,7 @@ fn the_filter_smooths_the_elastic_dilation_where_the_material_flows_and_nothing_
     let mut scene = flowing(0.002);
     let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
-    let nodes = Nodes::map(
+    let nodes = GridState::from_points(
         &scene.model,
         &shape,
         &scene.points,
@@ -252,7 +253,7 @@ fn without_flow_the_filter_leaves_every_bit() {
     let before = scene.points.clone();
     let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
-    let nodes = Nodes::map(
+    let nodes = GridState::from_points(
         &scene.model,
         &shape,
         &scene.points,
@@ -274,7 +275,8 @@ fn means<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, value: &[f64]) -
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let nodes =
+        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
     nodes.mean_dilation(model, &shape, points, &halo, |p| value[p])
 }
 

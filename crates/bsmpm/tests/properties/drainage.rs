@@ -191,7 +191,7 @@ fn the_matrix_is_the_derivative_of_the_terms() {
     let grid = &scene.model.grid;
     let drainage = drainage(&scene).expect("permeable");
     let mut matrix = Dense::of_patches(1, grid.lowered_offsets());
-    matrix.begin(&vec![true; grid.nodes()]);
+    matrix.reinit(&vec![true; grid.nodes()]);
     let (p, _) = linear(grid, |x| (7.0 * x[0]).sin() * 1e3 + x[1].powi(2) * 4e3);
     let now = out(grid, &drainage, &p);
     let none = out(grid, &drainage, &vec![0.0; p.len()]);
@@ -379,15 +379,15 @@ impl Halo for Rank<'_> {
     fn owned(&self) -> OwnedNodes {
         OwnedNodes::first(self.nodes)
     }
-    fn sum(&self, contributions: &Contributions) -> Vec<f64> {
+    fn assemble_ghosts(&self, contributions: &Contributions) -> Vec<f64> {
         contributions.alone()
     }
-    fn share(&self, _nodal: &mut [f64], _width: usize) {}
-    fn max(&self, _nodal: &mut [f64], _width: usize) {}
-    fn reduce(&self, numbers: &mut [f64]) {
+    fn update_ghosts(&self, _nodal: &mut [f64], _width: usize) {}
+    fn ghost_max(&self, _nodal: &mut [f64], _width: usize) {}
+    fn all_reduce_sum(&self, numbers: &mut [f64]) {
         self.together(numbers, |a, b| a + b);
     }
-    fn total(&self, sums: &[Exact]) -> Vec<f64> {
+    fn reproducible_sum(&self, sums: &[Exact]) -> Vec<f64> {
         let own: Vec<i64> = sums.iter().flat_map(|sum| *sum.words()).collect();
         {
             let mut words = self.meeting.words.lock().expect("no panic");
@@ -401,7 +401,7 @@ impl Halo for Rank<'_> {
             .map(|words| Exact::of_words(words).value())
             .collect()
     }
-    fn maximum(&self, numbers: &mut [f64]) {
+    fn all_reduce_max(&self, numbers: &mut [f64]) {
         self.together(numbers, f64::max);
     }
 }

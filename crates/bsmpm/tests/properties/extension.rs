@@ -4,16 +4,16 @@ use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use crate::support::solver::Dense;
 use bsmpm::boundary::Support;
-use bsmpm::boundary::strip::StripAttachments;
+use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::grid::{Grid, Shape};
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
 use bsmpm::nodal::Nodal;
 use bsmpm::schedule::TimeInterval;
-use bsmpm::solve::linearised::Linearised;
+use bsmpm::solve::linearised::ForceTangent;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::step::stiffness;
@@ -69,7 +69,7 @@ fn ties_keep_what_they_must<K: Kinematics<D>, const D: usize>(order: usize) {
     let grid = &scene.model.grid;
     let halo = scene.halo();
     let shape = Shape::at(grid, &scene.points).unwrap();
-    let nodes = Nodes::map(
+    let nodes = GridState::from_points(
         model,
         &shape,
         &scene.points,
@@ -127,8 +127,9 @@ fn matrix_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, is_genera
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
-    let attachments = StripAttachments::at(
+    let nodes =
+        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let attachments = StripConstraints::at(
         &[],
         &points.surface,
         &model.grid,
@@ -144,7 +145,7 @@ fn matrix_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, is_genera
         halo: &halo,
     };
     let residual = Residual::of(&problem, &vec![0.0; nodes.free.len()]);
-    let derivative = Linearised::at(&problem, &residual);
+    let derivative = ForceTangent::at(&problem, &residual);
     let mut matrix = Dense::new(&model.grid);
     match is_general {
         true => derivative.factorise(&mut matrix),
@@ -200,8 +201,9 @@ fn condition(scene: &Scene<PlaneStrain, 2>) -> f64 {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
-    let attachments = StripAttachments::at(
+    let nodes =
+        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let attachments = StripConstraints::at(
         &[],
         &points.surface,
         &model.grid,

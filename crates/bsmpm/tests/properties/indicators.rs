@@ -5,13 +5,13 @@ use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;
 use bsmpm::grid::{KnotVector, Shape, transfer};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
-use bsmpm::model::{Model, Regime, Weighting};
+use bsmpm::model::{AverageWeight, Model, Regime};
 use bsmpm::observe::noise::relative_pressure_noise;
 use bsmpm::observe::quadrature::{Defect, compression, defect};
 use bsmpm::parallel::Halo;
 use bsmpm::quadrature;
 use bsmpm::schedule::TimeInterval;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::step::smooth;
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
 
@@ -110,7 +110,7 @@ fn errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, inside: impl Fn
     let counts = |node: &usize| (0..D).all(|axis| reached(grid.node_at(*node)[axis]).all(|cell| inside(axis, cell)));
     [&points.volume, &weights(scene)].map(|weights| {
         let present = |p: usize| [weights[p] * points.F.at(p).determinant()];
-        let sums = scene.halo().sum(&transfer::to_nodes(&lower, present));
+        let sums = scene.halo().assemble_ghosts(&transfer::to_nodes(&lower, present));
         let error = |node: usize| (sums[node] / grid.lowered_volume::<K>(node) - 1.0).abs();
         (0..grid.nodes()).filter(counts).map(error).fold(0.0, f64::max)
     })
@@ -216,7 +216,14 @@ fn compression_is_that_of_each_material() {
 fn the_noise_of_the_pressure_has_no_unit() {
     let mut scene = block::<PlaneStrain, 2>(2, 0..6);
     let noise = |scene: &Scene<PlaneStrain, 2>| {
-        relative_pressure_noise(&scene.model.grid, &scene.points, Weighting::Mass, 0.0, &scene.halo()).unwrap()
+        relative_pressure_noise(
+            &scene.model.grid,
+            &scene.points,
+            AverageWeight::Mass,
+            0.0,
+            &scene.halo(),
+        )
+        .unwrap()
     };
     assert_eq!(noise(&scene).about_plane, 0.0);
     // A checkerboard of points: 1 +- 0.5, times any stress.
@@ -253,7 +260,7 @@ fn a_pass_of_smoothing_has_the_variance_of_its_formula() {
         let points = &scene.points;
         let halo = scene.halo();
         let shape = Shape::at(&scene.model.grid, points).unwrap();
-        let nodes = Nodes::map(
+        let nodes = GridState::from_points(
             &scene.model,
             &shape,
             points,

@@ -4,7 +4,7 @@ use crate::support::scene::{Scene, axis};
 use bsmpm::background::Background;
 use bsmpm::boundary::rigid::Outline;
 use bsmpm::boundary::{Boundary, Path, RigidBody, Strip, Support, surface};
-use bsmpm::control::Accepted;
+use bsmpm::control::AcceptedStep;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
@@ -43,13 +43,13 @@ fn footing(rows: Vec<(f64, [f64; 2])>) -> Scene<PlaneStrain, 2> {
 }
 
 /// The steps under a background of this coefficient.
-fn steps(rows: &[(f64, [f64; 2])], coefficient: f64) -> Vec<Accepted> {
+fn steps(rows: &[(f64, [f64; 2])], coefficient: f64) -> Vec<AcceptedStep> {
     let scene = footing(rows.to_vec()).background(Some(Background { coefficient }));
     scene.solved(0.05, rows.last().expect("a path").0).1
 }
 
 /// N  the last force of the strip.
-fn force(steps: &[Accepted]) -> f64 {
+fn force(steps: &[AcceptedStep]) -> f64 {
     steps.last().expect("a step").report.strips[0].force[1].abs()
 }
 
@@ -70,8 +70,8 @@ fn a_limit_load_does_not_depend_on_the_coefficient() {
 }
 
 /// Work of the background in every step over that of all internal forces.
-fn shares(steps: &[Accepted]) -> Vec<f64> {
-    let share = |step: &Accepted| step.report.background.map_or(0.0, |[soft, all]| soft / all.abs());
+fn shares(steps: &[AcceptedStep]) -> Vec<f64> {
+    let share = |step: &AcceptedStep| step.report.background.map_or(0.0, |[soft, all]| soft / all.abs());
     steps.iter().map(share).collect()
 }
 

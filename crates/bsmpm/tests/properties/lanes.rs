@@ -10,8 +10,8 @@ use bsmpm::model::{Model, Regime};
 use bsmpm::points::Points;
 use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::Nodes;
-use bsmpm::step::trial::Trial;
+use bsmpm::step::nodes::GridState;
+use bsmpm::step::trial::DeformationIncrement;
 use bsmpm::tensor::Vector;
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ use std::ops::Range;
 struct Stresses<'a, K: Kinematics<D>, const D: usize> {
     model: &'a Model<K, D>,
     points: &'a Points<D>,
-    trial: &'a Trial<K, D>,
+    trial: &'a DeformationIncrement<K, D>,
     range: Range<usize>,
 }
 
@@ -73,10 +73,11 @@ fn compared<K: Kinematics<D>, const D: usize>(method: Stabilisation, seed: u64) 
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
-    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let nodes =
+        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
     let mut u: Vec<f64> = (0..model.grid.nodes() * D).map(|_| 2e-3 * random.signed()).collect();
     u[0] = 3.0; // the points of the first cell
-    let trial = Trial::of(model, &shape, &nodes, points, &u, &halo);
+    let trial = DeformationIncrement::of(model, &shape, &nodes, points, &u, &halo);
     let mut count = 0;
     for first in [0, 1, 5] {
         for length in [1, 7, LANES, LANES + 1, points.len() - first] {

@@ -3,7 +3,7 @@
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};
 use bsmpm::background::Background;
-use bsmpm::boundary::strip::StripAttachments;
+use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
@@ -12,9 +12,9 @@ use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::schedule::TimeInterval;
-use bsmpm::solve::linearised::Linearised;
+use bsmpm::solve::linearised::ForceTangent;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::tensor::{Symmetric, Vector};
@@ -61,8 +61,9 @@ fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64,
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
-    let attachments = StripAttachments::at(
+    let nodes =
+        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
+    let attachments = StripConstraints::at(
         &model.boundary.strips,
         &points.surface,
         &model.grid,
@@ -97,7 +98,7 @@ fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64,
             .is_ok_and(|response| response.plastic_increment() > 0.0)
     });
     let mut product = vec![0.0; u.len()];
-    Linearised::at(&pieces, &residual).multiply(&v, &mut product);
+    ForceTangent::at(&pieces, &residual).multiply(&v, &mut product);
     let step = 1e-7;
     let force = |by: f64| {
         let u: Vec<f64> = u.iter().zip(&v).map(|(u, v)| u + by * v).collect();
@@ -330,8 +331,9 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
-    let attachments = StripAttachments::at(
+    let nodes =
+        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
+    let attachments = StripConstraints::at(
         &[],
         &points.surface,
         &model.grid,
@@ -363,7 +365,7 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     };
     let start = at(0.0);
     let mut product = vec![0.0; u.len()];
-    Linearised::at(&pieces, &start).multiply(&v, &mut product);
+    ForceTangent::at(&pieces, &start).multiply(&v, &mut product);
     let norm = |force: &mut dyn Iterator<Item = f64>| force.map(|f| f * f).sum::<f64>().sqrt();
     let left = [0.02, 0.01].map(|s| {
         let after = at(s).balance.f_oob;

@@ -45,9 +45,9 @@ fn a_linear_problem_takes_one_direction_more_than_it_has_unknowns_whatever_is_fa
         let K_0 = matrix(&mut random, 0.5);
         let halo = Alone { nodes: NODES };
         let mut solver = Skyline::of_patches(2, (0..NODES).collect());
-        solver.begin(&free());
-        solver.add(0, K_0.as_slice());
-        solver.finish(Symmetry::Definite).unwrap();
+        solver.reinit(&free());
+        solver.add_block(0, K_0.as_slice());
+        solver.factorise(Symmetry::Definite).unwrap();
         let mut secants = Secants::new::<2>(QuasiNewton::Multisecant, &free(), &halo);
         let b = zero_where_held(&DVector::from_vec(random.array(SIZE)));
         let mut u = DVector::zeros(SIZE);
@@ -93,16 +93,16 @@ impl Halo for Between {
     fn owned(&self) -> OwnedNodes {
         OwnedNodes::new(2, 3, 2)
     }
-    fn sum(&self, contributions: &Contributions) -> Vec<f64> {
+    fn assemble_ghosts(&self, contributions: &Contributions) -> Vec<f64> {
         contributions.alone()
     }
-    fn share(&self, _: &mut [f64], _: usize) {}
-    fn max(&self, _: &mut [f64], _: usize) {}
-    fn reduce(&self, _: &mut [f64]) {}
-    fn total(&self, sums: &[Exact]) -> Vec<f64> {
+    fn update_ghosts(&self, _: &mut [f64], _: usize) {}
+    fn ghost_max(&self, _: &mut [f64], _: usize) {}
+    fn all_reduce_sum(&self, _: &mut [f64]) {}
+    fn reproducible_sum(&self, sums: &[Exact]) -> Vec<f64> {
         sums.iter().map(Exact::value).collect()
     }
-    fn maximum(&self, _: &mut [f64]) {}
+    fn all_reduce_max(&self, _: &mut [f64]) {}
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::{Contact, Support};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
-use bsmpm::model::{Regime, Weighting};
+use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::observe::projection::projected_pressure;
 use bsmpm::observe::{Part, angular_momentum, centre_of_mass, heave, kinetic_energy, mean_stress, mean_velocity};
 use bsmpm::observe::{farthest, front, is_occupied, mass, momentum, nearest, noise::stress_noise, percentile};
@@ -25,9 +25,16 @@ fn noise_of_a_linear_field<K: Kinematics<D>, const D: usize>() -> (f64, f64) {
     let points = &mut scene.points;
     let stress = |yy: f64| Symmetric([0.0, yy, 0.0, 0.0, 0.0, 0.0]);
     (0..points.len()).for_each(|p| points.sigma.set(p, stress(field(&points.x[p]))));
-    let linear = stress_noise(&scene.model.grid, &scene.points, Weighting::Mass, 1, &scene.halo()).unwrap();
+    let linear = stress_noise(&scene.model.grid, &scene.points, AverageWeight::Mass, 1, &scene.halo()).unwrap();
     scene.points.sigma.fill(stress(-7.1));
-    let uniform = stress_noise(&scene.model.grid, &scene.points, Weighting::Volume, 1, &scene.halo()).unwrap();
+    let uniform = stress_noise(
+        &scene.model.grid,
+        &scene.points,
+        AverageWeight::Volume,
+        1,
+        &scene.halo(),
+    )
+    .unwrap();
     (linear.about_plane, uniform.about_average.max(uniform.about_plane))
 }
 

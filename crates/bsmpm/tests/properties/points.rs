@@ -4,7 +4,7 @@ use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
-use bsmpm::points::{Column, Packed, Points};
+use bsmpm::points::{Column, PackedTensors, Points};
 use bsmpm::tensor::{Symmetric, Tensor};
 
 /// A tensor whose every number is different, but for those that couple a plane with its normal.
@@ -127,8 +127,8 @@ fn bytes_of(numbers: &[f64]) -> Vec<u8> {
 fn rows_are_whole_tensors_and_a_plane_refuses_what_leaves_it() {
     let F = Tensor::new(1.1, 0.2, 0.0, 0.3, 1.4, 0.0, 0.0, 0.0, 1.5);
     let sigma = Symmetric([-1.0, -2.0, -3.0, 0.4, 0.0, 0.0]);
-    let plane = Packed::<2, Tensor>::from_iter([F; 3]);
-    let solid = Packed::<3, Tensor>::from_iter([F; 3]);
+    let plane = PackedTensors::<2, Tensor>::from_iter([F; 3]);
+    let solid = PackedTensors::<3, Tensor>::from_iter([F; 3]);
     let mut of_plane = Vec::new();
     let mut of_solid = Vec::new();
     plane.put(1, &mut of_plane);
@@ -137,7 +137,7 @@ fn rows_are_whole_tensors_and_a_plane_refuses_what_leaves_it() {
         (&of_plane, &of_solid),
         (&bytes_of(F.as_slice()), &bytes_of(F.as_slice()))
     );
-    let symmetric = Packed::<2, Symmetric>::from_iter([sigma]);
+    let symmetric = PackedTensors::<2, Symmetric>::from_iter([sigma]);
     let mut of_symmetric = Vec::new();
     symmetric.put(0, &mut of_symmetric);
     assert_eq!(of_symmetric, bytes_of(&sigma.0));

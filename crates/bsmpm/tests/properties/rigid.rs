@@ -9,8 +9,8 @@ use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
 use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::Nodes;
-use bsmpm::step::trial::Trial;
+use bsmpm::step::nodes::GridState;
+use bsmpm::step::trial::DeformationIncrement;
 use bsmpm::tensor::{Square, Symmetric, Vector};
 use nalgebra::Rotation2;
 
@@ -127,7 +127,7 @@ fn a_rigidly_rotating_field_turns_the_stress_of_every_point() {
         let points = &scene.points;
         let halo = scene.halo();
         let shape = Shape::at(&scene.model.grid, points).unwrap();
-        let nodes = Nodes::map(
+        let nodes = GridState::from_points(
             &scene.model,
             &shape,
             points,
@@ -135,7 +135,7 @@ fn a_rigidly_rotating_field_turns_the_stress_of_every_point() {
             &halo,
         )
         .expect("no loads");
-        let trial = Trial::of(&scene.model, &shape, &nodes, points, &u, &halo);
+        let trial = DeformationIncrement::of(&scene.model, &shape, &nodes, points, &u, &halo);
         let before = scene.model.materials[0].respond(&b_e, &[]).unwrap();
         for p in 0..points.len() {
             let after = trial.respond(&scene.model, points, p).unwrap();

@@ -4,7 +4,7 @@ use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::{Reluctant, Skyline};
 use bsmpm::boundary::Support;
-use bsmpm::control::{Accepted, Failure, Stepper};
+use bsmpm::control::{AcceptedStep, Failure, Stepper};
 use bsmpm::error::{SolveError, StepError};
 use bsmpm::exact::Exact;
 use bsmpm::grid::Contributions;
@@ -26,7 +26,7 @@ fn block(regime: Regime) -> Scene<PlaneStrain, 2> {
         .gravity(1.0, 4.0)
 }
 
-fn run(scene: &mut Scene<PlaneStrain, 2>, schedule: &Schedule, refusals: usize) -> Result<Vec<Accepted>, Failure> {
+fn run(scene: &mut Scene<PlaneStrain, 2>, schedule: &Schedule, refusals: usize) -> Result<Vec<AcceptedStep>, Failure> {
     let mut solver = Reluctant {
         solver: Skyline::new(&scene.model.grid),
         refusals,
@@ -233,19 +233,19 @@ impl Halo for Impatient {
     fn owned(&self) -> OwnedNodes {
         self.halo.owned()
     }
-    fn sum(&self, contributions: &Contributions) -> Vec<f64> {
-        self.halo.sum(contributions)
+    fn assemble_ghosts(&self, contributions: &Contributions) -> Vec<f64> {
+        self.halo.assemble_ghosts(contributions)
     }
-    fn share(&self, _nodal: &mut [f64], _width: usize) {}
-    fn max(&self, _nodal: &mut [f64], _width: usize) {}
-    fn reduce(&self, _numbers: &mut [f64]) {
+    fn update_ghosts(&self, _nodal: &mut [f64], _width: usize) {}
+    fn ghost_max(&self, _nodal: &mut [f64], _width: usize) {}
+    fn all_reduce_sum(&self, _numbers: &mut [f64]) {
         self.reductions.set(self.reductions.get() + 1);
     }
-    fn total(&self, sums: &[Exact]) -> Vec<f64> {
+    fn reproducible_sum(&self, sums: &[Exact]) -> Vec<f64> {
         self.reductions.set(self.reductions.get() + 1);
-        self.halo.total(sums)
+        self.halo.reproducible_sum(sums)
     }
-    fn maximum(&self, _numbers: &mut [f64]) {}
+    fn all_reduce_max(&self, _numbers: &mut [f64]) {}
     fn is_interrupted(&self) -> bool {
         self.reductions.get() == self.interrupted_in
     }

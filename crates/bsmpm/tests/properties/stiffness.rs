@@ -4,15 +4,15 @@ use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};
 use crate::support::solver::Dense;
 use bsmpm::boundary::Support;
-use bsmpm::boundary::strip::StripAttachments;
+use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;
 use bsmpm::schedule::TimeInterval;
-use bsmpm::solve::linearised::Linearised;
+use bsmpm::solve::linearised::ForceTangent;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::step::stiffness;
@@ -90,8 +90,9 @@ fn products<K: Kinematics<D>, const D: usize>(
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
-    let attachments = StripAttachments::at(
+    let nodes =
+        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
+    let attachments = StripConstraints::at(
         &[],
         &points.surface,
         &model.grid,
@@ -117,7 +118,7 @@ fn products<K: Kinematics<D>, const D: usize>(
     let u = free(size);
     let v = free(1.0);
     let residual = Residual::of(&pieces, &u);
-    let derivative = Linearised::at(&pieces, &residual);
+    let derivative = ForceTangent::at(&pieces, &residual);
     let mut matrix = Dense::new(&model.grid);
     let mut product = vec![0.0; v.len()];
     match kind {

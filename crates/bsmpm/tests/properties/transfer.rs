@@ -7,7 +7,7 @@ use bsmpm::kinematics::{Axisymmetric, Gradient, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Gravity, Regime};
 use bsmpm::points::Points;
 use bsmpm::schedule::TimeInterval;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::tensor::{Square, Vector};
 use std::ops::Range;
 
@@ -148,7 +148,7 @@ fn the_mapping_conserves<K: Kinematics<D>, const D: usize>(order: usize) {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, points).unwrap();
-    let nodes = Nodes::map(
+    let nodes = GridState::from_points(
         &scene.model,
         &shape,
         points,

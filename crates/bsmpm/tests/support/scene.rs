@@ -4,7 +4,7 @@ use super::random::Random;
 use super::solver::Skyline;
 use bsmpm::background::Background;
 use bsmpm::boundary::{Boundary, Load, RigidBody, Strip, Support};
-use bsmpm::control::{Accepted, Stepper};
+use bsmpm::control::{AcceptedStep, Stepper};
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::kinematics::Kinematics;
@@ -12,7 +12,7 @@ use bsmpm::material::{Elastic, Hencky, Material};
 use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;
 use bsmpm::model::WallVelocity;
-use bsmpm::model::{Gravity, Model, Regime, Weighting};
+use bsmpm::model::{AverageWeight, Gravity, Model, Regime};
 use bsmpm::parallel::Alone;
 use bsmpm::points::{Points, Seed};
 use bsmpm::quadrature::Quadrature;
@@ -65,7 +65,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             newmark: Newmark::default(),
             mass: MassMatrix::default(),
             wall_velocity: WallVelocity::default(),
-            weighting: Weighting::Mass,
+            weighting: AverageWeight::Mass,
             gravity: None,
             shaking: None,
             boundary: Boundary::default(),
@@ -271,7 +271,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     }
 
     /// Steps to `end` with nominal steps `dt`; `watch` sees the state after every accepted one. Panics on a failure.
-    pub fn march(&mut self, dt: f64, end: f64, mut watch: impl FnMut(&Points<D>, &Accepted)) {
+    pub fn march(&mut self, dt: f64, end: f64, mut watch: impl FnMut(&Points<D>, &AcceptedStep)) {
         let halo = self.halo();
         let schedule = Schedule::new(dt, end, []);
         let mut solver = Skyline::new(&self.model.grid);
@@ -284,7 +284,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     }
 
     /// Steps to `end`, and hands back the scene and its accepted steps.
-    pub fn solved(mut self, dt: f64, end: f64) -> (Self, Vec<Accepted>) {
+    pub fn solved(mut self, dt: f64, end: f64) -> (Self, Vec<AcceptedStep>) {
         let mut steps = Vec::new();
         self.march(dt, end, |_, accepted| steps.push(accepted.clone()));
         (self, steps)

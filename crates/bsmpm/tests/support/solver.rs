@@ -2,7 +2,7 @@
 
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
-use bsmpm::parallel::{Krylov, LinearSolver, Solved, Symmetry};
+use bsmpm::parallel::{Krylov, LinearSolver, SolveReport, Symmetry};
 use nalgebra::{DMatrix, DVector};
 
 /// Direct solver: L D L^T within the profile of the lower triangle. Without square roots its rounding does not depend
@@ -64,18 +64,18 @@ fn number(free: &[bool], numbers: &mut Vec<Option<usize>>) -> usize {
 }
 
 impl LinearSolver for Skyline {
-    fn begin(&mut self, free: &[bool]) {
+    fn reinit(&mut self, free: &[bool]) {
         let count = number(free, &mut self.number);
         self.first = (0..count).collect();
         self.entries = vec![0.0; count * count];
     }
 
-    fn add(&mut self, first_node: usize, block: &[f64]) {
+    fn add_block(&mut self, first_node: usize, block: &[f64]) {
         let nodes: Vec<usize> = self.offsets.iter().map(|offset| first_node + offset).collect();
-        self.add_among(&nodes, block);
+        self.add_block_among(&nodes, block);
     }
 
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+    fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
         let components = self.components;
         let of_node = |&node: &usize| (0..components).map(move |c| node * components + c);
         let unknowns: Vec<_> = nodes.iter().flat_map(of_node).map(|c| self.number[c]).collect();
@@ -96,7 +96,7 @@ impl LinearSolver for Skyline {
         }
     }
 
-    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
+    fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
         if symmetry == Symmetry::General {
             return Ok(()); // the product is all that `solve_with` looks at
         }
@@ -122,7 +122,7 @@ impl LinearSolver for Skyline {
         Ok(())
     }
 
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         let n = self.size();
         let pick = |(number, value): (&Option<usize>, &f64)| number.map(|_| *value);
         let mut x: Vec<f64> = self.number.iter().zip(rhs).filter_map(pick).collect();
@@ -144,9 +144,9 @@ impl LinearSolver for Skyline {
         for (number, value) in self.number.iter().zip(solution) {
             *value = number.map_or(0.0, |i| x[i]);
         }
-        Ok(Solved {
+        Ok(SolveReport {
             iterations: 1,
-            ..Solved::default()
+            ..SolveReport::default()
         })
     }
 
@@ -198,26 +198,26 @@ pub struct Reluctant {
 }
 
 impl LinearSolver for Reluctant {
-    fn begin(&mut self, free: &[bool]) {
-        self.solver.begin(free);
+    fn reinit(&mut self, free: &[bool]) {
+        self.solver.reinit(free);
     }
-    fn add(&mut self, first_node: usize, block: &[f64]) {
-        self.solver.add(first_node, block);
+    fn add_block(&mut self, first_node: usize, block: &[f64]) {
+        self.solver.add_block(first_node, block);
     }
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
-        self.solver.add_among(nodes, block);
+    fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
+        self.solver.add_block_among(nodes, block);
     }
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         self.solver.add_diagonal(diagonal);
     }
-    fn finish(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
+    fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
         if self.refusals == 0 {
-            return self.solver.finish(symmetry);
+            return self.solver.factorise(symmetry);
         }
         self.refusals -= 1;
         Err(SolveError::Failed("refused by the test".into()))
     }
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         self.solver.solve(rhs, solution)
     }
     fn solve_with(
@@ -303,17 +303,17 @@ impl Dense {
 }
 
 impl LinearSolver for Dense {
-    fn begin(&mut self, free: &[bool]) {
+    fn reinit(&mut self, free: &[bool]) {
         let count = number(free, &mut self.number);
         self.matrix = DMatrix::zeros(count, count);
     }
 
-    fn add(&mut self, first_node: usize, block: &[f64]) {
+    fn add_block(&mut self, first_node: usize, block: &[f64]) {
         let nodes: Vec<usize> = self.offsets.iter().map(|offset| first_node + offset).collect();
-        self.add_among(&nodes, block);
+        self.add_block_among(&nodes, block);
     }
 
-    fn add_among(&mut self, nodes: &[usize], block: &[f64]) {
+    fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
         let components = self.components;
         let of_node = |&node: &usize| (0..components).map(move |c| node * components + c);
         let unknowns: Vec<_> = nodes.iter().flat_map(of_node).map(|c| self.number[c]).collect();
@@ -334,11 +334,11 @@ impl LinearSolver for Dense {
         }
     }
 
-    fn finish(&mut self, _symmetry: Symmetry) -> Result<(), SolveError> {
+    fn factorise(&mut self, _symmetry: Symmetry) -> Result<(), SolveError> {
         Ok(())
     }
 
-    fn solve(&mut self, _: &[f64], _: &mut [f64]) -> Result<Solved, SolveError> {
+    fn solve(&mut self, _: &[f64], _: &mut [f64]) -> Result<SolveReport, SolveError> {
         Err(SolveError::Failed("it only holds the matrix".into()))
     }
 

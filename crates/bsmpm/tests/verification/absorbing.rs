@@ -3,7 +3,7 @@
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
-use bsmpm::energy::{Books, Stored};
+use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::initial;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain};
 use bsmpm::method::Nonlinear;
@@ -57,19 +57,19 @@ fn left<K: Kinematics<2>>(mut scene: Scene<K, 2>, n: usize, kind: usize) -> (f64
     scene.model.balances_energy = true;
     let model = scene.model.clone();
     let halo = scene.halo();
-    let start = Stored::of(&model, &scene.points, 0.0, &halo);
-    let mut books = Books::open(start);
+    let start = StoredEnergy::of(&model, &scene.points, 0.0, &halo);
+    let mut books = EnergyAccounts::open(start);
     let dt = 0.5 * 20.0 / n as f64 / speed(kind);
     let end = 20.0 / speed(kind);
     let mut now = start;
     scene.march(dt, end, |points, accepted| {
         assert!(accepted.rejected.is_empty());
         books.flows += accepted.report.energy.expect("it is balanced");
-        now = Stored::of(&model, points, 0.0, &halo);
+        now = StoredEnergy::of(&model, points, 0.0, &halo);
     });
     (
         (now.kinetic + now.elastic) / start.kinetic,
-        books.closure(now) / start.kinetic,
+        books.residual(now) / start.kinetic,
     )
 }
 

@@ -7,7 +7,8 @@ use bsmpm::boundary::{Load, Support, surface};
 use bsmpm::control::Stepper;
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::kinematics::{Axisymmetric, Kinematics};
-use bsmpm::model::{Regime, Weighting};
+use bsmpm::material::Moduli;
+use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::Stabilisation;
 
@@ -38,7 +39,7 @@ fn uniform_strain_is_exact_in_one_step_with_every_method() {
         .stabilised(method);
         scene.model.criteria.force = 1e-12;
         let (scene, steps) = scene.solved(1.0, 1.0);
-        let (lambda, mu) = scene.model.materials[0].elastic().lame();
+        let Moduli { lambda, mu } = scene.model.materials[0].elastic().moduli();
         let J: f64 = radial * radial * axial;
         let stress = |stretch: f64| (lambda * J.ln() + 2.0 * mu * stretch.ln()) / J;
         let expected = [stress(radial), stress(axial), stress(radial)];
@@ -92,7 +93,7 @@ fn wall(cells: usize, method: Stabilisation) -> (f64, Round) {
     .body([cells..2 * cells, 0..2], 3, 0.0, |x| x * 0.0)
     .rollers(1..2)
     .stabilised(method);
-    scene.model.weighting = Weighting::Volume;
+    scene.model.weighting = AverageWeight::Volume;
     let from = [inner, 0.0].into();
     let to = [inner, 2.0 * h].into();
     let points = surface::along::<Axisymmetric, 2>(&scene.model.grid, &from, &to, 3);
@@ -208,7 +209,7 @@ fn disc(cells: usize, per_axis: usize) -> f64 {
     .body([0..cells, 0..2], per_axis, 0.0, |x| x * 0.0)
     .support(Support::roller(0, false))
     .support(Support::roller(1, false));
-    scene.model.weighting = Weighting::Volume;
+    scene.model.weighting = AverageWeight::Volume;
     let from = [1.0, 0.0].into();
     let to = [1.0, 2.0 * h].into();
     let points = surface::along::<Axisymmetric, 2>(&scene.model.grid, &from, &to, per_axis);

@@ -6,7 +6,7 @@ use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Criteria;
-use bsmpm::model::{Regime, Weighting};
+use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::points::Points;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
@@ -30,7 +30,7 @@ fn pressed(method: Stabilisation) -> Points<2> {
         .body([0..8, 0..6], 3, 1.0, |_| Vector::zeros())
         .rollers([0])
         .support(Support::fixed(1, false));
-    scene.model.weighting = Weighting::Volume;
+    scene.model.weighting = AverageWeight::Volume;
     scene.model.criteria = Criteria {
         energy: 1e-6,
         force: 1e-4,

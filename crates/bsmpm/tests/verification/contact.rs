@@ -3,8 +3,8 @@
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
 use bsmpm::boundary::{Contact, ContactReport, Path, Strip, Support, surface};
-use bsmpm::control::{Accepted, Stepper};
-use bsmpm::energy::{Books, Stored};
+use bsmpm::control::{AcceptedStep, Stepper};
+use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::kinematics::{PlaneStrain, Solid};
 use bsmpm::method::Nonlinear;
 use bsmpm::model::{Gravity, Regime};
@@ -50,12 +50,12 @@ fn weight(scene: &Scene<PlaneStrain, 2>) -> f64 {
     scene.points.mass.iter().sum::<f64>() * G
 }
 
-fn of(accepted: &Accepted) -> ContactReport {
+fn of(accepted: &AcceptedStep) -> ContactReport {
     accepted.report.contacts[0]
 }
 
 /// Friction over normal force of a step, each summed over the face.
-fn used(accepted: &Accepted) -> f64 {
+fn used(accepted: &AcceptedStep) -> f64 {
     let [along, normal] = accepted.report.reactions[0][..] else {
         panic!("of the plane")
     };
@@ -79,7 +79,7 @@ fn slid(n: usize, dt: f64, friction: f64, method: Nonlinear) -> (f64, f64, usize
     let a = G * (theta.sin() - friction * theta.cos());
     let mut scene = block(n, 0.5, rough(friction), Regime::Dynamic);
     (scene.model.nonlinear, scene.model.balances_energy) = (method, true);
-    let mut books = Books::open(Stored::of(&scene.model, &scene.points, 0.0, &scene.halo()));
+    let mut books = EnergyAccounts::open(StoredEnergy::of(&scene.model, &scene.points, 0.0, &scene.halo()));
     let mut iterations = 0;
     let mut dissipated = 0.0;
     scene.march(dt, END, |_, accepted| {
@@ -93,11 +93,11 @@ fn slid(n: usize, dt: f64, friction: f64, method: Nonlinear) -> (f64, f64, usize
         iterations = iterations.max(accepted.report.iterations);
     });
     let way = mean(&scene.points, |p| scene.points.u[p][0]);
-    let now = Stored::of(&scene.model, &scene.points, 0.0, &scene.halo());
+    let now = StoredEnergy::of(&scene.model, &scene.points, 0.0, &scene.halo());
     assert!(
-        books.closure(now).abs() < 1e-6 * now.kinetic,
+        books.residual(now).abs() < 1e-6 * now.kinetic,
         "the books close: {:.1e}",
-        books.closure(now)
+        books.residual(now)
     );
     let friction_work = friction * theta.cos() * weight(&scene) * way;
     assert!(
@@ -256,7 +256,7 @@ fn bounced(n: usize, mass: MassMatrix) -> [f64; 3] {
         .support(Support::contact(0, false, rough(0.0)))
         .with_mass(mass);
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-10, 1e-6);
-    let start = Stored::of(&scene.model, &scene.points, 0.0, &scene.halo());
+    let start = StoredEnergy::of(&scene.model, &scene.points, 0.0, &scene.halo());
     let body = weight(&scene) / G;
     let mut impulse = 0.0;
     let mut from = f64::INFINITY;
@@ -270,7 +270,7 @@ fn bounced(n: usize, mass: MassMatrix) -> [f64; 3] {
         }
     });
     assert!((from - 0.2).abs() <= 0.5 * h / c, "the bar meets the wall at {from} s");
-    let end = Stored::of(&scene.model, &scene.points, 0.0, &scene.halo());
+    let end = StoredEnergy::of(&scene.model, &scene.points, 0.0, &scene.halo());
     // A consistent mass also takes away what the points bring along to nodes that rest, in every step.
     let taken = velocity(&scene.points) + 1.0 - impulse / body;
     assert!(

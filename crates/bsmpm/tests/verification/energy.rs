@@ -6,11 +6,11 @@ use crate::support::solver::Skyline;
 use bsmpm::background::Background;
 use bsmpm::boundary::{Load, Path, Strip, Support, surface};
 use bsmpm::control::Stepper;
-use bsmpm::energy::{Books, Stored};
+use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::error::StepError;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb, Separation};
-use bsmpm::model::{Gravity, Regime, Weighting};
+use bsmpm::model::{AverageWeight, Gravity, Regime};
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::mass::MassMatrix;
@@ -21,8 +21,8 @@ const METHODS: [Stabilisation; 3] = [Stabilisation::None, Stabilisation::FBar, S
 
 /// The course of a run's energy.
 struct Course {
-    books: Books,
-    stored: Stored,
+    books: EnergyAccounts,
+    stored: StoredEnergy,
     /// J  the largest of all energies so far
     largest: f64,
     /// J  the largest closure so far
@@ -40,9 +40,9 @@ fn kept<K: Kinematics<D>, const D: usize>(mut scene: Scene<K, D>, dt: f64, end: 
     scene.model.balances_energy = true;
     let model = scene.model.clone();
     let halo = scene.halo();
-    let stored = Stored::of(&model, &scene.points, 0.0, &halo);
+    let stored = StoredEnergy::of(&model, &scene.points, 0.0, &halo);
     let mut course = Course {
-        books: Books::open(stored),
+        books: EnergyAccounts::open(stored),
         stored,
         largest: 0.0,
         closure: 0.0,
@@ -53,7 +53,7 @@ fn kept<K: Kinematics<D>, const D: usize>(mut scene: Scene<K, D>, dt: f64, end: 
         course.books.flows += step;
         let turnover = accepted.report.turnover.expect("whatever balances energy has it");
         assert_eq!((turnover.external, turnover.plastic), (step.external, step.plastic));
-        course.stored = Stored::of(&model, points, accepted.t, &halo);
+        course.stored = StoredEnergy::of(&model, points, accepted.t, &halo);
         let Course { books, stored, .. } = course;
         let energies = [
             stored.kinetic,
@@ -62,7 +62,7 @@ fn kept<K: Kinematics<D>, const D: usize>(mut scene: Scene<K, D>, dt: f64, end: 
             books.flows.external.abs(),
         ];
         course.largest = energies.into_iter().fold(course.largest, f64::max);
-        course.closure = course.closure.max(books.closure(stored).abs());
+        course.closure = course.closure.max(books.residual(stored).abs());
     });
     course
 }
@@ -296,7 +296,7 @@ fn footing(method: Stabilisation) -> Scene<PlaneStrain, 2> {
     .rollers([0])
     .support(Support::fixed(1, false))
     .stabilised(method);
-    scene.model.weighting = Weighting::Volume;
+    scene.model.weighting = AverageWeight::Volume;
     scene.model.background = Some(Background { coefficient: 1e-3 });
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.0].into(), &[0.5, 1.0].into(), 2);
     let path = Path {

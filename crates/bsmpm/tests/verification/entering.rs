@@ -4,12 +4,12 @@ use crate::support::scene::{Scene, axis, by_id, hencky};
 use crate::support::solver::Dense;
 use bsmpm::background::Background;
 use bsmpm::boundary::Support;
-use bsmpm::boundary::strip::StripAttachments;
+use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::TimeInterval;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::stiffness;
 use bsmpm::tensor::Vector;
@@ -94,9 +94,9 @@ fn condition(shift: f64, background: Option<Background>) -> [f64; 2] {
     let points = &scene.points;
     let halo = &scene.halo();
     let shape = Shape::at(&model.grid, points).expect("points inside");
-    let nodes =
-        Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, halo).expect("loads on material");
-    let attachments = StripAttachments::at(
+    let nodes = GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, halo)
+        .expect("loads on material");
+    let attachments = StripConstraints::at(
         &[],
         &points.surface,
         &model.grid,

@@ -2,7 +2,7 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;
-use bsmpm::energy::{Books, Stored};
+use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{Regime, Shaking};
 use bsmpm::points::Points;
@@ -72,7 +72,7 @@ fn level_ground_moves_as_its_column_everywhere() {
     follows.model.balances_energy = true;
     let model = follows.model.clone();
     let halo = follows.halo();
-    let mut books = Books::open(Stored::of(&model, &follows.points, 0.0, &halo));
+    let mut books = EnergyAccounts::open(StoredEnergy::of(&model, &follows.points, 0.0, &halo));
     let mut worst = 0.0_f64;
     let mut largest = 0.0_f64;
     let mut columns = Vec::new();
@@ -84,7 +84,7 @@ fn level_ground_moves_as_its_column_everywhere() {
         books.flows += accepted.report.energy.expect("it is balanced");
         columns.push(points.free_field[0].clone());
     });
-    let closure = books.closure(Stored::of(&model, &follows.points, 0.0, &halo)) / books.flows.external;
+    let closure = books.residual(StoredEnergy::of(&model, &follows.points, 0.0, &halo)) / books.flows.external;
     // 5.2e-7 and 2.9e-10.
     assert!(
         worst < 1e-6 * largest && closure.abs() < 1e-8,

@@ -7,7 +7,7 @@ use bsmpm::error::StepError;
 use bsmpm::initial;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{
-    Branch, DruckerPrager, Elastic, Graded, Match, Material, MohrCoulomb, Profile, Separation, VonMises,
+    Branch, DruckerPrager, Elastic, GradedLaw, Match, Material, MohrCoulomb, Profile, Separation, VonMises,
 };
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
@@ -251,7 +251,7 @@ fn a_modulus_that_grows_with_depth_settles_by_the_integral() {
         at: height,
         per_metre: k * e,
     };
-    let scene = ground::<PlaneStrain, 2>(Material::Graded(Graded::new(
+    let scene = ground::<PlaneStrain, 2>(Material::Graded(GradedLaw::new(
         &hencky(1.0, 0.3),
         young,
         Vec::new(),
@@ -305,7 +305,7 @@ fn strength_of_any_law_follows_the_height_at_which_a_point_was_placed() {
             .iter()
             .map(|parameter| profile(parameter.name))
             .collect();
-        let graded = Graded::new(law, Profile::constant(elastic.young), parameters, 0.0..4.0, 2.0);
+        let graded = GradedLaw::new(law, Profile::constant(elastic.young), parameters, 0.0..4.0, 2.0);
         let mut scene = ground::<PlaneStrain, 2>(Material::Graded(graded));
         scene.points = scene.points.with_state(law.state().len());
         for p in 0..scene.points.len() {
@@ -315,8 +315,8 @@ fn strength_of_any_law_follows_the_height_at_which_a_point_was_placed() {
                 .parameter_names()
                 .iter()
                 .map(|it| if is_strength(it.name) { strength } else { 0.0 });
-            let uniform = law.with(elastic.clone(), &numbers.collect::<Vec<_>>());
-            let excess = uniform.excess(response.principal_tau(), &[0.0]);
+            let uniform = law.with_parameters(elastic.clone(), &numbers.collect::<Vec<_>>());
+            let excess = uniform.yield_function(response.principal_tau(), &[0.0]);
             assert_ne!(response.branch(), Branch::Elastic);
             assert!(excess.abs() <= 1e-10 * strength, "{uniform:?}: {excess:e}");
         }

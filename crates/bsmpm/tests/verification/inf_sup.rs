@@ -12,10 +12,10 @@ use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;
 use bsmpm::grid::{Shape, transfer};
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::model::{Regime, Weighting};
+use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::tensor::Square;
 use nalgebra::DMatrix;
 
@@ -25,7 +25,7 @@ fn forms(method: Stabilisation, order: usize, cells: usize) -> [DMatrix<f64>; 2]
     let mut scene = Scene::<PlaneStrain, 2>::new([along(), along()], hencky(1.0, 0.3), Regime::QuasiStatic)
         .stabilised(method)
         .body([0..cells, 0..cells], order + 1, 1.0, |x| x * 0.0);
-    scene.model.weighting = Weighting::Volume;
+    scene.model.weighting = AverageWeight::Volume;
     for (axis, upper) in [(0, false), (0, true), (1, false), (1, true)] {
         scene = scene.support(Support::fixed(axis, upper));
     }
@@ -33,7 +33,8 @@ fn forms(method: Stabilisation, order: usize, cells: usize) -> [DMatrix<f64>; 2]
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let nodes =
+        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
     let free: Vec<usize> = (0..nodes.free.len()).filter(|&c| nodes.free[c]).collect();
     let mut forms = [(); 2].map(|()| DMatrix::zeros(free.len(), free.len()));
     let mut u = vec![0.0; nodes.free.len()];

@@ -3,7 +3,7 @@
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::model::{Regime, Weighting};
+use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
 
@@ -23,7 +23,7 @@ fn beside(method: Stabilisation, at: f64, stiffer: f64, lighter: f64) -> [[f64; 
         .rollers([0])
         .support(Support::fixed(1, false))
         .gravity(9.81, 1.0);
-    scene.model.weighting = Weighting::Volume;
+    scene.model.weighting = AverageWeight::Volume;
     if stiffer == 1.0 {
         scene.model.groups = Default::default();
     }

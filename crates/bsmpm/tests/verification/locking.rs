@@ -6,7 +6,7 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;
 use bsmpm::method::QuasiNewton;
-use bsmpm::model::{Regime, Weighting};
+use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::observe::{Part, largest_displacement, noise};
 use bsmpm::stabilisation::Stabilisation;
 
@@ -36,7 +36,7 @@ fn pressed_by(quasi_newton: QuasiNewton, method: Stabilisation) -> (f64, f64, us
     scene.model.nonlinear = Nonlinear::QuasiNewton(quasi_newton);
     let (scene, steps) = scene.solved(1.0, 4.0);
     let halo = scene.halo();
-    let noise = noise::stress_noise(&scene.model.grid, &scene.points, Weighting::Mass, 1, &halo).expect("inside");
+    let noise = noise::stress_noise(&scene.model.grid, &scene.points, AverageWeight::Mass, 1, &halo).expect("inside");
     let displacement = largest_displacement(&scene.points, &Part::Whole, &halo);
     let iterations: Vec<usize> = steps.iter().map(|step| step.report.iterations).collect();
     println!("{method:?}, {quasi_newton:?}: {noise:.3?}, displacement {displacement:.4} m, iterations {iterations:?}");

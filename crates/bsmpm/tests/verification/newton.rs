@@ -4,19 +4,19 @@
 use crate::support::scene::{Scene, axis};
 use bsmpm::background::Background;
 use bsmpm::boundary::{Path, Strip, Support, surface};
-use bsmpm::control::Accepted;
+use bsmpm::control::AcceptedStep;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Criteria;
 use bsmpm::method::{Method, Nonlinear};
-use bsmpm::model::{Regime, Weighting};
+use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::observe::{Part, largest_displacement};
 use bsmpm::stabilisation::Stabilisation;
 
 type Plane = Scene<PlaneStrain, 2>;
 
 /// A platen pressed into the left half of a nearly incompressible clay that yields, in ten steps.
-fn indented(nonlinear: Nonlinear, method: Stabilisation) -> (Plane, Vec<Accepted>) {
+fn indented(nonlinear: Nonlinear, method: Stabilisation) -> (Plane, Vec<AcceptedStep>) {
     let clay = MohrCoulomb::new(
         Elastic {
             young: 100.0,
@@ -35,7 +35,7 @@ fn indented(nonlinear: Nonlinear, method: Stabilisation) -> (Plane, Vec<Accepted
     .rollers(0..1)
     .support(Support::fixed(1, false))
     .stabilised(method);
-    scene.model.weighting = Weighting::Volume;
+    scene.model.weighting = AverageWeight::Volume;
     scene.model.criteria = Criteria {
         energy: 1e-16,
         force: 1e-9,
@@ -88,7 +88,7 @@ fn newton_and_the_secants_find_the_same_equilibrium() {
     for method in [Stabilisation::None, Stabilisation::FBar, Stabilisation::ModifiedFBar] {
         let [auto, newton] = [Nonlinear::Auto, Nonlinear::Newton].map(|nonlinear| indented(nonlinear, method));
         let [a, b] = [&auto.0, &newton.0].map(|scene| largest_displacement(&scene.points, &Part::Whole, &scene.halo()));
-        let count = |steps: &[Accepted]| steps.iter().map(|step| step.report.iterations).sum::<usize>();
+        let count = |steps: &[AcceptedStep]| steps.iter().map(|step| step.report.iterations).sum::<usize>();
         println!(
             "{method:?}: {a} {b}, iterations {} {}",
             count(&auto.1),

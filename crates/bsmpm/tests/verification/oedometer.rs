@@ -3,9 +3,10 @@
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;
-use bsmpm::control::Accepted;
+use bsmpm::control::AcceptedStep;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
-use bsmpm::model::{Regime, Weighting};
+use bsmpm::material::Moduli;
+use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Symmetric;
 
@@ -14,7 +15,7 @@ fn compressed<K: Kinematics<D>, const D: usize>(
     cells: usize,
     l: f64,
     method: Stabilisation,
-) -> (Scene<K, D>, Vec<Accepted>) {
+) -> (Scene<K, D>, Vec<AcceptedStep>) {
     let axes = std::array::from_fn(|_| axis(1.0 / cells as f64, cells, 2));
     let mut face = Support::<D>::roller(D - 1, true);
     face.velocity[D - 1] = Some(l - 1.0);
@@ -30,7 +31,7 @@ fn compressed<K: Kinematics<D>, const D: usize>(
 /// Largest relative error of the vertical stress, and of the lateral one.
 fn errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, l: f64) -> f64 {
     let elastic = scene.model.materials[0].elastic();
-    let (lambda, _) = elastic.lame();
+    let Moduli { lambda, .. } = elastic.moduli();
     let vertical = elastic.oedometric() * l.ln() / l;
     let lateral = lambda * l.ln() / l;
     let of = |p: usize| {
@@ -102,7 +103,7 @@ fn without_mass_the_averages_weigh_with_volume() {
             .rollers(0..2)
             .support(face)
             .stabilised(method);
-        scene.model.weighting = Weighting::Volume;
+        scene.model.weighting = AverageWeight::Volume;
         scene.model.criteria.force = 1e-12;
         let (scene, _) = scene.solved(1.0, 1.0);
         println!("{method:?}: {:.1e}", errors(&scene, 0.8));
@@ -136,7 +137,7 @@ fn the_sides_feel_the_stress_down_to_their_edge_on_a_fixed_bottom() {
         .support(face);
     scene.model.criteria.force = 1e-12;
     let (scene, steps) = scene.solved(1.0, 1.0);
-    let (lambda, _) = scene.model.materials[0].elastic().lame();
+    let Moduli { lambda, .. } = scene.model.materials[0].elastic().moduli();
     let supports = &scene.model.boundary.supports;
     let reactions = &steps[0].report.reactions;
     for (support, force) in supports.iter().zip(reactions).filter(|(support, _)| support.axis < 2) {

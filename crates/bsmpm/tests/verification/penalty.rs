@@ -6,7 +6,7 @@ use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Criteria;
-use bsmpm::model::{Regime, Weighting};
+use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
 
@@ -26,7 +26,7 @@ fn pressure(factor: f64) -> f64 {
         .rollers(0..1)
         .support(Support::fixed(1, false))
         .stabilised(Stabilisation::FBar);
-    scene.model.weighting = Weighting::Volume;
+    scene.model.weighting = AverageWeight::Volume;
     scene.model.criteria = Criteria {
         energy: 1e-10,
         force: 1e-6,

@@ -3,14 +3,14 @@
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::rigid::Outline;
 use bsmpm::boundary::{Path, RigidBody, RigidReport, Strip, Support, surface};
-use bsmpm::energy::{Books, Stored};
+use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Nonlinear;
 use bsmpm::model::{Gravity, Regime};
 use bsmpm::points::Points;
 use bsmpm::schedule::TimeInterval;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::tensor::Vector;
 use std::f64::consts::PI;
 
@@ -117,7 +117,7 @@ fn slid(n: usize, dt: f64, method: Nonlinear) -> (f64, usize) {
     let theta = 0.5_f64.atan();
     let mut scene = block(n, 0.5, FRICTION, Regime::Dynamic);
     (scene.model.nonlinear, scene.model.balances_energy) = (method, true);
-    let mut books = Books::open(Stored::of(&scene.model, &scene.points, 0.0, &scene.halo()));
+    let mut books = EnergyAccounts::open(StoredEnergy::of(&scene.model, &scene.points, 0.0, &scene.halo()));
     let mut iterations = 0;
     scene.march(dt, END, |_, accepted| {
         books.flows += accepted.report.energy.expect("it is balanced");
@@ -125,11 +125,11 @@ fn slid(n: usize, dt: f64, method: Nonlinear) -> (f64, usize) {
         let force = accepted.report.rigid[0].force;
         assert!(accepted.rejected.is_empty() && force[0] <= FRICTION * -force[1] * (1.0 + 1e-12));
     });
-    let now = Stored::of(&scene.model, &scene.points, 0.0, &scene.halo());
+    let now = StoredEnergy::of(&scene.model, &scene.points, 0.0, &scene.halo());
     assert!(
-        books.closure(now).abs() < 1e-6 * now.kinetic,
+        books.residual(now).abs() < 1e-6 * now.kinetic,
         "the books close: {:.1e}",
-        books.closure(now)
+        books.residual(now)
     );
     let exact = G * (theta.sin() - FRICTION * theta.cos()) * (END - 0.5 * RAMP);
     (velocity(&scene.points) / exact - 1.0, iterations)
@@ -187,7 +187,7 @@ fn bar(cells: usize, gap: f64) -> [f64; 3] {
         assert!(accepted.report.rigid[0].force[0] <= 0.0, "it pulls");
         pushed += usize::from(accepted.report.rigid[0].touched > 0);
     });
-    let now = Stored::of(&scene.model, &scene.points, 0.0, &scene.halo());
+    let now = StoredEnergy::of(&scene.model, &scene.points, 0.0, &scene.halo());
     let mass: f64 = scene.points.mass.iter().sum();
     let energy = (now.kinetic + now.elastic) / (0.5 * mass * v * v);
     [(pushed - 1) as f64 * dt * c / 2.0, velocity(&scene.points) / v, energy]
@@ -266,7 +266,7 @@ fn a_step_begins_with_the_force_that_the_last_one_ended_with() {
         let halo = scene.halo();
         let still = vec![0.0; 2 * scene.model.grid.nodes()];
         let shape = Shape::at(&scene.model.grid, &scene.points).expect("inside");
-        let nodes = Nodes::after(
+        let nodes = GridState::from_points_after(
             &scene.model,
             &shape,
             &scene.points,
@@ -275,7 +275,7 @@ fn a_step_begins_with_the_force_that_the_last_one_ended_with() {
             &halo,
         )
         .expect("no loads");
-        let begins = nodes.rigid.conclude(&still, &halo).0[0].force;
+        let begins = nodes.rigid.finish_step(&still, &halo).0[0].force;
         println!(
             "friction {friction}: {:.2e} N of {:.2e}",
             (begins - ended).norm(),
@@ -366,7 +366,7 @@ fn pressed(steps: usize) -> f64 {
     scene.march(RAMP / steps as f64, RAMP, |_, accepted| {
         work = accepted.report.rigid.iter().map(|rigid| rigid.work).sum();
     });
-    work / Stored::of(&scene.model, &scene.points, 0.0, &scene.halo()).elastic - 1.0
+    work / StoredEnergy::of(&scene.model, &scene.points, 0.0, &scene.halo()).elastic - 1.0
 }
 
 /// At a strain of 0.04; at a tenth of it a tenth of that is left.

@@ -2,7 +2,7 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;
-use bsmpm::energy::Stored;
+use bsmpm::energy::StoredEnergy;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::model::WallVelocity;
@@ -29,7 +29,7 @@ fn lost(mass: MassMatrix, cells: usize, steps: usize) -> [f64; 3] {
     let model = scene.model.clone();
     let halo = scene.halo();
     let energy = |points: &Points<2>| {
-        let stored = Stored::of(&model, points, 0.0, &halo);
+        let stored = StoredEnergy::of(&model, points, 0.0, &halo);
         stored.kinetic + stored.elastic
     };
     let start = [

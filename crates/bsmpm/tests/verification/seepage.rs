@@ -63,7 +63,7 @@ fn steady(scene: &Plane) -> (Vec<f64>, [Vec<DrainReport>; 2]) {
     );
     let drainage = drainage.expect("permeable");
     let mut solver = Skyline::of_patches(1, offsets.clone());
-    solver.begin(&seen);
+    solver.reinit(&seen);
     for (p, cell) in cells.iter().enumerate() {
         let [x, y] = [0, 1].map(|axis| grid.axes()[axis].basis::<2>(scene.points.x[p][axis], cell[axis]));
         let gradients: Vec<Vector<2>> = (0..4)
@@ -74,10 +74,10 @@ fn steady(scene: &Plane) -> (Vec<f64>, [Vec<DrainReport>; 2]) {
             .iter()
             .flat_map(|a| gradients.iter().map(move |b| weight * a.dot(b)))
             .collect();
-        solver.add(grid.first_node(cell), &block);
+        solver.add_block(grid.first_node(cell), &block);
     }
     drainage.assemble(&vec![0.0; grid.nodes()], &mut solver);
-    solver.finish(Symmetry::Definite).expect("definite");
+    solver.factorise(Symmetry::Definite).expect("definite");
     let mut out = Contributions::none(grid, 1, Vec::new());
     let mut p = vec![0.0; grid.nodes()];
     drainage.add_to(&p, &mut out);

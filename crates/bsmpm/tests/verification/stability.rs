@@ -2,8 +2,8 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
-use bsmpm::boundary::{Support, strip::StripAttachments};
-use bsmpm::control::{Accepted, Failure, Stepper};
+use bsmpm::boundary::{Support, strip::StripConstraints};
+use bsmpm::control::{AcceptedStep, Failure, Stepper};
 use bsmpm::error::StepError;
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::PlaneStrain;
@@ -12,9 +12,9 @@ use bsmpm::method::Nonlinear;
 use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
 use bsmpm::schedule::TimeInterval;
-use bsmpm::solve::linearised::Linearised;
+use bsmpm::solve::linearised::ForceTangent;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use nalgebra::DMatrix;
@@ -49,7 +49,7 @@ fn pressure(poisson: f64, t: f64) -> f64 {
 }
 
 /// Steps to the end, or to a failure; `watch` sees the scene before each step, the step and its displacement.
-fn march(scene: &mut Plane, dt: f64, mut watch: impl FnMut(&Plane, &Accepted, &[f64]) -> bool) -> Option<Failure> {
+fn march(scene: &mut Plane, dt: f64, mut watch: impl FnMut(&Plane, &AcceptedStep, &[f64]) -> bool) -> Option<Failure> {
     let halo = scene.halo();
     let schedule = Schedule::new(dt, 10.0, []);
     let mut solver = Skyline::new(&scene.model.grid);
@@ -65,7 +65,7 @@ fn march(scene: &mut Plane, dt: f64, mut watch: impl FnMut(&Plane, &Accepted, &[
 }
 
 /// Lowest eigenvalue of the symmetric part of the complete derivative under the displacement `u` of a step, N/m.
-fn lowest(before: &Plane, step: &Accepted, u: &[f64]) -> f64 {
+fn lowest(before: &Plane, step: &AcceptedStep, u: &[f64]) -> f64 {
     let Scene { model, points } = before;
     let halo = before.halo();
     let time = TimeInterval {
@@ -73,8 +73,8 @@ fn lowest(before: &Plane, step: &Accepted, u: &[f64]) -> f64 {
         dt: step.dt,
     };
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
-    let nodes = Nodes::map(model, &shape, points, time, &halo).expect("a mapping");
-    let attachments = StripAttachments::at(&model.boundary.strips, &points.surface, &model.grid, &nodes.free, time);
+    let nodes = GridState::from_points(model, &shape, points, time, &halo).expect("a mapping");
+    let attachments = StripConstraints::at(&model.boundary.strips, &points.surface, &model.grid, &nodes.free, time);
     let scene = Problem {
         model,
         shape: &shape,
@@ -84,7 +84,7 @@ fn lowest(before: &Plane, step: &Accepted, u: &[f64]) -> f64 {
         halo: &halo,
     };
     let residual = Residual::of(&scene, u);
-    let linearised = Linearised::at(&scene, &residual);
+    let linearised = ForceTangent::at(&scene, &residual);
     let free: Vec<usize> = (0..u.len()).filter(|&c| nodes.free[c]).collect();
     let mut unit = vec![0.0; u.len()];
     let mut image = vec![0.0; u.len()];

@@ -2,7 +2,7 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::{Contact, ContactReport, Path, Strip, StripContact, StripReport, Support, surface};
-use bsmpm::control::Accepted;
+use bsmpm::control::AcceptedStep;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Nonlinear;
 use bsmpm::model::Regime;
@@ -116,7 +116,7 @@ fn a_strip_that_does_not_let_go_pulls() {
     );
 }
 
-fn of(accepted: &Accepted) -> (&StripReport, ContactReport) {
+fn of(accepted: &AcceptedStep) -> (&StripReport, ContactReport) {
     let strip = &accepted.report.strips[0];
     (strip, strip.contact.expect("a strip in contact"))
 }

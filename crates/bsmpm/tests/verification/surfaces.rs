@@ -3,10 +3,10 @@
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::background::Background;
 use bsmpm::boundary::{Load, Path, Strip, Support, SurfacePoint, surface};
-use bsmpm::control::Accepted;
+use bsmpm::control::AcceptedStep;
 use bsmpm::error::StepError;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
-use bsmpm::model::{Regime, Weighting};
+use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
@@ -23,7 +23,7 @@ fn block(cells: [usize; 2], order: usize) -> Plane {
     let mut scene = Plane::new(axes, hencky(1000.0, 0.3), Regime::QuasiStatic)
         .body([0..cells[0], 0..cells[1]], 3, 0.0, |x| x * 0.0)
         .rollers(0..2);
-    scene.model.weighting = Weighting::Volume;
+    scene.model.weighting = AverageWeight::Volume;
     scene.model.criteria.force = 1e-12;
     scene.model.background = Some(Background { coefficient: 1e-3 });
     scene
@@ -131,7 +131,7 @@ fn what_a_strip_has_slipped_in_all_steps_is_its_pressure_over_the_penalty() {
 fn a_cut_step_follows_the_same_path() {
     let solved = |dt: f64| {
         let mut scene = pressed(block([4, 4], 2), 0.2, true, 1e7);
-        let mut reports: Vec<Accepted> = Vec::new();
+        let mut reports: Vec<AcceptedStep> = Vec::new();
         scene.march(dt, 1.0, |_, accepted| reports.push(accepted.clone()));
         reports
             .last()

@@ -6,7 +6,7 @@ use bsmpm::background::Background;
 use bsmpm::boundary::surface;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::model::{Regime, Weighting};
+use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::points::Points;
 use bsmpm::tensor::Vector;
 use bsmpm::water::flow::{Course, Drain, Given, PermeabilityLaw};
@@ -52,7 +52,7 @@ fn a_drained_surface_that_settles_through_rows_of_cells_stays_drained() {
         let mut scene = column(20, 0.999, 0.5 * M, law);
         let soft = Background { coefficient: 1e-2 };
         scene = scene.background(Some(soft));
-        scene.model.weighting = Weighting::Volume;
+        scene.model.weighting = AverageWeight::Volume;
         (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
         let mut errors = Vec::new();
         let mut iterations = 0;

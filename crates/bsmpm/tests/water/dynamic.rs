@@ -1,7 +1,7 @@
 //! Tests of a saturated column under a sudden load: damped waves of the telegraph equation.
 
 use super::{M, column, run, settlement};
-use bsmpm::energy::{Books, Budget, Stored};
+use bsmpm::energy::{EnergyAccounts, EnergyBound, StoredEnergy};
 use bsmpm::model::Regime;
 use bsmpm::points::Motion;
 use bsmpm::step::mass::MassMatrix;
@@ -48,9 +48,9 @@ fn water_damps_the_waves_of_a_column_as_the_telegraph_equation_says() {
         scene.model.balances_energy = true;
         let mut found = Vec::new();
         let mut iterations = 0;
-        let mut books = Books::open(Stored::default());
-        let mut budget = Budget::open(Stored::default());
-        let mut now = Stored::default();
+        let mut books = EnergyAccounts::open(StoredEnergy::default());
+        let mut budget = EnergyBound::open(StoredEnergy::default());
+        let mut now = StoredEnergy::default();
         run(
             &mut scene,
             (1..=1000).map(|k| 0.01 * f64::from(k)),
@@ -73,7 +73,7 @@ fn water_damps_the_waves_of_a_column_as_the_telegraph_equation_says() {
         println!("b = {damping}: {found:.5?} ({expected:?}), off by {off:.4}, {iterations} iterations in 1000 steps");
         assert!(off < 0.02);
         let given = books.flows.external;
-        let closure = books.closure(now);
+        let closure = books.residual(now);
         let growth = budget.growth;
         let parts = [now.kinetic + now.elastic, books.flows.plastic, books.flows.numerical()].map(|part| part / given);
         println!(

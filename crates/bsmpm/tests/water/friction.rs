@@ -6,7 +6,7 @@ use bsmpm::boundary::{Contact, Support};
 use bsmpm::grid::Shape;
 use bsmpm::model::Regime;
 use bsmpm::schedule::TimeInterval;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::water::carried;
 use bsmpm::water::flow::{Motion, PermeabilityLaw};
 use bsmpm::water::pore_pressure::PorePressure;
@@ -29,7 +29,7 @@ fn found<T>(friction: f64, of: impl Fn(&PorePressure<2>, &Plane, &Shape<2>) -> T
     scene.points.pore_pressure = Some(scene.points.x.iter().map(|x| 5e3 + 2e3 * x[0] - 3e3 * x[1]).collect());
     let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, &scene.points).expect("inside");
-    let nodes = Nodes::map(
+    let nodes = GridState::from_points(
         &scene.model,
         &shape,
         &scene.points,

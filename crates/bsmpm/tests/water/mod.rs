@@ -13,7 +13,7 @@ mod terzaghi;
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
-use bsmpm::background::Resisted;
+use bsmpm::background::ResistedDisplacement;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
@@ -165,7 +165,7 @@ pub fn run_from(
             &mut scene.points,
             &mut guess,
             TimeInterval { start: t, dt },
-            Resisted::Displacement,
+            ResistedDisplacement::Displacement,
             &mut Backend {
                 halo: &halo,
                 solver: &mut solver,

@@ -6,8 +6,8 @@ use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};
 use crate::support::solver::Skyline;
 use bsmpm::background::Background;
-use bsmpm::background::Resisted;
-use bsmpm::boundary::strip::StripAttachments;
+use bsmpm::background::ResistedDisplacement;
+use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
 use bsmpm::error::StepError;
 use bsmpm::grid::Shape;
@@ -18,9 +18,9 @@ use bsmpm::model::Regime;
 use bsmpm::observe::{Part, largest_displacement};
 use bsmpm::parallel::Backend;
 use bsmpm::schedule::TimeInterval;
-use bsmpm::solve::linearised::Linearised;
+use bsmpm::solve::linearised::ForceTangent;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::step::{Counts, StepReport, step};
@@ -123,8 +123,9 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 0.1 }, &halo).expect("no loads");
-    let attachments = StripAttachments::at(
+    let nodes =
+        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.1 }, &halo).expect("no loads");
+    let attachments = StripConstraints::at(
         &[],
         &points.surface,
         &model.grid,
@@ -172,7 +173,7 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
             .is_ok_and(|response| response.plastic_increment() > 0.0)
     });
     let mut product = vec![0.0; x.len()];
-    Linearised::at(&pieces, &residual)
+    ForceTangent::at(&pieces, &residual)
         .with_water(&x)
         .multiply(&v, &mut product);
     let step = 1e-7;
@@ -293,7 +294,7 @@ fn steps(scene: &mut Plane, times: &[f64]) -> Result<(f64, Vec<StepReport>, usiz
             &mut scene.points,
             &mut guess,
             TimeInterval { start: t, dt },
-            Resisted::Displacement,
+            ResistedDisplacement::Displacement,
             &mut Backend {
                 halo: &halo,
                 solver: &mut solver,

@@ -5,13 +5,13 @@ use super::{Plane, at, flowing};
 use crate::support::scene::{axis, hencky};
 use crate::support::solver::Dense;
 use bsmpm::boundary::Support;
-use bsmpm::boundary::strip::StripAttachments;
+use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::grid::transfer::scalars;
 use bsmpm::grid::{Shape, transfer};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::TimeInterval;
-use bsmpm::step::nodes::Nodes;
+use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::tensor::Vector;
@@ -97,8 +97,9 @@ fn constants(mut scene: Plane) -> [f64; 2] {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
-    let attachments = StripAttachments::at(
+    let nodes =
+        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let attachments = StripConstraints::at(
         &[],
         &points.surface,
         &model.grid,
@@ -211,8 +212,9 @@ fn a_rotation_changes_neither_the_flow_nor_the_content_and_turns_the_forces() {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = Nodes::map(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
-    let attachments = StripAttachments::at(
+    let nodes =
+        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let attachments = StripConstraints::at(
         &[],
         &points.surface,
         &model.grid,

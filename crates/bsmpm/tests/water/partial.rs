@@ -4,7 +4,7 @@
 use super::{Plane, WEIGHT, at, run, through};
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::{Support, SurfacePoint};
-use bsmpm::energy::{Books, Stored};
+use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::tensor::Vector;
@@ -196,16 +196,16 @@ fn the_books_of_rain_close_with_what_suction_stores() {
         }
         scene.model.balances_energy = true;
         let model = scene.model.clone(); let halo = scene.halo();
-        let stored = |points: &Points<2>, t: f64| Stored::of(&model, points, t, &halo);
-        let start = stored(&scene.points, 0.0); let mut now = Stored::default();
-        let mut books = Books::open(start);
+        let stored = |points: &Points<2>, t: f64| StoredEnergy::of(&model, points, t, &halo);
+        let start = stored(&scene.points, 0.0); let mut now = StoredEnergy::default();
+        let mut books = EnergyAccounts::open(start);
         run(&mut scene, (1..).map(|k| dt * f64::from(k)).take_while(|t| *t <= 20e3), |t, points, report| {
             books.flows += report.energy.expect("books are kept");
             now = stored(points, t);
         });
         let given = start.elastic - now.elastic;
         let spent = books.flows.plastic / given; let lost = books.flows.numerical() / given;
-        let put_in = books.flows.external / given; let left = books.closure(now) / given;
+        let put_in = books.flows.external / given; let left = books.residual(now) / given;
         println!("{reported}: of {given:.4} J from pores, {put_in:.4} put in: seepage {spent:.4}, lost {lost:.4}, left {left:.1e}");
         assert!(given > 0.0 && spent > 0.0 && left.abs() < 1e-6);
         lost

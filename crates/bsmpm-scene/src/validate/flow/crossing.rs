@@ -1,7 +1,7 @@
 //! Checks that drains and inflows do not contradict each other, and that the ground can absorb the inflow.
 
 use super::is_permeable;
-use crate::case::{Acting, Case, Drain, DrainSite, Face, Flow, LoadedLine, Plate, Site};
+use crate::case::{ActiveLoads, Case, Drain, DrainSite, Face, Flow, LoadedLine, Plate, Site};
 use crate::record::Record;
 use crate::report::{Report, listed};
 use crate::validate::side::side;
@@ -20,7 +20,7 @@ const PARTS_OF_FACE: usize = 64;
 struct CrossedSurface<'a> {
     record: &'a Record,
     called: String,
-    what: Acting,
+    what: ActiveLoads,
     parts: Vec<SurfacePart>,
     given: Option<&'a Given>,
 }
@@ -85,7 +85,7 @@ fn all<'a>(case: &Case, flow: &'a Flow, root: &'a Record) -> Vec<CrossedSurface<
     let drains = drains.map(|(number, (drain, record))| CrossedSurface {
         record,
         called: drain.name.clone().unwrap_or_else(|| format!("drain.{number}")),
-        what: Acting::Drain(number),
+        what: ActiveLoads::Drain(number),
         parts: parts(&drain.site, case),
         given: Some(&drain.given),
     });
@@ -93,7 +93,7 @@ fn all<'a>(case: &Case, flow: &'a Flow, root: &'a Record) -> Vec<CrossedSurface<
     let inflows = inflows.map(|(number, (inflow, record))| CrossedSurface {
         record,
         called: format!("inflow.{number}"),
-        what: Acting::Inflow(number),
+        what: ActiveLoads::Inflow(number),
         parts: match inflow.site {
             Site::Segment { from, to } => vec![SurfacePart::Line([from, to])],
             Site::Plate(plate) => vec![SurfacePart::Plate(plate)],

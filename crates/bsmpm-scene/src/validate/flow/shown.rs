@@ -1,7 +1,7 @@
 //! Refuses options that are not verified for cases with pore-water flow.
 
 use super::is_permeable;
-use crate::case::{Acting, Case, DrainSite, Flow, Initial, Stage, Support, Water};
+use crate::case::{ActiveLoads, Case, DrainSite, Flow, Initial, Stage, Support, Water};
 use crate::grid::GridAxis;
 use crate::record::Record;
 use crate::report::Report;
@@ -305,7 +305,7 @@ fn placed(case: &Case, number: usize, stage: &Stage, report: &mut Report<'_>) {
 
 /// Whether a drain acts at a time.
 fn acts_at(case: &Case, drain: usize, t: f64) -> bool {
-    case.acts_since(Acting::Drain(drain), t).is_some()
+    case.acts_since(ActiveLoads::Drain(drain), t).is_some()
 }
 
 /// Whether a body is at a place at a time.

@@ -7,7 +7,7 @@ use crate::report::Report;
 use crate::schema::{Dimension, Kind, LawName, MATERIAL};
 use crate::validate::SQUARE;
 use crate::words::{Geometry, Word};
-use bsmpm::material::{CamClay, Decay, Elastic, Graded, Match, Material, Profile, Separation};
+use bsmpm::material::{CamClay, Decay, Elastic, GradedLaw, Match, Material, Profile, Separation};
 
 /// A law and its numbers, by the height in the case's coordinates and units.
 pub(super) struct Parameters {
@@ -69,7 +69,7 @@ impl Parameters {
         let parameters: Vec<Profile> = ordered.collect();
         if young.per_metre == 0.0 && !self.is_graded() {
             let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
-            return Some(law.with(law.elastic().clone(), &values).reduced(factor));
+            return Some(law.with_parameters(law.elastic().clone(), &values).reduced(factor));
         }
         let layer = layer?;
         let heights = layer.heights.start - layer.base..layer.heights.end - layer.base;
@@ -77,7 +77,7 @@ impl Parameters {
             .into_iter()
             .map(|profile| relative(profile, layer.base))
             .collect();
-        Some(Material::Graded(Graded::new(
+        Some(Material::Graded(GradedLaw::new(
             &law,
             relative(young, layer.base),
             parameters,

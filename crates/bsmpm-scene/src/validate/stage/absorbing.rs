@@ -1,6 +1,6 @@
 //! Checks stages with absorbing or free-field boundaries.
 
-use crate::case::{Acting, Case, Face, Stage, Support};
+use crate::case::{ActiveLoads, Case, Face, Stage, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::validate::free_field;
@@ -37,7 +37,7 @@ pub(super) fn check(case: &Case, stage: &Stage, record: &Record, report: &mut Re
         );
     }
     let grows = stage.apply.iter().any(|(_, what)| match *what {
-        Acting::Load(load) => case.grows_from(load),
+        ActiveLoads::Load(load) => case.grows_from(load),
         _ => true,
     });
     if case.still_grows(stage.at) || grows {
@@ -47,7 +47,11 @@ pub(super) fn check(case: &Case, stage: &Stage, record: &Record, report: &mut Re
              `amplitude` of each load earlier, or use ramp = 0.",
         );
     }
-    if stage.release.iter().any(|(_, what)| !matches!(what, Acting::Load(_))) {
+    if stage
+        .release
+        .iter()
+        .any(|(_, what)| !matches!(what, ActiveLoads::Load(_)))
+    {
         refuse(
             "deactivate",
             "E0627: with absorbing boundaries a stage can deactivate loads, but not a footing or prescribed motion. \

@@ -56,7 +56,7 @@ pub(super) fn gaps<const D: usize>(
             *node = node.max(-least);
         }
     }
-    halo.max(&mut near, 1);
+    halo.ghost_max(&mut near, 1);
     near.iter_mut().for_each(|gap| *gap = -*gap);
     near
 }

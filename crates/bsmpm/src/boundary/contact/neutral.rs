@@ -15,7 +15,7 @@ impl<const D: usize> Contacts<D> {
         let mut sticking = [f64::from(u8::from(
             self.nodes.iter().any(|at| at.status == Status::Stick),
         ))];
-        halo.maximum(&mut sticking);
+        halo.all_reduce_max(&mut sticking);
         if sticking[0] > 0.0 {
             return 0;
         }
@@ -23,7 +23,7 @@ impl<const D: usize> Contacts<D> {
         for number in self.neutral(grid, u) {
             marks[self.nodes[number].node] = 1.0;
         }
-        halo.max(&mut marks, 1);
+        halo.ghost_max(&mut marks, 1);
         let owned = halo.owned();
         let mut held = [0.0];
         for at in self
@@ -34,7 +34,7 @@ impl<const D: usize> Contacts<D> {
             (at.status, at.is_neutral) = (Status::Stick, true);
             held[0] += f64::from(u8::from(owned.contains(at.node)));
         }
-        halo.reduce(&mut held);
+        halo.all_reduce_sum(&mut held);
         held[0] as usize
     }
 

@@ -51,7 +51,7 @@ pub(super) struct ContactNode<const D: usize> {
 }
 
 /// What a displacement and reaction ask of a node: its status, and what resists a slip beside that.
-pub(super) struct Asked<const D: usize> {
+pub(super) struct StatusCorrection<const D: usize> {
     pub status: Status<D>,
     pub transverse_stiffness: f64,
     pub slip_length: f64,
@@ -60,7 +60,7 @@ pub(super) struct Asked<const D: usize> {
 impl<const D: usize> ContactNode<D> {
     /// The status that the last displacement had, and which components were at rest; `edge` is that of the cell, m,
     /// `had_material` whether something moved behind the node: where nothing was, nothing rested.
-    pub fn recall(&mut self, t: f64, guess: &[f64], edge: f64, had_material: bool) {
+    pub fn predict_status(&mut self, t: f64, guess: &[f64], edge: f64, had_material: bool) {
         let last = Vector::<D>::from_fn(|c, _| guess.get(Nodal::<D>::at(self.node, c)).copied().unwrap_or(0.0));
         let normal = self.inward * last[self.axis];
         if t > 0.0 && had_material && normal == 0.0 && self.gap < KEPT * edge {
@@ -186,10 +186,10 @@ impl<const D: usize> ContactNode<D> {
     }
 
     /// A status with what then resists a slip beside it, linear about a slip of `slip_length`, m.
-    fn linearised(&self, status: Status<D>, slip_length: f64, reaction: &[f64]) -> Asked<D> {
+    fn linearised(&self, status: Status<D>, slip_length: f64, reaction: &[f64]) -> StatusCorrection<D> {
         let slips = D > 2 && self.law.friction > 0.0 && matches!(status, Status::Slip(_));
         let transverse_stiffness = if slips { self.limit(reaction) / slip_length } else { 0.0 };
-        Asked {
+        StatusCorrection {
             status,
             transverse_stiffness,
             slip_length,
@@ -197,9 +197,9 @@ impl<const D: usize> ContactNode<D> {
     }
 
     /// What displacement and reaction ask for.
-    pub fn corrected(&self, u: &[f64], reaction: &[f64], force: f64, length: f64) -> Asked<D> {
+    pub fn corrected(&self, u: &[f64], reaction: &[f64], force: f64, length: f64) -> StatusCorrection<D> {
         let least = LEAST * length;
-        let kept = Asked {
+        let kept = StatusCorrection {
             status: self.status,
             transverse_stiffness: self.transverse_stiffness,
             slip_length: self.slip_length,

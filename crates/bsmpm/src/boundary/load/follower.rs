@@ -2,7 +2,7 @@
 //! derivative is not part of the stiffness.
 
 use super::Load;
-use crate::boundary::anchor::Anchored;
+use crate::boundary::anchor::AnchorCandidates;
 use crate::boundary::strip::reduce;
 use crate::boundary::surface::{Anchors, Attachment, CORNERS, SurfacePoint, area};
 use crate::grid::{Contributions, Grid};
@@ -156,7 +156,7 @@ impl<const D: usize> FollowerLoads<D> {
         pushed: Vec<AttachedPoint>,
         grid: &Grid<D>,
         anchors: &Anchors,
-        points: Anchored<'_, D>,
+        points: AnchorCandidates<'_, D>,
     ) -> Self {
         if !loads.iter().any(|load| load.follows) {
             return Self::default();
@@ -222,7 +222,7 @@ impl<const D: usize> FollowerLoads<D> {
             at.attachment
                 .scatter(&offsets, &(traction[at.load][at.point] * at.area), &mut force);
         }
-        halo.sum(&force)
+        halo.assemble_ghosts(&force)
     }
 }
 
@@ -232,7 +232,7 @@ pub fn now<K: Kinematics<D>, const D: usize>(
     loads: &[Load<D>],
     grid: &Grid<D>,
     anchors: &Anchors,
-    points: Anchored<'_, D>,
+    points: AnchorCandidates<'_, D>,
     halo: &dyn Halo,
 ) -> Vec<Vec<Vector<D>>> {
     let pressures = FollowerLoads::of(loads, Vec::new(), grid, anchors, points);
@@ -252,7 +252,7 @@ fn carriers<const D: usize>(
     loads: &[Load<D>],
     grid: &Grid<D>,
     anchors: &Anchors,
-    points: Anchored<'_, D>,
+    points: AnchorCandidates<'_, D>,
 ) -> Vec<Carrier<D>> {
     let offsets = grid.offsets();
     let mut carriers = Vec::new();

@@ -6,7 +6,7 @@ use super::RigidContacts;
 use super::body::{Pose, RigidBody, RigidState};
 use super::near::{longest_edge, reach};
 use super::point::{ContactStatus, tangents};
-use super::surroundings::Reaching;
+use super::surroundings::ParticleDomains;
 use crate::parallel::Halo;
 use crate::tensor::Vector;
 
@@ -54,7 +54,12 @@ impl<const D: usize> RigidContacts<D> {
     /// Part of what every point of this rank reaches that it has from the end of the step on, with the bodies'
     /// `states` and the points as they are then: what is near one goes on as far from it as the step has left it,
     /// whatever its F has become. None without bodies: on all ranks or on none.
-    pub fn extents_after(&self, held: &[Held], states: &[RigidState], after: &Reaching<'_, D>) -> Option<Vec<f64>> {
+    pub fn extents_after(
+        &self,
+        held: &[Held],
+        states: &[RigidState],
+        after: &ParticleDomains<'_, D>,
+    ) -> Option<Vec<f64>> {
         if self.is_empty() {
             return None;
         }
@@ -82,10 +87,10 @@ impl<const D: usize> RigidContacts<D> {
 pub fn extents<const D: usize>(
     bodies: &[RigidBody<D>],
     states: &[RigidState],
-    reaching: &Reaching<'_, D>,
+    reaching: &ParticleDomains<'_, D>,
     is_soil: impl Fn(&Vector<D>) -> bool,
 ) -> Vec<f64> {
-    let Reaching { grid, points, .. } = reaching;
+    let ParticleDomains { grid, points, .. } = reaching;
     let longest = (0..D).map(|axis| longest_edge(grid, axis)).fold(0.0, f64::max);
     let mut extents = Vec::with_capacity(points.len());
     for (p, &x) in points.x.iter().enumerate() {

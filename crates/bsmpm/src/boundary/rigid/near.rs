@@ -3,7 +3,7 @@
 
 use super::motion::BodyInStep;
 use super::point::{ContactStatus, RigidPoint, along, tangents};
-use super::surroundings::{Reaching, Surroundings};
+use super::surroundings::{ParticleDomains, Surroundings};
 use super::{CLOSE, PENALTY, RigidContacts};
 use crate::error::StepError;
 use crate::grid::{Grid, Shape};
@@ -48,7 +48,7 @@ impl<const D: usize> RigidContacts<D> {
         };
         let mut moving = contacts.gather(around, young, interval, halo);
         if around.newmark.is_some() {
-            halo.max(&mut moving, 1);
+            halo.ghost_max(&mut moving, 1);
             let free = around.free.iter().enumerate();
             let marked = free.map(|(c, free)| *free && moving[Nodal::<D>::node(c)] > 0.0);
             contacts.moving = marked.collect();
@@ -91,7 +91,7 @@ impl<const D: usize> RigidContacts<D> {
             near[2 * number + 1] = -at.least;
             self.bodies.push(at);
         }
-        halo.maximum(&mut near);
+        halo.all_reduce_max(&mut near);
         for (at, near) in self.bodies.iter_mut().zip(near.chunks_exact(2)) {
             at.least = -near[1];
             if is_dynamic && near[0] == 0.0 {
@@ -130,7 +130,7 @@ impl<const D: usize> RigidContacts<D> {
     ) -> f64 {
         let outline = &at.body.outline;
         let after = at.body.pose(&at.predicted);
-        let Reaching { grid, points, .. } = around.reaching;
+        let ParticleDomains { grid, points, .. } = around.reaching;
         let mut least = f64::INFINITY;
         let longest = (0..D).map(|axis| longest_edge(grid, axis)).fold(0.0, f64::max);
         for patch in around.shape.patches() {
@@ -237,7 +237,7 @@ pub(super) fn longest_edge<const D: usize>(grid: &Grid<D>, axis: usize) -> f64 {
 
 /// m  how far a point reaches along a normal, by the ellipse in its box in the lattice of the cell that it was in at
 /// the start, deformed by its F; and an edge of that cell.
-pub(super) fn reach<const D: usize>(around: &Reaching<'_, D>, p: usize, normal: &Vector<D>) -> (f64, f64) {
+pub(super) fn reach<const D: usize>(around: &ParticleDomains<'_, D>, p: usize, normal: &Vector<D>) -> (f64, f64) {
     let (half, size, edge) = half_edges(around, p, normal);
     let reach = half.iter().map(|half| half.powi(2)).sum::<f64>().sqrt();
     (reach.clamp(STRETCH[0] * size.min(), STRETCH[1] * size.max()), edge)
@@ -261,15 +261,19 @@ fn pressing<const D: usize>(
 
 /// m  how far a point spans along a normal with the edge of its box that spans most: its volume over that is the area
 /// of an outline that belongs to it, as one row of points touches an outline.
-fn column<const D: usize>(around: &Reaching<'_, D>, p: usize, normal: &Vector<D>) -> f64 {
+fn column<const D: usize>(around: &ParticleDomains<'_, D>, p: usize, normal: &Vector<D>) -> f64 {
     let (half, size, _) = half_edges(around, p, normal);
     (2.0 * half.amax()).max(STRETCH[0] * size.min())
 }
 
 /// m  how far each half edge of a point's box, deformed by its F, goes along a normal; those half edges; and an edge of
 /// the point's cell at the start.
-fn half_edges<const D: usize>(around: &Reaching<'_, D>, p: usize, normal: &Vector<D>) -> (Vector<D>, Vector<D>, f64) {
-    let Reaching {
+fn half_edges<const D: usize>(
+    around: &ParticleDomains<'_, D>,
+    p: usize,
+    normal: &Vector<D>,
+) -> (Vector<D>, Vector<D>, f64) {
+    let ParticleDomains {
         grid,
         points,
         reach,

@@ -16,7 +16,7 @@ const AGAINST: f64 = 0.01;
 
 /// What the points that slide are for a loose motion.
 #[derive(Clone, Copy)]
-struct Sliding {
+struct SlidingPoints {
     towards: f64, // of the friction along the motion: 1 or -1
     slip: f64,    // m  of the motion that it takes to undo the slip, by which the neutral point is chosen
 }
@@ -34,7 +34,7 @@ impl<const D: usize> RigidContacts<D> {
             if loose.iter().all(Option::is_none) {
                 break;
             }
-            let sliding: Vec<Option<Sliding>> = self
+            let sliding: Vec<Option<SlidingPoints>> = self
                 .points
                 .iter()
                 .zip(moved)
@@ -42,7 +42,7 @@ impl<const D: usize> RigidContacts<D> {
                 .collect();
             let mut extremes = vec![f64::NEG_INFINITY; 3 * self.bodies.len()]; // towards, against, - least slip
             for ((point, sliding), released) in self.points.iter().zip(&sliding).zip(released) {
-                let Some(Sliding { towards, slip }) = *sliding else {
+                let Some(SlidingPoints { towards, slip }) = *sliding else {
                     continue;
                 };
                 let least = if *released { f64::NEG_INFINITY } else { -slip };
@@ -51,7 +51,7 @@ impl<const D: usize> RigidContacts<D> {
                     .zip([towards, -towards, least])
                     .for_each(|(most, value)| *most = most.max(value));
             }
-            halo.maximum(&mut extremes);
+            halo.all_reduce_max(&mut extremes);
             let mut count = [0.0];
             for (point, sliding) in self.points.iter_mut().zip(&sliding) {
                 let [towards, against, least] = [0, 1, 2].map(|k| extremes[3 * point.body + k]);
@@ -60,7 +60,7 @@ impl<const D: usize> RigidContacts<D> {
                     count[0] += 1.0;
                 }
             }
-            halo.reduce(&mut count);
+            halo.all_reduce_sum(&mut count);
             held += count[0] as usize;
             if count[0] == 0.0 {
                 break;
@@ -98,7 +98,11 @@ fn among_free(stiffness: &Matrix3<f64>, free: [f64; MOTIONS]) -> Matrix3<f64> {
 }
 
 /// Of a point that slides along the loose motion of its body.
-fn sliding<const D: usize>(point: &RigidPoint<D>, moved: &Vector<D>, loose: &[Option<Vector<3>>]) -> Option<Sliding> {
+fn sliding<const D: usize>(
+    point: &RigidPoint<D>,
+    moved: &Vector<D>,
+    loose: &[Option<Vector<3>>],
+) -> Option<SlidingPoints> {
     let motion = loose[point.body]?;
     let ContactStatus::Slip(towards) = point.status else {
         return None;
@@ -107,7 +111,7 @@ fn sliding<const D: usize>(point: &RigidPoint<D>, moved: &Vector<D>, loose: &[Op
     let friction = towards[0] * along[0] + towards[1] * along[1];
     let size = along[0].hypot(along[1]);
     let weighed = if friction < 0.0 { 1.0 + AGAINST } else { 1.0 };
-    (friction != 0.0).then(|| Sliding {
+    (friction != 0.0).then(|| SlidingPoints {
         towards: friction.signum(),
         slip: weighed * point.slipped(moved) / size,
     })

@@ -9,7 +9,7 @@ use crate::water::pore_pressure::PorePressure;
 
 /// What gives how far points reach.
 #[derive(Clone, Copy)]
-pub struct Reaching<'a, const D: usize> {
+pub struct ParticleDomains<'a, const D: usize> {
     /// the grid
     pub grid: &'a Grid<D>,
     /// the points
@@ -25,7 +25,7 @@ pub struct Surroundings<'a, const D: usize> {
     /// the bodies, and what they carry
     pub bodies: (&'a [RigidBody<D>], &'a [RigidState]),
     /// the points on their grid
-    pub reaching: Reaching<'a, D>,
+    pub reaching: ParticleDomains<'a, D>,
     /// shape functions
     pub shape: &'a Shape<D>,
     /// m/s2  force per mass at the end of the step

@@ -2,15 +2,15 @@
 //! are defined on pairs of cells inside a body, and on single cells at its edges.
 
 use super::{Patch, Shape};
-use crate::grid::paired::Paired;
+use crate::grid::paired::CellPairs;
 use crate::grid::{Contributions, Grid, digit};
 use crate::parallel::Halo;
-use crate::stabilisation::Grouped;
+use crate::stabilisation::GroupedPoints;
 
 /// What the functions of every patch are merged to; numbers of the functions on pairs stand beside those of the nodes.
 #[derive(Clone, Debug)]
-pub struct Merged<const D: usize> {
-    axes: [Paired; D],
+pub struct MergedFunctions<const D: usize> {
+    axes: [CellPairs; D],
     functions: usize, // of a cell, n
     groups: usize,
     offsets: Vec<usize>, // per patch: where its n functions on pairs are kept, from the patch's first node
@@ -20,13 +20,13 @@ pub struct Merged<const D: usize> {
 
 impl<const D: usize> Shape<D> {
     /// The same lowered functions, those inside a body merged to the ones of pairs of cells.
-    pub(crate) fn merged(mut self, grid: &Grid<D>, grouped: Grouped<'_>, halo: &dyn Halo) -> Self {
-        self.merged = Some(Merged::of(grid, &self, grouped, halo));
+    pub(crate) fn merged(mut self, grid: &Grid<D>, grouped: GroupedPoints<'_>, halo: &dyn Halo) -> Self {
+        self.merged = Some(MergedFunctions::of(grid, &self, grouped, halo));
         self
     }
 
     /// What lowered functions are merged to, if they are.
-    pub(crate) fn merger(&self) -> Option<&Merged<D>> {
+    pub(crate) fn merger(&self) -> Option<&MergedFunctions<D>> {
         self.merged.as_ref()
     }
 
@@ -36,14 +36,14 @@ impl<const D: usize> Shape<D> {
     }
 }
 
-impl<const D: usize> Merged<D> {
+impl<const D: usize> MergedFunctions<D> {
     /// Of the splines `lower` of degree q - 1 in a grid that reaches 2q - 1 layers; two exchanges with the neighbours.
-    pub(crate) fn of(grid: &Grid<D>, lower: &Shape<D>, grouped: Grouped<'_>, halo: &dyn Halo) -> Self {
+    pub(crate) fn of(grid: &Grid<D>, lower: &Shape<D>, grouped: GroupedPoints<'_>, halo: &dyn Halo) -> Self {
         debug_assert!(
             grid.beyond() + 1 >= 2 * grid.order(),
             "functions on pairs are kept beyond their cells"
         );
-        let axes = grid.axes().each_ref().map(Paired::of);
+        let axes = grid.axes().each_ref().map(CellPairs::of);
         let width = lower.width();
         let n = lower.offsets().len();
         let groups = grouped.count();
@@ -53,7 +53,7 @@ impl<const D: usize> Merged<D> {
             let cell = grid.cell_at(patch.cell);
             offsets.extend((0..n).map(|k| {
                 offset(grid, |axis| {
-                    let paired: &Paired = &axes[axis];
+                    let paired: &CellPairs = &axes[axis];
                     paired.slot(paired.function(cell[axis], digit::<D>(k, axis, width))) - cell[axis]
                 })
             }));
@@ -78,7 +78,7 @@ impl<const D: usize> Merged<D> {
     }
 
     /// Which functions on pairs have all cells of their support inside the body of the group.
-    fn inside(&self, grid: &Grid<D>, lower: &Shape<D>, grouped: Grouped<'_>, halo: &dyn Halo) -> Vec<bool> {
+    fn inside(&self, grid: &Grid<D>, lower: &Shape<D>, grouped: GroupedPoints<'_>, halo: &dyn Halo) -> Vec<bool> {
         let deep = inner_cells(grid, lower, grouped, halo);
         let columns = lower.columns().iter().map(|column| column.column).collect();
         let mut counts = Contributions::none(grid, self.groups, columns);
@@ -90,7 +90,7 @@ impl<const D: usize> Merged<D> {
                     .for_each(|offset| sums[offset * self.groups + group] += 1.0);
             }
         }
-        let counts = halo.sum(&counts);
+        let counts = halo.assemble_ghosts(&counts);
         let mut inside = Vec::with_capacity(self.offsets.len() * self.groups);
         for (number, patch) in lower.patches().iter().enumerate() {
             for group in 0..self.groups {
@@ -163,7 +163,7 @@ impl<const D: usize> Merged<D> {
         [cells, pairs]
     }
 
-    /// The transpose of [`Merged::spread`]: values of the functions on the cells that make up all.
+    /// The transpose of [`MergedFunctions::spread`]: values of the functions on the cells that make up all.
     pub(crate) fn combine<const C: usize, const N: usize>(
         &self,
         patch: usize,
@@ -184,13 +184,18 @@ impl<const D: usize> Merged<D> {
 }
 
 /// Whether a patch holds points of the group.
-fn holds(patch: &Patch, grouped: Grouped<'_>, group: usize) -> bool {
+fn holds(patch: &Patch, grouped: GroupedPoints<'_>, group: usize) -> bool {
     patch.points.clone().any(|p| grouped.of(p) == group)
 }
 
 /// Per patch and group: whether all cells about it hold points of the group, too. What lies behind a face of the grid
 /// or a repeated breakpoint does not count: an edge that lies there cuts no cell.
-fn inner_cells<const D: usize>(grid: &Grid<D>, lower: &Shape<D>, grouped: Grouped<'_>, halo: &dyn Halo) -> Vec<bool> {
+fn inner_cells<const D: usize>(
+    grid: &Grid<D>,
+    lower: &Shape<D>,
+    grouped: GroupedPoints<'_>,
+    halo: &dyn Halo,
+) -> Vec<bool> {
     let groups = grouped.count();
     let columns = lower.columns().iter().map(|column| column.column).collect();
     let mut around = Contributions::none(grid, groups, columns);
@@ -205,7 +210,7 @@ fn inner_cells<const D: usize>(grid: &Grid<D>, lower: &Shape<D>, grouped: Groupe
             }
         }
     }
-    let around = halo.sum(&around);
+    let around = halo.assemble_ghosts(&around);
     let own = offset(grid, |_| 1);
     let mut inner = Vec::with_capacity(lower.patches().len() * groups);
     for patch in lower.patches() {

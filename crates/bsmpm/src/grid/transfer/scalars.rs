@@ -3,7 +3,7 @@
 use super::{MOST_NODES, PatchBlock, at_points, gather, scatter};
 use crate::grid::shape::with_width;
 use crate::grid::{Contributions, Shape};
-use crate::stabilisation::Grouped;
+use crate::stabilisation::GroupedPoints;
 use crate::tensor::Vector;
 
 /// Functions of a patch at a point, at most: quadratic ones in three dimensions.
@@ -38,7 +38,7 @@ pub fn of_scalars<const D: usize, const C: usize>(
     shape: &Shape<D>,
     of_point: impl Fn(usize) -> [(f64, Vector<D>); C] + Sync,
 ) -> Contributions {
-    with_width!(shape.width(), W => scatter(shape, Grouped::NOT, |points, block: &mut PatchBlock<C>| {
+    with_width!(shape.width(), W => scatter(shape, GroupedPoints::NOT, |points, block: &mut PatchBlock<C>| {
         for p in points {
             let support = shape.support::<W>(p);
             let of_point = of_point(p);

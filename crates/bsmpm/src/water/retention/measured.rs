@@ -3,13 +3,13 @@
 /// Rows of suction head, m, effective saturation and relative permeability, from the full soil on, with cubics between
 /// that rise nowhere (Fritsch and Butland 1984); constant beyond the last row.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
+pub struct MeasuredCurve {
     pub(super) rows: Vec<[f64; 3]>,
     /// 1/m  of both at each row
     slopes: Vec<[f64; 2]>,
 }
 
-impl Measured {
+impl MeasuredCurve {
     /// Of rows whose heads rise from 0, and whose others fall from 1, or stay, without going below 0; at least two.
     pub fn new(rows: Vec<[f64; 3]>) -> Self {
         let slopes = (0..rows.len())
