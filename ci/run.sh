@@ -70,6 +70,7 @@ gate "lock file" cargo tree --locked --workspace --depth 0 --quiet
 gate "scripts" scripts_are_sound
 gate "format" is_formatted
 gate "language" ci/language
+gate "words" ci/count-words --most 60000
 gate "clippy" cargo clippy --workspace --all-targets -- -D warnings
 RUSTDOCFLAGS='-D warnings' gate "docs" cargo doc --workspace --no-deps --lib
 gate "tests" scripts/test

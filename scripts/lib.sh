@@ -127,6 +127,21 @@ measured_by() {
         "$command" "$(cores)" "${processor:-unknown processor}"
 }
 
+# processor_time: time of the processors in use, and of all processors, in ticks.
+processor_time() {
+    awk '/^cpu / { for (k = 2; k <= NF; k++) all += $k; print all - $5 - $6, all }' /proc/stat
+}
+
+# require_idle: ends the script if other programs use the processors. Times that are measured beside them mean nothing.
+require_idle() {
+    local before after used
+    before=$(processor_time)
+    sleep 2
+    after=$(processor_time)
+    used=$(awk '{ printf "%d", 100 * ($3 - $1) / ($4 - $2) }' <<<"$before $after")
+    ((used < 10)) || die "other programs use $used % of the processors, so that measured times would mean nothing. Stop these programs"
+}
+
 # publish NAME TITLE TEXT TABLES: writes the page verification/NAME.md of the book: the title, the text that says what is measured
 # and how to read it, when and where it was measured, and the file TABLES. A page that is there stays if there are none.
 publish() {

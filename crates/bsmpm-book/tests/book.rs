@@ -296,6 +296,26 @@ fn mathematics_is_complete() {
     }
 }
 
+#[test]
+fn the_pages_state_the_version_of_the_workspace() {
+    let version = env!("CARGO_PKG_VERSION");
+    let pages = [
+        ("CITATION.cff", format!("version: {version}")),
+        ("src/citing.md", version.to_owned()),
+        (
+            "src/reference/versions.md",
+            format!("The present version is {version}."),
+        ),
+    ];
+    for (file, words) in pages {
+        let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).unwrap();
+        assert!(
+            text.split_whitespace().collect::<Vec<_>>().join(" ").contains(&words),
+            "{file} does not state the version {version}"
+        );
+    }
+}
+
 /// The paragraphs of a text without fenced blocks and without code in lines; `$$` as `$`.
 fn paragraphs_without_code(text: &str) -> Vec<String> {
     let mut paragraphs = vec![String::new()];

@@ -14,8 +14,8 @@ pub fn reference() -> String {
     page.line("# Keys of the case file\n");
     page.paragraph(
         "This page lists all keys of a case; `bsmpm keys` prints it. A number without a unit is in SI units, an angle in \
-         degrees. A string may have another unit: `\"30 MPa\"`. Each key has its symbol, its meaning, the allowed \
-         values, its default and an example.",
+         degrees. A string may have another unit: `\"30 MPa\"`. Each key has its meaning and the allowed values, \
+         and where they exist its symbol, its default and an example.",
     );
     page.units();
     let mut described: Vec<&Table> = Vec::new();
@@ -122,7 +122,9 @@ impl Page {
         if !matches!(key.kind, Kind::Open) {
             let _ = write!(text, " {}.", capitalised(&takes(key)));
         }
-        let _ = write!(text, " {}{}.", presence(key.presence), unless_preset(key.has_preset));
+        if key.presence != Presence::Optional || !says_presence(key.doc) {
+            let _ = write!(text, " {}{}.", presence(key.presence), unless_preset(key.has_preset));
+        }
         if let Some(value) = key.example_value() {
             let _ = write!(text, " Example: `{} = {value}`.", key.name);
         }
@@ -253,6 +255,13 @@ fn is_second_end(group: &Group, table: &Table) -> bool {
     let mut groups = table.exclusive.iter();
     group.keys.contains(&"to")
         && groups.any(|other| other.keys.contains(&"from") && other.keys.last() == group.keys.last())
+}
+
+/// Whether a text says when its key is required, or what happens without the key.
+fn says_presence(text: &str) -> bool {
+    ["Required", "Default:", "Without this"]
+        .iter()
+        .any(|phrase| text.contains(phrase))
 }
 
 fn presence(presence: Presence) -> String {

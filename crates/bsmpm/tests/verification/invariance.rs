@@ -39,7 +39,7 @@ fn thrown(mirror: bool, method: Stabilisation) -> Scene<PlaneStrain, 2> {
 
 /// Invariance: reflection of the axes.
 #[test]
-fn a_mirrored_scene_has_the_mirrored_result() {
+fn a_mirrored_case_has_the_mirrored_result() {
     // Extreme N15: <= 1e-10 after 100 elastic steps.
     for method in METHODS {
         let run = |mirror| thrown(mirror, method).solved(0.01, 1.0).0.points;
