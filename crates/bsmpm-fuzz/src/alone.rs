@@ -77,7 +77,7 @@ impl SerialRun {
             &mut self.points,
             &mut self.guess,
             TimeInterval { start: t, dt },
-            ResistedDisplacement::Displacement,
+            ResistedDisplacement::Whole,
             &mut Backend {
                 halo: &self.halo,
                 solver: &mut self.solver,

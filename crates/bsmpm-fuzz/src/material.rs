@@ -123,7 +123,7 @@ fn mu_i(u: &mut Unstructured<'_>, elastic: Elastic, friction: f64) -> Result<Mat
     let [diameter, density] = [draw::size(u, -9.0, 3.0)?, draw::size(u, -3.0, 6.0)?];
     let law = MuI::new(elastic, [friction, fast, i_0, diameter, density]);
     Ok(Material::MuI(
-        law.at_time_step(draw::size(u, -12.0, 6.0)?)
+        law.with_time_step(draw::size(u, -12.0, 6.0)?)
             .filter(|_| u.ratio(3, 4).unwrap_or(true))
             .unwrap_or(law),
     ))

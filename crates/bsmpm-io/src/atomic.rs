@@ -7,21 +7,20 @@ use std::path::{Path, PathBuf};
 
 use crate::Error;
 
-/// How a temporary name ends; it begins with a dot.
+/// End of a temporary name, which begins with a dot.
 const TEMPORARY: &str = ".tmp";
 
-/// Writes a file through `fill` under a temporary name in the same directory, then renames it to `path`.
-///
-/// The bytes are on the disk before the rename, so that a loss of power leaves no empty file under the good name.
+/// Writes a file by `fill` under a temporary name in the same directory, then renames it to `path`. The bytes are on
+/// the disk before the rename, so a power failure leaves no empty file under the final name.
 ///
 /// # Errors
-/// [`Error::File`] with the system's error; the temporary file is removed and an older `path` stays as it was.
+/// [`Error::File`] with the system's error; the temporary file is removed and an older `path` is unchanged.
 pub fn replace(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<(), Error> {
     FilledFile::new(path, fill)?.give_name()?;
     sync_folder(path).map_err(Error::file("write", path))
 }
 
-/// A file that is whole under a temporary name, and removed if it is not given its own.
+/// Complete file under a temporary name. It is removed unless it gets its final name.
 #[derive(Debug)]
 pub(crate) struct FilledFile {
     file: File,
@@ -30,7 +29,7 @@ pub(crate) struct FilledFile {
 }
 
 impl FilledFile {
-    /// Fills the file.
+    /// Writes the file.
     pub fn new(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<Self, Error> {
         let temporary = temporary(path);
         let written = write(&temporary, fill).map(|file| Self {
@@ -48,7 +47,7 @@ impl FilledFile {
         })
     }
 
-    /// Puts its bytes on the disk, then its name in the place of the temporary one; the folder is still to be synced.
+    /// Writes the bytes to the disk, then renames the file. The caller must sync the folder.
     pub fn give_name(self) -> Result<(), Error> {
         let named = self
             .file
@@ -60,12 +59,12 @@ impl FilledFile {
 
 impl Drop for FilledFile {
     fn drop(&mut self) {
-        // What has its name is there no longer.
+        // A renamed file no longer has this name.
         let _ = fs::remove_file(&self.temporary);
     }
 }
 
-/// Puts the entry of a file in its folder on the disk.
+/// Writes the entry of a file in its folder to the disk.
 pub(crate) fn sync_folder(path: &Path) -> io::Result<()> {
     let folder = path
         .parent()
@@ -75,7 +74,8 @@ pub(crate) fn sync_folder(path: &Path) -> io::Result<()> {
 }
 
 fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<File> {
-    // One name for all attempts: what a killed program left is taken away here, and a link put there is not followed.
+    // All attempts use one name: the file of a killed program is removed here, and a link with that name is not
+    // followed.
     match fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
         _ => {}
@@ -85,7 +85,7 @@ fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>)
     writer.into_inner().map_err(io::IntoInnerError::into_error)
 }
 
-/// Removes files under temporary names, which a killed program has left in a folder that nobody else writes to.
+/// Removes temporary files of a killed program from a folder that no other program writes to.
 pub(crate) fn remove_temporaries(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let entry = entry?;

@@ -11,31 +11,31 @@ pub use store::{Facts, PendingCheckpoint, Phase, Store, forget_beyond};
 
 use std::path::{Path, PathBuf};
 
-/// The folder of the checkpoints in an output directory.
+/// Folder of the checkpoints in an output directory.
 pub const FOLDER: &str = "checkpoint";
 
-/// The files of the checkpoint of a step, relative to the output directory.
+/// Returns the files of the checkpoint of a step, relative to the output directory.
 pub fn names(step: u64) -> [String; 2] {
     [".h5", ".json"].map(|ending| format!("{FOLDER}/{}{ending}", stem(step)))
 }
 
-/// How many checkpoints an output directory holds, good or not.
+/// Returns the number of checkpoints in an output directory, valid or not.
 pub fn count(directory: &Path) -> usize {
     steps(&directory.join(FOLDER), ".json").map_or(0, |steps| steps.len())
 }
 
-/// A checkpoint's name without its ending.
+/// Returns the name of a checkpoint without extension.
 fn stem(step: u64) -> String {
     format!("step_{step:09}")
 }
 
-/// The step of a file that is named like a checkpoint's with this ending.
+/// Returns the step in the name of a checkpoint file with this extension.
 fn step_of(name: &str, ending: &str) -> Option<u64> {
     let step = name.strip_prefix("step_")?.strip_suffix(ending)?.parse().ok()?;
     (name == format!("{}{ending}", stem(step))).then_some(step)
 }
 
-/// Steps of all files in a folder that are named like a checkpoint's with this ending, newest first.
+/// Returns the steps of all checkpoint files with this extension in a folder, the newest first.
 fn steps(folder: &Path, ending: &str) -> std::io::Result<Vec<u64>> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder)? {

@@ -13,39 +13,40 @@ use crate::relative::is_plain_relative;
 use crate::residuals::RESIDUALS;
 use crate::steps::STEPS;
 
-/// The file of the histories.
+/// File of the histories.
 pub const HISTORY: &str = "history.csv";
-/// Files of a run that stand in the directory itself.
+/// Files of a run in the directory itself.
 const FILES: [&str; 6] = [MANIFEST, HISTORY, STEPS, RESIDUALS, COLLECTION, "frames.vtkhdf"];
 /// Folders of a run.
 const FOLDERS: [&str; 2] = ["frames", "checkpoint"];
-/// How the names of all files end that a run writes; others are never deleted, whoever names them.
+/// Extensions of all files that a run writes. Other files are never deleted, even if they are listed.
 const ENDINGS: [&str; 7] = ["csv", "pvd", "vtu", "vtkhdf", "png", "h5", "json"];
 
-/// What becomes of a run that is there already.
+/// What to do if the directory contains a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExistingRunPolicy {
-    /// The directory is refused.
+    /// Refuse the directory.
     Refuse,
-    /// The files that its `run.json` names are deleted (`--force`).
+    /// Delete the files listed in its `run.json` (`--force`).
     Delete,
 }
 
-/// An output directory that belongs to the run which claimed it.
+/// Output directory, locked by this run.
 #[derive(Debug)]
 pub struct OutputDirectory {
     path: PathBuf,
     lock: Option<Lock>, // until this is dropped
-    idle: bool,         // made for a run that has not begun
+    idle: bool,         // created for a run that has not begun
 }
 
 impl OutputDirectory {
-    /// Makes the directory if need be, and holds it against other runs as long as this lives: of several programs that
-    /// try at once, one succeeds.
+    /// Creates the directory if necessary, and locks it against other runs as long as this value exists. If several
+    /// programs try at once, one succeeds.
     ///
     /// # Errors
-    /// [`Error::Locked`] by a run that goes on, see [`Lock::take`]. [`Error::NotDirectory`], [`Error::Directory`] if
-    /// the path is a file or cannot be made or written to, or if a link stands where one of the run's folders belongs.
+    /// [`Error::Locked`] if another run is using it, see [`Lock::take`]. [`Error::NotDirectory`] or
+    /// [`Error::Directory`] if the path is a file or cannot be created or written to, or if one of the run's folders is
+    /// a link.
     pub fn hold(path: &Path, unseen: Unseen) -> Result<Self, Error> {
         let idle = match fs::metadata(path) {
             Ok(found) if !found.is_dir() => return Err(Error::NotDirectory { path: path.to_owned() }),
@@ -55,7 +56,7 @@ impl OutputDirectory {
                 .map_err(Error::directory("create", path))?,
         };
         let lock = Some(Lock::take(path, unseen)?);
-        // A link there would lead what is written out of the directory.
+        // Files written through a link would be outside the directory.
         if let Some(folder) = FOLDERS
             .iter()
             .map(|folder| path.join(folder))
@@ -70,12 +71,12 @@ impl OutputDirectory {
         })
     }
 
-    /// Puts the first manifest of a new run there.
+    /// Writes the first manifest of a new run.
     ///
     /// # Errors
-    /// [`Error::Occupied`] by another run; with [`ExistingRunPolicy::Delete`] only if there is a file of a run that no
-    /// `run.json` names. [`Error::UnsafeOutput`] if the older `run.json` names what no run of ours wrote: nothing is
-    /// deleted then. [`Error::Directory`] if it cannot be written to.
+    /// [`Error::Occupied`] if there is another run; with [`ExistingRunPolicy::Delete`] only if there is a file of a run
+    /// that no `run.json` lists. [`Error::UnsafeOutput`] if the older `run.json` lists a file that this program did not
+    /// write: nothing is deleted then. [`Error::Directory`] if the directory cannot be written to.
     pub fn claim(mut self, existing: ExistingRunPolicy, first: &Manifest) -> Result<Self, Error> {
         let path = &self.path;
         let held = run_files(path).map_err(Error::directory("read", path))?;
@@ -95,10 +96,10 @@ impl OutputDirectory {
         Ok(self)
     }
 
-    /// The run that is there, if any.
+    /// Returns the manifest of the run in the directory, if any.
     ///
     /// # Errors
-    /// Those of [`Manifest::read`].
+    /// The errors of [`Manifest::read`].
     pub fn run(&self) -> Result<Option<Manifest>, Error> {
         if exists(&self.path.join(MANIFEST)) {
             Manifest::read(&self.path).map(Some)
@@ -107,27 +108,28 @@ impl OutputDirectory {
         }
     }
 
-    /// Makes the run that is there go on as `manifest` says: what its `run.json` names and the manifest does not goes.
+    /// Continues the run in the directory with `manifest`. Files that the old `run.json` lists and `manifest` does not
+    /// are deleted.
     ///
     /// # Errors
-    /// As [`OutputDirectory::claim`].
+    /// The errors of [`OutputDirectory::claim`].
     pub fn go_on(mut self, manifest: &Manifest) -> Result<Self, Error> {
         let mut dropped = self.run()?.map_or_else(Vec::new, |run| run.outputs);
         dropped.retain(|old| manifest.outputs.iter().all(|output| output.path != old.path));
         let doomed = doomed(&self.path, dropped.iter().map(|output| &*output.path))?;
-        // What is left half deleted is still named by the older manifest.
+        // If this is interrupted, the older manifest still lists the remaining files.
         delete(&doomed)?;
         manifest.write(&self.path)?;
         self.idle = false;
         Ok(self)
     }
 
-    /// Whose lock was taken over, and why, if there was one.
+    /// Returns a warning if a lock was taken over: whose lock, and why.
     pub fn note(&self) -> Option<&str> {
         self.lock.as_ref()?.note()
     }
 
-    /// Where it is.
+    /// Returns the path of the directory.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -137,7 +139,7 @@ impl Drop for OutputDirectory {
     fn drop(&mut self) {
         self.lock = None;
         if self.idle {
-            // Only if nobody else has put anything there.
+            // Succeeds only if the directory is empty.
             let _ = fs::remove_dir(&self.path);
         }
     }
@@ -151,7 +153,7 @@ fn occupied(path: &Path, found: &str, advice: &'static str) -> Error {
     }
 }
 
-/// The files of a run that a directory holds, relative to it.
+/// Returns the files of a run in a directory, relative to it.
 fn run_files(directory: &Path) -> io::Result<Vec<String>> {
     let mut found: Vec<String> = FILES
         .iter()
@@ -174,17 +176,17 @@ fn run_files(directory: &Path) -> io::Result<Vec<String>> {
     Ok(found)
 }
 
-/// Whether there is anything of that name, be it a link that leads nowhere.
+/// Returns whether the path exists, even as a broken link.
 fn exists(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
 }
 
-/// Whether something stands there that is no folder itself, be it a link to one.
+/// Returns whether the path exists and is not a folder; a link to a folder is not one.
 fn is_no_folder(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| !found.is_dir())
 }
 
-/// Deletes the outputs that the directory's `run.json` names, then itself. All are looked at before the first is
+/// Deletes the outputs that the directory's `run.json` lists, then `run.json`. All are checked before the first is
 /// deleted.
 fn delete_run(directory: &Path, held: &[String]) -> Result<(), Error> {
     if held[0] != MANIFEST {
@@ -204,12 +206,12 @@ fn delete_run(directory: &Path, held: &[String]) -> Result<(), Error> {
             "Delete this file, which run.json does not list, or choose another directory with `-o`",
         ));
     }
-    // The manifest goes last: whatever interrupts this, it still names what is left.
+    // The manifest is deleted last: if this is interrupted, it still lists the remaining files.
     doomed.push(directory.join(MANIFEST));
     delete(&doomed)
 }
 
-/// Those of the named outputs that are there, if all of them may be deleted.
+/// Returns the listed outputs that exist, if all of them may be deleted.
 fn doomed<'a>(directory: &Path, names: impl Iterator<Item = &'a str>) -> Result<Vec<PathBuf>, Error> {
     let mut doomed = Vec::new();
     for name in names {
@@ -232,7 +234,7 @@ fn delete(doomed: &[PathBuf]) -> Result<(), Error> {
     Ok(())
 }
 
-/// Whether an output that a `run.json` names is there to be deleted, or why it must not be.
+/// Returns whether an output listed in a `run.json` exists, or the reason why it must not be deleted.
 fn inspect(directory: &Path, name: &str) -> Result<bool, &'static str> {
     if !is_plain_relative(name) {
         return Err("is not a path within this directory");

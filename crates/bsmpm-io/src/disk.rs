@@ -5,10 +5,10 @@ use std::path::Path;
 
 use rustix::fs::statvfs;
 
-/// Bytes that a program of this user may still write there; quotas are not seen.
+/// Returns the bytes that this user may still write in `folder`; quotas are ignored.
 ///
 /// # Errors
-/// Those of the system.
+/// The error of the system.
 pub fn free(folder: &Path) -> io::Result<u64> {
     let found = statvfs(folder)?;
     Ok(found.f_bavail.saturating_mul(found.f_frsize))
@@ -17,12 +17,12 @@ pub fn free(folder: &Path) -> io::Result<u64> {
 /// Returns a number of bytes from text such as `800MB` or `16GiB`.
 ///
 /// # Errors
-/// Says in words that the text is none.
+/// A text if `text` is not a size.
 pub fn size(text: &str) -> Result<u64, String> {
     bytes(text).ok_or_else(|| format!("{text} is no size; expected e.g. 800MB, 16GiB"))
 }
 
-/// Returns the number of bytes that `text` states; `None` where it states none.
+/// Returns the number of bytes that `text` states; `None` if it is not a size.
 fn bytes(text: &str) -> Option<u64> {
     let split = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
     let number: f64 = text[..split].trim().parse().ok()?;

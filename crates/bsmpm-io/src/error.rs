@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-/// Why a file of a run was not written or not read.
+/// Reason why a file of a run was not written or read.
 #[derive(Debug, Error)]
 pub enum Error {
     /// A quantity of a point is infinite or not a number; nothing was written.
@@ -18,11 +18,11 @@ pub enum Error {
     PointNotFinite {
         /// The file that was to be written.
         path: PathBuf,
-        /// The name of the quantity, `position` for the points' places.
+        /// Name of the quantity; `position` for the positions of the points.
         field: String,
         /// The component, counted from 0.
         component: usize,
-        /// The point's `id` where the frame has such a field, else its index.
+        /// The point's `id` if the frame has this field, else its index.
         point: u64,
         /// The number found.
         value: f64,
@@ -41,7 +41,7 @@ pub enum Error {
         /// The number found.
         value: f64,
     },
-    /// A field or a row has another length than the frame or table needs.
+    /// A field or a row has a different length from that of the frame or table.
     #[error(
         "E0762: `{}` was not written: {item} has {found} values, and {expected} are needed. This is a defect of the program. Report it.",
         path.display()
@@ -51,12 +51,12 @@ pub enum Error {
         path: PathBuf,
         /// The field or row.
         item: String,
-        /// How many values are needed.
+        /// Number of values needed.
         expected: usize,
-        /// How many were given.
+        /// Number of values given.
         found: usize,
     },
-    /// A name of a field or column that the file format cannot hold, or that stands there twice.
+    /// A name of a field or column is not allowed by the file format, or occurs twice.
     #[error(
         "E0763: `{}` was not written: the name \"{name}\" {reason}. The file format does not allow this name. Rename \
          the history, profile or material.",
@@ -67,7 +67,7 @@ pub enum Error {
         path: PathBuf,
         /// The name.
         name: String,
-        /// What is wrong with it.
+        /// Reason why the name is not allowed.
         reason: &'static str,
     },
     /// The operating system refused to read or write a file.
@@ -78,14 +78,14 @@ pub enum Error {
         against(source)
     )]
     File {
-        /// What was tried: `read`, `write`, ...
+        /// Action that failed: `read`, `write`, ...
         action: &'static str,
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         source: io::Error,
     },
-    /// A file is damaged, or none that this program wrote.
+    /// A file is damaged, or was not written by this program.
     #[error(
         "E0765: `{}` is damaged, or was not written by this program: {reason}. The file is not read. Run the case \
          again.",
@@ -94,22 +94,22 @@ pub enum Error {
     Format {
         /// The file.
         path: PathBuf,
-        /// What was found.
+        /// Description of the defect.
         reason: String,
     },
-    /// A checkpoint is damaged, or none that this program can go on from.
+    /// A checkpoint is damaged, or this program cannot continue from it.
     #[error(
         "E0720: checkpoint `{}` cannot be used: {reason}. The run was not continued. Name another checkpoint with \
          `--restart FILE`, or start again with `--force`.",
         path.display()
     )]
     Checkpoint {
-        /// The file that was looked at.
+        /// The file that was read.
         path: PathBuf,
-        /// What was found.
+        /// Description of the defect.
         reason: String,
     },
-    /// There is no room for a file; nothing was written.
+    /// The disk has not enough space for a file; nothing was written.
     #[error(
         "E0766: `{}` was not written: the file needs {needed} bytes, but {available}. Free space on the disk, and \
          continue with `--restart auto`.",
@@ -120,10 +120,10 @@ pub enum Error {
         path: PathBuf,
         /// Bytes that it needs.
         needed: u64,
-        /// What there is, in words.
+        /// Available space, in words.
         available: String,
     },
-    /// The output directory cannot be made, opened or written to.
+    /// The output directory cannot be created, opened or written to.
     #[error(
         "E0767: the operating system cannot {action} the output directory `{}` ({}). Nothing was run. Choose another \
          directory with `-o`.",
@@ -131,14 +131,14 @@ pub enum Error {
         cause(source)
     )]
     Directory {
-        /// What was tried.
+        /// Action that failed.
         action: &'static str,
         /// The directory.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         source: io::Error,
     },
-    /// The output directory's path leads to something that is no directory.
+    /// The path of the output directory is not a directory.
     #[error(
         "E0768: `{}` is not a directory. Results cannot be written there. Choose another path with `-o`.",
         path.display()
@@ -147,7 +147,7 @@ pub enum Error {
         /// The path.
         path: PathBuf,
     },
-    /// The output directory holds a run already.
+    /// The output directory already contains a run.
     #[error(
         "E0769: output directory `{}` contains `{found}` of an earlier run. Nothing was run. {advice}.",
         path.display()
@@ -157,10 +157,10 @@ pub enum Error {
         path: PathBuf,
         /// The first file of a run that was found.
         found: String,
-        /// What the user can do.
+        /// Remedy.
         advice: &'static str,
     },
-    /// Another run holds the output directory, or cannot be seen to be dead.
+    /// Another run has locked the output directory, and its process exists or cannot be examined.
     #[error(
         "E0770: output directory `{}` is in use by {holder}. Nothing was run. {advice}.",
         path.display()
@@ -170,10 +170,10 @@ pub enum Error {
         path: PathBuf,
         /// Process, host, job and time.
         holder: String,
-        /// What the user can do.
+        /// Remedy.
         advice: &'static str,
     },
-    /// A `run.json` names an output that this program would never have written there; nothing was deleted.
+    /// A `run.json` lists an output that this program would not have written there; nothing was deleted.
     #[error(
         "E0771: run.json in `{}` lists the output \"{name}\", which {reason}. `--force` deletes the listed files, but \
          deleted nothing because of this entry. Delete the old files yourself.",
@@ -184,13 +184,13 @@ pub enum Error {
         path: PathBuf,
         /// The output's name.
         name: String,
-        /// Why it is not believed.
+        /// Reason why the entry is not trusted.
         reason: &'static str,
     },
 }
 
 impl Error {
-    /// The [exit code](crate::exit) of a program that ends with this error.
+    /// Returns the [exit code](crate::exit) of a program that ends with this error.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Directory { .. }
@@ -205,13 +205,13 @@ impl Error {
         }
     }
 
-    /// The code of the cause, such as `E0764`: the first word of its text.
+    /// Returns the code of the cause, such as `E0764`: the first word of the message.
     pub fn code(&self) -> String {
         let text = self.to_string();
         text.split(':').next().unwrap_or_default().to_owned()
     }
 
-    /// For `map_err`: the system's error while `action` was done to the file `path`.
+    /// Converts a system error of `action` on the file `path`; for `map_err`.
     pub fn file(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::File {
             action,
@@ -220,7 +220,7 @@ impl Error {
         }
     }
 
-    /// For `map_err`: the system's error while `action` was done to the output directory `path`.
+    /// Converts a system error of `action` on the output directory `path`; for `map_err`.
     pub(crate) fn directory(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Directory {
             action,
@@ -244,7 +244,7 @@ impl Error {
     }
 }
 
-/// What the operating system said, in words.
+/// Returns the text of a system error.
 fn cause(source: &io::Error) -> String {
     match source.kind() {
         io::ErrorKind::StorageFull => "the disk is full".to_owned(),
@@ -256,7 +256,7 @@ fn cause(source: &io::Error) -> String {
     }
 }
 
-/// What helps against an error of the operating system.
+/// Returns the remedy for a system error.
 fn against(source: &io::Error) -> &'static str {
     match source.kind() {
         io::ErrorKind::StorageFull => "Free space on the disk, and continue with `--restart auto`",

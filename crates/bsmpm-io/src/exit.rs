@@ -1,43 +1,43 @@
 //! Exit codes of the programs.
 #![doc = include_str!("exit.md")]
 
-/// The case's end was reached, and all its checks passed.
+/// The end of the case was reached, and all its checks passed.
 pub const DONE: u8 = 0;
-/// The command line is wrong; clap ends with it, too.
+/// The command line is wrong. clap uses this code, too.
 pub const USAGE: u8 = 2;
-/// The case is wrong, or cannot be run on so many ranks or with the libraries at hand.
+/// The case is wrong, or cannot be run on this number of ranks or with the available libraries.
 pub const CASE: u8 = 65;
 /// The case file is missing or cannot be read.
 pub const MISSING: u8 = 66;
-/// A fault of the program.
+/// Internal error of the program.
 pub const BUG: u8 = 70;
 /// The case needs more memory than allowed.
 pub const MEMORY: u8 = 71;
-/// Restarts come to nothing.
+/// Repeated restarts make no progress.
 pub const STALLED: u8 = 72;
-/// The output directory cannot be used, or another run holds it.
+/// The output directory cannot be used, or another run has locked it.
 pub const DIRECTORY: u8 = 73;
-/// Reading or writing a file failed.
+/// A file could not be read or written.
 pub const WRITE: u8 = 74;
-/// Stopped on request.
+/// The run was stopped on request.
 pub const STOPPED: u8 = 75;
 /// A checkpoint cannot be used.
 pub const CHECKPOINT: u8 = 76;
 /// A check of the case failed.
 pub const CHECK: u8 = 77;
-/// N separate runs where one run on N ranks was meant.
+/// N separate runs were started instead of one run on N ranks.
 pub const WRONG_LAUNCH: u8 = 78;
-/// No convergence at the smallest step, or energy that no work explains; the last converged state is saved.
+/// The smallest step did not converge, or energy was created. The last converged state is saved.
 pub const NO_CONVERGENCE: u8 = 80;
-/// Material left the grid where it must not, or all of it through outflow faces, or a load its material;
-/// the last converged state is saved.
+/// Material left the grid where this is not allowed, or all of it left through outflow boundaries, or a load lost its
+/// material. The last converged state is saved.
 pub const LEFT: u8 = 81;
 
-/// The case's end was reached and its checks passed, but an indicator of the run is beyond its limit, which the case
-/// does not accept: the answer is likely to be wrong by 10 % or more.
+/// The end of the case was reached and its checks passed, but an indicator is beyond a limit, and the case does not
+/// accept that. The result is likely to be wrong by 10 % or more.
 pub const INDICATOR: u8 = 82;
 
-/// All of them.
+/// All exit codes.
 pub const ALL: [u8; 16] = [
     DONE,
     USAGE,

@@ -7,45 +7,45 @@ use serde::{Deserialize, Serialize};
 use crate::manifest::Worst;
 use crate::{Error, atomic};
 
-/// The file's name.
+/// Name of the file.
 pub const FAILURE: &str = "failure.json";
 
-/// What is known of the step that failed. Numbers that are not finite are absent.
+/// Data of the failed step. Numbers that are not finite are absent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FailureReport {
-    /// The step that failed.
+    /// Number of the failed step.
     pub step: u64,
-    /// s or pseudo-time  of the last converged state, which is saved.
+    /// Time of the last converged state, which is saved (s or pseudo-time).
     pub time: f64,
-    /// s or pseudo-time  length of the last attempt.
+    /// Length of the last attempt (s or pseudo-time).
     pub dt: f64,
-    /// Why every attempt failed, first one first.
+    /// Reason why each attempt failed, the first one first.
     pub attempts: Vec<String>,
-    /// Both measures of every iteration of the last attempt.
+    /// Convergence measures of every iteration of the last attempt.
     pub history: Vec<FailureMeasures>,
-    /// What both had to fall below; none where nothing was iterated.
+    /// Tolerances of the two measures; none if no iteration was made.
     #[serde(default)]
     pub tolerances: Option<FailureMeasures>,
-    /// The worst nodes or points of all ranks, worst first.
+    /// Nodes or points with the largest residuals over all ranks, the largest first.
     pub worst: Vec<Worst>,
-    /// The name of the rigid body that nothing holds, where that is the cause.
+    /// Name of the rigid body that is not restrained, if that is the cause.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loose: Option<String>,
-    /// What may help.
+    /// Possible remedies.
     pub advice: Vec<String>,
 }
 
-/// How far an iteration was from equilibrium, or how far it may be.
+/// Convergence measures of an iteration, or their tolerances.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FailureMeasures {
-    /// The energy measure.
+    /// Energy measure.
     pub energy: Option<f64>,
-    /// The force measure.
+    /// Force measure.
     pub force: Option<f64>,
 }
 
 impl FailureMeasures {
-    /// Of numbers that may not be finite.
+    /// Creates the measures; those that are not finite are absent.
     pub fn new(energy: f64, force: f64) -> Self {
         Self {
             energy: Some(energy).filter(|energy| energy.is_finite()),
@@ -55,10 +55,10 @@ impl FailureMeasures {
 }
 
 impl FailureReport {
-    /// Writes the file into `directory`, replacing an older one in one go.
+    /// Writes the file to `directory`, replacing an older one atomically.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] before anything is written; [`Error::File`] when the system refuses.
+    /// [`Error::NotFinite`] before anything is written; [`Error::File`] for an error of the system.
     pub fn write(&self, directory: &Path) -> Result<(), Error> {
         let path = directory.join(FAILURE);
         let places = self

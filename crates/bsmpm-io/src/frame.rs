@@ -4,55 +4,56 @@ use std::path::Path;
 
 use crate::Error;
 
-/// All points at one moment.
+/// All material points at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// The number of accepted steps that led here.
+    /// Number of accepted steps so far.
     pub step: u64,
-    /// s, or the pseudo-time of a quasi-static analysis.
+    /// Time (s, or the pseudo-time of a quasi-static analysis).
     pub time: f64,
-    /// m  place of each point; the third coordinate is 0 in a plane.
+    /// Position of each point (m); the third coordinate is 0 in a plane.
     pub position: Vec<[f64; 3]>,
-    /// The quantities, each with one entry per point.
+    /// Quantities, each with one entry per point.
     pub fields: Vec<Field>,
 }
 
-/// A frame whose points come part by part, so that nobody needs to hold all of them.
+/// Frame whose points are supplied in parts, so that not all of them are in memory at once.
 pub struct Parts<'a> {
-    /// Step, time and fields; without points.
+    /// Step, time and fields, without points.
     pub head: Frame,
-    /// How many points come.
+    /// Total number of points.
     pub points: usize,
-    /// Names of what fields number, each list under its own name; kept in the file for readers.
+    /// Names for the numbers in a field (e.g. of materials), by the name of the list. The file contains them for
+    /// readers.
     pub names: &'a [(String, Vec<String>)],
-    /// The next points, with the same step, time and fields; `None` after the last ones.
+    /// Returns the next points, with the same step, time and fields; `None` after the last ones.
     pub next: &'a mut dyn FnMut() -> Option<Frame>,
 }
 
 /// One quantity of all points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    /// The name that ParaView shows: letters, digits, `_`, `-` and `.`.
+    /// Name that ParaView shows: letters, digits, `_`, `-` and `.`.
     pub name: String,
-    /// How many numbers a point has: 1, 3 (x, y, z) or 6 (XX YY ZZ XY YZ XZ).
+    /// Count of numbers per point: 1, 3 (x, y, z) or 6 (XX YY ZZ XY YZ XZ).
     pub components: usize,
-    /// The numbers, the components of a point together.
+    /// Numbers, point by point.
     pub values: FieldValues,
 }
 
-/// The numbers of a field.
+/// Numbers of a field.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FieldValues {
     /// Physical quantities in SI units.
     F64(Vec<f64>),
-    /// Numbers of points.
+    /// Ids of points.
     U64(Vec<u64>),
     /// Numbers of materials.
     U16(Vec<u16>),
 }
 
 impl FieldValues {
-    /// No numbers, of the same kind.
+    /// Returns an empty list of the same type.
     fn without_points(&self) -> Self {
         match self {
             Self::F64(_) => Self::F64(Vec::new()),
@@ -61,7 +62,7 @@ impl FieldValues {
         }
     }
 
-    /// How many numbers there are.
+    /// Returns the count of numbers.
     pub fn len(&self) -> usize {
         match self {
             Self::F64(values) => values.len(),
@@ -70,14 +71,14 @@ impl FieldValues {
         }
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no numbers.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
 impl Field {
-    /// A physical quantity with `components` numbers per point, in SI units.
+    /// Creates a physical quantity with `components` numbers per point, in SI units.
     pub fn real(name: &str, components: usize, values: Vec<f64>) -> Self {
         Self {
             name: name.to_owned(),
@@ -88,7 +89,7 @@ impl Field {
 }
 
 impl Frame {
-    /// The numbers of the physical quantity `name` with `components` per point, if the frame has it.
+    /// Returns the numbers of the physical quantity `name` with `components` per point, if the frame has it.
     pub fn real(&self, name: &str, components: usize) -> Option<&[f64]> {
         let field = self
             .fields
@@ -100,7 +101,7 @@ impl Frame {
         }
     }
 
-    /// The numbers of the field `name` that numbers points, if the frame has it.
+    /// Returns the numbers of the field `name` of ids, if the frame has it.
     pub fn numbers(&self, name: &str) -> Option<&[u64]> {
         match &self.fields.iter().find(|field| field.name == name)?.values {
             FieldValues::U64(numbers) => Some(numbers),
@@ -108,7 +109,7 @@ impl Frame {
         }
     }
 
-    /// The same without its points.
+    /// Returns the same frame without its points.
     pub fn without_points(&self) -> Self {
         let fields = self.fields.iter();
         let fields = fields.map(|field| Field {
@@ -123,11 +124,12 @@ impl Frame {
         }
     }
 
-    /// Whether the frame may be written to `path`.
+    /// Checks whether the frame may be written to `path`.
     ///
     /// # Errors
-    /// [`Error::Name`] for a name that XML or ParaView cannot take, [`Error::Length`] for a field that does not have
-    /// its numbers for every point, [`Error::PointNotFinite`] for the first number that is infinite or none.
+    /// [`Error::Name`] for a name that XML or ParaView cannot represent; [`Error::Length`] for a field without numbers
+    /// for every point; [`Error::PointNotFinite`] for the first number that is not finite; [`Error::NotFinite`] for the
+    /// time.
     pub fn check(&self, path: &Path) -> Result<(), Error> {
         if !self.time.is_finite() {
             return Err(Error::NotFinite {

@@ -15,51 +15,51 @@ use crate::relative::is_plain_relative;
 use crate::xml::tags;
 use crate::{Error, vtu};
 
-/// The file that lists the frames.
+/// File that lists the frames.
 pub const COLLECTION: &str = "frames.pvd";
 
-/// One line of the list of frames.
+/// Entry of the list of frames.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
-    /// s, or the pseudo-time of a quasi-static analysis.
+    /// Time (s, or the pseudo-time of a quasi-static analysis).
     pub time: f64,
-    /// The frame's file, relative to the output directory, with `/` between its parts.
+    /// File of the frame, relative to the output directory, with `/` as separator.
     pub file: String,
 }
 
-/// Frames that wait for the thread at most: each holds a file open.
+/// Largest number of frames that wait for the thread; each keeps a file open.
 const MOST_FILLED: usize = 16;
 
-/// Writes the frames of one run.
+/// Writer of the frames of one run.
 #[derive(Debug)]
 pub struct Frames {
     directory: PathBuf,
-    entries: Vec<Entry>,        // of what is listed
-    filled: Vec<FilledFrame>,   // that no thread has yet, without their names
-    manifest: Option<Manifest>, // names these
+    entries: Vec<Entry>,        // listed frames
+    filled: Vec<FilledFrame>,   // frames for the next thread, under temporary names
+    manifest: Option<Manifest>, // contains their names
     ending: Option<FrameThread>,
 }
 
-/// A frame in a file that has not its name yet.
+/// Frame in a file that still has a temporary name.
 #[derive(Debug)]
 struct FilledFrame {
     file: FilledFile,
     entry: Entry,
 }
 
-/// A thread that ends frames.
+/// Thread that completes frames.
 #[derive(Debug)]
 struct FrameThread {
-    entries: Vec<Entry>, // of what is listed then
+    entries: Vec<Entry>, // listed frames after the thread has ended
     thread: JoinHandle<Result<Vec<ManifestOutput>, Error>>,
 }
 
 impl Frames {
-    /// Makes the folder `frames` in an output directory, without what a killed run has left there half done. The list
-    /// appears with the first frame.
+    /// Creates the folder `frames` in an output directory, and removes incomplete files of a killed run. The list is
+    /// created with the first frame.
     ///
     /// # Errors
-    /// [`Error::File`] when the folder cannot be made.
+    /// [`Error::File`] if the folder cannot be created.
     pub fn create(directory: &Path) -> Result<Self, Error> {
         let folder = directory.join("frames");
         fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
@@ -74,10 +74,10 @@ impl Frames {
         })
     }
 
-    /// Goes on with the frames of a run, those of `entries` that are there, and lists them again.
+    /// Continues the frames of a run: lists those of `entries` that exist.
     ///
     /// # Errors
-    /// [`Error::File`] when the folder cannot be made or the list not written.
+    /// [`Error::File`] if the folder cannot be created or the list not written.
     pub fn resume(directory: &Path, entries: Vec<Entry>) -> Result<Self, Error> {
         let mut frames = Self::create(directory)?;
         frames.entries = entries;
@@ -88,16 +88,16 @@ impl Frames {
         Ok(frames)
     }
 
-    /// Where the frame of a step is written, relative to the output directory: for the manifest, which must name an
-    /// output before it is there.
+    /// Returns the file of a step's frame, relative to the output directory. The manifest must list an output before it
+    /// is written.
     pub fn file(step: u64) -> String {
         format!("frames/step_{step:09}.vtu")
     }
 
-    /// Writes a frame, then the list with the frame in it. A frame of the same step replaces the one before.
+    /// Writes a frame, then the list with the frame in it. The frame replaces one of the same step.
     ///
     /// # Errors
-    /// Those of [`vtu::write`]; the list then names the frames before only.
+    /// The errors of [`vtu::write`]; the list then contains only the previous frames.
     pub fn write(&mut self, frame: &Frame) -> Result<(), Error> {
         vtu::write(&self.directory.join(Self::file(frame.step)), frame)?;
         enter(
@@ -110,17 +110,18 @@ impl Frames {
         write_collection(&self.directory.join(COLLECTION), &self.entries)
     }
 
-    /// Fills the file of a frame whose points come part by part, and leaves it to a thread to write the `manifest`,
-    /// which names it, to give the file its name, and to list it. [`Frames::ended`] reports when that is done.
+    /// Writes a frame under a temporary name from points that are supplied in parts. A thread then writes the
+    /// `manifest`, which lists the frame, renames the file and adds it to the list. [`Frames::ended`] reports when this
+    /// is done.
     ///
     /// # Errors
-    /// Those of [`vtu::write_parts`], and of the thread that had frames before.
+    /// The errors of [`vtu::write_parts`], and of the thread with earlier frames.
     pub fn begin(&mut self, parts: Parts<'_>, manifest: &Manifest) -> Result<Vec<ManifestOutput>, Error> {
         let entry = Entry {
             time: parts.head.time,
             file: Self::file(parts.head.step),
         };
-        // Two of one name at a time have one temporary name.
+        // Two frames with the same name would have the same temporary name.
         let listed = self
             .ending
             .iter()
@@ -140,10 +141,11 @@ impl Frames {
         Ok(ended)
     }
 
-    /// What has been written since this was last asked, with sizes and hashes; of all frames, if it is to `wait`.
+    /// Returns the frames that were completed since the last call, with sizes and hashes. With `wait`, it waits for all
+    /// frames.
     ///
     /// # Errors
-    /// Those of the thread; frames that it had no more are lost.
+    /// The errors of the thread; frames that it had not received yet are lost.
     pub fn ended(&mut self, wait: bool) -> Result<Vec<ManifestOutput>, Error> {
         let mut ended = Vec::new();
         loop {
@@ -168,19 +170,19 @@ impl Frames {
         }
     }
 
-    /// The frames that are listed, in their order.
+    /// Returns the listed frames in their order.
     pub fn entries(&self) -> &[Entry] {
         &self.entries
     }
 }
 
-/// A frame takes the place of one of the same step.
+/// Adds a frame to the list, replacing one of the same step.
 fn enter(entries: &mut Vec<Entry>, entry: Entry) {
     entries.retain(|other| other.file != entry.file);
     entries.push(entry);
 }
 
-/// Gives frames that were filled their names, once the manifest has these, and lists them.
+/// Renames frames after writing the manifest that lists them, and writes the list of frames.
 fn end(
     directory: &Path,
     filled: Vec<FilledFrame>,
@@ -220,11 +222,11 @@ fn write_collection(path: &Path, entries: &[Entry]) -> Result<(), Error> {
     })
 }
 
-/// The frames that an output directory lists, in their order.
+/// Returns the frames listed in an output directory, in their order.
 ///
 /// # Errors
-/// [`Error::File`] without a readable `frames.pvd`; [`Error::Format`] for one that is not ours, or that names files
-/// outside the directory.
+/// [`Error::File`] without a readable `frames.pvd`; [`Error::Format`] if this program did not write it, or if it lists
+/// files outside the directory.
 pub fn read_collection(directory: &Path) -> Result<Vec<Entry>, Error> {
     let path = directory.join(COLLECTION);
     let text = fs::read_to_string(&path).map_err(Error::file("read", &path))?;

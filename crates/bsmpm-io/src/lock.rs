@@ -14,23 +14,23 @@ use std::time::Duration;
 use crate::{Error, atomic};
 use holder::{Fate, Holder};
 
-/// The file's name.
+/// Name of the file.
 pub const LOCK: &str = ".lock";
-/// Held for the moment in which a lock changes hands.
+/// File that exists while a lock is taken over.
 const TAKEOVER: &str = ".lock.takeover";
-/// How often, and after which pauses, a file is looked at again that another program is about to write or to remove.
+/// Number of attempts, and pause between them, to read a file that another program is about to write or remove.
 const LOOKS: (u32, Duration) = (50, Duration::from_millis(40));
 
-/// What becomes of a lock whose holder cannot be looked at: it is on another host.
+/// Policy for a lock whose process cannot be examined, because it is on another host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unseen {
-    /// It is believed to live.
+    /// Assume that the process exists.
     Respect,
-    /// The lock is taken over (`--break-lock`).
+    /// Take over the lock (`--break-lock`).
     Break,
 }
 
-/// A directory that is held; it is let go when this is dropped.
+/// Lock of a directory, released when dropped.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
@@ -38,10 +38,10 @@ pub struct Lock {
     note: Option<String>,
 }
 
-/// Locks of this process: a panic or an abort drops nothing.
+/// Locks of this process, because a panic or an abort does not drop values.
 static HELD: Mutex<Vec<(PathBuf, Holder)>> = Mutex::new(Vec::new());
 
-/// A lock file as it was found; without a holder where its text is none of ours.
+/// Lock file as it was read. The holder is absent if the text was not written by this program.
 #[derive(PartialEq)]
 struct FoundLock {
     holder: Option<Holder>,
@@ -49,10 +49,11 @@ struct FoundLock {
 }
 
 impl Lock {
-    /// Holds `directory`, which must exist. Of several programs that try at once, one succeeds.
+    /// Locks `directory`, which must exist. If several programs try at once, one succeeds.
     ///
     /// # Errors
-    /// [`Error::Locked`] by a run that lives, or that cannot be looked at; [`Error::Directory`] if the system refuses.
+    /// [`Error::Locked`] if the process of another lock exists or cannot be examined; [`Error::Directory`] for an error
+    /// of the system.
     pub fn take(directory: &Path, unseen: Unseen) -> Result<Self, Error> {
         let path = directory.join(LOCK);
         let own = Holder::this_process();
@@ -78,7 +79,7 @@ impl Lock {
         Self { path, own, note }
     }
 
-    /// Whose lock was taken over, and why, if it was there.
+    /// Returns a warning if a lock was taken over: whose lock, and why.
     pub fn note(&self) -> Option<&str> {
         self.note.as_deref()
     }
@@ -93,7 +94,7 @@ impl Drop for Lock {
     }
 }
 
-/// Lets go all directories of this process, for those that end without dropping anything. May be called from a panic.
+/// Releases all locks of this process; for exits that drop nothing. May be called from a panic.
 pub fn abandon() {
     let held = match HELD.try_lock() {
         Ok(mut held) => std::mem::take(&mut *held),
@@ -103,32 +104,32 @@ pub fn abandon() {
     held.iter().for_each(|(path, own)| remove(path, own));
 }
 
-/// Removes a lock unless another has taken it over. What cannot be removed is found stale by the next run.
+/// Removes a lock unless another process has taken it over. The next run treats a lock that cannot be removed as stale.
 fn remove(path: &Path, own: &Holder) {
     if FoundLock::read(path).is_ok_and(|found| found.is_some_and(|found| found.holder.as_ref() == Some(own))) {
         let _ = fs::remove_file(path);
     }
 }
 
-/// Creates a lock file that names its holder; false if there is one.
+/// Creates a lock file with its holder; false if there is one.
 fn create(path: &Path, own: &Holder) -> io::Result<bool> {
     let mut file = match OpenOptions::new().write(true).create_new(true).open(path) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => return Ok(false),
         file => file?,
     };
     file.write_all(own.text().as_bytes()).map(|()| true).inspect_err(|_| {
-        // It is ours, and without a name it would only block the directory.
+        // This process created the file; without a holder it would only block the directory.
         let _ = fs::remove_file(path);
     })
 }
 
-/// Puts `own` in the place of the dead holder that was found; false if the lock is no longer as it was.
+/// Replaces the lock of a process that no longer exists; false if the lock has changed in the meantime.
 fn take_over(directory: &Path, own: &Holder, found: &FoundLock, unseen: Unseen) -> Result<bool, Error> {
     let path = directory.join(LOCK);
     let guard = directory.join(TAKEOVER);
     let mut looks = LOOKS.0;
     while !create(&guard, own).map_err(Error::directory("lock", directory))? {
-        // Another takes it over just now, which is a matter of milliseconds; or it was killed in them.
+        // Another process takes over the lock now, which takes milliseconds, or was killed while doing so.
         looks -= 1;
         match (looks, unseen) {
             (0, Unseen::Respect) => {
@@ -154,7 +155,7 @@ fn take_over(directory: &Path, own: &Holder, found: &FoundLock, unseen: Unseen) 
 }
 
 impl FoundLock {
-    /// The lock at `path`, if there is one.
+    /// Reads the lock at `path`, if there is one.
     fn read(path: &Path) -> io::Result<Option<Self>> {
         let mut file = match File::open(path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -167,7 +168,7 @@ impl FoundLock {
         }))
     }
 
-    /// The same, after the moment that its creator needs to write its name.
+    /// Reads the lock at `path`, waiting until its creator has written its holder.
     fn whole(path: &Path) -> io::Result<Option<Self>> {
         for _ in 0..LOOKS.0 {
             match Self::read(path)? {
@@ -178,7 +179,10 @@ impl FoundLock {
         Self::read(path)
     }
 
-    /// What is to be reported when `own` takes this lock over; an error if its holder lives or may live.
+    /// Returns the warning to be issued when `own` takes over this lock.
+    ///
+    /// # Errors
+    /// [`Error::Locked`] if the process of the lock exists or may exist.
     fn yields(&self, directory: &Path, own: &Holder, unseen: Unseen) -> Result<String, Error> {
         let unknown = "an unknown run".to_owned();
         let name = self.holder.as_ref().map_or(unknown, Holder::to_string);

@@ -22,106 +22,106 @@ pub use parts::{
     ManifestSettling, ManifestStage, SolverNames, Status, Summary, Worst,
 };
 
-/// The manifest's file.
+/// Name of the file.
 pub const MANIFEST: &str = "run.json";
-/// The number of this form of the manifest; it grows when older readers would misunderstand a newer file.
+/// Version of the file format. It increases when older readers would misunderstand a newer file.
 pub const SCHEMA: u32 = 1;
 
-/// Everything that `run.json` says.
+/// Contents of `run.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
-    /// The form of the file, [`SCHEMA`].
+    /// Version of the file format, [`SCHEMA`].
     pub schema: u32,
-    /// How the run stands.
+    /// State of the run.
     pub status: Status,
-    /// The program's exit code; none while it runs.
+    /// Exit code of the program; none while it runs.
     pub exit_code: Option<u8>,
-    /// The program's version.
+    /// Version of the program.
     pub version: String,
-    /// The command line, the program first.
+    /// Command line, with the program first.
     pub argv: Vec<String>,
-    /// What was solved.
+    /// Case that was computed.
     pub case: ManifestCase,
     /// Versions of libraries and compilers, by name.
     #[serde(default)]
     pub versions: BTreeMap<String, String>,
-    /// Processes of the run.
+    /// Number of processes.
     pub ranks: u32,
-    /// Threads of each process.
+    /// Number of threads of each process.
     pub threads: u32,
-    /// Derived numbers of things: points, cells, active nodes, unknowns, ...
+    /// Derived counts: points, cells, active nodes, unknowns, ...
     #[serde(default)]
     pub sizes: BTreeMap<String, u64>,
-    /// The region of the grid, for pictures.
+    /// Extent of the grid, for pictures.
     #[serde(default)]
     pub grid: Option<GridExtent>,
-    /// Times (s or pseudo-time) whose pictures the case asks for.
+    /// Times (s or pseudo-time) for which the case requests pictures.
     #[serde(default)]
     pub picture_times: Vec<f64>,
-    /// What the program chose by itself.
+    /// Values that the program chose.
     #[serde(default)]
     pub choices: Vec<ManifestChoice>,
-    /// Every warning that was given.
+    /// All warnings that were issued.
     #[serde(default)]
     pub warnings: Vec<String>,
-    /// When the run began, RFC 3339 in UTC.
+    /// Start of the run, RFC 3339 in UTC.
     pub start: String,
-    /// When it ended.
+    /// End of the run.
     pub end: Option<String>,
-    /// s  by the clock, by phase.
+    /// Wall-clock time by phase (s).
     #[serde(default)]
     pub timers: BTreeMap<String, f64>,
-    /// What the ranks sent each other, by kind.
+    /// Messages between ranks, by kind.
     #[serde(default)]
     pub communication: BTreeMap<String, Communication>,
-    /// What solved the linear systems: `stiffness`, which the secants correct, `newton`, Newton's general ones, and
-    /// `water`, those of the pore pressures.
+    /// Linear solvers by system: `stiffness` (which the secants correct), `newton` (Jacobian of Newton's method), and
+    /// `water` (pore pressures).
     #[serde(default)]
     pub linear: BTreeMap<String, SolverNames>,
-    /// How evenly the work lay on them; none on one rank.
+    /// Load balance of the ranks; none on one rank.
     #[serde(default)]
     pub balance: Option<EnergyBalance>,
     /// Totals of the run so far.
     #[serde(default)]
     pub summary: Summary,
-    /// Measures of how far the run can be trusted, by name, once it has ended; of what the scene contains.
+    /// Indicators of the accuracy of the run, by name, once it has ended; only those that apply to the case.
     #[serde(default)]
     pub indicators: BTreeMap<String, Indicator>,
-    /// How the state at the start was balanced, if the case gives it a stress.
+    /// Equilibrium of the initial state, if the case defines an initial stress.
     #[serde(default)]
     pub initial: Option<ManifestInitial>,
-    /// The stages of the case that have begun, in the order of time.
+    /// Stages that have begun, in order of time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stages: Vec<ManifestStage>,
-    /// What has left the grid through faces with outflow.
+    /// Material that has left the grid through outflow boundaries.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outflow: Option<ManifestOutflow>,
-    /// The case's checks, once they were made.
+    /// Checks of the case, once they were made.
     #[serde(default)]
     pub checks: Vec<ManifestCheck>,
-    /// The limit loads of a case that seeks them, once it has come to its end.
+    /// Limit loads, if the case seeks them, once the end of the case was reached.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub limit_loads: Vec<ManifestLimitLoad>,
-    /// Every file that the run wrote or is about to write, but for this one.
+    /// All files that the run wrote or is about to write, except this one.
     #[serde(default)]
     pub outputs: Vec<ManifestOutput>,
     /// Units of the frames' fields, by name, once a frame was written.
     #[serde(default)]
     pub frame_units: BTreeMap<String, String>,
-    /// Names of what the frames' fields number, by field, where frames have fields on request.
+    /// Names for the numbers in the frames' fields, by field, if the case requests such fields.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub frame_names: BTreeMap<String, Vec<String>>,
-    /// The newest good checkpoint, relative to the directory.
+    /// Newest valid checkpoint, relative to the directory.
     pub checkpoint: Option<String>,
-    /// Where the run went on after it had stopped, first one first.
+    /// Restarts of the run, the first one first.
     #[serde(default)]
     pub restarts: Vec<ManifestRestart>,
-    /// Why the run ended early.
+    /// Reason why the run ended early.
     pub failure: Option<ManifestFailure>,
 }
 
 impl Manifest {
-    /// The manifest of a run that begins now, on one rank and thread until the caller says otherwise.
+    /// Creates the manifest of a run that begins now, on one rank and one thread until the caller changes that.
     pub fn begin(version: &str, argv: Vec<String>, case: ManifestCase) -> Self {
         Self {
             schema: SCHEMA,
@@ -167,7 +167,7 @@ impl Manifest {
         self.end = Some(utc(SystemTime::now()));
     }
 
-    /// Names a file, relative to the directory, that is about to be written; a name that is there already stays once.
+    /// Lists a file, relative to the directory, that is about to be written. A name is listed once.
     pub fn name_output(&mut self, path: &str) {
         if !self.outputs.iter().any(|output| output.path == path) {
             self.outputs.push(ManifestOutput {
@@ -178,7 +178,8 @@ impl Manifest {
         }
     }
 
-    /// Notes the size and hash of named outputs that are complete, so that the end of the run need not read them again.
+    /// Records size and hash of listed outputs that are complete, so that they are not read again at the end of the
+    /// run.
     pub fn complete(&mut self, written: Vec<ManifestOutput>) {
         for output in &mut self.outputs {
             if let Some(written) = written.iter().find(|written| written.path == output.path) {
@@ -187,19 +188,19 @@ impl Manifest {
         }
     }
 
-    /// Notes the size and hash of every named output as it now stands in `directory`; one that is not there has none,
-    /// and one that was complete and has kept its size is not read again.
+    /// Records size and hash of every listed output in `directory`. A missing file has none. A file that was complete
+    /// and has the same size is not read again.
     ///
     /// # Errors
-    /// [`Error::File`] when a file cannot be read.
+    /// [`Error::File`] if a file cannot be read.
     pub fn seal(&mut self, directory: &Path) -> Result<(), Error> {
         self.outputs.iter_mut().try_for_each(|output| output.seal(directory))
     }
 
-    /// Writes `run.json` into `directory`, replacing it in one go.
+    /// Writes `run.json` to `directory`, replacing it atomically.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] with the key, before anything is written; [`Error::File`] when the system refuses.
+    /// [`Error::NotFinite`] with the key, before anything is written; [`Error::File`] for an error of the system.
     pub fn write(&self, directory: &Path) -> Result<(), Error> {
         let path = directory.join(MANIFEST);
         self.check(&path)?;
@@ -211,7 +212,7 @@ impl Manifest {
         file.write_all(b"\n")
     }
 
-    /// JSON has no infinite numbers, and serde would write `null` for them.
+    /// Checks that all numbers are finite: JSON has no others, and serde would write `null` for them.
     fn check(&self, path: &Path) -> Result<(), Error> {
         match self.numbers().find(|(_, value)| !value.is_finite()) {
             Some((item, value)) => Err(Error::NotFinite {
@@ -223,7 +224,7 @@ impl Manifest {
         }
     }
 
-    /// Every float of the manifest with its key.
+    /// Iterates over all floats of the manifest with their keys.
     fn numbers(&self) -> impl Iterator<Item = (String, f64)> {
         let timers = self
             .timers
@@ -270,8 +271,8 @@ impl Manifest {
     /// Reads the `run.json` of `directory`.
     ///
     /// # Errors
-    /// [`Error::File`] when there is none or the system refuses, [`Error::Format`] when it is not ours, or of a newer
-    /// form.
+    /// [`Error::File`] if there is none, or for an error of the system; [`Error::Format`] if this program did not write
+    /// it, or if its format is newer.
     pub fn read(directory: &Path) -> Result<Self, Error> {
         #[derive(Deserialize)]
         struct ManifestForm {

@@ -5,17 +5,17 @@ use std::path::Path;
 use crate::Error;
 use crate::table::{self, Cell, TableColumn};
 
-/// The file's name.
+/// Name of the file.
 pub const RESIDUALS: &str = "residuals.csv";
 
-/// What gave the direction of an iteration.
+/// Method that computed the direction of an iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResidualMethod {
-    /// All recent secants.
+    /// Quasi-Newton with multiple secants.
     Multisecant,
     /// Broyden's update.
     Broyden,
-    /// The complete derivative.
+    /// Newton's method with the complete derivative.
     Newton,
 }
 
@@ -26,7 +26,7 @@ impl ResidualMethod {
         Self::ALL.into_iter().find(|method| method.word() == word)
     }
 
-    /// As the file writes it.
+    /// Returns the method as the file writes it.
     pub fn word(self) -> &'static str {
         match self {
             Self::Multisecant => "multisecant",
@@ -36,28 +36,29 @@ impl ResidualMethod {
     }
 }
 
-/// One row: a state on the way from the guess that led to convergence, and the direction found there. The last state
-/// has no direction where its forces are balanced to round-off.
+/// Row of the file: one iterate of a converged step, and the direction computed there. The last iterate has no
+/// direction if its forces are balanced to round-off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iterate {
-    /// The step's number.
+    /// Number of the step.
     pub step: u64,
-    /// s (pseudo-time in a quasi-static analysis)  at its end.
+    /// Time at the end of the step (s, or pseudo-time in a quasi-static analysis).
     pub time: f64,
-    /// The number of the iteration within the step; the first one, 1, is at the guess.
+    /// Number of the iteration within the step; iteration 1 is at the predictor.
     pub iteration: u64,
-    /// What gave its direction; an empty cell without one.
+    /// Method of its direction; an empty cell without one.
     pub method: Option<ResidualMethod>,
-    /// The energy measure; an empty cell without a direction.
+    /// Energy measure (-); an empty cell without a direction.
     pub energy: f64,
-    /// The force measure.
+    /// Force measure (-).
     pub force: f64,
-    /// The measure of the water, where some flows; NaN where none flows.
+    /// Measure of the pore water (-) with transient seepage; NaN without.
     pub water: f64,
 }
 
 impl Iterate {
-    /// The file's columns, the last one where water flows; `time_unit` is `s`, or `-` for pseudo-time.
+    /// Returns the columns of the file, the last one only if there is transient seepage; `time_unit` is `s`, or `-` for
+    /// pseudo-time.
     pub fn columns(time_unit: &str, flows: bool) -> Vec<TableColumn> {
         let all = ["step", "time", "iteration", "method", "energy", "force", "water"];
         all[..6 + usize::from(flows)]
@@ -66,7 +67,7 @@ impl Iterate {
             .collect()
     }
 
-    /// The iteration as a row under [`Iterate::columns`].
+    /// Returns the iteration as a row for [`Iterate::columns`].
     pub fn cells(&self, flows: bool) -> Vec<Cell> {
         let mut cells = vec![
             Cell::Int(self.step),
@@ -105,7 +106,7 @@ impl Iterate {
     }
 }
 
-/// The cell of a measure, empty for one that is not finite.
+/// Returns the cell of a measure; empty if it is not finite.
 fn measure_cell(value: f64) -> Cell {
     if value.is_finite() {
         Cell::Float(value)
@@ -114,7 +115,7 @@ fn measure_cell(value: f64) -> Cell {
     }
 }
 
-/// Reads a measure, which is NaN in an empty cell; `None` for what is no number.
+/// Reads a measure, NaN from an empty cell; `None` if the text is not a number.
 fn parse_measure(cell: &str) -> Option<f64> {
     if cell.is_empty() {
         Some(f64::NAN)
@@ -123,10 +124,10 @@ fn parse_measure(cell: &str) -> Option<f64> {
     }
 }
 
-/// Reads the rows; a last line without its end is one that is being written, and left out.
+/// Reads the rows. An unfinished last line, which is being written, is ignored.
 ///
 /// # Errors
-/// [`Error::File`] when the system refuses, [`Error::Format`] with the line for what is no row.
+/// [`Error::File`] for an error of the system; [`Error::Format`] with the line that is not a row.
 pub fn read(path: &Path) -> Result<Vec<Iterate>, Error> {
     let text = table::whole_lines(path)?;
     let rows = text

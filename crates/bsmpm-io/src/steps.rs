@@ -2,50 +2,50 @@
 
 use crate::table::{Cell, TableColumn};
 
-/// The file's name.
+/// Name of the file.
 pub const STEPS: &str = "steps.csv";
 
-/// What `steps.csv` keeps of one accepted step.
+/// Row of `steps.csv`: one accepted step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepRow {
-    /// The step's number.
+    /// Number of the step.
     pub step: u64,
-    /// s (pseudo-time in a quasi-static analysis)  at its end.
+    /// Time at the end of the step (s, or pseudo-time in a quasi-static analysis).
     pub time: f64,
-    /// s (pseudo-time)  its length.
+    /// Length of the step (s or pseudo-time).
     pub dt: f64,
     /// Iterations of the nonlinear solution.
     pub iterations: u64,
-    /// The force measure of the accepted state, without unit.
+    /// Force measure of the accepted state (-).
     pub residual: f64,
     /// Iterations of the linear solver in all attempts; a direct solve counts as one.
     pub linear_iterations: u64,
-    /// How often the step was cut before it converged.
+    /// Number of cutbacks before the step converged.
     pub cutbacks: u64,
-    /// Nodes that carry material.
+    /// Number of nodes with material.
     pub active_nodes: u64,
-    /// s  by the clock since the run began.
+    /// Wall-clock time since the start of the run (s).
     pub wall: f64,
-    /// Newton iterations among those of the nonlinear solution; 0 where a quasi-Newton method found equilibrium.
+    /// Newton iterations among the nonlinear iterations; 0 if a quasi-Newton method converged.
     pub newton_iterations: u64,
     /// Evaluations of the out-of-balance force in all attempts.
     pub evaluations: u64,
-    /// Products with the complete derivative in all attempts.
+    /// Products with the complete derivative (Jacobian) in all attempts.
     pub products: u64,
     /// Factorisations in all attempts.
     pub factorisations: u64,
-    /// Reductions over all ranks, in all attempts and the exchange of points after them.
+    /// Reductions over all ranks, in all attempts and the subsequent exchange of points.
     pub reductions: u64,
-    /// Messages between ranks there, of all ranks together, without the linear solver's own.
+    /// Messages between ranks in the same period, in total over all ranks, without those of PETSc.
     pub messages: u64,
     /// Bytes of these messages.
     pub bytes: u64,
-    /// Largest load of a rank over the mean.
+    /// Largest load of a rank divided by the mean.
     pub imbalance: f64,
 }
 
 impl StepRow {
-    /// The file's columns; `time_unit` is `s`, or `-` for pseudo-time.
+    /// Returns the columns of the file; `time_unit` is `s`, or `-` for pseudo-time.
     pub fn columns(time_unit: &str) -> [TableColumn; 17] {
         [
             ("step", "-"),
@@ -69,7 +69,7 @@ impl StepRow {
         .map(|(name, unit)| TableColumn::new(name, unit))
     }
 
-    /// The step as a row under [`StepRow::columns`].
+    /// Returns the step as a row for [`StepRow::columns`].
     pub fn cells(&self) -> [Cell; 17] {
         [
             Cell::Int(self.step),

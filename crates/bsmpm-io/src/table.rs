@@ -8,17 +8,17 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Error, atomic};
 
-/// The heading of one column.
+/// Heading of a column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TableColumn {
-    /// The quantity's name.
+    /// Name of the quantity.
     pub name: String,
-    /// Its unit, `-` for a pure number.
+    /// Unit, `-` for a pure number.
     pub unit: String,
 }
 
 impl TableColumn {
-    /// A column `name` in `unit`; an empty unit is written as `-`.
+    /// Creates a column `name` in `unit`; an empty unit is written as `-`.
     pub fn new(name: &str, unit: &str) -> Self {
         let unit = if unit.is_empty() { "-" } else { unit };
         Self {
@@ -28,43 +28,43 @@ impl TableColumn {
     }
 }
 
-/// One entry of a row.
+/// Entry of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cell {
-    /// A count.
+    /// Count.
     Int(u64),
-    /// A quantity, in the unit of its column.
+    /// Quantity, in the unit of its column.
     Float(f64),
-    /// One of the words that its column knows.
+    /// One of the words allowed in its column.
     Word(&'static str),
-    /// Nothing.
+    /// No entry.
     Empty,
 }
 
-/// How far a table has come: what must stand in it for a run to go on from here.
+/// State of a table at a checkpoint: the contents that it must have for a run to continue from there.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TableMark {
-    /// Bytes of its file.
+    /// Size of the file in bytes.
     pub bytes: u64,
-    /// Their BLAKE3, in hexadecimal.
+    /// BLAKE3 hash of these bytes, in hexadecimal.
     pub blake3: String,
 }
 
-/// A table that grows by a row at a time.
+/// Table that grows row by row.
 #[derive(Debug)]
 pub struct CsvTable {
     path: PathBuf,
     file: File,
     columns: Vec<TableColumn>,
-    hasher: Box<blake3::Hasher>, // of all that is in the file
+    hasher: Box<blake3::Hasher>, // of all bytes in the file
 }
 
 impl CsvTable {
-    /// Begins a new file with its two heading lines.
+    /// Creates a file with its two heading lines.
     ///
     /// # Errors
-    /// [`Error::Name`] for an empty or repeated name or one with a comma, quote, `#` or line break;
-    /// [`Error::File`] when the file is there already or cannot be made.
+    /// [`Error::Name`] for an empty or repeated name, or one with a comma, quote, `#` or line break; [`Error::File`] if
+    /// the file exists or cannot be created.
     pub fn create(path: &Path, columns: &[TableColumn]) -> Result<Self, Error> {
         check_headings(path, columns)?;
         let file = File::create_new(path).map_err(Error::file("create", path))?;
@@ -82,26 +82,26 @@ impl CsvTable {
         Ok(table)
     }
 
-    /// Whether a file can be gone on with from `mark`; it is left as it is.
+    /// Checks whether a run can continue a file from `mark`. The file is not changed.
     ///
     /// # Errors
-    /// [`Error::Format`] if the file is shorter or its beginning another one, or if it has other columns;
-    /// [`Error::File`] when the system refuses.
+    /// [`Error::Format`] if the file is shorter, or its first bytes or its columns differ; [`Error::File`] for an error
+    /// of the system.
     pub fn verify(path: &Path, columns: &[TableColumn], mark: &TableMark) -> Result<(), Error> {
         Self::reach(path, columns, mark).map(|_| ())
     }
 
-    /// Goes on with a file that had come to `mark`: what was written later is cut off.
+    /// Continues a file from `mark`; later rows are deleted.
     ///
     /// # Errors
-    /// Those of [`CsvTable::verify`]; the file is as it was then.
+    /// The errors of [`CsvTable::verify`]; the file is then unchanged.
     pub fn resume(path: &Path, columns: &[TableColumn], mark: &TableMark) -> Result<Self, Error> {
         let table = Self::reach(path, columns, mark)?;
         table.file.set_len(mark.bytes).map_err(Error::file("write", path))?;
         Ok(table)
     }
 
-    /// The table at the mark, whatever comes after it.
+    /// Opens the table at the mark, regardless of later rows.
     fn reach(path: &Path, columns: &[TableColumn], mark: &TableMark) -> Result<Self, Error> {
         check_headings(path, columns)?;
         let mut file = File::options()
@@ -130,10 +130,10 @@ impl CsvTable {
         })
     }
 
-    /// Where the table stands now. All of it is on the disk then.
+    /// Returns the present state of the table, after writing all of it to the disk.
     ///
     /// # Errors
-    /// [`Error::File`] when the system refuses.
+    /// [`Error::File`] for an error of the system.
     pub fn mark(&self) -> Result<TableMark, Error> {
         self.file.sync_all().map_err(Error::file("write", &self.path))?;
         Ok(TableMark {
@@ -149,11 +149,11 @@ impl CsvTable {
             .map_err(Error::file("write", &self.path))
     }
 
-    /// Adds a row, floats in the shortest form that reads back to the same bits. The row goes to the system whole.
+    /// Appends a row. Floats have the shortest form that reads back to the same bits. The row is written in one call.
     ///
     /// # Errors
-    /// [`Error::Length`] for a row of another length, [`Error::NotFinite`] for a number that is infinite or none: the
-    /// file is then as before. [`Error::File`] when the system refuses.
+    /// [`Error::Length`] for a row of another length and [`Error::NotFinite`] for a number that is not finite: the file
+    /// is then unchanged. [`Error::File`] for an error of the system.
     pub fn row(&mut self, cells: &[Cell]) -> Result<(), Error> {
         if cells.len() != self.columns.len() {
             let expected = self.columns.len();
@@ -198,14 +198,14 @@ impl CsvTable {
     }
 }
 
-/// The two heading lines.
+/// Returns the two heading lines.
 fn heading(columns: &[TableColumn]) -> String {
     let names: Vec<&str> = columns.iter().map(|column| &*column.name).collect();
     let units: Vec<&str> = columns.iter().map(|column| &*column.unit).collect();
     format!("{}\n# {}\n", names.join(","), units.join(","))
 }
 
-/// Whether a name or unit cannot stand in the heading lines.
+/// Returns whether a name or unit is not allowed in the heading lines.
 fn is_bad_heading(text: &str) -> bool {
     text.trim() != text || text.is_empty() || text.contains([',', '"', '#', '\n', '\r'])
 }
@@ -228,23 +228,23 @@ fn check_headings(path: &Path, columns: &[TableColumn]) -> Result<(), Error> {
     Ok(())
 }
 
-/// A table that was read; counts come as floats too.
+/// Table that was read; counts are floats, too.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
-    /// The headings; the units are empty if the file has none.
+    /// Headings; the units are empty if the file has none.
     pub headings: Vec<TableColumn>,
-    /// One list of numbers per column, all of one length.
+    /// Numbers of each column, all of the same length.
     pub values: Vec<Vec<f64>>,
 }
 
 impl Columns {
-    /// The numbers of the column `name`.
+    /// Returns the numbers of the column `name`.
     pub fn get(&self, name: &str) -> Option<&[f64]> {
         let index = self.headings.iter().position(|column| column.name == name)?;
         Some(&self.values[index])
     }
 
-    /// The unit of the column `name`.
+    /// Returns the unit of the column `name`.
     pub fn unit(&self, name: &str) -> Option<&str> {
         self.headings
             .iter()
@@ -253,26 +253,26 @@ impl Columns {
     }
 }
 
-/// Reads a table of numbers: ours, or another with a line of names. Lines that begin with `#` are comments, the one
-/// right after the names their units; a last line without its end is one that is being written, and left out.
+/// Reads a table of numbers, of this program or of others, with a line of names. Lines that begin with `#` are
+/// comments; one directly after the names has the units. An unfinished last line, which is being written, is ignored.
 ///
 /// # Errors
-/// [`Error::File`] when the system refuses, [`Error::Format`] with the line for anything but finite numbers.
+/// [`Error::File`] for an error of the system; [`Error::Format`] with the line that is not a row of finite numbers.
 pub fn read(path: &Path) -> Result<Columns, Error> {
     parse(&whole_lines(path)?).map_err(|reason| Error::format(path, reason))
 }
 
-/// The text of a file up to its last line break.
+/// Returns the text of a file up to its last line break.
 pub(crate) fn whole_lines(path: &Path) -> Result<String, Error> {
     let mut text = fs::read_to_string(path).map_err(Error::file("read", path))?;
     text.truncate(text.rfind('\n').unwrap_or(0));
     Ok(text)
 }
 
-/// Reads a table from text that is whole, as [`read`] does.
+/// Reads a table from complete text, as [`read`] does.
 ///
 /// # Errors
-/// Says in words which line is no row of finite numbers.
+/// A text with the line that is not a row of finite numbers.
 pub fn parse(text: &str) -> Result<Columns, String> {
     let mut lines = text
         .lines()

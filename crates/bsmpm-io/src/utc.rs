@@ -2,12 +2,13 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// The present time, see [`utc`].
+/// Returns the present time, see [`utc`].
 pub fn now() -> String {
     utc(SystemTime::now())
 }
 
-/// A time as RFC 3339 writes it, to the second: `2026-11-21T02:44:53Z`. Times before 1970 become its first second.
+/// Returns a time in the form of RFC 3339, to the second: `2026-11-21T02:44:53Z`. Times before 1970 become
+/// 1970-01-01T00:00:00Z.
 pub fn utc(time: SystemTime) -> String {
     let seconds = time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     let days = seconds / 86_400;
@@ -21,8 +22,8 @@ pub fn utc(time: SystemTime) -> String {
     )
 }
 
-/// The Gregorian date `days` after 1970-01-01. Years are taken to begin in March, so that a leap day ends its year, and
-/// are counted in eras of 400 years (146,097 days).
+/// Returns the Gregorian date `days` after 1970-01-01. Years are assumed to begin in March, so that a leap day ends its
+/// year, and are counted in eras of 400 years (146,097 days).
 fn civil(days: u64) -> (u64, u64, u64) {
     let shifted = days + 719_468;
     let era = shifted / 146_097;

@@ -12,13 +12,13 @@ pub use crate::vtu_read::read;
 /// Names of the components of a symmetric tensor, in the order in which they are stored.
 const SYMMETRIC: [&str; 6] = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 const VTK_VERTEX: u8 = 1;
-/// Bytes of the length that goes before an array.
+/// Bytes of the length before an array.
 const LENGTH: u64 = size_of::<u64>() as u64;
 
-/// Writes `frame` to the file `path`, replacing it in one go.
+/// Writes `frame` to the file `path`, replacing it atomically.
 ///
 /// # Errors
-/// Those of [`Frame::check`]; [`Error::File`] when the system refuses. An older file then stays as it was.
+/// The errors of [`Frame::check`]; [`Error::File`] for an error of the system. An older file is then unchanged.
 pub fn write(path: &Path, frame: &Frame) -> Result<(), Error> {
     frame.check(path)?;
     let mut left = Some(frame.clone());
@@ -33,16 +33,17 @@ pub fn write(path: &Path, frame: &Frame) -> Result<(), Error> {
     )
 }
 
-/// Writes a frame to the file `path` as its points come, replacing it in one go: the same bytes, whatever the parts.
+/// Writes a frame whose points are supplied in parts to the file `path`, replacing it atomically. The bytes do not
+/// depend on the parts.
 ///
 /// # Errors
-/// As [`write()`]; [`Error::Length`] if not so many points come as were announced.
+/// The errors of [`write()`]; [`Error::Length`] if the number of points differs from the announced one.
 pub fn write_parts(path: &Path, parts: Parts<'_>) -> Result<(), Error> {
     filled(path, parts)?.give_name()?;
     atomic::sync_folder(path).map_err(Error::file("write", path))
 }
 
-/// The same under a temporary name.
+/// Writes such a frame under a temporary name.
 pub(crate) fn filled(path: &Path, parts: Parts<'_>) -> Result<FilledFile, Error> {
     parts.head.check(path)?;
     let mut refused = None;
@@ -100,18 +101,18 @@ fn fill(
     file.write_all(b"\n  </AppendedData>\n</VTKFile>\n")
 }
 
-/// Keeps an error for the caller of [`fill`], which itself returns errors of the system only.
+/// Stores an error for the caller of [`fill`], which itself can only return system errors.
 fn refuse(refused: &mut Option<Error>, error: Error) -> io::Error {
     *refused = Some(error);
     io::Error::other("refused")
 }
 
-/// Bytes that each point of frames with the fields of `frame` takes; a head of some kilobytes comes with them.
+/// Returns the bytes per point of frames with the fields of `frame`, without a header of a few kilobytes.
 pub fn point_bytes(frame: &Frame) -> u64 {
     arrays(frame, 0).map(|data| data.point_bytes() as u64).sum()
 }
 
-/// Writes the text with the arrays `names`. Returns the place of the numbers of every array, behind its length, counted
+/// Writes the header with the arrays `names`. Returns the position of each array's numbers (after its length), counted
 /// from the first byte of the arrays.
 fn write_head(file: &mut impl Write, head: &Frame, names: &[String], points: usize) -> io::Result<Vec<u64>> {
     let data: Vec<Data<'_>> = arrays(head, 0).collect();
@@ -146,7 +147,7 @@ fn write_head(file: &mut impl Write, head: &Frame, names: &[String], points: usi
     Ok(places)
 }
 
-/// Writes time and step as text: exact, and legible without a program. `TimeValue` is the name that ParaView looks for.
+/// Writes time and step as text, which is exact and readable. ParaView expects the name `TimeValue`.
 fn write_moment(file: &mut impl Write, frame: &Frame, names: &[String]) -> io::Result<()> {
     let Frame { step, time, .. } = frame;
     let one = "NumberOfTuples=\"1\" format=\"ascii\"";
@@ -165,7 +166,7 @@ fn write_moment(file: &mut impl Write, frame: &Frame, names: &[String]) -> io::R
     writeln!(file, "    </FieldData>")
 }
 
-/// The array of a list of names: characters by their codes, each name ended by 0, as VTK has them.
+/// Returns the array of a list of names in VTK's form: the codes of the characters, each name ended by 0.
 fn name_array(name: &str, list: &[String]) -> String {
     let codes = list
         .iter()
@@ -177,7 +178,7 @@ fn name_array(name: &str, list: &[String]) -> String {
     format!("<{array}>{codes}</Array>")
 }
 
-/// Announces an array, whose numbers begin at `place` behind their length.
+/// Writes the heading of an array, whose numbers begin at `place` (after their length).
 fn write_array(file: &mut impl Write, name: &str, data: &Data<'_>, place: u64) -> io::Result<()> {
     let kind = data.kind();
     let components = data.components;
@@ -194,8 +195,8 @@ fn write_array(file: &mut impl Write, name: &str, data: &Data<'_>, place: u64) -
     writeln!(file, " format=\"appended\" offset=\"{offset}\"/>")
 }
 
-/// The arrays in the order of the file: fields, places, then the three that make each point a cell, the first one's
-/// number being `first`.
+/// Iterates over the arrays in the order of the file: fields, positions, then the three that make each point a cell.
+/// `first` is the number of the first cell.
 fn arrays(frame: &Frame, first: usize) -> impl Iterator<Item = Data<'_>> {
     let points = frame.position.len();
     let fields = frame.fields.iter().map(|field| Data {
@@ -221,7 +222,7 @@ fn arrays(frame: &Frame, first: usize) -> impl Iterator<Item = Data<'_>> {
         .chain(cells)
 }
 
-/// One array of the file.
+/// Array of the file.
 struct Data<'a> {
     components: usize,
     numbers: Numbers<'a>,
@@ -262,7 +263,7 @@ impl Data<'_> {
         }
     }
 
-    /// Bytes of a point.
+    /// Returns the bytes per point.
     fn point_bytes(&self) -> usize {
         let number = match self.numbers {
             Numbers::F64(_) | Numbers::U64(_) | Numbers::Count { .. } => 8,

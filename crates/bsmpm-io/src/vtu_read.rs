@@ -10,7 +10,8 @@ use crate::xml::{Tag, tags};
 /// Reads a frame that this program wrote.
 ///
 /// # Errors
-/// [`Error::File`] when the system refuses, [`Error::Format`] when the file is cut short or not one of ours.
+/// [`Error::File`] for an error of the system; [`Error::Format`] if the file is incomplete or was not written by this
+/// program.
 pub fn read(path: &Path) -> Result<Frame, Error> {
     let bytes = fs::read(path).map_err(Error::file("read", path))?;
     parse(&bytes).map_err(|reason| Error::format(path, reason))
@@ -49,7 +50,7 @@ fn parse(bytes: &[u8]) -> Result<Frame, String> {
     }
 }
 
-/// The XML before, and the raw bytes after, the underscore that begins the appended data.
+/// Returns the XML before, and the bytes after, the underscore at the start of the appended data.
 fn split(bytes: &[u8]) -> Result<(&str, &[u8]), String> {
     let mark = b"<AppendedData encoding=\"raw\">";
     let at = bytes
@@ -125,7 +126,7 @@ fn field(tag: &Tag, data: &[u8], points: usize) -> Result<Field, String> {
     })
 }
 
-/// The bytes at `offset`, whose number stands before them as a 64-bit integer.
+/// Returns the bytes at `offset`, after their count (a 64-bit integer).
 fn block(data: &[u8], offset: usize) -> Option<&[u8]> {
     let (length, rest) = data.get(offset..)?.split_first_chunk()?;
     rest.get(..usize::try_from(u64::from_le_bytes(*length)).ok()?)

@@ -1,16 +1,16 @@
 //! Reads the XML of `.vtu` and `.pvd` files.
 
-/// One tag, with the text that follows it up to the next one.
+/// XML tag, with the text up to the next tag.
 pub(crate) struct Tag<'a> {
-    /// The name; that of a closing tag begins with `/`.
+    /// Name; that of a closing tag begins with `/`.
     pub name: &'a str,
     attributes: &'a str,
-    /// What stands between this tag and the next.
+    /// Text between this tag and the next.
     pub text: &'a str,
 }
 
 impl<'a> Tag<'a> {
-    /// The value of `key="value"`.
+    /// Returns the value of `key="value"`.
     pub fn attribute(&self, key: &str) -> Option<&'a str> {
         let mut rest = self.attributes;
         loop {
@@ -24,7 +24,7 @@ impl<'a> Tag<'a> {
     }
 }
 
-/// The tags of a document, in order.
+/// Iterates over the tags of a document.
 pub(crate) fn tags(document: &str) -> impl Iterator<Item = Tag<'_>> {
     document.split('<').skip(1).map(|piece| {
         let (tag, text) = piece.split_once('>').unwrap_or((piece, ""));

@@ -47,7 +47,7 @@ pub struct Task {
 }
 
 /// A simulation, and what is recorded of it.
-pub struct Scene<'p, K, const D: usize> {
+pub struct RecordedSimulation<'p, K, const D: usize> {
     /// The simulation.
     pub simulation: Simulation<'p, K, D>,
     /// What is recorded of it.
@@ -83,12 +83,12 @@ pub struct Run<'p, K, const D: usize> {
     hdf5: &'p Hdf5<'p>,
     saving: SaveTimes,
     stop_cause: Option<StopCause>,
-    before: Continuation,
+    before: PriorState,
 }
 
 /// What of a run was there before this program went on with it.
 #[derive(Debug, Default)]
-pub struct Continuation {
+pub struct PriorState {
     /// whether anything was
     pub resumed: bool,
     /// whether that was in another directory
@@ -115,13 +115,13 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         universe: &'p Universe,
         files: RunFiles<'p>,
         task: Task,
-        scene: Scene<'p, K, D>,
+        scene: RecordedSimulation<'p, K, D>,
         timers: Rc<Timers>,
-        mut before: Continuation,
+        mut before: PriorState,
     ) -> Self {
         let Task { case, arguments, fault } = task;
         let RunFiles { hdf5, ledger, log } = files;
-        let Scene { simulation, recorder } = scene;
+        let RecordedSimulation { simulation, recorder } = scene;
         let start = Instant::now();
         let frame_times = bsmpm_scene::model::frame_times(&case);
         let last_frame = before.last_frame;

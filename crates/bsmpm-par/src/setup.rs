@@ -1,7 +1,7 @@
 //! Sets up grid division, initial stress and linear solver.
 
 use bsmpm::error::StepError;
-use bsmpm::initial::{Equilibrium, EquilibriumSearch};
+use bsmpm::initial::{Equilibrium, EquilibriumSearchReport};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::AverageWeight;
 use bsmpm::stabilisation::Stabilisation;
@@ -28,7 +28,7 @@ pub struct Cut {
 }
 
 /// A state at the start, and what leading it to equilibrium took, if the case wants that.
-pub type Start = (Equilibrium, Option<EquilibriumSearch>);
+pub type Start = (Equilibrium, Option<EquilibriumSearchReport>);
 
 /// Gives the points the stress that the case wants at the start, and reports how well it is balanced.
 pub fn start<K: Kinematics<D>, const D: usize>(

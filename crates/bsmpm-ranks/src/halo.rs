@@ -15,7 +15,7 @@ use mpi::topology::{Communicator, SimpleCommunicator};
 use std::ops::Range;
 use std::rc::Rc;
 
-/// What this rank shares with others under one cut of the grid.
+/// Nodes that this rank shares with others in one partition, and the exchange of their values.
 pub struct MpiHalo {
     world: SimpleCommunicator,
     rank: usize,
@@ -27,17 +27,17 @@ pub struct MpiHalo {
     requests: Rc<Requests>,
 }
 
-/// A rank that shares nodes with this one.
+/// Rank that shares nodes with this one.
 struct Neighbour {
     rank: usize,
-    nodes: NodeRuns, // the shared ones, of the window
-    mine: NodeRuns,  // those of them that this rank owns
-    theirs: NodeRuns,
+    nodes: NodeRuns,  // shared nodes of the window
+    mine: NodeRuns,   // those of them that this rank owns
+    theirs: NodeRuns, // those that the other rank owns
     layers: Vec<SharedLayer>,
-    run: Range<usize>, // the shared ones within a layer
+    run: Range<usize>, // shared nodes within a layer
 }
 
-/// Nodes of the window, in a message in this order.
+/// Ranges of nodes of the window, in the order of a message.
 struct NodeRuns(Vec<Range<usize>>);
 
 impl NodeRuns {
@@ -45,7 +45,7 @@ impl NodeRuns {
         self.0.iter().map(Range::len).sum()
     }
 
-    /// Their numbers in an array of `width` a node.
+    /// Returns the values of these nodes from an array with `width` numbers per node.
     fn packed(&self, nodal: &[f64], width: usize) -> Vec<f64> {
         let mut message = Vec::with_capacity(self.count() * width);
         self.0
@@ -54,7 +54,7 @@ impl NodeRuns {
         message
     }
 
-    /// Puts for each number what `both` makes of it and of the message's.
+    /// Replaces each value of these nodes by `both` of it and the value in the message.
     fn unpack(&self, message: &[f64], nodal: &mut [f64], width: usize, both: impl Fn(f64, f64) -> f64) {
         let mut message = message.iter();
         for run in &self.0 {
@@ -66,15 +66,15 @@ impl NodeRuns {
     }
 }
 
-/// Messages of numbers from rank to rank, which arrive in the order in which they were sent.
+/// Messages of numbers between two ranks, which arrive in the order of sending.
 pub trait Link {
-    /// Sends to a rank.
+    /// Sends numbers to a rank.
     fn send(&self, to: usize, numbers: &[f64]);
-    /// What a rank has sent.
+    /// Returns the next message from a rank.
     fn receive(&self, from: usize) -> Vec<f64>;
 }
 
-/// The ranks of a halo, whose messages are counted.
+/// Link between the ranks of a halo, which counts the messages.
 pub struct Ranks<'a> {
     halo: &'a MpiHalo,
 }
@@ -94,7 +94,8 @@ impl Link for Ranks<'_> {
 }
 
 impl MpiHalo {
-    /// The halo of this rank's window of `grid` under the cut `slabs`; every sum carries the `requests` with it.
+    /// Creates the halo of this rank's window of `grid` for the partition `slabs`. Every sum also carries the
+    /// `requests`.
     pub fn new<const D: usize>(
         world: SimpleCommunicator,
         slabs: &Slabs,
@@ -136,32 +137,33 @@ impl MpiHalo {
         }
     }
 
-    /// The cut of the grid.
+    /// Returns the partition of the grid.
     pub fn slabs(&self) -> &Slabs {
         &self.slabs
     }
 
-    /// The ranks.
+    /// Returns the communicator of all ranks.
     pub fn world(&self) -> &SimpleCommunicator {
         &self.world
     }
 
-    /// The ranks, to be sent numbers one by one.
+    /// Returns the link for messages between two ranks.
     pub fn link(&self) -> Ranks<'_> {
         Ranks { halo: self }
     }
 
-    /// What is asked of the run from outside.
+    /// Returns the requests to the run from outside.
     pub fn requests(&self) -> &Rc<Requests> {
         &self.requests
     }
 
-    /// Adds what the other ranks have at the nodes that they share with this one.
+    /// Adds the values of the other ranks at shared nodes. One exchange with the neighbours.
     pub fn add_shared(&self, nodal: &mut [f64], width: usize) {
         self.combine(TrafficKind::HaloSum, nodal, width, |own, other| own + other);
     }
 
-    /// Combines the numbers of every shared node with those of the ranks that share it.
+    /// Combines the values at every shared node with those of the ranks that share it. One exchange with the
+    /// neighbours.
     fn combine(&self, kind: TrafficKind, nodal: &mut [f64], width: usize, both: impl Fn(f64, f64) -> f64) {
         if self.neighbours.is_empty() {
             return;
@@ -178,7 +180,8 @@ impl MpiHalo {
         }
     }
 
-    /// Gives every neighbour its message and returns theirs, of the given lengths, in the order of the neighbours.
+    /// Sends every neighbour its message and returns theirs, in the order of the neighbours. `lengths` gives the
+    /// lengths of the messages to receive.
     fn exchange(
         &self,
         kind: TrafficKind,
@@ -221,12 +224,12 @@ impl MpiHalo {
 }
 
 impl Neighbour {
-    /// Where the shared nodes of a layer have their numbers in it.
+    /// Returns the range of the shared nodes' values within a layer.
     fn run(&self, width: usize) -> Range<usize> {
         self.run.start * width..self.run.end * width
     }
 
-    /// What the columns of this rank contribute to the shared nodes: layer after layer, column after column.
+    /// Returns the contributions of this rank's columns to the shared nodes, layer by layer and column by column.
     fn pieces(&self, contributions: &Contributions) -> Vec<f64> {
         let run = self.run(contributions.width());
         let mut message = Vec::new();
@@ -241,12 +244,12 @@ impl Neighbour {
         message
     }
 
-    /// How many numbers there are in such pieces of the other rank.
+    /// Returns the count of numbers in such a message from the other rank.
     fn pieces_of_other(&self, width: usize) -> usize {
         self.layers.iter().map(|shared| shared.theirs).sum::<usize>() * self.run(width).len()
     }
 
-    /// Adds them to the nodal array, whose layers have so many nodes.
+    /// Adds a message of the other rank to the nodal array, whose layers have `layer` nodes.
     fn add_pieces(&self, message: &[f64], layer: usize, width: usize, nodal: &mut [f64]) {
         let run = self.run(width);
         let mut pieces = message.chunks_exact(run.len());
@@ -277,7 +280,7 @@ impl Halo for MpiHalo {
             .map(|other| other.pieces(contributions))
             .collect();
         let incoming = self.exchange(TrafficKind::HaloSum, &outgoing, |other| other.pieces_of_other(width));
-        // The columns of lower slabs lie before this rank's: every layer adds its columns in their order.
+        // Every layer adds the columns in their order: those of lower ranks are before this rank's.
         let mut nodal = contributions.nodal();
         let lower = self.neighbours.partition_point(|other| other.rank < self.rank);
         let (before, after) = incoming.split_at(lower);

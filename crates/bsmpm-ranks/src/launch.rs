@@ -5,15 +5,15 @@ use mpi::environment::Universe;
 use mpi::topology::{Communicator, SimpleCommunicator};
 use std::fmt;
 
-/// Variables by which a launcher gives a process the number of ranks.
+/// Environment variables in which a launcher passes the number of ranks.
 const LAUNCHED: [&str; 4] = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_SIZE", "SLURM_STEP_NUM_TASKS"];
 
-/// Why there are no ranks.
+/// Reason why the ranks could not be started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LaunchFailure {
     /// MPI could not be started.
     NoMpi,
-    /// The launcher started so many processes, and each is a run of its own.
+    /// The launcher started this number of processes, and each is a run of its own.
     Apart(usize),
 }
 
@@ -33,8 +33,8 @@ impl fmt::Display for LaunchFailure {
     }
 }
 
-/// Starts MPI. From here on a panic on any rank goes to `end` with its reason, which is to end the job ([`abort`]) and
-/// to say why. First thing in `main`, before any other thread: it sets environment variables.
+/// Starts MPI. From here on a panic on any rank calls `end` with the reason, which must report it and end the job
+/// ([`abort`]). Call it first in `main`, before any other thread exists, because it sets environment variables.
 pub fn start(end: fn(&SimpleCommunicator, &str) -> !) -> Result<Universe, LaunchFailure> {
     prepare(!LAUNCHED.iter().any(|name| std::env::var_os(name).is_some()));
     let Some((universe, _)) = mpi::initialize_with_threading(mpi::Threading::Funneled) else {
@@ -51,12 +51,12 @@ pub fn start(end: fn(&SimpleCommunicator, &str) -> !) -> Result<Universe, Launch
     }
 }
 
-/// Settings of Open MPI for every run. Files have no pointer that ranks share: Open MPI's would fill a buffer of fixed
-/// size with long names.
+/// Open MPI settings for every run: no file pointers that ranks share, because they overflow a buffer of fixed size
+/// with long names.
 const ALWAYS: [(&str, &str); 1] = [("OMPI_MCA_sharedfp", "individual")];
 
-/// Settings without a launcher. Open MPI would start a daemon and look for a network; one rank needs neither. Its
-/// folder for the processes of a node would be shared by all such runs, and go with the first that ends.
+/// Settings without a launcher. Open MPI would otherwise start a daemon and look for a network, and would use one
+/// session folder for all such runs on a node, which the first run that ends deletes.
 const ALONE: [(&str, &str); 4] = [
     ("OMPI_MCA_ess_singleton_isolated", "1"),
     ("OMPI_MCA_orte_create_session_dirs", "0"),
@@ -64,7 +64,7 @@ const ALONE: [(&str, &str); 4] = [
     ("OMPI_MCA_btl", "self"),
 ];
 
-/// Sets what the environment has not set by itself.
+/// Sets the variables that the environment does not set.
 #[allow(unsafe_code)]
 fn prepare(alone: bool) {
     let settings = ALWAYS.iter().chain(ALONE.iter().filter(|_| alone));
@@ -74,7 +74,8 @@ fn prepare(alone: bool) {
     }
 }
 
-/// rsmpi finalises MPI while a panic unwinds, and the other ranks would wait for ever: abort them all instead.
+/// Aborts all ranks on a panic. Otherwise rsmpi finalises MPI while the panic unwinds, and the other ranks wait
+/// forever.
 fn abort_on_panic(end: fn(&SimpleCommunicator, &str) -> !) {
     std::panic::set_hook(Box::new(move |panic| {
         let world = SimpleCommunicator::world();
@@ -98,9 +99,9 @@ fn abort_on_panic(end: fn(&SimpleCommunicator, &str) -> !) {
     }));
 }
 
-/// Ends the job on all ranks with `code`, for failures that the other ranks do not know of.
+/// Ends the job on all ranks with `code`, after a failure that the other ranks do not know of.
 pub fn abort(world: &SimpleCommunicator, code: u8) -> ! {
-    // A rank alone has nobody to end, and Open MPI would print nine lines about its abort.
+    // With one rank there is nothing to end, and Open MPI would print nine lines about its abort.
     let is_running = mpi::environment::is_initialized() && !mpi::environment::is_finalized();
     if is_running && world.size() > 1 {
         world.abort(i32::from(code));
@@ -108,14 +109,14 @@ pub fn abort(world: &SimpleCommunicator, code: u8) -> ! {
     std::process::exit(i32::from(code));
 }
 
-/// The same exit code on all ranks: the largest of them, 0 where all are well. Collective.
+/// Returns the largest exit code of all ranks; 0 if all succeeded. Collective.
 pub fn agree(world: &SimpleCommunicator, own: u8) -> u8 {
     let mut largest = 0;
     world.all_reduce_into(&own, &mut largest, SystemOperation::max());
     largest
 }
 
-/// Number of ranks on which a condition holds. Collective.
+/// Returns the number of ranks for which `holds` is true. Collective.
 pub fn count(world: &SimpleCommunicator, holds: bool) -> usize {
     let mut sum = 0_u32;
     world.all_reduce_into(&u32::from(holds), &mut sum, SystemOperation::sum());

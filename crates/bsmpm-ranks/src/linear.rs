@@ -29,8 +29,8 @@ use shell::ShellSystem;
 use std::rc::Rc;
 use system::{System, failed};
 
-/// The linear solver of a run, C unknowns a node of a grid of dimension D: one matrix, rebuilt every step; pattern and
-/// analysis are kept while the unknowns stay.
+/// Linear solver of a run, with C unknowns per node of a grid of dimension D. It has one matrix, rebuilt in every step;
+/// the pattern and its analysis are kept while the unknowns stay the same.
 pub struct KspSolver<'p, const D: usize, const C: usize> {
     petsc: &'p Petsc<'p>,
     choice: Choice,
@@ -39,34 +39,34 @@ pub struct KspSolver<'p, const D: usize, const C: usize> {
     stencil: Stencil<D, C>,
     free: Vec<bool>,
     numbers: Numbering,                    // empty before PETSc needs it
-    own: usize,                            // unknowns of this rank
-    shell: Option<ShellSystem<'p>>,        // where the program factorises
-    cycles: Option<CycleSystem<'p, D, C>>, // where multigrid is the program's own
-    is_sized: bool,                        // the shell system has the present unknowns
+    own: usize,                            // number of unknowns of this rank
+    shell: Option<ShellSystem<'p>>,        // for nested dissection
+    cycles: Option<CycleSystem<'p, D, C>>, // for spline multigrid
+    is_sized: bool,                        // whether the shell system is set up for the present unknowns
     definite: Option<System<'p>>,
-    general: Option<System<'p>>, // where Newton's method is used
+    general: Option<System<'p>>, // for Newton's method
     tallies: Tallies,
     timers: Rc<Timers>,
 }
 
-/// How the solves of each kind of systems ended.
+/// Outcomes of the solves, by kind of linear system.
 #[derive(Clone, Debug, Default)]
 pub struct Tallies {
-    /// the stiffness that the secants correct
+    /// Stiffness that quasi-Newton secants correct.
     pub definite: Option<Tally>,
-    /// Newton's
+    /// Jacobian of Newton's method.
     pub general: Option<Tally>,
-    /// the pore pressures'
+    /// Pore pressures.
     pub water: Option<Tally>,
 }
 
 impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
-    /// A solver for a window of the grid.
+    /// Creates a solver for a window of the grid.
     pub fn new(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
         Self::of(petsc, choice, Stencil::new(grid), grid, halo, timers)
     }
 
-    /// The same for functions of degree q - 1, numbered within the nodes.
+    /// Creates a solver for functions of degree q - 1, which use the numbers of the nodes.
     fn lowered(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
         Self::of(petsc, choice, Stencil::lowered(grid), grid, halo, timers)
     }
@@ -79,8 +79,8 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         halo: Rc<MpiHalo>,
         timers: Rc<Timers>,
     ) -> Self {
-        // Where every rank factorises the whole, the same bits on any number of ranks; else sums depend on the cut
-        // anyway.
+        // If every rank factorises the whole matrix, the result must be bitwise identical on any number of ranks.
+        // Otherwise sums depend on the partition anyway.
         let whole = choice.redundant && !choice.dissection;
         let stencil = if whole {
             stencil.by_columns(grid, halo.owned())
@@ -108,17 +108,18 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         }
     }
 
-    /// How the solves have ended so far.
+    /// Returns the outcomes of the solves so far.
     pub fn tallies(&self) -> &Tallies {
         &self.tallies
     }
 
-    /// Goes on counting where another solver of the run has ended.
+    /// Continues the counts of a former solver of the run.
     pub fn count_on(&mut self, tallies: Tallies) {
         self.tallies = tallies;
     }
 
-    /// Numbers the free components: those of rank 0 first, by node; the same number on every rank that shares a node.
+    /// Numbers the free components: those of rank 0 first, by node. All ranks that share a node have the same number
+    /// for it. Collective.
     fn number(&mut self) {
         let free = &self.free;
         let owned = self.halo.owned().places::<C>();
@@ -142,7 +143,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
             .collect();
     }
 
-    /// Hands the values over; the pattern too, if the unknowns have changed.
+    /// Passes the values to PETSc, and the pattern if the unknowns have changed. Collective.
     fn build(&mut self, symmetry: Symmetry) -> petsc_rs::Result<()> {
         if self.numbers.len() != self.free.len() {
             self.number();
@@ -160,7 +161,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
                 let block = if self.choice.whole_nodes() { C } else { 1 };
                 let pattern = (&self.numbers, &self.free[..]);
                 let mut matrix = if self.petsc.ranks() == 1 {
-                    // All rows are whole and in order: nothing to sort, and half of the memory.
+                    // All rows are complete and in order: PETSc need not sort them and uses half of the memory.
                     let (starts, columns) = self.stencil.rows_of(self.own, pattern.0, pattern.1);
                     Matrix::from_csr(self.petsc, self.own, block, &starts, &columns, &values)?
                 } else {
@@ -186,7 +187,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         outcome
     }
 
-    /// Has the stiffness factorised as KSP's preconditioner. Collective.
+    /// Sets up nested dissection as KSP's preconditioner and factorises the stiffness. Collective.
     fn set_up_shell(&mut self) -> Result<(), SolveError> {
         if self.shell.is_none() {
             self.shell = Some(ShellSystem::new(self.petsc, &self.choice).map_err(failed)?);
@@ -212,7 +213,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         }
     }
 
-    /// The shell system, what it is to solve, and where that is counted.
+    /// Returns the system with nested dissection, its operator, and its tally.
     fn shell_system(&mut self) -> Option<(&mut ShellSystem<'p>, StiffnessOperator<'_, D, C>, &mut Tally)> {
         let Self {
             halo,
@@ -235,7 +236,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         Some((shell, matrix, tally))
     }
 
-    /// Has levels made of the stiffness as KSP's preconditioner. Collective.
+    /// Sets up spline multigrid as KSP's preconditioner for the stiffness. Collective.
     fn set_up_cycles(&mut self) -> Result<(), SolveError> {
         if self.cycles.is_none() {
             self.cycles = Some(CycleSystem::new(self.petsc, &self.choice).map_err(failed)?);
@@ -254,7 +255,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         cycles.set_up(matrix, tally)
     }
 
-    /// The system with multigrid, what it is to solve, and where that is counted.
+    /// Returns the system with multigrid, its operator, and its tally.
     fn cycle_system(&mut self) -> Option<(&mut CycleSystem<'p, D, C>, StiffnessOperator<'_, D, C>, &mut Tally)> {
         let Self {
             halo,
@@ -277,7 +278,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         Some((cycles, matrix, tally))
     }
 
-    /// A nodal solution of the assembled system, as `by` finds it.
+    /// Solves the assembled system with `by` and returns the nodal solution. Collective.
     fn solve_assembled(
         &mut self,
         by: impl FnOnce(&mut System<'p>, &[f64], &mut Tally) -> Result<(usize, Vec<f64>), SolveError>,
@@ -294,7 +295,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         let tally = self.tallies.definite.get_or_insert_default();
         let (iterations, mut x) = by(self.definite.as_mut().ok_or_else(missing)?, &own, tally)?;
         if self.choice.is_rough() {
-            // Of nodes that keep what is held, coarse functions move that, too.
+            // At nodes with a fixed component, coarse functions also move this component.
             x.iter_mut()
                 .zip(&unknowns)
                 .filter(|(_, at)| !self.free[**at])
@@ -307,7 +308,7 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         })
     }
 
-    /// Components of this rank's unknowns, in the order of their numbers.
+    /// Returns the components of this rank's unknowns, in the order of their numbers.
     fn unknowns(&self) -> Vec<usize> {
         self.halo
             .owned()
@@ -317,7 +318,8 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
     }
 }
 
-/// Which components of a window have a row: the free ones, or all of the nodes that have a free one.
+/// Returns a predicate for the components of a window that have a matrix row: the free ones, or, for multigrid of
+/// PETSc, all components of nodes with a free one.
 fn numbered<const C: usize>(choice: &Choice, free: &[bool]) -> impl Fn(usize) -> bool {
     let whole = choice.whole_nodes();
     move |component| {
@@ -329,8 +331,8 @@ fn numbered<const C: usize>(choice: &Choice, free: &[bool]) -> impl Fn(usize) ->
     }
 }
 
-/// Where the nodes with rows of this rank are, m: the splines' coefficients there (Greville) give linear fields
-/// exactly.
+/// Returns the positions of this rank's nodes with rows (m), as Greville abscissae: with these as coefficients, the
+/// splines reproduce linear fields exactly.
 fn places_of<const D: usize, const C: usize>(grid: &Grid<D>, halo: &MpiHalo, numbers: &Numbering) -> Vec<f64> {
     let with_rows = halo.owned().nodes().filter(|node| numbers[node * C].is_some());
     with_rows
@@ -341,7 +343,8 @@ fn places_of<const D: usize, const C: usize>(grid: &Grid<D>, halo: &MpiHalo, num
         .collect()
 }
 
-/// Nodal array, known to all ranks that share a node, of the unknowns that the ranks own.
+/// Fills a nodal array with the values of this rank's unknowns, and with zeros elsewhere, and exchanges shared nodes.
+/// One exchange with the neighbours.
 fn spread<const C: usize>(halo: &MpiHalo, unknowns: &[usize], values: &[f64], nodal: &mut [f64]) {
     nodal.fill(0.0);
     for (&component, value) in unknowns.iter().zip(values) {

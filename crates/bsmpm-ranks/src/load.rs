@@ -6,14 +6,14 @@ use bsmpm::grid::Grid;
 use bsmpm::points::Points;
 use bsmpm::tensor::Vector;
 
-/// Work of a node of the window in an evaluation, in that of a point.
+/// Cost of a node of the window in an evaluation, relative to that of a point.
 const NODE: f64 = 1.0;
-/// Work of a new cut on every rank, in evaluations. Measured with 3,200 points on two ranks: 1.0 ms for moving points
-/// and nodal values, and in the 57 % of steps that would have kept it, 3.7 ms for the linear solver's new pattern; an
-/// evaluation takes 0.53 ms.
+/// Cost of a new partition on every rank, in evaluations. Measured with 3,200 points on two ranks: 1.0 ms for moving
+/// points and nodal values, and 3.7 ms for the linear solver's new pattern in the 57 % of steps that would have kept
+/// the old one. An evaluation takes 0.53 ms.
 const PRICE: f64 = 6.0;
 
-/// Points of this rank in every column of cells of the grid's room.
+/// Returns the number of this rank's points in every column of cells of the active domain.
 pub fn points_by_column<const D: usize>(grid: &Grid<D>, points: &Points<D>) -> Vec<f64> {
     let room = &grid.room()[0];
     let mut counts = vec![0.0; room.len()];
@@ -28,23 +28,24 @@ pub fn points_by_column<const D: usize>(grid: &Grid<D>, points: &Points<D>) -> V
     counts
 }
 
-/// Points of this rank in every row of cells of every slab, slab after slab; those outside the room nowhere.
+/// Returns the number of this rank's points in every row of cells of every slab, slab by slab. Points outside the
+/// active domain do not count.
 pub fn points_by_row<const D: usize>(grid: &Grid<D>, slabs: &Slabs, points: &Points<D>) -> Vec<f64> {
     let mut rows = Rows::none(grid, slabs);
     points.x.iter().for_each(|x| rows.count(x));
     rows.counts
 }
 
-/// Points by row of cells of every slab, as they are counted.
+/// Counter of points by row of cells of every slab.
 pub struct Rows<'a, const D: usize> {
     grid: &'a Grid<D>,
     slabs: &'a Slabs,
-    /// slab after slab
+    /// Counts, slab by slab.
     pub counts: Vec<f64>,
 }
 
 impl<'a, const D: usize> Rows<'a, D> {
-    /// None yet.
+    /// Starts with zero counts.
     pub fn none(grid: &'a Grid<D>, slabs: &'a Slabs) -> Self {
         Self {
             grid,
@@ -53,7 +54,7 @@ impl<'a, const D: usize> Rows<'a, D> {
         }
     }
 
-    /// Counts a point at a place, m from the grid's lower corner.
+    /// Counts a point at position `x` (m, from the grid's lower corner).
     pub fn count(&mut self, x: &Vector<D>) {
         let Some(cell) = self.grid.locate(x) else { return };
         let [columns, rows] = [0, 1].map(|axis| &self.grid.room()[axis]);
@@ -64,16 +65,16 @@ impl<'a, const D: usize> Rows<'a, D> {
     }
 }
 
-/// The cut of the grid's room into slabs of about equal loads, with so many points of all ranks in every column; `None`
-/// with more slabs than columns.
+/// Partitions the active domain into slabs of about equal loads, given the number of points of all ranks in every
+/// column; `None` if there are more slabs than columns.
 pub fn cut<const D: usize>(grid: &Grid<D>, points: &[f64], slabs: usize) -> Option<Slabs> {
     let layer_nodes = (1..D).map(|axis| grid.room()[axis].len() + grid.order()).product();
     let slabs = Slabs::cut(&by_column(points, layer_nodes), slabs)?;
     Some(slabs.starting_at(grid.room()[0].start).reaching(grid.beyond()))
 }
 
-/// The same slabs, each cut into so many parts of about equal loads, with so many points of all ranks in the rows of
-/// every slab; `None` with more parts than rows.
+/// Divides each slab into `parts` of about equal loads, given the number of points of all ranks in the rows of every
+/// slab; `None` if there are more parts than rows.
 pub fn parted<const D: usize>(grid: &Grid<D>, slabs: Slabs, points: &[f64], parts: usize) -> Option<Slabs> {
     let rows = &grid.room()[1];
     let across: usize = (2..D).map(|axis| grid.room()[axis].len() + grid.order()).product();
@@ -86,17 +87,18 @@ pub fn parted<const D: usize>(grid: &Grid<D>, slabs: Slabs, points: &[f64], part
     slabs.parted(bounds, rows)
 }
 
-/// Work of every column with so many points, and with the nodes of one layer.
+/// Returns the load of every column from its number of points and the nodes of one layer.
 pub fn by_column(points: &[f64], layer_nodes: usize) -> Vec<f64> {
     points.iter().map(|count| count + NODE * layer_nodes as f64).collect()
 }
 
-/// Work of a rank with so many points, and nodes in its window.
+/// Returns the load of a rank from its number of points and the nodes in its window.
 pub fn of_rank(points: usize, nodes: usize) -> f64 {
     points as f64 + NODE * nodes as f64
 }
 
-/// Work of every rank under a cut of columns with so many points, for splines of order `q`.
+/// Returns the load of every rank for slabs without parts, given the number of points in every column, for splines of
+/// degree `q`.
 pub fn of_slabs(points: &[f64], slabs: &Slabs, layer_nodes: usize, q: usize) -> Vec<f64> {
     let first = slabs.bounds()[0];
     let mut loads = Vec::with_capacity(slabs.ranks());
@@ -108,7 +110,7 @@ pub fn of_slabs(points: &[f64], slabs: &Slabs, layer_nodes: usize, q: usize) -> 
     loads
 }
 
-/// The same of slabs with parts, by points in the rows of every slab.
+/// Returns the load of every rank for slabs with parts, given the number of points in the rows of every slab.
 pub fn of_parts<const D: usize>(points: &[f64], slabs: &Slabs, grid: &Grid<D>) -> Vec<f64> {
     let rows = &grid.room()[1];
     let q = grid.order();
@@ -127,7 +129,7 @@ pub fn of_parts<const D: usize>(points: &[f64], slabs: &Slabs, grid: &Grid<D>) -
     loads
 }
 
-/// Largest load over the mean.
+/// Returns the largest load divided by the mean.
 pub fn imbalance(loads: &[f64]) -> f64 {
     let sum: f64 = loads.iter().sum();
     let most = loads.iter().copied().fold(0.0, f64::max);
@@ -138,8 +140,8 @@ pub fn imbalance(loads: &[f64]) -> f64 {
     }
 }
 
-/// Whether a cut under which the largest load is `best` instead of `now` gains more in so many evaluations than it
-/// costs.
+/// Returns whether a partition that changes the largest load from `now` to `best` saves more in the given number of
+/// evaluations than it costs.
 pub fn pays(now: f64, best: f64, evaluations: u64) -> bool {
     (now - best) * evaluations as f64 > PRICE * best
 }

@@ -10,10 +10,11 @@ use mpi::collective::CommunicatorCollectives;
 use mpi::point_to_point::{Destination, Source};
 use mpi::topology::{Communicator, SimpleCommunicator};
 
-/// Bytes of one message; more go in several, as MPI counts with 31 bits.
+/// Largest message (bytes). Longer messages are divided, because MPI counts with 31 bits.
 const MESSAGE: usize = 1 << 20;
 
-/// Sends every point to the rank whose cells it is in, and sorts by cell. `grid` is the window under `slabs`.
+/// Sends every point to the rank of its cell, and sorts the points by cell. `grid` is this rank's window in the
+/// partition `slabs`. Collective.
 pub fn points<const D: usize>(
     world: &SimpleCommunicator,
     traffic: &Traffic,
@@ -26,7 +27,7 @@ pub fn points<const D: usize>(
         grid.locate(&points.x[p]).map_or(rank, |cell| slabs.owner(&cell))
     });
     let PointPlan { stay, leave } = PointPlan::new(owners.into_iter(), rank);
-    // Messages are column by column: every column then takes its rows from the message in one run.
+    // Messages are ordered column by column, so each column takes its rows from one contiguous range.
     let mut outgoing: Vec<(usize, Vec<u8>)> = leave.iter().map(|(other, _)| (*other, Vec::new())).collect();
     for column in points.columns() {
         for ((_, leaving), (_, message)) in leave.iter().zip(&mut outgoing) {
@@ -47,8 +48,8 @@ pub fn points<const D: usize>(
     points.sort_by_cell(grid);
 }
 
-/// Nodal values (`width` a node) of a window of `old`, as the same window of the returned grid has them: `old` with the
-/// room of `new` along the axes that are not cut. What lies outside the old room is zero.
+/// Converts nodal values (`width` per node) from the window `old` to the active domain of `new` along the axes that are
+/// not partitioned. Returns the new window and its values. Nodes outside the old active domain are zero.
 pub fn across<const D: usize>(old: &Grid<D>, new: &Grid<D>, values: &[f64], width: usize) -> (Grid<D>, Vec<f64>) {
     let mut room = new.room().clone();
     let mut window = new.room().clone();
@@ -65,17 +66,17 @@ pub fn across<const D: usize>(old: &Grid<D>, new: &Grid<D>, values: &[f64], widt
     (new, moved)
 }
 
-/// A partition of the grid, and what this rank sees of the grid under it.
+/// Partition of the grid, and this rank's window in it.
 #[derive(Clone, Copy)]
 pub struct GridPartition<'a, const D: usize> {
     /// The partition.
     pub slabs: &'a Slabs,
-    /// The part of the grid that this rank sees.
+    /// This rank's window of the grid.
     pub window: &'a Grid<D>,
 }
 
-/// Nodal values (`width` a node) of this rank under the partition `old`, moved to its nodes under the partition `new`;
-/// zero where there was none.
+/// Moves nodal values (`width` per node) from the partition `old` to `new`, and returns those of this rank's new
+/// window. Nodes without an old value are zero. Collective.
 pub fn nodal<const D: usize>(
     world: &SimpleCommunicator,
     traffic: &Traffic,
@@ -109,14 +110,14 @@ pub fn nodal<const D: usize>(
     moved
 }
 
-/// Places of the numbers of `nodes` among nodal values (`width` a node) of the window `grid`.
+/// Iterates over the positions of the values of `nodes` in a nodal array (`width` per node) of the window `grid`.
 fn numbers<const D: usize>(grid: &Grid<D>, nodes: &NodeBox, width: usize) -> impl Iterator<Item = usize> {
     let runs = grid.nodes_within(nodes).into_iter();
     runs.flat_map(move |run| run.start * width..run.end * width)
 }
 
-/// Sends every rank its message, and returns those received; both ascending by rank and without empty ones. Longer
-/// messages than a `block` of bytes go in several. Collective.
+/// Sends messages to other ranks and returns those received; both are ascending by rank and have no empty messages.
+/// Messages longer than `block` bytes are divided. Collective.
 pub fn exchange(
     world: &SimpleCommunicator,
     traffic: &Traffic,
@@ -139,7 +140,7 @@ pub fn exchange(
         messages,
         outgoing.iter().map(|(_, message)| message.len()).sum(),
     );
-    // Messages between two ranks do not overtake each other.
+    // MPI delivers messages between two ranks in the order of sending.
     mpi::request::scope(|scope| {
         let mut receives = Vec::new();
         for (other, message) in &mut incoming {

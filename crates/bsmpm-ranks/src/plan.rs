@@ -3,17 +3,17 @@
 use crate::slab::{NodeBox, Slabs, common};
 use std::ops::Range;
 
-/// The points of a rank, by the rank that they belong to.
+/// Points of a rank, grouped by the rank that they belong to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PointPlan {
-    /// those that stay, in their order
+    /// Points that stay, in their order.
     pub stay: Vec<u32>,
-    /// those that leave, in their order, by the rank that they go to
+    /// Points that leave, by destination rank, in their order.
     pub leave: Vec<(usize, Vec<u32>)>,
 }
 
 impl PointPlan {
-    /// The plan of `rank` for points that belong to `owners`.
+    /// Creates the plan of `rank` for points that belong to `owners`.
     pub fn new(owners: impl Iterator<Item = usize>, rank: usize) -> Self {
         let mut stay = Vec::new();
         let mut leave = Vec::<(usize, Vec<u32>)>::new();
@@ -31,18 +31,19 @@ impl PointPlan {
     }
 }
 
-/// Nodes that change hands between two cuts: the old owner of a box sends it to all whose new window has of it.
+/// Nodal values to be moved between two partitions: the old owner of a box sends it to all ranks whose new window
+/// contains a part of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NodePlan {
-    /// what this rank sends, itself included, ascending by rank
+    /// What this rank sends, also to itself, ascending by rank.
     pub send: Vec<(usize, NodeBox)>,
-    /// what it receives, ascending by rank: together what of its new window there was before, each node once
+    /// What this rank receives, ascending by rank: each node of its new window that existed before, once.
     pub receive: Vec<(usize, NodeBox)>,
 }
 
 impl NodePlan {
-    /// The plan of `rank` from the cut `old` to the cut `new`, for splines of order `q`, where slabs without parts have
-    /// those `rows` of cells.
+    /// Creates the plan of `rank` from the partition `old` to the partition `new`, for splines of degree `q`. `rows`
+    /// are the rows of cells of the active domain.
     pub fn new(old: &Slabs, new: &Slabs, rank: usize, q: usize, rows: &Range<usize>) -> Self {
         let owned = old.owned(rank, q, rows);
         let window = new.nodes(rank, q, rows);

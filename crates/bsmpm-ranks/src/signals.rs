@@ -11,21 +11,21 @@ use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Numbers that the requests add to a reduction.
+/// Count of numbers that the requests add to a reduction.
 pub const WIDTH: usize = 2;
 
-/// The requests of this rank, and those that all ranks know of.
+/// Requests of this rank, and those that all ranks have agreed on.
 #[derive(Debug, Default)]
 pub struct Requests {
     stop: Arc<AtomicBool>,
     save: Arc<AtomicBool>,
     stop_agreed: Cell<bool>,
     save_agreed: Cell<bool>,
-    reject: Cell<bool>, // no signal, but a fault that all ranks know of
+    reject: Cell<bool>, // not from a signal; set by all ranks together
 }
 
 impl Requests {
-    /// Those of the signals that come from now on. To be called once.
+    /// Registers the signal handlers and returns the requests. Call it once.
     pub fn of_signals() -> io::Result<Self> {
         let requests = Self::default();
         let ending = Arc::new(AtomicBool::new(false));
@@ -37,7 +37,7 @@ impl Requests {
         Ok(requests)
     }
 
-    /// This rank's share of the next sum over the ranks.
+    /// Returns this rank's contribution to the next sum over the ranks.
     pub fn share(&self) -> [f64; WIDTH] {
         [
             self.stop.load(Ordering::Relaxed),
@@ -46,42 +46,42 @@ impl Requests {
         .map(f64::from)
     }
 
-    /// Takes the sums of the ranks' shares.
+    /// Stores the sums of the ranks' contributions.
     pub fn agree(&self, [stop, save]: [f64; WIDTH]) {
         self.stop_agreed.set(self.stop_agreed.get() || stop > 0.0);
         self.save_agreed.set(self.save_agreed.get() || save > 0.0);
     }
 
-    /// Whether the run is to stop.
+    /// Returns whether the run must stop.
     pub fn stop(&self) -> bool {
         self.stop_agreed.get()
     }
 
-    /// Wants the next step that converges to be given up.
+    /// Requests that the next converged step be rejected.
     pub fn reject_next(&self) {
         self.reject.set(true);
     }
 
-    /// Whether a step that has converged is to be given up; asked once, the next one is not.
+    /// Returns whether a converged step must be rejected, and clears the request.
     pub fn take_rejection(&self) -> bool {
         self.reject.take()
     }
 
-    /// Whether a frame and a checkpoint are wanted; asked once, they are no longer.
+    /// Returns whether a frame and a checkpoint are requested, and clears the request.
     pub fn take_save(&self) -> bool {
         self.save_agreed.take()
     }
 }
 
-/// Lets the first SIGTERM or SIGINT set `stop`, and the second one do what it does to any program. One atomic operation
-/// decides which signal is the first, because two threads may handle two signals at the same time.
+/// Registers a handler: the first SIGTERM or SIGINT sets `stop`, the second one has its default effect. One atomic
+/// operation decides which signal is the first, because two threads may handle two signals at the same time.
 #[allow(unsafe_code)]
 fn register_ending(signal: c_int, ending: Arc<AtomicBool>, stop: Arc<AtomicBool>) -> io::Result<()> {
     // SAFETY: `handle` is async-signal-safe.
     unsafe { low_level::register(signal, move || handle(signal, &ending, &stop)) }.map(drop)
 }
 
-/// What a signal does. Atomic stores and `emulate_default_handler` are async-signal-safe.
+/// Handles a signal. Atomic stores and `emulate_default_handler` are async-signal-safe.
 fn handle(signal: c_int, ending: &AtomicBool, stop: &AtomicBool) {
     if ending.swap(true, Ordering::SeqCst) {
         let _ = low_level::emulate_default_handler(signal);

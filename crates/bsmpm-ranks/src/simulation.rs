@@ -15,7 +15,7 @@ use bsmpm::control::{AcceptedStep, Failure, Progress, Stepper};
 use bsmpm::error::StepError;
 use bsmpm::free_field;
 use bsmpm::grid::Grid;
-use bsmpm::initial::{self, Equilibrium, EquilibriumSearch};
+use bsmpm::initial::{self, Equilibrium, EquilibriumSearchReport};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::parallel::Halo;
@@ -30,35 +30,35 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::rc::Rc;
 
-/// Steps between two looks at the balance.
+/// Number of steps between two checks of the load balance.
 const LOOK: u64 = 10;
 
-/// The stress of the points at the start.
+/// Initial stress of the points.
 pub enum StartStress<'a, const D: usize> {
-    /// Pa  by material and position (m, from the grid's lower corner)
+    /// Stress (Pa) by material and position (m, from the grid's lower corner).
     Given(&'a dyn Fn(u16, &Vector<D>) -> Symmetric),
-    /// linear elastic equilibrium
+    /// Linear elastic equilibrium.
     Elastic,
-    /// its vertical part, and the horizontal one by K0, -, of every material
+    /// Vertical and shear stress of linear elastic equilibrium; horizontal stress by K0 (-) of every material.
     Spread(&'a dyn Fn(u16) -> f64),
 }
 
-/// What a step cost besides its iterations; the same on all ranks.
+/// Cost of a step in addition to its iterations; the same on all ranks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cost {
-    /// reductions over all ranks
+    /// Reductions over all ranks.
     pub reductions: u64,
-    /// messages between ranks, of all ranks together
+    /// Messages between ranks, in total over all ranks.
     pub messages: u64,
-    /// bytes of them
+    /// Bytes of these messages.
     pub bytes: u64,
-    /// largest load of a rank over the mean, while the step was made
+    /// Largest load of a rank divided by the mean load, during the step.
     pub imbalance: f64,
-    /// whether the grid was cut again after it
+    /// Whether the grid was partitioned again after the step.
     pub is_cut_again: bool,
 }
 
-/// The libraries that a simulation needs, initialised.
+/// Initialised libraries that a simulation needs.
 #[derive(Clone, Copy)]
 pub struct Libraries<'p> {
     /// MPI.
@@ -67,7 +67,7 @@ pub struct Libraries<'p> {
     pub petsc: &'p Petsc<'p>,
 }
 
-/// A model at time 0 and its points, on the ranks of a partition.
+/// Model at time 0 with its points, distributed over the ranks of a partition.
 pub struct PartitionedModel<K, const D: usize> {
     /// The model; its grid covers the active domain of all ranks.
     pub model: Model<K, D>,
@@ -77,13 +77,13 @@ pub struct PartitionedModel<K, const D: usize> {
     pub points: Points<D>,
 }
 
-/// The distributed state of a run.
+/// Distributed state of a run.
 pub struct Simulation<'p, K, const D: usize> {
-    /// the scene, seen through this rank's window
+    /// Model with the window of this rank.
     pub model: Model<K, D>,
-    /// this rank's points
+    /// Points of this rank.
     pub points: Points<D>,
-    /// the exchange with the other ranks under the present cut
+    /// Exchange with the other ranks in the present partition.
     pub halo: Rc<MpiHalo>,
     libraries: Libraries<'p>,
     choice: Choice,
@@ -97,7 +97,7 @@ pub struct Simulation<'p, K, const D: usize> {
 }
 
 impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
-    /// A run at time 0.
+    /// Creates a run at time 0. Collective.
     pub fn new(
         libraries: Libraries<'p>,
         choice: Choice,
@@ -138,13 +138,13 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         }
     }
 
-    /// Gives the points a stress at the start, see [`initial`], which `settles` to equilibrium with the materials'
-    /// laws, and reports how well it is balanced, and what that took.
+    /// Sets the initial stress of the points, see [`initial`]. With `settles`, it is iterated to equilibrium with the
+    /// materials' laws. Returns the residual of the equilibrium and the effort of the iteration. Collective.
     pub fn stress(
         &mut self,
         start: StartStress<'_, D>,
         settles: bool,
-    ) -> Result<(Equilibrium, Option<EquilibriumSearch>), StepError> {
+    ) -> Result<(Equilibrium, Option<EquilibriumSearchReport>), StepError> {
         let Self {
             model,
             points,
@@ -164,19 +164,19 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         Ok((initial::balance(model, points, &**halo)?, settling))
     }
 
-    /// Puts the run where another one stood after `steps` steps; the points are there already.
+    /// Sets the state of a run after `steps` steps. The points must have been set before.
     pub fn resume(&mut self, steps: u64, stepper: Stepper, surface: Surface<D>) {
         (self.steps, self.stepper, self.points.surface) = (steps, stepper, surface);
     }
 
-    /// The step control.
+    /// Returns the state of the step size control.
     pub fn progress(&self) -> Progress {
         self.stepper.progress()
     }
 
-    /// Everything that is large and must be kept to go on: the points' columns, and the displacement of the nodes that
-    /// this rank owns, from which the next step starts, with the numbers of a layer, or of a row where slabs have
-    /// parts.
+    /// Returns all large data of a checkpoint: the points' columns, and the displacements from which the next step
+    /// starts, at the nodes that this rank owns. The last number is the length of a row of the latter: the values of a
+    /// node layer, or, if slabs have parts, of a row of nodes.
     #[allow(clippy::type_complexity)]
     pub fn arrays(&mut self) -> (Vec<(&'static str, &mut dyn Column)>, (Cow<'_, [f64]>, usize)) {
         let owned = self.halo.owned();
@@ -192,37 +192,38 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         (self.points.named_columns(), guess)
     }
 
-    /// The cut of the grid.
+    /// Returns the partition of the grid.
     pub fn slabs(&self) -> &Slabs {
         &self.slabs
     }
 
-    /// Time of the last converged state.
+    /// Returns the time of the last converged state (s).
     pub fn time(&self) -> f64 {
         self.stepper.time()
     }
 
-    /// Options given to PETSc that nothing has asked for, without their dash.
+    /// Returns the PETSc options that were not used, without their dash.
     pub fn unused_options(&self) -> Vec<String> {
         self.libraries.petsc.unused_options().unwrap_or_default()
     }
 
-    /// How the linear solves of this program have ended so far.
+    /// Returns the counts of the linear solves by their outcome.
     pub fn tallies(&self) -> Tallies {
         self.solver.tallies()
     }
 
-    /// Accepted steps.
+    /// Returns the number of accepted steps.
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// What the last accepted step cost.
+    /// Returns the cost of the last accepted step.
     pub fn cost(&self) -> Cost {
         self.cost
     }
 
-    /// One accepted step, after which every point is on the rank of its cell; `None` at the end.
+    /// Computes one accepted step and then moves every point to the rank of its cell; `None` at the end of the
+    /// schedule. Collective.
     pub fn advance(&mut self) -> Option<Result<AcceptedStep, Failure>> {
         let before = self.timers.traffic().counts();
         let load = load::of_rank(self.points.len(), self.model.grid.nodes());
@@ -258,9 +259,9 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         Some(outcome)
     }
 
-    /// Begins a stage: takes the points away whose ids `gone` says, and places those that `placed` has for columns of
-    /// the grid; surfaces that are `idle` so far may be on what comes. Returns how many of all ranks went and came.
-    /// Collective.
+    /// Begins a stage: removes the points for whose id `gone` returns true, and adds those that `placed` returns for a
+    /// range of the grid's columns. Surfaces marked in `idle`, which did not act so far, are anchored to the new
+    /// ground. Returns the numbers of removed and added points over all ranks. Collective.
     pub fn begin_stage<P: Iterator<Item = Seed<D>>>(
         &mut self,
         gone: impl Fn(u64) -> bool,
@@ -308,13 +309,14 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         [numbers[0] as u64, numbers[1] as u64]
     }
 
-    /// What acts at once moves ground and water as no step before it shows.
+    /// Discards the changes of the last step: extrapolating them would be wrong after a sudden change.
     fn begin_afresh(&mut self) {
         self.stepper.begin_stage();
         self.points.forget_flow();
     }
 
-    /// Gives the points from `first` on, which have been placed, their water, and enters it. Collective.
+    /// Initialises the pore water of the newly placed points from index `first` on, and adds it to the water balance.
+    /// Collective.
     fn fill(&mut self, first: usize) {
         let t = self.time();
         let Some(water) = self.model.water.as_ref().filter(|water| water.flow.is_some()) else {
@@ -330,7 +332,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         self.points.surface.crossed.removed -= held;
     }
 
-    /// Anchors surfaces that did not act to what is there now, and puts loads there.
+    /// Anchors surfaces that did not act so far to the present ground, and moves their loads there. Collective.
     fn settle_surfaces(&mut self, idle: &Idle) {
         let boundary = &self.model.boundary;
         let anchored = self.points.anchored();
@@ -346,12 +348,12 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         for load in (0..idle.loads.len()).filter(|&load| idle.loads[load]) {
             surface.position[load].clone_from(&places.loads[load]);
         }
-        // Those that went on have other anchors where bodies were taken away.
+        // Loads that continue may have new anchors where bodies were removed.
         surface.pressure = pressure;
     }
 
-    /// Goes over to the laws, supports and loads of a further model, which has the same grid. Fails on all ranks if a
-    /// point has no stress before.
+    /// Replaces the laws, supports and loads by those of the model `next`, which has the same grid. Fails on all ranks
+    /// if a point has no previous stress. Collective.
     pub fn exchange(&mut self, next: Model<K, D>) -> Result<(), StepError> {
         let next = Model {
             grid: self.model.grid.clone(),
@@ -363,8 +365,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         Ok(())
     }
 
-    /// Finds what faces that absorb hold again, once a stage has changed the ground, or what holds or loads it; the
-    /// free field goes on. Fails on all ranks if there is no equilibrium.
+    /// Computes the holding forces of absorbing boundaries again, after a stage has changed the ground, its supports or
+    /// its loads. The free field continues. Fails on all ranks if there is no equilibrium. Collective.
     pub fn hold(&mut self) -> Result<(), StepError> {
         let t = self.time();
         let Self {
@@ -379,7 +381,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         free_field::go_on(model, points, t)
     }
 
-    /// Columns of the whole grid whose points come to this rank's slab.
+    /// Returns the range of columns of the whole grid whose points belong to this rank's slab.
     fn columns(&self) -> Range<usize> {
         let slab = self.slabs.place(self.libraries.petsc.rank()).0;
         let own = self.slabs.columns(self.libraries.petsc.rank());
@@ -391,15 +393,15 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         if slab == 0 { 0..end } else { own.start..end }
     }
 
-    /// Whether the grid has no room for a point of this rank.
+    /// Returns whether the active domain is too small for a point of this rank.
     fn lacks_room(&self) -> bool {
         let grid = &self.model.grid;
         grid.occupied(&self.points.x)
             .is_some_and(|occupied| !grid.has_room(&occupied))
     }
 
-    /// What has been sent since `before` by all ranks, and how even this one's `load` and the others' are; and whether
-    /// the grid has room for the points of all. One reduction.
+    /// Returns the traffic of all ranks since `before` and the balance of their loads (`load` is this rank's), and
+    /// whether the active domain is large enough for the points of all ranks. One reduction.
     fn count(&self, before: TrafficCounts, load: f64) -> (Cost, bool) {
         let sent = self.timers.traffic().counts().since(&before);
         let mut numbers = vec![0.0; 3 + self.slabs.ranks()];
@@ -417,8 +419,9 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         (cost, numbers[2] == 0.0)
     }
 
-    /// Cuts the grid again where the points have moved away from the present cut so far that it pays in as many steps
-    /// as there are to the next look, of so many evaluations each: a rule of counts only, so that a run repeats.
+    /// Partitions the grid again if this pays until the next check. Each of the steps until then is assumed to take
+    /// `evaluations` evaluations. The rule uses counts only, so runs are repeatable. Returns whether the partition
+    /// changed. Collective.
     fn balance(&mut self, evaluations: u64) -> bool {
         let grid = &self.model.grid;
         let mut counts = load::points_by_column(grid, &self.points);
@@ -446,8 +449,8 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         true
     }
 
-    /// Those slabs cut into as many parts as the present ones have, by what they hold of all ranks' points, which is
-    /// reported, too; one reduction.
+    /// Divides each slab into as many parts as the present slabs have, by the number of points. Returns the slabs with
+    /// their parts and the points of all ranks by row. One reduction.
     fn parted(&self, grid: &Grid<D>, slabs: Slabs) -> Option<(Slabs, Vec<f64>)> {
         let mut counts = load::points_by_row(grid, &slabs, &self.points);
         self.halo.all_reduce_sum(&mut counts);
@@ -455,7 +458,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         Some((parted, counts))
     }
 
-    /// Makes room for the points of all ranks, and cuts it again.
+    /// Extends the active domain to the points of all ranks, and partitions it. Collective.
     fn make_room(&mut self) {
         let occupied = self.model.grid.occupied(&self.points.x);
         let ends = occupied.map(|ranges| ranges.map(|range| [-(range.start as f64), range.end as f64]));
@@ -478,7 +481,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         }
     }
 
-    /// Goes over to a room and its cut.
+    /// Changes to another active domain and partition. Collective.
     fn recut(&mut self, grid: Grid<D>, slabs: Slabs) {
         let timers = Rc::clone(&self.timers);
         let world = self.libraries.universe.world();

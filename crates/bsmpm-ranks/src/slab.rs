@@ -5,23 +5,25 @@
 
 use std::ops::Range;
 
-/// Halvings of the interval in which the least largest cost lies: to the last bit of a float.
+/// Bisections of the interval that contains the smallest possible maximum cost, down to the last bit of a float.
 const BISECTIONS: usize = 60;
 
-/// Columns at which the slabs begin, and the number of columns last; the parts of a slab are ranks one after the other.
+/// Partition of the columns into slabs, and optionally of each slab into parts. The parts of a slab belong to
+/// consecutive ranks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Slabs {
-    bounds: Vec<usize>,
-    parts: Vec<Vec<usize>>, // the same of the rows of each slab; none where a slab is one rank's
-    beyond: usize,          // further layers of a window
+    bounds: Vec<usize>,     // first columns of the slabs, and the end of the last
+    parts: Vec<Vec<usize>>, // the same for the rows of each slab; empty if a slab is one rank's
+    beyond: usize,          // additional node layers of a window
 }
 
-/// A box of nodes along the two axes that are cut: layers, and rows in them.
+/// Box of nodes: ranges along the two partitioned axes (layers, and rows in them).
 pub type NodeBox = [Range<usize>; 2];
 
 impl Slabs {
-    /// Cuts columns of given cost into slabs, each at least one column wide, whose largest cost is as small as it can
-    /// be and whose bounds are, within that, near equal shares. `None` if there are fewer columns than ranks.
+    /// Partitions columns with the given costs into `ranks` slabs of at least one column. The largest cost of a slab is
+    /// as small as possible; within that, the bounds are near equal shares. `None` if there are fewer columns than
+    /// ranks.
     pub fn cut(cost: &[f64], ranks: usize) -> Option<Self> {
         if cost.len() < ranks {
             return None;
@@ -49,7 +51,7 @@ impl Slabs {
             let start = bounds[rank - 1];
             let reach = before.partition_point(|sum| sum - before[start] <= high) - 1;
             let wanted = total * rank as f64 / ranks as f64;
-            // A column goes to the slab in which more than half of it lies.
+            // A column goes to the slab that contains more than half of it.
             let fair = middle.partition_point(|sum| *sum < wanted);
             let least = first[rank].max(start + 1);
             bounds.push(fair.clamp(least, reach.min(cost.len() - (ranks - rank)).max(least)));
@@ -62,8 +64,8 @@ impl Slabs {
         })
     }
 
-    /// Slabs that begin at given columns; `None` if they are not one for each rank, all with cells, of all `columns` of
-    /// the grid's room.
+    /// Creates slabs from their first columns and the end of the last. Returns `None` unless there is one non-empty
+    /// slab per rank and together they are the `columns` of the active domain.
     pub fn new(bounds: Vec<usize>, ranks: usize, columns: Range<usize>) -> Option<Self> {
         let whole = bounds.len() == ranks + 1 && bounds[0] == columns.start && bounds[ranks] == columns.end;
         (whole && bounds.is_sorted_by(|a, b| a < b)).then_some(Self {
@@ -73,7 +75,7 @@ impl Slabs {
         })
     }
 
-    /// The same slabs of columns of which the first is number `first`.
+    /// Returns the same slabs with all columns shifted by `first`.
     pub fn starting_at(self, first: usize) -> Self {
         Self {
             bounds: self.bounds.iter().map(|bound| bound + first).collect(),
@@ -81,14 +83,15 @@ impl Slabs {
         }
     }
 
-    /// The same slabs, whose windows hold `beyond` layers of nodes past those that their cells touch, as those of
-    /// [`Grid::reaching`](bsmpm::grid::Grid::reaching) do.
+    /// Returns the same slabs, whose windows have `beyond` more layers of nodes than their cells touch, as in
+    /// [`Grid::reaching`](bsmpm::grid::Grid::reaching).
     pub fn reaching(self, beyond: usize) -> Self {
         Self { beyond, ..self }
     }
 
-    /// The same slabs, each of which is cut at its own rows of cells, the number of rows last: `None` if there is not
-    /// such a cut of every slab, all with as many parts that have cells, of all `rows` of the grid's room.
+    /// Returns the same slabs, each divided into parts. `parts` has for each slab the first rows of its parts and the
+    /// end of the last. Returns `None` unless all slabs have the same number of non-empty parts, more than one, that
+    /// together are the `rows` of the active domain.
     pub fn parted(self, parts: Vec<Vec<usize>>, rows: &Range<usize>) -> Option<Self> {
         let count = parts.first().map_or(0, Vec::len);
         let is_good = parts.len() + 1 == self.bounds.len() && count > 1;
@@ -99,43 +102,44 @@ impl Slabs {
         (is_good && are_whole).then_some(Self { parts, ..self })
     }
 
-    /// Columns at which they begin, and the number of columns last.
+    /// Returns the first columns of the slabs, and the end of the last.
     pub fn bounds(&self) -> &[usize] {
         &self.bounds
     }
 
-    /// Rows at which the parts of each slab begin, and the number of rows last; none where a slab is one rank's.
+    /// Returns for each slab the first rows of its parts and the end of the last; empty if each slab belongs to one
+    /// rank.
     pub fn parts(&self) -> &[Vec<usize>] {
         &self.parts
     }
 
-    /// Number of slabs.
+    /// Returns the number of slabs.
     pub fn slabs(&self) -> usize {
         self.bounds.len() - 1
     }
 
-    /// Number of parts of each.
+    /// Returns the number of parts of each slab.
     pub fn parts_of_slab(&self) -> usize {
         self.parts.first().map_or(1, |part| part.len() - 1)
     }
 
-    /// Number of ranks: parts of all slabs.
+    /// Returns the number of ranks: the parts of all slabs.
     pub fn ranks(&self) -> usize {
         self.slabs() * self.parts_of_slab()
     }
 
-    /// The slab of a rank, and which of its parts is the rank's.
+    /// Returns the slab of a rank, and the index of its part in the slab.
     pub fn place(&self, rank: usize) -> (usize, usize) {
         (rank / self.parts_of_slab(), rank % self.parts_of_slab())
     }
 
-    /// Columns of cells of a rank.
+    /// Returns the columns of cells of a rank.
     pub fn columns(&self, rank: usize) -> Range<usize> {
         let slab = self.place(rank).0;
         self.bounds[slab]..self.bounds[slab + 1]
     }
 
-    /// Cells of a rank along each axis, of those of the grid's `room`.
+    /// Returns the cells of a rank along each axis, within the active domain `room`.
     pub fn cells<const D: usize>(&self, rank: usize, room: &[Range<usize>; D]) -> [Range<usize>; D] {
         let (slab, part) = self.place(rank);
         let mut cells = room.clone();
@@ -146,7 +150,7 @@ impl Slabs {
         cells
     }
 
-    /// The rank that has a cell; past the ends of them all, the rank there.
+    /// Returns the rank of a cell; outside the active domain, the rank at that end.
     pub fn owner<const D: usize>(&self, cell: &[usize; D]) -> usize {
         let slab = stretch(&self.bounds, cell[0]);
         self.parts
@@ -154,17 +158,18 @@ impl Slabs {
             .map_or(slab, |rows| slab * self.parts_of_slab() + stretch(rows, cell[1]))
     }
 
-    /// Node layers in the window of a rank: those that its cells touch, for splines of order `q`, and those beyond.
+    /// Returns the node layers in the window of a rank: those that its cells touch, for splines of degree `q`, and the
+    /// additional ones.
     pub fn layers(&self, rank: usize, q: usize) -> Range<usize> {
         window(&self.bounds, self.place(rank).0, q, self.beyond)
     }
 
-    /// Node layers that a rank owns.
+    /// Returns the node layers that a rank owns.
     pub fn owned_layers(&self, rank: usize, q: usize) -> Range<usize> {
         owned(&self.bounds, self.place(rank).0, q)
     }
 
-    /// Nodes in the window of a rank, where the grid's room has those `rows` of cells.
+    /// Returns the nodes in the window of a rank. `rows` are the rows of cells of the active domain.
     pub fn nodes(&self, rank: usize, q: usize, rows: &Range<usize>) -> NodeBox {
         let (slab, part) = self.place(rank);
         let rows = self
@@ -174,7 +179,7 @@ impl Slabs {
         [self.layers(rank, q), rows]
     }
 
-    /// Nodes that a rank owns.
+    /// Returns the nodes that a rank owns.
     pub fn owned(&self, rank: usize, q: usize, rows: &Range<usize>) -> NodeBox {
         let (slab, part) = self.place(rank);
         [
@@ -185,7 +190,7 @@ impl Slabs {
         ]
     }
 
-    /// Other ranks that share nodes with `rank`, ascending, and the nodes.
+    /// Returns the other ranks that share nodes with `rank`, ascending, and the shared nodes.
     pub fn shared(&self, rank: usize, q: usize, rows: &Range<usize>) -> Vec<(usize, NodeBox)> {
         let own = self.nodes(rank, q, rows);
         (0..self.ranks())
@@ -195,7 +200,8 @@ impl Slabs {
             .collect()
     }
 
-    /// Layers that a rank shares with another one, ascending, and which columns of either touch them.
+    /// Returns the node layers that a rank shares with another one, ascending, with the columns of either rank that
+    /// contribute to them.
     pub fn shared_layers(&self, rank: usize, other: usize, q: usize) -> Vec<SharedLayer> {
         let first = self.columns(rank).start;
         let reach = q + self.beyond;
@@ -212,7 +218,7 @@ impl Slabs {
         shared
     }
 
-    /// Ranks from the first to the last one whose window has a node, given by its layer and its row.
+    /// Returns the ranks, from the first to the last one, whose window contains the node at a layer and row.
     pub fn touching(&self, [layer, row]: [usize; 2], q: usize) -> Range<usize> {
         let slabs = stretches(&self.bounds, layer, q + self.beyond);
         let first = self.touching_of_slab(slabs.start, row, q);
@@ -220,7 +226,7 @@ impl Slabs {
         first.start..last.end
     }
 
-    /// Those of one slab.
+    /// Returns the ranks of one slab whose window contains row `row` of nodes.
     fn touching_of_slab(&self, slab: usize, row: usize, q: usize) -> Range<usize> {
         let Some(rows) = self.parts.get(slab) else {
             return slab..slab + 1;
@@ -231,7 +237,7 @@ impl Slabs {
     }
 }
 
-/// The stretch between bounds that has a cell; past either end of them all, the one there.
+/// Returns the index of the interval of `bounds` that contains a cell; outside, the first or the last.
 fn stretch(bounds: &[usize], cell: usize) -> usize {
     bounds
         .partition_point(|&bound| bound <= cell)
@@ -239,49 +245,49 @@ fn stretch(bounds: &[usize], cell: usize) -> usize {
         - 1
 }
 
-/// Stretches whose window has a node, where windows reach so far beyond their cells.
+/// Returns the intervals of `bounds` whose windows contain a node, if windows extend `reach` nodes beyond their cells.
 fn stretches(bounds: &[usize], node: usize, reach: usize) -> Range<usize> {
     let last = bounds.len() - 1;
     let first = bounds[1..].partition_point(|&end| end + reach <= node).min(last - 1);
     first..bounds[..last].partition_point(|&start| start <= node).max(first + 1)
 }
 
-/// Nodes along an axis in the window of a stretch of cells.
+/// Returns the nodes along an axis in the window of an interval of cells.
 fn window(bounds: &[usize], stretch: usize, q: usize, beyond: usize) -> Range<usize> {
     let end = (bounds[stretch + 1] + beyond).min(bounds[bounds.len() - 1]);
     bounds[stretch]..end + q
 }
 
-/// Nodes along an axis that the rank of a stretch of cells owns.
+/// Returns the nodes along an axis that the rank of an interval of cells owns.
 fn owned(bounds: &[usize], stretch: usize, q: usize) -> Range<usize> {
     let extra = if stretch + 2 == bounds.len() { q } else { 0 };
     bounds[stretch]..bounds[stretch + 1] + extra
 }
 
-/// A layer of nodes that two ranks share, as one of them sees it.
+/// Layer of nodes that two ranks share, as one of them stores it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SharedLayer {
-    /// layer of its window
+    /// Index of the layer in this rank's window.
     pub layer: usize,
-    /// columns of its window that touch the layer
+    /// Columns of this rank's window that contribute to the layer.
     pub own: Range<usize>,
-    /// number of columns of the other rank that do
+    /// Number of columns of the other rank that contribute to the layer.
     pub theirs: usize,
 }
 
-/// The common part of two ranges; empty if there is none.
+/// Returns the intersection of two ranges; empty if there is none.
 pub fn intersection(a: &Range<usize>, b: &Range<usize>) -> Range<usize> {
     let start = a.start.max(b.start);
     start..a.end.min(b.end).max(start)
 }
 
-/// The common part of two boxes; one without nodes if there is none.
+/// Returns the intersection of two boxes; without nodes if there is none.
 pub fn common(a: &NodeBox, b: &NodeBox) -> NodeBox {
     std::array::from_fn(|axis| intersection(&a[axis], &b[axis]))
 }
 
-/// First column at which each slab can begin if none costs more than `most`; `before` are the costs before each column,
-/// and the whole one. `None` if there is no such cut.
+/// Returns the first column at which each slab can begin if no slab costs more than `most`; `None` if that is
+/// impossible. `before` has the costs before each column, and the total.
 fn earliest(before: &[f64], ranks: usize, most: f64) -> Option<Vec<usize>> {
     let mut first = vec![0; ranks];
     let mut end = before.len() - 1;

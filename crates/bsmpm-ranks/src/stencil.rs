@@ -8,21 +8,22 @@ use bsmpm::nodal::Nodal;
 use bsmpm::parallel::OwnedNodes;
 use places::Places;
 
-/// Row of a node that has none.
+/// Row of a node that has no stencil.
 const NONE: usize = usize::MAX;
 
-/// Stencils of all nodes of a window, C unknowns each: C x C blocks of a node with each node of its stencil.
+/// Stencils of all nodes of a window with C unknowns each: C x C blocks that couple a node with each node of its
+/// stencil.
 #[derive(Clone, Debug)]
 pub struct Stencil<const D: usize, const C: usize> {
     places: Places<D>,
-    slot: Vec<usize>,    // stencil place of patch node b as seen from patch node a
+    slot: Vec<usize>,    // position of patch node b in the stencil of patch node a
     offsets: Vec<usize>, // of a patch's nodes
     rows: Vec<usize>,    // of every node, or NONE
-    values: Vec<f64>,    // row, place, row and column of the block
+    values: Vec<f64>,    // index order: row, position, row and column of the block
     columns: Option<StencilColumns>,
 }
 
-/// Sums by columns of cells, whose rows one rank completes: see [`Stencil::by_columns`].
+/// Sums by columns of cells, see [`Stencil::by_columns`].
 #[derive(Clone, Debug)]
 struct StencilColumns {
     none: Contributions,
@@ -31,30 +32,30 @@ struct StencilColumns {
     owned: OwnedNodes,
 }
 
-/// Global number of every nodal component of a window, `None` where it is no unknown.
+/// Global number of every nodal component of a window; `None` if it is not an unknown.
 pub type Numbering = Vec<Option<usize>>;
 
-/// Global row and column of every entry, each pair once.
+/// Global row and column of every matrix entry, each pair once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Coordinates {
-    /// global row of every entry
+    /// Global row of every entry.
     pub rows: Vec<usize>,
-    /// global column of every entry
+    /// Global column of every entry.
     pub columns: Vec<usize>,
 }
 
 impl<const D: usize, const C: usize> Stencil<D, C> {
-    /// Stencils over a window, of no node yet: see [`Stencil::keep`].
+    /// Creates stencils over a window, for no nodes yet: see [`Stencil::keep`].
     pub fn new(grid: &Grid<D>) -> Self {
         Self::of_patches(grid, grid.order() + 1, grid.offsets())
     }
 
-    /// The same of the functions of degree q - 1, numbered within the nodes, which have blocks of q^D of them a patch.
+    /// Creates stencils of the functions of degree q - 1, which use the numbers of the nodes. A patch has q^D of them.
     pub fn lowered(grid: &Grid<D>) -> Self {
         Self::of_patches(grid, grid.order(), grid.lowered_offsets())
     }
 
-    /// Whose patches have `width` nodes along an axis, at `offsets` from the first.
+    /// Creates stencils for patches that have `width` nodes along an axis, at `offsets` from the first.
     fn of_patches(grid: &Grid<D>, width: usize, offsets: Vec<usize>) -> Self {
         let places = Places::new(grid);
         let patch = offsets.len();
@@ -76,8 +77,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         }
     }
 
-    /// Zero stencils of these of the window's nodes only: others take no memory, and what is added to them is lost.
-    /// Sums by columns keep all.
+    /// Creates zero stencils for the nodes for which `kept` returns true. Other nodes use no memory, and contributions
+    /// to them are ignored. Sums by columns keep all nodes.
     pub fn keep(&mut self, kept: impl Fn(usize) -> bool) {
         let mut count = 0;
         let all = self.columns.is_some();
@@ -93,9 +94,9 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         self.values.shrink_to(2 * self.values.len());
     }
 
-    /// Zero stencils whose sums do not depend on the cut: the columns of cells add to a row in their order, whichever
-    /// rank has them. An entry is handed over once, by the owner of the lowest node of the box around its two, whose
-    /// window holds both. Takes q + 1 times the memory.
+    /// Returns zero stencils whose sums do not depend on the partition: the columns of cells are added to a row in
+    /// their order, on whichever rank they are. An entry is passed to PETSc once, by the owner of the lowest node of
+    /// the box around its two nodes, because this rank's window contains both. Needs q + 1 times the memory.
     pub fn by_columns(self, grid: &Grid<D>, owned: OwnedNodes) -> Self {
         let stencil = self;
         let none = Contributions::none(grid, stencil.width(), Vec::new());
@@ -115,7 +116,7 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         stencil
     }
 
-    /// Completes sums by columns, by what `total` makes of those of all ranks.
+    /// Completes sums by columns. `total` must return the sums over all ranks.
     pub fn complete(&mut self, total: impl FnOnce(&Contributions) -> Vec<f64>) {
         let Some(columns) = &self.columns else { return };
         self.values = total(&columns.sums);
@@ -170,7 +171,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         self.add_blocks(nodes[0], &offsets, &slot, block);
     }
 
-    /// Adds the dense block of the nodes at `offsets` from `first`, which see each other at the places `slot`.
+    /// Adds the dense block of the nodes at `offsets` from `first`; `slot` has their positions in each other's
+    /// stencils.
     fn add_blocks(&mut self, first: usize, offsets: &[usize], slot: &[usize], block: &[f64]) {
         let width = self.width();
         let count = offsets.len();
@@ -204,7 +206,7 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         }
     }
 
-    /// Largest entry on the diagonal of this window's blocks.
+    /// Returns the largest diagonal entry of this window's blocks.
     pub fn largest_diagonal(&self) -> f64 {
         let middle = self.places.count() / 2;
         let rows = self.values.chunks_exact(self.width());
@@ -212,8 +214,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
             .fold(0.0, f64::max)
     }
 
-    /// A component's row: the first component of every node that it couples with, and the entries there; nothing for a
-    /// node without a stencil.
+    /// Iterates over a component's row: the first component of every node that it couples with, and the entries there;
+    /// nothing for a node without a stencil.
     pub fn row(&self, component: usize) -> impl Iterator<Item = (usize, &[f64])> {
         let (node, i) = Nodal::<C>::split(component);
         let row = self.rows[node];
@@ -224,15 +226,15 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         })
     }
 
-    /// The nodes that a node couples with, and its blocks there; nothing for one without a stencil.
+    /// Iterates over the nodes that a node couples with, and the blocks; nothing for a node without a stencil.
     pub fn blocks(&self, node: usize) -> impl Iterator<Item = (usize, &[f64])> {
         let row = self.rows[node];
         let places = (row != NONE).then(|| self.places.around(node)).into_iter().flatten();
         places.map(move |(place, other)| (other, &self.values[row * self.width() + place * C * C..][..C * C]))
     }
 
-    /// Adds `weight` times a block to that of a node with another one, which lies in its stencil unless the block is
-    /// zero.
+    /// Adds `weight` times a block to the block that couples a node with another one. A block for a node outside the
+    /// stencil must be zero and is ignored.
     pub fn add_block(&mut self, node: usize, other: usize, weight: f64, block: &[f64]) {
         let row = self.rows[node];
         let width = self.width();
@@ -245,7 +247,7 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         }
     }
 
-    /// The diagonal entry of a component, 0 of a node without a stencil.
+    /// Returns the diagonal entry of a component; 0 for a node without a stencil.
     pub fn on_diagonal(&self, component: usize) -> f64 {
         let (node, i) = Nodal::<C>::split(component);
         let at = (self.places.count() / 2 * C + i) * C + i;
@@ -256,7 +258,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         }
     }
 
-    /// y = A x of the components marked `free`, as far as this window's blocks go; `x` is zero at the others.
+    /// Computes y = A x for the components marked `free`, with this window's blocks only; `x` must be zero at the
+    /// others.
     pub fn multiply(&self, free: &[bool], x: &[f64], y: &mut [f64]) {
         let nodes = self
             .rows
@@ -279,8 +282,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         }
     }
 
-    /// Coordinates of all entries between `free` components that have a number; others with a number are on the
-    /// diagonal only.
+    /// Returns the coordinates of all entries between `free` components that have a number. Other components with a
+    /// number have a diagonal entry only.
     pub fn coordinates(&self, numbers: &Numbering, free: &[bool]) -> Coordinates {
         let mut coordinates = Coordinates::default();
         self.walk(numbers, free, |row, column, _| {
@@ -290,7 +293,8 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         coordinates
     }
 
-    /// The same where all rows are this rank's: where each of so many begins, and the columns of their entries.
+    /// Returns the same as compressed rows, if all `count` rows belong to this rank: where each row begins, and the
+    /// columns of the entries.
     pub fn rows_of(&self, count: usize, numbers: &Numbering, free: &[bool]) -> (Vec<usize>, Vec<usize>) {
         let mut starts = vec![0; count + 1];
         let mut columns = Vec::new();
@@ -301,14 +305,14 @@ impl<const D: usize, const C: usize> Stencil<D, C> {
         (starts, columns)
     }
 
-    /// Values of the entries in the order of [`Stencil::coordinates`].
+    /// Returns the values of the entries in the order of [`Stencil::coordinates`].
     pub fn entries(&self, numbers: &Numbering, free: &[bool]) -> Vec<f64> {
         let mut values = Vec::new();
         self.walk(numbers, free, |_, _, at| values.push(self.values[at]));
         values
     }
 
-    /// Visits every entry with its global row and column and its place in `values`.
+    /// Visits every entry with its global row and column and its position in `values`.
     fn walk(&self, numbers: &Numbering, free: &[bool], mut visit: impl FnMut(usize, usize, usize)) {
         for (component, row) in numbers.iter().enumerate() {
             let Some(row) = row else { continue };

@@ -5,14 +5,14 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// Seconds of every phase; the physics, which knows no clock, is what remains of the steps.
+/// Wall-clock seconds of every phase. The crate `bsmpm` has no clock: its time is the remainder of the steps.
 #[derive(Debug, Default)]
 pub struct Timers {
     seconds: RefCell<BTreeMap<&'static str, f64>>,
     traffic: Traffic,
 }
 
-/// Adds to its phase when dropped.
+/// Adds the elapsed time to its phase when dropped.
 pub struct PhaseTimer<'a> {
     timers: &'a Timers,
     phase: &'static str,
@@ -20,7 +20,7 @@ pub struct PhaseTimer<'a> {
 }
 
 impl Timers {
-    /// Times `phase` until the value is dropped; phases may nest, each counts its own whole span.
+    /// Times `phase` until the returned value is dropped. Phases may nest; each counts its whole duration.
     pub fn time(&self, phase: &'static str) -> PhaseTimer<'_> {
         PhaseTimer {
             timers: self,
@@ -29,12 +29,12 @@ impl Timers {
         }
     }
 
-    /// Seconds by phase so far.
+    /// Returns the seconds so far by phase.
     pub fn seconds(&self) -> BTreeMap<&'static str, f64> {
         self.seconds.borrow().clone()
     }
 
-    /// The counter of what this rank sends the others.
+    /// Returns the counter of this rank's messages to other ranks.
     pub fn traffic(&self) -> &Traffic {
         &self.traffic
     }

@@ -2,27 +2,27 @@
 
 use std::cell::Cell;
 
-/// Kinds of communication.
+/// Kind of communication.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TrafficKind {
-    /// contributions to shared nodes, summed
+    /// Sums at shared nodes.
     HaloSum,
-    /// numbers of shared nodes of which the largest counts
+    /// Maxima at shared nodes.
     HaloMax,
-    /// numbers of shared nodes that their owner has
+    /// Values of shared nodes, sent by their owner.
     HaloShare,
-    /// what slabs share of a factorisation by dissection, and of its solutions
+    /// Fronts and solutions of the factorisation by nested dissection.
     Factor,
-    /// numbers combined over all ranks
+    /// Numbers combined over all ranks.
     Reduction,
-    /// numbers of all ranks that every rank gets
+    /// Numbers of all ranks that every rank receives.
     Gathering,
-    /// points and nodal values that change their rank
+    /// Points and nodal values that move to another rank.
     Migration,
 }
 
 impl TrafficKind {
-    /// All of them, in the order of [`TrafficCounts`].
+    /// All kinds, in the order of [`TrafficCounts`].
     pub const ALL: [Self; 7] = [
         Self::HaloSum,
         Self::HaloMax,
@@ -33,7 +33,7 @@ impl TrafficKind {
         Self::Migration,
     ];
 
-    /// Its name in files.
+    /// Returns the name in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::HaloSum => "halo sum",
@@ -47,28 +47,28 @@ impl TrafficKind {
     }
 }
 
-/// What one rank did of one kind.
+/// Traffic of one rank of one kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Count {
-    /// exchanges or reductions that it took part in
+    /// Exchanges or reductions in which the rank took part.
     pub calls: u64,
-    /// messages that it sent to another rank; a reduction or gathering counts none
+    /// Messages sent to other ranks; reductions and gatherings count none.
     pub messages: u64,
-    /// bytes of them; of a reduction or gathering, those of its own numbers
+    /// Bytes of these messages; for a reduction or gathering, of the rank's own numbers.
     pub bytes: u64,
 }
 
-/// What one rank did, by kind.
+/// Traffic of one rank by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TrafficCounts([Count; 7]);
 
 impl TrafficCounts {
-    /// Those of one kind.
+    /// Returns the traffic of one kind.
     pub fn of(&self, kind: TrafficKind) -> Count {
         self.0[kind as usize]
     }
 
-    /// Messages to other ranks and their bytes, of all kinds.
+    /// Returns the number of messages to other ranks and their bytes, over all kinds.
     pub fn sent(&self) -> [u64; 2] {
         let exchanges = [
             TrafficKind::HaloSum,
@@ -84,7 +84,7 @@ impl TrafficCounts {
         ]
     }
 
-    /// What has been added since `before`.
+    /// Returns the traffic since `before`.
     pub fn since(&self, before: &Self) -> Self {
         Self(TrafficKind::ALL.map(|kind| {
             let now = self.of(kind);
@@ -97,7 +97,7 @@ impl TrafficCounts {
         }))
     }
 
-    /// Calls, messages and bytes of every kind, one after the other.
+    /// Iterates over calls, messages and bytes of every kind.
     pub fn numbers(&self) -> impl Iterator<Item = f64> {
         self.0
             .into_iter()
@@ -105,12 +105,12 @@ impl TrafficCounts {
     }
 }
 
-/// The counter of a rank.
+/// Traffic counter of a rank.
 #[derive(Debug, Default)]
 pub struct Traffic(Cell<TrafficCounts>);
 
 impl Traffic {
-    /// Counts one call with so many messages of so many bytes in all.
+    /// Counts one call with the given number of messages and their total bytes.
     pub fn count(&self, kind: TrafficKind, messages: usize, bytes: usize) {
         let mut counts = self.0.get();
         let count = &mut counts.0[kind as usize];
@@ -120,7 +120,7 @@ impl Traffic {
         self.0.set(counts);
     }
 
-    /// Everything so far.
+    /// Returns the traffic so far.
     pub fn counts(&self) -> TrafficCounts {
         self.0.get()
     }

@@ -16,39 +16,40 @@ use crate::nodal::Nodal;
 use crate::points::Points;
 use form::{CellForms, Forms};
 
-/// The soft background of all occupied cells.
+/// Soft background of all occupied cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Background {
-    /// -  fraction c of the largest modulus in the cell
+    /// Fraction c of the largest Young's modulus in the cell (-).
     pub coefficient: f64,
 }
 
-/// What the background resists of the displacement of a step.
+/// Displacement that the soft background resists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ResistedDisplacement {
-    /// All of it.
+    /// The whole displacement of the step.
     #[default]
-    Displacement,
-    /// Its change from the last step, scaled to the length of this one: steady flow meets no force.
+    Whole,
+    /// Its change from the last step, scaled to the length of this one, so that steady flow meets no force.
     Change,
 }
 
-/// The background's blocks of one step, one of every occupied cell.
+/// Stiffness blocks of the soft background in one step, one per occupied cell.
 #[derive(Clone, Debug)]
 pub struct Blocks {
     cells: Vec<SoftCell>, // by patch
     forms: CellForms,
 }
 
-/// A cell's background: `factor` times a form.
+/// Background stiffness of a cell: `factor` times a geometric block.
 #[derive(Clone, Copy, Debug)]
 struct SoftCell {
     form: usize,
-    factor: f64, // Pa  c E, times a geometry's weight
+    factor: f64, // Pa, c E times the geometry weight
 }
 
 impl Background {
-    /// Blocks of the occupied cells, c E times the form; a geometry's weight is that of their middles.
+    /// Computes the blocks of the occupied cells: c E times the integral of eps : eps, with the geometry weight at the
+    /// cell's centre. E is the largest Young's modulus of the material points in the cell.
     pub fn blocks<K: Kinematics<D>, const D: usize>(
         &self,
         grid: &Grid<D>,
@@ -80,11 +81,11 @@ impl Background {
     }
 }
 
-/// Largest number of nodes of a patch: (3 + 1)^3.
+/// Largest number of nodes of a cell: (3 + 1)^3.
 const MOST_NODES: usize = 64;
 
 impl Blocks {
-    /// f += B u (D numbers a node).
+    /// Adds B u to `f`, D numbers per node.
     pub fn multiply<const D: usize>(&self, shape: &Shape<D>, u: &[f64], f: &mut Contributions) {
         self.each_product::<D>(shape, u, |first, _, forces| {
             let f = f.patch(first);
@@ -94,7 +95,7 @@ impl Blocks {
         });
     }
 
-    /// u . B u of the cells of this rank: what the background takes.
+    /// Returns u . B u of this rank's cells (N m): the work that the background absorbs.
     pub fn work<const D: usize>(&self, shape: &Shape<D>, u: &[f64]) -> Exact {
         let mut works: Vec<f64> = Vec::with_capacity(self.cells.len());
         self.each_product::<D>(shape, u, |_, u, forces| {
@@ -107,7 +108,7 @@ impl Blocks {
         works.into_iter().collect()
     }
 
-    /// Calls `product` for every cell with its first node, what its nodes have of `u` and what its block makes of it.
+    /// Calls `product` for every cell with its first node, its nodal values of `u` and their product with its block.
     fn each_product<const D: usize>(
         &self,
         shape: &Shape<D>,
@@ -136,12 +137,12 @@ impl Blocks {
         }
     }
 
-    /// Number of occupied cells of this rank.
+    /// Returns the number of occupied cells of this rank.
     pub fn count(&self) -> usize {
         self.cells.len()
     }
 
-    /// Adds that of the patch of this number to the patch's block.
+    /// Adds the background block of a cell, by index `patch`, to `block`.
     pub fn add_to(&self, patch: usize, block: &mut [f64]) {
         let soft = self.cells[patch];
         self.forms.add_to(soft.form, soft.factor, block);

@@ -26,32 +26,32 @@ use crate::nodal::Nodal;
 use crate::parallel::{Halo, OwnedNodes};
 use crate::points::Points;
 use crate::tensor::Vector;
-use crate::water::crossed::CumulativeFlux;
+use crate::water::crossed::CrossedVolumes;
 
-/// Motion of one face of the grid.
+/// Support of one face of the grid: prescribed motion, contact, absorbing boundary or free field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Support<const D: usize> {
-    /// axis that the face is normal to
+    /// Axis normal to the face.
     pub axis: usize,
-    /// the face at the axis' upper end
+    /// Whether the face is at the upper end of the axis.
     pub upper: bool,
-    /// per component: velocity of the prescribed motion (m per unit of time), 0 where it is held, `None` where free
+    /// Prescribed velocity of each component (m per unit of time); 0: fixed, `None`: free.
     pub velocity: [Option<f64>; D],
-    /// what the face does to the material where nothing is prescribed
+    /// Contact law of the components without a prescribed velocity.
     pub contact: Option<Contact>,
-    /// whether it lets waves out
+    /// Whether the face is an absorbing boundary.
     pub absorbs: bool,
-    /// whether the ground beside it moves as a free field, by whose motion and stress it is driven; it absorbs then
+    /// Whether a free-field column drives the face; `absorbs` is then true, too.
     pub follows: bool,
 }
 
 impl<const D: usize> Support<D> {
-    /// All components held.
+    /// Fixes all components.
     pub fn fixed(axis: usize, upper: bool) -> Self {
         Self::moving(axis, upper, [Some(0.0); D])
     }
 
-    /// These velocities prescribed, m per unit of time.
+    /// Prescribes the velocities of the components (m per unit of time).
     pub fn moving(axis: usize, upper: bool, velocity: [Option<f64>; D]) -> Self {
         Self {
             axis,
@@ -63,7 +63,7 @@ impl<const D: usize> Support<D> {
         }
     }
 
-    /// Nothing held, but what the contact does.
+    /// Defines a face with contact and no prescribed component.
     pub fn contact(axis: usize, upper: bool, contact: Contact) -> Self {
         Self {
             contact: Some(contact),
@@ -71,7 +71,7 @@ impl<const D: usize> Support<D> {
         }
     }
 
-    /// Nothing held but the state of the start; waves leave.
+    /// Defines an absorbing face. Constant nodal forces carry the initial stress there.
     pub fn absorbing(axis: usize, upper: bool) -> Self {
         Self {
             absorbs: true,
@@ -79,7 +79,8 @@ impl<const D: usize> Support<D> {
         }
     }
 
-    /// Beside a free field: what differs from its motion leaves.
+    /// Defines an absorbing face that a free-field column drives: the face absorbs the difference from the column's
+    /// motion.
     pub fn free_field(axis: usize, upper: bool) -> Self {
         Self {
             follows: true,
@@ -87,48 +88,49 @@ impl<const D: usize> Support<D> {
         }
     }
 
-    /// The normal component held.
+    /// Fixes the normal component.
     pub fn roller(axis: usize, upper: bool) -> Self {
         let mut velocity = [None; D];
         velocity[axis] = Some(0.0);
         Self::moving(axis, upper, velocity)
     }
 
-    /// Whether it moves the material.
+    /// Returns whether a prescribed velocity is not zero.
     fn is_driven(&self) -> bool {
         self.velocity.iter().flatten().any(|&velocity| velocity != 0.0)
     }
 
-    /// Whether by the nodal `reaction` it pushes the material beside the edge that a node of it may be on.
+    /// Returns whether the face pushes the material next to the edge on which `node` may lie, by the nodal `reaction`
+    /// (N) of the nearest node off the edge.
     fn pushes(&self, grid: &Grid<D>, reaction: &[f64], node: usize) -> bool {
         let within = reaction.get(Nodal::<D>::at(grid.off_edges(node, self.axis), self.axis));
         within.is_some_and(|&within| if self.upper { within < 0.0 } else { within > 0.0 })
     }
 }
 
-/// All that holds and loads a scene besides gravity.
+/// Supports, footings, loads and rigid bodies of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Boundary<const D: usize> {
-    /// Supports of the faces; where faces meet, the one named last decides a component that both prescribe.
+    /// Supports of the faces. Where two faces meet, the last one in the list decides a component that both prescribe.
     pub supports: Vec<Support<D>>,
-    /// Faces of the grid that material may leave through: the axis, and whether it is the upper one.
+    /// Faces through which material may leave the grid: axis, and whether the face is the upper one.
     pub outlets: Vec<(usize, bool)>,
-    /// Rigid strips.
+    /// Rigid footings and prescribed segments.
     pub strips: Vec<Strip<D>>,
-    /// Per strip, whether it lies on ground that stands without it, and has no part in the state of the start; empty:
-    /// all have.
+    /// Per strip: whether it rests on soil that is in equilibrium without it, and is excluded from the initial state.
+    /// Empty: no strip is excluded.
     pub resting: Vec<bool>,
     /// Tractions and point loads.
     pub loads: Vec<Load<D>>,
     /// Rigid bodies.
     pub rigid: Vec<RigidBody<D>>,
-    /// Per material, parts of a cell that its points reach to each side at the start: 0.5 over their number along an
-    /// axis; half a cell where it is not reported. For faces that material comes off, and the water's level.
+    /// Per material: half width of a material point's domain at the start, in cell edges: 0.5 divided by the number of
+    /// points per cell along an axis. The default is 0.5. Contact gaps and the water level use it.
     pub reach: Vec<f64>,
 }
 
 impl<const D: usize> Boundary<D> {
-    /// m  how far point `p`, as it is deformed, reaches to each side along an axis.
+    /// Returns the half width of the deformed domain of material point `p` along an axis (m).
     pub fn reach_along(&self, grid: &Grid<D>, points: &Points<D>, p: usize, axis: usize) -> f64 {
         let start = grid
             .locate(&(points.x[p] - points.u[p]))
@@ -139,8 +141,8 @@ impl<const D: usize> Boundary<D> {
         (0..D).map(|j| F[(axis, j)].abs() * half[j]).sum()
     }
 
-    /// A place of the material's surface, or that on the face which holds the material where the place lies beyond it,
-    /// as one that is reported by the material beside it may.
+    /// Returns the position `x` (m) of the material's surface, moved back onto the face if it lies beyond a face with
+    /// zero normal velocity or with contact. Positions that nearby material points yield can lie beyond such a face.
     pub fn kept_in(&self, grid: &Grid<D>, mut x: Vector<D>) -> Vector<D> {
         for Support {
             axis,
@@ -162,7 +164,7 @@ impl<const D: usize> Boundary<D> {
         x
     }
 
-    /// Whether a load or the motion of a strip turns sharply in a step.
+    /// Returns whether the amplitude of a load or the path of a strip changes its slope sharply in the interval.
     pub fn turns(&self, interval: TimeInterval) -> bool {
         self.loads.iter().any(|load| load.turns(interval))
             || self
@@ -171,7 +173,7 @@ impl<const D: usize> Boundary<D> {
                 .any(|strip| strip.acts() && strip.path.turns(interval))
     }
 
-    /// Whether something moves as prescribed in the step from `t` to `t + dt`: a face, a strip or a rigid body.
+    /// Returns whether a face, a strip or a rigid body has a prescribed motion in the step from `t` to `t + dt`.
     pub fn moves(&self, t: f64, dt: f64) -> bool {
         let mut strips = self.strips.iter().filter(|strip| strip.acts());
         let mut bodies = self.rigid.iter().filter(|body| body.acts);
@@ -180,8 +182,8 @@ impl<const D: usize> Boundary<D> {
             || bodies.any(|body| body.prescribed(t) != body.prescribed(t + dt))
     }
 
-    /// Whether something moves as prescribed in the step from `t` to `t + dt`, and everything that does has the
-    /// velocity that it had in the step of length `last_dt` before.
+    /// Returns whether there is prescribed motion in the step from `t` to `t + dt`, and all of it has the same velocity
+    /// as in the previous step, whose length was `last_dt`.
     pub fn moves_steadily(&self, t: f64, last_dt: f64, dt: f64) -> bool {
         let mut moves = self.supports.iter().any(Support::is_driven);
         for strip in self.strips.iter().filter(|strip| strip.acts()) {
@@ -201,7 +203,7 @@ impl<const D: usize> Boundary<D> {
         moves
     }
 
-    /// The state of strips and loads at the start: no traction, every point at its place.
+    /// Returns the initial state of all surfaces: no traction, and every surface point at its initial position.
     pub fn surface(&self) -> Surface<D> {
         let at_rest = self
             .strips
@@ -218,12 +220,12 @@ impl<const D: usize> Boundary<D> {
             anchors: Anchors::default(),
             held: Vec::new(),
             bodies: self.rigid.iter().map(RigidBody::at_rest).collect(),
-            crossed: CumulativeFlux::default(),
+            crossed: CrossedVolumes::default(),
             flowed: None,
         }
     }
 
-    /// Whether anything that acts has friction: faces, strips or rigid bodies.
+    /// Returns whether any active face, strip or rigid body has friction.
     pub fn has_friction(&self) -> bool {
         let faces = self.supports.iter().filter_map(|support| support.contact);
         let strips = self
@@ -236,8 +238,8 @@ impl<const D: usize> Boundary<D> {
             .any(|friction| friction > 0.0)
     }
 
-    /// The faces of the grid that no material leaves, per axis the lower and the upper one: their normal component is
-    /// held.
+    /// Returns the faces that no material leaves, per axis the lower and the upper one: zero normal velocity,
+    /// absorbing, or contact without separation.
     pub fn closed(&self) -> [[bool; 2]; D] {
         let mut closed = [[false; 2]; D];
         for support in &self.supports {
@@ -251,7 +253,7 @@ impl<const D: usize> Boundary<D> {
         closed
     }
 
-    /// Whether material at `x`, m, has left the grid, and through outlets alone.
+    /// Returns whether material at `x` (m) has left the grid, and through outlets only.
     pub fn lets_out(&self, grid: &Grid<D>, x: &Vector<D>) -> bool {
         let left = (0..D).filter_map(|axis| match x[axis] {
             x if x < 0.0 => Some((axis, false)),
@@ -262,7 +264,7 @@ impl<const D: usize> Boundary<D> {
         left.peek().is_some() && left.all(|face| self.outlets.contains(&face))
     }
 
-    /// Prescribed velocity of every nodal component of the window (D per node), `None` where it is free.
+    /// Returns the prescribed velocity of every local nodal component, D per node; `None`: free.
     pub fn velocities(&self, grid: &Grid<D>) -> Vec<Option<f64>> {
         let mut prescribed = vec![None; grid.nodes() * D];
         for support in &self.supports {
@@ -277,12 +279,12 @@ impl<const D: usize> Boundary<D> {
         prescribed
     }
 
-    /// Whether some face has contact instead of holding.
+    /// Returns whether any face has contact.
     pub fn has_contact(&self) -> bool {
         self.supports.iter().any(|support| support.contact.is_some())
     }
 
-    /// Lower and upper faces of every axis that have contact.
+    /// Returns, per axis, whether the lower and the upper face have contact.
     pub fn contact_faces(&self) -> [[bool; 2]; D] {
         let mut faces = [[false; 2]; D];
         for support in self.supports.iter().filter(|support| support.contact.is_some()) {
@@ -291,14 +293,15 @@ impl<const D: usize> Boundary<D> {
         faces
     }
 
-    /// Whether some strip has.
+    /// Returns whether any strip has contact.
     pub fn has_strip_contact(&self) -> bool {
         self.strips.iter().any(|strip| strip.contact.is_some())
     }
 
-    /// Force of every support on the body: the nodal `reaction` summed over the components that it decides, N. What two
-    /// supports hold at their common edge counts for the one that it is normal to, which has the pressure there; for
-    /// one in contact, too, where it pushes beside the edge.
+    /// Returns the force of every support on the body (N): the sum of the nodal `reaction` over the components that the
+    /// support decides. Each component counts once. At a common edge of two supports, it counts for the support that is
+    /// normal to it, because that one carries the pressure; for a support in contact only if it pushes the material
+    /// next to the edge. One reduction over all ranks.
     pub fn reactions(&self, grid: &Grid<D>, reaction: &[f64], halo: &dyn Halo) -> Vec<Vec<f64>> {
         let supports = &self.supports[..];
         let mut sums = ReactionSums {
@@ -310,7 +313,8 @@ impl<const D: usize> Boundary<D> {
             sums: vec![Exact::default(); supports.len() * D],
         };
         let in_contact: Vec<usize> = (0..supports.len()).filter(|&k| supports[k].contact.is_some()).collect();
-        // Who holds goes first, then what pushes, then what has friction.
+        // Order of precedence: prescribed normal components, contact that pushes, prescribed tangential components,
+        // contact normals, friction, absorbing faces.
         for (number, support) in supports.iter().enumerate().rev() {
             sums.add(number, |_, c| c == support.axis && support.velocity[c].is_some());
         }
@@ -326,7 +330,7 @@ impl<const D: usize> Boundary<D> {
         for &number in &in_contact {
             sums.add(number, |_, c| c == supports[number].axis);
         }
-        // Along an edge in space that it shares with a face with friction, a smooth one decides nothing.
+        // In 3-D, a smooth face decides nothing along its edge with a face that has friction.
         for has_friction in [true, false] {
             for (number, support) in supports.iter().enumerate() {
                 if support
@@ -347,18 +351,18 @@ impl<const D: usize> Boundary<D> {
     }
 }
 
-/// Sums over the nodes of every support of the reaction, of which each component counts once.
+/// Sums of the nodal reaction over the nodes of every support. Each component counts once.
 struct ReactionSums<'a, const D: usize> {
     supports: &'a [Support<D>],
     grid: &'a Grid<D>,
     reaction: &'a [f64],
     owned: OwnedNodes,
     counted: Vec<bool>,
-    sums: Vec<Exact>, // D of every support
+    sums: Vec<Exact>, // D per support
 }
 
 impl<const D: usize> ReactionSums<'_, D> {
-    /// Adds to the sums of a support what it `decides`, by node and component.
+    /// Adds the reaction components that satisfy `decides(node, component)` to the sums of support `number`.
     fn add(&mut self, number: usize, decides: impl Fn(usize, usize) -> bool) {
         let support = &self.supports[number];
         for node in self.grid.face_nodes(support.axis, support.upper) {
@@ -372,11 +376,12 @@ impl<const D: usize> ReactionSums<'_, D> {
     }
 }
 
+/// Returns the velocity at the end if both steps between the three positions have the same velocity.
 fn steady_velocity<const N: usize>(places: &[Vector<N>; 3], last_dt: f64, dt: f64) -> Option<Vector<N>> {
     let before = (places[1] - places[0]) / last_dt;
     let now = (places[2] - places[1]) / dt;
     ((now - before).norm() <= SAME_VELOCITY * now.norm().max(before.norm())).then_some(now)
 }
 
-/// Relative difference up to which two velocities are the same.
+/// Relative difference below which two velocities count as equal.
 const SAME_VELOCITY: f64 = 1e-6;

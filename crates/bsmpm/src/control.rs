@@ -15,77 +15,77 @@ use crate::step::newmark::Newmark;
 use crate::step::{Counts, StepReport, step};
 use std::borrow::Cow;
 
-/// Halvings of the nominal step before the run gives up.
+/// Halvings of the nominal step after which the run stops.
 const MOST_CUTS: u32 = 10;
-/// Ticks of a nominal step.
+/// Ticks of a nominal step, its smallest parts.
 const TICKS: u32 = 1 << MOST_CUTS;
-/// Easy steps in a row after which the step is doubled.
+/// Number of consecutive easy steps after which the step size is doubled.
 const EASY: u32 = 2;
 
-/// A step that converged.
+/// A converged step.
 #[derive(Clone, Debug)]
 pub struct AcceptedStep {
-    /// s  time at its end
+    /// Time at the end of the step (s).
     pub t: f64,
-    /// s  its length
+    /// Step size (s).
     pub dt: f64,
-    /// what it did
+    /// Report of the step.
     pub report: StepReport,
-    /// work of all attempts, rejected ones included
+    /// Work of all attempts, including rejected ones.
     pub counts: Counts,
-    /// the attempts before it that failed, first one first
+    /// Errors of the rejected attempts, in order.
     pub rejected: Vec<StepError>,
 }
 
-/// A step that failed down to the smallest size, or that no smaller step can mend.
+/// A step that failed down to the smallest size, or with an error that a smaller step cannot avoid.
 #[derive(Clone, Debug)]
 pub struct Failure {
-    /// s  time of the last converged state
+    /// Time of the last converged state (s).
     pub t: f64,
-    /// s  length of the last attempt
+    /// Step size of the last attempt (s).
     pub dt: f64,
-    /// attempts, first one first
+    /// Errors of the attempts, in order.
     pub attempts: Vec<StepError>,
-    /// work of all attempts
+    /// Work of all attempts.
     pub counts: Counts,
 }
 
 impl Failure {
-    /// Whether nothing has failed: the step was given up on request.
+    /// Returns whether the step was interrupted on request, not by an error.
     pub fn is_interruption(&self) -> bool {
         self.attempts.last() == Some(&StepError::Interrupted)
     }
 }
 
-/// Where the step control stands between two steps: all that it must know to go on.
+/// State of the step size control between two steps, sufficient to restart it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
-    /// s  time of the last converged state
+    /// Time of the last converged state (s).
     pub t: f64,
-    /// s  length of the last converged step; 0 before the first
+    /// Size of the last converged step (s); 0 before the first.
     pub guess_dt: f64,
-    /// s  start and end of the nominal step under way, if any
+    /// Start and end of the current nominal step (s), if any.
     pub nominal: Option<(f64, f64)>,
-    /// ticks of it that are done
+    /// Completed ticks of the nominal step.
     pub tick: u32,
-    /// halvings of it
+    /// Number of halvings of the nominal step.
     pub cuts: u32,
-    /// easy steps in a row
+    /// Number of consecutive easy steps.
     pub easy: u32,
-    /// J  bound on the energy, in dynamics, from the first step on
+    /// Energy bound, in dynamics from the first step on.
     pub budget: Option<EnergyBound>,
 }
 
-/// Position within the current nominal step, and the state of the step-size control.
+/// Step size control with the last converged displacement.
 #[derive(Clone, Debug)]
 pub struct Stepper {
-    /// m  nodal displacement of the last converged step, D numbers per node of the window
+    /// Nodal displacement of the last converged step (m), D numbers per node of the window.
     pub guess: Vec<f64>,
     at: Progress,
 }
 
 impl Stepper {
-    /// At time 0, with no displacement to start from.
+    /// Starts at time 0 from zero displacement; `unknowns` is the length of the nodal array.
     pub fn new(unknowns: usize) -> Self {
         Self {
             guess: vec![0.0; unknowns],
@@ -93,8 +93,8 @@ impl Stepper {
         }
     }
 
-    /// Where another one stood; `None` where none can have stood. A nominal step whose end `schedule` no longer has is
-    /// given up for those that it has.
+    /// Restarts from saved progress; `None` if the progress is inconsistent. If `schedule` does not contain the end of
+    /// the saved nominal step, a new nominal step begins.
     pub fn resume(guess: Vec<f64>, mut at: Progress, schedule: &Schedule) -> Option<Self> {
         let times = [at.t, at.guess_dt]
             .into_iter()
@@ -110,24 +110,24 @@ impl Stepper {
         Some(Self { guess, at })
     }
 
-    /// Begins a stage: what was moving or straining the points may be gone, so that the next step starts from no
-    /// displacement, and the energy that it may have is that of the points which are there now.
+    /// Begins a stage. What moved or strained the points may have been removed, so the next step starts from zero
+    /// displacement, and the energy bound from the points that are present now.
     pub fn begin_stage(&mut self) {
         (self.at.guess_dt, self.at.budget) = (0.0, None);
     }
 
-    /// Where it stands.
+    /// Returns the progress.
     pub fn progress(&self) -> Progress {
         self.at
     }
 
-    /// s  time of the last converged state.
+    /// Returns the time of the last converged state (s).
     pub fn time(&self) -> f64 {
         self.at.t
     }
 
-    /// Makes one accepted step towards the end of `schedule`; `None` if the end is reached. Fails before it if the
-    /// steps so far have made energy.
+    /// Makes one accepted step towards the end of `schedule`; `None` if the end is reached. Fails before the step if
+    /// the energy of the previous steps exceeds its bound.
     pub fn advance<K: Kinematics<D>, const D: usize>(
         &mut self,
         schedule: &Schedule,
@@ -143,13 +143,13 @@ impl Stepper {
         let (from, to) = self.begin(schedule, model, points, halo)?;
         let mut rejected = Vec::new();
         let mut counts = Counts::default();
-        let mut has_drag = false; // the next attempt has the background's whole drag
+        let mut has_drag = false; // whether the background resists the complete displacement in the next attempt
         loop {
             let end = self.end_of_attempt(from, to);
             let dt = end - self.at.t;
             let mut guess = self.scaled_guess(dt);
             let resisted = match has_drag {
-                true => ResistedDisplacement::Displacement,
+                true => ResistedDisplacement::Whole,
                 false => self.resisted(model, dt),
             };
             let model = self.with_sudden_forces(model.over(dt));
@@ -172,7 +172,7 @@ impl Stepper {
             let is_hopeless = is_hopeless(&error);
             rejected.push(error);
             if rejected.last() == Some(&StepError::Interrupted) {
-                // As if it had never begun: who goes on from here later makes the same attempts.
+                // Restores the state as before this call, so that a restarted run makes the same attempts.
                 (self.at.cuts, self.at.easy, self.at.budget) = before;
                 return Some(Err(self.failure(dt, rejected, counts)));
             }
@@ -181,7 +181,7 @@ impl Stepper {
                 continue;
             }
             if is_hopeless || self.at.cuts == MOST_CUTS {
-                // Who goes on from here, with another nominal step, starts as this one did.
+                // A restart with another nominal step begins as this step did.
                 (self.at.cuts, self.at.easy, _) = before;
                 return Some(Err(self.failure(dt, rejected, counts)));
             }
@@ -189,8 +189,8 @@ impl Stepper {
         }
     }
 
-    /// Begins a nominal step, unless one is under way, and returns its start and end, s; `None` at the end of the
-    /// schedule. The first step of a stage in dynamics opens the bound on the energy.
+    /// Begins a nominal step unless one is in progress, and returns its start and end (s); `None` at the end of the
+    /// schedule. In dynamics the first step of a stage creates the energy bound.
     fn begin<K: Kinematics<D>, const D: usize>(
         &mut self,
         schedule: &Schedule,
@@ -228,7 +228,8 @@ impl Stepper {
         }
     }
 
-    /// The model in the first step of a stage: forces act at once which the points' acceleration knows nothing of.
+    /// Returns the model for the first step of a stage. Forces act there at once that the points' acceleration
+    /// does not include.
     fn with_sudden_forces<'a, K: Kinematics<D>, const D: usize>(
         &self,
         model: Cow<'a, Model<K, D>>,
@@ -236,7 +237,7 @@ impl Stepper {
         let begins = self.at.guess_dt == 0.0 && self.at.t > 0.0 && model.regime == Regime::Dynamic;
         if begins {
             Cow::Owned(Model {
-                newmark: Newmark::dissipative_first_step(),
+                newmark: Newmark::for_sudden_load(),
                 ..model.into_owned()
             })
         } else {
@@ -244,19 +245,19 @@ impl Stepper {
         }
     }
 
-    /// What the background resists in a step of this length: the change from the last step where motion that is
-    /// prescribed goes on steadily, and functions of nearly empty cells are tied. A load has no steady flow, and there
-    /// all of the displacement is resisted.
+    /// Selects what the background resists in a step of size `dt` (s): the change from the last step if prescribed
+    /// motion continues steadily and splines of nearly empty cells are tied. Under loads there is no steady flow, and
+    /// the complete displacement is resisted.
     fn resisted<K, const D: usize>(&self, model: &Model<K, D>, dt: f64) -> ResistedDisplacement {
         let is_tied = model.background.is_some() && model.extended_splines == ExtendedSplines::Linear;
         let last_dt = self.at.guess_dt;
         match is_tied && last_dt > 0.0 && model.boundary.moves_steadily(self.at.t, last_dt, dt) {
             true => ResistedDisplacement::Change,
-            false => ResistedDisplacement::Displacement,
+            false => ResistedDisplacement::Whole,
         }
     }
 
-    /// The last displacement, scaled by the ratio of the steps (step 3b).
+    /// Scales the last displacement by the ratio of the step sizes (step 3b).
     fn scaled_guess(&self, dt: f64) -> Vec<f64> {
         if self.at.guess_dt == 0.0 {
             return vec![0.0; self.guess.len()];
@@ -265,7 +266,7 @@ impl Stepper {
         self.guess.iter().map(|u| ratio * u).collect()
     }
 
-    /// Goes on by the step of the last attempt, and enters its energy.
+    /// Advances the step size control after an accepted step and records its energy.
     fn accept(&mut self, report: &StepReport, criteria: &Criteria) {
         if let (Some(budget), Some(turnover)) = (&mut self.at.budget, &report.turnover) {
             budget.enter(turnover);
@@ -287,7 +288,7 @@ impl Stepper {
     }
 }
 
-/// Whether no smaller step can mend what failed.
+/// Returns whether a smaller step cannot avoid the error.
 fn is_hopeless(error: &StepError) -> bool {
     matches!(
         error,

@@ -10,46 +10,46 @@ use crate::tensor::{Symmetric, Tensor};
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
-/// Components that are driven: xx, yy, zz and xy, the first ones of a [`Symmetric`].
+/// Driven components xx, yy, zz and xy, the first ones of a [`Symmetric`].
 pub const COMPONENTS: usize = 4;
-/// Iterations of one step at most.
+/// Largest number of iterations of a step.
 const ITERATIONS: usize = 60;
-/// Halvings of a correction that does not come nearer.
+/// Largest number of halvings of a correction that does not reduce the residual.
 const HALVINGS: usize = 12;
-/// Smallest part of a step that is tried.
+/// Smallest fraction of a step that is tried.
 const SMALLEST: f64 = 1.0 / 1024.0;
-/// What is left of a stress that is held: by the largest stress, and by Young's modulus, whose digits it comes from.
+/// Tolerances of prescribed stresses, relative to the largest stress and to Young's modulus, which limits the accuracy.
 const BALANCED: [f64; 2] = [1e-11, 1e-14];
-/// Singular values below this share of the largest are none: at an edge of the yield surface two directions are alike,
-/// and the smallest correction takes both alike.
+/// Singular values below this fraction of the largest are treated as zero. At an edge of the yield surface two
+/// directions are equivalent, and the smallest correction uses both equally.
 const SINGULAR: f64 = 1e-10;
-/// Plastic strain of a state that lies on the yield surface, but for round-off.
+/// Plastic strain below which a state is considered on the yield surface, except for round-off.
 const AT_YIELD: f64 = 1e-9;
 
-/// What a component is driven to at the end of a stage, in proportion to its part.
+/// Prescribed value of a component at the end of a stage; it is approached linearly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// (-)  growth of the logarithmic strain in the stage, positive in extension; of γ
+    /// Growth of the logarithmic strain in the stage, positive in extension, or of the shear γ (-).
     Strain(f64),
-    /// Pa  total Cauchy stress at its end, positive in tension
+    /// Total Cauchy stress at the end, positive in tension (Pa).
     Stress(f64),
 }
 
-/// A part of a path.
+/// Stage of a loading path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Control {
-    /// of xx, yy, zz and the shear
+    /// Targets of xx, yy, zz and the shear.
     pub targets: [Target; COMPONENTS],
-    /// whether the volume stays, and stresses that are given are those of soil and water
+    /// Whether the volume is constant and prescribed stresses are total stresses.
     pub undrained: bool,
-    /// equal steps
+    /// Number of equal steps.
     pub steps: u64,
-    /// s  that it takes, for strength that follows the rate; without end it has no rate
+    /// Duration for rate-dependent strength (s); infinite for quasi-static loading.
     pub duration: f64,
 }
 
 impl Control {
-    /// What the components are driven to after a `share` of the stage, from what they had at its `start`.
+    /// Returns the targets after the fraction `share` of the stage, from the values at its `start`.
     fn wanted(&self, start: &[f64; COMPONENTS], share: f64) -> [Target; COMPONENTS] {
         std::array::from_fn(|k| match self.targets[k] {
             Target::Strain(growth) => Target::Strain(start[k] + share * growth),
@@ -58,31 +58,31 @@ impl Control {
     }
 }
 
-/// Why a path has no beginning, or no end.
+/// Reason why a path cannot start, or cannot be completed.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ElementError {
-    /// The stress at the start is none of the material.
+    /// The initial stress exceeds the strength of the material.
     #[error(
         "the initial stress exceeds the strength: plastic strain of {0:.1e} at the start. Change `k0` or the strength."
     )]
     BeyondYield(f64),
-    /// The stress at the start pulls, or is none, and the material's stiffness is that of its pressure.
+    /// The initial stress is not compressive, but the stiffness of the material depends on pressure.
     #[error("the stiffness of this model follows the stress, and the initial stress is 0. Give `pressure`.")]
     NoPressure,
-    /// The material has no response at the start.
+    /// The law has no response to the initial state.
     #[error("the material has no stress at the start: {0}")]
     Start(MaterialError),
-    /// No state carries what is wanted.
+    /// No state of the material carries the prescribed stress.
     #[error("the material cannot carry the prescribed stress: {:.2} % of the stage was reached; {reason}", 100.0 * done)]
     NoEquilibrium {
-        /// part of the stage that was reached
+        /// Fraction of the stage that was reached.
         done: f64,
-        /// what the last attempt found
+        /// Result of the last attempt.
         reason: String,
     },
 }
 
-/// The point, at rest in a converged state.
+/// Material point in a converged state.
 #[derive(Clone, Debug)]
 pub struct Element {
     law: Material,
@@ -90,28 +90,28 @@ pub struct Element {
     state: Vec<f64>,
     gap: f64,
     strain: [f64; COMPONENTS],
-    /// Pa  Cauchy
+    /// Effective Cauchy stress (Pa).
     sigma: Symmetric,
     pore_pressure: f64,
     plastic_strain: f64,
 }
 
-/// A strain and what it causes.
+/// Trial strain and its response.
 struct Attempt {
     strain: [f64; COMPONENTS],
     pore_pressure: f64,
     response: Response,
-    /// Pa  effective Cauchy stress
+    /// Effective Cauchy stress (Pa).
     sigma: Symmetric,
-    /// what is out of balance, by the unknowns' order
+    /// Residual in the order of the unknowns.
     residual: DVector<f64>,
 }
 
 impl Element {
-    /// A point of `law`, the same at all heights, under the Cauchy stress `sigma`, Pa.
+    /// Creates a point of `law` under the Cauchy stress `sigma` (Pa). The law must not depend on the height.
     ///
     /// # Errors
-    /// Where the material cannot have that stress.
+    /// If the material cannot have that stress.
     pub fn new(law: Material, sigma: Symmetric) -> Result<Self, ElementError> {
         let mut state = vec![0.0; law.state().len()];
         let b_e = initial::b_e_of(&law, &sigma, &mut state);
@@ -134,45 +134,45 @@ impl Element {
         })
     }
 
-    /// Logarithmic strains along x, y and z since the start, positive in extension, and the shear γ.
+    /// Returns the logarithmic strains along x, y and z since the start, positive in extension, and the shear γ.
     pub fn strain(&self) -> [f64; COMPONENTS] {
         self.strain
     }
 
-    /// Logarithm of the volume since the start.
+    /// Returns the volumetric (logarithmic) strain since the start.
     pub fn volume_strain(&self) -> f64 {
         self.strain[0] + self.strain[1] + self.strain[2]
     }
 
-    /// Effective Cauchy stress, Pa.
+    /// Returns the effective Cauchy stress (Pa).
     pub fn sigma(&self) -> Symmetric {
         self.sigma
     }
 
-    /// Pressure of the pore water since the start, Pa; 0 of drained paths.
+    /// Returns the pore pressure since the start (Pa); 0 for drained paths.
     pub fn pore_pressure(&self) -> f64 {
         self.pore_pressure
     }
 
-    /// State variables of the law, in their order.
+    /// Returns the state variables of the law, in their order.
     pub fn state(&self) -> &[f64] {
         &self.state
     }
 
-    /// Accumulated plastic strain.
+    /// Returns the accumulated plastic strain.
     pub fn plastic_strain(&self) -> f64 {
         self.plastic_strain
     }
 
-    /// Total stress of a component, Pa.
+    /// Returns the total stress of a component (Pa).
     pub fn total(&self, component: usize) -> f64 {
         total(&self.sigma, self.pore_pressure, component)
     }
 
-    /// Follows a part of a path; `each` sees every step's end.
+    /// Follows a stage of the path and calls `each` after every step.
     ///
     /// # Errors
-    /// Where no state carries the stress; the point then stands where the path was left.
+    /// If no state carries the prescribed stress; the point keeps the last converged state.
     pub fn follow(&mut self, control: &Control, mut each: impl FnMut(&Self)) -> Result<(), ElementError> {
         let start: [f64; COMPONENTS] = std::array::from_fn(|k| match control.targets[k] {
             Target::Strain(_) => self.strain[k],
@@ -187,7 +187,7 @@ impl Element {
                 let share = (step as f64 + (done + part).min(1.0)) / control.steps as f64;
                 let undrained = control.undrained.then_some(volume);
                 self.law = own
-                    .at_time_step(part * control.duration / control.steps as f64)
+                    .with_time_step(part * control.duration / control.steps as f64)
                     .unwrap_or_else(|| own.clone());
                 match self.solve(&control.wanted(&start, share), undrained) {
                     Ok(found) => {
@@ -225,7 +225,8 @@ impl Element {
         (self.strain, self.pore_pressure, self.sigma) = (strain, pore_pressure, sigma);
     }
 
-    /// Newton's method for what is not given. `undrained`: the volume that stays.
+    /// Solves for the unknown strains and pore pressure by Newton's method with step halving. `undrained` is the
+    /// constant volumetric strain.
     fn solve(&self, wanted: &[Target; COMPONENTS], undrained: Option<f64>) -> Result<Attempt, String> {
         let free: Vec<usize> = (0..COMPONENTS)
             .filter(|&k| matches!(wanted[k], Target::Stress(_)))
@@ -308,8 +309,8 @@ impl Element {
         })
     }
 
-    /// The smallest correction of what is free, strains and the pore pressure over Young's modulus, by the consistent
-    /// tangent: `dσ = dτ/J - σ tr l`.
+    /// Returns the smallest correction of the unknown strains, and of the pore pressure divided by Young's modulus,
+    /// from the consistent tangent `dσ = dτ/J - σ tr l`.
     fn correction(&self, now: &Attempt, free: &[usize], undrained: bool) -> Option<DVector<f64>> {
         let size = now.residual.len();
         let young = self.law.elastic().young;
@@ -335,7 +336,7 @@ impl Element {
     }
 }
 
-/// Why an iteration ended, in words.
+/// Formats the prescribed stresses that were not reached.
 fn not_carried(now: &Attempt, free: &[usize], wanted: &[Target; COMPONENTS]) -> String {
     let found = free.iter().filter_map(|&k| {
         let Target::Stress(given) = wanted[k] else { return None };
@@ -346,18 +347,18 @@ fn not_carried(now: &Attempt, free: &[usize], wanted: &[Target; COMPONENTS]) -> 
     found.collect::<Vec<_>>().join(", ")
 }
 
-/// Stress of soil and water, Pa.
+/// Returns a component of the total stress (Pa).
 fn total(sigma: &Symmetric, pore_pressure: f64, component: usize) -> f64 {
     sigma.0[component] - if component < 3 { pore_pressure } else { 0.0 }
 }
 
-/// F of a strain.
+/// Returns F for a strain.
 fn deformation(strain: &[f64; COMPONENTS]) -> Tensor {
     let [x, y, z] = [0, 1, 2].map(|k| strain[k].exp());
     Tensor::new(x, strain[3] * y, 0.0, 0.0, y, 0.0, 0.0, 0.0, z)
 }
 
-/// `∂F/∂ε_k F⁻¹` at a shear γ.
+/// Returns `∂F/∂ε_k F⁻¹` for the component k at the shear γ.
 fn velocity(shear: f64, component: usize) -> Tensor {
     match component {
         0 => Tensor::new(1.0, -shear, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),

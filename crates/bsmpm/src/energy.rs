@@ -23,35 +23,35 @@ use crate::threads;
 use crate::water::{carried, work};
 use std::ops::AddAssign;
 
-/// Strain that is nothing but round-off.
+/// Strain below which energy is round-off.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Energy that went somewhere in a step, or in all steps so far, J; see the module.
+/// Energy flows in a step, or in all steps so far (J); see the module.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flows<T = f64> {
-    /// work of gravity, water, loads and what moves, less what friction and faces that absorb take
+    /// Work of gravity, water, loads and prescribed motion, minus that of friction and absorbing faces.
     pub external: T,
-    /// dissipated by plastic flow, damping and seepage
+    /// Dissipation by plastic flow, damping and seepage.
     pub plastic: T,
-    /// lost between points and nodes
+    /// Loss in the transfer between points and nodes.
     pub transfer: T,
-    /// lost by integration in time and along the strain
+    /// Loss by integration in time and along the strain path.
     pub integration: T,
-    /// lost by the smoothing of the elastic strain
+    /// Loss by smoothing of the elastic strain.
     pub smoothing: T,
-    /// lost to the soft background
+    /// Loss to the soft background.
     pub background: T,
-    /// lost between strips and material
+    /// Loss in the penalty between strips and material.
     pub penalty: T,
 }
 
 impl Flows {
-    /// Loss of the algorithm, all its parts together.
+    /// Returns the total numerical loss (J).
     pub fn numerical(&self) -> f64 {
         self.transfer + self.integration + self.smoothing + self.background + self.penalty
     }
 
-    /// The flows of these sums, in the order of [`Self::each`].
+    /// Creates the flows from sums in the order of [`Self::each`].
     fn of(sums: &[f64]) -> Self {
         let mut flows = Self::default();
         let each = flows.each().into_iter();
@@ -84,18 +84,18 @@ impl AddAssign for Flows {
     }
 }
 
-/// Energy in the points, J.
+/// Energy stored in the material points (J).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StoredEnergy {
-    /// `Σ ½ m |v|²`
+    /// Kinetic energy `Σ ½ m |v|²`.
     pub kinetic: f64,
-    /// `Σ V0 (½ λ tr(ε)² + μ ε : ε)`, ε = ½ ln bᵉ, of water that flows `Σ V0 n p²/(2 K_w)`,
-    /// and where it leaves pores `- Σ V0 n ∫ p dS`
+    /// Elastic energy `Σ V0 (½ λ tr(ε)² + μ ε : ε)` with ε = ½ ln bᵉ; for flowing water `Σ V0 n p²/(2 K_w)`, and `- Σ
+    /// V0 n ∫ p dS` where pores are unsaturated.
     pub elastic: f64,
 }
 
 impl StoredEnergy {
-    /// Of the points of all ranks at time `t`, s.
+    /// Computes the energy of the points of all ranks at time `t` (s). One reduction.
     pub fn of<K: Kinematics<D>, const D: usize>(
         model: &Model<K, D>,
         points: &Points<D>,
@@ -110,17 +110,17 @@ impl StoredEnergy {
     }
 }
 
-/// The books of a run: all that must be kept to go on with them.
+/// Energy account of a run, sufficient to restart it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnergyAccounts {
-    /// J  kinetic and elastic energy when they were opened
+    /// Kinetic and elastic energy when the account was opened (J), adjusted for added and removed points.
     pub start: f64,
-    /// all flows since
+    /// All flows since then.
     pub flows: Flows,
 }
 
 impl EnergyAccounts {
-    /// Opened in a state.
+    /// Opens the account in a state.
     pub fn open(stored: StoredEnergy) -> Self {
         Self {
             start: stored.kinetic + stored.elastic,
@@ -128,32 +128,32 @@ impl EnergyAccounts {
         }
     }
 
-    /// Enters what points that were placed bring along, and those that were removed take away.
+    /// Adds the energy of points that were added, and subtracts that of points that were removed.
     pub fn exchange(&mut self, before: StoredEnergy, after: StoredEnergy) {
         self.start += (after.kinetic + after.elastic) - (before.kinetic + before.elastic);
     }
 
-    /// What is left over in a state: `external - Δ(T + E) - plastic - numerical`.
+    /// Returns the energy residual of a state (J): `external - Δ(T + E) - plastic - numerical`.
     pub fn residual(&self, now: StoredEnergy) -> f64 {
         let spent = self.flows.plastic + self.flows.numerical();
         (self.flows.external - spent) - ((now.kinetic + now.elastic) - self.start)
     }
 }
 
-/// The flows of a step on this rank, before its state is saved into the points.
+/// Energy flows of a step on this rank, before the points are updated.
 #[derive(Clone, Debug)]
 pub struct StepEnergy {
     flows: Flows<Exact>,
-    damped: Exact, // part of what is dissipated
+    damped: Exact, // part of the dissipation
     elastic: Exact,
-    dry: Option<Vec<f64>>, // kg  masses before the points take water in, where it flows
-    friction_work: Exact,  // half of the work of friction and dashpots at faces, part of the external work
+    dry: Option<Vec<f64>>, // masses before the points take in water (kg), if water flows
+    friction_work: Exact,  // half the work of friction and dashpots at faces, part of the external work
     interval: TimeInterval,
 }
 
 impl StepEnergy {
-    /// Everything but what the points are in the end; of a model that does not balance its energy only what a
-    /// [`EnergyBound`] is made of.
+    /// Computes all terms that do not need the updated points. Without an energy balance, only the terms of
+    /// [`EnergyBound`] are computed.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         found: &StepSolution<K, D>,
@@ -208,7 +208,7 @@ impl StepEnergy {
         draft
     }
 
-    /// Where the rest of the energy went.
+    /// Adds the numerical losses.
     fn add_losses<K: Kinematics<D>, const D: usize>(
         &mut self,
         problem: &Problem<'_, K, D>,
@@ -244,8 +244,9 @@ impl StepEnergy {
         }
     }
 
-    /// The flows of the step on all ranks, if the model balances its energy, and the turnover. Its state is now in the
-    /// points; `surface` is that of the end of the step, the points still have that of its start.
+    /// Completes the flows of the step over all ranks. Returns them, if the model balances its energy, and the terms of
+    /// the energy bound. The points are updated, but still have the surface of the start of the step; `surface` is that
+    /// of its end. One reduction.
     pub fn close<K: Kinematics<D>, const D: usize>(
         self,
         model: &Model<K, D>,
@@ -268,8 +269,8 @@ impl StepEnergy {
             own.transfer += &brought;
         }
         let mut external = own.external.clone();
-        // Where loads grow in the first step, forces at its end do up to twice the work that is counted by their mean:
-        // of friction and dashpots half is left out of the bound on what is made.
+        // If loads grow in the first step, forces at its end do up to twice the work of their mean, which is what the
+        // balance counts. Half the work of friction and dashpots is therefore left out of the bound.
         external -= &friction_work;
         let mut sums = vec![
             external,
@@ -285,7 +286,7 @@ impl StepEnergy {
             sums.extend(own.each().map(|flow| flow.clone()));
         }
         let sums = halo.reproducible_sum(&sums);
-        // The loads' points are the same on every rank.
+        // The anchor points of loads are the same on every rank.
         let (loads, loads_grown) = load::work(&model.boundary.loads, &points.surface, surface, interval);
         let turnover = Turnover {
             external: sums[0] + loads,
@@ -307,7 +308,7 @@ impl StepEnergy {
     }
 }
 
-/// Energy of a strain that is nothing but round-off.
+/// Returns the energy of a strain that is round-off (J).
 fn round_off<K, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Exact {
     let young: Vec<f64> = model
         .materials
@@ -326,7 +327,7 @@ fn kinetic<const D: usize>(points: &Points<D>) -> Exact {
     threads::sum(points.len(), |p| 0.5 * points.mass[p] * motion.v[p].norm_squared())
 }
 
-/// Kinetic energy of what has come into the points since their masses were the `dry` ones, kg.
+/// Returns the kinetic energy of the water that the points took in since their masses were `dry` (kg), in J.
 fn brought<const D: usize>(points: &Points<D>, dry: &[f64], v: &[Vector<D>]) -> Exact {
     let masses = points.mass.iter().zip(dry).zip(v);
     masses
@@ -334,7 +335,7 @@ fn brought<const D: usize>(points: &Points<D>, dry: &[f64], v: &[Vector<D>]) -> 
         .collect()
 }
 
-/// A state that is no strain has no energy: not a number, like the step that led to it.
+/// Returns the elastic energy of the points; NaN in a state without a valid strain.
 fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, t: f64) -> Exact {
     let mut energy = threads::sum(points.len(), |p| {
         points.volume[p] * model.elastic_energy(points, p, &points.b_e.at(p))
@@ -343,7 +344,7 @@ fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Point
     energy
 }
 
-/// Work of contact at faces, of rigid bodies and of nodes that are struck; returns half of the work of friction and
+/// Adds the work of contact at faces, of rigid bodies and of impacts at nodes. Returns half the work of friction and
 /// dashpots.
 fn add_contact<K: Kinematics<D>, const D: usize>(
     flows: &mut Flows<Exact>,
@@ -373,7 +374,7 @@ fn add_contact<K: Kinematics<D>, const D: usize>(
     friction_work
 }
 
-/// Work of strips.
+/// Adds the work of strips.
 fn add_strips<K, const D: usize>(flows: &mut Flows<Exact>, problem: &Problem<'_, K, D>, u: &[f64]) {
     let strips = problem.attachments.work(u);
     flows.external += &strips.given;
@@ -384,7 +385,7 @@ fn add_strips<K, const D: usize>(flows: &mut Flows<Exact>, problem: &Problem<'_,
     flows.penalty -= &strips.friction_work;
 }
 
-/// Work of gravity and still water by their mean, and half of what they have grown times u.
+/// Adds the work of gravity by its mean over the step; half its increment times u is a loss by integration.
 fn add_gravity<K: Kinematics<D>, const D: usize>(
     flows: &mut Flows<Exact>,
     problem: &Problem<'_, K, D>,
@@ -439,7 +440,7 @@ fn add_water<K: Kinematics<D>, const D: usize>(
     flows.integration.extend(work.iter().map(|work| work[1]));
 }
 
-/// Work of the inertia, and the kinetic energy of this rank's own nodes at both ends of the step.
+/// Adds the work of inertia, and the kinetic energy of this rank's own nodes at both ends of the step.
 fn add_inertia<K, const D: usize>(flows: &mut Flows<Exact>, problem: &Problem<'_, K, D>, u: &[f64]) {
     let Some(inertia) = &problem.nodes.inertia else { return };
     let halo = problem.halo;
@@ -451,6 +452,8 @@ fn add_inertia<K, const D: usize>(flows: &mut Flows<Exact>, problem: &Problem<'_
         over_layers(halo, D, |c| 0.5 * momentum[c] * v[c])
     });
     let force = mass.times(&acting);
+    // Transfer loses what the points have more than the nodes at the start, and less at the end. Integration loses
+    // what the inertia works more than the nodes gain.
     flows.transfer += &after;
     flows.transfer -= &before;
     flows.integration += &over_layers(halo, D, |c| force[c] * u[c]);

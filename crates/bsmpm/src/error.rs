@@ -5,27 +5,27 @@ use crate::method::Criteria;
 use crate::method::Method;
 use thiserror::Error;
 
-/// A grid that cannot be built.
+/// Reason why a grid cannot be built.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum GridError {
-    /// The order is not linear, quadratic or cubic.
+    /// The degree is not 1, 2 or 3.
     #[error("B-splines of order {0} are not supported (1, 2 or 3)")]
     Order(usize),
-    /// Breakpoints are not finite and increasing, also when counted from the first, or there is no cell.
+    /// The breakpoints are not finite or not increasing, also after subtraction of the first one, or there is no cell.
     #[error("the breakpoints of an axis must be finite, increasing and at least two")]
     Breakpoints,
-    /// The axes have different orders.
+    /// The axes have different degrees.
     #[error("all axes must have the same order")]
     MixedOrders,
 }
 
-/// A linear solution that cannot be trusted.
+/// Reason why a linear solution cannot be used.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SolveError {
     /// The library reported a failure.
     #[error("{0}")]
     Failed(String),
-    /// The solution holds a number that is not finite.
+    /// The solution contains a number that is not finite.
     #[error("the solution is not finite")]
     NotFinite,
     /// The recomputed residual is too large.
@@ -33,39 +33,40 @@ pub enum SolveError {
     Residual(f64),
 }
 
-/// How far an iteration was from equilibrium (step 9).
+/// Residuals of an iteration (step 9 of the paper).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measures {
-    /// |du . f| / |du_0 . f_0|
+    /// Energy residual |du . f| / |du_0 . f_0|.
     pub energy: f64,
-    /// |f_oob| / largest force, of all nodes or of one material's own: the larger one
+    /// Force residual |f_oob| / largest force, the larger one of all nodes and of the nodes of one material.
     pub force: f64,
-    /// water out of balance over what is stored, flows or leaves, where water flows
+    /// Water residual, with coupled flow.
     pub water: Option<f64>,
-    /// what gave du
+    /// Method that gave the direction.
     pub method: Method,
 }
 
-/// A node whose forces are badly balanced.
+/// Node with a large out-of-balance force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorstNode {
-    /// Number over the whole grid, axis 0 slowest.
+    /// Number in the whole grid, axis 0 slowest.
     pub number: u64,
-    /// Its place from the grid's lower corner, m: the mean of the function's inner knots (Greville).
+    /// Position from the lower corner of the grid: the Greville abscissae of the function (m).
     pub x: Vec<f64>,
-    /// |f_oob| there, N.
+    /// Out-of-balance force |f_oob| of the node (N).
     pub force: f64,
 }
 
-/// Why a step was not accepted. All ranks return an error together; what only one of them knows is in the fields.
+/// Reason why a step was not accepted. All ranks return an error together; an error known to one rank is
+/// [`StepError::OtherRank`] elsewhere.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum StepError {
-    /// A point is outside the grid, or was not sorted into this rank's window.
+    /// A point lies outside the grid, or outside the window of this rank.
     #[error("E0740: material point {id} lies outside the grid, at {x:?} m from the lower corner of the grid.")]
     Outside {
         /// Global id of the point.
         id: u64,
-        /// Position from the grid's lower corner, m.
+        /// Position from the lower corner of the grid (m).
         x: Vec<f64>,
     },
     /// A point would leave the grid in this step.
@@ -73,10 +74,10 @@ pub enum StepError {
     Left {
         /// Number of points over all ranks.
         count: u64,
-        /// Id and position (m) of the first one on this rank, if any.
+        /// Id and position (m) of the first point on this rank, if any.
         first: Option<(u64, Vec<f64>)>,
     },
-    /// All material would have left the grid through its outlets.
+    /// All material would leave the grid through outflow boundaries.
     #[error(
         "E0742: the last {count} material point(s) leave the grid through outflow boundaries in this step, so no \
          material is left."
@@ -85,7 +86,7 @@ pub enum StepError {
         /// Number of points over all ranks.
         count: u64,
     },
-    /// A load has no material at some of its points any more.
+    /// A load has surface points without material.
     #[error(
         "E0743: load number {load} (counted from 0, first tractions, then point loads) cannot act, because {points} \
          of its points lie outside the soil."
@@ -93,10 +94,10 @@ pub enum StepError {
     Unloaded {
         /// Number of the load, tractions first.
         load: usize,
-        /// Points without material.
+        /// Number of surface points without material.
         points: usize,
     },
-    /// Material was pressed together by more than its pores.
+    /// Material was compressed by more than its pore volume.
     #[error(
         "E0744: {count} material point(s) are compressed by more than the volume of their pores in iteration \
         {iteration}."
@@ -104,21 +105,21 @@ pub enum StepError {
     Closed {
         /// Number of points over all ranks.
         count: u64,
-        /// Iteration.
+        /// Iteration in which this happened.
         iteration: usize,
     },
-    /// A drain or inflow is on material through which no water flows.
+    /// A drain or inflow lies on impermeable material.
     #[error(
         "E0745: {points} point(s) of drain number {drain} (counted from 0, first drains, then inflows) lie on \
          impermeable soil, so no water flows. Move the drain, or set `permeability` of the soil."
     )]
     Undrained {
-        /// Number of the drain; the inflows behind the drains.
+        /// Number of the drain; inflows follow the drains.
         drain: usize,
-        /// Points on such material.
+        /// Number of surface points on impermeable material.
         points: usize,
     },
-    /// Material turned inside out or became non-finite, also with shortened iterations.
+    /// Material reached a negative volume or non-finite values, also with shortened corrections.
     #[error(
         "E0746: {count} material point(s) reach a negative volume, or values that are not finite, in iteration \
         {iteration}."
@@ -126,12 +127,12 @@ pub enum StepError {
     Inverted {
         /// Number of points over all ranks.
         count: u64,
-        /// Iteration.
+        /// Iteration in which this happened.
         iteration: usize,
-        /// Id and position (m) of the first one on this rank, if any.
+        /// Id and position (m) of the first point on this rank, if any.
         first: Option<(u64, Vec<f64>)>,
     },
-    /// The iteration limit was reached, or no direction led on.
+    /// The limit of iterations was reached, or no search direction reduced the residual.
     #[error(
         "E0747: no convergence after {iterations} iterations{}. Final residuals: {}{}{}.",
         if *iterations < criteria.max_iterations { "" } else { " (the limit)" },
@@ -140,55 +141,55 @@ pub enum StepError {
         unsolved.as_ref().map_or_else(String::new, |reason| format!("; the linear solver failed: {reason}"))
     )]
     NotConverged {
-        /// Iterations made.
+        /// Number of iterations.
         iterations: usize,
-        /// |du . f| / |du_0 . f_0|.
+        /// Energy residual |du . f| / |du_0 . f_0|.
         energy: f64,
-        /// |f_oob| / largest force, of all nodes or of one material's own: the larger one.
+        /// Force residual |f_oob| / largest force, the larger one of all nodes and of the nodes of one material.
         force: f64,
-        /// Number of that material; `None` where it is that of all nodes.
+        /// Number of that material; `None` if the residual is that of all nodes.
         material: Option<usize>,
-        /// What was asked for.
+        /// Convergence criteria.
         criteria: Box<Criteria>,
-        /// Both measures of every iteration.
+        /// Residuals of every iteration.
         history: Vec<Measures>,
-        /// The worst nodes of this rank, worst first.
+        /// Nodes of this rank with the largest out-of-balance forces, in descending order.
         worst: Vec<WorstNode>,
-        /// Why there is no direction from the last state, if that ended it.
+        /// Failure of the linear solver, if it ended the iteration.
         unsolved: Option<SolveError>,
     },
-    /// The iteration came near a static equilibrium of elastic material along a direction of negative second-order
-    /// work: it is not stable, and round-off decides where an iteration goes from there.
+    /// The iteration approached a static equilibrium of elastic material along a direction of negative second-order
+    /// work. That equilibrium is unstable, and round-off would determine the further path.
     #[error(
         "E0748: the equilibrium is unstable, because the second-order work is negative ({work:.2e} J in iteration \
         {iteration})."
     )]
     Unstable {
-        /// Iteration.
+        /// Iteration in which this happened.
         iteration: usize,
-        /// du . (f_old - f_new) along its direction, N m.
+        /// Second-order work du . (f_old - f_new) along the direction (N m).
         work: f64,
     },
-    /// No statuses of the nodes on faces with contact were found that the displacement under them agrees with.
+    /// The contact states of nodes on contact faces did not agree with the resulting displacement.
     #[error("E0749: the contact states of the nodes (open, stick, slip) still change after {passes} corrections.")]
     Unsettled {
-        /// Corrections made.
+        /// Number of corrections.
         passes: usize,
     },
-    /// Rounds towards equilibrium at the start came to no end.
+    /// The iteration for the initial equilibrium did not converge.
     #[error(
         "E0750: no initial equilibrium was found in {rounds} rounds of iteration. The unbalanced force is still \
          {force:.1e} of the largest force."
     )]
     Unbalanced {
-        /// Rounds made.
+        /// Number of rounds.
         rounds: usize,
-        /// |f_oob| / largest force.
+        /// Force residual |f_oob| / largest force.
         force: f64,
-        /// The worst nodes of this rank, worst first.
+        /// Nodes of this rank with the largest out-of-balance forces, in descending order.
         worst: Vec<WorstNode>,
     },
-    /// Nothing holds a rigid body that moves freely, and it has no inertia: no equilibrium of it is known.
+    /// A rigid body without inertia is free to move and not supported, so its equilibrium is undetermined.
     #[error(
         "E0751: nothing supports rigid body number {body} (counted from 0) in a direction in which the body is \
         free to move."
@@ -197,29 +198,29 @@ pub enum StepError {
         /// Number of the body.
         body: usize,
     },
-    /// Rigid bodies would overlap: they do not touch each other.
+    /// Rigid bodies would overlap; contact between rigid bodies is not modelled.
     #[error("E0752: rigid bodies number {} and {} (counted from 0) would overlap in this step.", bodies[0], bodies[1])]
     Overlapping {
         /// Numbers of the bodies.
         bodies: [usize; 2],
     },
-    /// The steps so far have made energy: the run is wrong, though each of them is in equilibrium.
+    /// The energy balance shows created energy: the results are wrong, although every step is in equilibrium.
     #[error(
         "E0753: energy was created: kinetic, elastic and dissipated energy exceed the initial energy plus external \
          work ({given:.3e} J) by {:.1} % of the peak energy (limit: {:.0} %).", 100.0 * growth, 100.0 * slack
     )]
     EnergyMade {
-        /// Largest excess over the largest energy.
+        /// Largest excess divided by the peak energy.
         growth: f64,
-        /// Energy at the start and work of gravity, loads and what moves since, J.
+        /// Initial energy plus work of gravity, loads and prescribed motion (J).
         given: f64,
         /// Bound of `growth`.
         slack: f64,
     },
-    /// The step was given up on request, see [`Halo::is_interrupted`](crate::parallel::Halo::is_interrupted).
+    /// The step was interrupted on request, see [`Halo::is_interrupted`](crate::parallel::Halo::is_interrupted).
     #[error("E0754: the step was interrupted by Ctrl-C, or by another signal to stop (TERM, USR1).")]
     Interrupted,
-    /// Another rank has the error; this rank's part was good.
+    /// Another rank returned the error; this rank had none.
     #[error(
         "E0755: the step failed on another rank (MPI process) of this run. The message of that rank names the \
          cause."
@@ -228,24 +229,24 @@ pub enum StepError {
     /// The linear system could not be solved.
     #[error("E0756: the system of linear equations was not solved: {0}.")]
     Solve(#[from] SolveError),
-    /// The constitution refused a trial state when the step was committed.
+    /// The law has no response to a trial state when the points are updated.
     #[error("E0757: the stress of material point {id} cannot be computed: {source}.")]
     Material {
         /// Global id of the point.
         id: u64,
-        /// The constitution's reason.
+        /// Error of the law.
         source: MaterialError,
     },
 }
 
 impl StepError {
-    /// Whether no other guess of the displacement can mend a step of this length: an unstable equilibrium is one
-    /// whatever leads there.
+    /// Returns whether another predictor cannot help at this step size. An unstable equilibrium, for instance, does not
+    /// depend on the path to it.
     pub fn is_final(&self) -> bool {
         matches!(self, Self::Interrupted | Self::Unstable { .. })
     }
 
-    /// Id and position (m, from the grid's lower corner) of a point of this rank that the error is about.
+    /// Returns id and position (m, from the lower corner of the grid) of the point of this rank that caused the error.
     pub fn point(&self) -> Option<(u64, &[f64])> {
         match self {
             Self::Outside { id, x } => Some((*id, x)),

@@ -3,17 +3,17 @@
 
 use std::ops::{AddAssign, SubAssign};
 
-/// Digits of 32 bits between the smallest and the largest float, with room for 2^31 of them.
+/// Digits of 32 bits from the smallest to the largest float, with headroom for 2^31 terms.
 const DIGITS: usize = 68;
-/// Whole numbers that a sum is made of: what ranks add up.
+/// Number of integers of a sum, which ranks add up.
 pub const WORDS: usize = DIGITS + 1;
 /// Bits of a digit.
 const BITS: u32 = 32;
 
-/// A sum that has not been rounded; of up to 2^31 floats.
+/// Unrounded sum of up to 2^31 floats.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Exact {
-    words: [i64; WORDS], // the digits, each with its own sign, and how many floats were no number or infinite
+    words: [i64; WORDS], // signed digits, and the number of terms that were not finite
 }
 
 impl Default for Exact {
@@ -23,7 +23,7 @@ impl Default for Exact {
 }
 
 impl Exact {
-    /// No terms.
+    /// Empty sum.
     pub const ZERO: Self = Self { words: [0; WORDS] };
 
     /// Adds a float.
@@ -39,12 +39,13 @@ impl Exact {
             return;
         }
         let fraction = bits & ((1 << 52) - 1);
-        // A normal number is (2^52 + fraction) 2^(exponent - 1) units, one below the normal ones fraction units.
+        // A normal number is (2^52 + fraction) 2^(exponent - 1) units of 2^-1074, a subnormal one fraction units.
         let (significand, shift) = if exponent == 0 {
             (fraction, 0)
         } else {
             (fraction | 1 << 52, exponent - 1)
         };
+        // The shifted significand has at most 53 + 31 = 84 bits, so it spans three digits of 32 bits.
         let digit = (shift / BITS) as usize;
         let spread = u128::from(significand) << (shift % BITS);
         let sign = if number.is_sign_negative() { -1 } else { 1 };
@@ -53,8 +54,8 @@ impl Exact {
         }
     }
 
-    /// The sum, rounded to the nearest float, so that other units by powers of two change no digit; not a number if a
-    /// term was none or infinite.
+    /// Returns the sum, rounded to the nearest float; NaN if a term was not finite. A change of units by powers of two
+    /// does not change the digits.
     pub fn value(&self) -> f64 {
         if self.words[DIGITS] != 0 {
             return f64::NAN;
@@ -68,7 +69,7 @@ impl Exact {
         if carry < 0 {
             return -self.negated().value();
         }
-        // The highest digit that is not zero and the two behind it hold 65 bits at least.
+        // The highest nonzero digit and the two below it contain at least 65 bits.
         let Some(top) = digits.iter().rposition(|&digit| digit != 0) else {
             return 0.0;
         };
@@ -76,11 +77,11 @@ impl Exact {
             let place = (top + k).checked_sub(2);
             sum << BITS | place.map_or(0, |place| digits[place] as u128)
         });
-        // What is left out decides where the rest lies half way between two floats.
+        // The remaining digits decide only if the others lie exactly between two floats.
         let rest = digits[..top.saturating_sub(2)].iter().any(|&digit| digit != 0);
         let leading = leading | u128::from(rest);
         let exponent = (top as i32 - 2) * BITS as i32 - 1074;
-        // Two factors, as 2^exponent itself may lie below the floats.
+        // Two factors, because 2^exponent alone may underflow.
         leading as f64 * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent - exponent / 2)
     }
 
@@ -90,12 +91,12 @@ impl Exact {
         negated
     }
 
-    /// The whole numbers, to be added to those of other ranks.
+    /// Returns the integers of the sum, to be added to those of other ranks.
     pub fn words(&self) -> &[i64; WORDS] {
         &self.words
     }
 
-    /// The sum of which these are the words.
+    /// Creates the sum from its integers.
     ///
     /// # Panics
     /// If there are not [`WORDS`] of them.
@@ -117,7 +118,7 @@ impl AddAssign<&Exact> for Exact {
 
 impl SubAssign<&Exact> for Exact {
     fn sub_assign(&mut self, other: &Exact) {
-        // What is no number stays none.
+        // A sum with terms that are not finite stays NaN.
         let none = self.words[DIGITS].max(other.words[DIGITS]);
         self.words
             .iter_mut()

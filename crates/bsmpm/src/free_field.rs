@@ -25,26 +25,26 @@ use crate::step::trial::DeformationIncrement;
 use crate::tensor::Vector;
 use tied::{Band, TiedHalo};
 
-/// The free field after a step, beside every face that follows it.
+/// Free-field columns after a step, and their action on the faces that they drive.
 #[derive(Clone, Debug, Default)]
 pub struct FreeField<const D: usize> {
-    /// the columns at the end of the step
+    /// Material points of the columns at the end of the step.
     pub columns: Vec<Points<D>>,
     beside: Vec<Beside<D>>,
 }
 
-/// What a column is to its face, node by node.
+/// Action of a column on the nodes of its face.
 #[derive(Clone, Debug)]
 struct Beside<const D: usize> {
-    face: usize,                   // among those that absorb
-    force: Vec<Vector<D>>,         // N, of its stress
-    start: Option<Vec<Vector<D>>>, // N, the same as the column begins, in its first step
+    face: usize,                   // index among the absorbing faces
+    force: Vec<Vector<D>>,         // N, of the column's stress
+    start: Option<Vec<Vector<D>>>, // N, the same at the start of the column's first step
     velocity: Vec<Vector<D>>,      // m/s
 }
 
 impl<const D: usize> FreeField<D> {
-    /// Steps every column from `t` to `t + dt`, each by itself and alike on every rank; without columns yet they begin
-    /// with those of the `points` at the faces. Nothing of a model without such faces.
+    /// Advances every column over the interval. Each rank computes all columns. In their first step, columns are copied
+    /// from the material `points` next to the faces, with two reductions per face. Empty without free-field faces.
     pub fn after<K: Kinematics<D>>(
         model: &Model<K, D>,
         points: &Points<D>,
@@ -66,7 +66,7 @@ impl<const D: usize> FreeField<D> {
         Ok(field)
     }
 
-    /// Drives the sides in the step.
+    /// Applies forces and velocities of the columns to the dashpots of the step.
     pub fn drive(&self, nodes: &mut GridState<D>) {
         for Beside {
             face,
@@ -79,7 +79,8 @@ impl<const D: usize> FreeField<D> {
         }
     }
 
-    /// Takes what the stress of the start holds from what holds the `held` start: from then on the column has it.
+    /// Subtracts the columns' initial forces from the forces `held` that carry the initial stress, because the columns
+    /// carry their part from now on.
     pub fn settle(&self, held: &mut [Vec<Vector<D>>]) {
         for Beside { face, start, .. } in &self.beside {
             if let Some(held) = held.get_mut(*face) {
@@ -89,9 +90,9 @@ impl<const D: usize> FreeField<D> {
     }
 }
 
-/// Goes on beside ground that a stage has changed, at the time `t`, and whose sides are held again: by these forces
-/// less those of the columns, which act there all along. The columns are held again, too, as their base may absorb from
-/// now on.
+/// Updates columns and held forces at time `t` after a stage has changed the ground. The columns act all along, so
+/// their forces are subtracted from the new held forces. The forces at a column's base are recomputed, because the base
+/// may have become absorbing.
 pub fn go_on<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
@@ -114,14 +115,14 @@ fn less<const D: usize>(forces: &[Vector<D>], start: Option<&[Vector<D>]>) -> Ve
     }
 }
 
-/// The scene beside a face: its cells, one across, between the faces that meet it.
+/// Returns the model of the column next to a face: one cell wide, with the supports of the other axes.
 fn beside<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, face: &Support<D>) -> Result<Model<K, D>, StepError> {
     let mut axes = model.grid.axes().clone();
     let axis = face.axis;
     debug_assert!(axis == 0, "layers of nodes across axis 0 are tied");
     let width = model.grid.axes()[axis].breakpoint(face.last_cell(&model.grid) + 1)
         - model.grid.axes()[axis].breakpoint(face.last_cell(&model.grid));
-    // Neither fails, of axes that a grid has.
+    // Neither call fails, because the axes come from a valid grid.
     axes[axis] = KnotVector::uniform(width, 1, model.grid.order()).map_err(|_| StepError::OtherRank)?;
     let grid = Grid::new(axes).map_err(|_| StepError::OtherRank)?;
     let grid = grid.reaching(model.grid.beyond());
@@ -145,8 +146,7 @@ fn beside<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, face: &Support<
     })
 }
 
-/// The column as it begins at the time `t`, and the force of its stress on the face if something holds that; one
-/// exchange of its points.
+/// Creates the column at time `t`, and computes its force on the face (N) if there is initial stress. Two reductions.
 #[allow(clippy::type_complexity)]
 fn begin<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
@@ -173,7 +173,8 @@ fn begin<K: Kinematics<D>, const D: usize>(
     Ok((column, Some(force)))
 }
 
-/// Finds what holds a column as it is at the time `t`, where its base absorbs, and the force of its stress on the face.
+/// Computes the forces that hold a column in equilibrium at time `t` where its base absorbs. Returns its force on the
+/// face (N).
 fn hold<K: Kinematics<D>, const D: usize>(
     alone: &Model<K, D>,
     face: &Support<D>,
@@ -206,7 +207,7 @@ fn hold<K: Kinematics<D>, const D: usize>(
     force(&problem, &trial, face)
 }
 
-/// The points of the one rank that has some, on every rank.
+/// Broadcasts the material points of the one rank that has any. Two reductions.
 fn everywhere<const D: usize>(mut own: Points<D>, halo: &dyn Halo) -> Points<D> {
     let mut message = Vec::new();
     for p in 0..own.len() {
@@ -226,7 +227,7 @@ fn everywhere<const D: usize>(mut own: Points<D>, halo: &dyn Halo) -> Points<D> 
     all
 }
 
-/// Steps a column, and gives what it is then to the nodes of its face.
+/// Advances a column by one step, and returns it with its action on the face.
 fn advance<K: Kinematics<D>, const D: usize>(
     alone: &Model<K, D>,
     face: &Support<D>,
@@ -262,7 +263,7 @@ fn advance<K: Kinematics<D>, const D: usize>(
     let update = commit::constitutive_update(alone, &found.trial, &column, &tied)?;
     let across: Vec<f64> = column.x.iter().map(|x| x[face.axis]).collect();
     commit::update_points(alone, &shape, &nodes, found, update, &mut column, &tied);
-    // Nothing differs across the column: its material stays before the face.
+    // The state is uniform across the column, so its points keep their position normal to the face.
     column
         .x
         .iter_mut()
@@ -280,8 +281,8 @@ fn advance<K: Kinematics<D>, const D: usize>(
     ))
 }
 
-/// The nodes of a column in a step, which in its first one begins with the forces at its end if they are out of
-/// balance.
+/// Returns the grid state of a column for a step. The first step at time 0 uses a dissipative integration if the forces
+/// are out of balance.
 fn mapped<K: Kinematics<D>, const D: usize>(
     alone: &Model<K, D>,
     shape: &Shape<D>,
@@ -293,13 +294,13 @@ fn mapped<K: Kinematics<D>, const D: usize>(
     if let Some(inertia) = nodes.inertia.as_mut().filter(|_| interval.start == 0.0)
         && initial::is_pushed(alone, column, tied)?
     {
-        inertia.newmark = Newmark::dissipative_first_step();
+        inertia.newmark = Newmark::for_sudden_load();
     }
     Ok(nodes)
 }
 
-/// N  of every node of the face, what the stress of the column does there: the flux that the internal forces of the
-/// ground have, so that these balance where the ground moves as the column does.
+/// Computes the force of the column's stress on every node of the face (N). It uses the same flux as the internal
+/// forces of the ground, so that both balance where ground and column move alike.
 fn force<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     trial: &DeformationIncrement<K, D>,

@@ -19,40 +19,40 @@ use crate::kinematics::Kinematics;
 use crate::tensor::Vector;
 use std::ops::Range;
 
-/// What has places in a grid: the points, as the grid sees them.
+/// Points that have positions in a grid, as the grid needs them.
 pub trait PointPositions<const D: usize> {
-    /// m  places from the grid's lower corner
+    /// Returns the positions of the points from the grid's lower corner (m).
     fn places(&self) -> &[Vector<D>];
-    /// Number by which an error names the one at `p`.
+    /// Returns the id by which an error message names point `p`.
     fn id(&self, p: usize) -> u64;
 }
 
-/// A tensor product of open knot vectors, of which the ranks together see the cells of a [`room`] around the points,
-/// and this rank those of a box in it.
+/// Tensor product of open knot vectors. All ranks together store the cells of the [active domain](room), a box around
+/// the points. This rank stores its window, a box of cells in the active domain.
 ///
-/// Axis 0 is the slowest in every numbering, so that the nodes of a slab of columns are one contiguous block.
-/// Node and cell indices are local to the window unless said otherwise.
+/// Axis 0 is the slowest in every numbering, so the nodes of consecutive layers are one contiguous block. Node and cell
+/// indices are local to the window unless stated otherwise.
 #[derive(Clone, Debug)]
 pub struct Grid<const D: usize> {
     axes: [KnotVector; D],
     room: [Range<usize>; D],
     window: [Range<usize>; D],
-    beyond: usize, // further layers of nodes in a window
+    beyond: usize, // additional node layers of a window
 }
 
 /// Extent of the nodal contributions of a column of cells.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ColumnExtent {
-    /// Layers of nodes that the column touches.
+    /// Number of node layers that the column contributes to.
     pub layers: usize,
-    /// Nodes of a layer.
+    /// Number of nodes of a layer.
     pub layer_nodes: usize,
-    /// Nodes of the grid of this rank.
+    /// Number of nodes in the window.
     pub nodes: usize,
 }
 
 impl<const D: usize> Grid<D> {
-    /// The whole grid as one window. Fails if the axes differ in order.
+    /// Creates the whole grid as one window. Fails if the axes differ in degree.
     pub fn new(axes: [KnotVector; D]) -> Result<Self, GridError> {
         let order = axes[0].order();
         if axes.iter().any(|axis| axis.order() != order) {
@@ -67,19 +67,19 @@ impl<const D: usize> Grid<D> {
         })
     }
 
-    /// The same grid, whose windows hold `beyond` layers of nodes past those that their cells touch, as far as there
-    /// are any: for what couples the cells of two windows.
+    /// Returns the same grid, whose windows have `beyond` more layers of nodes than their cells touch (fewer at the end
+    /// of the active domain). Methods that couple the cells of two windows need them.
     pub fn reaching(self, beyond: usize) -> Self {
         Self { beyond, ..self }
     }
 
-    /// Layers of nodes that a window holds past those that its cells touch.
+    /// Returns the number of node layers that a window has in addition to those that its cells touch.
     pub fn beyond(&self) -> usize {
         self.beyond
     }
 
-    /// The same grid of which only the cells of a box are seen (from and to, along each axis), by all ranks together;
-    /// the window is all of it.
+    /// Returns the same grid with the active domain `room`, a range of cells along each axis. The window is the whole
+    /// active domain.
     pub fn within(&self, room: [Range<usize>; D]) -> Self {
         debug_assert!((0..D).all(|axis| !room[axis].is_empty() && room[axis].end <= self.axes[axis].cells()));
         Self {
@@ -90,14 +90,14 @@ impl<const D: usize> Grid<D> {
         }
     }
 
-    /// The same grid seen through the cells `columns` along axis 0.
+    /// Returns the same grid with the window of the cells `columns` along axis 0.
     pub fn window(&self, columns: Range<usize>) -> Self {
         let mut window = self.room.clone();
         window[0] = columns;
         self.window_of(window)
     }
 
-    /// The same grid seen through the cells of a box.
+    /// Returns the same grid with the given window, a range of cells along each axis.
     pub fn window_of(&self, window: [Range<usize>; D]) -> Self {
         debug_assert!((0..D).all(|axis| {
             let room = &self.room[axis];
@@ -106,51 +106,52 @@ impl<const D: usize> Grid<D> {
         Self { window, ..self.clone() }
     }
 
-    /// Knot vectors, one per axis.
+    /// Returns the knot vectors, one per axis.
     pub fn axes(&self) -> &[KnotVector; D] {
         &self.axes
     }
 
-    /// What all ranks together see: cells along each axis.
+    /// Returns the active domain of all ranks together: the range of cells along each axis.
     pub fn room(&self) -> &[Range<usize>; D] {
         &self.room
     }
 
-    /// The window: cells along each axis.
+    /// Returns the window: the range of cells along each axis.
     pub fn cells_along(&self) -> &[Range<usize>; D] {
         &self.window
     }
 
-    /// The window: cells along axis 0.
+    /// Returns the window's range of cells along axis 0.
     pub fn columns(&self) -> Range<usize> {
         self.window[0].clone()
     }
 
-    /// Whether windows end along axis 1, too: on one rank they do if they do on any.
+    /// Returns whether the window is shorter than the active domain along axis 1. The answer is the same on all ranks.
     pub fn is_parted(&self) -> bool {
         D > 1 && self.window[1] != self.room[1]
     }
 
-    /// Polynomial order q.
+    /// Returns the polynomial degree q.
     pub fn order(&self) -> usize {
         self.axes[0].order()
     }
 
-    /// Layers of nodes along axis 0 that the window holds: those that its cells touch, of which the last q are shared
-    /// with the next slab, and those beyond.
+    /// Returns the window's range of node layers along axis 0: the layers that its cells touch, the last q of which are
+    /// shared with the next rank, and the additional ones.
     pub fn layers(&self) -> Range<usize> {
         let start = self.window[0].start;
         start..start + self.nodes_along(0)
     }
 
-    /// Nodes of the window along an axis.
+    /// Returns the number of nodes of the window along an axis.
     #[inline]
     pub fn nodes_along(&self, axis: usize) -> usize {
         let end = (self.window[axis].end + self.beyond).min(self.room[axis].end);
         end - self.window[axis].start + self.order()
     }
 
-    /// Layers of nodes that a column of cells contributes to: those that it touches, and those beyond.
+    /// Returns the number of node layers that a column of cells contributes to: the q + 1 that it touches, and the
+    /// additional ones.
     pub fn column_layers(&self) -> usize {
         self.order() + 1 + self.beyond
     }
@@ -164,32 +165,33 @@ impl<const D: usize> Grid<D> {
         }
     }
 
-    /// Nodes of one layer across axis 0.
+    /// Returns the number of nodes of one layer across axis 0.
     pub fn layer_nodes(&self) -> usize {
         (1..D).map(|axis| self.nodes_along(axis)).product()
     }
 
-    /// Cells of one column across axis 0.
+    /// Returns the number of cells of one column across axis 0.
     pub fn column_cells(&self) -> usize {
         self.window[1..].iter().map(Range::len).product()
     }
 
-    /// Nodes in the window.
+    /// Returns the number of nodes in the window.
     pub fn nodes(&self) -> usize {
         self.layers().len() * self.layer_nodes()
     }
 
-    /// Cells in the window.
+    /// Returns the number of cells in the window.
     pub fn cells(&self) -> usize {
         self.window[0].len() * self.column_cells()
     }
 
-    /// Functions that are non-zero in a cell: (q + 1)^D.
+    /// Returns the number of functions that are non-zero in a cell: (q + 1)^D.
     pub fn cell_nodes(&self) -> usize {
         (self.order() + 1).pow(D as u32)
     }
 
-    /// Cell along each axis (global) that holds `x` (m, from the lower corner); `None` outside the grid.
+    /// Returns the global index along each axis of the cell that contains the position `x` (m, from the lower corner);
+    /// `None` outside the grid.
     pub fn locate(&self, x: &Vector<D>) -> Option<[usize; D]> {
         let mut cell = [0; D];
         for (axis, found) in cell.iter_mut().enumerate() {
@@ -198,13 +200,13 @@ impl<const D: usize> Grid<D> {
         Some(cell)
     }
 
-    /// Whether a cell (global, along each axis) lies in the window.
+    /// Returns whether a cell (global index along each axis) is in the window.
     #[inline]
     pub fn holds(&self, cell: &[usize; D]) -> bool {
         (0..D).all(|axis| self.window[axis].contains(&cell[axis]))
     }
 
-    /// Local index of a cell given along each axis, which must lie in the window.
+    /// Returns the local index of a cell of the window, given by its global index along each axis.
     #[inline]
     pub fn cell_index(&self, cell: &[usize; D]) -> usize {
         let start = cell[0] - self.window[0].start;
@@ -213,7 +215,7 @@ impl<const D: usize> Grid<D> {
         })
     }
 
-    /// Cell along each axis (global) of a local index.
+    /// Returns the global index along each axis of the cell with a local index.
     pub fn cell_at(&self, mut index: usize) -> [usize; D] {
         let mut cell = [0; D];
         for axis in (1..D).rev() {
@@ -224,7 +226,8 @@ impl<const D: usize> Grid<D> {
         cell
     }
 
-    /// Local index of the first of a cell's (q+1)^D nodes; the others stand at [`Grid::offsets`] from it.
+    /// Returns the local index of the first of a cell's (q + 1)^D nodes. [`Grid::offsets`] gives the offsets of all of
+    /// them from the first.
     pub fn first_node(&self, cell: &[usize; D]) -> usize {
         let start = cell[0] - self.window[0].start;
         (1..D).fold(start, |index, axis| {
@@ -232,23 +235,26 @@ impl<const D: usize> Grid<D> {
         })
     }
 
-    /// Functions (along each axis) of a cell (global), in the order of its nodes, axis 0 slowest.
+    /// Iterates over the functions (index along each axis) that are non-zero in a cell (global), in the order of the
+    /// cell's nodes, axis 0 slowest.
     pub fn functions_of(&self, cell: [usize; D]) -> impl Iterator<Item = [usize; D]> {
         let width = self.order() + 1;
         (0..self.cell_nodes()).map(move |k| std::array::from_fn(|axis| cell[axis] + digit::<D>(k, axis, width)))
     }
 
-    /// Offsets of a cell's nodes from its first one, axis 0 slowest: the paper's p2N, which is the same for all cells.
+    /// Returns the offsets of a cell's nodes from its first node, axis 0 slowest. They are the same for all cells (p2N
+    /// in the paper).
     pub fn offsets(&self) -> Vec<usize> {
         self.offsets_of(self.order() + 1)
     }
 
-    /// The same of the functions of degree q - 1, which are numbered within the nodes ([`Shape::lowered`]).
+    /// Returns the same offsets for the functions of degree q - 1, which use the numbers of the nodes
+    /// ([`Shape::lowered`]).
     pub fn lowered_offsets(&self) -> Vec<usize> {
         self.offsets_of(self.order())
     }
 
-    /// Offsets of the first `width` nodes of a cell along each axis.
+    /// Returns the offsets of the first `width` nodes of a cell along each axis.
     fn offsets_of(&self, width: usize) -> Vec<usize> {
         (0..width.pow(D as u32))
             .map(|k| {
@@ -260,8 +266,8 @@ impl<const D: usize> Grid<D> {
             .collect()
     }
 
-    /// Local nodes whose functions are non-zero on the lower (`false`) or upper (`true`) face of `axis`: there the
-    /// open knot vector makes exactly one layer of nodes interpolate.
+    /// Returns the local nodes whose functions are non-zero on the lower (`false`) or upper (`true`) face of `axis`.
+    /// With an open knot vector, exactly one layer of nodes interpolates there.
     pub fn face_nodes(&self, axis: usize, upper: bool) -> Vec<usize> {
         let wanted = if upper { self.axes[axis].functions() - 1 } else { 0 };
         (0..self.nodes())
@@ -269,7 +275,7 @@ impl<const D: usize> Grid<D> {
             .collect()
     }
 
-    /// The nearest node of the window in the same layer across `axis` that is on none of the other axes' faces.
+    /// Returns the nearest node of the window in the same layer across `axis` that is not on a face of the other axes.
     pub fn off_edges(&self, node: usize, axis: usize) -> usize {
         let place = self.node_at(node);
         let mut found = node;
@@ -286,7 +292,7 @@ impl<const D: usize> Grid<D> {
         found
     }
 
-    /// Node along each axis (global) of a local index.
+    /// Returns the global index along each axis of the node with a local index.
     pub fn node_at(&self, mut index: usize) -> [usize; D] {
         let mut node = [0; D];
         for axis in (1..D).rev() {
@@ -297,7 +303,7 @@ impl<const D: usize> Grid<D> {
         node
     }
 
-    /// Local index of a node given along each axis (global); `None` outside the window.
+    /// Returns the local index of a node, given by its global index along each axis; `None` outside the window.
     pub fn node_index(&self, node: &[usize; D]) -> Option<usize> {
         let first = self.node_at(0);
         (0..D).try_fold(0, |index, axis| {
@@ -308,8 +314,8 @@ impl<const D: usize> Grid<D> {
         })
     }
 
-    /// Local nodes of the window within a box of nodes (global) along the first two axes: as few ranges as there can
-    /// be.
+    /// Returns the local nodes of a box, given by ranges of global node indices along the first two axes, as the
+    /// smallest number of contiguous ranges. The box must be in the window.
     pub fn nodes_within(&self, [layers, rows]: &[Range<usize>; 2]) -> Vec<Range<usize>> {
         let layer = self.layer_nodes();
         let row = self.layer_nodes() / self.nodes_along(1);
@@ -318,7 +324,7 @@ impl<const D: usize> Grid<D> {
         if layers.is_empty() || rows.is_empty() {
             return Vec::new();
         }
-        // Whole layers are one range.
+        // Whole layers are one contiguous range.
         let (runs, run) = if rows.len() == self.nodes_along(1) {
             (1, layers.len() * layer)
         } else {
@@ -332,7 +338,7 @@ impl<const D: usize> Grid<D> {
             .collect()
     }
 
-    /// Number of a node (local) among those of the whole grid.
+    /// Returns the number of a local node among the nodes of the whole grid.
     pub fn number_of(&self, node: usize) -> usize {
         let node = self.node_at(node);
         (1..D).fold(node[0], |number, axis| {
@@ -340,12 +346,12 @@ impl<const D: usize> Grid<D> {
         })
     }
 
-    /// The node of the window that has a number among those of the whole grid; `None` outside the window.
+    /// Returns the local node that has `number` in the whole grid; `None` outside the window.
     pub fn node_of_number(&self, number: usize) -> Option<usize> {
         self.node_index(&self.place_of_number(number))
     }
 
-    /// Node along each axis (global) by its number among those of the whole grid.
+    /// Returns the global index along each axis of the node that has `number` in the whole grid.
     pub fn place_of_number(&self, mut number: usize) -> [usize; D] {
         let mut node = [0; D];
         for axis in (1..D).rev() {
@@ -356,28 +362,29 @@ impl<const D: usize> Grid<D> {
         node
     }
 
-    /// Lower corner and edge lengths of a cell, m.
+    /// Returns the lower corner and the edge lengths of a cell (m).
     pub fn cell_box(&self, cell: &[usize; D]) -> (Vector<D>, Vector<D>) {
         let lower = Vector::from_fn(|axis, _| self.axes[axis].breakpoint(cell[axis]));
         let size = Vector::from_fn(|axis, _| self.axes[axis].breakpoint(cell[axis] + 1) - lower[axis]);
         (lower, size)
     }
 
-    /// Volume of a cell.
+    /// Returns the volume of a cell, m^D of the grid times [`Kinematics::weight`] at the cell's centre, which is exact
+    /// because the weight is linear.
     pub fn cell_volume<K: Kinematics<D>>(&self, cell: &[usize; D]) -> f64 {
         let (lower, size) = self.cell_box(cell);
         size.product() * K::weight(&(lower + size * 0.5))
     }
 
-    /// Integral over the grid of the function of degree q - 1 that has a node's number ([`Shape::lowered`]): its weight
-    /// is linear, so that the function's mean place decides.
+    /// Returns the integral over the grid of the function of degree q - 1 that has the number of a node
+    /// ([`Shape::lowered`]). The weight of the volume is linear, so it is evaluated at the function's centroid.
     pub fn lowered_volume<K: Kinematics<D>>(&self, node: usize) -> f64 {
         let node = self.node_at(node);
         let along: [(f64, f64); D] = std::array::from_fn(|axis| self.axes[axis].lowered_integral(node[axis]));
         along.iter().map(|(length, _)| length).product::<f64>() * K::weight(&Vector::from_fn(|axis, _| along[axis].1))
     }
 
-    /// Smallest edge of any cell, m.
+    /// Returns the smallest edge of all cells (m).
     pub fn smallest_edge(&self) -> f64 {
         self.axes
             .iter()
@@ -386,7 +393,8 @@ impl<const D: usize> Grid<D> {
     }
 }
 
-/// Digit of `number` in the system of the `base`, of which axis 0 is the slowest.
+/// Returns the digit that belongs to `axis` when `number` is written with `base`; the digit of axis 0 is the most
+/// significant.
 #[inline]
 pub(crate) fn digit<const D: usize>(number: usize, axis: usize, base: usize) -> usize {
     number / base.pow((D - 1 - axis) as u32) % base

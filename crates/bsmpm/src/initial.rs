@@ -7,7 +7,7 @@ use crate::material::Moduli;
 use crate::parallel::Backend;
 use crate::points::MappedPoints;
 use crate::schedule::TimeInterval;
-pub use settle::{EquilibriumSearch, set_spread, settle};
+pub use settle::{EquilibriumSearchReport, set_spread, settle};
 
 use crate::boundary::StripReport;
 use crate::boundary::strip::StripConstraints;
@@ -28,30 +28,30 @@ use crate::step::residual::{Balance, Residual};
 use crate::step::stiffness;
 use crate::tensor::{Symmetric, Tensor, Vector};
 
-/// Corrections of the elastic state: the stiffness holds the soft background too, which carries nothing in the end.
+/// Corrections of the elastic state: the stiffness includes the soft background, which must carry nothing in the end.
 const CORRECTIONS: usize = 20;
-/// Relative residual of one of them.
+/// Relative residual of each correction.
 const SOLVED: f64 = 1e-6;
-/// Plastic strain up to which a stress that is returned lies on the yield surface, not beyond it.
+/// Plastic strain up to which a returned stress counts as lying on the yield surface.
 const ON: f64 = 1e-12;
-/// Relative out-of-balance force of the elastic state that is left.
+/// Relative out-of-balance force at which the elastic state is accepted.
 const BALANCED: f64 = 1e-12;
 
-/// How well the state at the start is in equilibrium, and what holds it.
+/// Quality of the equilibrium at the start, and the forces that hold it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equilibrium {
-    /// |f_oob| / max(|f_ext|, |f_int|, |reaction|)
+    /// |f_oob| / max(|f_ext|, |f_int|, |reaction|) (-).
     pub force: f64,
-    /// points whose stress lies outside the yield surface, over all ranks
+    /// Points whose stress lies outside the yield surface, over all ranks.
     pub yielding: u64,
-    /// N  force of every support on the body, by component, in the order of the model's supports
+    /// Force of each support on the body (N), by component, in the order of the model's supports.
     pub reactions: Vec<Vec<f64>>,
-    /// what every rigid strip holds
+    /// Reports of the rigid strips.
     pub strips: Vec<StripReport>,
 }
 
-/// Gives every point the Cauchy stress `sigma(material, x)`, Pa, in a plane without components that couple it with its
-/// normal; x in m from the grid's lower corner.
+/// Gives every point the Cauchy stress `sigma(material, x)` (Pa), with x in m from the grid's lower corner. In two
+/// dimensions the shear stresses out of the plane must be zero.
 pub fn set_stress<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
@@ -70,9 +70,9 @@ pub fn set_stress<K: Kinematics<D>, const D: usize>(
     }
 }
 
-/// Lets the points go on from the laws of one model to those of another: where the law of a point is another one, it
-/// keeps its Kirchhoff stress, with the elastic strain that the new law has at it; a law of another kind begins in the
-/// state of its start. Fails on all ranks if a point has no response before.
+/// Changes the constitutive laws of the points from those of one model to those of another. A point with a new law
+/// keeps its Kirchhoff stress; its elastic strain follows from the new law. The state variables of a law of another
+/// kind are initialised. Fails on all ranks if the old law rejects a point.
 pub fn exchange<K: Kinematics<D>, const D: usize>(
     before: &Model<K, D>,
     after: &Model<K, D>,
@@ -82,7 +82,7 @@ pub fn exchange<K: Kinematics<D>, const D: usize>(
     agreed(halo, exchange_own(before, after, points), StepError::OtherRank)
 }
 
-/// [`exchange`] of this rank's points.
+/// Applies [`exchange`] to this rank's points.
 fn exchange_own<K: Kinematics<D>, const D: usize>(
     before: &Model<K, D>,
     after: &Model<K, D>,
@@ -116,8 +116,9 @@ fn exchange_own<K: Kinematics<D>, const D: usize>(
     Ok(())
 }
 
-/// The elastic left Cauchy-Green tensor that belongs to a Cauchy stress in Pa where nothing has moved, and the law's
-/// `state` there, in the place of zeros; not a number where the law has no such stress. The law is that of one height.
+/// Returns the elastic left Cauchy-Green tensor of a Cauchy stress (Pa) in the undeformed configuration, and replaces
+/// the zeros in `state` by the state of `law`. NaN if the law does not admit the stress. `law` must be evaluated at one
+/// height.
 pub fn b_e_of(law: &Material, stress: &Symmetric, state: &mut [f64]) -> Symmetric {
     if law.is_linear() {
         return exponential(&strain_of(law.elastic(), stress));
@@ -134,7 +135,7 @@ pub fn b_e_of(law: &Material, stress: &Symmetric, state: &mut [f64]) -> Symmetri
 }
 
 /// Gives every point the stress of linear elastic equilibrium under the loads at time 0. Fails if the system cannot be
-/// solved, a load has no material, or somebody wants it to be given up.
+/// solved, a load has no material, or the run is interrupted.
 pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
@@ -174,9 +175,9 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     Ok(())
 }
 
-/// Finds the forces that hold the state of the start at faces that absorb, which go on to act there: those of the
-/// equilibrium next to it. A stress that is given is in equilibrium but for the quadrature of its points, and what is
-/// left would push a body that only dashpots hold ever on. Fails if there is none.
+/// Finds the forces on absorbing faces that keep the initial state in equilibrium; they remain applied. They belong to
+/// the equilibrium nearest to the given stress, which is balanced only up to the quadrature of the points. Without this
+/// correction, a body that only dashpots support would drift. Fails if there is no equilibrium.
 pub fn hold<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
@@ -186,8 +187,7 @@ pub fn hold<K: Kinematics<D>, const D: usize>(
     hold_at(model, points, 0.0, halo, solver)
 }
 
-/// The same of the state at a later time, once the ground or what acts on it has changed: the forces of the equilibrium
-/// next to that.
+/// Finds the forces as [`hold`], at a later time `t` (s) after the soil or its loads have changed.
 pub fn hold_at<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
@@ -206,8 +206,8 @@ pub fn hold_at<K: Kinematics<D>, const D: usize>(
     Ok(())
 }
 
-/// Equilibrium of the points as they are, under the loads at time 0. Fails on all ranks if a point has no response, as
-/// its strain is beyond all bounds.
+/// Evaluates the equilibrium of the points under the loads at time 0. Fails on all ranks if a law rejects the strain of
+/// a point.
 pub fn balance<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
@@ -236,7 +236,7 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
     })
 }
 
-/// Whether the stress of a point lies outside the yield surface.
+/// Returns whether the stress of a point lies outside the yield surface.
 fn yields<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
@@ -250,7 +250,7 @@ fn yields<K: Kinematics<D>, const D: usize>(
     Ok(response.branch() != Branch::Elastic && response.plastic_increment() > ON)
 }
 
-/// Whether forces at time 0 are out of balance, by more than the tolerance and round-off.
+/// Returns whether the forces at time 0 are out of balance by more than the tolerance and round-off.
 pub fn is_pushed<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
@@ -267,7 +267,7 @@ pub fn is_pushed<K: Kinematics<D>, const D: usize>(
     Ok(balance.measure() > model.criteria.force && !RoundOff::of(&problem).covers(&balance, &problem))
 }
 
-/// Steps (1) and (2) at a time, without motion.
+/// Steps (1) and (2) at a given time, without motion.
 struct UndeformedState<const D: usize> {
     shape: Shape<D>,
     nodes: GridState<D>,
@@ -288,7 +288,7 @@ impl<const D: usize> UndeformedState<D> {
         let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?;
         let instant = TimeInterval { start: t, dt: 0.0 };
         let mut nodes = GridState::from_points(model, &shape, points, instant, halo)?;
-        // The displacements of a start are none: what it seeks is a stress.
+        // The displacements are zero: only the initial stress is sought.
         let followers = std::mem::take(&mut nodes.followers);
         if !followers.is_empty() {
             let loads = &model.boundary.loads[..];
@@ -309,7 +309,7 @@ impl<const D: usize> UndeformedState<D> {
         })
     }
 
-    /// Finds the equilibrium of the points from no displacement on.
+    /// Finds the equilibrium of the points from zero displacement.
     fn find<K: Kinematics<D>>(
         &mut self,
         model: &Model<K, D>,
@@ -348,7 +348,7 @@ impl<const D: usize> UndeformedState<D> {
     }
 }
 
-/// Out-of-balance force of linear elastic stress on the undeformed geometry.
+/// Returns the out-of-balance force of linear elastic stress on the undeformed geometry.
 fn elastic_residual<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     strains: &[Symmetric],
@@ -375,7 +375,7 @@ fn elastic_at<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Po
         .clone()
 }
 
-/// D eps: lambda tr(eps) I + 2 mu eps, Pa.
+/// Returns D eps = lambda tr(eps) I + 2 mu eps (Pa).
 fn stress_of(elastic: &Elastic, strain: &Symmetric) -> Symmetric {
     let Moduli { lambda, mu } = elastic.moduli();
     let [xx, yy, zz, ..] = strain.0;
@@ -386,7 +386,7 @@ fn stress_of(elastic: &Elastic, strain: &Symmetric) -> Symmetric {
     stress
 }
 
-/// D^-1 sigma: (1 + nu)/E sigma - nu/E tr(sigma) I.
+/// Returns D^-1 sigma = (1 + nu)/E sigma - nu/E tr(sigma) I.
 fn strain_of(elastic: &Elastic, stress: &Symmetric) -> Symmetric {
     let [xx, yy, zz, ..] = stress.0;
     let mut strain = stress.scaled((1.0 + elastic.poisson) / elastic.young);
@@ -396,7 +396,7 @@ fn strain_of(elastic: &Elastic, stress: &Symmetric) -> Symmetric {
     strain
 }
 
-/// b^e = exp(2 eps).
+/// Returns b^e = exp(2 eps).
 fn exponential(strain: &Symmetric) -> Symmetric {
     let spectrum = strain.full().symmetric_eigen();
     let stretches = Tensor::from_diagonal(&spectrum.eigenvalues.map(|eps| (2.0 * eps).exp()));

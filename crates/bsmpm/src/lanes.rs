@@ -8,31 +8,31 @@ use std::fmt::{Debug, Formatter, Result};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Range, Sub};
 use std::sync::OnceLock;
 
-/// Points that are computed at a time.
+/// Number of points that are evaluated at a time.
 pub const LANES: usize = 8;
 
-/// What can be done in lanes.
+/// Computation with SIMD vectors.
 pub trait InLanes {
-    /// What it leaves.
+    /// Result of the computation.
     type Output;
 
-    /// Does it; to be inlined always.
+    /// Performs the computation. Implementations must be `#[inline(always)]`.
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
-/// What [`run`] uses.
+/// Instruction set that [`run`] uses.
 static LEVEL: OnceLock<Level> = OnceLock::new();
 
-/// Does `work` with the widest vectors of this machine, or the chosen ones; in builds for debugging with SSE2, as they
-/// would take three times as long to compile.
+/// Performs `work` with the widest vectors of this machine, or the chosen ones. Debug builds use SSE2, because the
+/// others would triple the compile time.
 pub fn run<W: InLanes>(work: W) -> W::Output {
     run_at(*LEVEL.get_or_init(Level::new), work)
 }
 
-/// Chooses the instruction set of all that is to come by its name: `sse2`, `avx2` or `avx512`; for tests.
+/// Selects the instruction set of all later computations: `sse2`, `avx2` or `avx512`; for tests.
 ///
 /// # Errors
-/// A name that this machine does not know, or a choice that comes too late.
+/// If this machine does not support it, or a computation was performed before.
 pub fn choose(name: &str) -> std::result::Result<(), String> {
     let (_, level) = levels()
         .into_iter()
@@ -41,7 +41,7 @@ pub fn choose(name: &str) -> std::result::Result<(), String> {
     LEVEL.set(level).map_err(|_| "lanes run already".to_owned())
 }
 
-/// What `work` leaves with each instruction set of this machine, by its name; for tests.
+/// Returns the result of `work` with each instruction set of this machine, with its name; for tests.
 pub fn with_each<W: InLanes + Clone>(work: &W) -> Vec<(&'static str, W::Output)> {
     levels()
         .into_iter()
@@ -49,7 +49,7 @@ pub fn with_each<W: InLanes + Clone>(work: &W) -> Vec<(&'static str, W::Output)>
         .collect()
 }
 
-/// Instruction sets of this machine.
+/// Returns the instruction sets of this machine.
 fn levels() -> Vec<(&'static str, Level)> {
     let widest = Level::new();
     #[cfg(target_arch = "x86_64")]
@@ -87,7 +87,7 @@ fn vectorised<S: Simd, W: InLanes>(simd: S, work: W) -> W::Output {
     )
 }
 
-/// The points of a range, eight at a time; lanes beyond the end repeat the last one.
+/// Splits a range of points into groups of eight; surplus lanes repeat the last point.
 #[inline(always)]
 pub fn eights(points: Range<usize>) -> impl Iterator<Item = Eight> {
     points.clone().step_by(LANES).map(move |first| Eight {
@@ -96,27 +96,27 @@ pub fn eights(points: Range<usize>) -> impl Iterator<Item = Eight> {
     })
 }
 
-/// Eight consecutive points, or fewer.
+/// Eight consecutive points, or fewer at the end of a range.
 #[derive(Clone, Copy, Debug)]
 pub struct Eight {
     first: usize,
-    last: usize, // point of the range
+    last: usize, // last point of the range
 }
 
 impl Eight {
-    /// The points, each once.
+    /// Returns the points, each once.
     #[inline(always)]
     pub fn points(self) -> Range<usize> {
         self.first..(self.first + LANES).min(self.last + 1)
     }
 
-    /// The point of a lane.
+    /// Returns the point of a lane.
     #[inline(always)]
     pub fn point(self, lane: usize) -> usize {
         (self.first + lane).min(self.last)
     }
 
-    /// What each point has, by its lane.
+    /// Returns references to the elements of the points, by lane.
     #[inline(always)]
     pub fn of<T>(self, all: &[T]) -> [&T; LANES] {
         let at = |lane: usize| &all[self.point(lane)];
@@ -124,31 +124,31 @@ impl Eight {
     }
 }
 
-/// A vector of numbers with its masks.
+/// Defines a vector type with its mask type.
 macro_rules! vector {
     ($(#[$doc:meta])* $Vector:ident($vector:ident), $Mask:ident($mask:ident), $count:literal) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
         pub struct $Vector<S: Simd>($vector<S>);
 
-        /// What is true of each of them.
+        /// Results of a comparison.
         #[derive(Clone, Copy, Debug)]
         pub struct $Mask<S: Simd>($mask<S>);
 
         impl<S: Simd> $Vector<S> {
-            /// One number for all.
+            /// Creates a vector of equal numbers.
             #[inline(always)]
             pub fn splat(simd: S, number: f64) -> Self {
                 Self($vector::splat(simd, number))
             }
 
-            /// The first of these numbers.
+            /// Creates a vector from the first numbers of a slice.
             #[inline(always)]
             pub fn first_of(simd: S, numbers: &[f64]) -> Self {
                 Self($vector::from_slice(simd, &numbers[..$count]))
             }
 
-            /// Each number.
+            /// Returns the numbers.
             #[inline(always)]
             pub fn numbers(self) -> [f64; $count] {
                 self.0.into()
@@ -266,7 +266,7 @@ macro_rules! vector {
     };
 }
 
-/// Operations between vectors, and of vectors with one number.
+/// Implements operations between vectors, and between vectors and numbers.
 macro_rules! operations {
     ($Vector:ident, $($Operation:ident::$operation:ident),+) => {$(
         impl<S: Simd> $Operation for $Vector<S> {
@@ -288,17 +288,17 @@ macro_rules! operations {
 }
 
 vector! {
-    /// A number of eight points.
+    /// Numbers of eight points.
     Lanes(f64x8), LaneMask(mask64x8), 8
 }
 
 vector! {
-    /// A number of four nodes of a point.
+    /// Numbers of four nodes of a point.
     Quad(f64x4), QuadMask(mask64x4), 4
 }
 
 impl<S: Simd> Lanes<S> {
-    /// The number of each lane.
+    /// Creates a vector from the number of each lane.
     #[inline(always)]
     pub fn from_fn(simd: S, at: impl Fn(usize) -> f64) -> Self {
         Self(f64x8::simd_from(

@@ -1,7 +1,7 @@
 #![doc = include_str!("../README.md")]
 //! Chapter 1 of the theory manual lists the algorithm of a step, with the file of each part.
 #![forbid(unsafe_code)]
-// The fields of section 2.4 keep the paper's letters (F, dF, J, N) where they have one meaning in mechanics.
+// The fields of section 2.4 of the paper keep its letters (F, dF, J, N) if these are unique in mechanics.
 #![allow(non_snake_case)]
 
 pub mod background;

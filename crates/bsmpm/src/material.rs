@@ -39,18 +39,18 @@ use crate::tensor::{Symmetric, Tensor};
 use spectral::Spectrum;
 use std::borrow::Cow;
 
-/// The enum of all laws with its dispatch, and that of what their returns leave.
+/// Defines the enum of all laws with its dispatch, and the enum of their return data.
 macro_rules! laws {
     ($($(#[$doc:meta])* $module:ident::$Law:ident,)*) => {
-        /// A material of the case.
+        /// Material of the case.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Material {
             $($(#[$doc])* $Law($module::$Law),)*
-            /// One of the others, with parameters that depend on the height.
+            /// Any other law, with parameters that depend on the height.
             Graded(GradedLaw),
         }
 
-        /// What the return of a response left; elastic without one.
+        /// Return data of a response; `Elastic` without a return.
         #[derive(Clone, Copy, Debug)]
         pub(super) enum Flowed {
             Elastic,
@@ -58,7 +58,7 @@ macro_rules! laws {
         }
 
         impl Material {
-            /// The elastic part of the law; of a graded one where it is stiffest.
+            /// Returns the elastic part of the law; for a graded law where it is stiffest.
             pub fn elastic(&self) -> &Elastic {
                 match self {
                     $(Self::$Law(law) => law.elastic(),)*
@@ -66,7 +66,7 @@ macro_rules! laws {
                 }
             }
 
-            /// Dilation angle, rad; the largest of a graded law, before a reduction of strength.
+            /// Returns the dilation angle (rad); for a graded law the largest one, before strength reduction.
             pub fn dilation(&self) -> f64 {
                 match self {
                     $(Self::$Law(law) => law.dilation(),)*
@@ -74,7 +74,7 @@ macro_rules! laws {
                 }
             }
 
-            /// What becomes of the volume that opens at the apex.
+            /// Returns the treatment of the volume that opens at the apex.
             pub fn separation(&self) -> Separation {
                 match self {
                     $(Self::$Law(law) => law.separation(),)*
@@ -82,7 +82,7 @@ macro_rules! laws {
                 }
             }
 
-            /// Whether its stress is limited.
+            /// Returns whether the law limits the stress.
             pub fn yields(&self) -> bool {
                 match self {
                     $(Self::$Law(_) => <$module::$Law as Law>::YIELDS,)*
@@ -90,7 +90,7 @@ macro_rules! laws {
                 }
             }
 
-            /// Whether some part of its strength grows with plastic strain.
+            /// Returns whether any part of the strength increases with plastic strain.
             pub fn hardens(&self) -> bool {
                 match self {
                     $(Self::$Law(law) => law.hardens(),)*
@@ -98,7 +98,7 @@ macro_rules! laws {
                 }
             }
 
-            /// Whether [`Material::stress`] can tell.
+            /// Returns whether [`Material::stress`] supports the law.
             #[inline(always)]
             fn is_in_lanes(&self) -> bool {
                 match self {
@@ -107,7 +107,7 @@ macro_rules! laws {
                 }
             }
 
-            /// Whether its strength follows plastic strain to another last value.
+            /// Returns whether the strength changes with plastic strain.
             pub fn softens(&self) -> bool {
                 match self {
                     $(Self::$Law(law) => law.softens(),)*
@@ -115,7 +115,7 @@ macro_rules! laws {
                 }
             }
 
-            /// Whether its elastic stress is linear in the strain, so that there is a state without stress.
+            /// Returns whether elastic stress is linear in strain, so that a stress-free state exists.
             pub fn is_linear(&self) -> bool {
                 match self {
                     $(Self::$Law(_) => <$module::$Law as Law>::LINEAR,)*
@@ -123,8 +123,9 @@ macro_rules! laws {
                 }
             }
 
-            /// Principal elastic strains of a stress at the start (Pa), and the law's state there, in the place of
-            /// zeros; of a graded law through [`Material::at`] only. No numbers where the law has no such stress.
+            /// Returns the principal elastic strains of an initial stress (Pa), and sets the initial state of the law
+            /// in `state`, which contains zeros. The strains are not finite if the law cannot have the stress. Call it
+            /// for graded laws through [`Material::at`] only.
             pub fn initial_state(&self, tau: [f64; 3], state: &mut [f64]) -> [f64; 3] {
                 match self {
                     $(Self::$Law(law) => {
@@ -135,7 +136,7 @@ macro_rules! laws {
                 }
             }
 
-            /// State variables of its points.
+            /// Returns the state variables of a point.
             pub fn state(&self) -> &'static [Variable] {
                 match self {
                     $(Self::$Law(_) => <$module::$Law as Law>::STATE,)*
@@ -143,7 +144,7 @@ macro_rules! laws {
                 }
             }
 
-            /// Names and units of its parameters besides the elastic ones.
+            /// Returns names and units of the parameters besides the elastic ones.
             pub fn parameter_names(&self) -> &'static [Variable] {
                 match self {
                     $(Self::$Law(_) => <$module::$Law as Law>::PARAMETERS,)*
@@ -151,7 +152,7 @@ macro_rules! laws {
                 }
             }
 
-            /// Its parameters in the order of their names; of a graded law the largest of each.
+            /// Returns the parameters in the order of their names; for a graded law the largest value of each.
             pub fn parameters(&self) -> Vec<f64> {
                 match self {
                     $(Self::$Law(law) => law.parameters(),)*
@@ -159,7 +160,7 @@ macro_rules! laws {
                 }
             }
 
-            /// The law with other numbers, the same at all heights; see [`Law::with_parameters`].
+            /// Returns the law with other parameters, equal at all heights; see [`Law::with_parameters`].
             pub fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self {
                 match self {
                     $(Self::$Law(law) => Self::$Law(law.with_parameters(elastic, parameters)),)*
@@ -167,15 +168,15 @@ macro_rules! laws {
                 }
             }
 
-            /// The law in a step of the length `dt`, s; `None` where that does not matter to it.
-            pub fn at_time_step(&self, dt: f64) -> Option<Self> {
+            /// Returns the law for a step of length `dt` (s); `None` if the law does not depend on it.
+            pub fn with_time_step(&self, dt: f64) -> Option<Self> {
                 match self {
-                    $(Self::$Law(law) => law.at_time_step(dt).map(Self::$Law),)*
-                    Self::Graded(law) => law.at_time_step(dt).map(Self::Graded),
+                    $(Self::$Law(law) => law.with_time_step(dt).map(Self::$Law),)*
+                    Self::Graded(law) => law.with_time_step(dt).map(Self::Graded),
                 }
             }
 
-            /// The law with its strength divided by `factor` (section 3.2).
+            /// Returns the law with its strength divided by `factor` (section 3.2 of the paper).
             pub fn reduced(self, factor: f64) -> Self {
                 match self {
                     $(Self::$Law(law) => Self::$Law(law.reduced(factor)),)*
@@ -183,7 +184,7 @@ macro_rules! laws {
                 }
             }
 
-            /// Energy of elastic principal strains, J/m3.
+            /// Returns the energy of principal elastic strains (J/m3).
             fn energy(&self, eps: [f64; 3]) -> f64 {
                 match self {
                     $(Self::$Law(law) => law.energy(eps),)*
@@ -191,8 +192,8 @@ macro_rules! laws {
                 }
             }
 
-            /// The yield function of a principal stress (Pa, descending) in a `state`, Pa: positive outside; of a
-            /// graded law that of the largest parameters.
+            /// Returns the yield function of a principal stress (Pa, descending) in a `state` (Pa), positive outside
+            /// the yield surface; for a graded law that of the largest parameters.
             pub fn yield_function(&self, tau: [f64; 3], state: &[f64]) -> f64 {
                 match self {
                     $(Self::$Law(law) => law.yield_function(tau, state),)*
@@ -200,9 +201,10 @@ macro_rules! laws {
                 }
             }
 
-            /// Kirchhoff stress in Pa of a point, or of several, by components XX, YY, ZZ, XY of `b_trial` and the
-            /// `state` of the last step, which has the law's variables first: as [`Material::respond`] has it. `None`
-            /// where only that can tell: of a graded or long law, and of trials of which one is no strain.
+            /// Returns the Kirchhoff stress (Pa) of one point, or of several, as [`Material::respond`], from the
+            /// components XX, YY, ZZ, XY of `b_trial` and the `state` of the last step, in which the variables of the
+            /// law come first. Returns `None` for laws that [`Material::respond`] alone supports, and unless all trials
+            /// are finite and positive definite.
             #[inline(always)]
             pub fn stress<R: Real>(&self, b_trial: [R; 4], state: &[R]) -> Option<Symmetric<R>> {
                 if !self.is_in_lanes() {
@@ -211,7 +213,7 @@ macro_rules! laws {
                 self.stress_of(&Spectrum::planar(b_trial)?, state)
             }
 
-            /// The same by all components; `None` also where XZ and YZ of one are none.
+            /// Returns the same for all six components; `None` also if XZ and YZ of a point are zero.
             #[inline(always)]
             pub fn stress_in_space<R: Real>(&self, b_trial: [R; 6], state: &[R]) -> Option<Symmetric<R>> {
                 if !self.is_in_lanes() {
@@ -229,13 +231,13 @@ macro_rules! laws {
                 Some(spectrum.assemble(tau))
             }
 
-            /// The response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7), of a point in
-            /// the `state` of the last step, which has the law's variables first; a graded law answers through
-            /// [`Material::at`] only, and elastically here.
+            /// Computes the response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7), from
+            /// the `state` of the last step, in which the variables of the law come first. Call it for graded laws
+            /// through [`Material::at`] only; here their response is elastic.
             ///
             /// # Errors
-            /// When `b_trial` has a component that is not finite, or an eigenvalue that is not positive.
-            // Always inlined: who wants the stress only does not pay for the rest of the response.
+            /// If `b_trial` has a component that is not finite, or an eigenvalue that is not positive.
+            // Always inlined, so that callers that need only the stress do not compute the rest.
             #[inline(always)]
             pub fn respond(&self, b_trial: &Symmetric, state: &[f64]) -> Result<Response, MaterialError> {
                 let spectrum = Spectrum::of(b_trial)?;
@@ -270,7 +272,7 @@ macro_rules! laws {
                 }
             }
 
-            /// `D_AB = ∂τ_A/∂ε_B`, Pa.
+            /// Returns `D_AB = ∂τ_A/∂ε_B` (Pa).
             pub fn tangent(&self, moduli: Moduli) -> Tensor {
                 match self {
                     Self::Elastic => moduli.tangent(),
@@ -278,7 +280,7 @@ macro_rules! laws {
                 }
             }
 
-            /// See [`Law::secant_modulus`]; 2μ if elastic.
+            /// Returns the secant modulus, see [`Law::secant_modulus`]; 2μ if elastic.
             pub fn secant_modulus(&self, moduli: Moduli, tau: f64, eps: f64) -> f64 {
                 match self {
                     Self::Elastic => 2.0 * moduli.mu,
@@ -286,7 +288,7 @@ macro_rules! laws {
                 }
             }
 
-            /// Whether the elastic part of the stress is linear in the strain, the same at all stresses.
+            /// Returns whether the elastic part is linear, the same at all stresses.
             #[inline]
             pub fn is_linear(&self) -> bool {
                 match self {
@@ -295,7 +297,7 @@ macro_rules! laws {
                 }
             }
 
-            /// See [`Law::elastic_strain`].
+            /// Returns the principal elastic strains, see [`Law::elastic_strain`].
             pub fn elastic_strain(&self, moduli: Moduli, tau: [f64; 3]) -> [f64; 3] {
                 match self {
                     Self::Elastic => moduli.strain(tau),
@@ -303,7 +305,7 @@ macro_rules! laws {
                 }
             }
 
-            /// See [`Law::elastic_moduli`].
+            /// Returns the elastic moduli, see [`Law::elastic_moduli`].
             pub fn elastic_moduli(&self, moduli: Moduli) -> Moduli {
                 match self {
                     Self::Elastic => moduli,
@@ -311,7 +313,7 @@ macro_rules! laws {
                 }
             }
 
-            /// See [`Law::elastic_energy`].
+            /// Returns the elastic energy, see [`Law::elastic_energy`].
             pub fn elastic_energy(&self, moduli: Moduli, eps: [f64; 3]) -> f64 {
                 match self {
                     Self::Elastic => moduli.energy(eps),
@@ -319,7 +321,7 @@ macro_rules! laws {
                 }
             }
 
-            /// Puts the state after the return in the place of that before it.
+            /// Replaces the state before the return by that after it.
             pub fn advance(&self, state: &mut [f64]) {
                 match self {
                     Self::Elastic => {}
@@ -331,26 +333,26 @@ macro_rules! laws {
 }
 
 laws! {
-    /// Elastic at any strain.
+    /// Linear elasticity in logarithmic strain.
     hencky::Hencky,
-    /// Elastic, perfectly plastic with friction, dilation and cohesion.
+    /// Perfect plasticity with friction, dilation and cohesion.
     mohr_coulomb::MohrCoulomb,
-    /// Mohr-Coulomb's strength with a cone in the place of its pyramid.
+    /// Drucker-Prager cone fitted to Mohr-Coulomb strength.
     drucker_prager::DruckerPrager,
-    /// Elastic, plastic without friction, hardening linearly.
+    /// Frictionless plasticity with linear hardening.
     von_mises::VonMises,
-    /// Mohr-Coulomb's strength that follows the plastic strain.
+    /// Mohr-Coulomb strength that depends on plastic strain.
     softening::SofteningMohrCoulomb,
-    /// Elastic by the pressure, plastic by the largest that it has seen: modified Cam-clay.
+    /// Modified Cam-clay: pressure-dependent elasticity, hardening by plastic compression.
     cam_clay::CamClay,
-    /// Dense granular flow whose friction grows with the rate of shear.
+    /// Dense granular flow with friction that increases with the shear rate.
     mu_i::MuI,
 }
 
-/// Numbers of state of one law at most.
+/// Largest number of state variables of a law.
 pub const MOST_STATE: usize = 8;
 
-/// Numbers of state that the points of these materials carry.
+/// Returns the number of state variables that points of these materials store.
 pub fn state_width<'a>(materials: impl IntoIterator<Item = &'a Material>) -> usize {
     materials
         .into_iter()
@@ -360,7 +362,7 @@ pub fn state_width<'a>(materials: impl IntoIterator<Item = &'a Material>) -> usi
 }
 
 impl Material {
-    /// The law of a point that was placed at `height` (m from the grid's lower corner).
+    /// Returns the law of a point that was placed at `height` (m from the lower corner of the grid).
     #[inline]
     pub fn at(&self, height: f64) -> Cow<'_, Self> {
         match self {
@@ -369,7 +371,7 @@ impl Material {
         }
     }
 
-    /// Young's modulus at `height` over that of [`Material::elastic`].
+    /// Returns Young's modulus at `height`, relative to that of [`Material::elastic`].
     #[inline]
     pub fn relative_stiffness(&self, height: f64) -> f64 {
         if let Self::Graded(law) = self {
@@ -379,39 +381,39 @@ impl Material {
         }
     }
 
-    /// Young's modulus at a height, Pa.
+    /// Returns Young's modulus at a height (Pa).
     pub fn young_at(&self, height: f64) -> f64 {
         self.elastic().young * self.relative_stiffness(height)
     }
 
-    /// Whether parameters depend on the height.
+    /// Returns whether parameters depend on the height.
     pub fn is_graded(&self) -> bool {
         matches!(self, Self::Graded(_))
     }
 
-    /// Elastic energy per reference volume of the state `b_e`, J/m3; of a graded law through [`Material::at`] only.
+    /// Returns the elastic energy per reference volume for `b_e` (J/m3). Call it for graded laws through
+    /// [`Material::at`] only.
     ///
     /// # Errors
-    /// When `b_e` is not finite or not positive definite.
+    /// If `b_e` is not finite or not positive definite.
     pub fn elastic_energy(&self, b_e: &Symmetric) -> Result<f64, MaterialError> {
         Ok(self.energy(Spectrum::of(b_e)?.eps))
     }
 }
 
-/// Why a material has no response.
+/// Reason why a material has no response.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum MaterialError {
     /// A component of the trial tensor is NaN, infinite or beyond 1e100.
     #[error("the deformation in this step is not finite (elastic left Cauchy-Green tensor {0:?})")]
     NotFinite([f64; 6]),
-    /// An eigenvalue of the trial tensor is not positive, or below 1e-100: the step has turned the material inside out.
+    /// An eigenvalue of the trial tensor is not positive, or below 1e-100: the step inverts the material.
     #[error(
         "the step turns the material inside out (smallest eigenvalue of the elastic left Cauchy-Green tensor {0:e}, must \
          be positive)"
     )]
     NotPositive(f64),
-    /// The law has no stress for these principal strains, or no state: a pressure beyond all numbers, or one that was
-    /// never given at the start.
+    /// The law has no finite stress at these principal strains, or no initial state was set.
     #[error("the material model has no finite stress at the principal elastic strains {0:?}")]
     NoStress([f64; 3]),
 }

@@ -1,51 +1,50 @@
 //! Options of the nonlinear solution: methods and convergence criteria (chapter 5 of the theory manual).
 
-/// How equilibrium is sought.
+/// Method of the equilibrium iteration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Nonlinear {
-    /// All recent secants, and Newton's method where they stall.
+    /// Quasi-Newton method with all recent secants, followed by Newton's method if it stalls.
     #[default]
     Auto,
-    /// One quasi-Newton method, to the limit of iterations.
+    /// One quasi-Newton method up to the limit of iterations.
     QuasiNewton(QuasiNewton),
     /// Newton's method from the start.
     Newton,
 }
 
-/// What gave the direction of one iteration.
+/// Method that gave the direction of one iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Secants on the stiffness at `u`, where they start.
+    /// Quasi-Newton method with the stiffness at the initial state.
     QuasiNewton(QuasiNewton),
-    /// The complete derivative.
+    /// Newton's method with the consistent tangent.
     Newton,
 }
 
-/// How the stiffness K_0 is corrected from iteration to iteration.
+/// Correction of the stiffness K_0 from iteration to iteration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum QuasiNewton {
-    /// All recent secants in the least-squares sense (Anderson, 1965).
+    /// Least-squares fit of all recent secants (Anderson, 1965).
     #[default]
     Multisecant,
-    /// The paper's rank-one update (Broyden, 1965).
+    /// Rank-one update of the paper (Broyden, 1965).
     Broyden,
 }
 
-/// When a step is in equilibrium: both measures must hold.
+/// Convergence criteria of a step. Both residuals must be below their tolerances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criteria {
-    /// |du_k . f_k| / |du_0 . f_0| (step 9)
+    /// Tolerance of the energy residual |du_k . f_k| / |du_0 . f_0| (step 9 of the paper).
     pub energy: f64,
-    /// |f_oob| / max(|f_ext|, |f_int|, |M a|, |reaction|): the energy product alone is no norm. Of all nodes, and of
-    /// those that one material alone touches
+    /// Tolerance of the force residual |f_oob| / max(|f_ext|, |f_int|, |M a|, |reaction|), which is needed because the
+    /// energy product is no norm. It is evaluated for all nodes, and for the nodes of each material alone.
     pub force: f64,
-    /// quasi-Newton iterations of one attempt
+    /// Limit of quasi-Newton iterations of one attempt.
     pub max_iterations: usize,
 }
 
 impl Criteria {
-    /// Both measures beside their tolerances, in words; the force measure with the number of the material that it is
-    /// of.
+    /// Formats both residuals with their tolerances, the force residual with the number of its material.
     pub fn judged(&self, energy: f64, force: f64, material: Option<usize>) -> String {
         let of = material.map_or_else(String::new, |material| format!(" of material {material}"));
         format!(
@@ -55,20 +54,18 @@ impl Criteria {
         )
     }
 
-    /// What the measure of the water must be below, where it flows: |R| over the largest of what is stored, flows and
-    /// leaves.
+    /// Returns the tolerance of the water residual |R| / max(storage, flow, water through surfaces).
     pub fn water(&self) -> f64 {
         WATER.min(self.force)
     }
 
-    /// That measure beside its tolerance, in words that follow those of [`Criteria::judged`].
+    /// Formats the water residual with its tolerance, as a continuation of [`Criteria::judged`].
     pub fn judged_water(&self, water: f64) -> String {
         format!(", water residual {}", against(water, self.water()))
     }
 }
 
-/// Largest part of the water that is stored, flows or leaves that may be out of balance: the forces' tolerance where
-/// that is smaller.
+/// Largest tolerance of the water residual; the tolerance of forces applies if it is smaller.
 const WATER: f64 = 1e-4;
 
 fn against(measure: f64, tolerance: f64) -> String {

@@ -26,67 +26,67 @@ use std::marker::PhantomData;
 /// Whether inertia acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Regime {
-    /// Inertia, integrated as the model's `newmark` says; time in s.
+    /// Inertia acts and is integrated with the parameters `newmark` of the model; time in s.
     Dynamic,
-    /// No mass terms at all; time is a pseudo-time.
+    /// No inertia; time is a pseudo-time.
     QuasiStatic,
 }
 
-/// What the averages of Eqs 16-20 are weighted with.
+/// Weights of the averages in Eqs 16-20 of Xie et al. (2023).
 ///
-/// Where the density is the same everywhere both are one; where it is not, dilations are averaged better by volume.
+/// With uniform density both choices are equivalent; otherwise dilations are averaged more accurately by volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AverageWeight {
-    /// The points' mass, as in the paper.
+    /// Mass of the points, as in the paper.
     Mass,
-    /// The points' reference volume, where a scene has materials of different density, or weightless ones.
+    /// Reference volume of the points, for cases with different densities or massless materials.
     Volume,
 }
 
-/// Which velocity points within a cell of a fixed face keep.
+/// Velocity of points within one cell of a fixed face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WallVelocity {
-    /// Their own, by Newmark's formula: the paper's.
+    /// Velocity of the point by Newmark's formula, as in the paper.
     #[default]
     Own,
-    /// It relaxes to that of their motion, see [`walls`](crate::step::walls).
+    /// Velocity that relaxes to the rate of the displacement, see [`walls`](crate::step::walls).
     Relaxed,
 }
 
-/// Body force per mass that grows linearly over a ramp: weight along the last axis, and across it in a pseudo-static
-/// analysis the inertia of an earthquake (Terzaghi, 1950).
+/// Body force per mass that grows linearly during a ramp: weight along the last axis; in pseudo-static analyses also
+/// horizontal inertia of an earthquake (Terzaghi, 1950).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gravity<const D: usize> {
-    /// m/s2  when fully applied
+    /// Final acceleration (m/s2).
     pub acceleration: Vector<D>,
-    /// s (or pseudo-time) over which it grows; 0: at once
+    /// Duration of the ramp (s or pseudo-time); 0: no ramp.
     pub ramp: f64,
-    /// Whether the vertical part acts in full from time 0, in equilibrium with a stress at the start. The ramp is then
-    /// that of the horizontal part alone.
+    /// Whether the vertical part acts in full from time 0, in equilibrium with the initial stress. The ramp then
+    /// applies to the horizontal part only.
     pub starts_vertical: bool,
 }
 
 impl<const D: usize> Gravity<D> {
-    /// Acceleration at time `t`, m/s2.
+    /// Returns the acceleration at time `t` (m/s2).
     pub fn at(&self, t: f64) -> Vector<D> {
         let mut acceleration = self.acceleration * self.ramped(t);
         acceleration[D - 1] = self.acceleration[D - 1] * self.grown(t);
         acceleration
     }
 
-    /// The same without its horizontal part.
+    /// Returns the same gravity without its horizontal part.
     pub fn vertical(&self) -> Self {
         let mut acceleration = Vector::zeros();
         acceleration[D - 1] = self.acceleration[D - 1];
         Self { acceleration, ..*self }
     }
 
-    /// Part of the vertical acceleration that acts at time `t`.
+    /// Returns the fraction of the vertical acceleration that acts at time `t`.
     pub fn grown(&self, t: f64) -> f64 {
         if self.starts_vertical { 1.0 } else { self.ramped(t) }
     }
 
-    /// Part of the ramp that is over at time `t`.
+    /// Returns the fraction of the ramp at time `t`.
     fn ramped(&self, t: f64) -> f64 {
         if self.ramp > 0.0 {
             (t / self.ramp).clamp(0.0, 1.0)
@@ -96,26 +96,28 @@ impl<const D: usize> Gravity<D> {
     }
 }
 
-/// Motion of the ground, in whose frame the scene is: every mass feels the opposite of its acceleration.
+/// Prescribed ground motion. The case is described in the frame of the ground, so each mass is subject to the opposite
+/// acceleration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shaking<const D: usize> {
-    /// s, increasing, and m/s2; linear between, from zero at time 0 to the first row, zero after the last
+    /// Rows of time (s, increasing) and acceleration (m/s2): linear in between, from zero at time 0 to the first row,
+    /// zero after the last.
     pub rows: Vec<(f64, Vector<D>)>,
 }
 
 impl<const D: usize> Shaking<D> {
-    /// Acceleration of the ground at time `t`, m/s2.
+    /// Returns the acceleration of the ground at time `t` (m/s2).
     pub fn at(&self, t: f64) -> Vector<D> {
         between(&self.rows, Vector::zeros(), t).unwrap_or_else(Vector::zeros)
     }
 }
 
-/// A scene, ready to be stepped.
+/// Case in the form that the steps use.
 #[derive(Clone, Debug)]
 pub struct Model<K, const D: usize> {
-    /// Grid, seen through this rank's window.
+    /// Grid, restricted to the window of this rank.
     pub grid: Grid<D>,
-    /// Materials by the number that the points carry.
+    /// Materials, by the number that points store.
     pub materials: Vec<Material>,
     /// Dynamic or quasi-static.
     pub regime: Regime,
@@ -123,7 +125,7 @@ pub struct Model<K, const D: usize> {
     pub newmark: Newmark,
     /// Mass matrix in dynamics.
     pub mass: MassMatrix,
-    /// Which velocity points near fixed faces keep in dynamics.
+    /// Velocity of points near fixed faces in dynamics.
     pub wall_velocity: WallVelocity,
     /// Weights of the averages.
     pub weighting: AverageWeight,
@@ -133,32 +135,32 @@ pub struct Model<K, const D: usize> {
     pub shaking: Option<Shaking<D>>,
     /// Supports at the faces of the grid.
     pub boundary: Boundary<D>,
-    /// Section 2.3.
+    /// Method against volumetric locking (section 2.3 of the paper).
     pub stabilisation: Stabilisation,
-    /// Materials that averages may mix.
+    /// Groups of materials that averages may mix.
     pub groups: Groups,
-    /// What points weigh in the integrals of the stress.
+    /// Weights of the points in integrals of the stress.
     pub quadrature: Quadrature,
-    /// Whether functions of nearly empty cells are tied to those of full ones.
+    /// Whether functions of nearly empty cells are extrapolated from those of full cells.
     pub extended_splines: ExtendedSplines,
-    /// Soft background in occupied cells, if any.
+    /// Fictitious soft stiffness in occupied cells, if any.
     pub background: Option<Background>,
-    /// Convergence.
+    /// Convergence criteria.
     pub criteria: Criteria,
-    /// s  retardation time of every material, in dynamics; empty: no damping
+    /// Retardation time of every material in dynamics (s); empty without damping.
     pub damping: Vec<f64>,
-    /// How equilibrium is sought.
+    /// Method of the equilibrium iteration.
     pub nonlinear: Nonlinear,
-    /// Water in the ground, if any.
+    /// Pore water, if any.
     pub water: Option<Water<D>>,
-    /// Whether every step reports where its energy went.
+    /// Whether every step reports its energy balance.
     pub balances_energy: bool,
-    /// The geometry, a type without data.
+    /// Geometry, a type without data.
     pub kinematics: PhantomData<K>,
 }
 
 impl<K: Kinematics<D>, const D: usize> Model<K, D> {
-    /// The constitution's answer to the trial b^e of point `p`, which is in the state of the last step.
+    /// Computes the constitutive response of point `p` to the trial b^e, from the state of the last step.
     #[inline(always)]
     pub fn respond(&self, points: &Points<D>, p: usize, b_trial: &Symmetric) -> Result<Response, MaterialError> {
         match &self.materials[usize::from(points.material[p])] {
@@ -167,13 +169,14 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         }
     }
 
-    /// Elastic energy of point `p` per reference volume in the state `b_e`, J/m3; not a number where that is no strain.
+    /// Returns the elastic energy of point `p` per reference volume for `b_e` (J/m3); NaN if `b_e` is no admissible
+    /// strain.
     pub fn elastic_energy(&self, points: &Points<D>, p: usize, b_e: &Symmetric) -> f64 {
         let material = self.materials[usize::from(points.material[p])].at(points.height(p));
         material.elastic_energy(b_e).unwrap_or(f64::NAN)
     }
 
-    /// Force per mass at time `t`, m/s2: gravity less the ground's acceleration; `None` without either.
+    /// Returns the force per mass at time `t`, gravity less ground acceleration (m/s2); `None` without either.
     pub fn body_force(&self, t: f64) -> Option<Vector<D>> {
         let gravity = self.gravity.map(|gravity| gravity.at(t));
         let shaking = self.shaking.as_ref();
@@ -183,7 +186,8 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         }
     }
 
-    /// Still water at time `t`, if there is any: it weighs as much as gravity has grown, and nothing without.
+    /// Returns the hydrostatic pressure field at time `t`, if any. Its unit weight grows with gravity, and is 0 without
+    /// gravity.
     pub fn still_water(&self, t: f64) -> Option<StillWater<'_>> {
         let Water {
             unit_weight, ambient, ..
@@ -192,18 +196,18 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         Some(StillWater::new(ambient, unit_weight * grown, t))
     }
 
-    /// Whether the mass of point `p` follows the water in its pores: water that flows changes it by itself.
+    /// Returns whether the mass of point `p` follows its water content, as in coupled flow.
     pub fn follows_water(&self, points: &Points<D>, p: usize) -> bool {
         points.pore_pressure.is_some() && self.flows_at(points, p)
     }
 
-    /// Whether water flows in the material of point `p`.
+    /// Returns whether the material of point `p` has pore-water flow.
     fn flows_at(&self, points: &Points<D>, p: usize) -> bool {
         let flow = self.water.as_ref().and_then(|water| water.flow.as_ref());
         flow.is_some_and(|flow| flow.soils[usize::from(points.material[p])].is_some())
     }
 
-    /// The model in a step of the length `dt`, s: another one only where a strength follows the rate.
+    /// Returns the model in a step of length `dt` (s); a modified copy only if a law depends on the strain rate.
     pub fn over(&self, dt: f64) -> Cow<'_, Self>
     where
         K: Clone,
@@ -211,29 +215,29 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         if self
             .materials
             .iter()
-            .all(|material| material.at_time_step(dt).is_none())
+            .all(|material| material.with_time_step(dt).is_none())
         {
             return Cow::Borrowed(self);
         }
         let materials = self.materials.iter();
-        let materials = materials.map(|material| material.at_time_step(dt).unwrap_or_else(|| material.clone()));
+        let materials = materials.map(|material| material.with_time_step(dt).unwrap_or_else(|| material.clone()));
         Cow::Owned(Self {
             materials: materials.collect(),
             ..self.clone()
         })
     }
 
-    /// Largest Young's modulus, Pa.
+    /// Returns the largest Young's modulus (Pa).
     pub fn stiffest(&self) -> f64 {
         self.materials.iter().map(|m| m.elastic().young).fold(0.0, f64::max)
     }
 
-    /// Young's modulus of point `p`, Pa.
+    /// Returns Young's modulus of point `p` (Pa).
     pub fn young(&self, points: &Points<D>, p: usize) -> f64 {
         self.materials[usize::from(points.material[p])].young_at(points.height(p))
     }
 
-    /// kg m/s  mass of point `p` times the speed of compression waves, and of shear waves, of its elastic stiffness.
+    /// Returns the mass of point `p` times the speed of its elastic compression and shear waves (kg m/s).
     pub fn impedance(&self, points: &Points<D>, p: usize) -> [f64; 2] {
         let material = &self.materials[usize::from(points.material[p])];
         let Moduli { lambda, mu } = material.elastic().moduli();
@@ -241,7 +245,7 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         [lambda + 2.0 * mu, mu].map(|modulus| (points.mass[p] * points.volume[p] * relative * modulus).sqrt())
     }
 
-    /// The model as nothing moves yet, whatever the ground will do: quasi-static, absorbing faces hold.
+    /// Returns the model at rest: quasi-static, without ground motion, and with absorbing faces that carry static load.
     pub fn at_rest(&self) -> Self
     where
         K: Clone,
@@ -255,8 +259,8 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         }
     }
 
-    /// The model as at rest, with the pore pressures of the start: nothing flows before the first step, and ground does
-    /// not hang from what lies on it.
+    /// Returns the model for the initial equilibrium: at rest, with constant pore pressures, and without the footings
+    /// that rest on the ground, so that it cannot hang from them.
     pub fn settling(&self) -> Self
     where
         K: Clone,
@@ -276,8 +280,8 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         model
     }
 
-    /// How far point `p`, as it is deformed, spans up and down for still water. With pressures of its own it has the
-    /// still water's at its place, as their sum is what acts.
+    /// Returns the vertical extent of the deformed point `p` for hydrostatic pressure. With coupled flow it is zero:
+    /// the hydrostatic pressure is evaluated at the point, as is the excess pressure added to it.
     pub fn span(&self, points: &Points<D>, p: usize) -> Span {
         if self.flows_at(points, p) {
             return Span::default();
@@ -302,7 +306,7 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         }
     }
 
-    /// What shows how far the points reach.
+    /// Returns the particle domains of the points.
     pub fn reaching<'a>(&'a self, points: &'a Points<D>) -> ParticleDomains<'a, D> {
         ParticleDomains {
             grid: &self.grid,
@@ -312,7 +316,7 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
         }
     }
 
-    /// Whether all points have one Young's modulus.
+    /// Returns whether all points have the same Young's modulus.
     pub fn is_uniformly_stiff(&self) -> bool {
         let mut materials = self.materials.iter();
         materials.all(|m| !matches!(m, Material::Graded(_)) && m.elastic().young == self.stiffest())
@@ -320,7 +324,7 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
 }
 
 impl<K, const D: usize> Model<K, D> {
-    /// All that has points on surfaces of bodies.
+    /// Returns all surfaces of bodies with surface points.
     pub fn surfaces(&self) -> Surfaces<'_, D> {
         let flow = self.water.as_ref().and_then(|water| water.flow.as_ref());
         let water = flow
@@ -335,7 +339,7 @@ impl<K, const D: usize> Model<K, D> {
         }
     }
 
-    /// What the nodes' own weights are made of: mass in dynamics.
+    /// Returns the weights of the nodes: mass in dynamics, else as `weighting`.
     pub fn inertial_weighting(&self) -> AverageWeight {
         if self.regime == Regime::Dynamic {
             AverageWeight::Mass
@@ -344,7 +348,7 @@ impl<K, const D: usize> Model<K, D> {
         }
     }
 
-    /// The points in the groups that averages may mix.
+    /// Returns the points in the groups of materials that averages may mix.
     pub fn grouped<'a>(&'a self, points: &'a Points<D>) -> GroupedPoints<'a> {
         GroupedPoints::by(&self.groups, &points.material)
     }

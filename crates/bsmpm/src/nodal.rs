@@ -2,36 +2,36 @@
 
 use std::ops::Range;
 
-/// The order of nodal arrays with `C` numbers a node.
+/// Order of nodal arrays with `C` numbers per node.
 #[derive(Clone, Copy, Debug)]
 pub struct Nodal<const C: usize>;
 
 impl<const C: usize> Nodal<C> {
-    /// Place of the number `component` of a node.
+    /// Returns the index of the number `component` of a node.
     #[inline]
     pub fn at(node: usize, component: usize) -> usize {
         node * C + component
     }
 
-    /// Places of all numbers of a node.
+    /// Returns the indices of all numbers of a node.
     #[inline]
     pub fn of(node: usize) -> Range<usize> {
         node * C..node * C + C
     }
 
-    /// Places of all numbers of some nodes.
+    /// Returns the indices of all numbers of a range of nodes.
     #[inline]
     pub fn all(nodes: &Range<usize>) -> Range<usize> {
         nodes.start * C..nodes.end * C
     }
 
-    /// The node whose number stands at a place.
+    /// Returns the node of an index.
     #[inline]
     pub fn node(place: usize) -> usize {
         place / C
     }
 
-    /// The node whose number stands at a place, and which of its numbers it is.
+    /// Returns the node of an index, and the component.
     #[inline]
     pub fn split(place: usize) -> (usize, usize) {
         (place / C, place % C)

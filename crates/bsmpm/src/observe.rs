@@ -21,15 +21,16 @@ use crate::points::Points;
 use crate::tensor::Vector;
 use crate::threads;
 
-/// Bisections of a percentile: the interval shrinks to 1e-15 of the grid.
+/// Number of bisections for a percentile: the interval shrinks to 1e-15 of the largest coordinate.
 const BISECTIONS: usize = 50;
 
-/// Largest coordinate of any point of a part along `axis`, from the grid's lower corner (m); 0 without points.
+/// Returns the largest coordinate along `axis` of the points of a part, from the grid's lower corner (m); 0 without
+/// points. One reduction over all ranks.
 pub fn farthest<const D: usize>(points: &Points<D>, part: &Part, axis: usize, halo: &dyn Halo) -> f64 {
     largest(points, part, halo, |p| points.x[p][axis])
 }
 
-/// Largest value among the points of a part, 0 without any that is larger.
+/// Returns the largest value of the points of a part, or 0 if none is positive. One reduction over all ranks.
 fn largest<const D: usize>(
     points: &Points<D>,
     part: &Part,
@@ -43,7 +44,8 @@ fn largest<const D: usize>(
     largest[0]
 }
 
-/// Coordinate along `axis` (m) below which `percentile` per cent of the points of a part lie.
+/// Returns the coordinate along `axis` below which `percentile` per cent of the points of a part lie (m). 52 reductions
+/// over all ranks.
 pub fn percentile<const D: usize>(
     points: &Points<D>,
     part: &Part,
@@ -69,13 +71,13 @@ pub fn percentile<const D: usize>(
     upper
 }
 
-/// Largest displacement of any point of a part since displacements were last set to zero, m.
+/// Returns the largest displacement of the points of a part since displacements were last set to zero (m).
 pub fn largest_displacement<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> f64 {
     largest(points, part, halo, |p| points.displacement(p).norm())
 }
 
-/// Largest coordinate along the last axis (m) of the points of a part that lie within half a cell of `x` along axis 0
-/// (m); 0 if there are none.
+/// Returns the largest coordinate along the last axis (m) of the points of a part within half a cell of `x` (m) along
+/// axis 0; 0 if there are none.
 pub fn surface<const D: usize>(grid: &Grid<D>, points: &Points<D>, part: &Part, x: f64, halo: &dyn Halo) -> f64 {
     let axis = &grid.axes()[0];
     let half = axis
@@ -88,12 +90,13 @@ pub fn surface<const D: usize>(grid: &Grid<D>, points: &Points<D>, part: &Part, 
     })
 }
 
-/// Largest displacement of any point of a part along the last axis, m; 0 if none has risen.
+/// Returns the largest displacement of the points of a part along the last axis (m); 0 if none has risen.
 pub fn heave<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> f64 {
     largest(points, part, halo, |p| points.displacement(p)[D - 1])
 }
 
-/// Sums over the points of a part: the same bits however they are distributed and ordered.
+/// Returns sums over the points of a part, bitwise identical for any distribution and order of the points. One
+/// reduction over all ranks.
 fn total<const D: usize, const N: usize>(
     points: &Points<D>,
     part: &Part,
@@ -107,13 +110,13 @@ fn total<const D: usize, const N: usize>(
     std::array::from_fn(|k| sums[k])
 }
 
-/// Mass of the points of a part, kg.
+/// Returns the mass of the points of a part (kg).
 pub fn mass<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> f64 {
     let [mass] = total(points, part, halo, |p, _| points.mass[p]);
     mass
 }
 
-/// Momentum of the points of a part, kg m/s; zero in quasi-static scenes.
+/// Returns the momentum of the points of a part (kg m/s); zero in quasi-static cases.
 pub fn momentum<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> Vector<D> {
     let Some(motion) = &points.motion else {
         return Vector::zeros();
@@ -121,14 +124,14 @@ pub fn momentum<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo
     Vector::from(total(points, part, halo, |p, axis| motion.v[p][axis] * points.mass[p]))
 }
 
-/// Centre of mass of the points of a part, from the grid's lower corner (m); `None` without mass.
+/// Returns the centre of mass of the points of a part, from the grid's lower corner (m); `None` without mass.
 pub fn centre_of_mass<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> Option<Vector<D>> {
     let moment: [f64; D] = total(points, part, halo, |p, axis| points.mass[p] * points.x[p][axis]);
     let mass = mass(points, part, halo);
     (mass > 0.0).then(|| Vector::from(moment) / mass)
 }
 
-/// Kinetic energy of the points of a part, J: sum m v^2 / 2; zero in quasi-static scenes.
+/// Returns the kinetic energy of the points of a part, sum m v^2 / 2 (J); zero in quasi-static cases.
 pub fn kinetic_energy<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> f64 {
     let Some(motion) = &points.motion else { return 0.0 };
     let [energy] = total(points, part, halo, |p, _| {
@@ -137,15 +140,15 @@ pub fn kinetic_energy<const D: usize>(points: &Points<D>, part: &Part, halo: &dy
     energy
 }
 
-/// Mean Cauchy stress of the points of a part by components XX YY ZZ XY YZ XZ, Pa, weighted with their present volumes;
-/// zero without points.
+/// Returns the mean Cauchy stress of the points of a part, weighted with their current volumes (Pa, components XX YY ZZ
+/// XY YZ XZ); zero without points.
 pub fn mean_stress<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> [f64; 6] {
     let means: [f64; 7] = means(points, part, halo, |p, k| points.sigma.at(p).0[k]);
     std::array::from_fn(|k| means[k])
 }
 
-/// Mean displacement of the points of a part since displacements were last set to zero, m, weighted with their present
-/// volumes; zero without points.
+/// Returns the mean displacement of the points of a part since displacements were last set to zero, weighted with their
+/// current volumes (m); zero without points.
 pub fn mean_displacement<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> Vector<D> {
     let along: [f64; 4] = means(points, part, halo, |p, axis| {
         if axis < D { points.displacement(p)[axis] } else { 0.0 }
@@ -153,8 +156,8 @@ pub fn mean_displacement<const D: usize>(points: &Points<D>, part: &Part, halo: 
     Vector::from_fn(|axis, _| along[axis])
 }
 
-/// Mean velocity of the points of a part, m/s, weighted with their present volumes; zero without points and in
-/// quasi-static scenes.
+/// Returns the mean velocity of the points of a part, weighted with their current volumes (m/s); zero without points
+/// and in quasi-static cases.
 pub fn mean_velocity<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> Vector<D> {
     let Some(motion) = &points.motion else {
         return Vector::zeros();
@@ -168,15 +171,15 @@ pub fn mean_velocity<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn
     Vector::from_fn(|axis, _| along[axis])
 }
 
-/// Accumulated plastic strain of the points of a part: its mean, weighted with their present volumes, and the largest;
-/// zero without points.
+/// Returns the accumulated plastic strain of the points of a part (-): the mean, weighted with their current volumes,
+/// and the maximum; zero without points.
 pub fn plastic_strain<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> [f64; 2] {
     let [mean, _] = means(points, part, halo, |p, _| points.eps_p[p]);
     [mean, largest(points, part, halo, |p| points.eps_p[p])]
 }
 
-/// Means of `N - 1` values over the points of a part, weighted with their present volumes, and a last number that is
-/// none; zero without points.
+/// Returns the means of `N - 1` values over the points of a part, weighted with their current volumes; zero without
+/// points. The last number is not a mean.
 fn means<const D: usize, const N: usize>(
     points: &Points<D>,
     part: &Part,
@@ -190,15 +193,15 @@ fn means<const D: usize, const N: usize>(
     sums.map(|sum| if sums[N - 1] > 0.0 { sum / sums[N - 1] } else { 0.0 })
 }
 
-/// Whether a part has any point.
+/// Returns whether a part has any points. One reduction over all ranks.
 pub fn is_occupied<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> bool {
     let mut any = [if part.of(points).next().is_some() { 1.0 } else { 0.0 }];
     halo.all_reduce_max(&mut any);
     any[0] > 0.0
 }
 
-/// Angular momentum of the points of a part about `place` (m, from the grid's lower corner): sum m (x - place) x v
-/// along the axes, in a plane along its normal alone, kg m2/s; zero in quasi-static scenes.
+/// Returns the angular momentum of the points of a part about `place` (m, from the grid's lower corner): sum m (x -
+/// place) x v (kg m2/s). In a plane only the component along its normal is non-zero. Zero in quasi-static cases.
 pub fn angular_momentum<const D: usize>(
     points: &Points<D>,
     part: &Part,
@@ -218,8 +221,8 @@ pub fn angular_momentum<const D: usize>(
     })
 }
 
-/// Id of the point nearest to `at` (m, from the grid's lower corner) among those whose ids are `wanted`; of equally
-/// near ones the smallest id.
+/// Returns the id of the point nearest to `at` (m, from the grid's lower corner) among those for which `wanted` returns
+/// true. The smallest id decides between equal distances.
 pub fn nearest<const D: usize>(
     points: &Points<D>,
     at: &Vector<D>,
@@ -239,7 +242,8 @@ pub fn nearest<const D: usize>(
     )
 }
 
-/// Id of the point whose `distance` is the smallest, if that is finite; of equally near ones the smallest id.
+/// Returns the id of the point with the smallest `distance`, if that is finite. The smallest id decides between equal
+/// distances. Two reductions over all ranks.
 fn nearest_by<const D: usize>(points: &Points<D>, distance: impl Fn(usize) -> f64, halo: &dyn Halo) -> Option<u64> {
     let mut closest = [-(0..points.len()).map(&distance).fold(f64::INFINITY, f64::min)];
     halo.all_reduce_max(&mut closest);
@@ -251,23 +255,24 @@ fn nearest_by<const D: usize>(points: &Points<D>, distance: impl Fn(usize) -> f6
     id[0].is_finite().then(|| -id[0] as u64)
 }
 
-/// Displacement (m) of the material that was at `place` (m, from the grid's lower corner) before anything moved, by the
-/// motion about the point `p` near it: u_p + (F_p - I)(X - X_p), off by the curvature of the motion times half the
-/// squared distance. The displacement of the point itself is off by the strain times the distance.
+/// Returns the displacement (m) of the material that was initially at `place` (m, from the grid's lower corner). It is
+/// extrapolated from the point `p`: u_p + (F_p - I)(X - X_p). The error is the curvature of the displacement times half
+/// the squared distance.
 pub fn displacement<const D: usize>(points: &Points<D>, p: usize, place: &Vector<D>) -> Vector<D> {
     let apart = place - (points.x[p] - points.u[p]);
     points.u[p] + points.F.at(p).fixed_view::<D, D>(0, 0) * apart - apart
 }
 
-/// Where the material is now (m, from the grid's lower corner) that was at `place` before anything moved, by the motion
-/// about the point that was the nearest to it then; `None` without points.
+/// Returns the current position (m, from the grid's lower corner) of the material that was initially at `place`. It is
+/// extrapolated from the point that was nearest initially; `None` without points.
 pub fn moved<const D: usize>(points: &Points<D>, place: &Vector<D>, halo: &dyn Halo) -> Option<Vector<D>> {
     let id = nearest_by(points, |p| (points.x[p] - points.u[p] - place).norm_squared(), halo)?;
     let along: [f64; D] = at_point(points, id, halo, |p| displacement(points, p, place).into());
     Some(place + Vector::from(along))
 }
 
-/// A vector or tensor of the point `id`, wherever it is: `value` is called on the rank that has it.
+/// Returns a vector or tensor of the point `id`, on whichever rank it is: `value` is called on that rank. One reduction
+/// over all ranks.
 pub fn at_point<const D: usize, const C: usize>(
     points: &Points<D>,
     id: u64,

@@ -18,22 +18,22 @@ use rayon::prelude::*;
 pub struct MappedPoints<'a, const D: usize> {
     /// Shape functions at the points.
     pub shape: &'a Shape<D>,
-    /// The points.
+    /// Material points.
     pub points: &'a Points<D>,
 }
 
-/// What a column is.
+/// Description of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ColumnInfo {
-    /// as checkpoints name it
+    /// Name in checkpoints.
     pub name: &'static str,
-    /// its unit, "-" for none
+    /// Unit, "-" for none.
     pub unit: &'static str,
-    /// as frames name it, if they show it
+    /// Name in frames, if shown.
     pub frame: Option<&'static str>,
 }
 
-/// The name of a column in checkpoints: that of its field, unless older checkpoints have another one.
+/// Name of a column in checkpoints: the field's, unless older checkpoints use another one.
 macro_rules! column_name {
     ($field:ident) => {
         stringify!($field)
@@ -43,8 +43,8 @@ macro_rules! column_name {
     };
 }
 
-/// The columns, each with its type, unit, name in frames, and what it starts from. Seeding, sorting, migration,
-/// checkpoints and frames walk this list, so that a new state variable is one line.
+/// List of the columns, each with type, unit, name in frames and initial value. Seeding, sorting, migration,
+/// checkpoints and frames use this list, so that a new state variable needs one line.
 macro_rules! columns {
     (
         every { $($(#[$doc:meta])+ $name:ident: $Type:ty, $unit:literal, $frame:expr, |$seed:ident| $start:expr;)+ }
@@ -53,37 +53,37 @@ macro_rules! columns {
         some { $($(#[$some_doc:meta])+
             $some:ident $(as $some_name:literal)?: $SomeType:ty, $some_unit:literal, $some_frame:expr, || $some_start:expr;)+ }
     ) => {
-        /// Velocity and acceleration; absent in quasi-static scenes.
+        /// Velocity and acceleration; absent in quasi-static cases.
         #[derive(Clone, Debug, Default, PartialEq)]
         pub struct Motion<const D: usize> {
             $($(#[$moving_doc])+ pub $moving: $MovingType,)+
         }
 
-        /// The material points of one rank. Read-only until a step is committed.
+        /// Material points of one rank, constant during the iterations of a step.
         #[derive(Clone, Debug, Default, PartialEq)]
         pub struct Points<const D: usize> {
             $($(#[$doc])+ pub $name: $Type,)+
-            /// velocity and acceleration
+            /// Velocity and acceleration.
             pub motion: Option<Motion<D>>,
             $($(#[$some_doc])+ pub $some: Option<$SomeType>,)+
-            /// state variables of the points' laws, if any law has some
+            /// State variables of the constitutive laws, if any.
             pub state: Option<Rows>,
-            /// what strips and loads carry on; no column: it is the same on every rank
+            /// State of footings and loads. It is no column, because it is the same on every rank.
             pub surface: Surface<D>,
-            /// the columns of the free field, in the order of the faces that have one; the same on every
-            /// rank, none before the first step
+            /// Soil columns of the free field, in the order of the faces that have one; the same on every rank, empty
+            /// before the first step.
             pub free_field: Vec<Points<D>>,
         }
 
         impl<const D: usize> Points<D> {
-            /// What the columns are; but for the laws' state, which has variables of its own.
+            /// Descriptions of all columns except the state of the laws, which has its own variables.
             pub const COLUMNS: &'static [ColumnInfo] = &[
                 $(ColumnInfo { name: stringify!($name), unit: $unit, frame: $frame },)+
                 $(ColumnInfo { name: stringify!($moving), unit: $moving_unit, frame: $moving_frame },)+
                 $(ColumnInfo { name: column_name!($some $($some_name)?), unit: $some_unit, frame: $some_frame },)+
             ];
 
-            /// Adds a stress-free point at rest or with its initial velocity, with every column that is there.
+            /// Adds a stress-free point, at rest or with its initial velocity, to every existing column.
             fn push(&mut self, seed: &Seed<D>) {
                 $({ let $seed = seed; self.$name.push($start); })+
                 if let Some(motion) = &mut self.motion {
@@ -95,8 +95,8 @@ macro_rules! columns {
                 self.state.iter_mut().for_each(Rows::push_zeros);
             }
 
-            /// No points, with room for the columns of these names: those that a scene does without are there if they
-            /// are named. `state`: numbers that the laws' state consists of.
+            /// Creates an empty set of points with the columns of these names; optional columns exist if they are
+            /// named. `state` is the number of state variables of the laws.
             pub fn holding(names: &[&str], state: usize) -> Self {
                 let has = |name| names.contains(&name);
                 Self {
@@ -107,7 +107,7 @@ macro_rules! columns {
                 }
             }
 
-            /// Every array once, by name.
+            /// Returns every array once, with its name.
             pub fn named_columns(&mut self) -> Vec<(&'static str, &mut dyn Column)> {
                 let mut columns: Vec<(&'static str, &mut dyn Column)> = vec![$((stringify!($name), &mut self.$name),)+];
                 if let Some(motion) = &mut self.motion {
@@ -120,7 +120,7 @@ macro_rules! columns {
                 columns
             }
 
-            /// The array of a name, if the scene has it.
+            /// Returns the array of a name, if it exists.
             pub fn column(&self, name: &str) -> Option<&dyn Column> {
                 $(if name == stringify!($name) {
                     return Some(&self.$name);
@@ -142,80 +142,78 @@ const LAW_STATE: &str = "law_state";
 
 columns! {
     every {
-        /// global id, unique over all ranks
+        /// Global id, unique over all ranks.
         id: Vec<u64>, "-", Some("id"), |seed| seed.id;
-        /// number of the material
+        /// Number of the material.
         material: Vec<u16>, "-", Some("material"), |seed| seed.material;
-        /// m  position from the grid's lower corner
+        /// Position from the lower corner of the grid (m).
         x: Vec<Vector<D>>, "m", None, |seed| seed.x;
-        /// m  displacement since the start
+        /// Displacement since the start (m).
         u: Vec<Vector<D>>, "m", Some("displacement"), |_seed| Vector::zeros();
-        /// kg (per metre in plane strain)
+        /// Mass (kg, per metre in plane strain).
         mass: Vec<f64>, "kg", None, |seed| seed.mass;
-        /// m^D  reference volume V0; the current one is det F V0
+        /// Reference volume V0 (m^D); the present one is det F V0.
         volume: Vec<f64>, "m^D", None, |seed| seed.volume;
-        /// -  deformation gradient
+        /// Deformation gradient (-).
         F: PackedTensors<D, Tensor>, "-", None, |_seed| Tensor::identity();
-        /// -  elastic left Cauchy-Green tensor that the next step starts from (smoothed under some F-bar methods)
+        /// Elastic left Cauchy-Green tensor at the start of the next step, smoothed with some F-bar methods (-).
         b_e: PackedTensors<D, Symmetric>, "-", None, |_seed| Symmetric::IDENTITY;
-        /// Pa  Cauchy stress of the last converged step
+        /// Cauchy stress of the last converged step (Pa).
         sigma: PackedTensors<D, Symmetric>, "Pa", Some("stress"), |_seed| Symmetric::default();
-        /// -  accumulated plastic strain
+        /// Accumulated plastic strain (-).
         eps_p: Vec<f64>, "-", Some("plastic_strain"), |_seed| 0.0;
     }
     dynamic {
-        /// m/s  velocity
+        /// Velocity (m/s).
         v: Vec<Vector<D>>, "m/s", Some("velocity"), |seed| seed.v;
-        /// m/s2  acceleration
+        /// Acceleration (m/s2).
         a: Vec<Vector<D>>, "m/s2", None, |_seed| Vector::zeros();
     }
     some {
-        /// -  J-bar/J, J-bar the dilation that the stress has felt, under F-bar from its first step on; before that it
-        ///   is 1
+        /// Ratio J-bar/J with F-bar, J-bar being the volume ratio that determines the stress (-); 1 before the first
+        /// step.
         dilation: Vec<f64>, "-", None, || 1.0;
-        /// -  b^e after smoothing by that before, a left Cauchy-Green tensor, in the last step, where damped points are
-        ///   smoothed; before that it is the identity
+        /// Tensor b^e after smoothing multiplied by the inverse of that before, in the last step, for damped points
+        /// that are smoothed (-); identity before the first step.
         smoothing: PackedTensors<D, Symmetric>, "-", None, || Symmetric::IDENTITY;
-        /// -  logarithm of the volume of the gap, where a material closes its gaps, from its first step on; before that
-        ///   it is 0
+        /// Logarithm of the volume of the gap, for materials that close their gaps (-); 0 before the first step.
         gap: Vec<f64>, "-", None, || 0.0;
-        /// m  displacement when displacements were last set to zero, from that stage on; before that it is 0
+        /// Displacement when displacements were last reset (m); 0 before the first reset.
         datum: Vec<Vector<D>>, "m", None, || Vector::zeros();
-        /// -  part of what its F makes a point reach to a side that it has beside rigid bodies, if there are any: at
-        ///   the start as far as they leave it, then as the steps have left it; of points that come later it is 1
+        /// Fraction of the extent by F that a point keeps next to rigid bodies (-): initially limited by the bodies,
+        /// then updated by the steps; 1 for points placed later.
         extent: Vec<f64>, "-", None, || 1.0;
-        /// N  tangential force of a rigid body with friction, from the first step on; before that it is 0
+        /// Tangential force of a rigid body with friction (N); 0 before the first step.
         tangential_force as "grip": Vec<Vector<D>>, "N", None, || Vector::zeros();
-        /// Pa  excess pore pressure, where water flows, from the first step on; before that it is 0
+        /// Excess pore pressure, with coupled flow (Pa); 0 before the first step.
         pore_pressure: Vec<f64>, "Pa", None, || 0.0;
-        /// Pa/m  gradient of the whole pore pressure, where water flows, from the first step on; before that it is that
-        ///   of the still water
+        /// Gradient of the whole pore pressure, with coupled flow (Pa/m); the hydrostatic one before the first step.
         pressure_gradient: Vec<Vector<D>>, "Pa/m", None, || Vector::zeros();
-        /// -  water per reference volume that came in the last step, where water flows that goes on as it did, from the
-        ///   first step on; before that it is 0
+        /// Change of the water content per reference volume in the last step, for smooth flow (-); 0 before the first
+        /// step.
         content_change: Vec<f64>, "-", None, || 0.0;
-        /// Pa/m  what the gradient of the whole pore pressure changed by then
+        /// Change of the gradient of the whole pore pressure in the last step (Pa/m).
         gradient_change: Vec<Vector<D>>, "Pa/m", None, || Vector::zeros();
-        /// Pa  pore pressure as a share of the weight above at the start, under the full gravity, where some material
-        ///   has one; of points that come later it is 0
+        /// Pore pressure from the ratio r_u and the initial weight above, under full gravity (Pa); 0 for points placed
+        /// later.
         carried_pressure: Vec<f64>, "Pa", None, || 0.0;
     }
 }
 
-/// A point as it is placed at the start.
+/// Initial data of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seed<const D: usize> {
-    /// global id
+    /// Global id.
     pub id: u64,
-    /// number of the material
+    /// Number of the material.
     pub material: u16,
-    /// m  position from the grid's lower corner
+    /// Position from the lower corner of the grid (m).
     pub x: Vector<D>,
-    /// m^D  volume
+    /// Volume (m^D).
     pub volume: f64,
-    /// kg  mass
+    /// Mass (kg).
     pub mass: f64,
-    /// m/s  initial velocity
+    /// Initial velocity (m/s).
     pub v: Vector<D>,
 }
 
@@ -229,7 +227,7 @@ impl<const D: usize> PointPositions<D> for Points<D> {
 }
 
 impl<const D: usize> Points<D> {
-    /// The points as surfaces are anchored to them.
+    /// Returns the points as candidates for anchors of surface points.
     pub fn anchored(&self) -> AnchorCandidates<'_, D> {
         AnchorCandidates {
             id: &self.id,
@@ -240,7 +238,8 @@ impl<const D: usize> Points<D> {
         }
     }
 
-    /// Stress-free points at rest or with their initial velocity; with `dynamic` they carry velocity and acceleration.
+    /// Creates stress-free points at rest or with their initial velocity; with `dynamic` they store velocity and
+    /// acceleration.
     pub fn from_seeds(seeds: impl IntoIterator<Item = Seed<D>>, dynamic: bool) -> Self {
         let mut points = Self {
             motion: dynamic.then(Motion::default),
@@ -250,7 +249,7 @@ impl<const D: usize> Points<D> {
         points
     }
 
-    /// The same points with `width` numbers of state each, at their start: 0. None for 0.
+    /// Returns the points with `width` state variables each, all 0; without state for 0.
     pub fn with_state(self, width: usize) -> Self {
         let state = (width > 0).then(|| Rows {
             width,
@@ -259,12 +258,12 @@ impl<const D: usize> Points<D> {
         Self { state, ..self }
     }
 
-    /// Places further points, which start as others did.
+    /// Adds points in their initial state.
     pub fn place(&mut self, seeds: impl IntoIterator<Item = Seed<D>>) {
         seeds.into_iter().for_each(|seed| self.push(&seed));
     }
 
-    /// The points `kept`, in that order, without what is the same on every rank.
+    /// Returns the points `kept`, in that order, without the data that are the same on every rank.
     pub fn only(&self, kept: &[u32]) -> Self {
         let mut some = Self {
             surface: Surface::default(),
@@ -275,7 +274,7 @@ impl<const D: usize> Points<D> {
         some
     }
 
-    /// Takes the points away whose ids `gone` says.
+    /// Removes the points whose ids are selected by `gone`.
     pub fn remove(&mut self, gone: impl Fn(u64) -> bool) {
         let stay: Vec<u32> = (0..self.len() as u32).filter(|&p| !gone(self.id[p as usize])).collect();
         if stay.len() < self.len() {
@@ -283,45 +282,45 @@ impl<const D: usize> Points<D> {
         }
     }
 
-    /// What flowed in the last step says nothing of the next one: the ground has changed, or what acts on it.
+    /// Discards the flow of the last step, after a change of the ground or of its loads.
     pub fn forget_flow(&mut self) {
         (self.content_change, self.gradient_change, self.surface.flowed) = (None, None, None);
     }
 
-    /// Displacements count from here.
+    /// Resets the displacements: later output counts from the present state.
     pub fn reset_displacements(&mut self) {
         self.datum = Some(self.u.clone());
     }
 
-    /// Displacement of a point since displacements were last set to zero, m.
+    /// Returns the displacement of a point since the last reset (m).
     #[inline]
     pub fn displacement(&self, p: usize) -> Vector<D> {
         self.datum.as_ref().map_or(self.u[p], |datum| self.u[p] - datum[p])
     }
 
-    /// Number of points.
+    /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.id.len()
     }
 
-    /// Whether this rank has no point.
+    /// Returns whether this rank has no point.
     pub fn is_empty(&self) -> bool {
         self.id.is_empty()
     }
 
-    /// Height at which a point was placed, along the last axis from the grid's lower corner, m.
+    /// Returns the height at which a point was placed, along the last axis from the lower corner of the grid (m).
     #[inline]
     pub fn height(&self, p: usize) -> f64 {
         self.x[p][D - 1] - self.u[p][D - 1]
     }
 
-    /// Logarithm of the volume of the gap at a point.
+    /// Returns the logarithm of the volume of the gap at a point.
     #[inline]
     pub fn gap_of(&self, p: usize) -> f64 {
         self.gap.as_ref().map_or(0.0, |gap| gap[p])
     }
 
-    /// What smoothing made of a point's elastic strain after the last step, as a left Cauchy-Green tensor.
+    /// Returns the change of a point's elastic strain by smoothing after the last step, as a left Cauchy-Green tensor.
     #[inline]
     pub fn smoothing_of(&self, p: usize) -> Symmetric {
         self.smoothing
@@ -329,35 +328,35 @@ impl<const D: usize> Points<D> {
             .map_or(Symmetric::IDENTITY, |smoothing| smoothing.at(p))
     }
 
-    /// State of a point's law; its variables are the first ones.
+    /// Returns the state of a point; the variables of its law come first.
     #[inline]
     pub fn state_of(&self, p: usize) -> &[f64] {
         self.state.as_ref().map_or(&[], |state| state.of_point(p))
     }
 
-    /// J-bar/J of a point.
+    /// Returns the ratio J-bar/J of a point.
     #[inline]
     pub fn dilation_of(&self, p: usize) -> f64 {
         self.dilation.as_ref().map_or(1.0, |dilation| dilation[p])
     }
 
-    /// Every array once.
+    /// Returns every array once.
     pub fn columns(&mut self) -> Vec<&mut dyn Column> {
         self.named_columns().into_iter().map(|(_, column)| column).collect()
     }
 
-    /// Bytes of one point in a message.
+    /// Returns the size of one point in a message (bytes).
     pub fn bytes(&mut self) -> usize {
         self.columns().iter().map(|column| column.bytes()).sum()
     }
 
-    /// Bytes of one point in memory: fewer where the dimension leaves components out, see [`PackedTensors`].
+    /// Returns the size of one point in memory (bytes), smaller in two dimensions, see [`PackedTensors`].
     pub fn memory(&mut self) -> usize {
         self.columns().iter().map(|column| column.memory()).sum()
     }
 
-    /// Sorts by (cell, id), the canonical order: neither migration nor restart then matters to any sum over points.
-    /// Points outside the window keep the end.
+    /// Sorts by (cell, id), the canonical order, so that sums over points do not depend on migration or restart. Points
+    /// outside the window come last.
     pub fn sort_by_cell(&mut self, grid: &Grid<D>) {
         let keys = threads::each(self.len(), |p| match grid.locate(&self.x[p]) {
             Some(cell) if grid.holds(&cell) => (grid.cell_index(&cell), self.id[p]),

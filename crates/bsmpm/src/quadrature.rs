@@ -9,24 +9,24 @@ use crate::kinematics::Kinematics;
 use crate::parallel::Halo;
 use crate::points::Points;
 
-/// What points weigh in the internal force, its derivative and its work.
+/// Weights of points in the internal force, its derivative and its work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quadrature {
-    /// Their own volumes.
+    /// Volumes of the points.
     #[default]
     Points,
-    /// Inside a body, volumes that integrate the splines of degree q - 1 exactly.
+    /// Fitted volumes that, inside a body, integrate splines of degree q - 1 exactly.
     Fitted,
 }
 
-/// Passes of the iteration: 0.001 of what is missing is left. With 10 it is 0.02, which dominates the error in fine
-/// grids.
+/// Passes of the iteration, which reduce the defect to 0.001. With 10 passes 0.02 remains and dominates the error on
+/// fine grids.
 const PASSES: usize = 16;
-/// Least and largest factor of a volume: a function that few points see might ask for others.
+/// Bounds of the ratio of a weight to the volume of the point; functions with few points might require other values.
 const FACTORS: [f64; 2] = [0.1, 10.0];
 
-/// Weight of every point, m^D of the reference volume; the same bits on any number of ranks. An exchange with the
-/// neighbours for every pass of the iteration, and three more.
+/// Returns the weights of the points (m^D of the reference volume), bitwise identical on any number of ranks. One
+/// exchange with the neighbours per pass, and three more.
 pub fn fitted<K: Kinematics<D>, const D: usize>(
     grid: &Grid<D>,
     boundary: &Boundary<D>,
@@ -63,7 +63,7 @@ pub fn fitted<K: Kinematics<D>, const D: usize>(
     })
 }
 
-/// Which functions reach into cells that have empty neighbours.
+/// Returns whether the function of each node extends into cells with empty neighbours.
 fn outside<const D: usize>(grid: &Grid<D>, boundary: &Boundary<D>, lower: &Shape<D>, halo: &dyn Halo) -> Vec<bool> {
     let occupied = OccupiedCells::of(grid, lower.patches().iter().map(|patch| patch.cell), halo);
     let closed = boundary.closed();
@@ -80,18 +80,17 @@ fn outside<const D: usize>(grid: &Grid<D>, boundary: &Boundary<D>, lower: &Shape
     marks.iter().map(|&mark| mark > 0.0).collect()
 }
 
-/// Chebyshev's iteration for a symmetric system, in terms of its lumped form: needs no sums over all nodes, so that a
-/// fixed number of passes costs little and repeats to the bit (Saad, 2003, Iterative Methods for Sparse Linear
-/// Systems).
+/// Chebyshev iteration for a symmetric system, preconditioned by its lumped matrix (Saad, 2003, Iterative Methods for
+/// Sparse Linear Systems). It needs no global sums, so that a fixed number of passes is cheap and bitwise reproducible.
 struct Chebyshev {
     way: Vec<f64>,
     rho: f64, // 0 before the first pass
 }
 
 impl Chebyshev {
-    /// Eigenvalues of the lumped form's inverse times the matrix, none of which is above 1. With exact integrals those
-    /// of linear functions begin at 3^-D; what changes from node to node so fast comes slowly. Constants of cells have
-    /// ones only.
+    /// Bounds of the eigenvalues of the lumped matrix's inverse times the matrix; the largest is 1. With exact
+    /// integrals the smallest one is 3^-D for linear functions, but its mode oscillates from node to node and converges
+    /// slowly. For functions that are constant in each cell all eigenvalues are 1.
     const EIGENVALUES: [f64; 2] = [0.05, 1.0];
 
     fn new(nodes: usize) -> Self {
@@ -101,7 +100,7 @@ impl Chebyshev {
         }
     }
 
-    /// The next pass, `rest` being what is left of the right-hand side over the lumped form.
+    /// Performs a pass; `rest` returns the residual divided by the lumped matrix.
     fn advance(&mut self, found: &mut [f64], rest: impl Fn(usize) -> f64) {
         let [least, most] = Self::EIGENVALUES;
         let middle = 0.5 * (most + least);

@@ -4,7 +4,7 @@ use nalgebra::Scalar;
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// A number, or several side by side.
+/// Number, or vector of numbers (SIMD).
 pub trait Real:
     Scalar
     + Copy
@@ -18,47 +18,47 @@ pub trait Real:
     + Mul<f64, Output = Self>
     + Div<f64, Output = Self>
 {
-    /// What is true of each.
+    /// Result of a comparison, one per number.
     type Mask: Copy + Debug + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
 
-    /// `value`, as many times as this has numbers.
+    /// Returns `value` in every number of the vector.
     fn like(self, value: f64) -> Self;
 
-    /// Square root.
+    /// Returns the square root.
     fn root(self) -> Self;
 
-    /// Cube root.
+    /// Returns the cube root.
     fn cube_root(self) -> Self;
 
-    /// Absolute value.
+    /// Returns the absolute value.
     fn magnitude(self) -> Self;
 
-    /// This magnitude with the sign of the other.
+    /// Returns the magnitude with the sign of `sign`.
     fn signed(self, sign: Self) -> Self;
 
-    /// `self < other`
+    /// Returns `self < other`.
     fn below(self, other: Self) -> Self::Mask;
 
-    /// `self <= other`
+    /// Returns `self <= other`.
     fn at_most(self, other: Self) -> Self::Mask;
 
-    /// The one where the mask is true, the other elsewhere.
+    /// Returns `one` where the mask is true, `other` elsewhere.
     fn choose(mask: Self::Mask, one: Self, other: Self) -> Self;
 
-    /// Whether it is true of at least one.
+    /// Returns whether the mask is true for at least one number.
     fn any(mask: Self::Mask) -> bool;
 
-    /// Where the mask is true what `rare` makes of the arguments, one by one; elsewhere this.
+    /// Returns `rare` of the arguments, number by number, where the mask is true; elsewhere `self`.
     fn unless(self, mask: Self::Mask, arguments: [Self; 2], rare: fn([f64; 2]) -> f64) -> Self;
 }
 
-/// What is made of 0, 1 and 2. Unlike an array's `map` it is inlined whatever the numbers are.
+/// Returns `of` for 0, 1 and 2. Unlike `map` of an array it is inlined for all number types.
 #[inline(always)]
 pub fn three<T>(of: impl Fn(usize) -> T) -> [T; 3] {
     [of(0), of(1), of(2)]
 }
 
-/// Of the first where the mask holds, of the second elsewhere.
+/// Returns `first` where the mask is true, `second` elsewhere.
 #[inline(always)]
 pub fn choose<R: Real>(mask: R::Mask, first: [R; 3], second: [R; 3]) -> [R; 3] {
     [

@@ -2,30 +2,30 @@
 
 use std::ops::{Add, Mul, Sub};
 
-/// Steps this much too long or too short (relative to dt) are taken as hitting a wanted time.
+/// Relative tolerance (of dt) within which a step ends at a wanted time.
 const SAME: f64 = 1e-6;
 
 /// The time interval of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeInterval {
-    /// Time at the start of the step, s.
+    /// Time at the start of the step (s).
     pub start: f64,
-    /// Size of the step, s.
+    /// Step size (s).
     pub dt: f64,
 }
 
 impl TimeInterval {
-    /// Returns the time at the end of the step, s.
+    /// Returns the time at the end of the step (s).
     pub fn end(&self) -> f64 {
         self.start + self.dt
     }
 }
 
-/// A time, s (or pseudo-time), and what is given for it.
+/// A time (s, or pseudo-time) and the value given for it.
 pub type Row<T> = (f64, T);
 
-/// What rows of a time, increasing, and a value have at time `t` >= 0: linear between them, from `start` at time 0 to
-/// the first; `None` after the last.
+/// Interpolates `rows` of increasing times linearly at time `t` >= 0, with the value `start` at time 0. `None` after
+/// the last row.
 pub fn between<T>(rows: &[Row<T>], start: T, t: f64) -> Option<T>
 where
     T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
@@ -41,8 +41,9 @@ where
     })
 }
 
-/// Whether what is given by rows turns sharply in a step, its start included and its end not: where the slope changes
-/// by more than half of the steeper one. Rows as of [`between`], at the last of which they stay.
+/// Returns whether the interpolated value turns sharply in a step, including its start and excluding its end: the slope
+/// changes by more than half of the steeper slope. `rows` and `start` as in [`between`]; the last value is kept
+/// afterwards.
 pub fn turns<T>(rows: &[Row<T>], start: T, size: impl Fn(T) -> f64, interval: TimeInterval) -> bool
 where
     T: Copy + Sub<Output = T> + Mul<f64, Output = T>,
@@ -61,7 +62,7 @@ where
     false
 }
 
-/// Change of what is given over time from one row to the next.
+/// Returns the slope of the value from one row to the next.
 fn slope<T>(from: Row<T>, to: Row<T>) -> T
 where
     T: Sub<Output = T> + Mul<f64, Output = T>,
@@ -69,25 +70,25 @@ where
     (to.1 - from.1) * (to.0 - from.0).max(f64::MIN_POSITIVE).recip()
 }
 
-/// Steps of which each is longer than the one before, from dt on.
+/// Growing steps that start from dt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Growth {
-    /// -  a step over the one before it, above 1
+    /// Ratio of a step to the previous one (-), above 1.
     pub factor: f64,
-    /// s  the longest step, at least dt; infinite: they grow without bound
+    /// Largest step, at least dt (s); infinite for unlimited growth.
     pub most: f64,
-    /// s  ascending: times from which steps begin with dt again
+    /// Ascending times from which steps start with dt again (s).
     pub restarts: Vec<f64>,
 }
 
 impl Growth {
-    /// The last time at or before `t` at which steps begin with dt.
+    /// Returns the last time at or before `t` at which steps start with dt (s).
     fn start(&self, t: f64, slack: f64) -> f64 {
         let begun = self.restarts.partition_point(|&start| start <= t + slack);
         begun.checked_sub(1).map_or(0.0, |last| self.restarts[last])
     }
 
-    /// Steps after which they no longer grow, and the time that these take.
+    /// Returns the number of steps after which the largest step is reached, and their total time (s).
     fn bound(&self, dt: f64) -> (f64, f64) {
         (
             (self.most / dt).ln() / self.factor.ln(),
@@ -95,7 +96,7 @@ impl Growth {
         )
     }
 
-    /// Steps that lie within `time` from their start, a real number.
+    /// Returns the real number of steps within `time` (s) from their start.
     fn steps(&self, dt: f64, time: f64) -> f64 {
         let (steps, bound) = self.bound(dt);
         if time > bound {
@@ -104,7 +105,7 @@ impl Growth {
         (time * (self.factor - 1.0) / dt).ln_1p() / self.factor.ln()
     }
 
-    /// The time that so many steps take.
+    /// Returns the time that `steps` steps take (s).
     fn time(&self, dt: f64, steps: f64) -> f64 {
         let (most, bound) = self.bound(dt);
         if steps > most {
@@ -114,16 +115,17 @@ impl Growth {
     }
 }
 
-/// Nominal step, end of the run, and the times that must be hit exactly.
+/// Nominal step, end of the run, and the times that steps must hit exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
     dt: f64,
     growth: Option<Growth>,
-    wanted: Vec<f64>, // ascending, the last one is the end
+    wanted: Vec<f64>, // ascending; the last one is the end
 }
 
 impl Schedule {
-    /// Nominal step `dt`, end of the run and further times to be hit; those outside (0, end) are ignored.
+    /// Creates the schedule of the nominal step `dt`, the `end` of the run and further `times` to hit (s); times
+    /// outside (0, end) are ignored.
     pub fn new(dt: f64, end: f64, times: impl IntoIterator<Item = f64>) -> Self {
         let mut wanted: Vec<f64> = times.into_iter().filter(|t| *t > 0.0 && *t < end - SAME * dt).collect();
         wanted.push(end);
@@ -136,9 +138,9 @@ impl Schedule {
         }
     }
 
-    /// The same with steps that grow. Between two wanted times there are as few as may be, none longer than a step
-    /// that grows from the start (or the last restart) would be there, and each longer than the one before by the same
-    /// factor, up to the bound.
+    /// Makes the steps grow. Between two wanted times there are as few steps as possible, none longer than the step
+    /// there in the sequence dt, dt·factor, ... from the start or last restart. Each step is longer than the one before
+    /// by the same factor, up to the largest step.
     pub fn growing(self, growth: Growth) -> Self {
         Self {
             growth: Some(growth),
@@ -146,18 +148,18 @@ impl Schedule {
         }
     }
 
-    /// End of the run.
+    /// Returns the end of the run (s).
     pub fn end(&self) -> f64 {
         self.wanted[self.wanted.len() - 1]
     }
 
-    /// Nominal step.
+    /// Returns the nominal step (s).
     pub fn dt(&self) -> f64 {
         self.dt
     }
 
-    /// End of the nominal step that starts at `t`; `None` once the end is reached. A function of `t` alone, so that a
-    /// restarted run takes the same steps.
+    /// Returns the end of the nominal step that starts at `t` (s); `None` once the end is reached. Depends on `t`
+    /// alone, so that a restarted run takes the same steps.
     pub fn next(&self, t: f64) -> Option<f64> {
         let reached = self.wanted.partition_point(|&wanted| wanted <= t + SAME * self.dt);
         let target = *self.wanted.get(reached)?;
@@ -174,7 +176,7 @@ impl Schedule {
         })
     }
 
-    /// The same between two wanted times, of steps that grow.
+    /// Returns the same between the wanted times `from` and `target`, for growing steps.
     fn grown(&self, growth: &Growth, t: f64, from: f64, target: f64) -> f64 {
         let start = growth.start(from, SAME * self.dt);
         let [first, last, now] = [from, target, t].map(|time| growth.steps(self.dt, time - start));

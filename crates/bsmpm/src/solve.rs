@@ -29,7 +29,8 @@ use convergence::{Convergence, inverted};
 use found::StepSolution;
 use quasi_newton::FailedIteration;
 
-/// Finds equilibrium from the last displacement `guess` (step 3b); if that fails, from zero.
+/// Finds equilibrium from the previous displacement `guess` (m, step 3b). If this fails, the iteration restarts from
+/// zero.
 pub fn find<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     guess: &[f64],
@@ -42,14 +43,14 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     problem.halo.all_reduce_max(&mut differs);
     let flows = problem.nodes.pores.is_some();
     let method = match problem.model.nonlinear {
-        // A rank-one update does not know of pressures; an exact iteration takes as long as 6 to 23 of secants.
+        // A rank-one update ignores pressures, and a Newton iteration costs as much as 6 to 23 secant iterations.
         Nonlinear::QuasiNewton(_) | Nonlinear::Auto if flows => Nonlinear::QuasiNewton(QuasiNewton::Multisecant),
         method => method,
     };
     let by_newton = (flows && problem.model.nonlinear == Nonlinear::Auto).then(|| last.clone());
     let mut found = search(problem, method, last, solver, counts);
-    // Of water Newton's method before another guess: of the steps that secants do not do from the first one it does
-    // more, and what neither does costs the same (`decisions.md` of the manual).
+    // With flowing water, Newton's method is tried before another guess: it converges in more of the steps in which
+    // secants fail, and a failure of both costs the same (`decisions.md` of the manual).
     if let Some(last) = by_newton.filter(|_| goes_on(&found)) {
         found = search(problem, Nonlinear::Newton, last, solver, counts);
     }
@@ -70,12 +71,12 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     found
 }
 
-/// Whether another method or guess may find what was not found.
+/// Returns whether another method or guess may succeed.
 fn goes_on<T>(found: &Result<T, StepError>) -> bool {
     found.as_ref().is_err_and(|error| !error.is_final())
 }
 
-/// Seeks equilibrium from one guess.
+/// Searches for equilibrium from one guess.
 fn search<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     method: Nonlinear,
@@ -117,7 +118,7 @@ fn search<K: Kinematics<D>, const D: usize>(
             };
         }
     }
-    // Secants alone that come to their limit might have gone on.
+    // A secant method alone that reached its limit of iterations might still have converged.
     let found = if is_patient {
         Err(failure)
     } else {
@@ -126,7 +127,7 @@ fn search<K: Kinematics<D>, const D: usize>(
     found.map_err(|failure| *failure.error)
 }
 
-/// The first state of an iteration that led on no further whose forces balance far below their tolerance.
+/// Returns the first state whose forces balanced far below their tolerance, if the iteration made no further progress.
 fn settled<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     failure: FailedIteration,
@@ -146,7 +147,7 @@ fn settled<K: Kinematics<D>, const D: usize>(
     })
 }
 
-/// Secants on the stiffness at `u`, where they start.
+/// Iterates with secants around the stiffness at `u`.
 fn by_secants<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     method: SecantMethod,
@@ -170,8 +171,8 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
     quasi_newton::iterate(problem, method, u, residual, solver, counts, convergence)
 }
 
-/// The guess where it is free, the prescribed values, zero elsewhere; behind it the pressures that the points have,
-/// where water flows.
+/// Combines `guess` at free components, prescribed values, and zero elsewhere. Where water flows, the pressures of the
+/// points follow.
 fn admissible<const D: usize>(nodes: &GridState<D>, guess: &[f64]) -> Vec<f64> {
     let displacements = guess.iter().enumerate().map(|(c, &value)| match nodes.prescribed[c] {
         Some(prescribed) => prescribed,
@@ -182,7 +183,7 @@ fn admissible<const D: usize>(nodes: &GridState<D>, guess: &[f64]) -> Vec<f64> {
     displacements.chain(pressures).collect()
 }
 
-/// The forces under `u`, counted.
+/// Evaluates the forces under `u` and counts the evaluation.
 pub fn evaluate<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     u: &[f64],

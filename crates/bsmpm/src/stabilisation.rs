@@ -3,39 +3,38 @@
 
 use std::ops::Range;
 
-/// The method that a run uses; see the table of chapter 3 of the theory manual.
+/// Method against volumetric locking; see the table of chapter 3 of the theory manual.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stabilisation {
-    /// The plain B-spline method.
+    /// B-spline method without F-bar.
     #[default]
     None,
-    /// dJ averaged over the grid every iteration: ratio = S(dJ)/dJ (Eqs 15-18).
+    /// F-bar with dJ averaged over the grid in every iteration: ratio = S(dJ)/dJ (Eqs 15-18).
     FBar,
-    /// The total J averaged: ratio = R(t+dt)/R(t) with R = S(J)/J, 1 at the start; the baseline of the paper, a reading
-    /// of Zhao, Jiang and Choo (2022).
+    /// F-bar with the total J averaged: ratio = R(t+dt)/R(t) with R = S(J)/J, 1 at the start; the reference method of
+    /// the paper, interpreted from Zhao, Jiang and Choo (2022).
     FBarZhao,
-    /// The paper's method: dJ averaged, and b^e averaged after every step (T3.5). Results depend on the number of
-    /// steps.
+    /// Method of the paper: dJ is averaged, and b^e after every step (T3.5). Results depend on the number of steps.
     ModifiedFBar,
-    /// ratio = S1(dJ)/dJ (T3.4), S1 with the splines of degree q - 1, and a filter of the elastic dilation (T3.7) that
-    /// acts with plastic flow only: results converge in the step size. In dilatant material its force is the adjoint
-    /// of its stress, see `step::adjoint`.
+    /// F-bar with ratio = S1(dJ)/dJ (T3.4), where S1 uses splines of degree q - 1, and a filter of the elastic dilation
+    /// (T3.7) that acts only during plastic flow. Results converge with the step size. In dilatant material the
+    /// internal force is the adjoint of the stress, see `step::adjoint`.
     ConsistentFBar,
-    /// Consistent F-bar whose S1 has the splines of degree q - 1 on pairs of cells inside a body, and on the cells at
-    /// its edges (sub-grid method of Bressan and Sangalli, 2013; see
-    /// [`grid::shape::merged`](crate::grid::shape::merged)).
+    /// Consistent F-bar with S1 on pairs of cells inside a body and on single cells at its edges (sub-grid method of
+    /// Bressan and Sangalli, 2013; see [`grid::shape::merged`](crate::grid::shape::merged)).
     SubgridFBar,
 }
 
-/// Which materials an average over the grid may mix; by default all.
+/// Groups of materials that averages over the grid may mix; by default one group.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Groups {
-    of: Vec<u16>, // per material; empty: one group
-    count: usize, // of groups, if there are several
+    of: Vec<u16>, // per material; empty for one group
+    count: usize, // number of groups, if there are several
 }
 
 impl Groups {
-    /// Materials that are alike in everything that averages feel are one group, under the number of the first of them.
+    /// Groups materials that are equal in everything that affects averages; groups are numbered in the order of their
+    /// first material.
     pub fn of_alike<T: PartialEq>(materials: &[T]) -> Self {
         let mut kinds: Vec<&T> = Vec::new();
         let mut of = Vec::with_capacity(materials.len());
@@ -53,12 +52,12 @@ impl Groups {
         }
     }
 
-    /// Number of groups.
+    /// Returns the number of groups.
     pub fn count(&self) -> usize {
         self.count.max(1)
     }
 
-    /// Group of a material.
+    /// Returns the group of a material.
     #[inline]
     pub fn of(&self, material: u16) -> usize {
         self.of
@@ -67,7 +66,7 @@ impl Groups {
     }
 }
 
-/// Points in groups, whose nodal values stand side by side: numbers of group g at place g of a node.
+/// Points in groups. Nodal values of the groups are adjacent: those of group g have index g at a node.
 #[derive(Clone, Copy)]
 pub struct GroupedPoints<'a> {
     by: Option<(&'a Groups, &'a [u16])>, // with the materials of the points; several groups
@@ -75,27 +74,27 @@ pub struct GroupedPoints<'a> {
 
 impl<'a> GroupedPoints<'a> {
     /// All points in one group.
-    pub const NOT: Self = Self { by: None };
+    pub const ONE_GROUP: Self = Self { by: None };
 
-    /// Points of these materials.
+    /// Assigns points with the materials `material` to the groups.
     pub fn by(groups: &'a Groups, material: &'a [u16]) -> Self {
         Self {
             by: (groups.count() > 1).then_some((groups, material)),
         }
     }
 
-    /// Number of groups.
+    /// Returns the number of groups.
     pub fn count(&self) -> usize {
         self.by.map_or(1, |(groups, _)| groups.count())
     }
 
-    /// Group of point `p`.
+    /// Returns the group of point `p`.
     #[inline]
     pub fn of(&self, p: usize) -> usize {
         self.by.map_or(0, |(groups, material)| groups.of(material[p]))
     }
 
-    /// Points of a patch in runs of one group, each with its group.
+    /// Returns the points of a cell as runs of one group each, with the group.
     #[inline]
     pub(crate) fn runs(&self, points: Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> {
         let mut start = points.start;
@@ -110,8 +109,9 @@ impl<'a> GroupedPoints<'a> {
 }
 
 impl Stabilisation {
-    /// Layers of nodes that its stiffness needs beyond those of the cells of a window of splines of the `order`, see
-    /// [`Grid::reaching`](crate::grid::Grid::reaching): the functions of degree q - 1 span q cells, or as many pairs.
+    /// Returns the layers of nodes that the stiffness needs beyond those of the cells of a window, for splines of the
+    /// given `order`, see [`Grid::reaching`](crate::grid::Grid::reaching). Functions of degree q - 1 span q cells, or q
+    /// pairs of cells.
     pub fn beyond(self, order: usize) -> usize {
         match self {
             Self::ConsistentFBar => order - 1,
@@ -120,18 +120,18 @@ impl Stabilisation {
         }
     }
 
-    /// Whether the elastic strain is smoothed after a step.
+    /// Returns whether the elastic strain is smoothed after a step.
     pub fn smooths(self) -> bool {
         self.lowers() || self == Self::ModifiedFBar
     }
 
-    /// Whether dilations are averaged by splines of degree q - 1, and the elastic dilation is filtered where material
-    /// flows.
+    /// Returns whether dilations are averaged by splines of degree q - 1, and the elastic dilation is filtered during
+    /// plastic flow.
     pub fn lowers(self) -> bool {
         self == Self::ConsistentFBar || self == Self::SubgridFBar
     }
 
-    /// Whether dilations are averaged at all.
+    /// Returns whether dilations are averaged.
     pub fn averages(self) -> bool {
         self != Self::None
     }

@@ -46,9 +46,11 @@ use nodes::GridState;
 use outflow::Outflow;
 use problem::Problem;
 
-/// Steps the points from `t` to `t + dt`, starting from the nodal displacement `guess` (D numbers per node of the
-/// window; replaced by the converged one), of which the background resists what is `resisted`. On an error nothing has
-/// changed but `counts`, the work that was done.
+/// Advances the material points by one step.
+///
+/// `guess` is the nodal displacement from which the iteration starts (m, D numbers per node of the window); the
+/// converged displacement replaces it. `resisted` selects the part of the displacement that the background resists. If
+/// the step fails, nothing but `counts` (the work done) has changed.
 pub fn step<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
@@ -95,7 +97,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
         report.turnover = Some(turnover);
     }
     let end = interval.end();
-    settle(model, points, &mut surface, &mut report, committed.content, end, halo);
+    complete_report(model, points, &mut surface, &mut report, committed.content, end, halo);
     free_field.settle(&mut surface.held);
     points.surface = surface;
     points.free_field = free_field.columns;
@@ -108,7 +110,7 @@ pub fn step<K: Kinematics<D>, const D: usize>(
     })
 }
 
-/// Step (2): maps the points to the nodes, which columns of the free field drive beside the ground.
+/// Step (2): transfers the points to the nodes and drives the lateral nodes by the free-field columns.
 fn start<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
@@ -127,22 +129,22 @@ fn start<K: Kinematics<D>, const D: usize>(
     if let Some(inertia) = nodes.inertia.as_mut().filter(|_| interval.start == 0.0)
         && initial::is_pushed(model, points, halo)?
     {
-        inertia.newmark = Newmark::dissipative_first_step();
+        inertia.newmark = Newmark::for_sudden_load();
     }
     Ok((nodes, free_field))
 }
 
-/// What a step did whose displacement is found, before the points have taken it.
+/// Result of a converged step before the material points are updated.
 struct Outcome<const D: usize> {
     report: StepReport,
-    surface: Surface<D>, // at the end of the step
+    surface: Surface<D>, // of the body at the end of the step
     update: ConstitutiveUpdate,
-    draft: Option<StepEnergy>, // of the energy, if it is asked for
+    draft: Option<StepEnergy>, // energy terms; `None` if neither dynamics nor an energy balance needs them
 }
 
 impl<const D: usize> Outcome<D> {
-    /// Of a displacement. Fails if points leave the grid, rigid bodies overlap, a law refuses a point, or the step is
-    /// interrupted.
+    /// Evaluates a converged displacement. Fails if points leave the grid, rigid bodies overlap, a constitutive law
+    /// rejects a point, or the step is interrupted.
     fn of<K: Kinematics<D>>(
         problem: &Problem<'_, K, D>,
         found: &StepSolution<K, D>,
@@ -203,9 +205,9 @@ impl<const D: usize> Outcome<D> {
     }
 }
 
-/// Completes the surface and the report of a step with the points as they are at its end `t`, s, of which they have
-/// taken in `content` of water, m3.
-fn settle<K, const D: usize>(
+/// Completes the surface and the report with the updated points at the end `t` of the step (s). The points have taken
+/// in `content` of water (m3).
+fn complete_report<K, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
     surface: &mut Surface<D>,

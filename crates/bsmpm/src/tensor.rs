@@ -2,36 +2,36 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector};
 
-/// A vector of the grid's dimension.
+/// Vector of the grid's dimension.
 pub type Vector<const D: usize, R = f64> = SVector<R, D>;
-/// A square matrix of the grid's dimension: gradients of grid fields.
+/// Square matrix of the grid's dimension, for gradients of grid fields.
 pub type Square<const D: usize> = SMatrix<f64, D, D>;
-/// A second-order tensor: constitution is always three-dimensional.
+/// Second-order tensor, three-dimensional in all geometries.
 pub type Tensor<R = f64> = Matrix3<R>;
 
-/// A symmetric tensor by its components XX, YY, ZZ, XY, YZ, XZ, the order that ParaView expects.
+/// Symmetric tensor with the components XX, YY, ZZ, XY, YZ, XZ, in the order of ParaView.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Symmetric<R = f64>(pub [R; 6]);
 
 impl Symmetric {
-    /// The identity.
+    /// Identity tensor.
     pub const IDENTITY: Self = Self([1.0, 1.0, 1.0, 0.0, 0.0, 0.0]);
 
-    /// The symmetric part of `t`.
+    /// Returns the symmetric part of `t`.
     #[inline]
     pub fn of(t: &Tensor) -> Self {
         let [xy, yz, xz] = [(0, 1), (1, 2), (0, 2)].map(|(i, j)| 0.5 * (t[(i, j)] + t[(j, i)]));
         Self([t[(0, 0)], t[(1, 1)], t[(2, 2)], xy, yz, xz])
     }
 
-    /// The same tensor as a full matrix.
+    /// Returns the tensor as a full matrix.
     #[inline]
     pub fn full(&self) -> Tensor {
         let [xx, yy, zz, xy, yz, xz] = self.0;
         Tensor::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
     }
 
-    /// The double contraction `a : b`.
+    /// Returns the double contraction `a : b`.
     #[inline]
     pub fn double_dot(&self, other: &Self) -> f64 {
         let [xx, yy, zz, xy, yz, xz] = std::array::from_fn(|i| self.0[i] * other.0[i]);
@@ -40,7 +40,7 @@ impl Symmetric {
         normal + 2.0 * shear
     }
 
-    /// Every component multiplied by `factor`.
+    /// Returns the tensor multiplied by `factor`.
     #[inline]
     pub fn scaled(&self, factor: f64) -> Self {
         Self(self.0.map(|c| c * factor))

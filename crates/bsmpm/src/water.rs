@@ -28,13 +28,13 @@ pub mod work;
 use ambient::Ambient;
 use flow::Flow;
 
-/// What a scene says of water.
+/// Pore water of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Water<const D: usize> {
-    /// N/m3
+    /// Unit weight (N/m3).
     pub unit_weight: f64,
-    /// still water
+    /// Hydrostatic pressure field.
     pub ambient: Ambient,
-    /// present where the excess pressure is an unknown
+    /// Coupled flow; `None` if the excess pressure is not an unknown.
     pub flow: Option<Flow<D>>,
 }

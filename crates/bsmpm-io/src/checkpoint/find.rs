@@ -11,22 +11,23 @@ use super::record::CheckpointRecord;
 use super::{file, steps};
 use crate::Error;
 
-/// Bytes of a record's file beyond which it is none of ours.
+/// Largest size of a record's file (bytes).
 const RECORD_LIMIT: u64 = 1 << 20;
 
-/// A checkpoint whose file is what its record says.
+/// Checkpoint whose file agrees with its record.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FoundCheckpoint {
-    /// The file of the arrays.
+    /// File of the arrays.
     pub path: PathBuf,
-    /// Its record.
+    /// Record of the checkpoint.
     pub record: CheckpointRecord,
 }
 
-/// The newest good checkpoint of a folder, and what is wrong with newer ones; a folder that is not there holds none.
+/// Returns the newest valid checkpoint of a folder, and the errors of newer invalid ones. A missing folder has no
+/// checkpoints.
 ///
 /// # Errors
-/// [`Error::File`] when the folder cannot be read.
+/// [`Error::File`] if the folder cannot be read.
 pub fn newest(folder: &Path) -> Result<(Option<FoundCheckpoint>, Vec<Error>), Error> {
     let mut damaged = Vec::new();
     let steps = match steps(folder, ".json") {
@@ -42,10 +43,10 @@ pub fn newest(folder: &Path) -> Result<(Option<FoundCheckpoint>, Vec<Error>), Er
     Ok((None, damaged))
 }
 
-/// The checkpoint of that name, by its file or its record.
+/// Returns the checkpoint with the given name, of its file or of its record.
 ///
 /// # Errors
-/// [`Error::Checkpoint`] when either is missing, damaged, or none of ours.
+/// [`Error::Checkpoint`] if either file is missing, damaged, or was not written by this program.
 pub fn named(path: &Path) -> Result<FoundCheckpoint, Error> {
     let arrays = path.with_extension("h5");
     let record = path.with_extension("json");
@@ -88,7 +89,7 @@ fn verify(path: &Path, record: &CheckpointRecord) -> Result<(), Error> {
     Ok(())
 }
 
-/// Opens a plain file, and does not wait where it is a pipe.
+/// Opens a regular file, without waiting if the path is a pipe.
 fn open(path: &Path) -> Result<(File, u64), Error> {
     let flags = OFlags::NONBLOCK.bits() as i32;
     let opened = OpenOptions::new().read(true).custom_flags(flags).open(path);

@@ -7,29 +7,29 @@ use serde::{Deserialize, Serialize};
 
 use crate::Error;
 
-/// The number of this form of checkpoints; it grows when older readers would misunderstand a newer file.
+/// Version of the checkpoint format. It increases when older readers would misunderstand a newer file.
 pub const SCHEMA: u32 = 1;
-/// What stands before the hash, between hash and record, and after the record.
+/// Text before the hash, between hash and record, and after the record.
 const FRAME: [&str; 3] = ["{\"blake3\":\"", "\",\"record\":", "}\n"];
-/// Hexadecimal digits of a BLAKE3.
+/// Number of hexadecimal digits of a BLAKE3 hash.
 const DIGITS: usize = 64;
 
-/// What a number of an array is.
+/// Number format of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ArrayNumber {
-    /// A byte.
+    /// Byte.
     U8,
-    /// 16 bits without a sign.
+    /// Unsigned 16-bit integer.
     U16,
-    /// 64 bits without a sign.
+    /// Unsigned 64-bit integer.
     U64,
-    /// A float of double precision.
+    /// Double-precision float.
     F64,
 }
 
 impl ArrayNumber {
-    /// Bytes of one.
+    /// Returns the bytes of one number.
     pub fn bytes(self) -> u64 {
         match self {
             Self::U8 => 1,
@@ -39,63 +39,63 @@ impl ArrayNumber {
     }
 }
 
-/// One array of a checkpoint: a row for each point, or for each byte of a text.
+/// Array of a checkpoint, with one row per point, or per byte of a text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordedArray {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// What it holds.
+    /// Number format.
     pub number: ArrayNumber,
-    /// Rows of all ranks.
+    /// Number of rows over all ranks.
     pub rows: u64,
-    /// Numbers of a row.
+    /// Count of numbers of a row.
     pub width: u64,
 }
 
 impl RecordedArray {
-    /// Bytes of all rows; none where they are more than can be counted.
+    /// Returns the bytes of all rows; `None` on overflow.
     pub fn bytes(&self) -> Option<u64> {
         self.number.bytes().checked_mul(self.width)?.checked_mul(self.rows)
     }
 }
 
-/// What makes a checkpoint's file count.
+/// Record that makes a checkpoint file valid.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CheckpointRecord {
-    /// The form of the checkpoint, [`SCHEMA`].
+    /// Version of the checkpoint format, [`SCHEMA`].
     pub schema: u32,
-    /// The version of the program that wrote it.
+    /// Version of the program that wrote it.
     pub version: String,
-    /// Steps that were made.
+    /// Number of steps so far.
     pub step: u64,
-    /// The bits of the time that was reached (s or pseudo-time).
+    /// Bits of the time (s or pseudo-time).
     pub time_bits: u64,
-    /// BLAKE3 of the case's text, in hexadecimal.
+    /// BLAKE3 hash of the case's text, in hexadecimal.
     pub case: String,
-    /// Ranks that wrote it.
+    /// Number of ranks that wrote it.
     pub ranks: u32,
-    /// Bytes of the file.
+    /// Size of the file in bytes.
     pub bytes: u64,
-    /// BLAKE3 of the file, in hexadecimal.
+    /// BLAKE3 hash of the file, in hexadecimal.
     pub blake3: String,
-    /// Its arrays, in the order in which they were written.
+    /// Arrays in the order in which they were written.
     pub arrays: Vec<RecordedArray>,
 }
 
 impl CheckpointRecord {
-    /// The time that was reached, s or pseudo-time.
+    /// Returns the time (s or pseudo-time).
     pub fn time(&self) -> f64 {
         f64::from_bits(self.time_bits)
     }
 
-    /// The array of that name.
+    /// Returns the array with the given name.
     pub fn array(&self, name: &str) -> Option<&RecordedArray> {
         self.arrays.iter().find(|array| array.name == name)
     }
 
-    /// The text of the record's file.
+    /// Returns the text of the record's file.
     pub(super) fn text(&self) -> serde_json::Result<String> {
         let body = serde_json::to_string_pretty(self)?;
         let [before, between, after] = FRAME;
@@ -105,12 +105,12 @@ impl CheckpointRecord {
         ))
     }
 
-    /// The record that a file's bytes hold, if they are the bytes that were written, of this form, and make sense.
+    /// Reads a record from a file's bytes, and checks its hash, format version and plausibility.
     pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
         Self::read(bytes).map_err(|reason| Error::checkpoint(path, reason))
     }
 
-    /// The same; says in words what is wrong with the bytes.
+    /// Reads a record as [`CheckpointRecord::parse`] does; the error is a text.
     fn read(bytes: &[u8]) -> Result<Self, String> {
         let (hash, body) = split(bytes).ok_or("it is not the record of a checkpoint, or damaged")?;
         let found = blake3::hash(body);
@@ -132,7 +132,7 @@ impl CheckpointRecord {
         Ok(record)
     }
 
-    /// Nothing is compressed, so that the file's size bounds what its arrays can hold.
+    /// Checks the record for plausibility. Nothing is compressed, so the file's size limits that of its arrays.
     fn sense(&self) -> Result<(), String> {
         let mut names = BTreeSet::new();
         if let Some(array) = self.arrays.iter().find(|array| !names.insert(&array.name)) {
@@ -153,7 +153,7 @@ impl CheckpointRecord {
     }
 }
 
-/// Hash and body of a record's file.
+/// Returns hash and body of a record's file.
 fn split(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let [before, between, after] = FRAME.map(str::as_bytes);
     let (hash, rest) = bytes.strip_prefix(before)?.split_at_checked(DIGITS)?;

@@ -14,10 +14,10 @@ use super::record::{CheckpointRecord, RecordedArray, SCHEMA};
 use super::{FOLDER, file, stem, steps};
 use crate::{Error, disk};
 
-/// How the names of files begin that are not complete.
+/// Start of the names of incomplete files.
 const TEMPORARY: &str = ".tmp-";
 
-/// Where a crash may strike while a checkpoint is written, in this order.
+/// Phases of writing a checkpoint, in order; a crash may occur in each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// The file is open and empty.
@@ -28,20 +28,20 @@ pub enum Phase {
     Written,
     /// The file is closed.
     Closed,
-    /// It is on the disk.
+    /// The file is on the disk.
     Synced,
-    /// So is its record, still under a temporary name.
+    /// The record is on the disk, under a temporary name.
     Recorded,
-    /// The file has its name, the record not yet.
+    /// The file has its final name, the record does not.
     Named,
-    /// Both have their names: from here on the checkpoint counts.
+    /// Both have their final names: from here on the checkpoint is valid.
     Committed,
     /// The folder is on the disk; older checkpoints are about to be removed.
     Kept,
 }
 
 impl Phase {
-    /// All of them, in order.
+    /// All phases in order.
     pub const ALL: [Self; 9] = [
         Self::Opened,
         Self::Midway,
@@ -55,29 +55,29 @@ impl Phase {
     ];
 }
 
-/// What a record says beside the size and hash of the file.
+/// Contents of a record other than size and hash of the file.
 #[derive(Clone, Debug)]
 pub struct Facts {
-    /// The version of the program.
+    /// Version of the program.
     pub version: String,
-    /// BLAKE3 of the case's text, in hexadecimal.
+    /// BLAKE3 hash of the case's text, in hexadecimal.
     pub case: String,
-    /// Ranks that write.
+    /// Number of ranks that write.
     pub ranks: u32,
-    /// Steps that were made.
+    /// Number of steps so far.
     pub step: u64,
-    /// s or pseudo-time  that was reached.
+    /// Time (s or pseudo-time).
     pub time: f64,
 }
 
-/// The folder of a run's checkpoints, for the one process that writes there.
+/// Folder of a run's checkpoints, for the one process that writes there.
 #[derive(Debug)]
 pub struct Store {
     folder: PathBuf,
     keep: usize,
 }
 
-/// A checkpoint that is being written. What there is of it goes when this is dropped before it was committed.
+/// Checkpoint that is being written. Its files are removed if it is dropped before it is committed.
 #[derive(Debug)]
 pub struct PendingCheckpoint {
     step: u64,
@@ -86,11 +86,11 @@ pub struct PendingCheckpoint {
 }
 
 impl Store {
-    /// Makes the folder in an output directory if need be, and removes what crashed writers left there. The newest
-    /// `keep` checkpoints will be kept, one at least.
+    /// Creates the folder in an output directory if necessary, and removes incomplete files of crashed runs. The newest
+    /// `keep` checkpoints will be kept, at least one.
     ///
     /// # Errors
-    /// [`Error::File`] when the system refuses.
+    /// [`Error::File`] for an error of the system.
     pub fn open(directory: &Path, keep: usize) -> Result<Self, Error> {
         let folder = directory.join(FOLDER);
         fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
@@ -108,16 +108,16 @@ impl Store {
         })
     }
 
-    /// Where it is.
+    /// Returns the path of the folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// The good checkpoint of a step, if there is one of this case and as many ranks already; another one of that step
-    /// is taken out of the way.
+    /// Returns the valid checkpoint of a step, if there already is one of this case and number of ranks. The record of
+    /// any other checkpoint of that step is removed.
     ///
     /// # Errors
-    /// [`Error::File`] when the system refuses.
+    /// [`Error::File`] for an error of the system.
     pub fn existing(&self, facts: &Facts) -> Result<Option<FoundCheckpoint>, Error> {
         let step = facts.step;
         let found = named(&file(&self.folder, step, ".h5"))
@@ -129,11 +129,12 @@ impl Store {
         Ok(found)
     }
 
-    /// Begins the checkpoint of a step: an empty file at [`PendingCheckpoint::path`], on a disk that has room for so
-    /// many bytes.
+    /// Begins the checkpoint of a step: creates an empty file at [`PendingCheckpoint::path`] and reserves `bytes` bytes
+    /// for it.
     ///
     /// # Errors
-    /// [`Error::Space`] where it has not; [`Error::File`] when the system refuses otherwise. Nothing is left then.
+    /// [`Error::Space`] if the disk has less space; [`Error::File`] for another error of the system. Nothing is left
+    /// then.
     pub fn begin(&self, step: u64, bytes: u64) -> Result<PendingCheckpoint, Error> {
         let name = format!("{TEMPORARY}{}-{}", process::id(), stem(step));
         let pending = PendingCheckpoint {
@@ -146,11 +147,11 @@ impl Store {
         Ok(pending)
     }
 
-    /// Makes a complete and closed file a checkpoint, and removes those beyond the newest few. `at` is called for every
-    /// phase from [`Phase::Closed`] on.
+    /// Makes a complete and closed file a valid checkpoint, and removes older ones beyond the number to keep. `at` is
+    /// called for every phase from [`Phase::Closed`] on.
     ///
     /// # Errors
-    /// [`Error::File`] when the system refuses: the checkpoints of before are all there.
+    /// [`Error::File`] for an error of the system: all earlier checkpoints are then kept.
     pub fn commit(
         &self,
         pending: PendingCheckpoint,
@@ -175,18 +176,18 @@ impl Store {
         at(Phase::Committed);
         sync(&self.folder)?;
         at(Phase::Kept);
-        // The checkpoint is good: what could not be removed now is removed after the next one.
+        // The checkpoint is valid; files that cannot be removed now are removed after the next one.
         let _ = self.purge(pending.step);
         Ok(found)
     }
 
-    /// The steps of the files that end so.
+    /// Returns the steps of the checkpoint files with this extension.
     fn list(&self, ending: &str) -> Result<Vec<u64>, Error> {
         steps(&self.folder, ending).map_err(Error::file("read", &self.folder))
     }
 
-    /// Keeps the checkpoint of `newest` and those before it, as many as wanted. Records go first: one without its file
-    /// would be a damaged checkpoint, a file without its record is none.
+    /// Keeps the checkpoint of `newest` and those before it, as many as configured. Records are removed first: a record
+    /// without its file would be a damaged checkpoint, a file without a record is not a checkpoint.
     fn purge(&self, newest: u64) -> Result<(), Error> {
         let older = self.list(".json")?.into_iter().filter(|&step| step <= newest);
         let Some(last) = older.take(self.keep).last() else {
@@ -202,10 +203,10 @@ impl Store {
     }
 }
 
-/// Removes what is named like a checkpoint of a later step than this one, good or not: records first.
+/// Removes all checkpoint files of later steps than `step`, valid or not, records first.
 ///
 /// # Errors
-/// [`Error::File`] when the system refuses.
+/// [`Error::File`] for an error of the system.
 pub fn forget_beyond(directory: &Path, step: u64) -> Result<(), Error> {
     let folder = directory.join(FOLDER);
     for ending in [".json", ".h5"] {
@@ -219,17 +220,18 @@ pub fn forget_beyond(directory: &Path, step: u64) -> Result<(), Error> {
 }
 
 impl PendingCheckpoint {
-    /// The file that is to be filled.
+    /// Returns the path of the file to be written.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Takes room on the disk for a file of so many bytes: writers that find none may crash, or wait for each other.
+    /// Reserves `needed` bytes on the disk for the file. Otherwise writers on a full disk may crash, or wait for each
+    /// other.
     ///
     /// # Errors
-    /// [`Error::Space`] where there is none; [`Error::File`] when the system refuses otherwise.
+    /// [`Error::Space`] if the disk has less space; [`Error::File`] for another error of the system.
     pub fn reserve(&self, needed: u64) -> Result<(), Error> {
-        // Beyond the limit the system would not refuse but end the process.
+        // Beyond this limit the system would end the process instead of returning an error.
         if let Some(limit) = getrlimit(Resource::Fsize).current.filter(|&limit| limit < needed) {
             return Err(self.lacks(needed, format!("the system limits files to {limit} bytes")));
         }
@@ -238,14 +240,14 @@ impl PendingCheckpoint {
             .open(&self.path)
             .map_err(Error::file("open", &self.path))?;
         match fallocate(&file, FallocateFlags::empty(), 0, needed) {
-            // Not every file system can promise room.
+            // Not every file system can reserve space.
             Ok(()) | Err(Errno::OPNOTSUPP | Errno::NOSYS) => Ok(()),
             Err(Errno::NOSPC | Errno::DQUOT | Errno::FBIG) => Err(self.lacks(needed, free(&self.path))),
             Err(error) => Err(Error::file("write", &self.path)(error.into())),
         }
     }
 
-    /// The error of a disk on which less is `available` than is needed.
+    /// Returns the error for a disk with less space than needed.
     fn lacks(&self, needed: u64, available: String) -> Error {
         Error::Space {
             path: self.path.clone(),
@@ -257,7 +259,7 @@ impl PendingCheckpoint {
 
 impl Drop for PendingCheckpoint {
     fn drop(&mut self) {
-        // What was committed has other names by now.
+        // A committed checkpoint has other names.
         let _ = fs::remove_file(&self.path);
         let _ = fs::remove_file(&self.record);
     }
@@ -312,7 +314,7 @@ fn sync(folder: &Path) -> Result<(), Error> {
         .map_err(Error::file("write", folder))
 }
 
-/// Whether there was a file to be removed.
+/// Removes a file; returns whether it existed.
 fn remove(path: &Path) -> Result<bool, Error> {
     match fs::remove_file(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),

@@ -11,33 +11,33 @@ use serde::{Deserialize, Serialize};
 
 use crate::utc::utc;
 
-/// Variables by which batch systems tell a job's number, which it keeps when it is started again.
+/// Environment variables in which batch systems give the job id, which a restarted job keeps.
 const JOBS: [&str; 3] = ["SLURM_JOB_ID", "PBS_JOBID", "LSB_JOBID"];
-/// By which Slurm says how often a job has been started again; the steps of one start share it.
+/// Environment variable in which Slurm gives the number of restarts of a job; the steps of one start share it.
 const RESTARTS: &str = "SLURM_RESTART_COUNT";
-/// bytes  More than any holder's text.
+/// Upper bound of the length of a holder's text (bytes).
 const LONGEST: u64 = 4096;
 
-/// A process that holds a lock.
+/// Process that has a lock.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Holder {
     host: String,
     boot: String,      // of the host's kernel
-    namespace: String, // in which `pid` counts
+    namespace: String, // PID namespace of `pid`
     pid: u32,
-    started: Option<u64>, // ticks since `boot`: numbers of processes are used again
+    started: Option<u64>, // ticks since `boot`; process numbers are reused
     job: Option<String>,
     #[serde(default)]
     restarts: u64, // of the job
     since: String, // UTC
 }
 
-/// What has become of a holder.
+/// State of a holder's process.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Fate {
-    /// It is there.
+    /// The process exists.
     Alive,
-    /// It is not, for this reason.
+    /// The process no longer exists, for this reason.
     Gone(&'static str),
     /// It cannot be determined from here.
     Unseen,
@@ -61,20 +61,20 @@ impl Holder {
         }
     }
 
-    /// The holder that a file names; none in a file that is not whole, or none of ours.
+    /// Reads the holder from a file; none if the file is incomplete or was not written by this program.
     pub fn read(file: &mut impl Read) -> io::Result<Option<Self>> {
         let mut text = Vec::new();
         file.take(LONGEST).read_to_end(&mut text)?;
         Ok(serde_json::from_slice(&text).ok())
     }
 
-    /// The text of a lock file.
+    /// Returns the text of a lock file.
     pub fn text(&self) -> String {
         let text = serde_json::to_string_pretty(self).expect("text and whole numbers can be written");
         text + "\n"
     }
 
-    /// What has become of this holder, seen by `own`; `owner` is the user to whom its file belongs.
+    /// Returns the state of this holder's process, as `own` can determine it; `owner` is the user who owns the file.
     pub fn fate(&self, own: &Self, owner: u32) -> Fate {
         match self.seen_from(own, owner) {
             Fate::Unseen if self.was_started_again(own) => Fate::Gone("this job has been started again"),
@@ -82,8 +82,8 @@ impl Holder {
         }
     }
 
-    /// Whether `own` is of a later start of this holder's job. Slurm counts the starts; of others it is believed that a
-    /// job does not run itself twice in one directory.
+    /// Returns whether `own` belongs to a later start of this holder's job. Slurm counts the starts; for other batch
+    /// systems it is assumed that a job does not run twice in one directory at the same time.
     fn was_started_again(&self, own: &Self) -> bool {
         let counted = self.job.as_ref().is_some_and(|job| job.starts_with(JOBS[0]));
         self.job.is_some() && self.job == own.job && (!counted || own.restarts > self.restarts)
@@ -102,7 +102,7 @@ impl Holder {
         match start_of(self.pid) {
             start if start == self.started => Fate::Alive,
             Some(_) => Fate::Gone("the process is gone, and another has its number"),
-            // Where /proc hides the processes of other users, theirs may be there.
+            // If /proc hides the processes of other users, the process may exist.
             None if fs::metadata("/proc/self").is_ok_and(|own| own.uid() == owner) => Fate::Gone("the process is gone"),
             None => Fate::Unseen,
         }
@@ -119,21 +119,21 @@ impl Display for Holder {
     }
 }
 
-/// The text of a file of the system, without what surrounds it; empty if it cannot be read.
+/// Returns the trimmed text of a system file; empty if it cannot be read.
 fn trimmed_text(path: &str) -> String {
     fs::read_to_string(path).unwrap_or_default().trim().to_owned()
 }
 
-/// The job that an environment variable names, as `NAME=ID`.
+/// Returns the job in an environment variable, as `NAME=ID`.
 fn job_of(variable: &str) -> Option<String> {
     let id = std::env::var(variable).ok().filter(|id| !id.is_empty())?;
     Some(format!("{variable}={id}"))
 }
 
-/// When a process started, in ticks since the host did; none if it is gone, or dead and not yet taken away.
+/// Returns the start of a process in ticks since the host started; none if it no longer exists or is a zombie.
 fn start_of(pid: u32) -> Option<u64> {
     let stat = fs::read_to_string(Path::new("/proc").join(pid.to_string()).join("stat")).ok()?;
-    // The name, in brackets, may hold anything; the state is the first field behind it, the start the 20th.
+    // The name, in brackets, may contain anything. After it, the first field is the state, the 20th the start.
     let mut fields = stat.rsplit_once(')')?.1.split_whitespace();
     let state = fields.next()?;
     if ["Z", "X"].contains(&state) {

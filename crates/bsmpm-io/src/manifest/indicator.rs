@@ -2,39 +2,39 @@
 
 use serde::{Deserialize, Serialize};
 
-/// One measure, and where it lies in runs that were found to be good.
+/// Measure of the accuracy of a run, with the range found in good runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Indicator {
-    /// The code by which `bsmpm explain` explains it; empty in runs of older programs.
+    /// Code for `bsmpm explain`; empty in runs of older programs.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub code: String,
-    /// What was found.
+    /// Value in this run.
     pub value: f64,
-    /// Its unit; `-` for none.
+    /// Unit; `-` for none.
     pub unit: String,
-    /// What was measured, with the value and its usual range or limit.
+    /// Description of the measure, with the value and its usual range or limit.
     pub meaning: String,
-    /// Least and largest value that is usual.
+    /// Smallest and largest usual value.
     pub usual: [f64; 2],
-    /// Whether the value lies outside.
+    /// Whether the value is outside the usual range.
     pub unusual: bool,
-    /// Least and largest value up to which the answer is likely to be right within 10 %; none where no measurement
-    /// shows it.
+    /// Smallest and largest value for which the result is likely to be correct within 10 %; none if this was not
+    /// measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limits: Option<[f64; 2]>,
-    /// Whether the value lies beyond the limits.
+    /// Whether the value is beyond the limits.
     #[serde(default)]
     pub failed: bool,
-    /// Whether the case accepts that.
+    /// Whether the case accepts a value beyond the limits.
     #[serde(default)]
     pub accepted: bool,
-    /// What a value outside the range means, and what to do then.
+    /// Meaning of a value outside the range, and remedy.
     #[serde(default)]
     pub advice: String,
 }
 
 impl Indicator {
-    /// A value, judged by its usual range.
+    /// Creates an indicator from a value and its usual range.
     pub fn new(value: f64, unit: &str, meaning: &str, usual: [f64; 2]) -> Self {
         let unusual = !(usual[0]..=usual[1]).contains(&value);
         Self {
@@ -51,7 +51,7 @@ impl Indicator {
         }
     }
 
-    /// The same with limits, and whether the case accepts a value beyond them.
+    /// Returns the same indicator with limits; `accepted` is whether the case accepts a value beyond them.
     #[must_use]
     pub fn limited(self, limits: Option<[f64; 2]>, accepted: bool) -> Self {
         let failed = limits.is_some_and(|[least, most]| !(least..=most).contains(&self.value));
@@ -63,7 +63,7 @@ impl Indicator {
         }
     }
 
-    /// Whether it ends the run with a code of its own.
+    /// Returns whether the indicator ends the run with its own exit code.
     pub fn ends_run(&self) -> bool {
         self.failed && !self.accepted
     }

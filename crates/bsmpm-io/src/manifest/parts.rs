@@ -9,37 +9,37 @@ use serde::{Deserialize, Serialize};
 
 use crate::Error;
 
-/// How a run stands.
+/// State of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
-    /// It goes on, or was killed.
+    /// The run is running, or was killed.
     Running,
-    /// It came to the end of the case.
+    /// The end of the case was reached.
     Finished,
-    /// It was asked to stop before the end.
+    /// The run was stopped on request before the end.
     Stopped,
-    /// It could not go on, or a check failed.
+    /// The run could not continue, or a check failed.
     Failed,
 }
 
-/// What was solved.
+/// Case that was computed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ManifestCase {
-    /// The case file's name, without folders.
+    /// Name of the case file, without folders.
     pub file: String,
-    /// The case's title.
+    /// Title of the case.
     pub title: String,
     /// `plane-strain`, `axisymmetric` or `solid`.
     pub geometry: String,
-    /// The text that took effect, overrides included.
+    /// Text of the case, with overrides applied.
     pub text: String,
-    /// BLAKE3 of `text`, in hexadecimal.
+    /// BLAKE3 hash of `text`, in hexadecimal.
     pub blake3: String,
 }
 
 impl ManifestCase {
-    /// A case with the hash of its text.
+    /// Creates the entry with the hash of the text.
     pub fn new(file: &str, title: &str, geometry: &str, text: String) -> Self {
         let blake3 = blake3::hash(text.as_bytes()).to_hex().to_string();
         Self {
@@ -52,14 +52,14 @@ impl ManifestCase {
     }
 }
 
-/// The box of the grid.
+/// Extent of the grid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GridExtent {
-    /// m  its lowest corner.
+    /// Lower corner (m).
     pub lower: Vec<f64>,
-    /// m  its highest corner.
+    /// Upper corner (m).
     pub upper: Vec<f64>,
-    /// m  the largest size of a cell along each axis.
+    /// Largest size of a cell along each axis (m).
     pub cell: Vec<f64>,
 }
 
@@ -69,42 +69,42 @@ impl GridExtent {
     }
 }
 
-/// A quantity that the program chose by itself.
+/// Value that the program chose.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ManifestChoice {
-    /// The key of the case file.
+    /// Key of the case file.
     pub key: String,
-    /// What it became.
+    /// Chosen value.
     pub value: String,
-    /// Why.
+    /// Reason.
     pub reason: String,
 }
 
-/// The load under which the ground fails at something that is moved.
+/// Limit load: the load at which the ground fails under a moved footing or body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ManifestLimitLoad {
-    /// What is moved.
+    /// Name of the moved footing or body.
     pub name: String,
-    /// Columns of `history.csv` that it is the sum of, with the weights of each.
+    /// Columns of `history.csv` whose sum is the load, with their weights.
     pub columns: Vec<(String, f64)>,
     /// Unit of the columns.
     pub unit: String,
-    /// At the end of the run.
+    /// Value at the end of the run.
     pub value: f64,
     /// (value - value at three quarters of the displacement) / value.
     pub change: f64,
     /// Whether the value is a limit: positive, and with a change of at most 1 %.
     pub is_reached: bool,
-    /// Cells across what is moved; none where it has no width of its own.
+    /// Number of cells across the moved object; none if it has no width of its own.
     pub cells: Option<f64>,
-    /// Part of what is moved that is modelled: one half or one quarter at planes of symmetry.
+    /// Fraction of the moved object that is modelled: 1/2 or 1/4 at planes of symmetry.
     pub modelled: f64,
-    /// Young's moduli were multiplied, and prescribed displacements divided, by this factor.
+    /// Factor by which Young's moduli were multiplied and prescribed displacements divided.
     pub stiffness: f64,
 }
 
 impl ManifestLimitLoad {
-    /// Which part of the whole a force is of, in words; nothing of a pressure, or of the whole.
+    /// Returns a text with the modelled fraction of a force; empty for a pressure or the whole.
     pub fn part(&self) -> String {
         let is_force = !self.unit.ends_with("Pa");
         match is_force && self.modelled < 1.0 {
@@ -117,14 +117,14 @@ impl ManifestLimitLoad {
     }
 }
 
-/// How the state at the start was balanced.
+/// Equilibrium of the initial state.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ManifestInitial {
-    /// |out-of-balance force| / largest force
+    /// |out-of-balance force| / largest force (-).
     pub unbalance: f64,
-    /// Points whose stress lies outside the yield surface.
+    /// Number of points whose stress is outside the yield surface.
     pub yielding: u64,
-    /// What leading it to equilibrium took, if the case wants that.
+    /// Effort of the iteration to equilibrium, if the case requests it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub settling: Option<ManifestSettling>,
 }
@@ -138,116 +138,119 @@ pub struct Summary {
     pub iterations: u64,
     /// Iterations of the linear solver.
     pub linear_iterations: u64,
-    /// Steps that were cut.
+    /// Step size reductions.
     pub cutbacks: u64,
     /// Evaluations of the out-of-balance force.
     pub residual_evaluations: u64,
-    /// Products with the complete derivative, in Newton's method.
+    /// Products with the complete derivative (Jacobian) in Newton's method.
     #[serde(default)]
     pub products: u64,
     /// Factorisations.
     #[serde(default)]
     pub factorisations: u64,
-    /// Steps in which Newton's method found equilibrium.
+    /// Steps in which Newton's method converged.
     #[serde(default)]
     pub newton_steps: u64,
-    /// Steps whose forces alone decided: they balanced ten times better than asked, where no method led on and the
-    /// energy measure did not hold.
+    /// Steps accepted by their forces alone: these were balanced ten times better than required, but no method made
+    /// further progress, and the energy criterion was not satisfied.
     #[serde(default)]
     pub settled_steps: u64,
-    /// m  the farthest that a point moved in a step; none before the first one.
+    /// Largest displacement of a point in a step (m); none before the first step.
     #[serde(default)]
     pub largest_advance: Option<f64>,
-    /// The deepest that a material point was in a rigid body after a step, in cells; none without rigid bodies.
+    /// Largest penetration of a material point into a rigid body after a step, in cells; none without rigid bodies.
     #[serde(default)]
     pub deepest_penetration: Option<f64>,
-    /// Largest slip of any rigid strip in a step, over its motion in that step; none without strips that move.
+    /// Largest slip of a rigid footing in a step divided by its displacement; none without moving footings.
     #[serde(default)]
     pub largest_slip: Option<f64>,
-    /// m  largest slip of any rigid strip in all steps together, also of strips that do not move; none without strips.
+    /// Largest accumulated slip of a rigid footing, moving or not (m); none without footings.
     #[serde(default)]
     pub largest_accumulated_slip: Option<f64>,
-    /// Largest force measure of a state that was accepted by both measures, over its tolerance; none while there is no
-    /// such state.
+    /// Largest ratio of the force measure to its tolerance in the states accepted by both measures; none without such a
+    /// state.
     #[serde(default)]
     pub largest_force_measure: Option<f64>,
-    /// The same of the energy measure.
+    /// The same ratio for the energy measure.
     #[serde(default)]
     pub largest_energy_measure: Option<f64>,
-    /// The same of the measure of the water, where some flows.
+    /// The same ratio for the measure of the pore water, with transient seepage.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub largest_water_measure: Option<f64>,
-    /// N  largest force of a face's support on the body; none without supports.
+    /// Largest reaction of a boundary on the body (N); none without supports.
     #[serde(default)]
     pub largest_reaction: Option<f64>,
-    /// N  largest force with which a face's support has pulled the body towards itself; none without supports.
+    /// Largest tensile reaction of a boundary on the body (N); none without supports.
     #[serde(default)]
     pub largest_pull: Option<f64>,
-    /// m  the farthest front of the body; none where it is not recorded.
+    /// Farthest run-out front (m); none if it is not recorded.
     #[serde(default)]
     pub farthest_front: Option<f64>,
-    /// m  the farthest that the front went back behind the farthest one before; none where it is not recorded.
+    /// Largest distance by which the front moved back behind its farthest position so far (m); none if it is not
+    /// recorded.
     #[serde(default)]
     pub largest_front_setback: Option<f64>,
-    /// J  work done on the soft background in all steps; none without one.
+    /// Work done on the fictitious stiffness (`solver.background`) in all steps (J); none without one.
     #[serde(default)]
     pub background_work: Option<f64>,
-    /// J  magnitudes of the works of the internal forces at all nodes, the background's among them, added over the
-    /// steps; none without a background.
+    /// Absolute works of the internal forces at all nodes, including the fictitious stiffness, added over the steps
+    /// (J); none without a fictitious stiffness.
     #[serde(default)]
     pub internal_work: Option<f64>,
-    /// Largest force of the soft background on a node over the RMS force of the nodes, added over the steps without
-    /// prescribed motion; none without a background or such steps.
+    /// Largest force of the fictitious stiffness on a node divided by the RMS force of the nodes, added over the steps
+    /// without prescribed motion; none without a fictitious stiffness or such steps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub background_forces: Option<f64>,
-    /// Part of the work that the soft background took in the last step; none without one.
+    /// Share of the fictitious stiffness in the work of the last step; none without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last_background: Option<BackgroundShares>,
-    /// m  the farthest that a point moved in a step, added over the steps; none where stiffness is not judged.
+    /// Largest displacement of a point in a step, added over the steps (m); none if the stiffness is not judged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub advances: Option<f64>,
-    /// m  the same since the last stage began.
+    /// The same sum since the start of the last stage (m).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stage_advances: Option<f64>,
-    /// Second-order work of elastic ground over the actual one, largest of the steps that are judged; none without.
+    /// Largest ratio of the second-order work of elastic ground to the actual one, over the judged steps; none without
+    /// such steps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub largest_stiffness_loss: Option<f64>,
-    /// s or pseudo-time  end of the first step in which that was beyond its usual range; none while there is none.
+    /// End of the first step in which this ratio was beyond its usual range (s or pseudo-time); none if there was no
+    /// such step.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failed_at: Option<f64>,
-    /// J  kinetic energy that points within a cell of a fixed face have beyond that of their motion, added over the
-    /// steps; none in statics, and without such a face.
+    /// Kinetic energy, in excess of that of their displacement, of points within a cell of a fixed boundary, added over
+    /// the steps (J); none in statics and without such a boundary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beside_fixed: Option<f64>,
-    /// J  kinetic energy of all points, added over the same steps.
+    /// Kinetic energy of all points, added over the same steps (J).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kinetic: Option<f64>,
-    /// Passes of smoothing of the elastic state, each counted by the mean share of the points that it had; none
-    /// without.
+    /// Number of smoothing passes of the elastic state, each weighted with its mean fraction of the points; none
+    /// without smoothing.
     #[serde(default)]
     pub smoothing_passes: Option<f64>,
-    /// s  of processor time, all ranks together.
+    /// Processor time of all ranks together (s).
     pub cpu_seconds: f64,
-    /// bytes  the largest resident memory of each rank.
+    /// Largest resident memory of each rank (bytes).
     pub peak_memory: Vec<u64>,
 }
 
-/// What the soft background takes in a step.
+/// Share of the fictitious stiffness in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BackgroundShares {
-    /// Work done on it over the magnitudes of the works of all internal forces, or over their mean of the steps so far
-    /// where that is larger.
+    /// Work done on the fictitious stiffness, divided by the absolute works of all internal forces, or by their mean
+    /// over the steps so far if that is larger.
     pub work: f64,
 }
 
-/// What the ranks sent each other in one way, over the run.
+/// Traffic of one kind between the ranks over the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Communication {
-    /// Exchanges or reductions that every rank took part in.
+    /// Exchanges or reductions in which every rank took part.
     pub calls: u64,
-    /// Messages to another rank, of all ranks; a reduction counts none.
+    /// Messages to other ranks, in total over all ranks; a reduction counts none.
     pub messages: u64,
-    /// Bytes of them; of reductions, those of the numbers that every rank puts in.
+    /// Bytes of these messages; for reductions, of the numbers that each rank contributes.
     pub bytes: u64,
     /// Messages of the rank that sent the most.
     pub most_messages: u64,
@@ -255,32 +258,32 @@ pub struct Communication {
     pub most_bytes: u64,
 }
 
-/// What solved a kind of linear systems, and how its solves ended.
+/// Solver of one kind of linear system, and the outcomes of its solves.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolverNames {
-    /// KSPType of PETSc, of the program that ran last.
+    /// KSPType of PETSc, in the last program run.
     pub ksp: String,
-    /// PCType of PETSc; of a shell its name, too, as in `shell (dissection)`.
+    /// PCType of PETSc; for a shell with its name, as in `shell (dissection)`.
     pub pc: String,
-    /// Solves by the name of their KSPConvergedReason, over the run; `ERROR` of those that came to none.
+    /// Number of solves by KSPConvergedReason over the run; `ERROR` for solves without a result.
     pub reasons: BTreeMap<String, u64>,
 }
 
-/// How evenly the work lay on the ranks, over the steps.
+/// Load balance of the ranks over the steps (not a balance of energy).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EnergyBalance {
-    /// Steps that are counted.
+    /// Number of counted steps.
     pub steps: u64,
-    /// Mean over them of the largest load over the mean load.
+    /// Mean over these steps of the largest load divided by the mean load.
     pub mean: f64,
-    /// The largest of them.
+    /// Largest such ratio.
     pub largest: f64,
-    /// How often the grid was cut again.
+    /// Number of new partitions of the grid.
     pub cuts: u64,
 }
 
 impl EnergyBalance {
-    /// Counts one step more.
+    /// Counts one more step.
     pub fn enter(&mut self, imbalance: f64, is_cut_again: bool) {
         self.steps += 1;
         self.mean += (imbalance - self.mean) / self.steps as f64;
@@ -289,31 +292,31 @@ impl EnergyBalance {
     }
 }
 
-/// One `[[check]]` of the case and what came of it.
+/// A `[[check]]` of the case and its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ManifestCheck {
-    /// What was looked at.
+    /// Checked quantity.
     pub quantity: String,
-    /// s or pseudo-time  when; none for the end.
+    /// Time of the check (s or pseudo-time); none for the end.
     pub at: Option<f64>,
-    /// What it was; none if the run did not get there.
+    /// Value; none if the run did not reach that time.
     pub value: Option<f64>,
-    /// The least that passes.
+    /// Smallest value that passes.
     pub min: Option<f64>,
-    /// The most that passes.
+    /// Largest value that passes.
     pub max: Option<f64>,
-    /// Whether it passed.
+    /// Whether the check passed.
     pub passed: bool,
 }
 
-/// A file that the run wrote.
+/// File that the run wrote.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ManifestOutput {
-    /// Its place relative to the output directory, with `/` between its parts.
+    /// Path relative to the output directory, with `/` as separator.
     pub path: String,
-    /// Its size, once it is complete.
+    /// Size in bytes, once it is complete.
     pub bytes: Option<u64>,
-    /// Its BLAKE3 in hexadecimal, once it is complete.
+    /// BLAKE3 hash in hexadecimal, once it is complete.
     pub blake3: Option<String>,
 }
 
@@ -339,87 +342,87 @@ impl ManifestOutput {
     }
 }
 
-/// The way to equilibrium before the first step.
+/// Effort of the iteration to equilibrium before the first step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ManifestSettling {
-    /// Equilibria that were found on it; none where the stress was in equilibrium already.
+    /// Number of equilibria that were computed; 0 if the stress was in equilibrium already.
     pub rounds: usize,
-    /// Evaluations of the forces.
+    /// Number of evaluations of the forces.
     pub evaluations: usize,
 }
 
-/// What a stage has changed.
+/// Changes of a stage.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ManifestStage {
-    /// What the case calls it.
+    /// Name in the case.
     pub name: Option<String>,
-    /// Steps that were made before.
+    /// Number of steps before the stage.
     pub step: u64,
-    /// s (quasi-static: pseudo-time)  when it began.
+    /// Start of the stage (s; quasi-static: pseudo-time).
     pub time: f64,
-    /// Points that it took away.
+    /// Number of removed points.
     pub removed: u64,
-    /// Points that it placed.
+    /// Number of added points.
     pub added: u64,
-    /// Names of loads and supports that act from there on.
+    /// Names of loads and supports that act from this stage on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub applied: Vec<String>,
-    /// Those that no longer do.
+    /// Names of loads and supports that no longer act.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub released: Vec<String>,
-    /// Faces of the grid that changed, and what they are from there on.
+    /// Boundaries of the grid that changed, with their new type.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faces: Vec<String>,
-    /// Materials whose bodies follow the law of another one, in words.
+    /// Materials whose bodies change to the law of another material, in words.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub exchanged: Vec<String>,
-    /// What the strength that the case gives is divided by from there on, if that changed.
+    /// New divisor of the strength given in the case, if it changed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strength_reduction: Option<f64>,
-    /// Whether displacements count from there.
+    /// Whether displacements are set to zero at the start of the stage.
     pub reset: bool,
 }
 
 /// Material that has left the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ManifestOutflow {
-    /// Points.
+    /// Number of points.
     pub points: u64,
-    /// kg/m
+    /// Mass (kg/m).
     pub mass: f64,
 }
 
-/// Where and how a run went on.
+/// Restart of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ManifestRestart {
-    /// The checkpoint's file.
+    /// File of the checkpoint.
     pub checkpoint: String,
-    /// Steps that were made before.
+    /// Number of steps before the restart.
     pub step: u64,
-    /// Processes that wrote it.
+    /// Number of processes that wrote the checkpoint.
     pub ranks_before: u32,
-    /// Processes that went on.
+    /// Number of processes after the restart.
     pub ranks: u32,
-    /// When, RFC 3339 in UTC.
+    /// Time of the restart, RFC 3339 in UTC.
     pub start: String,
     /// Keys of the case that had changed, with both values.
     pub changed: Vec<String>,
 }
 
-/// Why a run ended early.
+/// Reason why a run ended early.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ManifestFailure {
-    /// The step that failed.
+    /// Number of the failed step.
     pub step: u64,
-    /// s or pseudo-time  at its start.
+    /// Start of the failed step (s or pseudo-time).
     pub time: f64,
-    /// What happened, in words.
+    /// Reason, in words.
     pub reason: String,
-    /// The energy measure of each iteration of the last attempt; none where it was not finite.
+    /// Energy measure of each iteration of the last attempt; none if it was not finite.
     pub residuals: Vec<Option<f64>>,
-    /// Where it was worst.
+    /// Point or node with the largest residual.
     pub worst: Option<Worst>,
-    /// The name of the rigid body that nothing holds, where that is the cause.
+    /// Name of the rigid body that is not restrained, if that is the cause.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loose: Option<String>,
 }
@@ -434,16 +437,16 @@ impl ManifestFailure {
     }
 }
 
-/// The point or node that was worst in a failed step.
+/// Point or node with the largest residual in a failed step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Worst {
     /// `point` or `node`.
     pub kind: String,
-    /// Its number.
+    /// Number of the point or node.
     pub id: u64,
-    /// m  where it was.
+    /// Position (m).
     pub position: Vec<f64>,
-    /// N  out of balance there, of a node.
+    /// Out-of-balance force of a node (N).
     #[serde(default)]
     pub force: Option<f64>,
 }

@@ -10,7 +10,7 @@ use bsmpm::control::Progress;
 use bsmpm::energy::{EnergyAccounts, EnergyBound, Flows};
 use bsmpm::grid::Grid;
 use bsmpm::tensor::Vector;
-use bsmpm::water::crossed::{CumulativeFlux, PreviousFlow};
+use bsmpm::water::crossed::{CrossedVolumes, PreviousFlow};
 use bsmpm_io::exit;
 use bsmpm_io::frames::Entry;
 use bsmpm_io::manifest::Manifest;
@@ -151,12 +151,12 @@ pub struct CrossedState {
 
 impl CrossedState {
     pub(crate) fn of(
-        CumulativeFlux {
+        CrossedVolumes {
             drains,
             faces,
             inflows,
             removed,
-        }: &CumulativeFlux,
+        }: &CrossedVolumes,
     ) -> Self {
         Self {
             drains: drains.clone(),
@@ -166,14 +166,14 @@ impl CrossedState {
         }
     }
 
-    fn volumes(&self) -> CumulativeFlux {
+    fn volumes(&self) -> CrossedVolumes {
         let Self {
             drains,
             faces,
             inflows,
             removed,
         } = self.clone();
-        CumulativeFlux {
+        CrossedVolumes {
             drains,
             faces,
             inflows,

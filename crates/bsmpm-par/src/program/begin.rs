@@ -9,9 +9,9 @@ use crate::log::Log;
 use crate::machine;
 use crate::record::Recorder;
 use crate::restart::{self, ResumedRun, RunStart};
+use crate::run::RecordedSimulation;
 use crate::run::RunFiles;
-use crate::run::Scene;
-use crate::run::{Continuation, Run, Task};
+use crate::run::{PriorState, Run, Task};
 use crate::setup::Cut;
 use crate::space;
 use bsmpm::grid::Grid;
@@ -144,7 +144,7 @@ fn scene<'p, K: Kinematics<D>, const D: usize>(
     start: &RunStart<'_>,
     timers: Rc<Timers>,
     requests: Rc<Requests>,
-) -> Result<Scene<'p, K, D>, Refusal> {
+) -> Result<RecordedSimulation<'p, K, D>, Refusal> {
     let universe = libraries.universe;
     let Cut { room, slabs, parts } = cut;
     let at = if let RunStart::Resumed(resumed) = start {
@@ -168,7 +168,7 @@ fn scene<'p, K: Kinematics<D>, const D: usize>(
                  cannot be continued. Restore the histories of the case, or start again with `--force`.",
             )
         })?;
-        return Ok(Scene { simulation, recorder });
+        return Ok(RecordedSimulation { simulation, recorder });
     }
     model.grid = model.grid.within(std::array::from_fn(|axis| room[axis].clone()));
     let world = universe.world();
@@ -188,7 +188,7 @@ fn scene<'p, K: Kinematics<D>, const D: usize>(
     let partitioned = PartitionedModel { model, slabs, points };
     let simulation = Simulation::new(libraries, choice, partitioned, schedule, timers, requests);
     let recorder = Recorder::new(case, &simulation.points, &*simulation.halo);
-    Ok(Scene { simulation, recorder })
+    Ok(RecordedSimulation { simulation, recorder })
 }
 
 /// The slabs cut into their parts, by the points that they get: each of their ranks counts those of some columns.
@@ -216,12 +216,12 @@ fn parted<K: Kinematics<D>, const D: usize>(
 }
 
 /// What there was before.
-fn before(start: &RunStart<'_>, directory: &Path) -> Continuation {
+fn before(start: &RunStart<'_>, directory: &Path) -> PriorState {
     let RunStart::Resumed(resumed) = start else {
-        return Continuation::default();
+        return PriorState::default();
     };
     let ResumedRun { state, .. } = &**resumed;
-    Continuation {
+    PriorState {
         resumed: true,
         is_branch: !resumed.is_in(directory),
         last_frame: state.last_frame,

@@ -4,7 +4,7 @@ use super::Run;
 use crate::machine;
 use crate::setup::{self, Start};
 use bsmpm::error::StepError;
-use bsmpm::initial::EquilibriumSearch;
+use bsmpm::initial::EquilibriumSearchReport;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::step::StepReport;
 use bsmpm_io::manifest::{ManifestInitial, ManifestSettling};
@@ -67,7 +67,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let unbalance = start.force;
         let yielding = start.yielding;
         let settling =
-            settling.map(|EquilibriumSearch { rounds, evaluations }| ManifestSettling { rounds, evaluations });
+            settling.map(|EquilibriumSearchReport { rounds, evaluations }| ManifestSettling { rounds, evaluations });
         if let Some(ledger) = &mut self.ledger {
             ledger.manifest().initial = Some(ManifestInitial {
                 unbalance,

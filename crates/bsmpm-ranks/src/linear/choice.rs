@@ -3,10 +3,9 @@
 use bsmpm::parallel::Symmetry;
 use petsc_rs::{Ksp, Matrix, PcFailure, Petsc, ShellPc, Vector};
 
-/// Defaults of the factorisation, given before the user's own options, which win. MUMPS: ordering by approximate
-/// minimum fill, of all that were tried the cheapest for plane grids, and twice the workspace that it estimates, which
-/// on several ranks is at times too little. Iterative methods: a tolerance whose solutions are trusted, unlike PETSc's
-/// 1e-5.
+/// Default options of the factorisation, which the user's options override. MUMPS: ordering by approximate minimum
+/// fill, which was the cheapest for plane grids, and twice the estimated workspace, because the estimate is sometimes
+/// too small on several ranks. Iterative methods: a tolerance that satisfies the residual check, unlike PETSc's 1e-5.
 const OPTIONS: [&str; 18] = [
     "-ksp_rtol",
     "1e-10",
@@ -27,8 +26,8 @@ const OPTIONS: [&str; 18] = [
     "-newton_ksp_pc_side",
     "right",
 ];
-/// Defaults of preconditioners that are applied in place of a solution: incomplete factors of the ranks' blocks, and
-/// the same as the smoother of multigrid, which what pointwise smoothers leave of nearly empty cells needs.
+/// Default options of preconditioners that are applied in place of a solution: incomplete factors of the ranks' blocks.
+/// Multigrid uses them as smoother, too, because pointwise smoothers fail for nearly empty cells.
 const ROUGH: [&str; 10] = [
     "-sub_pc_type",
     "icc",
@@ -41,37 +40,38 @@ const ROUGH: [&str; 10] = [
     "-mg_levels_sub_pc_type",
     "icc",
 ];
-/// The name of this program's own multigrid in the place of a PCType.
+/// Name of this program's multigrid, used in place of a PCType.
 pub const SPLINE_MULTIGRID: &str = "spline-multigrid";
 /// Prefix of the options of Newton's linear systems.
 const NEWTON: &str = "newton_";
 
-/// Method, preconditioner and factorising package by PETSc's names.
+/// Method, preconditioner and factorisation package, by PETSc's names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choice {
-    /// definite systems are preconditioned by nested dissection of the grid, whose matrix is not assembled
+    /// Whether definite systems are preconditioned by nested dissection of the grid. Their matrix is then not
+    /// assembled.
     pub dissection: bool,
-    /// KSPType, e.g. `preonly`, `cg`
+    /// KSPType, e.g. `preonly`, `cg`.
     pub ksp: String,
-    /// PCType, e.g. `cholesky`, `gamg`
+    /// PCType, e.g. `cholesky`, `gamg`.
     pub pc: String,
-    /// MatSolverType of a factorisation, e.g. `mumps`
+    /// MatSolverType of a factorisation, e.g. `mumps`.
     pub factor: Option<String>,
-    /// every rank factorises the whole system by itself: a parallel factorisation need not repeat to the bit
+    /// Whether every rank factorises the whole system. A parallel factorisation may not be bitwise repeatable.
     pub redundant: bool,
-    /// so many times the preconditioner is applied in place of a solution; 0: there is a solution
+    /// Number of applications of the preconditioner in place of a solution; 0 if systems are solved.
     pub applications: usize,
 }
 
 impl Choice {
-    /// Options that PETSc must start with, before the user's own.
+    /// Returns the options with which PETSc must start, before the user's options.
     pub fn options(&self) -> Vec<&str> {
         let mut options = OPTIONS.to_vec();
         if self.is_rough() && !self.is_geometric() {
             options.extend(ROUGH);
         }
         if self.pc == "gamg" {
-            // Of the present matrix alone: a run that goes on from a checkpoint has not seen the former ones.
+            // Interpolation must depend on the present matrix only: a restarted run does not know former matrices.
             options.extend(["-pc_gamg_reuse_interpolation", "false"]);
         }
         if self.redundant {
@@ -84,23 +84,24 @@ impl Choice {
         options
     }
 
-    /// Whether directions are those of a preconditioner alone, see [`bsmpm::parallel::LinearSolver::is_rough`].
+    /// Returns whether directions come from the preconditioner alone, see [`bsmpm::parallel::LinearSolver::is_rough`].
     pub fn is_rough(&self) -> bool {
         self.applications > 0
     }
 
-    /// Whether nodes keep all their components, held ones too: multigrid wants blocks and the rigid-body modes.
+    /// Returns whether nodes keep all their components, including fixed ones: multigrid needs blocks and the rigid-body
+    /// modes.
     pub fn whole_nodes(&self) -> bool {
         ["gamg", "ml", "hypre"].contains(&self.pc.as_str())
     }
 
-    /// Whether definite systems are preconditioned by multigrid over the grid's splines, see [`SPLINE_MULTIGRID`];
-    /// their matrix is not assembled.
+    /// Returns whether definite systems are preconditioned by spline multigrid, see [`SPLINE_MULTIGRID`]. Their matrix
+    /// is then not assembled.
     pub fn is_geometric(&self) -> bool {
         self.pc == SPLINE_MULTIGRID
     }
 
-    /// The program's own preconditioner of definite systems, if it is one.
+    /// Returns the name of the program's own preconditioner of definite systems, if one is used.
     fn shell(&self) -> Option<&'static str> {
         if self.dissection {
             Some("dissection")
@@ -109,7 +110,7 @@ impl Choice {
         }
     }
 
-    /// Sets a solver up; what the options say goes before. A general matrix preconditions a Krylov method.
+    /// Sets up a solver; PETSc options take precedence. For a general matrix, the factor preconditions FGMRES.
     pub(super) fn apply(&self, ksp: &mut Ksp<'_>, symmetry: Symmetry) -> petsc_rs::Result<()> {
         if let (Some(shell), Symmetry::Definite) = (self.shell(), symmetry) {
             ksp.set_type(&self.ksp)?;
@@ -139,8 +140,8 @@ impl Choice {
     }
 }
 
-/// Solves a system of one unknown a rank as `choice` and the options say: what PETSc does not know or have shows before
-/// a run begins. Collective.
+/// Solves a system of one unknown per rank as `choice` and the options define. Options that PETSc does not support thus
+/// fail before a run begins. Collective.
 pub fn probe<'p>(petsc: &'p Petsc<'p>, choice: &Choice) -> petsc_rs::Result<()> {
     let mut ksp = Ksp::new(petsc)?;
     if choice.shell().is_some() {
@@ -163,7 +164,7 @@ pub fn probe<'p>(petsc: &'p Petsc<'p>, choice: &Choice) -> petsc_rs::Result<()> 
     ksp.solve(&b, &mut x).map(|_| ())
 }
 
-/// The preconditioner of the matrix that is solved before a run.
+/// Preconditioner of the matrix in [`probe`].
 struct Identity;
 
 impl ShellPc for Identity {

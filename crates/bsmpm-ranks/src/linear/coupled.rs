@@ -9,14 +9,14 @@ use bsmpm::parallel::{Krylov, LinearSolver, SolveReport, Symmetry};
 use petsc_rs::Petsc;
 use std::rc::Rc;
 
-/// Both.
+/// Linear solvers for displacements and, with transient seepage, for pore pressures.
 pub struct Solvers<'p, const D: usize> {
     displacements: KspSolver<'p, D, D>,
     water: Option<KspSolver<'p, D, 1>>,
 }
 
 impl<'p, const D: usize> Solvers<'p, D> {
-    /// For the window of a model's grid.
+    /// Creates the solvers for the window of a model's grid.
     pub fn new<K>(
         petsc: &'p Petsc<'p>,
         choice: &Choice,
@@ -31,7 +31,7 @@ impl<'p, const D: usize> Solvers<'p, D> {
         Self { displacements, water }
     }
 
-    /// How the solves have ended so far.
+    /// Returns the outcomes of the solves so far.
     pub fn tallies(&self) -> Tallies {
         let water = self.water.as_ref().and_then(|water| water.tallies().definite.clone());
         Tallies {
@@ -40,7 +40,7 @@ impl<'p, const D: usize> Solvers<'p, D> {
         }
     }
 
-    /// Goes on counting where other solvers of the run have ended.
+    /// Continues the counts of former solvers of the run.
     pub fn count_on(&mut self, tallies: Tallies) {
         if let Some(water) = &mut self.water {
             water.count_on(Tallies {

@@ -10,17 +10,17 @@ use bsmpm::error::SolveError;
 use bsmpm::parallel::{SolveReport, Symmetry};
 use petsc_rs::{Ksp, NormType, PcFailure, Petsc, ShellPc, Tolerances};
 
-/// The system with its solver, which stay when the unknowns change.
+/// Linear system with its solver, which are kept when the unknowns change.
 pub(super) struct CycleSystem<'p, const D: usize, const C: usize> {
     ksp: Ksp<'p>,
     ksp_type: String,
-    cycles: usize, // an application
+    cycles: usize, // per application
     multigrid: Option<Multigrid<D, C>>,
     unknowns: Vec<usize>,
 }
 
 impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
-    /// A system without unknowns, to be solved as `choice` and the options say. Collective.
+    /// Creates a system without unknowns, solved as `choice` and the PETSc options define. Collective.
     pub fn new(petsc: &'p Petsc<'p>, choice: &Choice) -> petsc_rs::Result<Self> {
         let mut ksp = Ksp::new(petsc)?;
         choice.apply(&mut ksp, Symmetry::Definite)?;
@@ -34,7 +34,7 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         })
     }
 
-    /// Other components are unknown. Collective.
+    /// Changes the unknown components of this rank. Collective.
     pub fn resize(&mut self, unknowns: Vec<usize>) -> petsc_rs::Result<()> {
         self.multigrid = None;
         self.ksp.set_shell_operator(unknowns.len())?;
@@ -42,12 +42,12 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         Ok(())
     }
 
-    /// What KSP and its preconditioner are called.
+    /// Creates a tally with the names of KSP and its preconditioner.
     pub fn tally(&self) -> Tally {
         Tally::of(&self.ksp, Some("multigrid of splines"))
     }
 
-    /// Makes the levels of a matrix, of which the unknowns are filled in. Collective.
+    /// Creates the levels for a matrix, whose `unknowns` are set here. Collective.
     pub fn set_up(&mut self, matrix: StiffnessOperator<'_, D, C>, tally: &mut Tally) -> Result<(), SolveError> {
         let Self {
             ksp,
@@ -74,7 +74,7 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         })
     }
 
-    /// The nodal solution for a nodal right-hand side, or what is applied in place of one. Collective.
+    /// Solves for a nodal right-hand side, or only applies the preconditioner if the KSP type is `preonly`. Collective.
     pub fn solve(
         &mut self,
         matrix: StiffnessOperator<'_, D, C>,
@@ -118,7 +118,8 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         })
     }
 
-    /// Solution to the residual `relative` by conjugate gradients around the cycles.
+    /// Solves to the relative residual `relative` by conjugate gradients with the multigrid cycles as preconditioner.
+    /// Collective.
     pub fn solve_to(
         &mut self,
         relative: f64,
@@ -148,10 +149,10 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
     }
 }
 
-/// The method that applies the preconditioner alone.
+/// KSP type that only applies the preconditioner.
 const PREONLY: &str = "preonly";
 
-/// The levels with their finest matrix, as KSP's preconditioner.
+/// Multigrid levels with their finest matrix, as KSP's preconditioner.
 struct Cycles<'a, const D: usize, const C: usize> {
     multigrid: &'a mut Option<Multigrid<D, C>>,
     cycles: usize,

@@ -13,37 +13,38 @@ use bsmpm::parallel::{Halo, agreed, over_layers};
 use mpi::topology::Communicator;
 use petsc_rs::{PcFailure, ShellPc};
 
-/// Largest relative residual of a solution by a factor of single precision, which a quasi-Newton direction can do with.
-/// It is 1e-7 in dynamics; in statics about 1e-9 n/(1 - 2 nu), n the unknowns of a body in one piece. One right-hand
-/// side shows for all of a step: what it does not excite, it does not show.
+/// Largest relative residual of a solution by a single-precision factor; it is sufficient for a quasi-Newton direction.
+/// The residual is about 1e-7 in dynamics, and 1e-9 n/(1 - 2 nu) in statics, with n the unknowns of a body in one
+/// piece. It is checked for the first right-hand side of a factor only, so an error that this right-hand side does not
+/// excite is not seen.
 const NEAR: f64 = 1e-2;
 
-/// What is known of the factor.
+/// State of the factor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum FactorState {
-    /// there is none of the present matrix
+    /// There is no factor of the present matrix.
     #[default]
     Missing,
-    /// it has not solved a system yet
+    /// The factor has not solved a system yet.
     Untried,
-    /// it has, and left little of it
+    /// The factor has solved a system with a small residual.
     Tried,
 }
 
-/// A definite matrix: the stencil's blocks of the free components.
+/// Positive definite matrix: the stencil's blocks of the free components.
 #[derive(Clone, Copy)]
 pub(super) struct StiffnessOperator<'a, const D: usize, const C: usize> {
     pub halo: &'a MpiHalo,
     pub grid: &'a Grid<D>,
     pub stencil: &'a Stencil<D, C>,
     pub free: &'a [bool],
-    /// components of this rank's unknowns
+    /// Components of this rank's unknowns.
     pub unknowns: &'a [usize],
     pub timers: &'a Timers,
 }
 
 impl<const D: usize, const C: usize> StiffnessOperator<'_, D, C> {
-    /// y = A x of this rank's unknowns. Collective.
+    /// Computes y = A x for this rank's unknowns. Collective.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         let mut nodal = vec![0.0; self.free.len()];
         let mut image = vec![0.0; self.free.len()];
@@ -57,7 +58,7 @@ impl<const D: usize, const C: usize> StiffnessOperator<'_, D, C> {
         self.halo.add_shared(image, C);
     }
 
-    /// Norms of the residual that a solution leaves, recomputed, and of the right-hand side. Collective.
+    /// Returns the norms of a solution's residual, recomputed, and of the right-hand side. Collective.
     pub fn norms(&self, rhs: &[f64], solution: &[f64]) -> (f64, f64) {
         let mut image = vec![0.0; rhs.len()];
         self.multiply_nodal(solution, &mut image);
@@ -68,7 +69,7 @@ impl<const D: usize, const C: usize> StiffnessOperator<'_, D, C> {
     }
 }
 
-/// Entries of the `unknowns` in a nodal array.
+/// Copies the entries of the `unknowns` in a nodal array to `values`.
 pub(super) fn gather(unknowns: &[usize], nodal: &[f64], values: &mut [f64]) {
     values
         .iter_mut()
@@ -76,41 +77,41 @@ pub(super) fn gather(unknowns: &[usize], nodal: &[f64], values: &mut [f64]) {
         .for_each(|(value, &component)| *value = nodal[component]);
 }
 
-/// The factor of a definite matrix, and what its applications leave beside their result.
+/// Factor of a positive definite matrix, and the side results of its applications.
 #[derive(Default)]
 pub(super) struct DissectionFactor {
     dissection: Dissection,
     is_planned: bool, // for the present unknowns
     standing: FactorState,
     rhs: Vec<f64>, // nodal
-    /// the last application's result, right at all nodes of the window
+    /// Result of the last application, valid at all nodes of the window.
     pub solution: Vec<f64>,
-    /// factorisations besides the one of the set-up, since it was asked last
+    /// Number of factorisations in addition to that of the set-up, since the last reset.
     pub further: usize,
-    /// |b - A x| / |b| of the first solution, since it was asked last
+    /// |b - A x| / |b| of the first solution since the last reset.
     pub residual: Option<f64>,
-    /// why it failed
+    /// Cause of a failure.
     pub cause: Option<SolveError>,
 }
 
 impl DissectionFactor {
-    /// Forgets the plan, as the unknowns are others.
+    /// Discards the plan, because the unknowns have changed.
     pub fn replan(&mut self) {
         self.is_planned = false;
     }
 
-    /// Forgets that there is a factor, as the matrix is another one.
+    /// Discards the factor, because the matrix has changed.
     pub fn outdate(&mut self) {
         self.standing = FactorState::Missing;
     }
 
-    /// Whether there is one of the present matrix.
+    /// Returns whether there is a factor of the present matrix.
     pub fn is_there(&self) -> bool {
         self.standing != FactorState::Missing
     }
 }
 
-/// The factor with its matrix, as KSP's preconditioner.
+/// Factor with its matrix, as KSP's preconditioner.
 pub(super) struct DissectionPc<'a, const D: usize, const C: usize> {
     pub factor: &'a mut DissectionFactor,
     pub matrix: StiffnessOperator<'a, D, C>,
@@ -147,8 +148,9 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
         agreed(halo, if good { Ok(()) } else { Err(here) }, elsewhere)
     }
 
-    /// The solution for the nodal right-hand side. The first one tries the factor: if it is not near, one of double
-    /// precision is made, whose solution must be: no reason of KSP's says what a factor is worth.
+    /// Solves for the nodal right-hand side. The first solution checks the factor, because KSP does not report its
+    /// accuracy. If its residual is too large, the matrix is factorised in double precision, and the residual must then
+    /// be small.
     fn solve(&mut self) -> Result<(), SolveError> {
         self.back_substitute();
         if self.factor.standing == FactorState::Tried {
@@ -188,7 +190,7 @@ impl<const D: usize, const C: usize> DissectionPc<'_, D, C> {
         );
     }
 
-    /// Reports to KSP a failure, and the caller why.
+    /// Reports a failure to KSP, and stores its cause for the caller.
     fn report(&mut self, outcome: Result<(), SolveError>, failure: PcFailure) -> Result<(), PcFailure> {
         outcome.map_err(|cause| {
             self.factor.cause = Some(cause);
@@ -220,7 +222,7 @@ impl<const D: usize, const C: usize> ShellPc for DissectionPc<'_, D, C> {
     }
 }
 
-/// The square of a component that is free; of others 0.
+/// Returns the square of a free component, or 0.
 fn square(is_free: bool, value: f64) -> f64 {
     if is_free { value * value } else { 0.0 }
 }

@@ -25,21 +25,22 @@ use reduction::TreeReduction;
 use std::sync::Mutex;
 use tree::{Desk, Elimination, Scratch, Triangles};
 
-/// A factorisation of one rank's share of the matrix. Its memory is kept when the unknowns change, as they do in most
-/// steps of a flow.
+/// Factorisation of one rank's share of the matrix. Its memory is kept when the unknowns change, as in most steps of a
+/// flow.
 #[derive(Default)]
 pub struct Dissection {
     plan: Plan,
-    factor: Factor, // part after part
+    factor: Factor, // supernode by supernode
     reduction: TreeReduction,
-    desks: Vec<Mutex<Desk>>, // of every thread
+    desks: Vec<Mutex<Desk>>, // one per thread
     scratch: Scratch,
-    work: Vec<f64>, // a vector by elimination numbers
-    scale: f64,     // a power of two that the matrix is multiplied with
+    work: Vec<f64>, // vector in elimination order
+    scale: f64,     // power of two by which the matrix is multiplied
 }
 
 impl Dissection {
-    /// Plans for the `free` components of the window of `rank` under the cut `slabs`; C unknowns a node. Collective.
+    /// Plans the elimination of the `free` components of the window of `rank` in the partition `slabs`, with C unknowns
+    /// per node. Collective.
     pub fn plan<const D: usize, const C: usize>(
         &mut self,
         link: &dyn Link,
@@ -48,9 +49,9 @@ impl Dissection {
         grid: &Grid<D>,
         free: &[bool],
     ) {
-        // How far nodes couple.
+        // Distance at which nodes couple.
         let q = grid.order() + grid.beyond();
-        // Nodes that no other rank touches, from the window's first.
+        // Nodes that only this rank uses, counted from the window's first node.
         let (slab, part) = slabs.place(rank);
         let places = [(slab, slabs.slabs()), (part, slabs.parts_of_slab())];
         let counts: [usize; D] = std::array::from_fn(|axis| grid.nodes_along(axis));
@@ -78,9 +79,9 @@ impl Dissection {
         });
     }
 
-    /// Factorises; `false` where a pivot of this rank was not positive and finite. `largest` is about the largest
-    /// number of the matrix: without its power of two, square roots round alike in all units that differ by powers of
-    /// two. Collective.
+    /// Factorises the matrix; `false` if a pivot of this rank is not positive and finite. The matrix is divided by the
+    /// power of two in `largest`, its approximate largest entry: square roots then round alike in all units that differ
+    /// by powers of two. Collective.
     pub fn factorise<const D: usize, const C: usize>(
         &mut self,
         link: &dyn Link,
@@ -110,8 +111,8 @@ impl Dissection {
         reduction.factorise(link, precision, rest) && good
     }
 
-    /// Solves for the nodal right-hand side whose `owned` components are this rank's, with the last factorisation; the
-    /// solution is right at all nodes of the window. Collective.
+    /// Solves with the last factorisation for the nodal right-hand side, whose `owned` components are this rank's. The
+    /// solution is valid at all nodes of the window. Collective.
     pub fn solve(&mut self, link: &dyn Link, owned: impl Fn(usize) -> bool, rhs: &[f64], solution: &mut [f64]) {
         let Self {
             plan,

@@ -14,25 +14,25 @@ use bsmpm::grid::Grid;
 use patches::Patches;
 use transfer::Transfer;
 
-/// Nodes along an axis of a patch of the smoother, and from one to the next.
+/// Nodes along an axis of a patch of the smoother, and distance between the first nodes of two patches.
 const PATCH: [usize; 2] = [4, 3];
-/// Free components up to which a level is solved at once.
+/// Number of free components up to which a level is solved directly.
 const FEW: usize = 1000;
-/// Steps of the power method, and what its eigenvalue is multiplied with to be a bound.
+/// Iterations of the power method, and factor on its eigenvalue that makes it an upper bound.
 const POWER: (usize, f64) = (8, 1.2);
-/// Part of the largest eigenvalue from which the smoother damps.
+/// Fraction of the largest eigenvalue above which the smoother damps.
 const SMOOTHED: f64 = 0.1;
 
-/// A matrix on a window.
+/// Matrix on a window.
 #[derive(Clone, Copy)]
 pub struct Operator<'a, const D: usize, const C: usize> {
     /// Blocks of the window's nodes.
     pub stencil: &'a Stencil<D, C>,
-    /// Which components are unknown.
+    /// Which components are unknowns.
     pub free: &'a [bool],
 }
 
-/// A matrix on a coarse grid.
+/// Matrix on a coarse grid.
 struct CoarseOperator<const D: usize, const C: usize> {
     stencil: Stencil<D, C>,
     free: Vec<bool>,
@@ -47,20 +47,21 @@ impl<const D: usize, const C: usize> CoarseOperator<D, C> {
     }
 }
 
-/// All levels of a matrix, the finest first, whose matrix is the caller's.
+/// All levels of a matrix, the finest first. The caller keeps the finest matrix.
 pub struct Multigrid<const D: usize, const C: usize> {
     levels: Vec<Level<D, C>>,
 }
 
 struct Level<const D: usize, const C: usize> {
-    own: Option<CoarseOperator<D, C>>, // of all but the finest
+    own: Option<CoarseOperator<D, C>>, // on all levels but the finest
     patches: Patches,
-    bound: f64,                   // of the eigenvalues of the smoothed matrix
-    coarser: Option<Transfer<D>>, // `None` of the coarsest one, which one patch solves
+    bound: f64,                   // upper bound of the eigenvalues of the preconditioned matrix
+    coarser: Option<Transfer<D>>, // `None` on the coarsest level, which one patch solves
 }
 
 impl<const D: usize, const C: usize> Multigrid<D, C> {
-    /// Levels of a matrix on a window that is all of the grid's room. `None` if a box of it is not positive definite.
+    /// Creates the levels of a matrix on a window that is the whole active domain. Returns `None` if a patch of it is
+    /// not positive definite.
     pub fn new(grid: &Grid<D>, finest: Operator<'_, D, C>) -> Option<Self> {
         let mut levels = Vec::new();
         let mut grid = grid.clone();
@@ -97,7 +98,7 @@ impl<const D: usize, const C: usize> Multigrid<D, C> {
         }
     }
 
-    /// x = B b of nodal arrays by so many cycles, each of what the one before leaves.
+    /// Computes x = B b for nodal arrays by `cycles` cycles, each for the residual of the one before.
     pub fn apply(&self, finest: Operator<'_, D, C>, cycles: usize, b: &[f64], x: &mut [f64]) {
         x.fill(0.0);
         let mut left = b.to_vec();
@@ -136,8 +137,8 @@ impl<const D: usize, const C: usize> Multigrid<D, C> {
 }
 
 impl<const D: usize, const C: usize> Level<D, C> {
-    /// Two steps of Chebyshev's method for what is `left`, added to x; returns the last one, whose product is not yet
-    /// taken off.
+    /// Adds two steps of Chebyshev's method for the residual `left` to `x`. Returns the second step, whose product with
+    /// the matrix is not yet subtracted from `left`.
     fn smooth(&self, operator: Operator<'_, D, C>, left: &mut [f64], x: &mut [f64]) -> Vec<f64> {
         let upper = self.bound;
         let lower = SMOOTHED * self.bound;
@@ -158,14 +159,15 @@ impl<const D: usize, const C: usize> Level<D, C> {
     }
 }
 
-/// b -= A x.
+/// Computes b -= A x.
 fn subtract_product<const D: usize, const C: usize>(operator: Operator<'_, D, C>, x: &[f64], b: &mut [f64]) {
     let mut image = vec![0.0; x.len()];
     operator.stencil.multiply(operator.free, x, &mut image);
     b.iter_mut().zip(&image).for_each(|(b, image)| *b -= image);
 }
 
-/// Of the matrix after the patches' solutions: by the power method, from a vector that has all of them.
+/// Returns an upper bound of the largest eigenvalue of the matrix preconditioned by the patches: by the power method
+/// from a random vector, which contains all eigenvectors.
 fn largest_eigenvalue<const D: usize, const C: usize>(operator: Operator<'_, D, C>, patches: &Patches) -> f64 {
     let Operator { stencil, free } = operator;
     let mut state = 1_u32;

@@ -9,7 +9,7 @@ use bsmpm::error::SolveError;
 use bsmpm::parallel::{SolveReport, Symmetry};
 use petsc_rs::{Ksp, Petsc};
 
-/// The system with its solver, which stay when the unknowns change.
+/// Linear system with its solver, which are kept when the unknowns change.
 pub(super) struct ShellSystem<'p> {
     ksp: Ksp<'p>,
     is_preonly: bool,
@@ -18,7 +18,7 @@ pub(super) struct ShellSystem<'p> {
 }
 
 impl<'p> ShellSystem<'p> {
-    /// A system without unknowns, to be solved as `choice` and the options say. Collective.
+    /// Creates a system without unknowns, solved as `choice` and the PETSc options define. Collective.
     pub fn new(petsc: &'p Petsc<'p>, choice: &Choice) -> petsc_rs::Result<Self> {
         let mut ksp = Ksp::new(petsc)?;
         choice.apply(&mut ksp, Symmetry::Definite)?;
@@ -31,7 +31,7 @@ impl<'p> ShellSystem<'p> {
         })
     }
 
-    /// Other components of this rank are unknown. Collective.
+    /// Changes the unknown components of this rank. Collective.
     pub fn resize(&mut self, unknowns: Vec<usize>) -> petsc_rs::Result<()> {
         self.factor.replan();
         self.ksp.set_shell_operator(unknowns.len())?;
@@ -39,22 +39,22 @@ impl<'p> ShellSystem<'p> {
         Ok(())
     }
 
-    /// The matrix is about to be another one.
+    /// Marks the factor as outdated, because the matrix will change.
     pub fn outdate(&mut self) {
         self.factor.outdate();
     }
 
-    /// Whether it was set up for the present matrix.
+    /// Returns whether the system is set up for the present matrix.
     pub fn is_ready(&self) -> bool {
         self.factor.is_there()
     }
 
-    /// What KSP and its preconditioner are called.
+    /// Creates a tally with the names of KSP and its preconditioner.
     pub fn tally(&self) -> Tally {
         Tally::of(&self.ksp, Some("dissection"))
     }
 
-    /// Factorises a matrix, of which the unknowns are filled in. Collective.
+    /// Factorises a matrix, whose `unknowns` are set here. Collective.
     pub fn set_up<const D: usize, const C: usize>(
         &mut self,
         matrix: StiffnessOperator<'_, D, C>,
@@ -74,7 +74,7 @@ impl<'p> ShellSystem<'p> {
         outcome.map_err(|error| pc.factor.cause.take().unwrap_or_else(|| failed(error)))
     }
 
-    /// The nodal solution for a nodal right-hand side; KSP's reason says whether it is one. Collective.
+    /// Solves for a nodal right-hand side. Fails if KSP has not converged or the residual is too large. Collective.
     pub fn solve<const D: usize, const C: usize>(
         &mut self,
         matrix: StiffnessOperator<'_, D, C>,
@@ -93,7 +93,7 @@ impl<'p> ShellSystem<'p> {
         let info = outcome.map_err(|error| pc.factor.cause.take().unwrap_or_else(|| failed(error)))?;
         let mut residual = factor.residual;
         if self.is_preonly {
-            // What the preconditioner gave, ghost nodes included: nothing need be exchanged.
+            // The preconditioner's result includes ghost nodes, so no exchange is needed.
             solution.copy_from_slice(&factor.solution);
         } else {
             ksp.solution(|x| spread::<C>(matrix.halo, unknowns, x, solution))

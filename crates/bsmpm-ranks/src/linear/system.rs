@@ -6,16 +6,16 @@ use bsmpm::error::SolveError;
 use bsmpm::parallel::{Krylov, Symmetry};
 use petsc_rs::{Ksp, Matrix, NormType, Petsc, Product, Tolerances, Vector};
 
-/// Largest relative residual of a solution that is accepted, recomputed: direct solvers report success for NaN.
+/// Largest accepted relative residual of a solution. It is recomputed, because direct solvers report success for NaN.
 const TRUSTED: f64 = 1e-6;
 
-/// Most iterations around a preconditioner that is applied in place of a solution elsewhere.
+/// Largest number of conjugate gradient iterations when a preconditioner-only method must solve a system.
 pub(super) const MOST_ITERATIONS: usize = 10_000;
 
-/// Most products of one of Newton's directions.
+/// Largest number of matrix products for one direction of Newton's method.
 const MOST_PRODUCTS: usize = 300;
 
-/// A matrix with its solver.
+/// Assembled matrix with its solver.
 pub(super) struct System<'p> {
     pub(super) matrix: Matrix<'p>,
     pub(super) ksp: Ksp<'p>,
@@ -27,15 +27,15 @@ pub(super) struct System<'p> {
 }
 
 impl<'p> System<'p> {
-    /// The system of a matrix, to be solved as `choice` and the options say. Collective.
+    /// Creates the system of a matrix, solved as `choice` and the PETSc options define. Collective.
     pub(super) fn new(
         petsc: &'p Petsc<'p>,
         choice: &Choice,
         symmetry: Symmetry,
         mut matrix: Matrix<'p>,
     ) -> petsc_rs::Result<Self> {
-        // PETSc's copies of the whole do not know that they are definite: on one rank, too, MUMPS shall do as with
-        // them.
+        // PETSc's redundant copies are not marked as positive definite. The matrix is not marked on one rank either, so
+        // that MUMPS works in the same way on any number of ranks.
         if symmetry == Symmetry::Definite && !choice.redundant {
             matrix.set_symmetry(petsc_rs::Symmetry::PositiveDefinite)?;
         }
@@ -59,8 +59,8 @@ impl<'p> System<'p> {
         })
     }
 
-    /// The preconditioner applied to a right-hand side, and to what that leaves, so often as the choice says: a fixed,
-    /// linear and symmetric function. Only refused if it is not finite.
+    /// Applies the preconditioner to a right-hand side and then to the residual, as many times as `choice` defines: a
+    /// fixed, linear and symmetric function. Fails only if the result is not finite. Collective.
     pub(super) fn approach(&mut self, rhs: &[f64], tally: &mut Tally) -> Result<(usize, Vec<f64>), SolveError> {
         self.b.copy_from(rhs).map_err(failed)?;
         let mut sum = vec![0.0; rhs.len()];
@@ -76,14 +76,14 @@ impl<'p> System<'p> {
             let added = self.x.read(|x| sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += x));
             added.map_err(failed)?;
         }
-        // Of all ranks, as all or none go on.
+        // The norm is that of all ranks, so all ranks fail together.
         if !self.x.norm().map_err(failed)?.is_finite() {
             return Err(SolveError::NotFinite);
         }
         Ok((self.applications, sum))
     }
 
-    /// Solution to the residual `relative` by conjugate gradients around the preconditioner.
+    /// Solves to the relative residual `relative` by preconditioned conjugate gradients. Collective.
     pub(super) fn solve_to(
         &mut self,
         relative: f64,
@@ -104,7 +104,8 @@ impl<'p> System<'p> {
         found
     }
 
-    /// Solution of this rank's unknowns, if it is finite and its recomputed residual small.
+    /// Returns the solution of this rank's unknowns. Fails if it is not finite or its recomputed residual is too large.
+    /// Collective.
     pub(super) fn solve(&mut self, rhs: &[f64], tally: &mut Tally) -> Result<(usize, Vec<f64>), SolveError> {
         self.b.copy_from(rhs).map_err(failed)?;
         let outcome = self.ksp.solve(&self.b, &mut self.x);
@@ -117,7 +118,8 @@ impl<'p> System<'p> {
         Ok((info.iterations, self.x.read(<[f64]>::to_vec).map_err(failed)?))
     }
 
-    /// Solution of this rank's unknowns for an operator known by its product, and what it leaves.
+    /// Solves for an operator that is known by its product. Returns the relative residual and the solution of this
+    /// rank's unknowns. Collective.
     pub(super) fn solve_with(
         &mut self,
         product: &mut Product<'_>,
@@ -152,7 +154,7 @@ impl<'p> System<'p> {
     }
 }
 
-/// Refuses a solution whose residual has the norm `left`, of a right-hand side with the norm `right`.
+/// Fails if a residual norm `left` is too large for a right-hand side with the norm `right`.
 pub(super) fn trusted(left: f64, right: f64) -> Result<(), SolveError> {
     if !left.is_finite() {
         return Err(SolveError::NotFinite);
@@ -163,7 +165,7 @@ pub(super) fn trusted(left: f64, right: f64) -> Result<(), SolveError> {
     Ok(())
 }
 
-/// An error of PETSc.
+/// Converts an error of PETSc.
 pub(super) fn failed(error: petsc_rs::Error) -> SolveError {
     SolveError::Failed(error.to_string())
 }

@@ -3,19 +3,19 @@
 use petsc_rs::{Error, Ksp, SolveInfo};
 use std::collections::BTreeMap;
 
-/// A kind of linear systems: what solves them, and how often KSP gave which reason.
+/// Solver of one kind of linear system, and the number of solves by KSP's converged reason.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// KSPType
+    /// KSPType.
     pub ksp: String,
-    /// PCType, with the name of a shell
+    /// PCType, with the name of a shell preconditioner.
     pub pc: String,
-    /// solves by KSPConvergedReason
+    /// Number of solves by KSPConvergedReason.
     pub reasons: BTreeMap<String, u64>,
 }
 
 impl Tally {
-    /// The names of a solver, of which nothing is counted yet; `shell` is that of a shell preconditioner.
+    /// Creates an empty tally with the names of a solver; `shell` is the name of a shell preconditioner.
     pub(super) fn of(ksp: &Ksp<'_>, shell: Option<&str>) -> Self {
         let [pc, ksp] = [ksp.pc_type_name(), ksp.type_name()].map(|name| name.ok().flatten().unwrap_or_default());
         let pc = shell.map_or_else(|| pc.clone(), |shell| format!("{pc} ({shell})"));
@@ -34,11 +34,11 @@ impl Tally {
         }
     }
 
-    /// Counts what came to no solve, or to a failed one.
+    /// Counts a failed solve or set-up; success is not counted.
     pub(super) fn failure<T>(&mut self, outcome: &petsc_rs::Result<T>) {
         match outcome {
             Ok(_) => {}
-            // The name of the reason may be followed by that of the preconditioner's.
+            // The reason's name may be followed by that of the preconditioner's failure.
             Err(Error::Diverged { name, .. }) => self.enter(name.split(' ').next().unwrap_or(UNKNOWN).to_owned()),
             Err(_) => self.enter(UNKNOWN.into()),
         }
@@ -49,5 +49,5 @@ impl Tally {
     }
 }
 
-/// Of a solve without a reason on this rank: another one failed, or PETSc did.
+/// Entry for a solve without a reason on this rank: another rank or PETSc itself failed.
 const UNKNOWN: &str = "ERROR";

@@ -3,14 +3,14 @@
 use bsmpm::grid::Grid;
 use std::collections::HashMap;
 
-/// The places of the stencils of a window.
+/// Positions in the stencils of a window.
 #[derive(Clone, Debug)]
 pub(super) struct Places<const D: usize> {
     functions: [usize; D], // nodes of the window along each axis
-    half: usize,           // of the box: q, and the layers beyond
-    reach: Vec<isize>,     // offset in local nodes of every place, ascending
-    inside: Vec<Vec<u16>>, // places that lie in the window, for every way of being near its faces
-    kind: Vec<u16>,        // of every node: which of those
+    half: usize,           // half width of a stencil: q and the additional layers
+    reach: Vec<isize>,     // offset in local nodes of every position, ascending
+    inside: Vec<Vec<u16>>, // positions inside the window, for every combination of near faces
+    kind: Vec<u16>,        // of every node: index of its combination
 }
 
 impl<const D: usize> Places<D> {
@@ -47,12 +47,12 @@ impl<const D: usize> Places<D> {
         }
     }
 
-    /// Places of a stencil.
+    /// Returns the number of positions of a stencil.
     pub fn count(&self) -> usize {
         self.reach.len()
     }
 
-    /// The places of `node` that lie in the window, each with its node.
+    /// Iterates over the positions of the stencil of `node` that are inside the window, each with its node.
     pub fn around(&self, node: usize) -> impl Iterator<Item = (usize, usize)> {
         self.inside[usize::from(self.kind[node])].iter().map(move |&place| {
             let place = usize::from(place);
@@ -60,37 +60,40 @@ impl<const D: usize> Places<D> {
         })
     }
 
-    /// The place of the node `b` as seen from `a`, if it is one.
+    /// Returns the position of the node `b` in the stencil of `a`, if it is inside.
     pub fn between(&self, a: usize, b: usize) -> Option<usize> {
         let [a, b] = [a, b].map(|node| digits(node, &self.functions));
         let near = (0..D).all(|axis| a[axis].abs_diff(b[axis]) <= self.half);
         near.then(|| self.of(self.number(a), self.number(b)))
     }
 
-    /// The lowest node of the box around two nodes of the window.
+    /// Returns the lowest node of the box around two nodes of the window.
     pub fn lowest(&self, a: usize, b: usize) -> usize {
         let [a, b] = [a, b].map(|node| digits(node, &self.functions));
         (0..D).fold(0, |node, axis| node * self.functions[axis] + a[axis].min(b[axis]))
     }
 
-    /// Number of a node in a box as wide along every axis as a stencil's; differences of two are those of their places.
+    /// Returns the number of a node in a box as wide as a stencil. Differences of two numbers are differences of
+    /// positions.
     pub fn number(&self, at: [usize; D]) -> usize {
         at.into_iter()
             .fold(0, |number, step| number * (2 * self.half + 1) + step)
     }
 
-    /// The same of a node of the window.
+    /// Returns this number for a node of the window.
     pub fn number_of(&self, node: usize) -> usize {
         self.number(digits(node, &self.functions))
     }
 
-    /// The place of node number `b` as seen from node number `a`.
+    /// Returns the position of the node with number `b` in the stencil of the node with number `a`.
     pub fn of(&self, a: usize, b: usize) -> usize {
+        // The step from a to b has the digits b_k - a_k, from -half to half, in the base 2 half + 1. Adding half to
+        // each digit gives the position, and the numbers are linear in their digits.
         b + self.number([self.half; D]) - a
     }
 }
 
-/// A number by the digits of these bases, the first of which leads and takes what is left.
+/// Returns the digits of a number in mixed bases. The first digit is the most significant and is not limited.
 fn digits<const D: usize>(mut number: usize, bases: &[usize; D]) -> [usize; D] {
     let mut digits = [0; D];
     for axis in (1..D).rev() {
@@ -101,7 +104,7 @@ fn digits<const D: usize>(mut number: usize, bases: &[usize; D]) -> [usize; D] {
     digits
 }
 
-/// Whether a step leads to a node, where there are as many nodes below and above along each axis as `room` says.
+/// Returns whether a step stays inside the window; `room` has the number of nodes below and above along each axis.
 fn fits<const D: usize>(step: &[isize; D], room: &[[usize; 2]; D]) -> bool {
     (0..D).all(|axis| step[axis].unsigned_abs() <= room[axis][usize::from(step[axis] > 0)])
 }

@@ -95,7 +95,7 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
         let kind = case.analysis.kind;
         let is_of_clay = written.gives("rate_parameter");
         let is_timed = kind == AnalysisType::Dynamic || kind == AnalysisType::InTime && is_of_clay;
-        if !is_timed && named.material.at_time_step(1.0).is_some() {
+        if !is_timed && named.material.with_time_step(1.0).is_some() {
             let message = match (kind, is_of_clay) {
                 (AnalysisType::Consolidation, true) => {
                     "E0319: a rate-dependent strength is not available in a consolidation analysis. Remove \

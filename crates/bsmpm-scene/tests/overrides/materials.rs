@@ -429,10 +429,10 @@ fn sensitive_clay_softens_by_its_sensitivity_and_follows_the_rate() {
     assert_eq!((numbers[0], numbers[2], numbers[5]), (0.0, 2.2e4, 5.5e3));
     assert!((numbers[6] - 20.0 / 3.0_f64.sqrt()).abs() < 1e-14);
     assert!(
-        clay.at_time_step(0.1).is_some()
+        clay.with_time_step(0.1).is_some()
             && with("k0 = 0.5").expect("no rate").materials[1]
                 .material
-                .at_time_step(0.1)
+                .with_time_step(0.1)
                 .is_none()
     );
     for (text, reported) in [

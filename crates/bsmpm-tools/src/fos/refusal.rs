@@ -33,7 +33,7 @@ pub fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
              Use \"tresca\" (undrained strength) or \"mohr-coulomb\" (critical state).",
         ),
         (
-            any(|material| material.softens() && material.at_time_step(1.0).is_some()),
+            any(|material| material.softens() && material.with_time_step(1.0).is_some()),
             "E0813: the strength of a material depends on the shear rate, but the trial runs are static. Remove \
              `rate_parameter` and `reference_rate`, and give the strength at the relevant rate.",
         ),

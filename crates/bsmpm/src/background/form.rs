@@ -6,17 +6,17 @@ use crate::grid::Grid;
 use crate::lanes::{self, InLanes, LANES, Lanes, Simd};
 use std::collections::BTreeMap;
 
-/// The forms of cells, by number.
+/// Geometric stiffness blocks of cells, by index.
 #[derive(Clone, Debug)]
 pub(super) enum CellForms {
-    /// one for all cells whose breakpoints lie alike
+    /// 2-D: one block for all cells with equal relative breakpoints.
     Blocks(Vec<CellBlock>),
-    /// of each cell, in space
+    /// 3-D: products of one-dimensional integrals.
     ByAxes(TensorForms),
 }
 
 impl CellForms {
-    /// What up to eight forms make of the nodes of their cells, into `products`.
+    /// Multiplies up to eight blocks with the nodal values of their cells, `u`, into `products`.
     pub(super) fn multiply<const D: usize>(
         &self,
         numbers: impl ExactSizeIterator<Item = usize>,
@@ -34,7 +34,7 @@ impl CellForms {
         }
     }
 
-    /// Adds `factor` times a form to a patch's block of D unknowns a node.
+    /// Adds `factor` times a block to `block`, D unknowns per node.
     pub(super) fn add_to(&self, number: usize, factor: f64, block: &mut [f64]) {
         match self {
             Self::Blocks(blocks) => blocks[number].add_to(factor, block),
@@ -43,13 +43,13 @@ impl CellForms {
     }
 }
 
-/// The block of a cell, m^(D-2), row-major, D (q+1)^D square and symmetric to the last bit. Seven zeros follow it, so
-/// that vectors of eight may reach beyond its end.
+/// Block of a cell (m^(D-2)), row-major, D (q+1)^D square and bitwise symmetric. Seven zeros follow, because vectors of
+/// eight numbers may read beyond its end.
 #[derive(Clone, Debug)]
 pub(super) struct CellBlock(Vec<f64>);
 
 impl CellBlock {
-    /// Adds `factor` times the block to a patch's block of D unknowns a node.
+    /// Adds `factor` times the block to `block`, D unknowns per node.
     fn add_to(&self, factor: f64, block: &mut [f64]) {
         block
             .iter_mut()
@@ -57,7 +57,7 @@ impl CellBlock {
             .for_each(|(sum, value)| *sum += factor * value);
     }
 
-    /// Writes the block times the nodes' `u` into `product`.
+    /// Writes the product of the block with the nodal values `u` into `product`.
     fn multiply(&self, u: &[f64], product: &mut [f64]) {
         lanes::run(BlockProduct {
             form: &self.0,
@@ -67,7 +67,8 @@ impl CellBlock {
     }
 }
 
-/// A symmetric block times what the nodes have: eight rows at a time, of which each entry of `u` has its column's.
+/// Product of a symmetric block with nodal values, eight rows at a time. Because of symmetry, eight entries of a column
+/// are contiguous in the storage of the row with the same index.
 struct BlockProduct<'a> {
     form: &'a [f64],
     u: &'a [f64],
@@ -90,12 +91,12 @@ impl InLanes for BlockProduct<'_> {
     }
 }
 
-/// The blocks of the cells, each made once: cells whose breakpoints lie alike have the same, up to round-off.
+/// Blocks of the cells, each computed once: cells with equal relative breakpoints share a block, up to round-off.
 pub(super) struct Forms<const D: usize> {
     integrals: Integrals,
-    alike: [Vec<usize>; D], // per axis and cell: the first of the cells next to each other that are alike
-    numbers: BTreeMap<[usize; D], usize>, // of what was found, by the first of the cells alike
-    /// what was asked for
+    alike: [Vec<usize>; D],               // per axis and cell: first cell of a run of equal cells
+    numbers: BTreeMap<[usize; D], usize>, // index of a block, by the first cell of its run
+    /// Blocks computed so far.
     pub found: CellForms,
 }
 
@@ -103,7 +104,7 @@ impl<const D: usize> Forms<D> {
     pub(super) fn new(grid: &Grid<D>) -> Self {
         let integrals = Integrals::of(grid);
         let alike = std::array::from_fn(|axis| first_alike(&integrals.products[axis]));
-        // In space a block has 81² numbers, and in graded grids each cell its own.
+        // In 3-D a block has 81² entries for degree 2, and in graded grids every cell needs its own.
         let found = match D {
             3 => CellForms::ByAxes(TensorForms::new(integrals.clone())),
             _ => CellForms::Blocks(Vec::new()),
@@ -116,7 +117,7 @@ impl<const D: usize> Forms<D> {
         }
     }
 
-    /// Number of a cell's form among those found.
+    /// Returns the index of a cell's block, which is computed if necessary.
     pub(super) fn of(&mut self, cell: &[usize; D]) -> usize {
         let cell = std::array::from_fn(|axis| self.alike[axis][cell[axis]]);
         let blocks = match &mut self.found {
@@ -130,11 +131,11 @@ impl<const D: usize> Forms<D> {
     }
 }
 
-/// Departure from another cell's integrals, by the largest of each kind, up to which a cell counts as like it: what
-/// breakpoints far from the origin lose of a cell's length.
+/// Difference of the integrals of two cells, relative to the largest of each kind, up to which the cells count as
+/// equal: far from the origin, breakpoints lose that accuracy of a cell's length.
 const ALIKE: f64 = 1e-10;
 
-/// For each cell of an axis the first one of the cells next to each other that it is like.
+/// Returns, for each cell of an axis, the first cell of its run of equal cells.
 fn first_alike(products: &[FormProducts]) -> Vec<usize> {
     let mut first = 0;
     let mut alike = Vec::with_capacity(products.len());
@@ -147,7 +148,7 @@ fn first_alike(products: &[FormProducts]) -> Vec<usize> {
     alike
 }
 
-/// Whether two cells have the same integrals.
+/// Returns whether two cells have the same integrals.
 fn are_alike(one: &FormProducts, other: &FormProducts) -> bool {
     one.iter().zip(other).all(|(one, other)| {
         let largest = one.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));

@@ -5,22 +5,23 @@ use crate::grid::shape::with_width;
 use crate::grid::{Grid, KnotVector, digit};
 use crate::lanes::LANES;
 
-/// int N_a N_b, int N_a' N_b', int N_a' N_b and int N_a N_b' over a cell of one axis, row-major, (q + 1) square; m,
-/// 1/m, 1, 1.
+/// Integrals of N_a N_b (m), N_a' N_b' (1/m), N_a' N_b (-) and N_a N_b' (-) over a cell of one axis, each a row-major
+/// square of size q + 1.
 pub(super) type FormProducts = [Vec<f64>; KINDS];
-/// Kinds of integrals along an axis: of the functions, of their slopes, of the row's slope, of the column's.
+/// Number of kinds of integrals along an axis, in the order of [`FormProducts`]: no derivative, both, of the row, of
+/// the column.
 pub(super) const KINDS: usize = 4;
-/// The last two of them.
+/// Kinds with one derivative: of the row, of the column.
 const MIXED: [usize; 2] = [2, 3];
 
-/// Integrals along the axes of all cells, whose products are those over cells.
+/// One-dimensional integrals of all cells; their products over the axes are the integrals over cells.
 #[derive(Clone, Debug)]
 pub(super) struct Integrals {
-    /// q + 1
+    /// Functions per cell along an axis, q + 1.
     pub width: usize,
-    /// per axis and cell
+    /// Per axis and cell.
     pub products: Vec<Vec<FormProducts>>,
-    /// per axis: where each entry (a, b) of a block finds the product of its functions along that axis
+    /// Per axis: position, in that axis' square, of each entry (a, b) of a block.
     entries: Vec<Vec<usize>>,
 }
 
@@ -40,8 +41,8 @@ impl Integrals {
         }
     }
 
-    /// Row-major D (q + 1)^D square, with the room behind it: eps : eps is half of |grad u|^2, which does not couple
-    /// the components, and half of sum_ij du_i/dx_j du_j/dx_i.
+    /// Returns the block of eps : eps, row-major, D (q + 1)^D square, followed by the zeros that vectors of eight read:
+    /// half of |grad u|^2, which does not couple the components, and half of sum_ij du_i/dx_j du_j/dx_i.
     pub(super) fn strain<const D: usize>(&self, cell: &[usize; D]) -> Vec<f64> {
         let nodes = self.entries[0].len().isqrt();
         let mut plain = vec![0.0; nodes * nodes];
@@ -51,7 +52,7 @@ impl Integrals {
         }
         let mut mixed = vec![0.0; nodes * nodes];
         for (i, j) in (0..D * D).map(|k| (k / D, k % D)) {
-            // Of u_i at a and u_j at b: the derivative of N_a along j times that of N_b along i.
+            // Entry of u_i at node a and u_j at node b: the derivative of N_a along j times that of N_b along i.
             mixed.fill(0.0);
             self.add(cell, 0.5, |axis| kind(axis == j, axis == i), &mut mixed);
             for (a, (mixed, plain)) in mixed.chunks_exact(nodes).zip(plain.chunks_exact(nodes)).enumerate() {
@@ -65,7 +66,7 @@ impl Integrals {
         coupled
     }
 
-    /// Adds `factor` times the integral of the products of the functions' derivatives, `of(axis)` along each axis.
+    /// Adds `factor` times the product over the axes of the integrals of kind `of(axis)` to every entry.
     fn add<const D: usize>(&self, cell: &[usize; D], factor: f64, of: impl Fn(usize) -> usize, block: &mut [f64]) {
         let products: [&[f64]; D] = std::array::from_fn(|axis| &self.products[axis][cell[axis]][of(axis)][..]);
         let entries: [&[usize]; D] = std::array::from_fn(|axis| &self.entries[axis][..block.len()]);
@@ -75,7 +76,7 @@ impl Integrals {
     }
 }
 
-/// Kind of the integral of the row's and the column's function, of which those that say so are derived.
+/// Returns the kind of integral for derivatives of the row's and of the column's function.
 fn kind(is_row_derived: bool, is_column_derived: bool) -> usize {
     match (is_row_derived, is_column_derived) {
         (true, false) => MIXED[0],
@@ -84,7 +85,7 @@ fn kind(is_row_derived: bool, is_column_derived: bool) -> usize {
     }
 }
 
-/// The integrals of every cell of every axis.
+/// Computes the integrals of every cell of every axis.
 fn products<const D: usize>(grid: &Grid<D>) -> [Vec<FormProducts>; D] {
     grid.axes().each_ref().map(|axis| {
         with_width!(axis.order() + 1, W => {
@@ -93,6 +94,7 @@ fn products<const D: usize>(grid: &Grid<D>) -> [Vec<FormProducts>; D] {
     })
 }
 
+/// Integrates the products of the functions of one cell; zero for a cell without length.
 fn of_cell<const W: usize>(axis: &KnotVector, cell: usize) -> FormProducts {
     if !axis.has_length(cell) {
         return std::array::from_fn(|_| vec![0.0; W * W]);

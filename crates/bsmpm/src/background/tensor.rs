@@ -6,21 +6,22 @@ use crate::grid::digit;
 use crate::grid::shape::with_width;
 use crate::lanes::{self, InLanes, Lanes, Simd};
 
-/// Dimensions of space.
+/// Number of dimensions.
 const D: usize = 3;
-/// Largest number of functions of a cell along an axis, and of nodes.
+/// Largest number of functions of a cell along an axis, and of its nodes.
 const MOST: [usize; 2] = [4, 64];
-/// Numbers of eight cells by node, and by pair of functions along an axis.
+/// Values of eight cells per node, and per pair of functions along an axis.
 type Eights<S> = [Lanes<S>; MOST[1]];
 type AxisMatrix<S> = [Lanes<S>; MOST[0] * MOST[0]];
 
-/// Kinds by axis of the square of a derivative.
+/// Returns the kind of integral along each axis for the product of two derivatives along `k`.
 #[inline(always)]
 fn across(k: usize) -> [usize; D] {
     std::array::from_fn(|axis| usize::from(axis == k))
 }
 
-/// Kinds by axis of u_i by u_j: the derivative of the row along j times that of the column along i.
+/// Returns the kind of integral along each axis for the coupling of u_i with u_j: derivative of the row's function
+/// along j, of the column's along i.
 #[inline(always)]
 fn mixed(i: usize, j: usize) -> [usize; D] {
     std::array::from_fn(|axis| if axis == j { 2 } else { 3 * usize::from(axis == i) })
@@ -31,19 +32,19 @@ fn half_unless(whole: bool) -> f64 {
     if whole { 1.0 } else { 0.5 }
 }
 
-/// The matrix of each axis, by its kind.
+/// Returns the matrix of each axis for its kind.
 #[inline(always)]
 fn chosen<S: Simd>(matrices: &[[AxisMatrix<S>; KINDS]; D], kinds: [usize; D]) -> [&AxisMatrix<S>; D] {
     [0, 1, 2].map(|axis| &matrices[axis][kinds[axis]])
 }
 
-/// Product of the values of these kinds along the axes.
+/// Returns the product over the axes of the values of these kinds.
 #[inline]
 fn term(values: &[[f64; KINDS]; D], kinds: [usize; D]) -> f64 {
     (0..D).map(|axis| values[axis][kinds[axis]]).product()
 }
 
-/// The forms of cells in space, by number.
+/// Blocks of 3-D cells as products of one-dimensional integrals, by index.
 #[derive(Clone, Debug)]
 pub(super) struct TensorForms {
     integrals: Integrals,
@@ -58,21 +59,22 @@ impl TensorForms {
         }
     }
 
-    /// The number of another cell's form.
+    /// Adds a cell and returns its index.
     pub(super) fn of(&mut self, cell: &[usize]) -> usize {
         self.cells.push(cell.try_into().expect("a cell in space"));
         self.cells.len() - 1
     }
 
-    /// Adds `factor` times the block of a form, symmetric to the last bit, to a patch's.
+    /// Adds `factor` times the bitwise symmetric block of a cell to `block`.
     pub(super) fn add_to(&self, number: usize, factor: f64, block: &mut [f64]) {
         let width = self.integrals.width;
         let cell = self.cells[number];
         let products: [_; D] = std::array::from_fn(|axis| &self.integrals.products[axis][cell[axis]]);
         let nodes = width.pow(D as u32);
         for (a, rows) in block.chunks_exact_mut(nodes * D * D).enumerate() {
+            let row = [0, 1, 2].map(|axis| digit::<D>(a, axis, width));
             for b in 0..nodes {
-                let [row, column] = [a, b].map(|node| [0, 1, 2].map(|axis| digit::<D>(node, axis, width)));
+                let column = [0, 1, 2].map(|axis| digit::<D>(b, axis, width));
                 let values = [0, 1, 2].map(|axis| {
                     let entry = row[axis] * width + column[axis];
                     [0, 1, 2, 3].map(|kind| products[axis][kind][entry])
@@ -89,7 +91,7 @@ impl TensorForms {
         }
     }
 
-    /// What up to eight forms make of `u`, both by cell, node and component.
+    /// Multiplies the blocks of up to eight cells with `u`; both arrays are ordered by cell, node and component.
     pub(super) fn multiply(&self, numbers: impl Iterator<Item = usize>, u: &[f64], products: &mut [f64]) {
         let cells: Vec<[usize; D]> = numbers.map(|number| self.cells[number]).collect();
         with_width!(self.integrals.width, W => {
@@ -108,8 +110,9 @@ struct TensorProduct<'a, const W: usize> {
 impl<const W: usize> InLanes for TensorProduct<'_, W> {
     type Output = ();
 
-    /// `f_i = sum_j int eps(N e_i) : eps(u_j e_j)`: of j = i the derivatives along all axes, those across it by half;
-    /// of the others half of the derivative along j of the row times that along i of the column.
+    /// Computes `f_i = sum_j int eps(N e_i) : eps(u_j e_j)`. With eps : eps = (u_i,k v_i,k + u_i,j v_j,i) / 2, the row
+    /// of component i at node a is `sum_k c_k int N_a,k u_i,k + sum_(j != i) 1/2 int N_a,j u_j,i`. Here c_k = 1/2,
+    /// except c_i = 1, which includes the term j = i of the second sum.
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let nodes = W.pow(D as u32);
@@ -156,7 +159,7 @@ impl<const W: usize> InLanes for TensorProduct<'_, W> {
     }
 }
 
-/// Adds `factor` times the tensor product of three matrices by `u`; what is in `one` and `two` does not matter.
+/// Adds `factor` times the tensor product of three matrices with `u` to `f`. `one` and `two` are work arrays.
 #[inline(always)]
 fn add<const W: usize, S: Simd>(
     matrices: [&AxisMatrix<S>; D],
@@ -173,9 +176,11 @@ fn add<const W: usize, S: Simd>(
     }
 }
 
-/// A matrix by what the nodes that lie so many numbers apart have.
+/// Applies a matrix along one axis, along which neighbouring nodes differ by `apart` in their index.
 #[inline(always)]
 fn along<const W: usize, S: Simd>(matrix: &AxisMatrix<S>, apart: usize, u: &Eights<S>, product: &mut Eights<S>) {
+    // Node (i0, i1, i2) has the index (i0 W + i1) W + i2, so `apart` is W^2, W or 1 for the axes 0, 1, 2. With the axis
+    // removed, `line` = h apart + l, with l < apart. The first node of a line is h apart W + l.
     for line in 0..W * W {
         let first = line / apart * apart * W + line % apart;
         for a in 0..W {

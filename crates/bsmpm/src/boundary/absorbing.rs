@@ -11,28 +11,28 @@ use crate::points::Points;
 use crate::step::inertia::Inertia;
 use crate::tensor::Vector;
 
-/// What an absorbing face does to one component of a node.
+/// Dashpot and constant force of an absorbing face at one nodal component.
 #[derive(Clone, Copy, Debug)]
 struct Dashpot {
-    /// of the window
+    /// Index of the local nodal component.
     component: usize,
-    /// N s/m  ∫ N_I ρ c dA
+    /// Dashpot coefficient ∫ N_I ρ c dA (N s/m).
     impedance: f64,
-    /// N  in the state of the start; beside a free field its stress among it
+    /// Constant force that carries the initial stress (N), including the free field's force.
     held: f64,
-    /// m/s  velocity beside it that it does not resist
+    /// Velocity of the adjacent free field (m/s), relative to which the dashpot acts; 0 without a free field.
     beside: f64,
-    /// number of the face among those that absorb, and of the node on it
+    /// Index among the absorbing faces, and index of the node on that face.
     place: [usize; 2],
 }
 
-/// The dashpots of one step: the same on every rank that shares a node.
+/// The dashpots of one step. Ranks that share a node have the same ones.
 #[derive(Clone, Debug, Default)]
 pub struct Dashpots(Vec<Dashpot>);
 
 impl Dashpots {
-    /// Of the faces of the `boundary` that absorb, at components that are `free`; `impedance` of a point, kg m/s: its
-    /// mass times the speed of compression and of shear waves. One exchange with the neighbours a face.
+    /// Computes the dashpots of all absorbing faces at components that are `free`. `impedance` returns, for a material
+    /// point, its mass times the speeds of compression and shear waves (kg m/s). One ghost exchange per face.
     pub fn of<K: Kinematics<D>, const D: usize>(
         boundary: &Boundary<D>,
         grid: &Grid<D>,
@@ -74,8 +74,8 @@ impl Dashpots {
         Self(dashpots)
     }
 
-    /// Drives those of a face, by its number among those that absorb, by the force of what is beside its nodes, N,
-    /// and by its velocity, m/s.
+    /// Applies the free field to the absorbing face with index `face`: nodal forces (N) and velocities (m/s), one per
+    /// node of the face.
     pub fn drive<const D: usize>(&mut self, face: usize, force: &[Vector<D>], velocity: &[Vector<D>]) {
         for at in self.0.iter_mut().filter(|at| at.place[0] == face) {
             let component = at.component % D;
@@ -84,7 +84,7 @@ impl Dashpots {
         }
     }
 
-    /// Adds their forces at the end of the step, N, to what is out of balance and to the `reaction`.
+    /// Adds the forces of the dashpots at the end of the step (N) to the out-of-balance force and the `reaction`.
     pub fn add_forces(&self, inertia: &Inertia, u: &[f64], f_oob: &mut [f64], reaction: &mut [f64]) {
         for &Dashpot {
             component,
@@ -100,15 +100,16 @@ impl Dashpots {
         }
     }
 
-    /// N/m  component by component, what they resist a displacement with.
+    /// Returns the nodal components and their dashpot stiffness (N/m): the derivative of the force with respect to the
+    /// displacement.
     pub fn stiffness<'a>(&'a self, inertia: &'a Inertia) -> impl Iterator<Item = (usize, f64)> + 'a {
         self.0
             .iter()
             .map(|at| (at.component, at.impedance * inertia.velocity_factor(at.component)))
     }
 
-    /// J  work of the dashpots on this rank's own nodes, relative to what is beside them, without that of what
-    /// holds the start.
+    /// Returns the work of the dashpots at this rank's owned nodes (J), relative to the motion of the free field. The
+    /// work of the constant forces is not included.
     pub fn work<const D: usize>(&self, inertia: &Inertia, u: &[f64], halo: &dyn Halo) -> Vec<f64> {
         let owned = halo.owned();
         let mut works = Vec::new();
@@ -125,7 +126,7 @@ impl Dashpots {
 }
 
 impl<const D: usize> Support<D> {
-    /// The cell at the face along its axis.
+    /// Returns the index, along the axis, of the cells at the face.
     pub fn last_cell(&self, grid: &Grid<D>) -> usize {
         if self.upper {
             grid.axes()[self.axis].cells() - 1
@@ -136,13 +137,13 @@ impl<const D: usize> Support<D> {
 }
 
 impl<const D: usize> Boundary<D> {
-    /// The faces that absorb, in the order of the supports.
+    /// Returns the absorbing faces in the order of the supports.
     pub fn absorbing(&self) -> impl Iterator<Item = &Support<D>> {
         self.supports.iter().filter(|support| support.absorbs)
     }
 
-    /// The same with absorbing faces that hold instead, as ground at rest is held: the normal component, and all where
-    /// the face lies across the `pull` of gravity.
+    /// Returns the boundary for an initial state at rest: rollers replace the absorbing faces, and the face normal to
+    /// the largest component of `pull` (gravity) becomes fixed. Rigid bodies are removed.
     pub fn at_rest(&self, pull: Option<Vector<D>>) -> Self {
         let mut held = self.clone();
         held.rigid.clear();
@@ -156,7 +157,7 @@ impl<const D: usize> Boundary<D> {
         held
     }
 
-    /// Whether forces are those of the nodes of the faces that absorb, or none.
+    /// Returns whether `held` is empty or has one force per node of every absorbing face.
     pub fn fits(&self, grid: &Grid<D>, held: &[Vec<Vector<D>>]) -> bool {
         held.is_empty()
             || self
@@ -165,8 +166,8 @@ impl<const D: usize> Boundary<D> {
                 .eq(held.iter().map(Vec::len))
     }
 
-    /// N  of every node of every absorbing face the nodal `reaction` that holds the state of the start, each once: the
-    /// same on every rank.
+    /// Returns the forces that carry the initial stress at the nodes of every absorbing face (N), from the nodal
+    /// `reaction`. Each component counts once. All ranks obtain the same result. One reduction per face.
     pub fn held(&self, grid: &Grid<D>, reaction: &[f64], halo: &dyn Halo) -> Vec<Vec<Vector<D>>> {
         let owned = halo.owned();
         let mut counted = vec![false; reaction.len()];
@@ -182,15 +183,15 @@ impl<const D: usize> Boundary<D> {
                     }
                 }
             }
-            halo.all_reduce_sum(&mut forces); // of one rank each: exact
+            halo.all_reduce_sum(&mut forces); // exact: one rank has each value
             held.push(forces.chunks_exact(D).map(Vector::from_column_slice).collect());
         }
         held
     }
 }
 
-/// Weight of the place of a face at a point at `x`, m, over the point's own: a point's mass weighs by its own radius,
-/// what it says of the face by the face's.
+/// Returns the geometry weight at the projection of `x` (m) onto the face, divided by the weight at `x`. In
+/// axisymmetry, a material point's mass contains its own radius, but the face needs the radius of the face.
 fn weight_on<K: Kinematics<D>, const D: usize>(grid: &Grid<D>, face: &Support<D>, x: &Vector<D>) -> f64 {
     let length = grid.axes()[face.axis].length();
     let mut on_face = *x;
@@ -198,26 +199,26 @@ fn weight_on<K: Kinematics<D>, const D: usize>(grid: &Grid<D>, face: &Support<D>
     K::weight(&on_face) / K::weight(x)
 }
 
-/// The axes along a face.
+/// Returns the axes along a face.
 fn along<const D: usize>(normal: usize) -> impl Iterator<Item = usize> {
     (0..D).filter(move |&axis| axis != normal)
 }
 
-/// Nodes of a face of the whole grid.
+/// Returns the number of nodes of a face of the whole grid.
 fn nodes_on<const D: usize>(grid: &Grid<D>, face: &Support<D>) -> usize {
     along::<D>(face.axis)
         .map(|axis| grid.axes()[axis].functions())
         .product()
 }
 
-/// Number of a node (local) among those of its face of the whole grid.
+/// Returns the index of a local node on its face of the whole grid.
 fn number_on<const D: usize>(grid: &Grid<D>, face: &Support<D>, node: usize) -> usize {
     let node = grid.node_at(node);
     along::<D>(face.axis).fold(0, |number, axis| number * grid.axes()[axis].functions() + node[axis])
 }
 
-/// Sum of what the nodes behind a node of the face have, in the cell at it: of splines that is 1 across the face, so
-/// that what the points of the cell bring along is integrated along the face alone.
+/// Sums the nodal values (two per node) over the q + 1 nodes in the line from `node` into the grid. Across the face
+/// their splines sum to 1, so the sum is the integral over the face with the shape functions along the face alone.
 fn across<const D: usize>(grid: &Grid<D>, face: &Support<D>, node: usize, nodal: &[f64]) -> [f64; 2] {
     let mut sum = [0.0; 2];
     for behind in 0..=grid.order() {

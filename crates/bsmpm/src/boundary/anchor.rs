@@ -9,70 +9,70 @@ use crate::parallel::Halo;
 use crate::points::PackedTensors;
 use crate::tensor::{Tensor, Vector};
 
-/// Parts of the grid's length within which a point is on a face.
+/// Distance, as a fraction of the grid's length, within which a position counts as on a face.
 const ON: f64 = 1e-9;
 
-/// What surfaces are anchored to: the points of this rank.
+/// Material points of this rank, to which surface points can be anchored.
 #[derive(Clone, Copy)]
 pub struct AnchorCandidates<'a, const D: usize> {
-    /// global ids
+    /// Global ids.
     pub id: &'a [u64],
-    /// numbers of the materials
+    /// Indices of the materials.
     pub material: &'a [u16],
-    /// m  places now, from the grid's lower corner
+    /// Present positions (m), from the grid's lower corner.
     pub x: &'a [Vector<D>],
-    /// m  displacements since the start
+    /// Displacements since the start (m).
     pub u: &'a [Vector<D>],
-    /// -  deformation gradients
+    /// Deformation gradients (-).
     pub F: &'a PackedTensors<D, Tensor>,
 }
 
-/// A surface point's place at the start, m, and whether water crosses there.
+/// Initial position of a surface point (m), and whether water crosses there.
 type StartPlace<const D: usize> = (Vector<D>, bool);
 
-/// All that has points on surfaces of bodies.
+/// All boundary conditions that have surface points.
 #[derive(Clone)]
 pub struct Surfaces<'a, const D: usize> {
-    /// strips and loads
+    /// Strips and loads.
     pub boundary: &'a Boundary<D>,
-    /// points of every drain, then of every inflow of water
+    /// Surface points of every drain, then of every inflow.
     pub water: Vec<&'a [SurfacePoint<D>]>,
-    /// by the material's number: whether no water flows in it, and none of those is anchored to it
+    /// Per material: whether no water flows in it. Surface points of drains and inflows are not anchored to it.
     pub dry: Vec<bool>,
 }
 
 impl<const D: usize> Surfaces<'_, D> {
-    /// All surface points of water at the start.
+    /// Returns the initial positions of the surface points of drains and inflows.
     fn starts_of_water(&self) -> impl Iterator<Item = StartPlace<D>> {
         self.water.iter().copied().flatten().map(|point| (point.x, true))
     }
 
-    /// All those of strips, then those of loads.
+    /// Returns the initial positions of the surface points of strips, then of loads.
     fn starts_of_boundary(&self) -> impl Iterator<Item = StartPlace<D>> {
         starts(self.boundary).into_iter().map(|x| (x, false))
     }
 }
 
-/// Which surfaces have not acted yet, and may be on what comes.
+/// Surfaces that have not acted yet, and may be anchored to material that is placed later.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Idle {
-    /// loads
+    /// Per load.
     pub loads: Vec<bool>,
-    /// every drain's surface, then every inflow's
+    /// Per drain, then per inflow.
     pub water: Vec<bool>,
 }
 
-/// Places of the material now, m.
+/// Present positions of the material at the surface points (m).
 pub struct AnchorPlaces<const D: usize> {
-    /// per strip and point of it: as far from the anchor as at the start, without what the material between has
-    /// stretched
+    /// Per strip and surface point: the anchor's position plus the initial offset, without the deformation in between.
     pub strips: Vec<Vec<Vector<D>>>,
-    /// per load and point of it: on the material, and on the face of the grid that it began on
+    /// Per load and surface point: position in the deformed material, kept on the face of the grid where it began.
     pub loads: Vec<Vec<Vector<D>>>,
 }
 
 impl Anchors {
-    /// The anchors that are `carried`; before the first step, the nearest points. Two reductions then.
+    /// Returns the `carried` anchors, or, before the first step, the nearest material points. Two reductions in that
+    /// case.
     pub fn of<const D: usize>(
         surfaces: &Surfaces<'_, D>,
         carried: &Self,
@@ -101,8 +101,8 @@ impl Anchors {
         anchors
     }
 
-    /// The anchors with those that `gone` says replaced by the points that were the nearest ones of the others at the
-    /// start. Two reductions if there are such.
+    /// Replaces the anchors for which `gone` is true with the candidates that were nearest at the start. Two reductions
+    /// if there are any.
     pub fn without<const D: usize>(
         &self,
         surfaces: &Surfaces<'_, D>,
@@ -128,8 +128,8 @@ impl Anchors {
         anchors
     }
 
-    /// The anchors with those of the surfaces that are `idle` replaced by the points nearest to their start of all that
-    /// are there. Two reductions if there are such.
+    /// Replaces the anchors of `idle` surfaces with the candidates nearest to the initial surface points. Two
+    /// reductions if there are any.
     pub fn renewed<const D: usize>(
         &self,
         surfaces: &Surfaces<'_, D>,
@@ -144,7 +144,7 @@ impl Anchors {
             .iter()
             .map(|load| (&load.points[..], false))
             .zip(&idle.loads);
-        // Before a first step nothing is anchored yet.
+        // Before the first step there are no anchors.
         let water = surfaces
             .water
             .iter()
@@ -168,7 +168,7 @@ impl Anchors {
         anchors
     }
 
-    /// Where the material is now. One reduction, if there are surface points at all.
+    /// Returns the present positions of the material at the surface points. One reduction if there are surface points.
     pub fn places<const D: usize>(
         &self,
         boundary: &Boundary<D>,
@@ -197,9 +197,9 @@ impl Anchors {
 }
 
 impl<const D: usize> AnchorPlaces<D> {
-    /// Points of a strip, `number` of all, that at time `t` are farther ahead of the material that they held at the
-    /// start than half the shortest edge of the cell that they are in, along the strip's whole motion as far as it is
-    /// held.
+    /// Returns the number of points of strip `number` that at time `t` are ahead of their initial material by more than
+    /// half the shortest edge of their cell, measured along the strip's total constrained motion; 0 for strips that
+    /// allow separation.
     pub fn left_behind(&self, number: usize, strips: &[Strip<D>], t: f64, grid: &Grid<D>) -> usize {
         let strip = &strips[number];
         let moved = strip.path.at(t);
@@ -221,7 +221,8 @@ impl<const D: usize> AnchorPlaces<D> {
 }
 
 impl<const D: usize> AnchorCandidates<'_, D> {
-    /// Calls with every one of these ids that is of a point of this rank: the point, and which one of the ids.
+    /// Calls `each` with the index of a material point of this rank and the position of its id in `ids`, for every id
+    /// that is on this rank.
     pub(crate) fn visit<'i>(&self, ids: impl Iterator<Item = &'i u64>, mut each: impl FnMut(usize, usize)) {
         let mut anchored: Vec<(u64, usize)> = ids.copied().zip(0..).collect();
         anchored.sort_unstable();
@@ -235,32 +236,33 @@ impl<const D: usize> AnchorCandidates<'_, D> {
         }
     }
 
-    /// Where the material is now, m, that was at `start`, if it is the one of the point `p`.
+    /// Returns the present position (m) of the material that was at `start`, extrapolated from point `p` with its F.
     pub(crate) fn along(&self, p: usize, start: &Vector<D>) -> Vector<D> {
         self.x[p] + self.F.at(p).fixed_view::<D, D>(0, 0) * self.offset(p, start)
     }
 
-    /// The place, m, that is as far from the point `p` as `start` was.
+    /// Returns the position of point `p` plus its initial offset to `start` (m).
     fn ahead(&self, p: usize, start: &Vector<D>) -> Vector<D> {
         self.x[p] + self.offset(p, start)
     }
 
+    /// Returns the initial offset from point `p` to `start` (m).
     fn offset(&self, p: usize, start: &Vector<D>) -> Vector<D> {
         start - (self.x[p] - self.u[p])
     }
 }
 
-/// Takes what comes in parts of these lengths.
+/// Splits the items into lists of these lengths.
 fn parts<T>(all: &mut impl Iterator<Item = T>, lengths: impl Iterator<Item = usize>) -> Vec<Vec<T>> {
     lengths.map(|length| all.take(length).collect()).collect()
 }
 
-/// An area of the start, as a vector along its normal, after the deformation F: cof(F) N dA (Nanson).
+/// Returns an initial area vector after the deformation F: cof(F) N dA (Nanson).
 pub(crate) fn turned<const D: usize>(F: &Tensor, area: &Vector<D>) -> Vector<D> {
     cofactor(F).fixed_view::<D, D>(0, 0) * area
 }
 
-/// Cofactors: J F^-T.
+/// Returns the cofactors J F^-T.
 fn cofactor(F: &Tensor) -> Tensor {
     Tensor::from_fn(|i, j| {
         let [i1, i2] = [(i + 1) % 3, (i + 2) % 3];
@@ -269,8 +271,8 @@ fn cofactor(F: &Tensor) -> Tensor {
     })
 }
 
-/// A place that was at `start`, not beyond the faces that hold or stop material, and on those that it began on if no
-/// material leaves them: what the material at it has stretched would take it off.
+/// Moves a position `place` (m) onto a face with a support if it lies beyond the face, or if it began on the face and
+/// no material leaves there: extrapolation with F would take it off the face.
 fn within<const D: usize>(
     boundary: &Boundary<D>,
     grid: &Grid<D>,
@@ -289,7 +291,7 @@ fn within<const D: usize>(
     place
 }
 
-/// Places of all surface points at the start, m: those of strips, then those of loads.
+/// Returns the initial positions of all surface points (m): of strips, then of loads.
 fn starts<const D: usize>(boundary: &Boundary<D>) -> Vec<Vector<D>> {
     let strips = boundary.strips.iter().flat_map(|strip| &strip.points);
     strips
@@ -298,8 +300,8 @@ fn starts<const D: usize>(boundary: &Boundary<D>) -> Vec<Vector<D>> {
         .collect()
 }
 
-/// Ids of the points that were nearest to places at the start; of equally near ones the smallest. Where water crosses,
-/// of those whose material is not `dry`.
+/// Returns the ids of the material points nearest to the positions `at` at the start; the smallest id among equally
+/// near ones. Points of `dry` materials are excluded where water crosses. Two reductions.
 fn nearest<const D: usize>(
     at: &[StartPlace<D>],
     dry: &[bool],

@@ -18,22 +18,24 @@ pub(super) use gap::face_cell;
 use gap::{ROUNDING, gaps};
 use node::ContactNode;
 
-/// Steps ahead of the meeting from which on material is near the face: it may be faster or slower than it starts.
+/// Material counts as near a face if it could reach it within this number of steps at its present velocity, which may
+/// change in the step.
 const MEETING: f64 = 2.0;
 
-/// All nodes on faces with contact in one step: the same on every rank that shares a node.
+/// All contact nodes of one step. Ranks that share a node have the same data.
 #[derive(Clone, Debug, Default)]
 pub struct Contacts<const D: usize> {
     nodes: Vec<ContactNode<D>>,
-    released: Vec<bool>, // of nodes that have come to slide in the last correction
-    /// N m  first energy of the step's iteration, by which those that follow with other statuses are judged
+    released: Vec<bool>, // per node: changed from stick in the last correction
+    /// Energy |du_0 . f_0| of the step's first iteration (N m): reference of the convergence criterion after statuses
+    /// change.
     pub first_energy: Option<f64>,
 }
 
 impl<const D: usize> Contacts<D> {
-    /// Of the `boundary` in a step from `t`: of nodes with components that are `free`, in the statuses that the last
-    /// displacement had, `guess`, if there is one; `water_force` is what pore water carries of the normal forces, N.
-    /// One exchange with the neighbours a face that lifts.
+    /// Creates the contact nodes for a step from time `t`: nodes of contact faces whose normal component is `free`.
+    /// Statuses are predicted from `guess`, the displacement of the last step (m; may be empty). `water_force` is the
+    /// part of the normal forces that pore water carries (N). One ghost exchange per face that allows separation.
     pub fn of<K>(
         model: &Model<K, D>,
         mapped: MappedPoints<'_, D>,
@@ -89,12 +91,12 @@ impl<const D: usize> Contacts<D> {
         }
     }
 
-    /// Whether there is no such node on this rank.
+    /// Returns whether this rank has no contact node.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// The components that are `free`, and those that the statuses decide.
+    /// Returns the `free` components and those that contact decides.
     pub fn movable(&self, free: &[bool]) -> Vec<bool> {
         let mut movable = free.to_vec();
         for at in &self.nodes {
@@ -105,7 +107,7 @@ impl<const D: usize> Contacts<D> {
         movable
     }
 
-    /// Marks what is an unknown, and prescribes what is not (m), as the statuses say.
+    /// Applies the statuses: marks components as free or prescribed, and sets prescribed displacements (m).
     pub fn apply(&self, free: &mut [bool], prescribed: &mut [Option<f64>]) {
         for at in &self.nodes {
             for (component, held) in at.holds().into_iter().enumerate().filter(|(c, _)| at.decides(*c)) {
@@ -115,8 +117,8 @@ impl<const D: usize> Contacts<D> {
         }
     }
 
-    /// Adds to the velocities (m/s) that are prescribed those of components that have been at rest on a face and stay
-    /// there as far as is known: what they start the step with, as components that supports hold.
+    /// Sets the prescribed velocity (m/s) to zero for components that were at rest in contact and are predicted to
+    /// remain so, as for fixed supports.
     pub fn rest(&self, velocities: &mut [Option<f64>]) {
         for at in &self.nodes {
             for component in (0..D).filter(|&component| at.rested[component]) {
@@ -125,8 +127,8 @@ impl<const D: usize> Contacts<D> {
         }
     }
 
-    /// Marks components that the face may stop in a step of `dt` (s) in which the nodes start with `v`, m/s: those on
-    /// or near it that have not been at rest.
+    /// Marks the components that contact may stop in a step of `dt` (s) with initial nodal velocities `v` (m/s): those
+    /// of nodes in contact or near it that were not at rest.
     pub fn moving(&self, v: &[f64], dt: f64) -> Vec<bool> {
         let mut moving = if self.is_empty() {
             Vec::new()
@@ -142,8 +144,8 @@ impl<const D: usize> Contacts<D> {
         moving
     }
 
-    /// Adds friction under the displacement `u` (m), N, to what is out of balance and to the `reaction`, which has the
-    /// normal forces.
+    /// Adds friction under the displacement `u` (m) to the out-of-balance force and to the `reaction` (N), which
+    /// already contains the normal forces.
     pub fn add_friction(&self, u: &[f64], f_oob: &mut [f64], reaction: &mut [f64]) {
         for at in &self.nodes {
             let Status::Slip(direction) = at.status else { continue };
@@ -156,8 +158,8 @@ impl<const D: usize> Contacts<D> {
         }
     }
 
-    /// Adds what friction adds to the product of the derivative of the forces with `v` (m), which `out` holds at all
-    /// components, where `reaction` acts.
+    /// Adds the contribution of friction to the product of the tangent stiffness with `v` (m). `out` already contains
+    /// the product of all components; `reaction` decides where friction acts.
     pub fn add_derivative(&self, reaction: &[f64], v: &[f64], out: &mut [f64]) {
         for at in &self.nodes {
             let Status::Slip(direction) = at.status else { continue };
@@ -175,7 +177,7 @@ impl<const D: usize> Contacts<D> {
         }
     }
 
-    /// Adds what resists slips beside the directions of friction to the stiffness.
+    /// Adds the stiffness of friction across the direction of slip (3-D).
     pub fn assemble(&self, solver: &mut dyn LinearSolver, halo: &dyn Halo) {
         let owned = halo.owned();
         for at in self.nodes.iter().filter(|at| owned.contains(at.node)) {
@@ -185,8 +187,8 @@ impl<const D: usize> Contacts<D> {
         }
     }
 
-    /// Corrects every status that the displacement `u` (m) and the `reaction` (N) under it contradict by more than
-    /// `force`, N; how many there were over all ranks.
+    /// Corrects every status that the displacement `u` (m) and its `reaction` (N) contradict by more than `force` (N).
+    /// Returns the number of corrected nodes on all ranks. One reduction.
     pub fn correct(&mut self, u: &[f64], reaction: &[f64], force: f64, edge: f64, halo: &dyn Halo) -> usize {
         let owned = halo.owned();
         let mut corrected = [0.0];
@@ -203,8 +205,8 @@ impl<const D: usize> Contacts<D> {
         corrected[0] as usize
     }
 
-    /// J  work of the faces' forces on this rank: of the normal ones that of the blows by which gaps close, as a face
-    /// at rest works nothing; and that of friction.
+    /// Returns the work of the contact forces of this rank (J): of normal forces, non-zero only where a gap closes, and
+    /// of friction.
     pub fn work(&self, u: &[f64], reaction: &[f64], halo: &dyn Halo) -> [Exact; 2] {
         let owned = halo.owned();
         let mut work = [Exact::ZERO; 2];
@@ -220,7 +222,8 @@ impl<const D: usize> Contacts<D> {
         work
     }
 
-    /// What every face with contact did under the converged displacement `u`, m, with the `reaction`, N.
+    /// Returns the results of every contact face under the converged displacement `u` (m) and the `reaction` (N). Two
+    /// reductions per face.
     pub fn report(&self, boundary: &Boundary<D>, u: &[f64], reaction: &[f64], halo: &dyn Halo) -> Vec<ContactReport> {
         let owned = halo.owned();
         let mut reports = Vec::new();
@@ -269,8 +272,8 @@ impl<const D: usize> Contacts<D> {
     }
 }
 
-/// Whether another face with contact decides a component at a node of a face: one normal to it or, along an edge in
-/// space that a smooth face shares with one with friction, the latter.
+/// Returns whether another contact face decides a component at a node: the face normal to that component, or, at an
+/// edge in 3-D, a face with friction that meets a smooth one.
 fn is_decided_beside<const D: usize>(
     boundary: &Boundary<D>,
     grid: &Grid<D>,
@@ -287,13 +290,13 @@ fn is_decided_beside<const D: usize>(
     })
 }
 
-/// Whether a node is on a face.
+/// Returns whether a node is on a face.
 fn is_on<const D: usize>(grid: &Grid<D>, node: usize, face: &Support<D>) -> bool {
     let last = grid.axes()[face.axis].functions() - 1;
     grid.node_at(node)[face.axis] == if face.upper { last } else { 0 }
 }
 
-/// Whether the node behind a node of a face has moved in the last displacement, `guess`, m.
+/// Returns whether the next node inwards from a face moved in the last step, by its displacement `guess` (m).
 fn had_material<const D: usize>(grid: &Grid<D>, face: &Support<D>, node: usize, guess: &[f64]) -> bool {
     let mut behind = grid.node_at(node);
     let at = behind[face.axis];

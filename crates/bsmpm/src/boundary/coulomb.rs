@@ -2,52 +2,53 @@
 
 use crate::tensor::Vector;
 
-/// What a face or strip does to the material at it, instead of holding it.
+/// Contact law of a face or strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// -  coefficient of friction mu
+    /// Friction coefficient mu (-).
     pub friction: f64,
-    /// whether material comes off it; else its normal component is held both ways, and there is no friction where it
-    /// pulls
+    /// Whether the material can separate. If not, the normal component is fixed in both directions, and there is no
+    /// friction in tension.
     pub lifts: bool,
 }
 
-/// What a node of such a face, or a point of such a strip, does in a step.
+/// Contact status of a node on a face or a point of a strip in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Status<const D: usize> {
-    /// Off the face: no force.
+    /// Separated: no force.
     Open,
-    /// On the face, and held along it.
+    /// In contact, without tangential motion.
     Stick,
-    /// On the face, and free along it but for the friction against this unit vector; zero without friction.
+    /// In contact, sliding. On a face, friction on the body acts against this unit vector; on a strip, along it. Zero
+    /// without friction.
     Slip(Vector<D>),
 }
 
-/// The part of a vector beside a unit vector.
+/// Returns the part of a vector normal to a unit vector.
 pub(super) fn transverse<const D: usize>(vector: &Vector<D>, unit: &Vector<D>) -> Vector<D> {
     vector - unit * vector.dot(unit)
 }
 
-/// Returns a part of a whole, 0 of nothing.
+/// Returns `part / whole`; 0 if `whole` is 0.
 pub(super) fn ratio(part: f64, whole: f64) -> f64 {
     if whole > 0.0 { part / whole } else { 0.0 }
 }
 
-/// What a face or strip with contact did in a step.
+/// Contact results of a face or strip for one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactReport {
-    /// number of the support, or of the strip
+    /// Index of the support or of the strip.
     pub support: usize,
-    /// nodes of the face, or points of the strip, that see material
+    /// Number of nodes of the face, or points of the strip, with material in range.
     pub nodes: usize,
-    /// -  part of them that is on the face
+    /// Share of them that is in contact (-).
     pub closed: f64,
-    /// -  part of the normal force that is on nodes that slip; 0 without force
+    /// Share of the normal force at sliding nodes (-); 0 without force.
     pub sliding: f64,
-    /// m  mean of the slip of the step, by normal force
+    /// Mean slip of the step, weighted with the normal force (m).
     pub slip: f64,
-    /// J  dissipated by friction in the step
+    /// Energy dissipated by friction in the step (J).
     pub dissipated: f64,
-    /// m  least and largest distance of the material at the end of the step; 0 without material
+    /// Least and largest gap at the end of the step (m); 0 without material.
     pub gap: [f64; 2],
 }

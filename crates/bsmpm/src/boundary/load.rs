@@ -14,24 +14,24 @@ use crate::schedule::{between, turns};
 use crate::tensor::Vector;
 use follower::{AttachedPoint, FollowerLoads};
 
-/// A load on a surface.
+/// A traction or point load on a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Load<const D: usize> {
-    /// points of the surface at the start; a point load has one, of area 1
+    /// Initial surface points; a point load has one, of area 1.
     pub points: Vec<SurfacePoint<D>>,
-    /// Pa (point load: N)  at every point when fully applied, per area of the start
+    /// Traction at every point at full amplitude, per initial area (Pa; point load: N).
     pub traction: Vec<Vector<D>>,
-    /// whether it turns and stretches with the surface, as a pressure does
+    /// Whether it is a follower load, which rotates and stretches with the surface like a pressure.
     pub follows: bool,
-    /// s (or pseudo-time) over which it grows linearly; 0: at once
+    /// Time over which the load grows linearly (s, or pseudo-time); 0: at once.
     pub ramp: f64,
-    /// s (or pseudo-time), increasing, and the share that acts, instead of a ramp: linear between, from 0 at time 0 to
-    /// the first row, constant after the last; empty: the ramp holds
+    /// Increasing times (s, or pseudo-time) and amplitudes, which replace the ramp: linear between rows, from 0 at time
+    /// 0 to the first row, constant after the last. Empty: the ramp applies.
     pub amplitude: Vec<(f64, f64)>,
 }
 
 impl<const D: usize> Load<D> {
-    /// The same traction at all points, whatever becomes of the surface.
+    /// Creates a dead load with the same traction (Pa) at all points.
     pub fn dead(points: Vec<SurfacePoint<D>>, traction: Vector<D>, ramp: f64) -> Self {
         Self {
             traction: vec![traction; points.len()],
@@ -42,7 +42,7 @@ impl<const D: usize> Load<D> {
         }
     }
 
-    /// What a surface at rest knows of its traction, Pa: that of a load that follows it.
+    /// Returns the initial follower tractions (Pa); empty for a dead load.
     pub(super) fn at_rest(&self) -> Vec<Vector<D>> {
         if self.follows {
             self.traction.clone()
@@ -51,12 +51,12 @@ impl<const D: usize> Load<D> {
         }
     }
 
-    /// Whether nothing of it ever acts: there may be no material at it yet, or any more.
+    /// Returns whether the amplitude is always zero. Such a load may lie where there is no material.
     pub fn is_idle(&self) -> bool {
         !self.amplitude.is_empty() && self.amplitude.iter().all(|row| row.1 == 0.0)
     }
 
-    /// Whether its course turns sharply in a step.
+    /// Returns whether the slope of the amplitude changes sharply in the interval.
     pub(super) fn turns(&self, interval: TimeInterval) -> bool {
         let rows = if self.amplitude.is_empty() {
             &[(self.ramp, 1.0)][..]
@@ -66,7 +66,7 @@ impl<const D: usize> Load<D> {
         turns(rows, 0.0, f64::abs, interval)
     }
 
-    /// Share of the load that acts at time `t`.
+    /// Returns the amplitude of the load at time `t`.
     fn grown(&self, t: f64) -> f64 {
         match self.amplitude.last() {
             Some((_, stays)) => between(&self.amplitude, 0.0, t).unwrap_or(*stays),
@@ -80,12 +80,13 @@ impl<const D: usize> Load<D> {
 pub struct LoadForces<const D: usize> {
     /// Nodal forces of the dead loads, N, D per node; empty without loads.
     pub dead: Vec<f64>,
-    /// Loads that follow the surface.
+    /// Follower loads.
     pub followers: FollowerLoads<D>,
 }
 
-/// Returns the forces of all loads at time `t` on the `surface`, which is one of these `surfaces`. Fails on all ranks
-/// if a load has lost its material.
+/// Returns the forces of all loads at time `t`, with the state `surface` of their points. Fails on all ranks if a load
+/// has lost its material. One reduction and one ghost exchange; before the first step, follower loads need two more
+/// reductions.
 pub fn forces<const D: usize>(
     surfaces: &Surfaces<'_, D>,
     surface: &Surface<D>,
@@ -141,8 +142,8 @@ pub fn forces<const D: usize>(
     })
 }
 
-/// Returns the error of the first load that has lost some of its material, by the numbers of points of every load that
-/// have material where it pushes and, where some load follows the surface, of those whose material is there.
+/// Returns the error of the first load that has lost material. `applied` has, per load, the number of points with
+/// material in range, and then, if there are follower loads, the number of points whose anchor is present.
 fn lost_load<const D: usize>(loads: &[Load<D>], applied: &[f64]) -> Option<StepError> {
     for (number, load) in loads.iter().enumerate().filter(|(_, load)| !load.is_idle()) {
         let carried = applied.get(loads.len() + number).filter(|_| load.follows);
@@ -157,8 +158,8 @@ fn lost_load<const D: usize>(loads: &[Load<D>], applied: &[f64]) -> Option<StepE
     None
 }
 
-/// Positions that all loads' points would have after the converged displacement `u`, m, moved by the nodes that their
-/// forces act on: what the work of a load is of.
+/// Returns the positions of all load points after the converged displacement `u` (m), interpolated with the nodes on
+/// which the forces act; the work of the loads uses them. One reduction.
 pub fn moved<const D: usize>(
     loads: &[Load<D>],
     surface: &Surface<D>,
@@ -181,8 +182,8 @@ pub fn moved<const D: usize>(
     position
 }
 
-/// Work of all loads from `t` to `t + dt` by their mean, N m, and half of what they have grown times the displacement
-/// of their points, from one surface to the other.
+/// Returns the work of all loads in the interval by the mean of their tractions (N m), and half of the increase of the
+/// tractions times the displacement of the points (N m). `before` and `after` are the states of the surfaces.
 pub fn work<const D: usize>(
     loads: &[Load<D>],
     before: &Surface<D>,
@@ -206,7 +207,8 @@ pub fn work<const D: usize>(
     sums
 }
 
-/// Work of the tractions of a load when fully applied, Pa, on points that have `moved`, m; N m.
+/// Returns the work of the tractions of a load at full amplitude (Pa) on displacements `moved` of its points (m), in N
+/// m.
 fn full_work<const D: usize>(load: &Load<D>, traction: &[Vector<D>], moved: &[Vector<D>]) -> f64 {
     let moved = moved.iter().enumerate();
     moved

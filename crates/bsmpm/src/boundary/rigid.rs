@@ -29,45 +29,46 @@ use motion::BodyInStep;
 use nalgebra::Matrix3;
 use point::RigidPoint;
 
-/// Stiffness of a point at an outline over that of its material, E A/h, and over its inertia: with ten times as much
-/// steps in plastic failure find no equilibrium, as there are more points than splines there
-/// (measured: `decisions.md` of the manual).
+/// Penalty stiffness of a contact point as a multiple of the stiffness E A/h of its material plus its inertia. With ten
+/// times as much, steps in plastic failure find no equilibrium, because there are more material points than splines at
+/// the outline (measured: `decisions.md` of the manual).
 const PENALTY: f64 = 1e2;
-/// Passes in which all statuses are corrected, and those until which the ones that are off by half of the most are: in
-/// a plane, and in space, where friction turns in them too, with inertia and without.
+/// Number of passes in which all contradicted statuses are corrected, and number of passes until which those with at
+/// least half of the largest contradiction are; later only the largest. In 2-D, in 3-D dynamic and in 3-D quasi-static
+/// analyses; in 3-D, friction also rotates in these passes.
 const AT_ONCE: [usize; 3] = [8, 12, 24];
 const BY_HALF: [usize; 3] = [16, 32, 32];
-/// Part of a cell below which a penetration is round-off.
+/// Penetration, in cell edges, that is round-off.
 const ROUNDING: f64 = 1e-9;
-/// Part of a cell within which a point is on the outline as a step begins.
+/// Gap, in cell edges, below which a material point touches the outline at the start of a step.
 const CLOSE: f64 = 1e-6;
 
-/// What a rigid body did in a step.
+/// Results of a rigid body for one step. Units are for 2-D; in 3-D all three components are translations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RigidReport {
-    /// N, N and N m  of the material on the body, about its reference point
+    /// Force of the material on the body about its reference point (N, N and N m).
     pub force: Vector<3>,
-    /// m, m and rad  since the start
+    /// Motion since the start (m, m and rad).
     pub moved: Vector<3>,
-    /// m/s, m/s and rad/s
+    /// Velocity (m/s, m/s and rad/s).
     pub velocity: Vector<3>,
-    /// m  way of the material along its outline since the start
+    /// Slip distance of the material along the outline since the start (m).
     pub slipped: f64,
-    /// J  its work on the material since the start, friction among it
+    /// Work on the material since the start, including friction (J).
     pub work: f64,
-    /// J  dissipated by friction in the step
+    /// Energy dissipated by friction in the step (J).
     pub dissipated: f64,
-    /// m  least distance of material from it at the end of the step; 0 where it is touched, and without material
+    /// Least gap to the material at the end of the step (m); 0 in contact and without material.
     pub gap: f64,
-    /// points that it pushes
+    /// Number of material points that it pushes.
     pub touched: usize,
-    /// -  largest depth that a point is in it, over the cell
+    /// Largest penetration by a material point, divided by the shortest cell edge (-).
     pub penetration: f64,
-    /// -  largest motion of the body at a point that it pushes, over the cell
+    /// Largest motion of the body at a point that it pushes, divided by the shortest cell edge (-).
     pub advance: f64,
 }
 
-/// All rigid bodies in one step, with the points of this rank that are near them.
+/// All rigid bodies in one step, and the material points of this rank near them.
 #[derive(Clone, Debug, Default)]
 pub struct RigidContacts<const D: usize> {
     offsets: Vec<usize>,
@@ -76,23 +77,24 @@ pub struct RigidContacts<const D: usize> {
     length: f64, // s (or pseudo-time)
     dt: f64,     // s; 0 without inertia
     edge: f64,
-    /// components of nodes that a body may stop in this step, which go by backward Euler; empty without inertia
+    /// Nodal components that a body may stop in this step; they are integrated by backward Euler. Empty without
+    /// inertia.
     pub moving: Vec<bool>,
 }
 
 impl<const D: usize> RigidContacts<D> {
-    /// Whether there is no body at all.
+    /// Returns whether there is no body.
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()
     }
 
-    /// Whether motions of bodies follow from the forces at points of any rank.
+    /// Returns whether any body moves freely, so that contact forces of all ranks decide its motion.
     pub fn is_coupled(&self) -> bool {
         self.bodies.iter().any(|at| at.body.is_free())
     }
 
-    /// Per node of the window: whether a cell with a point in contact with a body touches it. One exchange with the
-    /// neighbours where there are bodies.
+    /// Returns, per local node, whether it belongs to a cell with a material point in contact. One ghost exchange if
+    /// there are bodies.
     pub fn touched_nodes(&self, nodes: usize, halo: &dyn Halo) -> Vec<bool> {
         if self.is_empty() {
             return vec![false; nodes];
@@ -107,12 +109,13 @@ impl<const D: usize> RigidContacts<D> {
         marks.into_iter().map(|mark| mark > 0.0).collect()
     }
 
-    /// Whether any point may rub.
+    /// Returns whether any body has friction.
     pub fn has_friction(&self) -> bool {
         self.bodies.iter().any(|at| at.body.friction > 0.0)
     }
 
-    /// Finds what free motions resist with once statuses have changed. Fails on all ranks where nothing holds one.
+    /// Computes the inverse stiffness of the free motions for the present statuses. One reduction if a body moves
+    /// freely. Fails on all ranks if nothing supports a free motion.
     pub fn settle(&mut self, halo: &dyn Halo) -> Result<(), StepError> {
         if !self.is_coupled() {
             return Ok(());
@@ -139,12 +142,13 @@ impl<const D: usize> RigidContacts<D> {
         Ok(())
     }
 
-    /// Of every body what all points resist its motions with, the soil held: N/m, N and N m. One reduction.
+    /// Returns the contact stiffness of every body's motions with the soil fixed (N/m, N and N m); `whole`: including
+    /// the unsymmetric part. One reduction.
     fn stiffness(&self, whole: bool, halo: &dyn Halo) -> Vec<Matrix3<f64>> {
         self.stiffness_by(|point, moved| point.rate(moved, whole), halo)
     }
 
-    /// The same by the `rate` at which the force at a point changes. One reduction.
+    /// As [`Self::stiffness`], with `rate` as the change of the contact force at a point. One reduction.
     fn stiffness_by(
         &self,
         rate: impl Fn(&RigidPoint<D>, &Vector<D>) -> Vector<D>,
@@ -167,7 +171,8 @@ impl<const D: usize> RigidContacts<D> {
             .collect()
     }
 
-    /// What the bodies' free motions add to what was predicted, in balance with the forces under `u`; one reduction.
+    /// Returns the free motions of the bodies beyond the predicted ones, in equilibrium with the contact forces under
+    /// `u` (m). One reduction if a body moves freely.
     fn found(&self, u: &[f64], halo: &dyn Halo) -> Vec<Vector<3>> {
         if !self.is_coupled() {
             return vec![Vector::zeros(); self.bodies.len()];
@@ -180,7 +185,7 @@ impl<const D: usize> RigidContacts<D> {
             .collect()
     }
 
-    /// How the free motions change with `v`; one reduction.
+    /// Returns the derivative of the free motions in the direction `v` (m). One reduction if a body moves freely.
     fn follow(&self, v: &[f64], whole: bool, halo: &dyn Halo) -> Vec<Vector<3>> {
         if !self.is_coupled() {
             return vec![Vector::zeros(); self.bodies.len()];
@@ -193,7 +198,7 @@ impl<const D: usize> RigidContacts<D> {
             .collect()
     }
 
-    /// What the opposite of the points' forces does to every body, N, N and N m.
+    /// Returns the resultants of the reversed contact forces on the bodies (N, N and N m). One reduction.
     fn on_bodies(&self, force: impl Fn(&RigidPoint<D>) -> Vector<D>, halo: &dyn Halo) -> Vec<Vector<3>> {
         let mut sums = vec![Exact::ZERO; self.bodies.len() * MOTIONS];
         for point in &self.points {
@@ -206,18 +211,20 @@ impl<const D: usize> RigidContacts<D> {
             .collect()
     }
 
-    /// What the material at a point has moved, as seen from its body.
+    /// Returns the displacement of the material at a point relative to the free motion of its body (m).
     fn moved(&self, point: &RigidPoint<D>, u: &[f64], motions: &[Vector<3>]) -> Vector<D> {
         point.displacement(&self.offsets, u) - point.carried_by(&motions[point.body])
     }
 
-    /// Adds the bodies' forces on the material to the nodes; other ranks' parts are not yet in them.
+    /// Adds the forces of the bodies on the material to the nodes (N), this rank's contributions only. One reduction if
+    /// a body moves freely.
     pub fn add_forces(&self, u: &[f64], out: &mut Contributions, halo: &dyn Halo) {
         let motions = self.found(u, halo);
         self.scatter(|point| point.force(&self.moved(point, u, &motions)), out);
     }
 
-    /// Adds the product of the derivative of the opposite of the forces with `v`; other ranks' parts are not yet in it.
+    /// Adds the product of the contact stiffness with `v`, this rank's contributions only. One reduction if a body
+    /// moves freely.
     pub fn multiply(&self, v: &[f64], out: &mut Contributions, halo: &dyn Halo) {
         let motions = self.follow(v, true, halo);
         self.scatter(|point| -point.rate(&self.moved(point, v, &motions), true), out);
@@ -233,15 +240,16 @@ impl<const D: usize> RigidContacts<D> {
         }
     }
 
-    /// Adds the symmetric part of the stiffness of all points, the bodies held, to the matrix.
+    /// Adds the symmetric part of the contact stiffness, with the bodies fixed, to the matrix.
     pub fn assemble(&self, solver: &mut dyn LinearSolver) {
         for point in self.points.iter().filter(|point| point.status != ContactStatus::Open) {
             solver.add_block(point.first_node, &point.block());
         }
     }
 
-    /// How the symmetric part of the points' forces couples every free motion with the nodes, N/m or N, a nodal array
-    /// each, and of every body what its motions resist with.
+    /// Returns the coupling of every free motion with the nodes in the symmetric contact stiffness (N/m or N, one nodal
+    /// array per motion), and per body the matrix of its inertia and contact stiffness. One reduction, and one ghost
+    /// exchange per free motion.
     pub fn coupling(&self, grid: &Grid<D>, halo: &dyn Halo) -> (Vec<Vec<f64>>, Vec<Matrix3<f64>>) {
         let columns = self.free_motions().map(|(body, k)| self.column(body, k, grid, halo));
         let columns = columns.collect();
@@ -251,7 +259,7 @@ impl<const D: usize> RigidContacts<D> {
         (columns, whole.collect())
     }
 
-    /// How the symmetric part of the points' forces couples a motion of a body with the nodes, N/m or N.
+    /// Returns the coupling of one motion of a body with the nodes (N/m or N). One ghost exchange.
     fn column(&self, body: usize, motion: usize, grid: &Grid<D>, halo: &dyn Halo) -> Vec<f64> {
         let mut unit = Vector::<3>::zeros();
         unit[motion] = 1.0;
@@ -266,13 +274,13 @@ impl<const D: usize> RigidContacts<D> {
         halo.assemble_ghosts(&out)
     }
 
-    /// Body and number of every free motion.
+    /// Returns the body and the index of every free motion.
     pub fn free_motions(&self) -> impl Iterator<Item = (usize, usize)> {
         let free = self.bodies.iter().map(|at| at.body.free).enumerate();
         free.flat_map(|(body, free)| (0..MOTIONS).filter(move |&k| free[k]).map(move |k| (body, k)))
     }
 
-    /// du . K du of the symmetric part on this rank, N m.
+    /// Returns du . K du of the symmetric contact stiffness on this rank (N m). One reduction if a body moves freely.
     pub fn energy(&self, du: &[f64], halo: &dyn Halo) -> Exact {
         let motions = self.follow(du, false, halo);
         let energies = self.points.iter().map(|point| {
@@ -282,9 +290,9 @@ impl<const D: usize> RigidContacts<D> {
         energies.collect()
     }
 
-    /// Corrects the statuses that the displacement `u` (m) contradicts by more than `force`, N: all of them in the
-    /// first `passes`, later those that it contradicts most, as all at once may go round in a circle; how many there
-    /// were over all ranks.
+    /// Corrects the statuses that the displacement `u` (m) contradicts by more than `force` (N): all of them in the
+    /// first `passes`, later only the largest contradictions, because correcting all may cycle. Returns the number of
+    /// corrected points on all ranks. Two reductions; more if a body moves freely.
     pub fn correct(&mut self, u: &[f64], force: f64, passes: usize, halo: &dyn Halo) -> Result<usize, StepError> {
         if self.is_empty() {
             return Ok(0);
@@ -329,7 +337,8 @@ impl<const D: usize> RigidContacts<D> {
         Ok(corrected[0] as usize + held)
     }
 
-    /// Integrates the motions of free bodies that meet material in this step as those of a blow. One reduction.
+    /// Integrates an impact: free bodies that touch new material in this step change to backward Euler. One reduction
+    /// in dynamic analyses with free bodies.
     fn strike(&mut self, halo: &dyn Halo) {
         if !self.is_coupled() || self.dt == 0.0 {
             return;
@@ -345,8 +354,8 @@ impl<const D: usize> RigidContacts<D> {
         }
     }
 
-    /// J  work of the bodies on the material of this rank; how much more the forces at the step's end would do; and
-    /// half of what friction takes of it with inertia, where those are what counts, not positive.
+    /// Returns three works on the material of this rank (J): of the mean forces of the step; of the forces at the end
+    /// less the mean; and, with inertia only, half of the (negative) work of friction on the slip.
     pub fn work(&self, u: &[f64], halo: &dyn Halo) -> [Exact; 3] {
         let motions = self.found(u, halo);
         let mut work = [Exact::ZERO; 3];
@@ -365,8 +374,8 @@ impl<const D: usize> RigidContacts<D> {
         work
     }
 
-    /// N  tangential forces on each of this rank's `count` points, which the next step starts from; none where nothing
-    /// has friction.
+    /// Returns the tangential force on each of this rank's `count` material points (N), from which the next step
+    /// starts; `None` without friction.
     pub fn carried(&self, u: &[f64], count: usize, halo: &dyn Halo) -> Option<Vec<Vector<D>>> {
         if !self.has_friction() {
             return None;
@@ -383,7 +392,8 @@ impl<const D: usize> RigidContacts<D> {
         Some(carried)
     }
 
-    /// What every body did under the converged displacement `u`, and its state then.
+    /// Returns the results of every body under the converged displacement `u` (m), and its state at the end of the
+    /// step. Three reductions; four if a body moves freely.
     pub fn finish_step(&self, u: &[f64], halo: &dyn Halo) -> (Vec<RigidReport>, Vec<RigidState>) {
         if self.is_empty() {
             return (Vec::new(), Vec::new());
@@ -425,7 +435,7 @@ impl<const D: usize> RigidContacts<D> {
         reports.unzip()
     }
 
-    /// What a body did, and its state then, by what [`Self::conclude`] found of its points.
+    /// Assembles the results and the new state of a body from the sums over its points in [`Self::finish_step`].
     fn report(
         &self,
         number: usize,
@@ -439,7 +449,7 @@ impl<const D: usize> RigidContacts<D> {
         let slip = if pushed > 0.0 { slipped / pushed } else { 0.0 };
         let state = at.state(motion, self.length, slip, work);
         let [near, penetration, advance] = [0, 1, 2].map(|k| most[k]);
-        // Where no point is near enough to be looked at, the least is that of the start.
+        // If no material point is in range, the least gap is that found at the start.
         let gap = if near.is_finite() { -near } else { at.least }.max(0.0);
         let report = RigidReport {
             force,

@@ -26,73 +26,74 @@ use contact::ContactState;
 use point::{LENGTHS, StripPoint, StripSums, contact_report};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A displacement as a function of time, linear between its rows: a cut step follows the same path.
+/// Prescribed displacement as a function of time, linear between its rows. Cutbacks follow the same path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path<const D: usize> {
-    /// s (or pseudo-time), increasing, and m; it starts at (0, 0) and stays after the last row
+    /// Increasing times (s, or pseudo-time) and displacements (m). The path starts at (0, 0) and is constant after the
+    /// last row.
     pub rows: Vec<(f64, Vector<D>)>,
 }
 
 impl<const D: usize> Path<D> {
-    /// Displacement at time `t`, m.
+    /// Returns the displacement at time `t` (m).
     pub fn at(&self, t: f64) -> Vector<D> {
         let rows = &self.rows;
         between(rows, Vector::zeros(), t).unwrap_or_else(|| rows.last().map_or_else(Vector::zeros, |(_, u)| *u))
     }
 
-    /// Whether it turns sharply in a step.
+    /// Returns whether the velocity changes sharply in the interval.
     pub(super) fn turns(&self, interval: TimeInterval) -> bool {
         turns(&self.rows, Vector::zeros(), |u| u.norm(), interval)
     }
 }
 
-/// A rigid strip.
+/// A rigid footing or prescribed segment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strip<const D: usize> {
-    /// points along its base
+    /// Surface points of the base.
     pub points: Vec<SurfacePoint<D>>,
-    /// unit normal, if only the normal component is held; `None`: all are
+    /// Unit normal if only the normal component is prescribed; `None`: all components.
     pub normal: Option<Vector<D>>,
-    /// what it does instead of holding, if it does
+    /// Contact law; `None`: the soil is tied to the strip.
     pub contact: Option<StripContact<D>>,
-    /// its motion
+    /// Prescribed displacement.
     pub path: Path<D>,
-    /// by number of a point: parts of other strips' motions in its own, see [the module](self)
+    /// Shares of other strips' motions in the motion of a point, by index of the point; see [the module](self).
     pub transitions: BTreeMap<usize, Vec<MotionShare<D>>>,
-    /// Pa/m  penalty beta; 0: it holds nothing
+    /// Penalty stiffness beta (Pa/m); 0: the strip is inactive.
     pub penalty: f64,
 }
 
-/// Part of another strip's motion in that of a point.
+/// Share of another strip's motion in the motion of a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionShare<const D: usize> {
-    /// number of the other strip
+    /// Index of the other strip.
     pub strip: usize,
-    /// its part, at most 1 with all others
+    /// Its share. The shares of all other strips add up to at most 1.
     pub share: f64,
-    /// unit normal, if both strips hold the normal component only; `None`: both hold all
+    /// Unit normal if both strips prescribe only the normal component; `None`: all components.
     pub normal: Option<Vector<D>>,
 }
 
 impl<const D: usize> MotionShare<D> {
-    /// The part of a vector that is shared.
+    /// Returns the part of a vector that belongs to the other strip.
     fn of(&self, vector: &Vector<D>) -> Vector<D> {
         self.normal.map_or(*vector, |normal| normal * normal.dot(vector)) * self.share
     }
 }
 
 impl<const D: usize> Strip<D> {
-    /// Whether it holds anything.
+    /// Returns whether the strip is active.
     pub fn acts(&self) -> bool {
         self.penalty > 0.0
     }
 
-    /// Whether material comes off it.
+    /// Returns whether the material can separate from the strip.
     pub fn lifts(&self) -> bool {
         self.contact.is_some_and(|contact| contact.law.lifts)
     }
 
-    /// m  of its points
+    /// Returns the centroid of its points (m).
     fn middle(&self) -> Vector<D> {
         let area: f64 = self.points.iter().map(|point| point.area).sum();
         self.points
@@ -101,12 +102,12 @@ impl<const D: usize> Strip<D> {
             / area
     }
 
-    /// Other strips whose motions one of its points follows in part.
+    /// Returns the shares of other strips' motions at a point.
     fn others(&self, point: usize) -> &[MotionShare<D>] {
         self.transitions.get(&point).map_or(&[], Vec::as_slice)
     }
 
-    /// What other strips leave of a vector at one of its points.
+    /// Returns the vector at a point less the parts of other strips.
     fn own(&self, point: usize, vector: &Vector<D>) -> Vector<D> {
         self.others(point)
             .iter()
@@ -114,7 +115,7 @@ impl<const D: usize> Strip<D> {
     }
 }
 
-/// Displacement of a point of strip `number` at time `t`, m.
+/// Returns the prescribed displacement of a point of strip `number` at time `t` (m).
 pub fn displacement<const D: usize>(strips: &[Strip<D>], number: usize, point: usize, t: f64) -> Vector<D> {
     let strip = &strips[number];
     let own = strip.own(point, &strip.path.at(t));
@@ -124,23 +125,23 @@ pub fn displacement<const D: usize>(strips: &[Strip<D>], number: usize, point: u
         .fold(own, |sum, other| sum + other.of(&strips[other.strip].path.at(t)))
 }
 
-/// Force of a strip on the body.
+/// Resultant force of a strip on the body.
 #[derive(Clone, Copy, Debug)]
 struct Resultant<const D: usize> {
     force: Vector<D>, // N
-    moment: f64,      // N m  about the strip's middle in the plane of the axes 0 and 1, counter-clockwise
+    moment: f64,      // N m, about the strip's centroid in the plane of axes 0 and 1, counter-clockwise
 }
 
 impl<const D: usize> Resultant<D> {
-    /// Adds a force, N, that acts at `arm`, m, from the middle.
+    /// Adds a force (N) at the lever arm `arm` (m) from the centroid.
     fn add(&mut self, force: Vector<D>, arm: Vector<D>) {
         self.force += force;
         self.moment += arm[0] * force[1] - arm[1] * force[0];
     }
 }
 
-/// Forces of all strips on the body, of what their points carry. The force at a point belongs to the strips whose
-/// motions it follows, by the same parts, so that force times motion is the work.
+/// Returns the resultants of all strips from the `carried` tractions of their points (Pa). Strips whose motions a point
+/// follows divide its force in the same proportions, so that force times motion equals the work.
 fn resultants<const D: usize>(strips: &[Strip<D>], carried: &[Vec<Vector<D>>]) -> Vec<Resultant<D>> {
     let middles: Vec<Vector<D>> = strips.iter().map(Strip::middle).collect();
     let mut resultants = vec![
@@ -162,7 +163,7 @@ fn resultants<const D: usize>(strips: &[Strip<D>], carried: &[Vec<Vector<D>>]) -
     resultants
 }
 
-/// Nodes of the window whose functions reach a point of a strip at time `t`.
+/// Returns the local nodes whose functions are non-zero at a point of an active strip at time `t`.
 pub fn nodes_at<const D: usize>(strips: &[Strip<D>], grid: &Grid<D>, t: f64) -> BTreeSet<usize> {
     let mut nodes = BTreeSet::new();
     for (number, strip) in strips.iter().enumerate().filter(|(_, strip)| strip.acts()) {
@@ -175,45 +176,45 @@ pub fn nodes_at<const D: usize>(strips: &[Strip<D>], grid: &Grid<D>, t: f64) -> 
     nodes
 }
 
-/// What a strip did in a step.
+/// Results of a strip for one step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StripReport {
-    /// N  force of the strip on the body, by component
+    /// Force of the strip on the body (N), D components.
     pub force: Vec<f64>,
-    /// N m  moment of it about the strip's middle, in the plane of the axes 0 and 1, counter-clockwise
+    /// Moment of this force about the strip's centroid, in the plane of axes 0 and 1, counter-clockwise (N m).
     pub moment: f64,
-    /// J  work of it on the strip's motion in the step
+    /// Work of this force on the strip's motion in the step (J).
     pub work: f64,
-    /// m  largest distance that the material has slipped from it in the step
+    /// Largest displacement of the material relative to the strip in the step (m).
     pub slip: f64,
-    /// m  largest distance that the material has slipped from it in all steps together: held traction over the penalty
+    /// Largest displacement of the material relative to the strip since the start: traction divided by the penalty (m).
     pub accumulated: f64,
-    /// m  length of its motion in the step, as far as it is held
+    /// Length of the prescribed displacement in the step (m).
     pub motion: f64,
-    /// points with material at them
+    /// Number of points that have material.
     pub held: usize,
-    /// points that are more than half a cell ahead of the material that they held at the start
+    /// Number of points more than half a cell ahead of the material that they were tied to at the start.
     pub left_behind: usize,
-    /// of a strip in contact
+    /// Contact results, if the strip has contact.
     pub contact: Option<ContactReport>,
-    /// points that came back to material in the step more than half a cell from where they had come off it
+    /// Number of points that touched material again in the step, more than half a cell from where they had separated.
     pub moved_on: usize,
 }
 
-/// Work of strips in a step, by the mean of their tractions at its ends, N m.
+/// Work of all strips in a step, with the mean of the tractions at start and end (N m).
 #[derive(Clone, Debug, Default)]
 pub struct StripWork {
-    /// by the strips' motion
+    /// Work on the motion of the strips.
     pub given: Exact,
-    /// by the displacement of the material at them
+    /// Work on the displacement of the material at the strips.
     pub taken: Exact,
-    /// half of what the tractions have grown, times that displacement
+    /// Work of half of the increase of the tractions on this displacement.
     pub grown: Exact,
-    /// of the first, what friction at strips dissipates
+    /// Energy dissipated by friction, contained in `given`.
     pub friction_work: Exact,
 }
 
-/// The strips' points of this rank in one step.
+/// Surface points of all strips on this rank in one step.
 #[derive(Clone, Debug)]
 pub struct StripConstraints<const D: usize> {
     offsets: Vec<usize>,
@@ -222,8 +223,8 @@ pub struct StripConstraints<const D: usize> {
 }
 
 impl<const D: usize> StripConstraints<D> {
-    /// Attaches the strips at their places at time `t`, to move until `t + dt`, by the components that are `free`:
-    /// where a support of the grid holds a node, it stays the one that does.
+    /// Attaches the points of all active strips, at their positions at the start of the interval, to the components
+    /// that are `free`. Supports take precedence: a strip does not act on components that a support prescribes.
     pub fn at(
         strips: &[Strip<D>],
         surface: &Surface<D>,
@@ -239,7 +240,7 @@ impl<const D: usize> StripConstraints<D> {
                 let motion = displacement(strips, number, index, interval.end()) - place;
                 let carried = surface.traction[number][index];
                 let state = strip.contact.map(|contact| ContactState::of(contact, &carried));
-                // The material across a gap is what the gap is to.
+                // An open point is attached to the material across its gap.
                 let off = strip
                     .contact
                     .zip(state)
@@ -273,7 +274,7 @@ impl<const D: usize> StripConstraints<D> {
         }
     }
 
-    /// Takes what pore water carries of the pressure at points in contact off what friction acts on.
+    /// Sets the pore pressure at points in contact; Coulomb's law uses the effective pressure.
     pub fn wet(&mut self, pores: Option<&PorePressure<D>>) {
         let Some(pores) = pores else { return };
         let offsets = &self.offsets;
@@ -286,7 +287,7 @@ impl<const D: usize> StripConstraints<D> {
         }
     }
 
-    /// Expects of points in contact what the last displacement, `guess`, makes likely.
+    /// Predicts the contact statuses from `guess`, the displacement of the last step (m).
     pub fn predict_status(&mut self, guess: &[f64]) {
         let offsets = &self.offsets;
         for held in &mut self.held {
@@ -298,7 +299,8 @@ impl<const D: usize> StripConstraints<D> {
         }
     }
 
-    /// Corrects what the displacement `u` (m) contradicts by more than `force`, N; how many points over all ranks.
+    /// Corrects the contact statuses that the displacement `u` (m) contradicts by more than `force` (N). Returns the
+    /// number of corrected points. One reduction over all ranks.
     pub fn correct(&mut self, u: &[f64], force: f64, halo: &dyn Halo) -> usize {
         let offsets = &self.offsets;
         let mut corrected = [0.0];
@@ -312,14 +314,15 @@ impl<const D: usize> StripConstraints<D> {
         corrected[0] as usize
     }
 
-    /// Adds the strips' forces on the body to the nodes; other ranks' parts are not yet in them.
+    /// Adds the forces of the strips on the body to the nodes (N), this rank's contributions only.
     pub fn add_forces(&self, u: &[f64], out: &mut Contributions) {
         for held in &self.held {
             held.spread(&self.offsets, &(held.traction(&self.offsets, u) * held.area), out);
         }
     }
 
-    /// Adds the product of [`StripConstraints::assemble`]'s stiffness with `v`; other ranks' parts are not yet in it.
+    /// Adds the product of the stiffness of [`StripConstraints::assemble`], and of the derivative of friction by the
+    /// pressure, with `v`; this rank's contributions only.
     pub fn multiply(&self, v: &[f64], out: &mut Contributions) {
         for held in &self.held {
             let moved = held.displacement(&self.offsets, v);
@@ -332,14 +335,14 @@ impl<const D: usize> StripConstraints<D> {
         }
     }
 
-    /// Adds beta A N_a N_b, in the held direction, to the stiffness.
+    /// Adds beta A N_a N_b, in the prescribed directions, to the stiffness.
     pub fn assemble(&self, solver: &mut dyn LinearSolver) {
         for (first_node, block) in self.held.iter().filter_map(|held| held.block(self.offsets.len())) {
             solver.add_block(first_node, &block);
         }
     }
 
-    /// du . K du of the strips' stiffness on this rank, N m.
+    /// Returns du . K du of the strips' stiffness on this rank (N m).
     pub fn energy(&self, du: &[f64]) -> Exact {
         let energies = self.held.iter().map(|held| {
             let moved = held.part(held.displacement(&self.offsets, du));
@@ -348,7 +351,7 @@ impl<const D: usize> StripConstraints<D> {
         energies.collect()
     }
 
-    /// Work on this rank under the converged displacement `u`.
+    /// Returns the work on this rank under the converged displacement `u` (m).
     pub fn work(&self, u: &[f64]) -> StripWork {
         let mut work = StripWork::default();
         for held in &self.held {
@@ -361,7 +364,7 @@ impl<const D: usize> StripConstraints<D> {
             if let Some(state) = &held.state {
                 work.friction_work
                     .add(mean.dot(&state.slid(&held.trial(state, &self.offsets, u), held.penalty)));
-                // The force at the end, less the one that is counted.
+                // Force at the end less the mean force.
                 work.grown.add((after * held.area - mean).dot(&moved));
             } else {
                 work.grown.add(0.5 * held.area * (after - before).dot(&moved));
@@ -370,7 +373,8 @@ impl<const D: usize> StripConstraints<D> {
         work
     }
 
-    /// What every strip did under the converged displacement `u`, and the tractions that the next step starts from.
+    /// Returns the results of every strip under the converged displacement `u` (m), and the tractions with which the
+    /// next step starts (Pa). Three reductions over all ranks.
     pub fn finish_step(
         &self,
         strips: &[Strip<D>],
@@ -384,7 +388,7 @@ impl<const D: usize> StripConstraints<D> {
         }
         let at_rest = strips.iter().map(|strip| vec![Vector::zeros(); strip.points.len()]);
         let mut traction: Vec<Vec<Vector<D>>> = at_rest.collect();
-        // Which points of strips that lift are held by some rank.
+        // Marks the points of separating strips that some rank has.
         let mut there = traction.clone();
         let others = strips.iter().zip(&mut there).filter(|(strip, _)| !strip.lifts());
         others.for_each(|(_, list)| list.clear());
@@ -428,7 +432,7 @@ impl<const D: usize> StripConstraints<D> {
         (reports.collect(), traction)
     }
 
-    /// Adds the work of the mean force of a point, N, on the motions of the strips that it follows.
+    /// Adds the work of the `mean` force of a point (N) on the motions of the strips that it follows.
     fn add_given(&self, strips: &[Strip<D>], held: &StripPoint<D>, mean: &Vector<D>, sums: &mut [StripSums]) {
         let strip = &strips[held.strip];
         let given = strip.own(held.point, mean).dot(&self.motion(strip));
@@ -439,12 +443,12 @@ impl<const D: usize> StripConstraints<D> {
         }
     }
 
-    /// m  of a strip in the step.
+    /// Returns the displacement of a strip in the step (m).
     fn motion(&self, strip: &Strip<D>) -> Vector<D> {
         strip.path.at(self.interval.end()) - strip.path.at(self.interval.start)
     }
 
-    /// Goes on with the gaps of points that have no material across them, which is then taken to rest.
+    /// Updates the gaps of points that have no material in range, which is then assumed to be at rest.
     fn keep_apart(
         &self,
         strips: &[Strip<D>],
@@ -471,7 +475,7 @@ impl<const D: usize> StripConstraints<D> {
     }
 }
 
-/// What a strip did, by its force, the totals and the largest lengths of its points.
+/// Assembles the results of a strip from its force, and from the sums and largest lengths over its points.
 fn report<const D: usize>(
     resultant: &Resultant<D>,
     totals: &[f64],
@@ -492,7 +496,7 @@ fn report<const D: usize>(
     }
 }
 
-/// Sums vectors of which each is non-zero on one rank only: exact.
+/// Sums vectors over all ranks. Each is non-zero on one rank only, so the sum is exact.
 pub(super) fn reduce<const D: usize>(lists: &mut [Vec<Vector<D>>], halo: &dyn Halo) {
     let mut flat: Vec<f64> = lists
         .iter()

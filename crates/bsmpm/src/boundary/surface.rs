@@ -7,34 +7,34 @@ use crate::grid::{Contributions, Grid, KnotVector, digit};
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;
 use crate::tensor::Vector;
-use crate::water::crossed::{CumulativeFlux, PreviousFlow};
+use crate::water::crossed::{CrossedVolumes, PreviousFlow};
 
-/// Share of a surface point's shape functions that the nodes that count must have: below it no material is near enough.
-/// It sets the reach beyond the cells that hold points: 0.75, 1.29 and 1.85 cells for the orders 1, 2 and 3. With a
-/// much shorter one a strip would let go where the row of cells at it has emptied while the points below are still at
-/// its base.
+/// Least sum of the shape functions of the admissible nodes at a surface point; below it, no material is near enough.
+/// It sets the reach beyond occupied cells: 0.75, 1.29 and 1.85 cells for degrees 1, 2 and 3. With a much shorter
+/// reach, a footing would lose contact when the row of cells at its base has emptied although material points just
+/// below still touch it.
 const NEAR: f64 = 0.25;
-/// Parts of a mean cell by which a surface point may lie outside the grid and still be on its face: rounding of what
-/// it has moved.
+/// Distance, in mean cell edges, by which a surface point may lie outside the grid because of round-off in its
+/// displacement.
 const ROUNDING: f64 = 1e-6;
 
-/// A point of a surface with its share of the area.
+/// A quadrature point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint<const D: usize> {
-    /// m  position at the start, from the grid's lower corner
+    /// Initial position (m), from the grid's lower corner.
     pub x: Vector<D>,
-    /// m^(D-1)  share of the area
+    /// Share of the area (m^(D-1)).
     pub area: f64,
-    /// m  corners of the piece that it stands for, in turn: of a segment each end twice, of a triangle one of them; all
-    /// the point itself where nothing is reported
+    /// Corners of its piece of the surface (m), in cyclic order. A segment has each end twice, a triangle one corner
+    /// twice. All equal `x` if the extent is unknown.
     pub corners: [Vector<D>; CORNERS],
 }
 
-/// Corners of a piece of a surface.
+/// Number of corners of a piece of a surface.
 pub const CORNERS: usize = 4;
 
 impl<const D: usize> SurfacePoint<D> {
-    /// A point of a surface whose extent is of no concern.
+    /// Creates a surface point without extent.
     pub fn at(x: Vector<D>, area: f64) -> Self {
         Self {
             x,
@@ -43,7 +43,8 @@ impl<const D: usize> SurfacePoint<D> {
         }
     }
 
-    /// In the middle of a triangle, whose turn its corners have.
+    /// Creates the surface point at the centroid of a triangle. The order of the corners sets the direction of the
+    /// normal.
     pub fn of_triangle([a, b, c]: [Vector<D>; 3]) -> Self {
         let corners = [a, b, c, c];
         Self {
@@ -54,7 +55,7 @@ impl<const D: usize> SurfacePoint<D> {
     }
 }
 
-/// m^(D-1)  area of a piece, a vector along its normal: of a segment, or in space by its diagonals.
+/// Returns the area vector of a piece (m^(D-1)), along its normal; in 3-D half the cross product of the diagonals.
 pub(super) fn area<const D: usize>(corners: &[Vector<D>; CORNERS]) -> Vector<D> {
     let [along, across] = [corners[2] - corners[0], corners[3] - corners[1]];
     match D {
@@ -66,9 +67,9 @@ pub(super) fn area<const D: usize>(corners: &[Vector<D>; CORNERS]) -> Vector<D> 
     }
 }
 
-/// Points in the middles of `count` equal pieces of every part of a straight segment that the grid's lines cut off;
-/// `from` and `to` in m from the grid's lower corner. With as many pieces as a cell has points across, a load is in
-/// exact balance with uniform stress: the points' quadrature is the same rule, near an axis too.
+/// Divides a straight segment at the grid lines, divides each part into `count` equal pieces, and returns the
+/// midpoints. `from` and `to` are in m from the grid's lower corner. If `count` is the number of material points across
+/// a cell, both quadrature rules agree (also near an axis of symmetry), and a load balances uniform stress exactly.
 pub fn along<K: Kinematics<D>, const D: usize>(
     grid: &Grid<D>,
     from: &Vector<D>,
@@ -95,8 +96,7 @@ pub fn along<K: Kinematics<D>, const D: usize>(
     points
 }
 
-/// [`Kinematics::spread`] of the points of a part of a segment: that along the axis along which they are others than
-/// the middles of equal pieces, if there is one.
+/// Returns [`Kinematics::spread`] of the points of `part` of a segment; 1 if the midpoints of equal pieces are correct.
 fn spread<K: Kinematics<D>, const D: usize>(from: &Vector<D>, to: &Vector<D>, part: &[f64], count: usize) -> f64 {
     let mut spread = 1.0;
     for axis in 0..D {
@@ -108,8 +108,9 @@ fn spread<K: Kinematics<D>, const D: usize>(from: &Vector<D>, to: &Vector<D>, pa
     spread
 }
 
-/// Points in the middles of `count` by `count` equal pieces of every part of a rectangle along the axes that the grid's
-/// lines cut off: a box from `lower` to `upper`, m from the grid's lower corner, without extent along one axis.
+/// Divides an axis-parallel rectangle at the grid lines, divides each part into `count` by `count` equal pieces, and
+/// returns their midpoints. The box from `lower` to `upper` (m from the grid's lower corner) has no extent along one
+/// axis.
 pub fn over<K: Kinematics<D>, const D: usize>(
     grid: &Grid<D>,
     lower: &Vector<D>,
@@ -125,7 +126,7 @@ pub fn over<K: Kinematics<D>, const D: usize>(
     weighed.collect()
 }
 
-/// Corners of a rectangle along the axes, m.
+/// Returns the corners of an axis-parallel rectangle (m).
 fn corners<const D: usize>(middle: &Vector<D>, edges: &Vector<D>) -> [Vector<D>; CORNERS] {
     let [a, b] = [-0.5, 0.5].map(|end| middle + edges * end);
     let mut corners = [a, a, b, b];
@@ -135,7 +136,7 @@ fn corners<const D: usize>(middle: &Vector<D>, edges: &Vector<D>) -> [Vector<D>;
     corners
 }
 
-/// The pieces of [`over`], and their edges, m.
+/// Returns the pieces of [`over`] without geometry weight, and their edges (m).
 fn pieces<const D: usize>(
     grid: &Grid<D>,
     lower: &Vector<D>,
@@ -162,11 +163,11 @@ fn pieces<const D: usize>(
     pieces
 }
 
-/// Strips of a piece whose lengths inside a disc are added up.
+/// Number of parallel strips by which the area of a piece inside a disc is integrated.
 const STRIPS: usize = 64;
 
-/// As [`over`] of what of a rectangle is nearer to `center` than `radius`, m: pieces across the rim count with what of
-/// them is, at its middle.
+/// Returns the surface points of the part of a rectangle inside a disc about `center` (m) with `radius` (m); see
+/// [`over`]. A piece that the rim cuts counts with its area inside the disc, at the centroid of that area.
 pub fn within<K: Kinematics<D>, const D: usize>(
     grid: &Grid<D>,
     lower: &Vector<D>,
@@ -180,7 +181,7 @@ pub fn within<K: Kinematics<D>, const D: usize>(
     let Some(b) = plane.next() else { return Vec::new() };
     let mut points = Vec::new();
     for (piece, edges) in pieces(grid, lower, upper, count) {
-        // Both ways, so that a disc keeps its symmetry.
+        // The mean of both directions keeps the symmetry of the disc.
         let [one, other] = [[a, b], [b, a]].map(|axes| inside_disc(&piece, &edges, center, radius, axes));
         let area = 0.5 * (one.area + other.area);
         if area > 0.0 {
@@ -198,13 +199,14 @@ pub fn within<K: Kinematics<D>, const D: usize>(
     points
 }
 
-/// What of a piece is inside a disc.
+/// Area and first moment of the part of a piece inside a disc.
 struct DiscPart<const D: usize> {
     area: f64,         // m2
     moment: Vector<D>, // m3
 }
 
-/// What of a piece with these edges is inside a disc, in strips across the first of two axes.
+/// Integrates the area and the first moment of the part of a piece inside a disc, with strips across the first of two
+/// axes.
 fn inside_disc<const D: usize>(
     piece: &SurfacePoint<D>,
     edges: &Vector<D>,
@@ -228,7 +230,7 @@ fn inside_disc<const D: usize>(
     DiscPart { area, moment }
 }
 
-/// Middles and lengths of the pieces of an edge along an axis, m.
+/// Returns the midpoints and lengths of the pieces of an axis-parallel edge (m).
 fn along_axis<const D: usize>(
     grid: &Grid<D>,
     from: &Vector<D>,
@@ -249,7 +251,7 @@ fn along_axis<const D: usize>(
     pieces
 }
 
-/// Parts of the way along a straight segment at which the grid's lines cut it, its ends among them.
+/// Returns the parameters (0 to 1) at which the grid lines cut a straight segment, including its ends.
 fn cuts<const D: usize>(grid: &Grid<D>, from: &Vector<D>, to: &Vector<D>) -> Vec<f64> {
     let mut cuts = vec![0.0, 1.0];
     for (axis, knots) in grid.axes().iter().enumerate() {
@@ -264,51 +266,51 @@ fn cuts<const D: usize>(grid: &Grid<D>, from: &Vector<D>, to: &Vector<D>) -> Vec
     cuts
 }
 
-/// What the surfaces carry from step to step; the same on every rank.
+/// State of all surfaces between steps; the same on every rank.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface<const D: usize> {
-    /// Pa  traction of every strip on the body at its points, in the last converged state; of points that are off the
-    /// material the penalty times what they are ahead of it (see [`strip`](super::strip))
+    /// Traction of every strip on the body at its points, in the last converged state (Pa). For an open point it is the
+    /// penalty times the displacement of the point relative to the material (see [`strip`](super::strip)).
     pub traction: Vec<Vec<Vector<D>>>,
-    /// m  position of every load's points, which move with the material that they are anchored to
+    /// Positions of the points of every load (m). They move with the material that anchors them.
     pub position: Vec<Vec<Vector<D>>>,
-    /// Pa  of every load that follows the surface its traction when fully applied, per area of the start, turned and
-    /// stretched with the material (see [`follower`](super::load::follower)); empty for the others
+    /// Traction of every follower load at full amplitude, per initial area (Pa), rotated and stretched with the
+    /// material (see [`follower`](super::load::follower)); empty for dead loads.
     pub pressure: Vec<Vec<Vector<D>>>,
-    /// that material
+    /// Material points that anchor the surface points.
     pub anchors: Anchors,
-    /// N  of every node of every absorbing face (numbered on the face of the whole grid) what holds the state of the
-    /// start; empty without such a state
+    /// Forces that carry the initial stress at the nodes of every absorbing face (N), in the order of the nodes on the
+    /// face of the whole grid; empty without initial stress.
     pub held: Vec<Vec<Vector<D>>>,
-    /// motions of every rigid body
+    /// State of every rigid body.
     pub bodies: Vec<RigidState>,
-    /// water that has gone through drains and inflows since the start
-    pub crossed: CumulativeFlux,
-    /// what flowed in the last step, where the next one goes on with it
+    /// Cumulative flux of water through drains and inflows since the start.
+    pub crossed: CrossedVolumes,
+    /// Flow of the last step, if the next step continues from it.
     pub flowed: Option<PreviousFlow>,
 }
 
-/// Ids of the points that the points of all surfaces are anchored to; the same on every rank, and empty before the
-/// first step.
+/// Ids of the material points that anchor all surface points; the same on every rank, empty before the first step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Anchors {
-    /// per strip and point of it
+    /// Per strip and surface point.
     pub strips: Vec<Vec<u64>>,
-    /// per load and point of it
+    /// Per load and surface point.
     pub loads: Vec<Vec<u64>>,
-    /// per drain and then per inflow, and point of it
+    /// Per drain, then per inflow, and surface point.
     pub water: Vec<Vec<u64>>,
 }
 
-/// A surface point as some nodes of its cell see it.
+/// Interpolation of nodal values at a surface point by the admissible nodes of its cell.
 #[derive(Clone, Debug)]
 pub struct Attachment {
     first_node: usize,
-    N: Vec<f64>, // of the cell's functions, zero at those that do not count, sum 1
+    N: Vec<f64>, // shape functions, zero at other nodes, sum 1
 }
 
 impl Attachment {
-    /// The point at `x`, by the nodes that count; `None` where another rank has its cell, or none of them is near.
+    /// Attaches the surface point at `x` (m) to the nodes for which `counts` is true. Returns `None` if another rank
+    /// owns its cell, or too few such nodes are near.
     pub fn at<const D: usize>(
         grid: &Grid<D>,
         offsets: &[usize],
@@ -318,7 +320,7 @@ impl Attachment {
         Self::by(grid, grid.order() + 1, offsets, counts, x)
     }
 
-    /// The same by the functions of degree q - 1, which have their own `offsets` ([`Grid::lowered_offsets`]).
+    /// As [`Self::at`], with the functions of degree q - 1 and their own `offsets` ([`Grid::lowered_offsets`]).
     pub fn lowered_at<const D: usize>(
         grid: &Grid<D>,
         offsets: &[usize],
@@ -328,7 +330,7 @@ impl Attachment {
         Self::by(grid, grid.order(), offsets, counts, x)
     }
 
-    /// The nodes with their shares, by the `offsets` that it was made with.
+    /// Returns the nodes and their weights. `offsets` must be those used at creation.
     pub fn weights<'a>(&'a self, offsets: &'a [usize]) -> impl Iterator<Item = (usize, f64)> + 'a {
         offsets
             .iter()
@@ -363,17 +365,17 @@ impl Attachment {
         Some(Self { first_node, N })
     }
 
-    /// First node of the cell, from which the grid's offsets count.
+    /// Returns the first node of the cell, to which the grid's offsets are added.
     pub fn first_node(&self) -> usize {
         self.first_node
     }
 
-    /// N_I of the cell's nodes.
+    /// Returns N_I of the cell's nodes.
     pub fn N(&self) -> &[f64] {
         &self.N
     }
 
-    /// sum_I N_I p_I of a nodal array of one number a node.
+    /// Interpolates a nodal array with one number per node: sum_I N_I p_I.
     pub fn value(&self, offsets: &[usize], nodal: &[f64]) -> f64 {
         self.N
             .iter()
@@ -382,7 +384,7 @@ impl Attachment {
             .sum()
     }
 
-    /// out_I += N_I value, the last of the numbers of every node.
+    /// Adds N_I `value` to the last number of every node.
     pub fn scatter_value(&self, offsets: &[usize], value: f64, out: &mut Contributions) {
         let width = out.width();
         let out = out.patch(self.first_node);
@@ -391,7 +393,7 @@ impl Attachment {
         }
     }
 
-    /// sum_I N_I u_I, m.
+    /// Interpolates the nodal displacement: sum_I N_I u_I (m).
     pub fn displacement<const D: usize>(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
         let mut sum = Vector::zeros();
         for (N, offset) in self.N.iter().zip(offsets) {
@@ -402,7 +404,7 @@ impl Attachment {
         sum
     }
 
-    /// out_I += N_I force.
+    /// Adds N_I `force` to the nodes.
     pub fn scatter<const D: usize>(&self, offsets: &[usize], force: &Vector<D>, out: &mut Contributions) {
         let out = out.patch(self.first_node);
         for (N, offset) in self.N.iter().zip(offsets) {
@@ -413,7 +415,7 @@ impl Attachment {
     }
 }
 
-/// The place itself, or the place on the face that it has left by rounding.
+/// Returns `x`, or its projection onto a face if it lies outside by round-off.
 pub(super) fn on_grid<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D> {
     let mut inside = *x;
     for (x, knots) in inside.iter_mut().zip(grid.axes()) {
@@ -426,7 +428,7 @@ pub(super) fn on_grid<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D
     inside
 }
 
-/// Values of the `width` functions of a cell of one axis.
+/// Returns the values of the `width` functions of a cell of one axis.
 fn values(axis: &KnotVector, width: usize, x: f64, cell: usize) -> Vec<f64> {
     with_width!(lowered width, W => axis.basis::<W>(x, cell).0.to_vec())
 }

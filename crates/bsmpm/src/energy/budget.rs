@@ -4,47 +4,48 @@
 use super::StoredEnergy;
 use crate::error::StepError;
 
-/// Part of the largest energy by which a right run may seem to have grown: mean forces, mapped
-/// accelerations and what points keep to themselves are exact only in the limit. The short collapse reaches 0.0013 (in
-/// steps of 10 ms 0.025, which do not resolve its elastic waves), with dilation = 5 degrees 0.012. What makes
-/// energy passes 0.05 and goes on to several times the whole.
+/// Fraction of the peak energy by which a correct run may seem to gain energy, because mean forces, transferred
+/// accelerations and velocities below the grid's resolution are exact only in the limit. The short collapse reaches
+/// 0.0013 (0.025 with steps of 10 ms, which do not resolve its elastic waves; 0.012 with dilation = 5 degrees). A run
+/// that creates energy passes 0.05 and continues to several times its total energy.
 const SLACK: f64 = 0.05;
 
-/// What a step took in and dissipated, and what the points have after it, J.
+/// Energy terms of a step, and the stored energy after it (J).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Turnover {
-    /// work of gravity, loads and what moves; without friction at faces, which takes energy away, but is known at the
-    /// end of a step alone: in the first one of a load that grows that is twice its mean
+    /// Work of gravity, loads and prescribed motion, without half the work of friction and dashpots at faces: their
+    /// forces are known at the end of the step only, and in the first step of a growing load they are there twice their
+    /// mean.
     pub external: f64,
-    /// dissipated by plastic flow, damping and seepage
+    /// Dissipation by plastic flow, damping and seepage.
     pub plastic: f64,
-    /// part of it by damping
+    /// Part of the dissipation that is due to damping.
     pub damped: f64,
-    /// energy of the points; the elastic one is that of the stress in equilibrium, before any smoothing
+    /// Energy of the points; the elastic part belongs to the stress in equilibrium, before any smoothing.
     pub stored: StoredEnergy,
-    /// energies below this are round-off: that of a strain of 1e-12 in all points
+    /// Energy that counts as round-off: that of a strain of 1e-12 in all points.
     pub round_off: f64,
 }
 
-/// The bound on the energy of a run: all that must be kept to go on with it.
+/// Energy bound of a run, sufficient to restart it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyBound {
-    /// J  kinetic and elastic energy when it was opened; without any then, with what the first step seemed to make
+    /// Initial kinetic and elastic energy (J). If it was zero, the apparent energy gain of the first step is added.
     pub start: f64,
-    /// J  work of gravity, loads and what moves since
+    /// Work of gravity, loads and prescribed motion so far (J).
     pub external: f64,
-    /// J  dissipated since
+    /// Dissipation so far (J).
     pub plastic: f64,
-    /// J  part of it by damping in the last step
+    /// Dissipation by damping in the last step (J).
     pub damped: f64,
-    /// J  the largest so far of start + external and of the energy, moving, strained and dissipated
+    /// Peak energy so far (J): the largest of start + external, and of kinetic, elastic and dissipated energy together.
     pub largest: f64,
-    /// -  the most by which the energy exceeded start + external so far, over the largest then
+    /// Largest excess of the energy over start + external so far, divided by the peak energy at that time (-).
     pub growth: f64,
 }
 
 impl EnergyBound {
-    /// Opened in a state.
+    /// Opens the bound in a state.
     pub fn open(stored: StoredEnergy) -> Self {
         let start = stored.kinetic + stored.elastic;
         Self {
@@ -54,7 +55,7 @@ impl EnergyBound {
         }
     }
 
-    /// All of it.
+    /// Returns all numbers of the bound.
     pub fn numbers(&self) -> [f64; 6] {
         [
             self.start,
@@ -66,8 +67,8 @@ impl EnergyBound {
         ]
     }
 
-    /// Enters a step. While nothing but round-off moves and strains, such as ground at rest below a rigid body that
-    /// falls, there is nothing to bound.
+    /// Adds a step. The step is ignored while all energies are round-off, for example in soil at rest below a falling
+    /// rigid body.
     pub fn enter(&mut self, step: &Turnover) {
         let stored = step.stored.kinetic + step.stored.elastic;
         let present = [self.start, self.external, step.external, step.plastic, stored];
@@ -75,16 +76,16 @@ impl EnergyBound {
             return;
         }
         self.external += step.external;
-        // What damping takes is that of the forces at the step's end, external work that of the mean of both ends. The
-        // two differ where rates grow: in the second step of a damped column that is let go by a tenth of all energy.
-        // The mean is that of steps of one length whose rates are alike but for their size.
+        // Damping d is evaluated at the end of a step, external work by the mean of both ends. They differ where rates
+        // grow: by a tenth of the total energy in the second step of a damped column that is released. The mean is
+        // (d + sqrt(d d_last))/2, which is correct for equal steps with proportional rates.
         self.plastic += step.plastic - 0.5 * (step.damped - (step.damped * self.damped).max(0.0).sqrt());
         self.damped = step.damped;
         let energy = step.stored.kinetic + step.stored.elastic + self.plastic;
         if self.largest == 0.0 {
-            // The mean of a force that grows from nothing is not what numerical damping has moved by: after a first
-            // step of masses without springs energy is 4 % beyond its work at a spectral radius of 0.9, 15 % at 0.5;
-            // after the second 1 %.
+            // The mean of a force that grows from zero is not the work that numerical damping uses. For masses without
+            // springs, the energy exceeds this work by 4 % after the first step at a spectral radius of 0.9 and by 15 %
+            // at 0.5; by 1 % after the second step.
             self.start = self.start.max(energy - self.external);
         }
         let given = self.start + self.external;
@@ -94,16 +95,15 @@ impl EnergyBound {
         }
     }
 
-    /// Takes what points that have left had with them, once the step in which they did is entered: energy before, and
-    /// after they were taken away.
+    /// Accounts for points that left the grid, after their step was added: energy before and after they were removed.
     pub fn exchange(&mut self, [before, after]: &[StoredEnergy; 2]) {
         self.start += (after.kinetic + after.elastic) - (before.kinetic + before.elastic);
     }
 
-    /// Refuses to go on once energy has grown beyond the work done.
+    /// Rejects further steps once the energy has grown beyond the work done.
     ///
     /// # Errors
-    /// It has, by more than the slack of a right run.
+    /// Energy has grown by more than a correct run allows.
     pub fn require(&self) -> Result<(), StepError> {
         let given = self.start + self.external;
         let grown = StepError::EnergyMade {

@@ -5,24 +5,24 @@ use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
 use crate::parallel::{Halo, Krylov, LinearSolver, OwnedNodes, SolveReport, Symmetry};
 
-/// Corrections after which a product is solved no better.
+/// Largest number of iterative refinements.
 const CORRECTIONS: usize = 100;
 
-/// Every node of a grid of one cell along axis 0 has what all nodes of its row have together, and counts once.
+/// Halo of a column, a grid of one cell along axis 0: the nodes of a row share one displacement, and count once.
 #[derive(Clone, Copy, Debug)]
 pub struct TiedHalo {
-    layer: usize, // nodes of a layer
+    layer: usize, // nodes per layer
 }
 
 impl TiedHalo {
-    /// Of such a grid.
+    /// Creates the halo of a grid of one cell along axis 0.
     pub fn of<const D: usize>(grid: &Grid<D>) -> Self {
         Self {
             layer: grid.layer_nodes(),
         }
     }
 
-    /// Puts for the numbers of the first layer what `join` makes of those of all layers, and for all others these.
+    /// Combines the numbers of all layers with `join`, and copies the result to every layer.
     fn fold(self, nodal: &mut [f64], width: usize, join: impl Fn(f64, f64) -> f64) {
         let (first, others) = nodal.split_at_mut(self.layer * width);
         for layer in others.chunks_exact(first.len()) {
@@ -59,19 +59,19 @@ impl Halo for TiedHalo {
     fn all_reduce_max(&self, _numbers: &mut [f64]) {}
 }
 
-/// L U of the band of a column's matrix, without pivoting; what the unknowns of a row share is summed.
+/// LU factorisation of a column's band matrix, without pivoting. The entries of nodes that share an unknown are summed.
 #[derive(Clone, Debug)]
 pub struct Band {
-    components: usize,          // of a node
-    offsets: Vec<usize>,        // of a patch's nodes
-    layer: usize,               // components of a layer
-    half: usize,                // entries on each side of the diagonal, at most
-    number: Vec<Option<usize>>, // of the unknown, per component of a layer
-    rows: Vec<f64>, // 2 half + 1 entries of every unknown's row; then L below the diagonal and U on and above
+    components: usize,          // per node
+    offsets: Vec<usize>,        // of a cell's nodes from its first one
+    layer: usize,               // components per layer
+    half: usize,                // half bandwidth
+    number: Vec<Option<usize>>, // index of the unknown, per component of a layer
+    rows: Vec<f64>,             // 2 half + 1 entries per row; after factorisation L (unit diagonal) and U
 }
 
 impl Band {
-    /// For the systems of a grid of one cell along axis 0.
+    /// Creates the solver for a grid of one cell along axis 0.
     pub fn of<const D: usize>(grid: &Grid<D>) -> Self {
         let row = grid.layer_nodes() / grid.nodes_along(1);
         Self {
@@ -88,11 +88,12 @@ impl Band {
         self.rows.len() / (2 * self.half + 1)
     }
 
-    /// Where the entry of a row and a column of the band is.
+    /// Returns the position of an entry: row `row` stores the columns `row - half` to `row + half`.
     fn at(&self, row: usize, column: usize) -> usize {
         row * (2 * self.half + 1) + column + self.half - row
     }
 
+    /// Returns the values of the unknowns from the first layer of a nodal array.
     fn picked(&self, nodal: &[f64]) -> Vec<f64> {
         self.number
             .iter()
@@ -101,7 +102,7 @@ impl Band {
             .collect()
     }
 
-    /// Spreads the unknowns over all layers.
+    /// Copies the unknowns to all layers of a nodal array; other components are 0.
     fn spread(&self, x: &[f64], solution: &mut [f64]) {
         for layer in solution.chunks_exact_mut(self.layer) {
             layer
@@ -111,6 +112,7 @@ impl Band {
         }
     }
 
+    /// Solves L U x = b by forward and back substitution.
     fn substituted(&self, mut x: Vec<f64>) -> Vec<f64> {
         let n = x.len();
         for i in 0..n {
@@ -211,7 +213,8 @@ impl LinearSolver for Band {
         })
     }
 
-    /// By iterative refinement, as long as it helps: the matrix is the product's but for far averages.
+    /// Solves by iterative refinement while the residual decreases. The matrix equals that of `product` except for
+    /// averages that couple distant nodes.
     fn solve_with(
         &mut self,
         product: &mut dyn FnMut(&[f64], &mut [f64]),
@@ -255,7 +258,7 @@ impl LinearSolver for Band {
     }
 }
 
-/// Euclidean norm.
+/// Returns the Euclidean norm.
 fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }

@@ -5,19 +5,19 @@ use super::Grid;
 use crate::exact::Exact;
 use crate::grid::ColumnExtent;
 
-/// Contributions of the columns of this rank, `width` numbers a node; see the module.
+/// Contributions of this rank's columns of cells to the nodes, `width` numbers per node.
 #[derive(Clone, Debug)]
 pub struct Contributions {
-    columns: Vec<usize>, // of the window, ascending, that contribute at all
-    sums: Vec<f64>,      // column, layer from it on, node of the layer, number
-    layers: usize,       // that a column reaches, q + 1 and those beyond
+    columns: Vec<usize>, // of the window, ascending, only those that contribute
+    sums: Vec<f64>,      // index order: column, layer counted from it, node of the layer, number
+    layers: usize,       // that a column contributes to: q + 1 and the additional ones
     layer: usize,        // numbers of a layer
     width: usize,
     nodes: usize,
 }
 
 impl Contributions {
-    /// None, by the `columns` (ascending) of a window.
+    /// Creates zero contributions of `columns` (ascending) of the window.
     pub fn none<const D: usize>(grid: &Grid<D>, width: usize, columns: Vec<usize>) -> Self {
         Self::zeros(grid.column_extent(), width, columns)
     }
@@ -39,24 +39,24 @@ impl Contributions {
         }
     }
 
-    /// Numbers a node.
+    /// Returns the count of numbers per node.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Numbers of one column.
+    /// Returns the count of numbers of one column.
     pub(super) fn column_size(&self) -> usize {
         self.layers * self.layer
     }
 
-    /// The sums of all columns, one after the other.
+    /// Iterates over the sums of each column.
     pub(super) fn columns_mut(&mut self) -> impl Iterator<Item = &mut [f64]> {
         let size = self.column_size();
         self.sums.chunks_exact_mut(size)
     }
 
-    /// The numbers of a cell's nodes and those behind them, to be indexed by the grid's offsets times the width; a
-    /// column that has not contributed before begins with zeros.
+    /// Returns the numbers from a cell's first node to the end of its column. Index them by the grid's offsets times
+    /// the width. A column that has not contributed so far is inserted with zeros.
     pub fn patch(&mut self, first_node: usize) -> &mut [f64] {
         let column = first_node * self.width / self.layer;
         let size = self.column_size();
@@ -70,21 +70,21 @@ impl Contributions {
         &mut self.sums[place * size + within..(place + 1) * size]
     }
 
-    /// What a column of the window contributes to a layer of its nodes; `None` if nothing.
+    /// Returns the contribution of a column of the window to a layer of nodes; `None` if there is none.
     pub fn of(&self, column: usize, layer: usize) -> Option<&[f64]> {
         let place = self.columns.binary_search(&column).ok()?;
         let at = (place * self.layers + layer.checked_sub(column)?) * self.layer;
         (layer - column < self.layers).then(|| &self.sums[at..at + self.layer])
     }
 
-    /// Adds what the columns of this rank contribute to the nodal array of the window.
+    /// Adds the contributions of this rank's columns to the nodal array of the window.
     pub fn add_to(&self, nodal: &mut [f64]) {
         for (&column, sums) in self
             .columns
             .iter()
             .zip(self.sums.chunks_exact(self.column_size().max(1)))
         {
-            // Past the window's last layer there is nothing: only columns that couple with others reach so far.
+            // A column may extend past the window's last layer if it couples with others; `zip` ends there.
             nodal[column * self.layer..]
                 .iter_mut()
                 .zip(sums)
@@ -92,7 +92,7 @@ impl Contributions {
         }
     }
 
-    /// Largest number that a column has for each of the nodal array, zero where none is larger.
+    /// Returns for each entry of the nodal array the largest value over the columns, or zero if none is positive.
     pub(super) fn highest(&self) -> Vec<f64> {
         let mut nodal = self.nodal();
         for (&column, sums) in self
@@ -108,7 +108,7 @@ impl Contributions {
         nodal
     }
 
-    /// Product with a nodal array of the window: what forces that contribute work on a displacement.
+    /// Returns the product with a nodal array of the window: the work of contributed forces on a displacement (J).
     pub fn dot(&self, nodal: &[f64]) -> Exact {
         self.columns
             .iter()
@@ -120,12 +120,12 @@ impl Contributions {
             .collect()
     }
 
-    /// Zeros for the nodes of the window.
+    /// Returns a nodal array of zeros for the window.
     pub fn nodal(&self) -> Vec<f64> {
         vec![0.0; self.nodes * self.width]
     }
 
-    /// The nodal array where no other rank contributes.
+    /// Returns the nodal array if no other rank contributes.
     pub fn alone(&self) -> Vec<f64> {
         let mut nodal = self.nodal();
         self.add_to(&mut nodal);

@@ -3,45 +3,48 @@
 
 use super::{Grid, KnotVector};
 
-/// Which functions of nearly empty cells are tied to those of full ones.
+/// Which splines of nearly empty cells are tied to those of full cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExtendedSplines {
-    /// None: all functions that hold material are unknowns.
+    /// None: all functions with material in their support are unknowns.
     #[default]
     Off,
-    /// Outer functions, so that the displacement goes on linearly beyond the nearest full cell.
+    /// Outer functions: the displacement is extrapolated linearly from the nearest full cell (its home).
     Linear,
 }
 
 /// Largest distance, in cells along an axis, between an outer function's support and its home.
 pub const REACH: usize = 3;
 
-/// Resolution of the distance by which equally near cells are ordered, in squared cells: round-off must not decide.
+/// Resolution of the squared distance (in cells) by which equally near cells are ordered. Without it, round-off would
+/// decide.
 const RESOLUTION: f64 = 1e-6;
 
-/// How near a cell is to a function; smaller is nearer, and equal distances are ordered by the number of the cell.
+/// Distance between a cell and a function, compared field by field; the smallest is the nearest. The number of the cell
+/// decides between equal distances.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Nearness {
-    /// 0 where no C0 line lies between the support and the cell, 1 where one does
+    /// 1 if a C0 line (a repeated breakpoint) lies between the support and the cell, else 0.
     pub beyond_line: f64,
-    /// squared distance in cells between the support and the cell
+    /// Squared distance in cells between the support and the cell.
     pub apart: f64,
-    /// squared distance between the Greville abscissa and the middle of the cell in edges of the cell, rounded
+    /// Squared distance between the function's Greville abscissa and the centre of the cell, in edges of the cell,
+    /// divided by the resolution and rounded.
     pub off_centre: f64,
-    /// number of the cell in the whole grid
+    /// Number of the cell in the whole grid.
     pub cell: f64,
 }
 
-/// Where functions may have their homes: which side of the C0 lines they are on, and which faces they must keep to.
+/// Rules for the home cells of outer functions: C0 lines and faces of the grid.
 #[derive(Clone, Debug)]
 pub struct Homes<const D: usize> {
-    sides: [Vec<usize>; D],     // of every cell along the axis: C0 lines before it
-    kept_faces: [[bool; 2]; D], // lower and upper: functions on the face have homes at the face only
+    sides: [Vec<usize>; D],     // per cell along the axis: number of C0 lines before it
+    kept_faces: [[bool; 2]; D], // lower and upper: functions on the face have homes only at it
 }
 
 impl<const D: usize> Homes<D> {
-    /// In a grid; functions on a face in `kept_faces` (lower and upper of each axis) have homes in the cells at that
-    /// face only.
+    /// Creates the rules for `grid`. Functions on a face in `kept_faces` (lower and upper of each axis) have homes only
+    /// in the cells at that face.
     pub fn of(grid: &Grid<D>, kept_faces: [[bool; 2]; D]) -> Self {
         Self {
             sides: grid.axes().each_ref().map(sides),
@@ -49,8 +52,8 @@ impl<const D: usize> Homes<D> {
         }
     }
 
-    /// How near a cell (global, along each axis) is to a function (global); `None` where it cannot be a home: too far
-    /// away, or off a face that the function must keep to.
+    /// Returns the distance between a function and a cell (both global, along each axis). Returns `None` if the cell
+    /// cannot be the function's home: too far away, without length, or not at a face that the function must keep to.
     pub fn nearness(&self, grid: &Grid<D>, function: &[usize; D], cell: &[usize; D]) -> Option<Nearness> {
         let mut is_on_side = true;
         let mut apart = 0;
@@ -85,7 +88,7 @@ impl<const D: usize> Homes<D> {
         })
     }
 
-    /// Whether no C0 line lies between the support of function `j` and cell `l`.
+    /// Returns whether no C0 line lies between the support of function `j` and cell `l`.
     fn is_on_side(&self, knots: &KnotVector, axis: usize, j: usize, l: usize) -> bool {
         let support = j.saturating_sub(knots.order())..(j + 1).min(knots.cells());
         let mut with_length = support.filter(|&cell| knots.has_length(cell));
@@ -103,8 +106,8 @@ impl<const D: usize> Homes<D> {
     }
 }
 
-/// Per cell of an axis the number of C0 lines before it: breakpoints of multiplicity q, between whose copies lie q - 1
-/// cells without length. Linear splines are C0 everywhere, and have no such lines.
+/// Returns for each cell of an axis the number of C0 lines before it. A C0 line is a breakpoint of multiplicity q; q -
+/// 1 cells of zero length lie between its copies. Linear splines are C0 everywhere, so no lines are counted.
 fn sides(knots: &KnotVector) -> Vec<usize> {
     let mut lines = 0;
     let mut without_length = 0;
@@ -121,7 +124,7 @@ fn sides(knots: &KnotVector) -> Vec<usize> {
     sides
 }
 
-/// e_ij along one axis: what function `j` takes of each of the q + 1 functions of cell `home`.
+/// Returns e_ij along one axis: the weights by which function `j` depends on the q + 1 functions of cell `home`.
 pub fn weights(knots: &KnotVector, j: usize, home: usize) -> Vec<f64> {
     let functions = home..=home + knots.order();
     if functions.contains(&j) {
@@ -134,7 +137,8 @@ pub fn weights(knots: &KnotVector, j: usize, home: usize) -> Vec<f64> {
     }
 }
 
-/// The value at the Greville abscissa of function `j` of the tangents to the W functions of cell `home`.
+/// Returns the weights of function `j`: each of the W functions of cell `home`, extrapolated linearly to the Greville
+/// abscissa of `j`.
 fn tangent<const W: usize>(knots: &KnotVector, j: usize, home: usize) -> Vec<f64> {
     let abscissa = knots.greville(j);
     let nearest = abscissa.clamp(knots.breakpoint(home), knots.breakpoint(home + 1));

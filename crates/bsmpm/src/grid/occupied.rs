@@ -3,21 +3,22 @@
 use super::Grid;
 use crate::parallel::Halo;
 
-/// Cells along each axis of the neighbourhood that makes a cell interior: itself and one on either side.
+/// Number of cells along each axis in the neighbourhood of a cell: the cell and one on either side.
 const SIDE: usize = 3;
 
-/// Which cells hold points, those beside this rank's columns included.
+/// Which cells contain material points, including cells of neighbouring ranks next to this rank's window.
 pub(crate) struct OccupiedCells<'a, const D: usize> {
     grid: &'a Grid<D>,
     width: [usize; 2],
-    marks: Vec<f64>, // per node: whether the cell (k, l) before that of its number holds points, k and l from 0 to q
+    marks: Vec<f64>, // per node i and (k, l), 0 to q: whether cell i - (k, l) is occupied
 }
 
 impl<'a, const D: usize> OccupiedCells<'a, D> {
-    /// Of this rank's `cells`, by their index in the window; one exchange with the neighbours.
+    /// Marks this rank's occupied `cells`, given by their local index. One exchange with the neighbours.
     ///
-    /// Neighbouring slabs share layers of nodes, not of cells: a cell is noted at the node of its own number, which the
-    /// rank before sees, and at the q next ones, which the rank behind sees; along axis 1, too, where slabs are cut.
+    /// Neighbouring ranks share layers of nodes, not of cells. A cell is therefore marked at the node of its own
+    /// number, which the rank before stores, and at the next q nodes, which the rank after stores. The same applies
+    /// along axis 1 if slabs are divided.
     pub(crate) fn of(grid: &'a Grid<D>, cells: impl Iterator<Item = usize>, halo: &dyn Halo) -> Self {
         let width = [grid.order() + 1, if grid.is_parted() { grid.order() + 1 } else { 1 }];
         let marks = width[0] * width[1];
@@ -50,8 +51,8 @@ impl<'a, const D: usize> OccupiedCells<'a, D> {
         self.marks[self.place(cell, [behind[0], along])] > 0.0
     }
 
-    /// Whether all neighbours hold points, those that the grid does not have at its faces counted as ones that do where
-    /// these are `closed` (per axis the lower and the upper one).
+    /// Returns whether all neighbours of a cell contain points. Missing neighbours at a face of the grid count as
+    /// occupied if `closed` (lower and upper face per axis) says so.
     pub(crate) fn surround(&self, cell: &[usize; D], closed: &[[bool; 2]; D]) -> bool {
         (0..SIDE.pow(D as u32)).all(|k| {
             let mut neighbour = *cell;
@@ -66,8 +67,8 @@ impl<'a, const D: usize> OccupiedCells<'a, D> {
         })
     }
 
-    /// The cell before (0), itself (1) or the one after (2) along an axis, of those that have a length; up to q away,
-    /// as the copies of a breakpoint are q at most.
+    /// Returns the previous cell (0), the cell itself (1) or the next one (2) along an axis, skipping cells of zero
+    /// length. It is at most q away, because a breakpoint has at most q copies.
     fn beside(&self, axis: usize, cell: usize, side: usize) -> Option<usize> {
         let axis = &self.grid.axes()[axis];
         match side {

@@ -4,16 +4,16 @@
 use super::KnotVector;
 use std::ops::Range;
 
-/// One axis whose neighbouring cells are paired, from the lower end of every stretch on in which no breakpoint is
-/// repeated; an odd last one stays alone, and so do cells without length.
+/// Axis whose neighbouring cells are paired. Pairs are formed from the lower end of each stretch without a repeated
+/// breakpoint. A last odd cell stays single, as do cells of zero length.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CellPairs {
     degree: usize,
-    of_cell: Vec<usize>,        // first function on the pairs that a cell sees
-    shares: Vec<f64>,           // per cell: r of its functions on the pairs, row by row of those on the cells
-    support: Vec<Range<usize>>, // cells of every function
-    long: Vec<usize>,           // of them those that have a length
-    slots: Vec<usize>,          // number among the nodes under which a function is kept
+    of_cell: Vec<usize>,        // first function on pairs that is non-zero in a cell
+    shares: Vec<f64>,           // per cell: r, a row for each function on pairs, a column for each on cells
+    support: Vec<Range<usize>>, // cells of every function on pairs
+    long: Vec<usize>,           // number of these cells that have a length
+    slots: Vec<usize>,          // number of the node under which a function is stored
     of_slot: Vec<Option<usize>>,
 }
 
@@ -27,8 +27,8 @@ impl CellPairs {
         let support: Vec<_> = (0..count)
             .map(|k| pairs[k.saturating_sub(degree)].start..pairs[k.min(last)].end)
             .collect();
-        // The end of the pair that a function starts to vanish behind; past the last one, as many nodes as functions
-        // are left.
+        // A function is stored at the last cell of the last pair of its support. Functions past the last pair take the
+        // remaining nodes.
         let slots: Vec<usize> = (0..count)
             .map(|k| pairs[k.min(last)].end - 1 + k.saturating_sub(last))
             .collect();
@@ -60,32 +60,33 @@ impl CellPairs {
         }
     }
 
-    /// Number of function `a` of a cell.
+    /// Returns the number of function `a` of a cell.
     pub fn function(&self, cell: usize, a: usize) -> usize {
         self.of_cell[cell] + a
     }
 
-    /// r of function `a` on the pairs and function `b` on the cells, of a cell.
+    /// Returns r of function `a` on pairs and function `b` on cells, both counted within a cell.
     pub fn share(&self, cell: usize, a: usize, b: usize) -> f64 {
         self.shares[(cell * (self.degree + 1) + a) * (self.degree + 1) + b]
     }
 
-    /// Cells of a function's support.
+    /// Returns the cells of a function's support.
     pub fn support(&self, function: usize) -> Range<usize> {
         self.support[function].clone()
     }
 
-    /// How many of them have a length.
+    /// Returns the number of cells with a length in a function's support.
     pub fn cells_of(&self, function: usize) -> usize {
         self.long[function]
     }
 
-    /// Number among the nodes under which a function is kept: of cell c it is c to c + 2q - 1.
+    /// Returns the number of the node under which a function is stored. For the functions of cell c it is between c and
+    /// c + 2q - 1.
     pub fn slot(&self, function: usize) -> usize {
         self.slots[function]
     }
 
-    /// The function that is kept under the number of a node.
+    /// Returns the function that is stored under the number of a node.
     pub fn at_slot(&self, slot: usize) -> Option<usize> {
         self.of_slot[slot]
     }
@@ -103,7 +104,7 @@ fn pairs(axis: &KnotVector) -> Vec<Range<usize>> {
     pairs
 }
 
-/// Knots of the degree q - 1 on the cells and on the pairs.
+/// Knot vectors of degree q - 1 on cells and on pairs (m).
 struct Knots {
     cells: Vec<f64>,
     pairs: Vec<f64>,
@@ -119,7 +120,7 @@ impl Knots {
         Self { cells, pairs: knots }
     }
 
-    /// r_kj of splines of a degree (the Oslo algorithm).
+    /// Returns r_kj for splines of the given degree by the Oslo algorithm: B_k on pairs = sum_j r_kj b_j on cells.
     fn share(&self, k: usize, j: usize, degree: usize) -> f64 {
         let t = &self.cells;
         let T = &self.pairs;

@@ -5,11 +5,12 @@ use super::{Grid, KnotVector};
 use crate::tensor::Vector;
 use std::ops::Range;
 
-/// Part of the points' extent by which the room reaches further on either side than it must.
+/// Divisor of the points' extent that gives the reserve of the active domain on either side.
 const SLACK: usize = 8;
 
 impl<const D: usize> Grid<D> {
-    /// Cells (global, along each axis) of a box around the points; `None` without points. They must lie in the grid.
+    /// Returns the box of cells (global ranges along each axis) that contains the points; `None` without points or if
+    /// one is outside the grid.
     pub fn occupied(&self, x: &[Vector<D>]) -> Option<[Range<usize>; D]> {
         let mut found = std::array::from_fn(|_| 0..0);
         for (axis, range) in found.iter_mut().enumerate() {
@@ -20,7 +21,7 @@ impl<const D: usize> Grid<D> {
         Some(found)
     }
 
-    /// Whether all that points in the cells `occupied` couple with lies in the room.
+    /// Returns whether the active domain contains all cells that points in the cells `occupied` couple with.
     pub fn has_room(&self, occupied: &[Range<usize>; D]) -> bool {
         let couples = coupled(self.order(), self.beyond());
         (0..D).all(|axis| {
@@ -29,13 +30,15 @@ impl<const D: usize> Grid<D> {
         })
     }
 
-    /// The same grid with room for points in the cells `occupied`, and at least so many columns, and rows in them.
+    /// Returns the same grid with an active domain for points in the cells `occupied`. It has at least `least` cells
+    /// along the first two axes, if the grid does.
     pub fn with_room(&self, occupied: &[Range<usize>; D], least: [usize; 2]) -> Self {
         let cells = self.axes().each_ref().map(KnotVector::cells);
         self.within(around(occupied, cells, self.order(), self.beyond(), least))
     }
 
-    /// The same grid with at least so many columns in its room, and rows in them.
+    /// Returns the same grid with at least `least` cells along the first two axes in its active domain, if the grid has
+    /// them.
     pub fn with_columns(&self, least: [usize; 2]) -> Self {
         let mut room = self.room().clone();
         for (axis, wanted) in least.into_iter().enumerate() {
@@ -45,9 +48,9 @@ impl<const D: usize> Grid<D> {
     }
 }
 
-/// Room for points in the cells `occupied` of a grid of so many `cells` along each axis, for splines of an order and
-/// `beyond` further layers that are coupled: as large as the grid at most, and at least so many columns, and rows in
-/// them, if it has them.
+/// Returns the active domain for points in the cells `occupied` of a grid with `cells` cells along each axis, for
+/// splines of degree `order` and `beyond` additional coupled layers. It has at least `least` cells along the first two
+/// axes, but never more than the grid.
 pub fn around<const D: usize>(
     occupied: &[Range<usize>; D],
     cells: [usize; D],
@@ -65,14 +68,14 @@ pub fn around<const D: usize>(
     room
 }
 
-/// A range of cells made as long as wanted, as far as there are cells.
+/// Extends a range to `wanted` cells, as far as the axis has them.
 fn at_least(wanted: usize, range: &Range<usize>, cells: usize) -> Range<usize> {
     let end = (range.end + wanted.saturating_sub(range.len())).min(cells);
     range.start.min(end.saturating_sub(wanted))..end
 }
 
-/// Cells by which the room must reach further than the points: surfaces see the material whose functions reach their
-/// cell, q away, and some sums couple layers beyond.
+/// Returns the number of cells by which the active domain must extend beyond the points. Surfaces use material whose
+/// functions are non-zero in their cell, up to q cells away; some sums couple `beyond` further layers.
 fn coupled(order: usize, beyond: usize) -> usize {
     order + beyond
 }

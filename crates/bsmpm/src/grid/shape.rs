@@ -13,29 +13,30 @@ use std::ops::Range;
 use std::sync::Mutex;
 pub(crate) use support::{PointSupport, Values};
 
-/// An occupied cell with its points: the patch of section 2.1.
+/// Occupied cell with its material points: the patch of section 2.1 of the paper.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Patch {
-    /// local index of the cell
+    /// Local index of the cell.
     pub cell: usize,
-    /// local index of its first node
+    /// Local index of the cell's first node.
     pub first_node: usize,
-    /// its points
+    /// Points in the cell.
     pub points: Range<usize>,
 }
 
-/// An occupied column of cells with its patches: what one thread works on, and what one sum of a layer comes from.
+/// Occupied column of cells with its patches. One thread works on one column, and each column has its own sum of every
+/// node.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PatchColumn {
-    /// column of the window
+    /// Index of the column in the window.
     pub column: usize,
-    /// its patches
+    /// Patches of the column.
     pub patches: Range<usize>,
-    /// their points
+    /// Points of the column.
     pub points: Range<usize>,
 }
 
-/// Shape functions of all points at the start of a step.
+/// Shape functions of all material points at the start of a step.
 #[derive(Clone, Debug)]
 pub struct Shape<const D: usize> {
     width: usize,
@@ -43,16 +44,16 @@ pub struct Shape<const D: usize> {
     patches: Vec<Patch>,
     columns: Vec<PatchColumn>,
     extent: ColumnExtent,
-    rows: Vec<f64>, // per point and axis: q + 1 values, q + 1 derivatives (1/m) but for lowered ones; then zeros
+    rows: Vec<f64>, // per point and axis: q + 1 values, q + 1 derivatives (1/m, optional if lowered); padding
     stride: usize,  // numbers of a row
-    pub(super) merged: Option<MergedFunctions<D>>, // of lowered functions: those inside a body with their neighbours
+    pub(super) merged: Option<MergedFunctions<D>>, // splines on pairs of cells, of lowered functions only
 }
 
-/// Zeros behind the rows, of which four numbers are read from any place.
+/// Zeros after the last row: four numbers are read at once from any position.
 const BEHIND: usize = 3;
 
-/// Runs `$body` with the constant `W` = q + 1, so that the loops over a patch's nodes are unrolled; `lowered` functions
-/// may be of the degree below linear ones, constant in a cell.
+/// Runs `$body` with the constant `W` = q + 1, so the compiler unrolls the loops over a patch's nodes. With `lowered`,
+/// W may be 1: functions that are constant in a cell.
 macro_rules! with_width {
     (lowered $width:expr, $W:ident => $body:expr) => {
         match $width {
@@ -84,7 +85,8 @@ macro_rules! with_width {
 pub(crate) use with_width;
 
 impl<const D: usize> Shape<D> {
-    /// Evaluates the functions at all points, which must be sorted by cell. Fails on a point outside the window.
+    /// Evaluates the shape functions at all points, which must be sorted by cell. Fails if a point is outside the
+    /// window.
     pub fn at(grid: &Grid<D>, points: &impl PointPositions<D>) -> Result<Self, StepError> {
         let width = grid.order() + 1;
         let mut shape = Self {
@@ -137,15 +139,15 @@ impl<const D: usize> Shape<D> {
         Ok(())
     }
 
-    /// The splines of degree q - 1 on the same cells, at the same points: their values only.
+    /// Returns the values of the splines of degree q - 1 on the same cells, at the same points.
     ///
-    /// Function `a` of a cell is number `cell + a` in either degree, so that the lower ones are numbered as the first
-    /// q + (cells - 1) nodes along an axis, and nodal arrays and their exchange serve both.
+    /// Function `a` of cell `c` has the number `c + a` for either degree. The lower splines are therefore numbered as
+    /// the first q + (cells - 1) nodes along an axis, and nodal arrays and their exchange serve both degrees.
     pub fn lowered(&self, grid: &Grid<D>, points: &impl PointPositions<D>) -> Self {
         self.lower(grid, points, false)
     }
 
-    /// The same with their derivatives.
+    /// Returns the values and derivatives of the splines of degree q - 1 ([`Shape::lowered`]).
     pub fn lowered_with_derivatives(&self, grid: &Grid<D>, points: &impl PointPositions<D>) -> Self {
         self.lower(grid, points, true)
     }
@@ -197,54 +199,54 @@ impl<const D: usize> Shape<D> {
         });
     }
 
-    /// Functions per axis, q + 1.
+    /// Returns the number of functions per axis: q + 1, or q if lowered.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Occupied cells in ascending order.
+    /// Returns the occupied cells in ascending order.
     pub fn patches(&self) -> &[Patch] {
         &self.patches
     }
 
-    /// Occupied columns of cells in ascending order.
+    /// Returns the occupied columns of cells in ascending order.
     pub(crate) fn columns(&self) -> &[PatchColumn] {
         &self.columns
     }
 
-    /// Extent of the contributions of a column.
+    /// Returns the extent of the contributions of a column.
     pub(crate) fn extent(&self) -> ColumnExtent {
         self.extent
     }
 
-    /// Offsets of a patch's nodes from its first one.
+    /// Returns the offsets of a patch's nodes from its first node.
     pub fn offsets(&self) -> &[usize] {
         &self.offsets
     }
 
-    /// Rows of values and derivatives, or of values alone, point by point and axis by axis, and their stride; behind
-    /// them so many zeros that four numbers can be read from the place of each.
+    /// Returns the rows of values, with or without derivatives, and their stride. The order is point by point and axis
+    /// by axis. Zeros after the last row let four numbers be read from any position.
     pub(super) fn rows(&self) -> (&[f64], usize) {
         (&self.rows, self.stride)
     }
 
-    /// Rows of values and derivatives.
+    /// Returns the rows of values and derivatives.
     pub(super) fn rows_with_derivatives(&self) -> &[f64] {
         assert_eq!(self.stride, 2 * self.width, "lowered functions have values only");
         &self.rows
     }
 
-    /// Number of points.
+    /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.patches.last().map_or(0, |patch| patch.points.end)
     }
 
-    /// Whether there is no point.
+    /// Returns whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The rows of point `p`, for a width known to the compiler.
+    /// Returns the values and derivatives of point `p`, for a width `W` that is a constant.
     #[inline(always)]
     pub(crate) fn support<const W: usize>(&self, p: usize) -> PointSupport<'_, D, W> {
         let size = 2 * D * W;
@@ -254,7 +256,7 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    /// Rows of values of point `p`, the first of each axis at its multiple of the stride.
+    /// Returns the values of point `p`: W numbers per axis, at multiples of the stride.
     #[inline(always)]
     pub(crate) fn values<const W: usize>(&self, p: usize) -> Values<'_, D, W> {
         let size = D * self.stride;
@@ -264,7 +266,7 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    /// N_Ip of every node of point `p`, axis 0 slowest, for sums over a patch.
+    /// Writes N_Ip of every node of point `p` to `out`, axis 0 slowest.
     #[inline]
     pub(crate) fn values_into(&self, p: usize, out: &mut [f64]) {
         with_width!(lowered self.width, W => {
@@ -273,7 +275,7 @@ impl<const D: usize> Shape<D> {
         });
     }
 
-    /// N_Ip of every node of point `p`, axis 0 slowest; for tests.
+    /// Returns N_Ip of every node of point `p`, axis 0 slowest; for tests.
     pub fn values_of(&self, p: usize) -> Vec<f64> {
         with_width!(lowered self.width, W => {
             let support = self.values::<W>(p);
@@ -281,7 +283,8 @@ impl<const D: usize> Shape<D> {
         })
     }
 
-    /// N_Ip and grad N_Ip of every node of point `p`, axis 0 slowest; for tests and observations, not for hot loops.
+    /// Returns N_Ip and grad N_Ip (1/m) of every node of point `p`, axis 0 slowest; for tests and output, not for hot
+    /// loops.
     pub fn of(&self, p: usize) -> Vec<(f64, Vector<D>)> {
         with_width!(self.width, W => {
             let support = self.support::<W>(p);
@@ -290,7 +293,7 @@ impl<const D: usize> Shape<D> {
     }
 }
 
-/// Patches by columns of `cells` cells.
+/// Groups patches by columns of `cells` cells.
 fn columns(patches: &[Patch], cells: usize) -> Vec<PatchColumn> {
     let mut columns: Vec<PatchColumn> = Vec::new();
     for (number, patch) in patches.iter().enumerate() {

@@ -20,18 +20,18 @@ use std::sync::Mutex;
 /// Largest number of nodes of a patch: (3 + 1)^3.
 const MOST_NODES: usize = 64;
 
-/// Numbers of a patch's nodes.
+/// `C` numbers at each node of a patch.
 type PatchBlock<const C: usize> = [[f64; C]; MOST_NODES];
 
-/// Scatter with shape functions: sum_p N_Ip value_p (Eq. 2), `C` numbers a point.
+/// Sums values of points to nodes with the shape functions: sum_p N_Ip value_p (Eq. 2), `C` numbers per point.
 pub fn to_nodes<const D: usize, const C: usize>(
     shape: &Shape<D>,
     value: impl Fn(usize) -> [f64; C] + Sync,
 ) -> Contributions {
-    to_nodes_grouped(shape, GroupedPoints::NOT, value)
+    to_nodes_grouped(shape, GroupedPoints::ONE_GROUP, value)
 }
 
-/// [`to_nodes`] of every group by itself.
+/// Sums values of points to nodes as [`to_nodes`] does, separately for each group.
 pub fn to_nodes_grouped<const D: usize, const C: usize>(
     shape: &Shape<D>,
     grouped: GroupedPoints<'_>,
@@ -49,7 +49,8 @@ pub fn to_nodes_grouped<const D: usize, const C: usize>(
     }))
 }
 
-/// Largest value among the points of a group that a node sees, those with N_Ip > 0; zero where none is larger.
+/// Returns per node and group the largest `value` of the points with N_Ip > 0, or zero if none is positive.
+/// Contributions of other ranks are not included.
 pub fn largest_to_nodes<const D: usize>(
     shape: &Shape<D>,
     grouped: GroupedPoints<'_>,
@@ -79,16 +80,16 @@ pub fn largest_to_nodes<const D: usize>(
     largest.highest()
 }
 
-/// Gather with shape functions: what `found` makes of value_p = sum_I N_Ip nodal_I (Eq. 1), for every point.
+/// Interpolates nodal values at every point, value_p = sum_I N_Ip nodal_I (Eq. 1), and returns `found(p, value_p)`.
 pub fn to_points<const D: usize, const C: usize, T: Clone + Send>(
     shape: &Shape<D>,
     nodal: &[f64],
     found: impl Fn(usize, [f64; C]) -> T + Sync,
 ) -> Vec<T> {
-    to_points_grouped(shape, GroupedPoints::NOT, nodal, found)
+    to_points_grouped(shape, GroupedPoints::ONE_GROUP, nodal, found)
 }
 
-/// [`to_points`] from the nodal values of each point's group.
+/// Interpolates as [`to_points`] does, with the nodal values of each point's group.
 pub fn to_points_grouped<const D: usize, const C: usize, T: Clone + Send>(
     shape: &Shape<D>,
     grouped: GroupedPoints<'_>,
@@ -114,8 +115,8 @@ pub fn to_points_grouped<const D: usize, const C: usize, T: Clone + Send>(
     }))
 }
 
-/// Gather with gradients: what `found` makes of (grad u)_p = sum_I u_I (x) grad N_Ip (step 4a), for every point; the
-/// points are at `x`, m.
+/// Computes the gradient at every point, (grad u)_p = sum_I u_I (x) grad N_Ip (step 4a), and returns `found(p,
+/// gradient)`. The points are at `x` (m).
 pub fn gradients<K: Kinematics<D>, const D: usize, T: Clone + Send>(
     shape: &Shape<D>,
     x: &[Vector<D>],
@@ -133,7 +134,8 @@ pub fn gradients<K: Kinematics<D>, const D: usize, T: Clone + Send>(
     }))
 }
 
-/// Scatter with gradients, the adjoint of [`gradients`]: sum_p flux_p grad N_Ip (step 5a).
+/// Sums fluxes of points to nodes with the gradients of the shape functions: sum_p flux_p grad N_Ip (step 5a), the
+/// adjoint of [`gradients`].
 pub fn divergence<K: Kinematics<D>, const D: usize>(
     shape: &Shape<D>,
     x: &[Vector<D>],
@@ -142,13 +144,13 @@ pub fn divergence<K: Kinematics<D>, const D: usize>(
     divergence_of::<K, D>(shape, x, |points, fluxes| fluxes.extend(points.map(&flux)))
 }
 
-/// The same of fluxes that are appended for many consecutive points at a time.
+/// Computes [`divergence`] of fluxes that `flux` appends for many consecutive points at a time.
 pub fn divergence_of<K: Kinematics<D>, const D: usize>(
     shape: &Shape<D>,
     x: &[Vector<D>],
     flux: impl Fn(Range<usize>, &mut Vec<K::Gradient>) + Sync,
 ) -> Contributions {
-    with_width!(shape.width(), W => scatter_columns(shape, GroupedPoints::NOT, |column| {
+    with_width!(shape.width(), W => scatter_columns(shape, GroupedPoints::ONE_GROUP, |column| {
         let first = column.points.start;
         let mut fluxes = Vec::with_capacity(column.points.len());
         flux(column.points.clone(), &mut fluxes);
@@ -159,9 +161,9 @@ pub fn divergence_of<K: Kinematics<D>, const D: usize>(
     }))
 }
 
-/// Scatter of squared gradients: sum_p weight_p |grad N_Ip|^2; shows nodes that have stiffness but no mass.
+/// Computes sum_p weight_p |grad N_Ip|^2, which shows nodes that have stiffness but no mass.
 pub fn squared_gradients<const D: usize>(shape: &Shape<D>, weight: impl Fn(usize) -> f64 + Sync) -> Contributions {
-    with_width!(shape.width(), W => scatter(shape, GroupedPoints::NOT, |points, block: &mut PatchBlock<1>| {
+    with_width!(shape.width(), W => scatter(shape, GroupedPoints::ONE_GROUP, |points, block: &mut PatchBlock<1>| {
         for p in points {
             let support = shape.support::<W>(p);
             let weight = weight(p);
@@ -172,7 +174,8 @@ pub fn squared_gradients<const D: usize>(shape: &Shape<D>, weight: impl Fn(usize
     }))
 }
 
-/// What all nodes of point `p` at `x` have in a gradient, for pair sums over a patch.
+/// Writes the [`Slope`] of every node at point `p` to `out`, for sums over pairs of nodes of a patch. The points are at
+/// `x` (m).
 #[inline]
 pub(crate) fn slopes_of<K: Kinematics<D>, const D: usize>(
     shape: &Shape<D>,
@@ -188,7 +191,7 @@ pub(crate) fn slopes_of<K: Kinematics<D>, const D: usize>(
     });
 }
 
-/// What the patches contribute, the points of every group by filling a block of zeros.
+/// Sums over the patches: `fill` adds the points of one group to a block of zeros.
 fn scatter<const D: usize, const C: usize>(
     shape: &Shape<D>,
     grouped: GroupedPoints<'_>,
@@ -197,7 +200,7 @@ fn scatter<const D: usize, const C: usize>(
     scatter_columns(shape, grouped, |_| &fill)
 }
 
-/// The same by what fills the blocks of a column.
+/// Sums over the patches as [`scatter`] does; `filling` creates the function that fills the blocks of a column.
 fn scatter_columns<const D: usize, const C: usize, F: FnMut(Range<usize>, &mut PatchBlock<C>)>(
     shape: &Shape<D>,
     grouped: GroupedPoints<'_>,
@@ -231,7 +234,7 @@ fn scatter_columns<const D: usize, const C: usize, F: FnMut(Range<usize>, &mut P
     contributions
 }
 
-/// The patch that a thread is at, and what `work` found at its points.
+/// Patch that a thread works on, and the results at its points.
 struct CurrentPatch<S, T> {
     scratch: S,
     points: Range<usize>,
@@ -239,7 +242,7 @@ struct CurrentPatch<S, T> {
 }
 
 impl<S, T: Clone> CurrentPatch<S, T> {
-    /// Begins before any patch.
+    /// Starts without a patch.
     fn new(scratch: S) -> Self {
         Self {
             scratch,
@@ -248,7 +251,7 @@ impl<S, T: Clone> CurrentPatch<S, T> {
         }
     }
 
-    /// Returns what is found at point `p`. A thread that begins within a patch works it out from its first point.
+    /// Returns the result at point `p`. A thread that starts within a patch computes the whole patch.
     #[inline]
     fn find(&mut self, patches: &[Patch], work: &impl Fn(usize, &mut S, &mut Vec<T>), p: usize) -> T {
         if !self.points.contains(&p) {
@@ -261,7 +264,7 @@ impl<S, T: Clone> CurrentPatch<S, T> {
     }
 }
 
-/// What the patches leave at their points, in the order of the points.
+/// Returns the results of `work` on all patches, in the order of the points.
 fn at_points<const D: usize, S: Copy + Sync, T: Clone + Send>(
     shape: &Shape<D>,
     scratch: S,
@@ -281,18 +284,18 @@ fn at_points<const D: usize, S: Copy + Sync, T: Clone + Send>(
         .collect()
 }
 
-/// Contributions of no point yet, `width` numbers a node and level.
+/// Creates zero contributions, `width` numbers per node and level.
 fn nothing<const D: usize>(shape: &Shape<D>, width: usize) -> Contributions {
     let columns = shape.columns().iter().map(|column| column.column).collect();
     Contributions::zeros(shape.extent(), width * shape.levels(), columns)
 }
 
-/// The sums of every column, for a thread of its own.
+/// Returns the sums of each column, each for one thread at a time.
 fn apart(contributions: &mut Contributions) -> Vec<Mutex<&mut [f64]>> {
     contributions.columns_mut().map(Mutex::new).collect()
 }
 
-/// Fills a block with the numbers of a patch's nodes, or of its functions where these are merged.
+/// Fills a block with the nodal values of a patch, or with the values of its functions if these are merged.
 #[inline]
 fn gathered<const D: usize, const C: usize>(
     shape: &Shape<D>,
@@ -348,8 +351,8 @@ fn add<const C: usize>(
     }
 }
 
-/// Nodal values over the weight of their node, as many a node as there are; zero where it is at most the threshold: 1/m
-/// is never formed.
+/// Divides nodal values (any count per node) by the weight of their node. They become zero where the weight is at most
+/// the threshold, so that 1/m is never evaluated there.
 pub fn divide(nodal: &mut [f64], weight: &[f64], threshold: f64) {
     let width = nodal.len() / weight.len();
     for (values, &weight) in nodal.chunks_exact_mut(width).zip(weight) {

@@ -17,31 +17,32 @@ use crate::step::report::Counts;
 use crate::step::residual::Residual;
 use crate::tensor::Symmetric;
 
-/// Energy measure of a round: the displacement, which goes, need not be known.
+/// Energy criterion of a round, loose because the displacement is discarded.
 const ANY: f64 = 1.0;
-/// Force measure of a round, of the tolerance: what the lost displacement does comes on top.
+/// Force criterion of a round as a fraction of the tolerance, which leaves room for the error of the discarded
+/// displacement.
 const WITHIN: f64 = 0.5;
 /// Rounds after which the search is given up.
 const MOST_ROUNDS: usize = 60;
-/// Least part of what is out of balance that a round takes on.
+/// Smallest fraction of the out-of-balance force that a round removes.
 const LEAST: f64 = 1.0 / 64.0;
 
-/// Least vertical pressure, of the largest, from which a law starts that has no state without pressure.
+/// Smallest vertical pressure, as a fraction of the largest, at the start of a law that needs a positive pressure.
 const PRESSED: f64 = 1e-2;
 
-/// What a search for equilibrium took.
+/// Cost of a search for equilibrium.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct EquilibriumSearch {
-    /// equilibria that were found on the way
+pub struct EquilibriumSearchReport {
+    /// Equilibria that were found in sequence.
     pub rounds: usize,
-    /// evaluations of the forces
+    /// Evaluations of the forces.
     pub evaluations: usize,
 }
 
-/// Gives every point the vertical stress of linear elastic equilibrium under the loads at time 0, with the shear that
-/// goes with it, and `k0(material)` times it as horizontal stress: of level ground that is the weight above, without
-/// what the points' quadrature is off; beneath a step of the surface it is spread, which a jump across a vertical line,
-/// in balance as it is, would never be. Fails as [`set_elastic`].
+/// Gives every point the vertical and shear stress of linear elastic equilibrium under the loads at time 0, and
+/// `k0(material)` times the vertical stress as horizontal stress. In level ground the vertical stress is the weight
+/// above, without quadrature errors. Below a step of the surface the stress is spread; a jump across a vertical line
+/// would be in equilibrium, so `settle` would not remove it. Fails as [`set_elastic`].
 pub fn set_spread<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
@@ -54,7 +55,8 @@ pub fn set_spread<K: Kinematics<D>, const D: usize>(
     halo.all_reduce_max(&mut most);
     for p in 0..points.len() {
         let mut stress = points.sigma.at(p);
-        // A law that has no state without pressure cannot start where elastic soil is pulled, as at a slope's top.
+        // A law that needs a positive pressure cannot start where elastic soil is in tension, as at the crest of a
+        // slope.
         if !model.materials[usize::from(points.material[p])].is_linear() && stress.0[D - 1] > -PRESSED * most[0] {
             stress = Symmetric::default();
             stress.0[D - 1] = -PRESSED * most[0];
@@ -69,15 +71,15 @@ pub fn set_spread<K: Kinematics<D>, const D: usize>(
     Ok(())
 }
 
-/// Leads the stress at the start to equilibrium under the loads at time 0, on and within the yield surfaces. Places, F,
-/// displacements and plastic strains stay those of the start; the laws' state goes with the stress. Fails if there is
-/// no equilibrium.
+/// Brings the initial stress to equilibrium under the loads at time 0, on and within the yield surfaces. Positions, F,
+/// displacements and plastic strains keep their initial values; the state variables of the laws follow the stress.
+/// Fails if there is no equilibrium.
 pub fn settle<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
     halo: &dyn Halo,
     solver: &mut dyn LinearSolver,
-) -> Result<EquilibriumSearch, StepError> {
+) -> Result<EquilibriumSearchReport, StepError> {
     let model = &model.settling();
     let sought = &of_a_round(model);
     let at_rest = vec![0.0; model.grid.nodes() * D];
@@ -93,7 +95,7 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
         let is_balanced =
             balance.measure() <= model.criteria.force || RoundOff::of(&problem).covers(&balance, &problem);
         if is_balanced && (left == 0.0 || rounds == 0 && super::balance(model, points, halo)?.yielding == 0) {
-            return Ok(EquilibriumSearch {
+            return Ok(EquilibriumSearchReport {
                 rounds,
                 evaluations: counts.evaluations,
             });
@@ -105,7 +107,8 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
                 worst: worst_nodes(&problem, &balance),
             });
         }
-        // What is out of balance at first, the stress beyond yield returned, is held by forces that go.
+        // Temporary forces balance the initial out-of-balance force, after stresses beyond yield are returned. They are
+        // removed in parts.
         let held = held.get_or_insert(balance.f_oob);
         let next = (left - part).max(0.0);
         let f_ext = start.nodes.f_ext.iter_mut().zip(&*held);
@@ -121,7 +124,7 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
     }
 }
 
-/// The model with what a round has to reach.
+/// Returns the model with the criteria of a round.
 fn of_a_round<K: Kinematics<D>, const D: usize>(model: &Model<K, D>) -> Model<K, D> {
     let criteria = Criteria {
         energy: ANY,
@@ -134,7 +137,7 @@ fn of_a_round<K: Kinematics<D>, const D: usize>(model: &Model<K, D>) -> Model<K,
     }
 }
 
-/// Gives the points the stress and the laws' state of an equilibrium, and strips their tractions.
+/// Saves stress and state variables of an equilibrium in the points, and the tractions of strips.
 fn take<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     start: &UndeformedState<D>,

@@ -6,16 +6,16 @@ use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
 use nalgebra::{SMatrix, SVector};
 
-/// Rotational symmetry about the axis r = 0, without torsion: axis 0 of the grid is r, axis 1 is z; of every body a
-/// sector of one radian. Tensors have the directions r, z and theta, in which u_r / r stretches.
+/// Rotational symmetry about the axis r = 0, without torsion. Axis 0 of the grid is r, axis 1 is z. Volumes are those
+/// of a sector of one radian. Tensors have the directions r, z and theta; the strain along theta is u_r / r.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Axisymmetric;
 
-/// Cells from the axis at which points are not in the middles of their shares of a cell.
+/// Distance from the axis, in cells, within which points are shifted from the middles of their shares of a cell.
 const NEAR: f64 = 4.0;
 
-/// dN/dr, dN/dz and N/r of a node: columns r, z and theta of a gradient, whose element (z, theta) has no meaning and is
-/// nowhere read.
+/// Gradient with the columns r, z and theta, which belong to the slope (dN/dr, dN/dz, N/r). Its element (z, theta) has
+/// no meaning and is never read.
 type Strains = SMatrix<f64, 2, 3>;
 
 impl Kinematics<2> for Axisymmetric {
@@ -31,7 +31,8 @@ impl Kinematics<2> for Axisymmetric {
         Vector::<2>::new(slope[0] + slope[2], slope[1])
     }
 
-    /// The rows and columns r, z of sum B_a^T D B_b, B the strains rr, zz, theta theta and rz of a node's displacement.
+    /// Returns the components r and z of sum B_a^T D B_b, with B the strains rr, zz, theta theta and rz of a node's
+    /// displacement.
     #[inline]
     fn stiffness(moment: &SMatrix<f64, 3, 3>, moduli: Moduli) -> Square<2> {
         let Moduli { lambda, mu } = moduli;
@@ -82,22 +83,25 @@ impl Kinematics<2> for Axisymmetric {
         Self::working(&pull_back(tau, dF))
     }
 
-    /// r: the volume of a sector of one radian.
+    /// Returns r, the volume of a sector of one radian per area.
     #[inline]
     fn weight(x: &Vector<2>) -> f64 {
         x[0]
     }
 
-    /// A uniform stress is in equilibrium where the points integrate (r N)', of degree q, over all that a function
-    /// reaches. In the middles of equal shares they miss (w/n)^2/24 times the change of its derivative in every cell, w
-    /// wide; of even cells off the axis that adds up to nothing, and does so too if it grows in proportion to the
-    /// radius. So it does here, from the axis on over four cells, beyond which the points are evenly spaced: off the
-    /// middle of a cell by what makes its second moment right, or nearly so. Shares of the volume stay r times the
-    /// area.
+    /// Returns the factor that keeps a uniform stress near equilibrium at the axis.
+    ///
+    /// Equilibrium requires that the points integrate (r N)', of degree q, over the support of each function. Points in
+    /// the middles of n equal shares of a cell of width w miss (w/n)^2/24 times the jump of its derivative over the
+    /// cell. For equal cells away from the axis these errors cancel, and they still cancel if they grow linearly with
+    /// the radius. The factor makes them do so over the first four cells. The second moment of the points is exact at
+    /// the axis, and that of evenly spaced points beyond these cells. The shares of the volume remain r times the area.
     fn spread(axis: usize, [lower, upper]: [f64; 2], n: usize) -> f64 {
         if axis != 0 || n < 2 {
             return 1.0;
         }
+        // Evenly spaced points have the second moment w^2/12 (1 - 1/n^2). The factor makes it w^2/12 (1 - missed/n^2),
+        // with `missed` growing from 0 to 1.
         let missed = (0.5 * (lower + upper) / (NEAR * (upper - lower))).min(1.0);
         let lattice = (n * n) as f64;
         ((lattice - missed) / (lattice - 1.0)).sqrt()

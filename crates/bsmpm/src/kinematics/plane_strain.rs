@@ -6,7 +6,7 @@ use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
 use nalgebra::SMatrix;
 
-/// Plane strain: no displacement and no stretch out of the plane; 1 m thick.
+/// Plane strain: no displacement and no stretch out of the plane; thickness 1 m.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlaneStrain;
 

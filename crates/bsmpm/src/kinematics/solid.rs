@@ -5,7 +5,7 @@ use crate::material::Moduli;
 use crate::real::Real;
 use crate::tensor::{Square, Symmetric, Tensor, Vector};
 
-/// Three dimensions.
+/// Three-dimensional geometry.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Solid;
 

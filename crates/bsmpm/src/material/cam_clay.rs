@@ -6,10 +6,11 @@ use super::{Elastic, Moduli};
 use crate::real::{Real, three};
 use crate::tensor::Tensor;
 
-/// Evaluations of the return at most: bisection alone needs as many.
+/// Largest number of evaluations of the return; bisection alone needs as many.
 const EVALUATIONS: usize = 100;
 
-/// Elastic by the pressure inside an ellipse that plastic compression widens and dilation shrinks.
+/// Modified Cam-clay: pressure-dependent elasticity within an ellipse that plastic compression enlarges and dilation
+/// shrinks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CamClay {
     elastic: Elastic,
@@ -18,38 +19,39 @@ pub struct CamClay {
     constants: Constants,
 }
 
-/// What its formulas take.
+/// Constants of the equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Constants {
     swelling: f64,  // κ̂
     hardening: f64, // λ̂ - κ̂
     ratio: f64,     // M
     mu: f64,        // Pa
-    reference: f64, // Pa  p_r
+    reference: f64, // p_r (Pa)
 }
 
-/// What a return leaves; where the trial does not yield, too.
+/// Return data, also for a trial that does not yield.
 #[derive(Clone, Copy, Debug)]
 pub struct CamClayReturn<R: Real> {
     constants: Constants,
     yields: R::Mask,
-    /// (-)  principal deviator of the trial over its norm; 0 without one
+    /// Principal deviator of the trial divided by its norm (-); 0 without a deviator.
     direction: [R; 3],
-    /// (-)  volume strain of the elastic state
+    /// Volumetric strain of the elastic state (-).
     volume: R,
-    /// Pa  mean pressure, and the deviatoric invariant
+    /// Mean pressure p, and in `deviator` the deviatoric stress q (Pa).
     pressure: R,
     deviator: R,
-    /// Pa  p_c
+    /// Preconsolidation pressure p_c (Pa).
     preconsolidation: R,
-    /// 1/Pa  plastic multiplier, of the gradient of f
+    /// Plastic multiplier of the gradient of f (1/Pa).
     multiplier: R,
 }
 
 impl CamClay {
-    /// A law with the slopes 0 < κ < λ < 1 of swelling and first loading in ln v over ln p, M > 0, and at the start
-    /// either the pressure p_c (Pa), or, where that is 0, an ellipse `ocr` ≥ 1 times as large as the one through the
-    /// stress. Shear modulus and κ are those of `elastic`: its bulk modulus is met at the pressure κ̂ K.
+    /// Creates a law from `[κ, λ, M, p_c, ocr]`. The slopes 0 < κ < λ < 1 of swelling and first loading are those of ln
+    /// v over ln p, and M > 0. The initial p_c (Pa) is given, or, if it is 0, the ellipse is `ocr` ≥ 1 times as large
+    /// as that through the initial stress. The shear modulus is that of `elastic`, whose bulk modulus K applies at the
+    /// pressure κ̂ K.
     pub fn new(elastic: Elastic, [kappa, lambda, ratio, preconsolidation, ocr]: [f64; 5]) -> Self {
         let moduli = elastic.moduli();
         let swelling = kappa / (1.0 - kappa);
@@ -71,24 +73,24 @@ impl CamClay {
         }
     }
 
-    /// The pressure at which the bulk modulus is that of the elastic part, Pa.
+    /// Returns the pressure at which the bulk modulus equals that of the elastic part (Pa).
     pub fn reference_pressure(&self) -> f64 {
         self.constants.reference
     }
 }
 
 impl Constants {
-    /// `f/p_c`, Pa.
+    /// Returns the yield function divided by p_c, `f/p_c` (Pa).
     #[inline(always)]
     fn yield_function<R: Real>(&self, pressure: R, deviator: R, preconsolidation: R) -> R {
         let slope = deviator / self.ratio;
         slope * slope / preconsolidation + pressure * (pressure / preconsolidation - 1.0)
     }
 
-    /// At the stress ratio η = r M at the end of a return, whose trial has the pressure π and the elastic shear strain
-    /// s: what the volume strain has lost, p_c, the elastic shear strain.
+    /// Returns, for the stress ratio η = r M after the return, the reduction d of the volumetric strain, p_c, and the
+    /// elastic shear strain. The trial has the pressure π = `pressure`, and `before` is p_c of the last step.
     ///
-    /// On the ellipse p = p_c/(1 + r²); with p and p_c from the change of volume d, both are its exponentials, so that
+    /// On the ellipse p = p_c/(1 + r²). Since p and p_c are exponential functions of the volume change d,
     /// `d = κ̂ (λ̂ - κ̂)/λ̂ ln(p_c,n/(π (1 + r²)))`.
     #[inline(always)]
     fn at_ratio<R: Real>(&self, r: R, pressure: R, before: R) -> (R, R, R) {
@@ -102,9 +104,9 @@ impl Constants {
         )
     }
 
-    /// The stress ratio over M at which the plastic strain lies along the normal of the ellipse: where
-    /// `2 r d/M + (s_trial - s)(1 - r²) = 0`. Left of the critical state, r = 1, and right of it a root lies between
-    /// that and the ratio that makes no change of volume; Newton's steps are kept between its bounds.
+    /// Returns the ratio r = η/M for which the plastic strain is normal to the ellipse:
+    /// `2 r d/M + (s_trial - s)(1 - r²) = 0`. The root lies between the critical state, r = 1, and the ratio without
+    /// volume change. Newton's method is safeguarded by bisection.
     #[inline(always)]
     fn solve<R: Real>(&self, pressure: R, shear: R, before: R) -> R {
         let one = pressure.like(1.0);
@@ -117,6 +119,8 @@ impl Constants {
         let inside = low.below(trial) & trial.below(high);
         let mut r = R::choose(inside, trial, (low + high) * 0.5);
         let mut sought = none.at_most(none);
+        // With a = κ̂ (λ̂ - κ̂)/λ̂, d = a ln(p_c,n/π) - a ln(1 + r²), so that dd/dr = -2 a r/(1 + r²). Then dp_c/dr =
+        // -p_c/(λ̂ - κ̂) dd/dr, and s = M p_c r/(3 μ (1 + r²)).
         for _ in 0..EVALUATIONS {
             let (lost, preconsolidation, kept) = self.at_ratio(r, pressure, before);
             let square = r * r;
@@ -133,7 +137,7 @@ impl Constants {
             let slope = (lost + r * along) * (2.0 / self.ratio) - of_shear * (one - square) - r * rest * 2.0;
             let step = r - value / slope;
             let next = R::choose(low.at_most(step) & step.at_most(high), step, (low + high) * 0.5);
-            // Also where the bounds have met: the middle of neighbours is one of them.
+            // The bounds may also have met: the middle of neighbouring floats is one of them.
             let found = (next - r).magnitude().at_most(r * 2e-16) | value.at_most(none) & none.at_most(value);
             r = R::choose(sought & !found, next, r);
             sought = sought & !found;
@@ -182,14 +186,14 @@ impl Law for CamClay {
         three(|k| mean + (eps[k] - volume / 3.0) * (2.0 * self.constants.mu))
     }
 
-    /// The pressure of a stress that pulls is none: not a number.
+    /// Returns the principal strains of a stress; NaN for a tensile mean stress.
     fn strain(&self, tau: [f64; 3]) -> [f64; 3] {
         let mean = (tau[0] + tau[1] + tau[2]) / 3.0;
         let volume = -self.constants.swelling * (-mean / self.constants.reference).ln();
         tau.map(|tau| (tau - mean) / (2.0 * self.constants.mu) + volume / 3.0)
     }
 
-    /// `p_r κ̂ exp(-ε_v/κ̂) + μ |dev ε|²`, above that of no pressure.
+    /// Returns `p_r κ̂ exp(-ε_v/κ̂) + μ |dev ε|²`, relative to zero pressure.
     fn energy(&self, eps: [f64; 3]) -> f64 {
         let volume = eps[0] + eps[1] + eps[2];
         let squares: f64 = eps.iter().map(|eps| (eps - volume / 3.0).powi(2)).sum();
@@ -236,7 +240,7 @@ impl Law for CamClay {
         };
         let (lost, after, kept) = constants.at_ratio(r, pressure, before);
         let square = r * r + 1.0;
-        // Of the two parts of the plastic strain along the normal: one of them may be none.
+        // Components of the plastic strain along the normal, either of which may be zero.
         let along = [
             after * (r * r - 1.0) / square,
             after * r * (2.0 / constants.ratio) / square,
@@ -246,7 +250,7 @@ impl Law for CamClay {
         let over = R::choose(none.below(q), returned * r * constants.ratio / q, none);
         let direction = three(|k| R::choose(none.below(norm), part[k] / norm, none));
         let tau = three(|k| R::choose(yields, over * part[k] - returned, trial[k]));
-        // What is torn so far that its pressure is below all numbers has no elastic state.
+        // Under an expansion so large that the pressure underflows, no elastic state exists.
         let tau = three(|k| R::choose(none.below(pressure), tau[k], none.like(f64::NAN)));
         let volume = logarithm(pressure / constants.reference) * -constants.swelling;
         let flow = CamClayReturn {
@@ -266,8 +270,8 @@ impl Law for CamClay {
         if flow.yields { Branch::Face } else { Branch::Elastic }
     }
 
-    /// `∂P/∂ε_v, ∂P/∂ε_s; ∂Q/∂ε_v, ∂Q/∂ε_s` of a return along the normal (Borja and Tamagnini, 1998, section 3.3), its
-    /// three equations linearised and the multiplier eliminated.
+    /// Returns the tangent of a return along the normal from `∂P/∂ε_v, ∂P/∂ε_s; ∂Q/∂ε_v, ∂Q/∂ε_s` (Borja and Tamagnini,
+    /// 1998, section 3.3): the three equations are linearised and the multiplier is eliminated.
     fn tangent(flow: &CamClayReturn<f64>, _moduli: Moduli) -> Tensor {
         let CamClayReturn {
             constants,
@@ -295,7 +299,7 @@ impl Law for CamClay {
         let drive = rate[0] * normal[0] / scale[0] + rate[1] * normal[1] / scale[1];
         let turned = 2.0 * mu * flow.kept();
         let along = (2.0_f64 / 3.0).sqrt();
-        // Changes of P and Q per principal strain, whose volume is 1.
+        // Changes of P and Q per unit of each principal strain, which is also the change of volume.
         let mut moved = n.map(|n| [bulk, 3.0 * mu * (along * n)]);
         if flow.yields {
             for (moved, n) in moved.iter_mut().zip(n) {
@@ -314,7 +318,7 @@ impl Law for CamClay {
         })
     }
 
-    /// All differences are kept alike.
+    /// Returns 2μ times the ratio of shear strains: the return scales all differences equally.
     fn secant_modulus(flow: &CamClayReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
         2.0 * moduli.mu * flow.kept()
     }
@@ -339,7 +343,8 @@ impl Law for CamClay {
         state[0] = flow.preconsolidation;
     }
 
-    /// The critical state's friction angle in triaxial compression, `M = 6 sin φ/(3 - sin φ)`, is reduced; p_c stays.
+    /// Reduces the friction angle φ of the critical state in triaxial compression, `M = 6 sin φ/(3 - sin φ)`; p_c is
+    /// unchanged.
     fn reduced(self, factor: f64) -> Self {
         if factor == 1.0 {
             return self;
@@ -357,7 +362,7 @@ impl Law for CamClay {
 }
 
 impl CamClayReturn<f64> {
-    /// (-)  elastic shear strain over that of the trial
+    /// Returns the ratio of the elastic shear strain after the return to that of the trial (-).
     fn kept(&self) -> f64 {
         let Constants { mu, ratio, .. } = self.constants;
         1.0 / (1.0 + 6.0 * mu * self.multiplier / (ratio * ratio))

@@ -6,22 +6,22 @@ use super::{Elastic, Moduli};
 use crate::real::{Real, three};
 use crate::tensor::Tensor;
 
-/// Where the cone meets Mohr-Coulomb's pyramid.
+/// Fit of the cone to the Mohr-Coulomb pyramid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Match {
-    /// At the edges of triaxial compression: outside of it elsewhere.
+    /// At the edges of triaxial compression; elsewhere the cone is outside of the pyramid.
     Outer,
     /// At the edges of triaxial extension.
     Inner,
-    /// Where both have the same limit load in plane strain, with associated flow: see
-    /// [`DruckerPrager::strength_in_plane_strain`] for less dilation.
+    /// At equal limit loads in plane strain with associated flow; for less dilation see
+    /// [`DruckerPrager::strength_in_plane_strain`].
     #[default]
     PlaneStrain,
 }
 
 impl Match {
-    /// Of an angle (rad) its slope in the mean stress, η or η_ψ, and of the friction angle the factor ξ of the
-    /// cohesion.
+    /// Returns the slope η or η_ψ in the mean stress for an angle (rad), and the factor ξ of the cohesion if it is the
+    /// friction angle.
     fn slopes(self, angle: f64) -> (f64, f64) {
         let sin = angle.sin();
         let cos = angle.cos();
@@ -43,7 +43,7 @@ impl Match {
     }
 }
 
-/// Elastic inside `√J₂ + η p - ξ c ≤ 0`, p the mean stress; plastic potential `√J₂ + η_ψ p`.
+/// Law with the elastic domain `√J₂ + η p - ξ c ≤ 0`, p being the mean stress, and the plastic potential `√J₂ + η_ψ p`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DruckerPrager {
     elastic: Elastic,
@@ -51,28 +51,28 @@ pub struct DruckerPrager {
     dilation: f64,
     cohesion: f64,
     fit: Match,
-    // What every response needs, formed once:
+    // Precomputed for all responses:
     moduli: Moduli,
     slopes: [f64; 2], // η and η_ψ
-    strength: f64,    // Pa  ξ c
+    strength: f64,    // ξ c (Pa)
 }
 
-/// What a return leaves.
+/// Return data.
 #[derive(Clone, Copy, Debug)]
 pub struct DruckerPragerReturn<R: Real> {
-    /// to the tip, where the rest has no meaning
+    /// Whether the stress returned to the apex; the other data are then meaningless.
     apex: R::Mask,
-    /// (-)  principal deviator of the trial over its norm
+    /// Principal deviator of the trial divided by its norm (-).
     direction: [R; 3],
-    /// (-)  √J₂ after the return over that of the trial
+    /// Ratio of √J₂ after the return to that of the trial (-).
     kept: R,
-    /// η and η_ψ
+    /// Slopes η and η_ψ.
     slopes: [f64; 2],
 }
 
 impl DruckerPrager {
-    /// A law that meets the pyramid of friction angle 0 ≤ φ < π/2 (rad), dilation angle 0 ≤ ψ ≤ φ (rad) and cohesion
-    /// c ≥ 0 (Pa) as `fit` says.
+    /// Creates a law fitted by `fit` to the pyramid with the friction angle 0 ≤ φ < π/2 (rad), the dilation angle 0 ≤ ψ
+    /// ≤ φ (rad) and the cohesion c ≥ 0 (Pa).
     pub fn new(elastic: Elastic, friction: f64, dilation: f64, cohesion: f64, fit: Match) -> Self {
         let moduli = elastic.moduli();
         let (eta, xi) = fit.slopes(friction);
@@ -89,11 +89,11 @@ impl DruckerPrager {
         }
     }
 
-    /// Shear strength over that of Mohr-Coulomb where plastic flow goes on in plane strain.
+    /// Returns the ratio of the shear strength to that of Mohr-Coulomb for continued plastic flow in plane strain.
     ///
-    /// No plastic strain along the normal makes its deviatoric stress -⅔ η_ψ √J₂, so that the radius of Mohr's circle
-    /// is `√(1 - η_ψ²/3) (ξ c - η m)/(1 - η η_ψ/3)`, m the mean stress in the plane, for `c cos φ - m sin φ`: the ratio
-    /// of the terms in m, without friction of those in c.
+    /// Zero plastic strain normal to the plane gives the deviatoric stress -⅔ η_ψ √J₂ in that direction. The radius of
+    /// Mohr's circle is then `√(1 - η_ψ²/3) (ξ c - η m)/(1 - η η_ψ/3)`, with the mean stress m in the plane, compared
+    /// to `c cos φ - m sin φ`. The ratio is that of the terms in m; without friction that of the terms in c.
     pub fn strength_in_plane_strain(&self) -> f64 {
         let [eta, eta_psi] = self.slopes;
         let (sin, cos) = self.friction.sin_cos();
@@ -105,17 +105,18 @@ impl DruckerPrager {
         slope * (1.0 - eta_psi * eta_psi / 3.0).sqrt() / (1.0 - eta * eta_psi / 3.0)
     }
 
-    /// √J₂ over that of the cone which meets the pyramid elsewhere, at any mean stress: all have one tip.
+    /// Returns the ratio of √J₂ to that of a cone with another fit. It does not depend on the mean stress, because all
+    /// fits have the same apex.
     pub fn strength_over(&self, other: Match) -> f64 {
         self.fit.slopes(self.friction).1 / other.slopes(self.friction).1
     }
 
-    /// Where the cone meets the pyramid.
+    /// Returns the fit of the cone to the pyramid.
     pub fn fit(&self) -> Match {
         self.fit
     }
 
-    /// Slope η of the cone, and its √J₂ at p = 0 in Pa.
+    /// Returns the slope η of the cone and its √J₂ at p = 0 (Pa).
     pub fn cone(&self) -> (f64, f64) {
         (self.slopes[0], self.strength)
     }
@@ -138,21 +139,21 @@ impl Law for DruckerPrager {
         vec![self.friction, self.dilation, self.cohesion]
     }
 
-    /// ψ is at most φ.
+    /// Returns the law with other parameters; ψ is limited to φ.
     fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self {
         let [friction, dilation, cohesion] = frictional(parameters);
         Self::new(elastic, friction, dilation, cohesion, self.fit)
     }
 
-    /// `f = √J₂ + η p - ξ c`.
+    /// Returns `f = √J₂ + η p - ξ c`.
     #[inline(always)]
     fn yield_function<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
         let (mean, _, norm) = split(tau);
         norm * std::f64::consts::FRAC_1_SQRT_2 + mean * self.slopes[0] - self.strength
     }
 
-    /// `Δγ = (√J₂ + η p - ξ c)/(μ + K η η_ψ)`, `p - K η_ψ Δγ`, and √J₂ from f = 0; where that is negative the tip,
-    /// p = ξ c/η.
+    /// Returns the stress to the cone: `Δγ = (√J₂ + η p - ξ c)/(μ + K η η_ψ)`, mean stress `p - K η_ψ Δγ`, and √J₂ from
+    /// f = 0. If that √J₂ is negative, the stress returns to the apex p = ξ c/η.
     #[inline(always)]
     fn return_map<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, DruckerPragerReturn<R>> {
         let Moduli { mu, .. } = self.moduli;
@@ -201,9 +202,8 @@ impl Law for DruckerPrager {
         if flow.apex { Branch::Apex } else { Branch::Face }
     }
 
-    /// With `A = 1/(μ + K η η_ψ)`, n the direction and r what is kept of √J₂:
-    /// `2μ r (I₄ - ⅓ I ⊗ I) + 2μ (1 - r - μ A) n ⊗ n - √2 μ A K (η n ⊗ I + η_ψ I ⊗ n) + K (1 - K η η_ψ A) I ⊗ I`;
-    /// at the tip 0.
+    /// Returns the tangent. With `A = 1/(μ + K η η_ψ)`, the direction n and the ratio r of √J₂ it is `2μ r (I₄ - ⅓ I ⊗
+    /// I) + 2μ (1 - r - μ A) n ⊗ n - √2 μ A K (η n ⊗ I + η_ψ I ⊗ n) + K (1 - K η η_ψ A) I ⊗ I`; 0 at the apex.
     fn tangent(flow: &DruckerPragerReturn<f64>, moduli: Moduli) -> Tensor {
         let DruckerPragerReturn {
             direction: n,
@@ -226,7 +226,7 @@ impl Law for DruckerPrager {
         })
     }
 
-    /// All differences are kept alike.
+    /// Returns 2μ r: the return scales all stress differences equally.
     fn secant_modulus(flow: &DruckerPragerReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
         if flow.apex { 0.0 } else { 2.0 * moduli.mu * flow.kept }
     }

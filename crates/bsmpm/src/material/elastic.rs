@@ -6,14 +6,14 @@ use crate::tensor::Tensor;
 /// Isotropic linear elasticity between Hencky strain and Kirchhoff stress: `τ = λ tr(ε) I + 2μ ε`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Elastic {
-    /// Pa  Young's modulus E
+    /// Young's modulus E (Pa).
     pub young: f64,
-    /// (-)  Poisson's ratio ν, -1 < ν < ½
+    /// Poisson's ratio ν, -1 < ν < ½ (-).
     pub poisson: f64,
 }
 
 impl Elastic {
-    /// The constrained modulus in Pa, stress over strain without lateral strain: `M = λ + 2μ`.
+    /// Returns the constrained modulus `M = λ + 2μ`, stress per strain without lateral strain (Pa).
     pub fn oedometric(&self) -> f64 {
         let Moduli { lambda, mu } = self.moduli();
         lambda + 2.0 * mu
@@ -28,24 +28,24 @@ impl Elastic {
     }
 }
 
-/// The Lamé constants, in Pa.
+/// Lamé constants (Pa).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moduli {
-    /// Pa  λ
+    /// First Lamé constant λ (Pa).
     pub lambda: f64,
-    /// Pa  μ
+    /// Shear modulus μ (Pa).
     pub mu: f64,
 }
 
 impl Moduli {
-    /// `τ_A = λ Σ_B ε_B + 2μ ε_A`.
+    /// Returns the stress `τ_A = λ Σ_B ε_B + 2μ ε_A`.
     #[inline(always)]
     pub(super) fn stress<R: Real>(&self, eps: [R; 3]) -> [R; 3] {
         let spherical = (eps[0] + eps[1] + eps[2]) * self.lambda;
         three(|k| spherical + eps[k] * (2.0 * self.mu))
     }
 
-    /// The inverse of [`Moduli::stress`]: `ε_A = (τ_A - p)/(2μ) + p/(3K)`, p the mean stress.
+    /// Returns the inverse of [`Moduli::stress`]: `ε_A = (τ_A - p)/(2μ) + p/(3K)`, p being the mean stress.
     #[inline]
     pub(super) fn strain(&self, tau: [f64; 3]) -> [f64; 3] {
         let mean = (tau[0] + tau[1] + tau[2]) / 3.0;
@@ -53,17 +53,17 @@ impl Moduli {
         tau.map(|t| (t - mean) / (2.0 * self.mu) + spherical)
     }
 
-    /// `D_AB = ∂τ_A/∂ε_B = λ + 2μ δ_AB`.
+    /// Returns the tangent `D_AB = ∂τ_A/∂ε_B = λ + 2μ δ_AB`.
     pub(super) fn tangent(&self) -> Tensor {
         Tensor::from_element(self.lambda) + Tensor::identity() * (2.0 * self.mu)
     }
 
-    /// Energy per volume in J/m3: `½ λ tr(ε)² + μ ε : ε`.
+    /// Returns the energy per volume (J/m3): `½ λ tr(ε)² + μ ε : ε`.
     pub(super) fn energy(&self, eps: [f64; 3]) -> f64 {
         0.5 * self.lambda * (eps[0] + eps[1] + eps[2]).powi(2) + self.mu * eps.iter().map(|e| e * e).sum::<f64>()
     }
 
-    /// `K = λ + ⅔ μ`.
+    /// Returns the bulk modulus `K = λ + ⅔ μ`.
     #[inline]
     pub(super) fn bulk(&self) -> f64 {
         self.lambda + self.mu * (2.0 / 3.0)

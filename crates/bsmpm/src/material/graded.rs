@@ -5,19 +5,19 @@ use super::{Elastic, Material, MaterialError, Response};
 use crate::tensor::Symmetric;
 use std::ops::Range;
 
-/// A parameter that grows linearly downwards: `value + per_metre (at - y)`.
+/// Parameter that grows linearly with depth: `value + per_metre (at - y)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Profile {
-    /// the parameter at the height `at`, in its own unit
+    /// Value at the height `at`, in the unit of the parameter.
     pub value: f64,
-    /// m  height from the grid's lower corner
+    /// Height from the lower corner of the grid (m).
     pub at: f64,
-    /// growth per metre of depth
+    /// Growth per metre of depth.
     pub per_metre: f64,
 }
 
 impl Profile {
-    /// The same everywhere.
+    /// Creates a constant profile.
     pub fn constant(value: f64) -> Self {
         Self {
             value,
@@ -26,13 +26,13 @@ impl Profile {
         }
     }
 
-    /// The parameter at a height, m from the grid's lower corner.
+    /// Returns the parameter at a height (m from the lower corner of the grid).
     #[inline]
     pub fn at(&self, height: f64) -> f64 {
         self.value + self.per_metre * (self.at - height)
     }
 
-    /// Its smallest and largest value between two heights.
+    /// Returns the smallest and the largest value between two heights.
     pub fn bounds(&self, heights: &Range<f64>) -> (f64, f64) {
         let a = self.at(heights.start);
         let b = self.at(heights.end);
@@ -40,7 +40,7 @@ impl Profile {
     }
 }
 
-/// A law whose parameters depend on the height.
+/// Law with parameters that depend on the height.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GradedLaw {
     young: Profile,
@@ -51,8 +51,8 @@ pub struct GradedLaw {
 }
 
 impl GradedLaw {
-    /// The `law` with other numbers: Young's modulus (Pa) and its parameters by the height, for points that are placed
-    /// at `heights` (m from the grid's lower corner); its strength divided by `reduction` (section 3.2).
+    /// Creates the `law` with profiles of Young's modulus (Pa) and of its parameters, for points placed at `heights` (m
+    /// from the lower corner of the grid). The strength is divided by `reduction` (section 3.2 of the paper).
     pub fn new(law: &Material, young: Profile, parameters: Vec<Profile>, heights: Range<f64>, reduction: f64) -> Self {
         let stiffest = Elastic {
             young: young.bounds(&heights).1,
@@ -71,15 +71,15 @@ impl GradedLaw {
         }
     }
 
-    /// The same in a step of the length `dt`, s; `None` where that does not matter to it.
-    pub(super) fn at_time_step(&self, dt: f64) -> Option<Self> {
+    /// Returns the law for a step of length `dt` (s); `None` if the law does not depend on it.
+    pub(super) fn with_time_step(&self, dt: f64) -> Option<Self> {
         Some(Self {
-            law: Box::new(self.law.at_time_step(dt)?),
+            law: Box::new(self.law.with_time_step(dt)?),
             ..self.clone()
         })
     }
 
-    /// The same with its strength divided by a further `factor`.
+    /// Returns the law with its strength divided by a further `factor`.
     pub(super) fn reduced(self, factor: f64) -> Self {
         Self {
             reduction: self.reduction * factor,
@@ -87,29 +87,29 @@ impl GradedLaw {
         }
     }
 
-    /// The elastic part where it is stiffest.
+    /// Returns the elastic part where it is stiffest.
     pub fn stiffest(&self) -> &Elastic {
         &self.stiffest
     }
 
-    /// Young's modulus at a height over the largest one.
+    /// Returns Young's modulus at a height, relative to the largest one.
     #[inline]
     pub fn relative_stiffness(&self, height: f64) -> f64 {
         self.young.at(height) / self.stiffest.young
     }
 
-    /// The law with the largest value of each parameter.
+    /// Returns the law with the largest value of each parameter.
     pub(super) fn most(&self) -> &Material {
         &self.law
     }
 
-    /// The response of a point that was placed at a height, m; see [`Material::respond`].
+    /// Computes the response of a point that was placed at a height (m), see [`Material::respond`].
     #[inline(never)]
     pub fn respond(&self, height: f64, b_trial: &Symmetric, state: &[f64]) -> Result<Response, MaterialError> {
         self.at(height).respond(b_trial, state)
     }
 
-    /// The law at a height.
+    /// Returns the law at a height.
     pub fn at(&self, height: f64) -> Material {
         let elastic = Elastic {
             young: self.young.at(height),

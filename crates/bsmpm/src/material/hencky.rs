@@ -5,10 +5,10 @@ use super::{Elastic, Moduli};
 use crate::real::Real;
 use crate::tensor::Tensor;
 
-/// Elastic at any strain: `τ = Dᵉ ½ ln bᵉ`; the state after the step is the trial state.
+/// Elastic law `τ = Dᵉ ½ ln bᵉ`; the state after the step is the trial state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hencky {
-    /// The two constants.
+    /// Elastic constants.
     pub elastic: Elastic,
 }
 

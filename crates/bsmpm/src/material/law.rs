@@ -5,101 +5,103 @@ use super::{Elastic, Moduli};
 use crate::real::Real;
 use crate::tensor::Tensor;
 
-/// A number of a law: a parameter, or a state variable that points carry from step to step, 0 at the start.
+/// Parameter of a law, or state variable that points store, 0 at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Variable {
-    /// as frames name a state variable and cases a parameter
+    /// Name of a state variable in frames, or of a parameter in cases.
     pub name: &'static str,
-    /// its unit, "-" for none
+    /// Unit, "-" for none.
     pub unit: &'static str,
 }
 
 impl Variable {
-    /// A variable by its name and unit.
+    /// Creates a variable with its name and unit.
     pub const fn new(name: &'static str, unit: &'static str) -> Self {
         Self { name, unit }
     }
 }
 
-/// Parameters of one law at most.
+/// Largest number of parameters of a law.
 pub(super) const MOST_PARAMETERS: usize = 8;
 
-/// An isotropic law on principal values: Hencky strain in, Kirchhoff stress out, both descending.
+/// Isotropic law in principal values, descending: Hencky strain to Kirchhoff stress.
 pub trait Law {
-    /// What a return leaves for its tangent and its state.
+    /// Return data for the tangent and the state.
     type Flow<R: Real>: Copy;
     /// Parameters besides the elastic ones; at most eight.
     const PARAMETERS: &'static [Variable] = &[];
     /// State variables; at most eight.
     const STATE: &'static [Variable] = &[];
-    /// Whether its stress is limited.
+    /// Whether the law limits the stress.
     const YIELDS: bool = true;
-    /// Whether its points are computed side by side; a long law's are not, so that the code of the others stays short.
+    /// Whether points are evaluated side by side (SIMD). Long laws are not, which keeps the code of the others short.
     const IN_LANES: bool = true;
 
-    /// Whether its elastic stress is linear in the strain, by [`Law::moduli`]. A law whose is not has its own
-    /// [`Law::stress`], [`Law::strain`] and [`Law::energy`], and keeps what a projection leaves also where the trial
-    /// does not yield: that gives tangent and elastic state then, and its branch is [`Branch::Elastic`].
+    /// Whether elastic stress is linear in strain, with [`Law::moduli`]. A nonlinear law implements [`Law::stress`],
+    /// [`Law::strain`] and [`Law::energy`]. It provides return data also without yielding, for tangent and elastic
+    /// state; the branch is then [`Branch::Elastic`].
     const LINEAR: bool = true;
 
-    /// The elastic part.
+    /// Returns the elastic part.
     fn elastic(&self) -> &Elastic;
 
-    /// Its parameters, in the order of [`Law::PARAMETERS`].
+    /// Returns the parameters in the order of [`Law::PARAMETERS`].
     fn parameters(&self) -> Vec<f64>;
 
-    /// The law with other numbers, in the order of [`Law::PARAMETERS`]; what is no number stays.
+    /// Returns the law with other numbers, in the order of [`Law::PARAMETERS`]; options that are not numbers are kept.
     fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self;
 
-    /// Its moduli; of elasticity that is not linear those at b_e = I.
+    /// Returns the elastic moduli; those at b_e = I if elasticity is nonlinear.
     fn moduli(&self) -> Moduli;
 
-    /// Elastic stress of principal strains, Pa.
+    /// Returns the elastic stress of principal strains (Pa).
     #[inline(always)]
     fn stress<R: Real>(&self, eps: [R; 3]) -> [R; 3] {
         self.moduli().stress(eps)
     }
 
-    /// Principal strains of an elastic stress, Pa; no numbers where there are none.
+    /// Returns the principal strains of an elastic stress (Pa); not finite if there are none.
     fn strain(&self, tau: [f64; 3]) -> [f64; 3] {
         self.moduli().strain(tau)
     }
 
-    /// Energy of elastic principal strains, J/m3.
+    /// Returns the energy of principal elastic strains (J/m3).
     fn energy(&self, eps: [f64; 3]) -> f64 {
         self.moduli().energy(eps)
     }
 
-    /// Puts the state that belongs to a principal stress at the start, Pa, into the place of zeros; of a law whose
-    /// elasticity is not linear.
+    /// Sets the state, initially zero, that belongs to an initial principal stress (Pa), for laws with nonlinear
+    /// elasticity.
     fn initial_state(&self, _tau: [f64; 3], _state: &mut [f64]) {}
 
-    /// The law in a step of the length `dt`, s; `None` where that does not matter to it.
-    fn at_time_step(&self, _dt: f64) -> Option<Self>
+    /// Returns the law for a step of length `dt` (s); `None` if the law does not depend on it.
+    fn with_time_step(&self, _dt: f64) -> Option<Self>
     where
         Self: Sized,
     {
         None
     }
 
-    /// The yield function of a stress, Pa; positive where that is outside.
+    /// Returns the yield function of a stress (Pa), positive outside the yield surface.
     fn yield_function<R: Real>(&self, tau: [R; 3], state: &[R]) -> R;
 
-    /// The return of an elastic trial stress, Pa. `state` is that of the last step, in the order of [`Law::STATE`].
+    /// Returns an elastic trial stress (Pa) to the yield surface. `state` is that of the last step, in the order of
+    /// [`Law::STATE`].
     ///
-    /// It runs on vectors if it and all that it calls are `#[inline(always)]`. A trial that is not a number yields.
+    /// SIMD evaluation requires that this function and all functions it calls are `#[inline(always)]`. A NaN trial
+    /// counts as yielding.
     fn return_map<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, Self::Flow<R>>;
 
-    /// Where on the yield surface the stress lies after a return.
+    /// Returns the part of the yield surface that the return ended on.
     fn branch(flow: &Self::Flow<f64>) -> Branch;
 
-    /// `D_AB = ∂τ_A/∂ε_B`, Pa, of principal values after a return.
+    /// Returns `D_AB = ∂τ_A/∂ε_B` of principal values after a return (Pa).
     fn tangent(flow: &Self::Flow<f64>, moduli: Moduli) -> Tensor;
 
-    /// `(τ_A - τ_B)/(ε_A - ε_B)`, Pa, where these differ by `tau` and `eps` ≥ 0 after a return.
+    /// Returns `(τ_A - τ_B)/(ε_A - ε_B)` (Pa) for the differences `tau` and `eps` ≥ 0 after a return.
     ///
-    /// In 0..2μ, since returns shrink stress differences; here 0 of equal strains, as what is near an edge returns to
-    /// it. The bounds keep rounding of a tiny difference inside.
+    /// It lies in 0..2μ, since returns reduce stress differences; the bounds limit the round-off of small differences.
+    /// The default is 0 for equal strains, because stresses near an edge return to it.
     fn secant_modulus(_flow: &Self::Flow<f64>, moduli: Moduli, tau: f64, eps: f64) -> f64 {
         if eps > 0.0 {
             (tau / eps).max(0.0).min(2.0 * moduli.mu)
@@ -108,96 +110,95 @@ pub trait Law {
         }
     }
 
-    /// Principal elastic strains after a return to the stress `tau`, Pa.
+    /// Returns the principal elastic strains after a return to the stress `tau` (Pa).
     #[inline]
     fn elastic_strain(_flow: &Self::Flow<f64>, moduli: Moduli, tau: [f64; 3]) -> [f64; 3] {
         moduli.strain(tau)
     }
 
-    /// Elastic moduli after a return.
+    /// Returns the elastic moduli after a return.
     #[inline]
     fn elastic_moduli(_flow: &Self::Flow<f64>, moduli: Moduli) -> Moduli {
         moduli
     }
 
-    /// Energy of the elastic strains `eps` after a return, J/m3.
+    /// Returns the energy of the elastic strains `eps` after a return (J/m3).
     #[inline]
     fn elastic_energy(_flow: &Self::Flow<f64>, moduli: Moduli, eps: [f64; 3]) -> f64 {
         moduli.energy(eps)
     }
 
-    /// Puts the state after a return in the place of that before it.
+    /// Replaces the state before the return by that after it.
     fn advance(_flow: &Self::Flow<f64>, _state: &mut [f64]) {}
 
-    /// The law with its strength divided by `factor` (section 3.2).
+    /// Returns the law with its strength divided by `factor` (section 3.2 of the paper).
     fn reduced(self, factor: f64) -> Self;
 
-    /// Dilation angle, rad.
+    /// Returns the dilation angle (rad).
     fn dilation(&self) -> f64 {
         0.0
     }
 
-    /// Whether some part of its strength grows with plastic strain.
+    /// Returns whether any part of the strength increases with plastic strain.
     fn hardens(&self) -> bool {
         false
     }
 
-    /// Whether its strength follows plastic strain to another last value, so that what it carries depends on how far it
-    /// is strained.
+    /// Returns whether the strength changes with plastic strain, so that the resistance depends on the deformation.
     fn softens(&self) -> bool {
         false
     }
 
-    /// What becomes of the volume that opens at an apex.
+    /// Returns the treatment of the volume that opens at the apex.
     fn separation(&self) -> Separation {
         Separation::Forgotten
     }
 }
 
-/// The return of a trial stress.
+/// Result of the return of a trial stress.
 #[derive(Clone, Copy, Debug)]
 pub struct Projection<R: Real, F> {
-    /// Pa  the stress after it, descending; the trial where that does not yield
+    /// Stress after the return, descending; the trial stress without yielding (Pa).
     pub tau: [R; 3],
-    /// where the trial yields
+    /// Whether the trial stress yields.
     pub yields: R::Mask,
-    /// what the return leaves; without a meaning where there is none
+    /// Return data; meaningless without yielding, unless elasticity is nonlinear.
     pub flow: F,
 }
 
-/// Where on the yield surface the stress lies.
+/// Part of the yield surface on which the stress lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Branch {
-    /// Inside or on the yield surface: no return.
+    /// Inside or on the yield surface, without a return.
     Elastic,
-    /// A smooth part of it: a cone, or one plane of a pyramid, τ₁ > τ₂ > τ₃.
+    /// Smooth part: a cone, or a plane of a pyramid with τ₁ > τ₂ > τ₃.
     Face,
-    /// The edge τ₁ = τ₂.
+    /// Edge τ₁ = τ₂.
     LeftEdge,
-    /// The edge τ₂ = τ₃.
+    /// Edge τ₂ = τ₃.
     RightEdge,
-    /// The tip, τ₁ = τ₂ = τ₃.
+    /// Apex τ₁ = τ₂ = τ₃.
     Apex,
 }
 
-/// What becomes of the volume that opens where the stress returns to the apex: the material has come apart.
+/// Treatment of the volume that opens when the stress returns to the apex and the material separates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Separation {
-    /// It is plastic and forgotten: the material resists at once when it is compressed again, however loose.
+    /// The volume is plastic strain: the material resists recompression immediately, however loose.
     #[default]
     Forgotten,
-    /// It is a gap that closes first: see [`Response::gap`](super::Response::gap).
+    /// The volume is a gap that must close first, see [`Response::gap`](super::Response::gap).
     Closing,
 }
 
-/// Parameters of laws with friction: φ, ψ, c.
+/// Parameters of frictional laws: φ, ψ, c.
 pub(super) const FRICTIONAL: [Variable; 3] = [
     Variable::new("friction_angle", "rad"),
     Variable::new("dilation_angle", "rad"),
     Variable::new("cohesion", "Pa"),
 ];
 
-/// These parameters, with ψ at most φ.
+/// Returns these parameters with ψ limited to φ.
 pub(super) fn frictional(parameters: &[f64]) -> [f64; 3] {
     [parameters[0], parameters[1].min(parameters[0]), parameters[2]]
 }
@@ -205,16 +206,16 @@ pub(super) fn frictional(parameters: &[f64]) -> [f64; 3] {
 /// Strength of soil with friction and cohesion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Strength {
-    /// Friction angle φ, rad.
+    /// Friction angle φ (rad).
     pub friction_angle: f64,
-    /// Dilation angle ψ, rad.
+    /// Dilation angle ψ (rad).
     pub dilation_angle: f64,
-    /// Cohesion c, Pa.
+    /// Cohesion c (Pa).
     pub cohesion: f64,
 }
 
 impl Strength {
-    /// Returns the strength divided by a strength reduction factor: `φ_f = atan(tan φ/SRF)`, `ψ_f = min(ψ, φ_f)`,
+    /// Returns the strength divided by a strength reduction factor SRF: `φ_f = atan(tan φ/SRF)`, `ψ_f = min(ψ, φ_f)`,
     /// `c_f = c/SRF`.
     pub(super) fn reduced(self, factor: f64) -> Self {
         let friction_angle = (self.friction_angle.tan() / factor).atan();
@@ -226,11 +227,11 @@ impl Strength {
     }
 }
 
-/// Mean, deviator and norm of the deviator of principal values.
+/// Returns mean, deviator and norm of the deviator of principal values.
 #[inline(always)]
 pub fn split<R: Real>(tau: [R; 3]) -> (R, [R; 3], R) {
     let mean = (tau[0] + tau[1] + tau[2]) / 3.0;
-    // By differences, so that the deviator has no trace even where the mean is many orders larger.
+    // Differences make the deviator traceless even if the mean is larger by many orders of magnitude.
     let upper = tau[0] - tau[1];
     let lower = tau[1] - tau[2];
     let whole = tau[0] - tau[2];

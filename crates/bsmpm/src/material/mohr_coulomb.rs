@@ -7,7 +7,8 @@ use crate::real::{Real, choose};
 use crate::tensor::Tensor;
 use std::ops::{Add, Div, Mul, Sub};
 
-/// Elastic inside `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ ≤ 0`, with the same form in ψ as plastic potential.
+/// Law with the elastic domain `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ ≤ 0`. The plastic potential has the same
+/// form with ψ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MohrCoulomb {
     elastic: Elastic,
@@ -18,18 +19,19 @@ pub struct MohrCoulomb {
     pyramid: Pyramid,
 }
 
-/// The pyramid and how stresses return to it: one for all points, or one for each (`P` as wide as they are).
+/// Pyramid and return mapping, with the same parameters for all points, or with those of each (`P` as wide as the
+/// points).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pyramid<P: Real = f64> {
     moduli: Moduli,
     pub slopes: Slopes<P>,
-    /// Pa  c cos φ
+    /// Strength c cos φ (Pa).
     pub strength: P,
-    shift: P, // Pa  τ₁ at yield where τ₃ = 0
-    slope: P, // 1/Pa  ½/(λ sin φ sin ψ + μ (1 + sin φ sin ψ)), multiplier over excess of a return to a face
+    shift: P, // τ₁ at yield for τ₃ = 0 (Pa)
+    slope: P, // ½/(λ sin φ sin ψ + μ (1 + sin φ sin ψ)) (1/Pa), a factor of f in the return to a face
 }
 
-/// Points that are computed with numbers as wide as they are, or with one for all.
+/// Numbers of points, with parameters of the same width or one for all.
 pub(super) trait ParameterArithmetic<P>:
     Real + Add<P, Output = Self> + Sub<P, Output = Self> + Mul<P, Output = Self> + Div<P, Output = Self>
 {
@@ -40,7 +42,7 @@ impl<P, R> ParameterArithmetic<P> for R where
 {
 }
 
-/// Where a return ends that is not on a face.
+/// Whether a return ended on an edge or at the apex; otherwise on a face.
 #[derive(Clone, Copy, Debug)]
 pub struct Corners<R: Real> {
     left_edge: R::Mask,
@@ -49,7 +51,7 @@ pub struct Corners<R: Real> {
 }
 
 impl Corners<f64> {
-    /// The part of the surface after a return.
+    /// Returns the part of the yield surface after a return.
     #[inline]
     pub(super) fn branch(&self) -> Branch {
         match self {
@@ -61,7 +63,7 @@ impl Corners<f64> {
     }
 }
 
-/// What a return leaves: where the stress lies, and the two sines that its tangent needs.
+/// Return data: the part of the yield surface, and the slopes for the tangent.
 #[derive(Clone, Copy, Debug)]
 pub struct MohrCoulombReturn<R: Real> {
     corners: Corners<R>,
@@ -75,32 +77,32 @@ pub struct Slopes<P = f64> {
     pub(super) sin_psi: P,
 }
 
-/// An edge of the yield surface with the plane of trial stresses that return to each of its points.
+/// Edge of the yield surface, with the plane of trial stresses that return to a point of the edge.
 struct YieldEdge<P> {
-    /// Direction of the edge where τ₃ grows by one: (N, 1, 1) or (N, N, 1), N = (1 - sin φ)/(1 + sin φ).
+    /// Direction of the edge per unit of τ₃: (N, 1, 1) or (N, N, 1), N = (1 - sin φ)/(1 + sin φ).
     along: [P; 3],
-    /// Normal in strain to both plastic flows, which an edge return therefore keeps: q · εᵖ = 0.
+    /// Strain q normal to both plastic flow directions, q · εᵖ = 0; q · ε is thus unchanged by the return.
     kept: [P; 3],
-    /// 18 K μ C q without cancellation, C the elastic compliance: `w = 9 K dev q + 2μ tr(q) I`.
+    /// 18 K μ C q without cancellation, with the elastic compliance C: `w = 9 K dev q + 2μ tr(q) I`.
     weight: [P; 3],
-    /// Pa²  `w · along`, positive for all ν, φ and ψ.
+    /// Product `w · along`, positive for all ν, φ and ψ (Pa²).
     slope: P,
 }
 
 impl<P: Real> Slopes<P> {
-    /// `N = (1 - sin φ)/(1 + sin φ)`, the smaller over the larger principal stress at yield without cohesion.
+    /// Returns `N = (1 - sin φ)/(1 + sin φ)`, the ratio of principal stresses at yield without cohesion.
     #[inline(always)]
     fn ratio(self) -> P {
         (self.sin_phi.like(1.0) - self.sin_phi) / (self.sin_phi + 1.0)
     }
 
-    /// 1 - sin ψ and 1 + sin ψ.
+    /// Returns 1 - sin ψ and 1 + sin ψ.
     #[inline(always)]
     fn flow(self) -> (P, P) {
         (self.sin_psi.like(1.0) - self.sin_psi, self.sin_psi + 1.0)
     }
 
-    /// The right edge (τ₂ = τ₃), on which the potentials of the planes 1-3 and 1-2 flow together.
+    /// Returns the right edge (τ₂ = τ₃), on which the planes 1-3 and 1-2 flow together.
     #[inline(always)]
     fn right(self, moduli: Moduli) -> YieldEdge<P> {
         let (minus, plus) = self.flow();
@@ -114,7 +116,7 @@ impl<P: Real> Slopes<P> {
         )
     }
 
-    /// The left edge (τ₁ = τ₂), on which the potentials of the planes 1-3 and 2-3 flow together.
+    /// Returns the left edge (τ₁ = τ₂), on which the planes 1-3 and 2-3 flow together.
     #[inline(always)]
     fn left(self, moduli: Moduli) -> YieldEdge<P> {
         let (minus, plus) = self.flow();
@@ -131,8 +133,8 @@ impl<P: Real> Slopes<P> {
 }
 
 impl Slopes {
-    /// `D_AB = ∂τ_A/∂ε_B`, Pa, of a surface that stays: on the face `D - (D m)(D n)ᵀ/(n · D m)`, on an edge of
-    /// direction a `a qᵀ/(q · C a)`, at the apex zero.
+    /// Returns `D_AB = ∂τ_A/∂ε_B` (Pa) for a fixed yield surface: `D - (D m)(D n)ᵀ/(n · D m)` on the face,
+    /// `a qᵀ/(q · C a)` on an edge of direction a, and 0 at the apex.
     pub(super) fn tangent(self, branch: Branch, moduli: Moduli) -> Tensor {
         match branch {
             Branch::Elastic => moduli.tangent(),
@@ -171,7 +173,8 @@ impl<P: Real> YieldEdge<P> {
         }
     }
 
-    /// τ₃ after the return to this edge: `τ₃ = w · (τ_trial - o)/(w · along)`, o the edge's point where τ₃ = 0.
+    /// Returns τ₃ after the return to this edge: `τ₃ = w · (τ_trial - o)/(w · along)`, with the point o of the edge for
+    /// τ₃ = 0.
     #[inline(always)]
     fn third<R: ParameterArithmetic<P>>(&self, trial: [R; 3], origin: [P; 3]) -> R {
         let [first, second, third] = [trial[0] - origin[0], trial[1] - origin[1], trial[2]];
@@ -180,7 +183,7 @@ impl<P: Real> YieldEdge<P> {
 }
 
 impl<P: Real> Pyramid<P> {
-    /// Of sin φ, sin ψ and c cos φ (Pa).
+    /// Creates the pyramid from sin φ, sin ψ and c cos φ (Pa).
     #[inline(always)]
     pub(super) fn new(moduli: Moduli, slopes: Slopes<P>, strength: P) -> Self {
         let product = slopes.sin_phi * slopes.sin_psi;
@@ -193,16 +196,16 @@ impl<P: Real> Pyramid<P> {
         }
     }
 
-    /// `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ`.
+    /// Returns `f = (τ₁ - τ₃) + (τ₁ + τ₃) sin φ - 2 c cos φ`.
     #[inline(always)]
     pub(super) fn yield_function<R: ParameterArithmetic<P>>(&self, tau: [R; 3]) -> R {
         (tau[0] - tau[2]) + (tau[0] + tau[2]) * self.slopes.sin_phi - self.strength * 2.0
     }
 
-    /// The return of a trial stress, where it yields, and where it ends.
+    /// Returns a trial stress to the pyramid; also whether it yields, and on which edge or apex the return ends.
     ///
-    /// τ₁ is always taken from τ₃ by f = 0, so the result satisfies yield and order to the last digits even where it
-    /// is much smaller than the trial.
+    /// τ₁ follows from τ₃ and f = 0, so that the result satisfies yield condition and order to machine precision even
+    /// if it is much smaller than the trial.
     #[inline(always)]
     pub(super) fn return_map<R: ParameterArithmetic<P>>(&self, trial: [R; 3]) -> ([R; 3], R::Mask, Corners<R>) {
         let excess = self.yield_function(trial);
@@ -230,8 +233,8 @@ impl<P: Real> Pyramid<P> {
         (tau, !inside, corners)
     }
 
-    /// Return along `τ = τ_trial - Δγ D m`, `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`, and where it keeps the
-    /// order.
+    /// Returns the stress to a face along `τ = τ_trial - Δγ D m` with `Δγ = f/(4λ sin φ sin ψ + 4μ(1 + sin φ sin ψ))`,
+    /// and whether the order of principal stresses is kept.
     #[inline(always)]
     fn face<R: ParameterArithmetic<P>>(&self, trial: [R; 3], excess: R) -> ([R; 3], R::Mask) {
         let Moduli { lambda, mu } = self.moduli;
@@ -240,12 +243,12 @@ impl<P: Real> Pyramid<P> {
         let second = trial[1] - half * lambda * sin_psi;
         let third = trial[2] - half * (sin_psi * lambda - (sin_psi.like(1.0) - sin_psi) * mu);
         let first = third * self.slopes.ratio() + self.shift;
-        // Beyond the apex f = 0 and the order exclude each other, so this test covers the apex too.
+        // Beyond the apex f = 0 and the order exclude each other, so this test includes the apex.
         ([first, second, third], second.at_most(first) & third.at_most(second))
     }
 
-    /// Return to the edge that the face return crosses first, whether that is the right one, and where it is not beyond
-    /// the apex (never when sin φ = 0).
+    /// Returns the stress to the edge that the return to a face crosses first; also whether that is the right edge, and
+    /// whether the result is not beyond the apex (always true for sin φ = 0).
     #[inline(always)]
     fn edge<R: ParameterArithmetic<P>>(&self, trial: [R; 3]) -> ([R; 3], R::Mask, R::Mask) {
         let Self {
@@ -269,7 +272,8 @@ impl<P: Real> Pyramid<P> {
 }
 
 impl MohrCoulomb {
-    /// A law with friction angle 0 ≤ φ < π/2 (rad), dilation angle 0 ≤ ψ ≤ φ (rad) and cohesion c ≥ 0 (Pa).
+    /// Creates a law with the friction angle 0 ≤ φ < π/2 (rad), the dilation angle 0 ≤ ψ ≤ φ (rad) and the cohesion c ≥
+    /// 0 (Pa).
     pub fn new(elastic: Elastic, friction: f64, dilation: f64, cohesion: f64) -> Self {
         let slopes = Slopes {
             sin_phi: friction.sin(),
@@ -286,7 +290,7 @@ impl MohrCoulomb {
         }
     }
 
-    /// The law with another answer to what comes apart.
+    /// Returns the law with another treatment of the volume that opens at the apex.
     pub fn separating(self, separation: Separation) -> Self {
         Self { separation, ..self }
     }
@@ -309,7 +313,7 @@ impl Law for MohrCoulomb {
         vec![self.friction, self.dilation, self.cohesion]
     }
 
-    /// ψ is at most φ.
+    /// Returns the law with other parameters; ψ is limited to φ.
     fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self {
         let [friction, dilation, cohesion] = frictional(parameters);
         Self::new(elastic, friction, dilation, cohesion).separating(self.separation)

@@ -7,30 +7,30 @@ use crate::real::{Real, three};
 use crate::tensor::Tensor;
 use std::f64::consts::SQRT_2;
 
-/// Elastic inside `√J₂ - μ_s p ≤ 0`; no tension.
+/// Law with the elastic domain `√J₂ - μ_s p ≤ 0`, without tensile strength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MuI {
     elastic: Elastic,
     parameters: [f64; 5], // μ_s, μ_2, I_0, d (m), ρ_s (kg/m3)
     moduli: Moduli,
-    quickness: f64, // √Pa  d √ρ_s/Δt: I √p over the plastic shear of a step; 0 outside of one
+    quickness: f64, // d √ρ_s/Δt (√Pa), the ratio of I √p to the plastic shear of a step; 0 outside of a step
 }
 
-/// What a return leaves.
+/// Return data.
 #[derive(Clone, Copy, Debug)]
 pub struct MuIReturn<R: Real> {
-    /// to the tip, where the rest has no meaning
+    /// Whether the stress returned to the apex; the other data are then meaningless.
     apex: R::Mask,
-    /// (-)  principal deviator of the trial over its norm
+    /// Principal deviator of the trial divided by its norm (-).
     direction: [R; 3],
-    /// (-)  √J₂ after the return over that of the trial
+    /// Ratio of √J₂ after the return to that of the trial (-).
     kept: R,
-    /// (-)  of the √J₂ that the return took, with that of the trial and with its pressure
+    /// Derivatives of the reduction of √J₂ with respect to √J₂ and the pressure of the trial (-).
     rates: [R; 2],
 }
 
 impl MuI {
-    /// A law by `[μ_s, μ_2, I_0, d, ρ_s]`: 0 ≤ μ_s ≤ μ_2, the others positive, d in m and ρ_s in kg/m3.
+    /// Creates a law from `[μ_s, μ_2, I_0, d, ρ_s]`: 0 ≤ μ_s ≤ μ_2, the others positive; d in m, ρ_s in kg/m3.
     pub fn new(elastic: Elastic, parameters: [f64; 5]) -> Self {
         let moduli = elastic.moduli();
         Self {
@@ -41,20 +41,22 @@ impl MuI {
         }
     }
 
-    /// The plastic shear γ of a return from √J₂ = T at the pressure p: the root of `(T - G γ)(I_0 √p + k γ) =
-    /// p (μ_s I_0 √p + μ_2 k γ)`, k the quickness, where T > μ_s p > 0; and of it the rates with T and p.
+    /// Returns the plastic shear γ of a return from √J₂ = T > μ_s p at the pressure p > 0, and its derivatives with
+    /// respect to T and p. It is the root of `(T - G γ)(I_0 √p + k γ) = p (μ_s I_0 √p + μ_2 k γ)`, with the quickness
+    /// k.
     #[inline(always)]
     fn sheared<R: Real>(&self, root: R, pressure: R) -> (R, [R; 2]) {
         let [mu_s, mu_2, i_0, ..] = self.parameters;
         let mu = self.moduli.mu;
         let quick = self.quickness;
         let slow = pressure.root() * i_0;
+        // Quadratic equation G k γ² + (G I_0 √p + (μ_2 p - T) k) γ - I_0 √p (T - μ_s p) = 0, from the definition of γ.
         let over = root - pressure * mu_s;
         let linear = slow * mu + (pressure * mu_2 - root) * quick;
         let square = mu * quick;
         let constant = slow * over;
         let discriminant = (linear * linear + constant * (4.0 * square)).root();
-        // Of the two forms of the root that without a difference of like numbers.
+        // Of the two forms of the root, the one without cancellation is used.
         let falls = linear.below(linear.like(0.0));
         let denominator = R::choose(falls, linear.like(2.0 * square), linear + discriminant);
         let numerator = R::choose(falls, discriminant - linear, constant * 2.0);
@@ -89,7 +91,7 @@ impl Law for MuI {
         self.parameters.to_vec()
     }
 
-    /// μ_2 is at least μ_s.
+    /// Returns the law with other parameters; μ_2 is raised to at least μ_s.
     fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self {
         let mut own: [f64; 5] = std::array::from_fn(|k| parameters[k]);
         own[1] = own[1].max(own[0]);
@@ -99,7 +101,7 @@ impl Law for MuI {
         }
     }
 
-    fn at_time_step(&self, dt: f64) -> Option<Self> {
+    fn with_time_step(&self, dt: f64) -> Option<Self> {
         let [.., diameter, density] = self.parameters;
         Some(Self {
             quickness: diameter * density.sqrt() / dt,
@@ -107,14 +109,14 @@ impl Law for MuI {
         })
     }
 
-    /// `f = √J₂ - μ_s p`.
+    /// Returns `f = √J₂ - μ_s p`.
     #[inline(always)]
     fn yield_function<R: Real>(&self, tau: [R; 3], _state: &[R]) -> R {
         let (mean, _, norm) = split(tau);
         norm / SQRT_2 + mean * self.parameters[0]
     }
 
-    /// Along the deviator at constant pressure; without pressure to the tip, τ = 0.
+    /// Returns the stress along the deviator at constant pressure; without pressure to the apex, τ = 0.
     #[inline(always)]
     fn return_map<R: Real>(&self, trial: [R; 3], _state: &[R]) -> Projection<R, MuIReturn<R>> {
         let (mean, deviator, norm) = split(trial);
@@ -144,8 +146,8 @@ impl Law for MuI {
         if flow.apex { Branch::Apex } else { Branch::Face }
     }
 
-    /// With n the direction, r what is kept of √J₂ and a, b the rates of what is taken with T and p:
-    /// `2μ r (I₄ - ⅓ I ⊗ I) + 2μ (1 - r - a) n ⊗ n + √2 K b n ⊗ I + K I ⊗ I`; at the tip 0.
+    /// Returns the tangent; with the direction n, the ratio r of √J₂, and the derivatives a, b of its reduction with
+    /// respect to T and p it is `2μ r (I₄ - ⅓ I ⊗ I) + 2μ (1 - r - a) n ⊗ n + √2 K b n ⊗ I + K I ⊗ I`; 0 at the apex.
     fn tangent(flow: &MuIReturn<f64>, moduli: Moduli) -> Tensor {
         let MuIReturn {
             apex,
@@ -166,7 +168,7 @@ impl Law for MuI {
         })
     }
 
-    /// All differences are kept alike.
+    /// Returns 2μ r: the return scales all stress differences equally.
     fn secant_modulus(flow: &MuIReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
         if flow.apex { 0.0 } else { 2.0 * moduli.mu * flow.kept }
     }

@@ -5,7 +5,7 @@ use super::spectral::Spectrum;
 use super::{Flowed, MaterialError, Moduli};
 use crate::tensor::{Symmetric, Tensor};
 
-/// The response of one point, in the axes of the trial b; principal values are descending.
+/// Response of one point in the axes of the trial b; principal values are descending.
 #[derive(Clone, Copy, Debug)]
 pub struct Response {
     b_trial: Symmetric,
@@ -27,7 +27,7 @@ impl Response {
         }
     }
 
-    /// Of elastic material to a left Cauchy-Green tensor, by Lamé's moduli in Pa.
+    /// Returns the elastic response to a left Cauchy-Green tensor with the given moduli.
     ///
     /// # Errors
     /// As [`Material::respond`](super::Material::respond).
@@ -42,20 +42,20 @@ impl Response {
         ))
     }
 
-    /// Hencky strain of the trial: `½ ln b_trial`.
+    /// Returns the Hencky strain of the trial state, `½ ln b_trial`.
     pub fn trial_strain(&self) -> Symmetric {
         self.trial.assemble(self.trial.eps)
     }
 
-    /// Kirchhoff stress in Pa: `τ = Σ_A τ_A n_A ⊗ n_A` (Eq. 10).
+    /// Returns the Kirchhoff stress (Pa): `τ = Σ_A τ_A n_A ⊗ n_A` (Eq. 10).
     #[inline]
     pub fn tau(&self) -> Symmetric {
         self.trial.assemble(self.tau)
     }
 
-    /// The elastic left Cauchy-Green tensor after the return: `bᵉ = Σ_A exp(2 εᵉ_A) n_A ⊗ n_A`.
+    /// Returns the elastic left Cauchy-Green tensor after the return: `bᵉ = Σ_A exp(2 εᵉ_A) n_A ⊗ n_A`.
     ///
-    /// Without plastic flow this is the trial tensor, bit for bit.
+    /// Without plastic flow it is bitwise identical to the trial tensor.
     pub fn b_e(&self) -> Symmetric {
         if self.branch() == Branch::Elastic {
             return self.b_trial;
@@ -64,25 +64,24 @@ impl Response {
         if eps_e[0] > 1.0 || eps_e[2] < -1.0 {
             return self.trial.assemble(eps_e.map(|e| (2.0 * e).exp()));
         }
-        // b - I is assembled, which is accurate relative to the strain where that is small.
+        // Assembling b - I keeps the relative accuracy of small strains.
         let mut b = self.trial.assemble(eps_e.map(|e| (2.0 * e).exp_m1()));
         b.0[..3].iter_mut().for_each(|c| *c += 1.0);
         b
     }
 
-    /// Where on the yield surface the stress lies.
+    /// Returns the part of the yield surface on which the stress lies.
     #[inline]
     pub fn branch(&self) -> Branch {
         self.flowed.branch()
     }
 
-    /// The gap that is open after the return, as a logarithm of volume: `g = tr ε_trial - tr εᵉ` at the apex, else 0.
+    /// Returns the gap after the return as a logarithm of volume: `g = tr ε_trial - tr εᵉ` at the apex, else 0.
     ///
-    /// Material that keeps it is given `b_trial exp(⅔ g)` in the next step, `ε_trial + g/3 I`: it stays at the apex
-    /// until the gap has closed, and then resists at the volume at which it came apart: the volume correction of Klár
-    /// et al. (2016), "Drucker-Prager elastoplasticity for sand animation". g is constant during a step, so that the
-    /// tangent keeps its form. What ψ dilates on faces and edges is no gap, and where such flow goes on what opens is
-    /// filled.
+    /// In the next step, material with a gap starts from `b_trial exp(⅔ g)`, that is `ε_trial + g/3 I`. It stays at the
+    /// apex until the gap has closed, and then resists at the volume at which it separated. This is the volume
+    /// correction of Klár et al. (2016), "Drucker-Prager elastoplasticity for sand animation". g is constant during a
+    /// step, so the form of the tangent does not change. Dilation by ψ on faces and edges is no gap.
     #[inline]
     pub fn gap(&self) -> f64 {
         if self.branch() != Branch::Apex {
@@ -93,7 +92,7 @@ impl Response {
         ((trial[0] + trial[1] + trial[2]) - (elastic[0] + elastic[1] + elastic[2])).max(0.0)
     }
 
-    /// The equivalent plastic strain of this return: `Δεᵖ = √(2/3) |dev(ε_trial - εᵉ)|`, zero if elastic.
+    /// Returns the equivalent plastic strain of this return, `Δεᵖ = √(2/3) |dev(ε_trial - εᵉ)|`; 0 if elastic.
     #[inline]
     pub fn plastic_increment(&self) -> f64 {
         if self.branch() == Branch::Elastic {
@@ -109,7 +108,7 @@ impl Response {
         (2.0 * (a * a + b * b + c * c)).sqrt() / 3.0
     }
 
-    /// Plastic dissipation of this return per reference volume, J/m3: `τ : (ε_trial - εᵉ)`, zero if elastic.
+    /// Returns the plastic dissipation of this return per reference volume (J/m3), `τ : (ε_trial - εᵉ)`; 0 if elastic.
     #[inline]
     pub fn dissipation(&self) -> f64 {
         if self.branch() == Branch::Elastic {
@@ -120,25 +119,26 @@ impl Response {
         (0..3).map(|k| self.tau[k] * (eps[k] - eps_e[k])).sum()
     }
 
-    /// Elastic energy per reference volume after the return, J/m3: `½ λ tr(εᵉ)² + μ εᵉ : εᵉ` where it is linear.
+    /// Returns the elastic energy per reference volume after the return (J/m3); `½ λ tr(εᵉ)² + μ εᵉ : εᵉ` if elasticity
+    /// is linear.
     #[inline]
     pub fn elastic_energy(&self) -> f64 {
         self.flowed.elastic_energy(self.moduli, self.principal_eps_e())
     }
 
-    /// Principal Kirchhoff stress in Pa, descending.
+    /// Returns the principal Kirchhoff stress, descending (Pa).
     #[inline]
     pub fn principal_tau(&self) -> [f64; 3] {
         self.tau
     }
 
-    /// Principal Hencky strain of the trial, descending: `ε = ½ ln b_trial` (Eq. 9).
+    /// Returns the principal Hencky strain of the trial state, descending: `ε = ½ ln b_trial` (Eq. 9).
     #[inline]
     pub fn principal_eps_trial(&self) -> [f64; 3] {
         self.trial.eps
     }
 
-    /// Principal elastic Hencky strain after the return, descending: `εᵉ = D⁻¹ τ`.
+    /// Returns the principal elastic Hencky strain after the return, descending: `εᵉ = D⁻¹ τ` if elasticity is linear.
     #[inline]
     pub fn principal_eps_e(&self) -> [f64; 3] {
         if self.branch() == Branch::Elastic {
@@ -148,8 +148,8 @@ impl Response {
         }
     }
 
-    /// What the return took from the stress of the trial, Pa: `D : (ε_trial - εᵉ)`, D by the law's moduli; `None` where
-    /// there was none.
+    /// Returns the stress reduction `D : (ε_trial - εᵉ)` by the return (Pa), with the moduli D of the law; `None`
+    /// without plastic flow.
     pub fn returned(&self) -> Option<Symmetric> {
         if let Some(trial) = self.unreturned().filter(|_| self.flowed.is_linear()) {
             let trial = trial.tau().0;
@@ -162,9 +162,9 @@ impl Response {
         (self.branch() != Branch::Elastic).then(|| self.trial.assemble(self.moduli.stress(plastic)))
     }
 
-    /// Second-order works per reference volume of the step that led here, J/m3 (Hill, 1958): `Δε : D : Δε` of elastic
-    /// ground and `Δε : D : Δεᵉ` of this one, for the strain Δε of the step. D follows from the law's moduli; `gap` was
-    /// open before the step, and is part of the trial strain.
+    /// Returns the second-order works of the step per reference volume (J/m3; Hill, 1958): `Δε : D : Δε` of elastic
+    /// material, and the same less `Δε : D : Δεᵖ`. Δε is the strain of the step and D follows from the moduli of the
+    /// law. `gap` is the gap before the step, which is part of the trial strain.
     pub fn second_order_works(&self, strain: &Tensor, gap: f64) -> [f64; 2] {
         let Moduli { lambda, mu } = self.moduli;
         let volumetric = strain.trace();
@@ -173,8 +173,9 @@ impl Response {
         [elastic, elastic - returned + self.moduli.bulk() * gap * volumetric]
     }
 
-    /// How what the return took changes with a spatial gradient, Pa: what the bulk modulus after the return differs by
-    /// from the law's where elasticity is not linear takes its part of the mean stress.
+    /// Returns the derivative of [`Response::returned`] with respect to a spatial gradient (Pa). With nonlinear
+    /// elasticity the mean stress is corrected for the difference of the bulk modulus after the return from that of the
+    /// law.
     pub fn change_of_returned(&self) -> Option<impl Fn(&Tensor) -> Tensor + use<>> {
         let trial = self.unreturned()?.tangent();
         let own = self.tangent();
@@ -185,8 +186,7 @@ impl Response {
         })
     }
 
-    /// The response of linear material that does not yield, of this one's moduli, to the same trial, where this one
-    /// yields.
+    /// Returns the linear elastic response to the same trial with the moduli of this one; `None` without plastic flow.
     fn unreturned(&self) -> Option<Self> {
         let yields = self.branch() != Branch::Elastic;
         yields.then(|| Self {
@@ -196,7 +196,7 @@ impl Response {
         })
     }
 
-    /// Puts the law's state after the return in the place of that before it.
+    /// Replaces the state of the law before the return by that after it.
     pub fn advance(&self, state: &mut [f64]) {
         self.flowed.advance(state);
     }

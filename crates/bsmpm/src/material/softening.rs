@@ -8,36 +8,36 @@ use super::{Elastic, Moduli};
 use crate::real::{Real, three};
 use crate::tensor::Tensor;
 
-/// How the strength follows the plastic strain, over that at which it has its last value.
+/// Dependence of the strength on κ/κ_r, the ratio of plastic strain to that of the residual strength.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Decay {
-    /// In proportion, and then no more.
+    /// Linear up to κ_r, then constant.
     #[default]
     Linear,
-    /// `1 - exp(-3 κ/κ_r)`: 95 % of the way at κ_r.
+    /// Exponential, `1 - exp(-3 κ/κ_r)`: 95 % of the change at κ_r.
     Exponential,
 }
 
-/// How the cohesion grows with the rate of plastic shear γ̇ᵖ.
+/// Dependence of the cohesion on the rate of plastic shear γ̇ᵖ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
-    /// growth per decade, μ_r
+    /// Relative growth per decade of the rate, μ_r.
     pub per_decade: f64,
-    /// 1/s  the rate below which there is none
+    /// Reference rate below which there is no growth (1/s).
     pub reference: f64,
 }
 
 /// Rate of the exponential decay.
 const RATE: f64 = 3.0;
-/// Most evaluations of the return for its own plastic strain: bisection alone needs as many.
+/// Largest number of evaluations of the return; bisection alone needs as many.
 const EVALUATIONS: usize = 80;
-/// Ratio of bounds of the growth between which the logarithm is straight enough for secants.
+/// Ratio of the bounds below which the logarithm is nearly linear and secants are used.
 const STRAIGHT: f64 = 8.0;
-/// Difference between the plastic strain that a strength follows from and that of the return that it leads to that
-/// counts as none: by the latter, and by the elastic strain of the trial, whose digits it comes from.
+/// Tolerances for the agreement of the plastic strain assumed in the strength with that of the return: relative to the
+/// latter, and to the elastic strain of the trial, which limits the accuracy.
 const AGREED: [f64; 2] = [1e-13, 1e-14];
 
-/// Mohr-Coulomb's pyramid, of which the strength follows κ.
+/// Mohr-Coulomb law whose strength depends on the plastic strain κ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SofteningMohrCoulomb {
     elastic: Elastic,
@@ -46,13 +46,13 @@ pub struct SofteningMohrCoulomb {
     residual: Strength,
     strain: f64,
     decay: Decay,
-    first: [f64; 3],  // sin φ, sin ψ, c cos φ (Pa)
-    change: [f64; 3], // from the first to the last
+    first: [f64; 3],  // sin φ, sin ψ, c cos φ (Pa) at the peak
+    change: [f64; 3], // residual less peak values
     rate: Option<Rate>,
-    dt: f64, // s  of the step; without end outside of one
+    dt: f64, // length of the step (s); infinite outside of one
 }
 
-/// Parameters of the yield surface: sin φ, sin ψ (-) and c cos φ (Pa).
+/// Returns the parameters of the yield surface: sin φ, sin ψ (-) and c cos φ (Pa).
 fn yield_parameters(strength: Strength) -> [f64; 3] {
     let Strength {
         friction_angle,
@@ -66,26 +66,26 @@ fn yield_parameters(strength: Strength) -> [f64; 3] {
     ]
 }
 
-/// What a return leaves.
+/// Return data.
 #[derive(Clone, Copy, Debug)]
 pub struct SofteningReturn<R: Real> {
     corners: Corners<R>,
-    /// Pa
+    /// Trial stress (Pa).
     trial: [R; 3],
-    /// Pa
+    /// Stress after the return (Pa).
     tau: [R; 3],
     slopes: Slopes<R>,
-    /// Pa  c cos φ
+    /// Strength c cos φ (Pa).
     strength: R,
-    /// of sin φ, sin ψ and c cos φ (Pa) with κ
+    /// Derivatives of sin φ, sin ψ and c cos φ (Pa) with respect to κ.
     rates: [R; 3],
-    /// (-)  growth of κ
+    /// Growth of κ (-).
     growth: R,
 }
 
 impl SofteningMohrCoulomb {
-    /// A law with the strength `peak` before any plastic strain and `residual` from the plastic strain κ_r > 0 on:
-    /// 0 ≤ φ < π/2 and 0 ≤ ψ ≤ φ (rad), c ≥ 0 (Pa).
+    /// Creates a law with the strength `peak` without plastic strain and `residual` at the plastic strain κ_r > 0; 0 ≤
+    /// φ < π/2 and 0 ≤ ψ ≤ φ (rad), c ≥ 0 (Pa).
     pub fn new(elastic: Elastic, peak: Strength, residual: Strength, strain: f64, decay: Decay) -> Self {
         let first = yield_parameters(peak);
         let last = yield_parameters(residual);
@@ -105,7 +105,7 @@ impl SofteningMohrCoulomb {
         }
     }
 
-    /// The same law with a cohesion that grows with the rate of shear.
+    /// Returns the law with a cohesion that grows with the shear rate.
     pub fn at_rate(self, rate: Rate) -> Self {
         Self {
             rate: Some(rate),
@@ -113,7 +113,7 @@ impl SofteningMohrCoulomb {
         }
     }
 
-    /// How much more the cohesion is where κ has grown by `growth` in the step, and what that grows by with it.
+    /// Returns the factor of the cohesion if κ grows by `growth` in the step, and its derivative.
     #[inline(always)]
     fn quickened<R: Real>(&self, growth: R) -> (R, R) {
         let (Some(Rate { per_decade, .. }), Some(least)) = (self.rate, self.slowest()) else {
@@ -126,14 +126,15 @@ impl SofteningMohrCoulomb {
         (decades * per_decade + 1.0, R::choose(quick, slope, growth.like(0.0)))
     }
 
-    /// How far the strength has come after the plastic strain κ, 0 to 1, and its rate with κ.
+    /// Returns the fraction of the change from peak to residual strength after the plastic strain κ, 0 to 1, and its
+    /// derivative.
     #[inline(always)]
     fn progress<R: Real>(&self, kappa: R) -> (R, R) {
         let along = kappa / self.strain;
         let none = kappa.like(0.0);
         match self.decay {
             Decay::Linear => {
-                let done = along.like(1.0).at_most(along); // what is no number stays none
+                let done = along.like(1.0).at_most(along); // a NaN is kept
                 let progress = R::choose(done, along.like(1.0), along);
                 (progress, R::choose(done, none, along.like(1.0 / self.strain)))
             }
@@ -145,7 +146,7 @@ impl SofteningMohrCoulomb {
         }
     }
 
-    /// The pyramid after the plastic strain κ that has grown by `growth` in the step.
+    /// Returns the pyramid after the plastic strain κ, which has grown by `growth` in the step.
     #[inline(always)]
     fn pyramid<R: Real>(&self, kappa: R, growth: R) -> Pyramid<R> {
         let (progress, _) = self.progress(kappa);
@@ -158,21 +159,20 @@ impl SofteningMohrCoulomb {
         Pyramid::new(self.moduli, Slopes { sin_phi, sin_psi }, strength)
     }
 
-    /// The plastic strain of a return, `√(2/3) |dev(τ_trial - τ)|/(2μ)`.
+    /// Returns the plastic strain of a return, `√(2/3) |dev(τ_trial - τ)|/(2μ)`.
     #[inline(always)]
     fn growth<R: Real>(&self, trial: [R; 3], tau: [R; 3]) -> R {
         split(three(|k| trial[k] - tau[k])).2 * ((2.0_f64 / 3.0).sqrt() / (2.0 * self.moduli.mu))
     }
 
-    /// Growth of κ in the step at the reference rate, if there is one.
+    /// Returns the growth of κ in the step at the reference rate, if there is one.
     fn slowest(&self) -> Option<f64> {
         self.rate.map(|rate| self.dt * rate.reference / 3.0_f64.sqrt())
     }
 
-    /// The growth of κ that the return with its own strength makes: by secants between bounds, by halves where these
-    /// leave them. A strength by the rate follows the logarithm of the growth, which may be any of a dozen decades:
-    /// there by halves of the logarithm, until bounds are so near that it looks straight. Not a number where that finds
-    /// none.
+    /// Returns the growth of κ that is consistent with the strength it leads to, by the secant method safeguarded by
+    /// bisection; NaN without convergence. Rate-dependent strength varies with the logarithm of the growth over many
+    /// decades: the logarithm is bisected until the bounds are so close that it is nearly linear.
     #[inline(always)]
     fn solve<R: Real>(&self, trial: [R; 3], kappa: R) -> R {
         let none = kappa.like(0.0);
@@ -188,7 +188,7 @@ impl SofteningMohrCoulomb {
         for _ in 0..EVALUATIONS {
             let made = self.growth(trial, self.pyramid(kappa + growth, growth).return_map(trial).0);
             let gap = made - growth;
-            // Where strength falls faster than stress does, the bounds meet before the two agree to all digits.
+            // If strength decreases faster than stress, the bounds meet before all digits agree.
             let met = high.below(none.like(f64::INFINITY)) & (high - low).at_most(high * 4e-16);
             let agrees = gap.magnitude().at_most(made * AGREED[0] + round_off) | met;
             found = R::choose(sought & agrees, growth, found);
@@ -230,7 +230,7 @@ impl Law for SofteningMohrCoulomb {
         Variable::new("softening_strain", "-"),
     ];
     const STATE: &'static [Variable] = &[Variable::new("plastic_shear_strain", "-")];
-    /// In one function with it Mohr-Coulomb itself takes 3 to 5 % more of a run.
+    /// A shared function would slow Mohr-Coulomb runs by 3 to 5 %.
     const IN_LANES: bool = false;
 
     fn elastic(&self) -> &Elastic {
@@ -251,7 +251,7 @@ impl Law for SofteningMohrCoulomb {
         [&first[..], &last, &[strain]].concat()
     }
 
-    /// ψ is at most φ.
+    /// Returns the law with other parameters; ψ is limited to φ.
     fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self {
         let peak = strength(&parameters[..3]);
         let residual = strength(&parameters[3..6]);
@@ -263,7 +263,7 @@ impl Law for SofteningMohrCoulomb {
         }
     }
 
-    fn at_time_step(&self, dt: f64) -> Option<Self> {
+    fn with_time_step(&self, dt: f64) -> Option<Self> {
         self.rate.map(|_| Self { dt, ..self.clone() })
     }
 
@@ -313,8 +313,8 @@ impl Law for SofteningMohrCoulomb {
         flow.corners.branch()
     }
 
-    /// `A + b ⊗ (I - A C) v/(1 + v · C b)`: A of a surface that stays, b = ∂τ/∂κ at a trial that stays, and
-    /// `v = ⅔ dev Δεᵖ/Δκ`, the direction in which plastic strain makes κ grow.
+    /// Returns `A + b ⊗ (I - A C) v/(1 + v · C b)`: A is the tangent of a fixed surface, b = ∂τ/∂κ at a fixed trial,
+    /// and `v = ⅔ dev Δεᵖ/Δκ` the derivative of κ with respect to plastic strain.
     fn tangent(flow: &SofteningReturn<f64>, moduli: Moduli) -> Tensor {
         let perfect = flow.slopes.tangent(Self::branch(flow), moduli);
         if flow.growth == 0.0 {
@@ -361,8 +361,8 @@ impl Law for SofteningMohrCoulomb {
 }
 
 impl SofteningReturn<f64> {
-    /// `∂τ/∂κ` at a trial that stays, Pa, from `τ = τ_trial - D Σ γ m` and `f = n · τ - 2 c cos φ = 0` of the planes
-    /// that flow: `(n · D m) γ' = n' · τ - 2 (c cos φ)' - n · D m' γ`, `τ' = -D Σ (m γ' + m' γ)`.
+    /// Returns `∂τ/∂κ` at a fixed trial (Pa), from `τ = τ_trial - D Σ γ m` and `f = n · τ - 2 c cos φ = 0` of the
+    /// flowing planes: `(n · D m) γ' = n' · τ - 2 (c cos φ)' - n · D m' γ`, `τ' = -D Σ (m γ' + m' γ)`.
     fn along(&self, moduli: Moduli) -> [f64; 3] {
         let sin_phi = self.slopes.sin_phi;
         let planes: &[Plane] = match self.corners.branch() {
@@ -387,7 +387,7 @@ impl SofteningReturn<f64> {
     }
 }
 
-/// The one or two planes of the pyramid that flow.
+/// One or two planes of the pyramid with plastic flow.
 struct FlowingPlanes<'a> {
     planes: &'a [Plane],
     slopes: Slopes,
@@ -395,17 +395,17 @@ struct FlowingPlanes<'a> {
 }
 
 impl FlowingPlanes<'_> {
-    /// Gradient n of the yield function of a plane.
+    /// Returns the gradient n of the yield function of a plane.
     fn normal(&self, plane: Plane) -> [f64; 3] {
         normal(plane, 1.0 + self.slopes.sin_phi, self.slopes.sin_phi - 1.0)
     }
 
-    /// Direction m of the flow of a plane.
+    /// Returns the flow direction m of a plane.
     fn direction(&self, plane: Plane) -> [f64; 3] {
         normal(plane, 1.0 + self.slopes.sin_psi, self.slopes.sin_psi - 1.0)
     }
 
-    /// Solves `n_a · D Σ_b m_b x_b = right_a`; returns x, of one plane alone with a zero behind it.
+    /// Solves `n_a · D Σ_b m_b x_b = right_a` and returns x; the second component is 0 for one plane.
     fn solve(&self, right: impl Fn(Plane) -> f64) -> [f64; 2] {
         let first = right(self.planes[0]);
         let a = self.entry(0, 0);
@@ -423,7 +423,7 @@ impl FlowingPlanes<'_> {
         ]
     }
 
-    /// `n_a · D m_b`, Pa.
+    /// Returns `n_a · D m_b` (Pa).
     fn entry(&self, a: usize, b: usize) -> f64 {
         dot(
             self.normal(self.planes[a]),
@@ -431,7 +431,7 @@ impl FlowingPlanes<'_> {
         )
     }
 
-    /// Stress D of a strain that has a `direction` for every plane, times a factor.
+    /// Returns the stress D Σ direction · factor over the planes.
     fn stress(&self, direction: impl Fn(Plane) -> [f64; 3], factors: [f64; 2]) -> [f64; 3] {
         let mut strain = [0.0; 3];
         for (&plane, factor) in self.planes.iter().zip(factors) {
@@ -442,7 +442,7 @@ impl FlowingPlanes<'_> {
     }
 }
 
-/// Strength of three `numbers`: φ, ψ, c.
+/// Creates a strength from `numbers`: φ, ψ, c.
 fn strength(numbers: &[f64]) -> Strength {
     Strength {
         friction_angle: numbers[0],
@@ -451,10 +451,10 @@ fn strength(numbers: &[f64]) -> Strength {
     }
 }
 
-/// The larger and the smaller of the two principal stresses that a plane of the pyramid limits.
+/// Indices of the larger and the smaller principal stress of a plane of the pyramid.
 type Plane = (usize, usize);
 
-/// A direction with components in a plane only.
+/// Returns a vector with the given components at the indices of a plane, and 0 elsewhere.
 fn normal((i, j): Plane, larger: f64, smaller: f64) -> [f64; 3] {
     let mut normal = [0.0; 3];
     (normal[i], normal[j]) = (larger, smaller);

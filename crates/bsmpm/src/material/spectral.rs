@@ -7,25 +7,25 @@ use super::MaterialError;
 use crate::real::{Real, three};
 use crate::tensor::Symmetric;
 
-/// Beyond this, squares would overflow; b is without unit, and no meaningful one comes near.
+/// Bound of the components of b, which has no unit; squares of larger numbers might overflow.
 const LARGEST: f64 = 1e100;
-/// Below this an eigenvalue counts as none: its inverse, and the squares of that, would overflow.
+/// Bound below which an eigenvalue counts as zero; the square of its inverse might overflow.
 const SMALLEST: f64 = 1e-100;
-/// Distance of an eigenvalue from 1 up to which the series of its logarithm has 17 digits in seven terms.
+/// Distance of an eigenvalue from 1 up to which seven terms of the logarithm's series give 17 digits.
 const NEAR: f64 = 0.1;
 
-/// Principal values of b and of ε = ½ ln b, descending, with their orthonormal axes.
+/// Principal values of b and of ε = ½ ln b, descending, with orthonormal axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spectrum<R: Real = f64> {
-    /// (-)  eigenvalues of b
+    /// Eigenvalues of b (-).
     pub b: [R; 3],
-    /// (-)  principal Hencky strains
+    /// Principal Hencky strains (-).
     pub eps: [R; 3],
-    below: [R::Mask; 3], // whether the strain of axis 0 is below that of 1, 1 below 2, 0 below 2
+    below: [R::Mask; 3], // whether the strain of axis 0 is below that of 1, of 1 below 2, of 0 below 2
     axes: Axes<R>,
 }
 
-/// An eigenvalue of b, as the sum of a number near it and a difference.
+/// Eigenvalue of b as the sum of a nearby number and a difference.
 #[derive(Clone, Copy)]
 struct EigenvalueSum<R = f64> {
     start: R,
@@ -35,14 +35,14 @@ struct EigenvalueSum<R = f64> {
 /// Unit eigenvectors.
 #[derive(Clone, Copy, Debug)]
 enum Axes<R> {
-    /// x and y turned about z by the angle of this tangent
+    /// Axes x and y rotated about z by the angle of this tangent.
     Plane { tan: R },
-    /// one a row
+    /// Eigenvectors, one per row.
     Solid(solid::Rows<R>),
 }
 
 impl Spectrum {
-    /// `b = Σ_A b_A n_A ⊗ n_A`, `ε_A = ½ ln b_A`; fails unless b is finite and positive definite.
+    /// Decomposes `b = Σ_A b_A n_A ⊗ n_A`, with `ε_A = ½ ln b_A`. Fails unless b is finite and positive definite.
     #[inline(always)]
     pub fn of(b: &Symmetric) -> Result<Self, MaterialError> {
         let [xx, yy, zz, xy, yz, xz] = b.0;
@@ -58,7 +58,7 @@ impl Spectrum {
         Self::of_sums(sums, axes)
     }
 
-    /// Of eigenvalues that are sums of a component of b and a gain.
+    /// Creates the spectrum from eigenvalues as sums.
     #[inline(always)]
     fn of_sums([x, y, z]: [EigenvalueSum; 3], axes: Axes<f64>) -> Result<Self, MaterialError> {
         let principal = [
@@ -69,7 +69,7 @@ impl Spectrum {
         Ok(Self::sorted(principal, axes))
     }
 
-    /// Unit eigenvectors, one a row, in the order of the values.
+    /// Returns the unit eigenvectors, one per row, in the order of the values.
     pub fn axis(&self) -> [[f64; 3]; 3] {
         let axes = match self.axes {
             Axes::Plane { tan } => {
@@ -84,8 +84,7 @@ impl Spectrum {
 }
 
 impl<R: Real> Spectrum<R> {
-    /// The same of a plane and its normal, by its components XX, YY, ZZ, XY; `None` unless all are finite and positive
-    /// definite.
+    /// Decomposes a tensor with the components XX, YY, ZZ, XY; `None` unless all are finite and positive definite.
     #[inline(always)]
     pub fn planar([xx, yy, zz, xy]: [R; 4]) -> Option<Self> {
         let largest = xx.magnitude() + yy.magnitude() + zz.magnitude() + xy.magnitude();
@@ -93,8 +92,8 @@ impl<R: Real> Spectrum<R> {
         Self::admitted(largest, sums, axes)
     }
 
-    /// The same of a tensor of which no plane is principal by its components alone; `None` also where one is, of which
-    /// [`Spectrum::of`] has other bits.
+    /// Decomposes a tensor with nonzero YZ or XZ; `None` also if both are zero in any lane, because the result of
+    /// [`Spectrum::of`] then differs in round-off.
     #[inline(always)]
     pub fn general(b: [R; 6]) -> Option<Self> {
         let [xx, yy, zz, xy, yz, xz] = b.map(R::magnitude);
@@ -106,7 +105,7 @@ impl<R: Real> Spectrum<R> {
         Self::admitted(xx + yy + zz + xy + yz + xz, sums, Axes::Solid(axes))
     }
 
-    /// Of eigenvalues that are sums, of components whose magnitudes add up to `largest`.
+    /// Creates the spectrum from eigenvalues as sums, and the sum `largest` of the magnitudes of the components.
     #[inline(always)]
     fn admitted(largest: R, sums: [EigenvalueSum<R>; 3], axes: Axes<R>) -> Option<Self> {
         let positive = |sum: EigenvalueSum<R>| sum.start.like(SMALLEST).at_most(sum.start + sum.gain);
@@ -114,7 +113,7 @@ impl<R: Real> Spectrum<R> {
         if R::any(!(finite & positive(sums[0]) & positive(sums[1]) & positive(sums[2]))) {
             return None;
         }
-        // Not by a closure: not inlined, it would make a call of every operation between lanes.
+        // A closure might not be inlined, so that each vector operation would be a call.
         let principal = [
             Principal::of_sum(sums[0].start, sums[0].gain),
             Principal::of_sum(sums[1].start, sums[1].gain),
@@ -123,7 +122,7 @@ impl<R: Real> Spectrum<R> {
         Some(Self::sorted(principal, axes))
     }
 
-    /// Ranks the eigenvalues by comparisons without branches, which random points would mispredict.
+    /// Sorts the eigenvalues by comparisons without branches, which random points would mispredict.
     #[inline(always)]
     fn sorted([x, y, z]: [Principal<R>; 3], axes: Axes<R>) -> Self {
         let below = [x.eps.below(y.eps), y.eps.below(z.eps), x.eps.below(z.eps)];
@@ -140,7 +139,7 @@ impl<R: Real> Spectrum<R> {
         }
     }
 
-    /// What belongs to the axes, in the order of the values.
+    /// Permutes numbers of the axes to the order of the values.
     #[inline(always)]
     fn descending(&self, [x, y, z]: [R; 3]) -> [R; 3] {
         let [a, b, c] = self.below;
@@ -155,7 +154,7 @@ impl<R: Real> Spectrum<R> {
         ]
     }
 
-    /// What belongs to the values, in the order of the axes.
+    /// Permutes numbers of the values to the order of the axes.
     #[inline(always)]
     fn by_axis(&self, s: [R; 3]) -> [R; 3] {
         let [a, b, c] = self.below;
@@ -166,8 +165,8 @@ impl<R: Real> Spectrum<R> {
         ]
     }
 
-    /// The tensor that has the principal values `s`, descending as those of b, on the same axes: exactly isotropic if
-    /// they are equal.
+    /// Returns the tensor with the principal values `s`, in the order of those of b, on the same axes; exactly
+    /// isotropic if they are equal.
     #[inline(always)]
     pub fn assemble(&self, s: [R; 3]) -> Symmetric<R> {
         match &self.axes {
@@ -181,10 +180,10 @@ impl<R: Real> Spectrum<R> {
         }
     }
 
-    /// `s₂ I + (s₁ - s₂) n₁ ⊗ n₁ + (s₃ - s₂) n₃ ⊗ n₃`.
+    /// Returns `s₂ I + (s₁ - s₂) n₁ ⊗ n₁ + (s₃ - s₂) n₃ ⊗ n₃`.
     #[inline(always)]
     fn assemble_solid(&self, axes: &[[R; 3]; 3], s: [R; 3]) -> Symmetric<R> {
-        // Not by closures that are given away: see `planar`.
+        // No closures as arguments: see `admitted`.
         let component = |i: usize| self.descending([axes[0][i], axes[1][i], axes[2][i]]);
         let first = s[0] - s[1];
         let third = s[2] - s[1];
@@ -202,7 +201,7 @@ impl<R: Real> Spectrum<R> {
     }
 }
 
-/// An eigenvalue and its Hencky strain.
+/// Eigenvalue and its Hencky strain.
 #[derive(Clone, Copy)]
 struct Principal<R> {
     b: R,
@@ -210,7 +209,7 @@ struct Principal<R> {
 }
 
 impl<R: Real> Principal<R> {
-    /// `ε = artanh(e/(2 + e))`, e = b - 1 without the rounding of b; as a series where soils are, else by the
+    /// Returns `ε = artanh(e/(2 + e))` with e = b - 1 without the rounding of b; by a series near b = 1, else by the
     /// logarithm.
     #[inline(always)]
     fn of_sum(start: R, gain: R) -> Self {
@@ -225,7 +224,7 @@ impl<R: Real> Principal<R> {
 }
 
 impl Principal<f64> {
-    /// The same; fails unless it is positive.
+    /// Returns the same, and fails unless the eigenvalue is positive.
     #[inline(always)]
     fn of(start: f64, gain: f64) -> Result<Self, MaterialError> {
         let b = start + gain;
@@ -237,7 +236,7 @@ impl Principal<f64> {
     }
 }
 
-/// `½ (ln b + r/b)`, b the rounded sum of `start` and `gain`, r what the rounding lost (Knuth's two-sum).
+/// Returns `½ (ln b + r/b)`, with b the rounded sum of `start` and `gain`, and r its rounding error (Knuth's two-sum).
 #[cold]
 fn logarithm([start, gain]: [f64; 2]) -> f64 {
     let b = start + gain;
@@ -246,7 +245,7 @@ fn logarithm([start, gain]: [f64; 2]) -> f64 {
     0.5 * (b.ln() + lost / b)
 }
 
-/// `z + z³/3 + z⁵/5 + ..` to the last digit for |z| <= NEAR/(2 - NEAR).
+/// Returns `z + z³/3 + z⁵/5 + ..`, to the last digit for |z| <= NEAR/(2 - NEAR).
 #[inline(always)]
 fn artanh<R: Real>(z: R) -> R {
     let s = z * z;
@@ -254,7 +253,7 @@ fn artanh<R: Real>(z: R) -> R {
     z + z * s * (s * (s * (s * (s * tail + 1.0 / 9.0) + 1.0 / 7.0) + 1.0 / 5.0) + 1.0 / 3.0)
 }
 
-/// Eigenvalues of a tensor of a plane and its normal, as sums of a component and a gain, and its axes.
+/// Returns the eigenvalues of a tensor with the axis z, as sums, and the axes.
 #[inline(always)]
 fn plane<R: Real>([xx, yy, zz]: [R; 3], xy: R) -> ([EigenvalueSum<R>; 3], Axes<R>) {
     let tan = tangent((xx - yy) * 0.5, xy);
@@ -268,8 +267,8 @@ fn plane<R: Real>([xx, yy, zz]: [R; 3], xy: R) -> ([EigenvalueSum<R>; 3], Axes<R
     ([x, y, z], Axes::Plane { tan })
 }
 
-/// `tan θ = g/(d ± √(d² + g²))` of the smaller of the two rotations that make a pair of axes principal, for half the
-/// difference d of the diagonal and the coupling g, the sign that of d.
+/// Returns `tan θ = g/(d ± √(d² + g²))` of the smaller rotation to the principal axes of a pair, for half the
+/// difference d of the diagonal entries and the off-diagonal entry g; the sign is that of d.
 #[inline(always)]
 fn tangent<R: Real>(half: R, coupling: R) -> R {
     let sum = half.magnitude() + (half * half + coupling * coupling).root();
@@ -277,7 +276,7 @@ fn tangent<R: Real>(half: R, coupling: R) -> R {
     R::choose(zero.below(sum), coupling / sum.signed(half), zero)
 }
 
-/// A rotation of a pair of axes.
+/// Rotation of a pair of axes.
 struct Turn<R = f64> {
     cos: R,
     sin: R,

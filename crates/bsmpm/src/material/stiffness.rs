@@ -8,28 +8,28 @@ use crate::kinematics::Gradient;
 use crate::tensor::Tensor;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Share of the elastic stiffness. Less takes fewer iterations where steps are small, and more where they are large
+/// Fraction of the elastic stiffness. Smaller values need fewer iterations in small steps, and more in large ones
 /// (decisions of the manual, 2026-11-21).
 const ELASTIC: f64 = 0.1;
-/// Plastic strain of a response below which it counts as elastic: what rests on the yield surface is beyond it by
-/// round-off or not, and the stiffness should not depend on that.
+/// Plastic strain below which a response counts as elastic. A stress on the yield surface exceeds it or not by
+/// round-off, which must not change the stiffness.
 const FLOW: f64 = 1e-10;
-/// 1/sqrt(6)
+/// 1/sqrt(6).
 const FRAC_1_SQRT_6: f64 = 0.408_248_290_463_863;
-/// Orthonormal principal strains without volume.
+/// Orthonormal basis of isochoric principal strains.
 const SHAPES: [[f64; 3]; 2] = [
     [FRAC_1_SQRT_2, -FRAC_1_SQRT_2, 0.0],
     [FRAC_1_SQRT_6, FRAC_1_SQRT_6, -2.0 * FRAC_1_SQRT_6],
 ];
 
-/// A stiffness as a linear map of the symmetric part of a displacement gradient, in the axes of the trial b.
+/// Stiffness as a linear map of the symmetric part of a displacement gradient, in the axes of the trial b.
 #[derive(Clone, Copy, Debug)]
 pub struct Stiffness {
-    /// (-)  rows are the axes of b
+    /// Axes of b, one per row (-).
     axes: Tensor,
-    /// Pa  principal stresses per principal strains, symmetric, positive
+    /// Principal stresses per principal strain, symmetric positive definite (Pa).
     principal: Tensor,
-    /// Pa  shear moduli of the pairs of axes 12, 23 and 13, positive
+    /// Shear moduli of the pairs of axes 12, 23 and 13, positive (Pa).
     shear: [f64; 3],
 }
 
@@ -58,12 +58,12 @@ impl Stiffness {
         }
     }
 
-    /// The change of stress in Pa for a displacement gradient of a grid's dimension, one unit gradient after the other:
-    /// in the axes of b `D_AB ε_BB` and `2 G_AB ε_AB`, ε its symmetric part. `seen` is what the grid sees of a stress,
-    /// the adjoint of what makes its gradient a tensor.
+    /// Returns the stresses of all unit displacement gradients of the geometry (Pa). In the axes of b they are
+    /// `D_AB ε_BB` and `2 G_AB ε_AB`, with the symmetric part ε of the gradient. `seen` reduces a stress to the
+    /// components that do work on gradients, the adjoint of the conversion of gradients to tensors.
     ///
-    /// `Σ D_AB v_A ⊗ v_B + Σ G_AB w_AB ⊗ w_AB`, v_A what it sees of `n_A n_Aᵀ`, w_AB of `n_A n_Bᵀ + n_B n_Aᵀ`: so that
-    /// no unit has to be turned to the axes of b and its stress back.
+    /// The map is `Σ D_AB v_A ⊗ v_B + Σ G_AB w_AB ⊗ w_AB`, with v_A the reduced `n_A n_Aᵀ` and w_AB the reduced
+    /// `n_A n_Bᵀ + n_B n_Aᵀ`, so that unit gradients and stresses need no rotation.
     #[inline(always)]
     pub fn moduli<G: Gradient<D>, const D: usize>(&self, seen: impl Fn(&Tensor) -> G) -> G::Moduli {
         let n = &self.axes;
@@ -89,8 +89,8 @@ impl Stiffness {
 }
 
 impl Response {
-    /// The stiffness of a response that yields, for use with many gradients; `None` where it is the linear elastic one,
-    /// or as good as.
+    /// Returns the stiffness of a yielding response for use with many gradients; `None` if it equals the linear elastic
+    /// one, except for round-off.
     #[inline]
     pub fn yielding(&self) -> Option<Stiffness> {
         if self.branch() == Branch::Elastic {
@@ -103,12 +103,12 @@ impl Response {
     }
 }
 
-/// A modulus of the plastic response, with a share of the elastic one.
+/// Adds the fraction of the elastic modulus to a plastic modulus.
 fn stiffened(plastic: f64, elastic: f64) -> f64 {
     plastic + ELASTIC * (elastic - plastic)
 }
 
-/// The symmetric matrix [[a, c], [c, b]] without its negative eigenvalues.
+/// Removes the negative eigenvalue, if any, from the symmetric matrix [[a, c], [c, b]].
 fn positive([a, b, c]: [f64; 3]) -> [f64; 3] {
     let mean = 0.5 * (a + b);
     let radius = (0.25 * (a - b).powi(2) + c * c).sqrt();

@@ -4,32 +4,33 @@ use super::Response;
 use crate::tensor::Tensor;
 
 impl Response {
-    /// The tangent of this response, for use with many gradients.
+    /// Returns the tangent of this response for use with many gradients.
     #[inline]
     pub fn tangent(&self) -> Tangent {
         Tangent::of(self)
     }
 
-    /// The change dτ in Pa for a spatial gradient `l = ∂(δu)/∂x` of a displacement increment: see [`Tangent::apply`].
+    /// Returns the change dτ (Pa) for a spatial gradient `l = ∂(δu)/∂x` of a displacement increment, see
+    /// [`Tangent::apply`].
     pub fn linearise(&self, l: &Tensor) -> Tensor {
         self.tangent().apply(l)
     }
 }
 
-/// dτ as a linear map of the spatial gradient of the displacement increment, in the axes of the trial b.
+/// Linear map from the spatial gradient of a displacement increment to dτ, in the axes of the trial b.
 #[derive(Clone, Copy, Debug)]
 pub struct Tangent {
-    /// (-)  rows are the axes of b
+    /// Axes of b, one per row (-).
     axes: Tensor,
-    /// (-)  eigenvalues of the trial b
+    /// Eigenvalues of the trial b (-).
     b: [f64; 3],
-    /// Pa  `D_AB = ∂τ_A/∂ε_B` of principal values
+    /// Derivatives `D_AB = ∂τ_A/∂ε_B` of principal values (Pa).
     principal: Tensor,
-    /// Pa  `(τ_A - τ_B)/(b_A - b_B)` for the pairs 12, 23 and 13
+    /// Differences `(τ_A - τ_B)/(b_A - b_B)` of the pairs 12, 23 and 13 (Pa).
     chord: [f64; 3],
 }
 
-/// Pairs of axes, in the order of [`Tangent`]'s chords.
+/// Pairs of axes, in the order of the pairs in [`Tangent`].
 pub(super) const PAIRS: [(usize, usize); 3] = [(0, 1), (1, 2), (0, 2)];
 
 impl Tangent {
@@ -43,8 +44,8 @@ impl Tangent {
         }
     }
 
-    /// `dτ_AA = Σ_B D_AB l_BB`, `dτ_AB = (τ_A - τ_B)/(b_A - b_B) (l_AB b_B + b_A l_BA)`, in the eigenbasis of the trial
-    /// b.
+    /// Returns dτ for the spatial gradient `l`: `dτ_AA = Σ_B D_AB l_BB`,
+    /// `dτ_AB = (τ_A - τ_B)/(b_A - b_B) (l_AB b_B + b_A l_BA)` in the axes of the trial b.
     pub fn apply(&self, l: &Tensor) -> Tensor {
         let l = self.axes * l * self.axes.transpose();
         let mut d_tau = Tensor::from_diagonal(&(self.principal * l.diagonal()));
@@ -57,7 +58,7 @@ impl Tangent {
     }
 }
 
-/// `(τ_A - τ_B)/(b_A - b_B) = (τ_A - τ_B)/(ε_A - ε_B) · ln(1 + x)/(2 x b_B)`, x = b_A/b_B - 1.
+/// Returns `(τ_A - τ_B)/(b_A - b_B) = (τ_A - τ_B)/(ε_A - ε_B) · ln(1 + x)/(2 x b_B)`, x = b_A/b_B - 1.
 ///
 /// The second factor tends to 1/(2b) for equal eigenvalues.
 fn secant_modulus(response: &Response, a: usize, b: usize) -> f64 {
@@ -67,7 +68,7 @@ fn secant_modulus(response: &Response, a: usize, b: usize) -> f64 {
     slope(response, a, b) * log / (2.0 * trial.b[b])
 }
 
-/// `(τ_A - τ_B)/(ε_A - ε_B)` in Pa, as the law reports it.
+/// Returns `(τ_A - τ_B)/(ε_A - ε_B)` of the law (Pa).
 pub(super) fn slope(response: &Response, a: usize, b: usize) -> f64 {
     let tau = response.tau;
     let eps = response.trial.eps;

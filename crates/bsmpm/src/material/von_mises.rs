@@ -5,7 +5,8 @@ use super::{Elastic, Moduli};
 use crate::real::{Real, three};
 use crate::tensor::Tensor;
 
-/// Elastic inside `q = √(3/2) |s| ≤ σ_y + H κ`, s the deviator of τ and κ the equivalent plastic strain; associated.
+/// Associated plasticity with the elastic domain `q = √(3/2) |s| ≤ σ_y + H κ`: s is the deviator of τ, κ the equivalent
+/// plastic strain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VonMises {
     elastic: Elastic,
@@ -14,21 +15,22 @@ pub struct VonMises {
     hardening: f64,
 }
 
-/// What a return leaves.
+/// Return data.
 #[derive(Clone, Copy, Debug)]
 pub struct VonMisesReturn<R> {
-    /// (-)  principal deviator of the trial over its norm
+    /// Principal deviator of the trial divided by its norm (-).
     direction: [R; 3],
-    /// (-)  q after the return over that of the trial
+    /// Ratio of q after the return to that of the trial (-).
     kept: R,
-    /// (-)  dq of the return over dq of the trial
+    /// Derivative of q after the return with respect to q of the trial (-).
     followed: f64,
-    /// (-)  growth of κ
+    /// Growth of κ (-).
     growth: R,
 }
 
 impl VonMises {
-    /// A law with the uniaxial yield stress σ_y > 0 (Pa) and the hardening modulus H ≥ 0 (Pa), dσ_y per plastic strain.
+    /// Creates a law with the uniaxial yield stress σ_y > 0 (Pa) and the hardening modulus H ≥ 0 (Pa), dσ_y per plastic
+    /// strain.
     pub fn new(elastic: Elastic, yield_stress: f64, hardening: f64) -> Self {
         let moduli = elastic.moduli();
         Self {
@@ -39,7 +41,7 @@ impl VonMises {
         }
     }
 
-    /// The stress that q reaches after the plastic strain of `state`, Pa.
+    /// Returns the yield stress for the plastic strain in `state` (Pa).
     #[inline(always)]
     fn strength<R: Real>(&self, state: &[R]) -> R {
         state[0] * self.hardening + self.yield_stress
@@ -68,13 +70,13 @@ impl Law for VonMises {
         Self::new(elastic, parameters[0], parameters[1])
     }
 
-    /// `f = q - σ_y - H κ`.
+    /// Returns `f = q - σ_y - H κ`.
     #[inline(always)]
     fn yield_function<R: Real>(&self, tau: [R; 3], state: &[R]) -> R {
         split(tau).2 * 1.5_f64.sqrt() - self.strength(state)
     }
 
-    /// `Δκ = (q_trial - σ_y - H κ)/(3μ + H)`, `s = s_trial (1 - 3μ Δκ/q_trial)`.
+    /// Returns the stress along the deviator: `Δκ = (q_trial - σ_y - H κ)/(3μ + H)`, `s = s_trial (1 - 3μ Δκ/q_trial)`.
     #[inline(always)]
     fn return_map<R: Real>(&self, trial: [R; 3], state: &[R]) -> Projection<R, VonMisesReturn<R>> {
         let (mean, deviator, norm) = split(trial);
@@ -96,7 +98,7 @@ impl Law for VonMises {
         }
         let shear = 3.0 * self.moduli.mu;
         let growth = (q - strength) / (shear + self.hardening);
-        // Not 1 - 3μ Δκ/q, which cancels where the trial is far outside.
+        // The form 1 - 3μ Δκ/q would cancel for trials far outside.
         let kept = (q * self.hardening + strength * shear) / (q * (shear + self.hardening));
         let tau = three(|k| R::choose(yields, mean + kept * deviator[k], trial[k]));
         let direction = three(|k| deviator[k] / norm);
@@ -117,7 +119,7 @@ impl Law for VonMises {
         Branch::Face
     }
 
-    /// `K I ⊗ I + 2μ (r (I₄ - ⅓ I ⊗ I) + (r' - r) n ⊗ n)`: r = q/q_trial along the surface, r' = dq/dq_trial across it.
+    /// Returns `K I ⊗ I + 2μ (r (I₄ - ⅓ I ⊗ I) + (r' - r) n ⊗ n)` with r = q/q_trial and r' = dq/dq_trial.
     fn tangent(flow: &VonMisesReturn<f64>, moduli: Moduli) -> Tensor {
         let VonMisesReturn {
             direction: n,
@@ -131,7 +133,7 @@ impl Law for VonMises {
         })
     }
 
-    /// All differences are kept alike.
+    /// Returns 2μ r: the return scales all stress differences equally.
     fn secant_modulus(flow: &VonMisesReturn<f64>, moduli: Moduli, _tau: f64, _eps: f64) -> f64 {
         2.0 * moduli.mu * flow.kept
     }

@@ -7,15 +7,15 @@ use crate::model::Model;
 use crate::parallel::Halo;
 use crate::points::Points;
 
-/// Part of the window that has to be full.
+/// Fraction of a cell's volume that the points behind the front must fill.
 const FULL: f64 = 0.5;
 
-/// Points of the lowest row that are in one cell: where along axis 0 (m), and volume (m^D).
+/// Points of the lowest row in one cell: coordinate along axis 0 (m) and volume (m^D).
 type CellPoints = Vec<[f64; 2]>;
 
-/// The body's front (m): the farthest point of the lowest occupied row of cells such that the points from it back by
-/// the length of its cell, in this cell and the one before, fill half of a cell. A few loose points run ahead of it.
-/// Rows count along the last axis, the front along axis 0; 0 where nothing is so full.
+/// Returns the run-out front along axis 0 (m): the farthest point of the lowest occupied row of cells such that the
+/// points from it back by the length of its cell, in this cell and the one before, fill half of a cell. A few loose
+/// points may be ahead of it. Rows count along the last axis. Returns 0 if no cell is half full.
 pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> f64 {
     let grid = &model.grid;
     let row = lowest_row(grid, points, halo);
@@ -30,7 +30,7 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
             held[cell[0] * strands + strand].push([points.x[p][0], volume]);
         }
     }
-    // Of a cell one rank alone has points.
+    // Only one rank has points in a cell.
     let own = held.iter().flat_map(|points| {
         let volume = points.iter().map(|[_, volume]| volume).sum::<f64>();
         [points.len() as f64, volume]
@@ -42,7 +42,7 @@ pub fn front<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
         if front > 0.0 && (at + 1).is_multiple_of(strands) {
             break;
         }
-        // Copies of a breakpoint bound cells without length, which hold nothing.
+        // Skips cells of zero length between the copies of a breakpoint.
         let before = (0..at / strands)
             .rev()
             .find(|&column| grid.axes()[0].has_length(column));
@@ -80,7 +80,7 @@ fn lowest_row<const D: usize>(grid: &Grid<D>, points: &Points<D>, halo: &dyn Hal
     grid.axes()[D - 1].cell_of(-lowest[0]).unwrap_or(0)
 }
 
-/// The points of some cells, on every rank in the order of their places.
+/// Returns the points of some cells in ascending order on every rank. One reduction over all ranks.
 fn of_all_ranks(held: &[CellPoints], sums: &[f64], cells: &[Option<usize>], halo: &dyn Halo) -> CellPoints {
     let mut numbers = Vec::new();
     for &cell in cells.iter().flatten() {
@@ -97,7 +97,8 @@ fn of_all_ranks(held: &[CellPoints], sums: &[f64], cells: &[Option<usize>], halo
     all
 }
 
-/// The farthest of the points, in order, such that those from it back by `length` have the volume that is wanted.
+/// Returns the farthest of the ordered `points` such that the points from it back by `length` (m) have the volume
+/// `wanted`.
 fn end_of_full(points: &CellPoints, length: f64, wanted: f64) -> Option<f64> {
     let full = (0..points.len()).rev().find(|&end| {
         let x = points[end][0];

@@ -9,39 +9,39 @@ use crate::tensor::Vector;
 use crate::water::flow::Flow;
 use std::collections::BTreeMap;
 
-/// Ratio of two permeabilities from which the flow changes with the place of their interface.
+/// Ratio of two permeabilities above which the position of their interface affects the flow.
 const UNLIKE: f64 = 3.0;
 
-/// The farthest that an interface has left its line, in cells; `None` where there is no such interface.
+/// Largest distance between an interface and its initial grid line, in cells; `None` if there is no such interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct InterfaceShift {
-    /// of two materials that meet on a C0 line
+    /// Interfaces of two materials on a C0 line (a repeated breakpoint).
     pub stress: Option<f64>,
-    /// of two materials with unlike permeabilities that meet on a grid line
+    /// Interfaces on a grid line of two materials whose permeabilities differ by a factor of 3 or more.
     pub water: Option<f64>,
 }
 
-/// A piece of a grid line as long as a cell, and one side of it.
+/// One side of a piece of a grid line as long as a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct LineSide {
     axis: usize,
-    /// cell below the line along the axis
+    /// Cell below the line along the axis.
     below: usize,
-    /// numbers of the cells along the other axes, as one
+    /// Combined number of the cells along the other axes.
     across: usize,
     is_above: bool,
 }
 
-/// The point of a material that was nearest to a piece on one side.
+/// Point of a material that was initially nearest to one side of a line piece.
 #[derive(Clone, Copy, Debug)]
 struct Neighbour {
-    distance: f64, // m  from the line at the start
-    moved: f64,    // cells  across the line
+    distance: f64, // m, initial distance from the line
+    moved: f64,    // cells, displacement across the line
     is_c0: bool,
 }
 
 impl Neighbour {
-    /// The nearer of both; of two as near the one that has moved farther.
+    /// Returns the nearer of the two; between equal distances, the one with the larger displacement.
     fn nearer(self, other: Self) -> Self {
         let is_nearer = other.distance < self.distance;
         let is_as_near = other.distance == self.distance && other.moved > self.moved;
@@ -49,10 +49,11 @@ impl Neighbour {
     }
 }
 
-/// By side of a piece and number of a material.
+/// Nearest points by side of a line piece and number of the material.
 type Neighbours = BTreeMap<(LineSide, usize), Neighbour>;
 
-/// Of the points of all ranks. One gathering. Points belong to the cell in which they were at the start.
+/// Returns the shift over the points of all ranks, which count for the cell in which they were initially. One gathering
+/// over all ranks.
 pub fn shift<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> InterfaceShift {
     let flow = model.water.as_ref().and_then(|water| water.flow.as_ref());
     let mut message = Vec::new();
@@ -99,7 +100,7 @@ pub fn shift<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, halo: &
     found
 }
 
-/// Permeability of a material along an axis, where water flows in it.
+/// Returns the permeability of a material along an axis, if seepage is computed in it.
 fn permeability<const D: usize>(flow: Option<&Flow<D>>, material: usize, axis: usize) -> Option<f64> {
     let soil = flow?.soils.get(material)?.as_ref()?;
     Some(soil.permeability.as_ref()?.along[axis])
@@ -112,7 +113,7 @@ fn keep(all: &mut Neighbours, side: LineSide, material: usize, neighbour: Neighb
     all.insert((side, material), nearest);
 }
 
-/// Of the points of this rank, in the half of a cell next to each line.
+/// Returns the nearest points of this rank, which were within half a cell of their line.
 fn neighbours<K, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Neighbours {
     let grid = &model.grid;
     let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
@@ -155,13 +156,14 @@ fn neighbours<K, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Nei
     found
 }
 
-/// A line inside the grid.
+/// Grid line inside the grid.
 struct InnerLine {
     below: usize, // cell
     is_c0: bool,
 }
 
-/// The line above or below a cell. Between the cells at a C0 line there are q - 1 or more without length.
+/// Returns the line above or below a cell, if it is inside the grid. Between the cells at a C0 line there are q - 1 or
+/// more cells of zero length.
 fn line_beside(knots: &KnotVector, cell: usize, is_upper: bool) -> Option<InnerLine> {
     let [below, above] = if is_upper {
         let mut others = cell + 1..knots.cells();

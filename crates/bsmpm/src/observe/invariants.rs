@@ -4,27 +4,27 @@ use crate::material::Material;
 use crate::points::Points;
 use crate::tensor::Symmetric;
 
-/// Pa  mean normal stress, positive in compression: -tr(sigma)/3.
+/// Returns the mean normal stress, positive in compression: -tr(sigma)/3 (Pa).
 pub fn pressure(sigma: &Symmetric) -> f64 {
     -sigma.0[..3].iter().sum::<f64>() / 3.0
 }
 
-/// Pa  deviatoric stress: q = sqrt(3/2 s:s).
+/// Returns the deviatoric stress q = sqrt(3/2 s:s) (Pa).
 pub fn deviatoric(sigma: &Symmetric) -> f64 {
     let [xx, yy, zz, xy, yz, xz] = sigma.0;
     let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
     (0.5 * normal + 3.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
 }
 
-/// Principal values, descending.
+/// Returns the principal values in descending order.
 pub fn principal(tensor: &Symmetric) -> [f64; 3] {
     let mut values: [f64; 3] = tensor.full().symmetric_eigenvalues().into();
     values.sort_by(|a, b| b.total_cmp(a));
     values
 }
 
-/// Deviatoric part of a point's logarithmic strain since the start, elastic and plastic: sqrt(2/3 e:e), e the deviator
-/// of ln V, V^2 = F F^T.
+/// Returns the deviatoric part of a point's total logarithmic strain since the start: sqrt(2/3 e:e), e the deviator of
+/// ln V, V^2 = F F^T (-).
 pub fn deviatoric_strain<const D: usize>(points: &Points<D>, p: usize) -> f64 {
     let F = points.F.at(p);
     let strains = principal(&Symmetric::of(&(F * F.transpose()))).map(|square| 0.5 * square.ln());
@@ -32,13 +32,13 @@ pub fn deviatoric_strain<const D: usize>(points: &Points<D>, p: usize) -> f64 {
     (strains.iter().map(|strain| (strain - mean).powi(2)).sum::<f64>() / 1.5).sqrt()
 }
 
-/// kg/m3  present density of a point.
+/// Returns the current density of a point (kg/m3).
 pub fn density<const D: usize>(points: &Points<D>, p: usize) -> f64 {
     points.mass[p] / (points.volume[p] * points.F.at(p).determinant())
 }
 
-/// Mobilised strength of a point, see [`Material::mobilised`](crate::material::Material::mobilised), by the stress that
-/// its law has been asked for: the Kirchhoff stress of the dilation that it has felt.
+/// Returns the mobilised strength of a point, see [`Material::mobilised`](crate::material::Material::mobilised). It is
+/// computed from the stress that the law returned: the Kirchhoff stress with the volume ratio J-bar.
 pub fn mobilised<const D: usize>(materials: &[Material], points: &Points<D>, p: usize) -> f64 {
     let law = materials[usize::from(points.material[p])].at(points.height(p));
     let dilation = points.F.at(p).determinant() * points.dilation_of(p);

@@ -12,25 +12,25 @@ use crate::tensor::Vector;
 use crate::threads;
 use nalgebra::{Matrix4, Vector4};
 
-/// Root mean squares of a stress about its smooth parts.
+/// Root mean square of the difference between the stress and two smooth approximations of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Noise {
-    /// about S sigma, the mass-weighted map to the nodes and back (Eqs 16-18)
+    /// About S sigma, the weighted average that is mapped to the nodes and back (Eqs 16-18).
     pub about_average: f64,
-    /// about the least-squares plane through the points of the cell and its neighbours
+    /// About the least-squares plane through the points of the cell and its neighbours.
     pub about_plane: f64,
 }
 
-/// Unknowns of a plane in up to three dimensions.
+/// Number of coefficients of a plane in three dimensions.
 const MOST: usize = 4;
-/// Numbers of the moments at a node: t t^T and t sigma.
+/// Count of numbers in the moments at a node: t t^T and t sigma.
 const WIDTH: usize = MOST * MOST + MOST;
-/// Determinant of the moments, relative to points spread over cells, below which they span no plane.
+/// Determinant of the moments, relative to points spread over cells, below which they do not define a plane.
 const SINGULAR: f64 = 1e-9;
 
-/// Noise of component `component` (XX YY ZZ XY YZ XZ) of the Cauchy stress over all points, relative to the mean of its
-/// absolute value; zero without stress. The points must be sorted by cell. The plane runs through all points in the
-/// support of the cell's middle node: for quadratic splines these are the cell and its 3^D - 1 neighbours.
+/// Returns the noise of component `component` (XX YY ZZ XY YZ XZ) of the Cauchy stress over all points, relative to the
+/// mean of its absolute value; zero without stress. The points must be sorted by cell. The plane is fitted to all
+/// points in the support of the cell's middle node: for quadratic splines, the cell and its 3^D - 1 neighbours.
 pub fn stress_noise<const D: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
@@ -53,7 +53,7 @@ pub fn stress_noise<const D: usize>(
     })
 }
 
-/// Noise of the pressure -tr(sigma)/3, Pa, over the points of a part.
+/// Returns the noise of the pressure -tr(sigma)/3 over the points of a part (Pa).
 pub fn pressure_noise<const D: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
@@ -64,11 +64,11 @@ pub fn pressure_noise<const D: usize>(
     Ok(Squares::of(grid, points, part, weighting, &|p| pressure(points, p), halo)?.noise(1.0))
 }
 
-/// Part of Young's modulus up to which a pressure is the rounding of F: what flies freely has no other.
+/// Fraction of Young's modulus below which a pressure is round-off of F, as in material in free flight.
 const ROUNDING: f64 = 1e-13;
 
-/// Noise of the pressure over all points, relative to the mean of its magnitude; zero where that is the rounding of
-/// material with Young's modulus `young`, Pa.
+/// Returns the noise of the pressure over all points, relative to its mean absolute value. Returns zero if the mean is
+/// round-off for material with Young's modulus `young` (Pa).
 pub fn relative_pressure_noise<const D: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
@@ -84,12 +84,13 @@ pub fn relative_pressure_noise<const D: usize>(
     })
 }
 
-/// -tr(sigma)/3 of a point, Pa.
+/// Returns -tr(sigma)/3 of a point (Pa).
 pub(super) fn pressure<const D: usize>(points: &Points<D>, p: usize) -> f64 {
     -points.sigma.at(p).0[..3].iter().sum::<f64>() / 3.0
 }
 
-/// Means over the points of a part of a stress and of its squared distances from its smooth parts.
+/// Means over the points of a part: the absolute value of a stress, and its squared differences from the two
+/// approximations.
 struct Squares {
     mean: f64, // of the absolute value
     average: f64,
@@ -156,7 +157,7 @@ fn averaged<const D: usize>(
     transfer::to_points(shape, &nodal, |_, [average]| average)
 }
 
-/// Terms 1, x, y, .. of a plane, about the middle of `cell` and in units of it.
+/// Returns the terms 1, x, y, ... of a plane at `x`, measured from the centre of `cell` in units of the cell.
 fn terms<const D: usize>(grid: &Grid<D>, cell: &[usize; D], x: &Vector<D>) -> [f64; MOST] {
     let (lower, size) = grid.cell_box(cell);
     let mut terms = [1.0, 0.0, 0.0, 0.0];
@@ -166,11 +167,11 @@ fn terms<const D: usize>(grid: &Grid<D>, cell: &[usize; D], x: &Vector<D>) -> [f
     terms
 }
 
-/// Coefficients of the least-squares plane of every patch.
+/// Returns the coefficients of the least-squares plane of every patch. One exchange with the neighbours.
 ///
-/// Sums of t t^T and t sigma are taken at every node over the points in its support, so that one exchange gives every
-/// cell the points of its neighbours on other ranks. A node belongs to the cell whose middle node it is, if that has a
-/// length. Where a stress may jump, at a breakpoint repeated q times, no function reaches across.
+/// The sums of t t^T and t sigma are formed at every node over the points in its support, so one exchange gives every
+/// cell the points of its neighbours on other ranks. A node belongs to the cell (with a length) whose middle node it
+/// is. No function extends across a breakpoint of multiplicity q, where the stress may be discontinuous.
 fn planes<const D: usize>(
     grid: &Grid<D>,
     shape: &Shape<D>,
@@ -214,7 +215,7 @@ fn planes<const D: usize>(
     })
 }
 
-/// Scale and shift by which the [`terms`] of one cell become those of another: t' = scale t + shift.
+/// Returns scale and shift that convert the [`terms`] of one cell to those of another: t' = scale t + shift.
 fn between<const D: usize>(grid: &Grid<D>, from: &[usize; D], to: &[usize; D]) -> [[f64; 2]; MOST] {
     let (lower, size) = grid.cell_box(from);
     let (other, length) = grid.cell_box(to);
@@ -226,8 +227,10 @@ fn between<const D: usize>(grid: &Grid<D>, from: &[usize; D], to: &[usize; D]) -
     change
 }
 
-/// Adds the moments of points to those of a cell with other terms: sums of products of t' follow from those of t.
+/// Adds moments in the terms t of one cell to the moments in the terms t' of another.
 fn add_moved(own: &[f64; WIDTH], change: &[[f64; 2]; MOST], sum: &mut [f64]) {
+    // With t'_i = a t_i + d, t'_j = b t_j + e and t_0 = 1, the sum of t'_i t'_j is a (b S_ij + e S_i0) + d (b S_0j + e
+    // S_00), where S_ij is the sum of t_i t_j.
     for (i, [a, d]) in change.iter().enumerate() {
         for (j, [b, e]) in change.iter().enumerate() {
             sum[i * MOST + j] += a * (b * own[i * MOST + j] + e * own[i * MOST]) + d * (b * own[j] + e * own[0]);
@@ -245,7 +248,7 @@ fn add_moments(t: &[f64; MOST], stress: f64, sum: &mut [f64]) {
     }
 }
 
-/// Least squares from the moments; the mean where the points do not span a plane.
+/// Solves the least-squares problem from the moments; returns the mean if the points do not define a plane.
 fn fit<const D: usize>(sum: &[f64]) -> [f64; MOST] {
     let mut matrix = Matrix4::from_row_slice(&sum[..MOST * MOST]);
     let right = Vector4::from_column_slice(&sum[MOST * MOST..]);

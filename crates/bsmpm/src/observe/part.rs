@@ -3,22 +3,22 @@
 use crate::points::Points;
 use std::ops::Range;
 
-/// A part of all points.
+/// Subset of the material points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Part {
-    /// All of them.
+    /// All points.
     #[default]
     Whole,
-    /// Those that carry the number of a material.
+    /// Points with the number of a material.
     Material(u16),
-    /// Those with these ids: a body.
+    /// Points with these ids: a body.
     Ids(Range<u64>),
-    /// Those of a part that are between two corners now, m from the grid's lower corner; a point at a side is.
+    /// Points of another part that are now between two corners (m, from the grid's lower corner), sides included.
     Within(Box<Part>, [[f64; 3]; 2]),
 }
 
 impl Part {
-    /// Whether a point is of the part.
+    /// Returns whether a point belongs to the part.
     #[inline]
     pub fn holds<const D: usize>(&self, points: &Points<D>, p: usize) -> bool {
         match self {
@@ -32,7 +32,7 @@ impl Part {
         }
     }
 
-    /// The points of the part.
+    /// Iterates over the points of the part.
     pub fn of<'a, const D: usize>(&'a self, points: &'a Points<D>) -> impl Iterator<Item = usize> + Clone + 'a {
         (0..points.len()).filter(|&p| self.holds(points, p))
     }

@@ -9,34 +9,35 @@ use crate::points::Points;
 use crate::tensor::Vector;
 use nalgebra::{Matrix4, Vector4};
 
-/// Terms 1, x, y, .. of a plane in up to three dimensions.
+/// Number of terms 1, x, y, ... of a plane in three dimensions.
 const TERMS: usize = 4;
-/// Products of two of them.
+/// Number of products of two terms.
 const PRODUCTS: usize = TERMS * TERMS;
-/// Determinant of the moments, relative to points spread over cells, below which they span no plane.
+/// Determinant of the moments, relative to points spread over cells, below which they do not define a plane.
 const SINGULAR: f64 = 1e-6;
 
-/// Sizes of a point that a surface may lie away from it.
+/// Largest distance between a surface and the nearest point, in sizes of the point.
 const CORNER: f64 = 2.0;
 
-/// Which places of points are compared with the places that are asked for.
+/// Configuration in which positions are given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Configuration {
-    /// Where points were before anything moved, or where a stage placed them: the places belong to the material.
+    /// Initial positions of points, or those where a stage placed them: the positions belong to the material.
     Initial,
-    /// The same of places that are asked to be in material or at its surface.
+    /// The same for positions in the material or at its surface.
     Surface,
-    /// Where points are.
+    /// Current positions of points.
     Present,
 }
 
-/// Values of `C` fields at places (m, from the grid's lower corner), each by the weighted least-squares plane through
-/// the points of the material of the nearest one; `None` where no material is.
+/// Returns values of `C` fields at positions (m, from the grid's lower corner): each from the weighted least-squares
+/// plane through the points of the same material as the nearest point; `None` outside the material.
 ///
-/// Weights are the quadratic B-spline that reaches one and a half cells of the place's own cell to each side, times the
-/// points' reference volumes. A place is in material if a point is nearer than its size, the D-th root of what it has
-/// of the grid: half of that is where its material ends. At a surface it may be twice as far away: the corner of what a
-/// point has may be that, in a plane, where it is 15 times as long as thick, as where a body ends in a cell.
+/// The weight is the quadratic B-spline that extends one and a half cells from the position to each side, times the
+/// point's reference volume. A position is in the material if a point is nearer than its size, the D-th root of its
+/// share of the grid; the material ends at half the size. At a surface, twice the size is allowed, because that is the
+/// distance to the corner of a share that is 15 times as long as thick (in a plane), which occurs where a body ends
+/// within a cell.
 pub fn values<K: Kinematics<D>, const D: usize, const C: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
@@ -79,13 +80,13 @@ pub fn values<K: Kinematics<D>, const D: usize, const C: usize>(
     values.collect()
 }
 
-/// Places among points.
+/// Positions among points.
 struct Fit<'a, const D: usize> {
     points: &'a Points<D>,
     places: &'a [Vector<D>],
     configuration: Configuration,
     weight: fn(&Vector<D>) -> f64, // volume per m^D of the grid
-    scale: Vec<Option<Vector<D>>>, // m  edges of the cell of every place that is in the grid
+    scale: Vec<Option<Vector<D>>>, // m, edges of the cell of every position in the grid
 }
 
 impl<const D: usize> Fit<'_, D> {
@@ -96,7 +97,8 @@ impl<const D: usize> Fit<'_, D> {
         }
     }
 
-    /// Terms of a plane about a place at point `p`, in units of the cell; `None` out of reach.
+    /// Returns the terms of a plane about a position at point `p`, in units of the cell; `None` outside the weight's
+    /// support.
     fn terms(&self, number: usize, p: usize) -> Option<[f64; TERMS]> {
         let scale = self.scale[number]?;
         let apart = self.place_of(p) - self.places[number];
@@ -110,7 +112,8 @@ impl<const D: usize> Fit<'_, D> {
         Some(terms)
     }
 
-    /// Squared distance of point `p` from a place, m2, if it is so near that the place is in material.
+    /// Returns the squared distance of point `p` from a position (m2), if `p` is so near that the position is in the
+    /// material.
     fn distance(&self, number: usize, p: usize) -> Option<f64> {
         let apart = (self.place_of(p) - self.places[number]).norm_squared();
         let (volume, sizes) = match self.configuration {
@@ -123,8 +126,8 @@ impl<const D: usize> Fit<'_, D> {
         self.terms(number, p).and_then(|_| within.then_some(apart))
     }
 
-    /// Material of the point nearest to every place, if that is so near that the place is in material; of equally near
-    /// ones that of the smallest id.
+    /// Returns the material of the point nearest to every position that is in the material. The smallest id decides
+    /// between equal distances. Three reductions over all ranks.
     fn materials(&self, halo: &dyn Halo) -> Vec<Option<u16>> {
         let mut nearest = vec![(f64::INFINITY, u64::MAX, 0_u16); self.places.len()];
         for p in 0..self.points.len() {
@@ -159,10 +162,10 @@ impl<const D: usize> Fit<'_, D> {
     }
 }
 
-/// Cells that a point's weight reaches to each side.
+/// Number of cells by which a point's weight extends to each side.
 const REACH: f64 = 1.5;
 
-/// The quadratic B-spline about 0 whose pieces have the length 1.
+/// Returns the quadratic B-spline centred at 0 with knots at distance 1.
 fn spline(x: f64) -> f64 {
     let x = x.abs();
     if x <= 0.5 {
@@ -172,12 +175,13 @@ fn spline(x: f64) -> f64 {
     }
 }
 
-/// Edges of the cell that a place is in, m; `None` outside the grid.
+/// Returns the edges of the cell that contains a position (m); `None` outside the grid.
 fn cell_about<const D: usize>(grid: &Grid<D>, place: &Vector<D>) -> Option<Vector<D>> {
     grid.locate(place).map(|cell| grid.cell_box(&cell).1)
 }
 
-/// Values of the planes at the place itself from the moments; means where the points span no plane.
+/// Returns the values of the planes at the position itself, from the moments; the weighted means if the points do not
+/// define a plane.
 fn solved<const D: usize, const C: usize>(sums: &[f64]) -> [f64; C] {
     let mut matrix = Matrix4::from_row_slice(&sums[..PRODUCTS]);
     let whole = matrix[(0, 0)];

@@ -8,9 +8,9 @@ use crate::model::Model;
 use crate::parallel::{Halo, agreed};
 use crate::points::Points;
 
-/// Projected pressure of every point, Pa, positive in compression: sum_h A_hp sum_r A_hr V_r p_r / sum_r A_hr V_r, A
-/// the splines of degree q - 1 and V the points' present volumes; of every group of materials by itself that averages
-/// do not mix. The points must be sorted by cell.
+/// Returns the projected pressure of every point (Pa, positive in compression): sum_h A_hp (sum_r A_hr V_r p_r / sum_r
+/// A_hr V_r), with A the splines of degree q - 1 and V the current volumes of the points. Groups of materials that
+/// averages do not mix are projected separately. The points must be sorted by cell.
 pub fn projected_pressure<K, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,

@@ -7,22 +7,22 @@ use crate::model::Model;
 use crate::parallel::Halo;
 use crate::points::Points;
 
-/// `sum_p V_p / V_cell - 1` over the interior cells.
+/// Statistics of `sum_p V_p / V_cell - 1` over the interior cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Defect {
-    /// cells that count
+    /// Number of interior cells.
     pub cells: u64,
-    /// mean number of points in them
+    /// Mean number of points in an interior cell.
     pub points: f64,
-    /// root of their mean square
+    /// Root mean square.
     pub rms: f64,
-    /// largest magnitude
+    /// Largest magnitude.
     pub largest: f64,
 }
 
-/// Defect of the points' current volumes V_p = J_p V0_p over the cells all of whose neighbours (3^D - 1, as far as the
-/// grid has them) hold points, too; none where no cell is interior. The points must be sorted by cell: then it has the
-/// same bits on any number of ranks.
+/// Returns the defect of the current volumes V_p = J_p V0_p over the interior cells, those whose neighbours in the grid
+/// (up to 3^D - 1) all contain points; `None` if there is none. The points must be sorted by cell; the result is then
+/// bitwise identical on any number of ranks.
 pub fn defect<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
@@ -63,9 +63,9 @@ pub fn defect<K: Kinematics<D>, const D: usize>(
     })
 }
 
-/// Part of its volume that each material has lost, the mean over its points; negative where it has grown, 0 without
-/// points: equal weights integrate the worse the farther points have moved against each other and the cells. The same
-/// bits on any number of ranks.
+/// Returns for each material the fraction of its volume that it has lost (negative if it has grown; 0 without points),
+/// averaged over its points with their reference volumes. The larger the change, the less accurate is the integration
+/// with the points' volumes. The result is bitwise identical on any number of ranks.
 pub fn compression<const D: usize>(points: &Points<D>, materials: usize, halo: &dyn Halo) -> Vec<f64> {
     let mut volumes = vec![Exact::ZERO; 2 * materials];
     for p in 0..points.len() {

@@ -9,34 +9,35 @@ use crate::parallel::Halo;
 use crate::points::Points;
 use crate::tensor::{Tensor, Vector};
 
-/// Where a body is cut: places in m, from the grid's lower corner.
+/// Section across a body; positions in m from the grid's lower corner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section<const D: usize> {
-    /// Ends of a line; of a solid of two lines that cross in their middles, of directions t1 and t2, at right angles:
-    /// what of the second is along the first counts for nothing.
+    /// Ends of a line. A section of a solid has two lines that cross at their midpoints, with the directions t1 and t2.
+    /// They should be perpendicular: the component of the second along the first is ignored.
     pub lines: Vec<[Vector<D>; 2]>,
-    /// Of a solid whether the lines are the axes of an ellipse; they are the lengths of a rectangle's sides else.
+    /// For a solid: whether the lines are the axes of an ellipse. Otherwise they are the lengths of the sides of a
+    /// rectangle.
     pub round: bool,
 }
 
-/// Forces of the material beyond a section on that before it. In a plane they are per metre of thickness, t is the
-/// first direction and the second is the plane's normal, along which nothing is reported. In axisymmetry they are sums
-/// over one radian of the surface that the line sweeps: of the components in the meridian plane, not of vectors.
+/// Forces of the material beyond a section on the material before it. In a plane they are per metre of thickness; t is
+/// the first direction, the second is the plane's normal, and its components are not reported. In axisymmetry they are
+/// sums over one radian of the surface that the line generates, of components in the meridian plane, not of vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SectionForces {
-    /// N  int sigma_nn dA, n = t1 x t2, in a plane to the right of t; positive in tension
+    /// int sigma_nn dA (N), n = t1 x t2 (in a plane to the right of t); positive in tension.
     pub normal: f64,
-    /// N  int sigma_1n dA and int sigma_2n dA
+    /// int sigma_1n dA and int sigma_2n dA (N).
     pub shear: [f64; 2],
-    /// N m  int s1 sigma_2n - s2 sigma_1n dA, about n; s from the section's middle
+    /// int s1 sigma_2n - s2 sigma_1n dA about n (N m); s is the position from the section's midpoint.
     pub torsion: f64,
-    /// N m  int s1 sigma_nn dA and int s2 sigma_nn dA: positive where the side that t points to is in tension
+    /// int s1 sigma_nn dA and int s2 sigma_nn dA (N m); positive if the side that t points to is in tension.
     pub bending: [f64; 2],
 }
 
-/// Forces across a section; material beyond its edge, or none, counts for nothing. The cut is smeared over the cells at
-/// the section, with its middle on it; at a support or a surface over cells inside of it, from which the forces are
-/// extrapolated to the section.
+/// Returns the forces across a section. Material beyond its edge does not count. The cut is distributed over the cells
+/// at the section, with its middle on the section. At a support or a surface it is distributed over cells inside the
+/// body, and the forces are extrapolated to the section.
 pub fn section_forces<K: Kinematics<D>, const D: usize>(
     grid: &Grid<D>,
     points: &Points<D>,
@@ -52,7 +53,7 @@ pub fn section_forces<K: Kinematics<D>, const D: usize>(
                 continue;
             }
             if let Some(work) = with_width!(grid.order() + 1, W => cut.work::<W>(grid, points, p)) {
-                // The force that balances is that of tau over the reference volume; sigma is tau over F-bar's J.
+                // The equilibrium force is that of tau over the reference volume; sigma is tau divided by F-bar's J.
                 let weight = share * volume * points.dilation_of(p);
                 sums.iter_mut().zip(work).for_each(|(sum, work)| sum.add(weight * work));
             }
@@ -67,39 +68,40 @@ pub fn section_forces<K: Kinematics<D>, const D: usize>(
     }
 }
 
-/// A section that cuts the grid.
+/// Section that intersects the grid.
 struct SectionPlane<const D: usize> {
     middle: Vector<D>,
     along: [Vector<3>; 2], // unit vectors t1 and t2
     across: Vector<3>,     // unit vector n
-    halves: [f64; 2],      // m  of its lengths along them
+    halves: [f64; 2],      // m, of its lengths along t1 and t2
     round: bool,
-    smear: f64,           // m  over which the nodes' motion grows from 0 to 1
-    reach: f64,           // m  beyond which a point is from all of that
-    ramps: Vec<[f64; 2]>, // m, -  where along n it grows, and how much of it
+    smear: f64,           // m, distance over which the nodes' motion grows from 0 to 1 (a ramp)
+    reach: f64,           // m, distance beyond which a point has no effect
+    ramps: Vec<[f64; 2]>, // positions of the ramps along n (m) and their weights (-)
 }
 
-/// How far a smeared cut may go to one side of a section along n.
+/// Space for a ramp on one side of a section, along n.
 struct Side {
-    room: f64,  // m  from the section to the end of the material
-    least: f64, // m  from the middle of a ramp to there
+    room: f64,  // m, from the section to the end of the material
+    least: f64, // m, smallest distance from the middle of a ramp to that end
     held: bool, // whether the material ends at a face of the grid
 }
 
 impl Side {
-    /// m  by which a ramp in the section is too near to the end
+    /// Returns the distance by which a ramp at the section is too near to the end of the material (m).
     fn lack(&self) -> f64 {
         self.least - self.room
     }
 
-    /// Whether a ramp that is too near to this end moves towards the other one.
+    /// Returns whether a ramp that is too near to this end must be shifted towards the other end.
     fn gives_way_to(&self, other: &Self) -> bool {
         self.lack() > 0.0 && (other.lack() <= 0.0 || self.held && !other.held)
     }
 }
 
 impl<const D: usize> SectionPlane<D> {
-    /// `None` of a section without an area, or whose middle has left the grid; its ramp is in the section.
+    /// Creates a section plane with one ramp at the section; `None` if the section has no area, or if its middle has
+    /// left the grid.
     fn of(grid: &Grid<D>, section: &Section<D>) -> Option<Self> {
         let middles = section.lines.iter().map(|[from, to]| (from + to) / 2.0);
         let middle = onto(grid, middles.sum::<Vector<D>>() / section.lines.len() as f64);
@@ -137,15 +139,16 @@ impl<const D: usize> SectionPlane<D> {
         })
     }
 
-    /// With ramps that neither what holds the material nor a load on its surface has a part in: its forces are those at
-    /// the section less the loads between, so they are extrapolated. `None` where the material does not reach.
+    /// Shifts the ramps so that neither supports nor loads on a surface act within them. The forces there are those at
+    /// the section minus the loads between, so they are extrapolated. Returns `None` if the material does not extend to
+    /// the section.
     fn inside<K: Kinematics<D>>(mut self, grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> Option<Self> {
         let sides = self.sides::<K>(grid, points, halo);
         if sides.iter().any(|side| side.room < -0.25 * self.smear) {
             return None;
         }
         let [before, beyond] = &sides;
-        // Of a body too thin for a ramp between its ends the face of the grid is what surely acts on it.
+        // In a body too thin for a ramp between its ends, only the face of the grid certainly exerts a force on it.
         let (onward, shift) = if before.gives_way_to(beyond) {
             (1.0, before.lack())
         } else if beyond.gives_way_to(before) {
@@ -167,9 +170,9 @@ impl<const D: usize> SectionPlane<D> {
         Some(self)
     }
 
-    /// Before and beyond the section.
+    /// Returns the space before and beyond the section. One reduction over all ranks.
     fn sides<K: Kinematics<D>>(&self, grid: &Grid<D>, points: &Points<D>, halo: &dyn Halo) -> [Side; 2] {
-        // A function that is not zero at a surface has its node within half of its support.
+        // A function that is non-zero at a surface has its node within half of its support.
         let least = (0.5 * grid.order() as f64 + 1.0) * self.smear;
         let far = 2.0 * least + 3.0 * self.smear;
         let mut ends = [-far; 2];
@@ -191,8 +194,8 @@ impl<const D: usize> SectionPlane<D> {
             let face = self.to_face(grid, side == 1);
             let room = ends[side];
             let held = room + 0.25 * self.smear >= face;
-            // At a face one node moves what is held, and the cells of as many nodes as the order are shorter: a ramp
-            // over them moves another weight than is beyond its middle.
+            // At a face only one layer of nodes moves the support, and the cells of the nearest q nodes are shorter: a
+            // ramp over them would move another weight than that beyond its middle.
             let at_face = Side {
                 room: face,
                 least: 0.5 * grid.order() as f64 * self.smear,
@@ -202,7 +205,8 @@ impl<const D: usize> SectionPlane<D> {
         })
     }
 
-    /// From the section to the face of the grid along or against n, m: from its edge if it is all but parallel to it.
+    /// Returns the distance from the section to the face of the grid along or against n (m). If the section is almost
+    /// parallel to the face, it is measured from the section's edge.
     fn to_face(&self, grid: &Grid<D>, along: bool) -> f64 {
         let mut least = f64::INFINITY;
         for axis in 0..D {
@@ -220,7 +224,7 @@ impl<const D: usize> SectionPlane<D> {
         least
     }
 
-    /// Part of the motion that a node has, by its place along n from the section (m).
+    /// Returns the fraction of the motion that a node has, from its position along n relative to the section (m).
     fn beyond(&self, place: f64) -> f64 {
         let ramps = self.ramps.iter();
         ramps
@@ -228,8 +232,8 @@ impl<const D: usize> SectionPlane<D> {
             .sum()
     }
 
-    /// The part of a point of some volume (m^D of the grid) that is within the section's edge; 0 of one that is far
-    /// from it.
+    /// Returns the fraction of a point of the given volume (m^D of the grid) that is within the section's edge; 0 if
+    /// the point is far from it.
     fn share(&self, x: &Vector<D>, volume: f64) -> f64 {
         let apart = spatial(&(x - self.middle));
         if apart.dot(&self.across).abs() > self.reach {
@@ -241,7 +245,7 @@ impl<const D: usize> SectionPlane<D> {
         if self.round {
             let away = at[0].hypot(at[1]);
             let part = (at[0] / self.halves[0]).hypot(at[1] / self.halves[1]);
-            // As far as the edge is on the ray through the point.
+            // The edge is at the distance away / part along the ray through the point.
             return if part > 0.0 {
                 part_within(half, away, away / part)
             } else {
@@ -251,8 +255,8 @@ impl<const D: usize> SectionPlane<D> {
         (0..D - 1).map(|k| part_within(half, at[k], self.halves[k])).product()
     }
 
-    /// Virtual work of the stress of a point per volume, Pa or N/m, on the motion of what is beyond the section: by 1
-    /// along n, t1 and t2, by a rotation of 1 about n, against t2 and about t1 through the middle.
+    /// Returns the virtual work of a point's stress per volume (Pa or N/m) on rigid motions of the side beyond the
+    /// section: unit translations along n, t1 and t2, and unit rotations through the middle about n, -t2 and t1.
     fn work<const W: usize>(&self, grid: &Grid<D>, points: &Points<D>, p: usize) -> Option<[f64; 6]> {
         let cell = grid.locate(&points.x[p])?;
         let rows: [_; D] = std::array::from_fn(|axis| grid.axes()[axis].basis::<W>(points.x[p][axis], cell[axis]));
@@ -282,19 +286,20 @@ impl<const D: usize> SectionPlane<D> {
     }
 }
 
-/// m  sum of edges along the axes, each projected onto a direction.
+/// Returns the sum of the edges along the axes, each projected onto `direction` (m).
 fn extent_along<const D: usize>(direction: &Vector<3>, edges: &Vector<D>) -> f64 {
     (0..D).map(|axis| (direction[axis] * edges[axis]).abs()).sum::<f64>()
 }
 
-/// Part of what reaches by `half` to each side of `at` that is nearer to 0 than `end`, all in m.
+/// Returns the fraction of the interval `at` +- `half` that is between -`end` and `end` (all in m).
 fn part_within(half: f64, at: f64, end: f64) -> f64 {
     let inside = (at + half).min(end) - (at - half).max(-end);
     (inside / (2.0 * half)).clamp(0.0, 1.0)
 }
 
-/// Work of a stress on motions by 1 along the axes, `slope` the gradient of what moves, and on rotations by 1 about
-/// them, `turn` the gradients of what moves times the components of the arm; in a plane about its normal alone.
+/// Returns the work of a stress on unit translations along the axes and on unit rotations about them. `slope` is the
+/// gradient of the moved fraction; `turn` has its products with the components of the arm. In a plane there is only the
+/// rotation about the normal.
 fn force_and_moment<const D: usize>(
     stress: &Tensor,
     slope: &Vector<3>,
@@ -312,7 +317,7 @@ fn force_and_moment<const D: usize>(
     (traction, moment)
 }
 
-/// Work of a stress on a rotation that moves by arm_b along a, and by -arm_a along b.
+/// Returns the work of a stress on a rotation with the displacements arm_b along a and -arm_a along b.
 fn work_of_rotation<const D: usize>(stress: &Tensor, turn: &[[f64; 3]; 3], a: usize, b: usize) -> f64 {
     let both = stress[(a, a)] * turn[b][a] - stress[(b, b)] * turn[a][b];
     let both = both + stress[(a, b)] * (turn[b][b] - turn[a][a]);
@@ -322,8 +327,8 @@ fn work_of_rotation<const D: usize>(stress: &Tensor, turn: &[[f64; 3]; 3], a: us
     })
 }
 
-/// A place, on the face of the grid if it has left the grid by less than half of the cell there: a section in a face
-/// goes with material whose motion is known to that.
+/// Moves a position to the face of the grid if it is outside by less than half of the cell there: a section in a face
+/// follows material whose motion is only known with that accuracy.
 fn onto<const D: usize>(grid: &Grid<D>, place: Vector<D>) -> Vector<D> {
     let nearest = Vector::from_fn(|axis, _| place[axis].clamp(0.0, grid.axes()[axis].length()));
     let Some(cell) = grid.locate(&nearest) else {
@@ -337,7 +342,7 @@ fn onto<const D: usize>(grid: &Grid<D>, place: Vector<D>) -> Vector<D> {
     }
 }
 
-/// A vector in space; one of a plane has nothing along its normal.
+/// Extends a vector to three dimensions with zeros.
 fn spatial<const D: usize>(vector: &Vector<D>) -> Vector<3> {
     Vector::from_fn(|axis, _| if axis < D { vector[axis] } else { 0.0 })
 }

@@ -6,42 +6,45 @@ use crate::tensor::Symmetric;
 use nalgebra::SMatrix;
 use rayon::prelude::*;
 
-/// What a number of a column is.
+/// Number format of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Number {
-    /// 16 bits without a sign.
+    /// Unsigned 16-bit integer.
     U16,
-    /// 64 bits without a sign.
+    /// Unsigned 64-bit integer.
     U64,
-    /// A float of double precision.
+    /// Double-precision float.
     F64,
 }
 
-/// One array of the points, whatever it holds.
+/// Array of one quantity of the points, of any type, one row per point.
 pub trait Column: Send {
-    /// What its numbers are.
+    /// Returns the number format.
     fn number(&self) -> Number;
-    /// Numbers of one row.
+    /// Returns the count of numbers of a row.
     fn width(&self) -> usize;
-    /// Number of rows.
+    /// Returns the number of rows.
     fn rows(&self) -> usize;
-    /// Bytes of one row in a message or a file, which do not depend on the dimension.
+    /// Returns the bytes of a row in a message or a file. Tensors have all their components there, in two dimensions,
+    /// too.
     fn bytes(&self) -> usize;
-    /// Bytes of one row in memory.
+    /// Returns the bytes of a row in memory.
     fn memory(&self) -> usize;
-    /// Whether a row of a message or a file can be taken without loss: everything that is not held is zero.
+    /// Returns whether a row of a message or a file can be stored without loss: components that are not stored are
+    /// zero.
     fn fits(&self, row: &[u8]) -> bool;
     /// Appends the numbers of row `p`.
     fn show(&self, p: usize, numbers: &mut Vec<f64>);
-    /// Keeps the rows `order`, in that order.
+    /// Keeps the rows in `order`, in that order, and drops the others.
     fn reorder(&mut self, order: &[u32]);
     /// Appends row `p` to a message.
     fn put(&self, p: usize, message: &mut Vec<u8>);
-    /// Adds the row that `message` begins with, and moves past it; the message must hold it.
+    /// Appends the first row of `message` to the column and advances `message` past it. Panics if the message is
+    /// shorter than a row.
     fn take(&mut self, message: &mut &[u8]);
 }
 
-/// Rows of floats, as many in each as a scene needs.
+/// Rows of floats whose width is set at run time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rows {
     pub(super) width: usize,
@@ -49,7 +52,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// None yet.
+    /// Creates an array without rows.
     pub fn of(width: usize) -> Self {
         Self {
             width,
@@ -57,23 +60,23 @@ impl Rows {
         }
     }
 
-    /// Adds a row of zeros.
+    /// Appends a row of zeros.
     pub(super) fn push_zeros(&mut self) {
         self.numbers.resize(self.numbers.len() + self.width, 0.0);
     }
 
-    /// Row `p`.
+    /// Returns row `p`.
     #[inline]
     pub fn of_point(&self, p: usize) -> &[f64] {
         &self.numbers[p * self.width..][..self.width]
     }
 
-    /// All rows in order, to be changed; a row has at least one number.
+    /// Iterates in parallel over all rows for changes. The width must not be 0.
     pub fn par_rows_mut(&mut self) -> impl IndexedParallelIterator<Item = &mut [f64]> {
         self.numbers.par_chunks_exact_mut(self.width)
     }
 
-    /// Row `p`, to be changed.
+    /// Returns row `p` for changes.
     #[inline]
     pub fn of_point_mut(&mut self, p: usize) -> &mut [f64] {
         &mut self.numbers[p * self.width..][..self.width]
@@ -189,7 +192,7 @@ impl<const D: usize, T: MessageRow + Components> Column for PackedTensors<D, T> 
     }
 }
 
-/// A row that travels between ranks bit by bit.
+/// Row of fixed size that is sent between ranks bit by bit (little-endian).
 trait MessageRow: Copy + Send {
     const NUMBER: Number;
     const WIDTH: usize;

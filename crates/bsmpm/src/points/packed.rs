@@ -5,17 +5,17 @@ use crate::threads;
 use std::marker::PhantomData;
 use std::sync::Mutex;
 
-/// Numbers that a whole tensor consists of.
+/// Tensor as an array of numbers.
 pub trait Components: Copy + Send {
-    /// Places of those that a plane and its normal have, ascending.
+    /// Positions of the components in a plane and along its normal, ascending.
     const IN_PLANE: &'static [usize];
-    /// Places of all.
+    /// Positions of all components.
     const ALL: &'static [usize];
 
-    /// All of them.
+    /// Returns all components.
     fn numbers(&self) -> &[f64];
 
-    /// The tensor with these `numbers` at `places`, and zeros elsewhere.
+    /// Creates a tensor from `numbers` at the positions `places`, and zeros elsewhere.
     fn with(places: &[usize], numbers: &[f64]) -> Self;
 }
 
@@ -59,36 +59,36 @@ impl Components for Symmetric {
     }
 }
 
-/// An array of tensors: 5 numbers of 9, and 4 of 6 symmetric ones, if `D` is 2, else all. The sign of a zero that is
-/// not held is lost.
+/// Array of tensors. For `D` = 2 only 5 of 9 components, or 4 of 6 of a symmetric tensor, are stored; otherwise all
+/// are. The sign of a zero component that is not stored is lost.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PackedTensors<const D: usize, T> {
-    numbers: Vec<f64>, // those that are held, tensor by tensor
+    numbers: Vec<f64>, // stored components, tensor by tensor
     whole: PhantomData<T>,
 }
 
 impl<const D: usize, T: Components> PackedTensors<D, T> {
-    /// Places of the numbers that are held.
+    /// Positions of the stored components.
     const PLACES: &'static [usize] = if D == 2 { T::IN_PLANE } else { T::ALL };
-    /// Numbers from one tensor to the next.
+    /// Number of stored components per tensor.
     const STRIDE: usize = Self::PLACES.len();
 
-    /// Number of tensors.
+    /// Returns the number of tensors.
     pub fn len(&self) -> usize {
         self.numbers.len() / Self::STRIDE
     }
 
-    /// Whether there is none.
+    /// Returns whether there are no tensors.
     pub fn is_empty(&self) -> bool {
         self.numbers.is_empty()
     }
 
-    /// Bytes that a tensor takes.
+    /// Returns the bytes of one tensor in memory.
     pub(super) const fn memory_of_one() -> usize {
         Self::STRIDE * size_of::<f64>()
     }
 
-    /// Whether a tensor is zero wherever nothing is held.
+    /// Returns whether all components of a tensor that are not stored are zero.
     pub fn holds(tensor: &T) -> bool {
         let mut others = tensor
             .numbers()
@@ -98,13 +98,13 @@ impl<const D: usize, T: Components> PackedTensors<D, T> {
         others.all(|(_, &number)| number == 0.0)
     }
 
-    /// Whether nothing is lost with what is not held: it is zero, or what is held is not finite either, which no step
-    /// takes.
+    /// Returns whether storing a tensor loses nothing that matters: the other components are zero, or a stored
+    /// component is not finite, so that the step will be rejected.
     fn sends_all(tensor: &T) -> bool {
         Self::holds(tensor) || Self::PLACES.iter().any(|&place| !tensor.numbers()[place].is_finite())
     }
 
-    /// The tensor of point `p`.
+    /// Returns the tensor of point `p`.
     #[inline(always)]
     pub fn at(&self, p: usize) -> T {
         Self::read(&self.numbers, p)
@@ -124,13 +124,13 @@ impl<const D: usize, T: Components> PackedTensors<D, T> {
             .for_each(|(number, &place)| *number = tensor.numbers()[place]);
     }
 
-    /// Gives point `p` the tensor `tensor`, which must be zero where nothing is held.
+    /// Sets the tensor of point `p`. Components that are not stored must be zero.
     #[inline(always)]
     pub fn set(&mut self, p: usize, tensor: T) {
         Self::keep(&mut self.numbers, p, tensor);
     }
 
-    /// The tensors by chunks of points, each for a thread at a time.
+    /// Returns the tensors in chunks of points, each for one thread at a time.
     pub fn apart(&mut self) -> Vec<Mutex<PackedChunk<'_, D, T>>> {
         let chunks = self.numbers.chunks_mut(Self::STRIDE * threads::CHUNK);
         chunks
@@ -143,7 +143,7 @@ impl<const D: usize, T: Components> PackedTensors<D, T> {
             .collect()
     }
 
-    /// Adds a tensor for a further point, which must be zero where nothing is held.
+    /// Appends the tensor of a new point. Components that are not stored must be zero.
     #[inline(always)]
     pub fn push(&mut self, tensor: T) {
         debug_assert!(Self::sends_all(&tensor), "of {:?} not all is held", tensor.numbers());
@@ -151,18 +151,18 @@ impl<const D: usize, T: Components> PackedTensors<D, T> {
             .extend(Self::PLACES.iter().map(|&place| tensor.numbers()[place]));
     }
 
-    /// Gives every point the tensor `tensor`, which must be zero where nothing is held.
+    /// Sets the tensor of every point. Components that are not stored must be zero.
     pub fn fill(&mut self, tensor: T) {
         (0..self.len()).for_each(|p| self.set(p, tensor));
     }
 
-    /// All tensors, point by point.
+    /// Iterates over all tensors, point by point.
     pub fn iter(&self) -> impl Iterator<Item = T> {
         (0..self.len()).map(|p| self.at(p))
     }
 }
 
-/// Some tensors, one after another.
+/// Chunk of consecutive tensors of [`PackedTensors`].
 #[derive(Debug)]
 pub struct PackedChunk<'a, const D: usize, T> {
     numbers: &'a mut [f64],
@@ -170,13 +170,13 @@ pub struct PackedChunk<'a, const D: usize, T> {
 }
 
 impl<const D: usize, T: Components> PackedChunk<'_, D, T> {
-    /// The tensor `k` of them.
+    /// Returns tensor `k` of the chunk.
     #[inline(always)]
     pub fn at(&self, k: usize) -> T {
         PackedTensors::<D, T>::read(self.numbers, k)
     }
 
-    /// Puts a tensor in the place `k`, which must be zero where nothing is held.
+    /// Sets tensor `k` of the chunk. Components that are not stored must be zero.
     #[inline(always)]
     pub fn set(&mut self, k: usize, tensor: T) {
         PackedTensors::<D, T>::keep(self.numbers, k, tensor);
@@ -197,13 +197,13 @@ impl<const D: usize, T: Components> FromIterator<T> for PackedTensors<D, T> {
 }
 
 impl<const D: usize> PackedTensors<D, Symmetric> {
-    /// Components XX, YY, ZZ, XY of every tensor, where these are all that there is.
+    /// Returns the components XX, YY, ZZ, XY of every tensor if `D` = 2.
     #[inline(always)]
     pub fn planar(&self) -> Option<&[[f64; 4]]> {
         (D == 2).then(|| self.numbers.as_chunks().0)
     }
 
-    /// All components of every tensor, where none is known to be zero.
+    /// Returns all components of every tensor if `D` is not 2.
     #[inline(always)]
     pub fn whole(&self) -> Option<&[[f64; 6]]> {
         (D != 2).then(|| self.numbers.as_chunks().0)

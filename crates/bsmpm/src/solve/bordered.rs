@@ -7,7 +7,7 @@ use crate::parallel::{Halo, Krylov, LinearSolver, SolveReport, Symmetry, dots};
 use crate::step::problem::Problem;
 use nalgebra::{DMatrix, DVector};
 
-/// K - C B^-1 C^T behind a solver that knows K: C couples nodes and motions, B is what the motions resist with.
+/// K - C B^-1 C^T, based on a solver for K. C couples nodes and rigid motions; B is the stiffness against the motions.
 pub struct BorderedSolver<'a, const D: usize> {
     solver: &'a mut dyn LinearSolver,
     halo: &'a dyn Halo,
@@ -18,7 +18,7 @@ pub struct BorderedSolver<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> BorderedSolver<'a, D> {
-    /// Of a problem whose bodies move freely.
+    /// Creates the solver of a problem with freely moving bodies.
     pub fn of<K>(problem: &Problem<'a, K, D>, solver: &'a mut dyn LinearSolver) -> Self {
         let rigid = &problem.nodes.rigid;
         let halo = problem.halo;
@@ -48,7 +48,7 @@ impl<'a, const D: usize> BorderedSolver<'a, D> {
         }
     }
 
-    /// C^T of a nodal array.
+    /// Returns C^T times a nodal array. One reduction.
     fn seen(&self, nodal: &[f64]) -> Vec<f64> {
         let pairs: Vec<(&[f64], &[f64])> = self.columns.iter().map(|column| (&column[..], nodal)).collect();
         dots(self.halo, D, &pairs)
@@ -81,7 +81,7 @@ impl<const D: usize> LinearSolver for BorderedSolver<'_, D> {
         let mut condensed = self.resists.clone();
         for (number, column) in self.columns.iter().enumerate() {
             let mut solved = vec![0.0; column.len()];
-            // All ranks or none: a body that touches nothing couples nothing.
+            // Collective decision: a body without contact has no coupling.
             let mut couples = [f64::from(u8::from(column.iter().any(|entry| *entry != 0.0)))];
             self.halo.all_reduce_max(&mut couples);
             if couples[0] > 0.0 {
@@ -117,7 +117,7 @@ impl<const D: usize> LinearSolver for BorderedSolver<'_, D> {
         self.solver.is_rough()
     }
 
-    /// The product has the coupling; what preconditions it has not.
+    /// The `product` includes the coupling; the preconditioner does not.
     fn solve_with(
         &mut self,
         product: &mut dyn FnMut(&[f64], &mut [f64]),

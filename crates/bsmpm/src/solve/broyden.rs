@@ -2,13 +2,13 @@
 
 use crate::parallel::{Halo, dots};
 
-/// Denominator 1 - a g below which the update is nearly singular and the history is dropped.
+/// Denominator 1 - a g below which the update is nearly singular and the history is discarded.
 const SINGULAR: f64 = 0.1;
 
-/// Steps after which the history is dropped: two vectors are kept of each.
+/// Steps after which the history is discarded; each step stores two vectors.
 const MOST: usize = 100;
 
-/// Steps taken so far in this load step, with what the product form needs of them.
+/// Previous steps of this load step, with their data for the product form.
 #[derive(Clone, Debug, Default)]
 pub struct Broyden {
     steps: Vec<Step>,
@@ -21,11 +21,11 @@ pub struct Broyden {
 struct Step {
     s: Vec<f64>,
     s_squared: f64,
-    z: Vec<f64>, // empty for the last direction, whose z follows from the next solve
+    z: Vec<f64>, // empty for the last direction, whose z follows from the next solution
 }
 
 impl Broyden {
-    /// Reports how much of the last direction was taken: 1 for a full step.
+    /// Records the fraction of the last direction that was taken: 1 for a full step.
     pub fn took(&mut self, length: f64) {
         self.length = length;
         if let Some(last) = self.steps.last_mut() {
@@ -33,7 +33,7 @@ impl Broyden {
         }
     }
 
-    /// Direction du from w = K_0^-1 f, `D` components a node. All dots come from one reduction.
+    /// Returns the direction du from w = K_0^-1 f, `D` components per node. One reduction.
     pub fn correct<const D: usize>(&mut self, w: Vec<f64>, halo: &dyn Halo) -> Vec<f64> {
         let du = self.product_form::<D>(w, halo);
         self.steps.push(Step {
@@ -44,7 +44,7 @@ impl Broyden {
         du
     }
 
-    /// Applies all steps to w; completes the last step's z.
+    /// Applies all steps to w and completes z of the last step.
     fn product_form<const D: usize>(&mut self, mut w: Vec<f64>, halo: &dyn Halo) -> Vec<f64> {
         if self.steps.len() == MOST {
             *self = Self::default();
@@ -73,7 +73,7 @@ impl Broyden {
         w
     }
 
-    /// s_j . w for all steps; s . s and s . z_i of the last one.
+    /// Computes s_j . w for all steps, and s . s and s . z_i for the last one. One reduction.
     fn complete_products<const D: usize>(&mut self, w: &[f64], halo: &dyn Halo) {
         let last = self.steps.len() - 1;
         let s = self.steps[last].s.as_slice();
@@ -86,7 +86,7 @@ impl Broyden {
         self.steps[last].s_squared = of_last[0];
     }
 
-    /// c_j = s_j . w_j / s_j . s_j, where w_j is w after the steps before j.
+    /// Returns c_j = s_j . w_j / s_j . s_j, where w_j is w after the steps before j.
     fn coefficients(&self) -> Vec<f64> {
         let mut coefficients: Vec<f64> = Vec::with_capacity(self.steps.len());
         for (j, step) in self.steps.iter().enumerate() {

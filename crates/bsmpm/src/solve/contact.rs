@@ -14,17 +14,17 @@ use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 use crate::step::report::Counts;
 
-/// Corrections after which a step is given up.
+/// Corrections of statuses after which a step is given up.
 const MOST: usize = 40;
-/// The same with rigid bodies, whose statuses are corrected one by one in the end.
+/// Corrections with rigid bodies, whose statuses are finally corrected one by one.
 const MOST_AT_BODIES: usize = 60;
-/// Part of the force tolerance, of the largest force, by which forces may contradict a status: they are known no
-/// better.
+/// Force by which a status may be contradicted, as a fraction of the force tolerance times the largest force: forces
+/// are not known more accurately.
 const DOUBT: f64 = 1e-2;
-/// Criteria of both measures while statuses change: where they will, more would be for nothing.
+/// Convergence criteria while statuses still change, when more accuracy is not needed.
 const ROUGH: f64 = 1e-2;
 
-/// Finds equilibrium from the last displacement `guess`, and leaves the statuses that it has in the `nodes`.
+/// Finds equilibrium from the previous displacement `guess` (m), and leaves the final contact statuses in `nodes`.
 pub fn find<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     mapped: MappedPoints<'_, D>,
@@ -51,7 +51,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         let judged = if is_rough { &rough } else { model };
         let found = match find_at_statuses(judged, mapped, nodes, attachments, &u, backend, counts) {
             Ok(found) => found,
-            // With all nodes of its faces sliding, what they alone hold is free to move.
+            // If all nodes of the contact faces slide, a body that only these faces support can move freely.
             Err(error) if !faces || error.is_final() || nodes.contacts.hold_neutral(&model.grid, &u, halo) == 0 => {
                 return Err(error);
             }
@@ -77,7 +77,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     Err(StepError::Unsettled { passes: most })
 }
 
-/// Finds equilibrium from the displacement `u` with the statuses that the nodes and attachments have.
+/// Finds equilibrium from the displacement `u` (m) with the present statuses of nodes and attachments.
 fn find_at_statuses<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     mapped: MappedPoints<'_, D>,
@@ -102,7 +102,7 @@ fn find_at_statuses<K: Kinematics<D>, const D: usize>(
     }
 }
 
-/// The model with criteria for an equilibrium whose statuses will change.
+/// Returns the model with loose criteria, for an equilibrium whose statuses will change.
 fn rough<K: Kinematics<D>, const D: usize>(model: &Model<K, D>) -> Model<K, D> {
     let criteria = Criteria {
         energy: model.criteria.energy.max(ROUGH),
@@ -115,8 +115,8 @@ fn rough<K: Kinematics<D>, const D: usize>(model: &Model<K, D>) -> Model<K, D> {
     }
 }
 
-/// Corrects the statuses that an equilibrium contradicts; returns how many. The `model` has the criteria that it was
-/// judged by.
+/// Corrects the statuses that an equilibrium contradicts, and returns their number. `model` has the criteria by which
+/// the equilibrium was accepted.
 fn correct<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     nodes: &mut GridState<D>,

@@ -10,33 +10,33 @@ use crate::step::problem::Problem;
 use crate::step::residual::{Balance, Residual};
 use crate::tensor::Vector;
 
-/// A first residual this much below the force tolerance needs no direction: |du_0 . f_0| would only be noise.
+/// Fraction of the force tolerance below which an initial state needs no direction: |du_0 . f_0| would be noise.
 const ALREADY: f64 = 1e-2;
-/// Forces this much below their tolerance are enough where no method leads on: the states of steps that meet both
-/// criteria have such forces (0.01 to 0.07 of the tolerance in a wall's active wedge, 0.5 at most), so that none is
-/// balanced worse.
+/// Fraction of the force tolerance at which forces alone suffice if no method makes progress. States that meet both
+/// criteria have 0.01 to 0.07 of the tolerance (in the active wedge behind a wall; 0.5 at most), so that no accepted
+/// state is balanced worse.
 const SETTLED: f64 = 1e-1;
-/// Iterations over which the rate of convergence is taken.
+/// Iterations over which the rate of convergence is measured.
 const WINDOW: usize = 20;
-/// Iterations that a quasi-Newton method may still need to be left going: about the cost of the exact iterations that
-/// would replace them.
+/// Expected further iterations up to which a quasi-Newton method is continued: about the cost of the Newton iterations
+/// that would replace them.
 const PATIENCE: f64 = 60.0;
 
-/// Nodes that an error names.
+/// Number of nodes that an error lists.
 const WORST: usize = 5;
 
-/// Both measures over the iterations that started from one guess.
+/// Convergence measures of all iterations from one guess.
 #[derive(Clone, Debug)]
 pub struct Convergence {
     criteria: Criteria,
     round_off: RoundOff,
-    first_energy: Option<f64>, // N m  |du_0 . f_0|
+    first_energy: Option<f64>, // |du_0 . f_0| (N m)
     history: Vec<Measures>,
-    settled: Option<Vec<f64>>, // m, nodal
+    settled: Option<Vec<f64>>, // nodal displacement (m)
 }
 
 impl Convergence {
-    /// Nothing iterated yet.
+    /// Starts without iterations.
     pub fn new<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>) -> Self {
         let criteria = problem.model.criteria;
         let round_off = RoundOff::of(problem);
@@ -50,8 +50,8 @@ impl Convergence {
         }
     }
 
-    /// Whether a state is in equilibrium before any direction is known: a guess far below the force tolerance, or
-    /// forces that no node has further out of balance than by round-off.
+    /// Returns whether a state is in equilibrium before any direction is known: the initial guess is far below the
+    /// force tolerance, or at every node the out-of-balance force is round-off.
     pub fn is_balanced<K, const D: usize>(&self, balance: &Balance, problem: &Problem<'_, K, D>) -> bool {
         let water = self.water(balance).unwrap_or(0.0);
         (self.history.is_empty()
@@ -60,18 +60,19 @@ impl Convergence {
             || (self.round_off.covers(balance, problem) && water == 0.0)
     }
 
-    /// The first state whose forces balanced far below their tolerance, m, nodal: later ones only wander from it where
-    /// the stiffness is next to singular.
+    /// Returns the first displacement whose forces balanced far below their tolerance (m, nodal). Later states only
+    /// drift away from it where the stiffness is nearly singular.
     pub fn settled(&self) -> Option<&Vec<f64>> {
         self.settled.as_ref()
     }
 
-    /// The force measure: the largest of the whole and of every material.
+    /// Returns the force measure (-): the largest of all nodes together and of every material's own nodes.
     pub fn measure(&self, balance: &Balance) -> f64 {
         self.round_off.measure(balance).0
     }
 
-    /// The measure of the water, where it flows: what is out of balance over what is stored, flows or leaves.
+    /// Returns the measure of the water (-), where it flows: the imbalance divided by the water that is stored, flows
+    /// or leaves.
     pub fn water(&self, balance: &Balance) -> Option<f64> {
         balance
             .water
@@ -79,27 +80,28 @@ impl Convergence {
             .map(|water| water.measure(self.round_off.of_water()))
     }
 
-    /// Norm of what is round-off in the forces, N.
+    /// Returns the norm of the round-off of the forces (N).
     pub fn round_off(&self) -> f64 {
         self.round_off.norm()
     }
 
-    /// Whether any direction has been measured yet.
+    /// Returns whether any direction has been measured.
     pub fn has_begun(&self) -> bool {
         self.first_energy.is_some()
     }
 
-    /// |du_0 . f_0|, if any direction has been measured yet, N m.
+    /// Returns |du_0 . f_0| (N m), if any direction has been measured.
     pub fn first_energy(&self) -> Option<f64> {
         self.first_energy
     }
 
-    /// |du_0 . f_0|, which the later energies are measured by.
+    /// Sets |du_0 . f_0| (N m), the reference of all later energies.
     pub fn begin(&mut self, energy: f64) {
         self.first_energy = Some(energy);
     }
 
-    /// Takes the measures of a state `u` and the direction that `method` found there; whether both criteria hold.
+    /// Records the measures of a state `u` and of the direction that `method` found there. Returns whether all criteria
+    /// are met.
     pub fn reaches(&mut self, method: Method, energy: f64, u: &[f64], balance: &Balance) -> bool {
         let energy = energy / self.first_energy.unwrap_or(f64::INFINITY);
         let force = self.measure(balance);
@@ -118,17 +120,17 @@ impl Convergence {
         energy < self.criteria.energy && force < self.criteria.force && is_dry_or_balanced
     }
 
-    /// The measures so far.
+    /// Returns the measures so far.
     pub fn history(&self) -> &[Measures] {
         &self.history
     }
 
-    /// Iterations measured.
+    /// Returns the number of iterations measured.
     pub fn iterations(&self) -> usize {
         self.history.len()
     }
 
-    /// Whether, at the rate of the last iterations, convergence is out of reach.
+    /// Returns whether convergence is out of reach at the rate of the last iterations.
     pub fn stalls(&self) -> bool {
         let Some(before) = self.history.len().checked_sub(WINDOW) else {
             return false;
@@ -139,7 +141,7 @@ impl Convergence {
         now.ln() > PATIENCE * per_iteration
     }
 
-    /// The least of the first `count` iterations' measures over their criteria.
+    /// Returns the smallest ratio of measure to criterion among the first `count` iterations.
     fn least_excess(&self, count: usize) -> f64 {
         self.history[..count]
             .iter()
@@ -147,7 +149,7 @@ impl Convergence {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// How many of the iterations were Newton's.
+    /// Returns the number of Newton iterations.
     pub fn by_newton(&self) -> usize {
         self.history
             .iter()
@@ -155,7 +157,7 @@ impl Convergence {
             .count()
     }
 
-    /// The error of an iteration that ended at `residual`; `unsolved` where no direction was found there.
+    /// Creates the error of an iteration that ended at `residual`; `unsolved` if no direction was found there.
     pub fn failed<K: Kinematics<D>, const D: usize>(
         &self,
         problem: &Problem<'_, K, D>,
@@ -176,9 +178,9 @@ impl Convergence {
     }
 }
 
-/// |du_0 . (f_0 - K_strips du_0)|: the energy of the first direction without that of the penalty of strips and
-/// rigid bodies, which takes up their motion in it and would make the measure as much too lenient as the penalty is
-/// stiff. `work`: du_0 . f_0.
+/// Returns |du_0 . (f_0 - K_strips du_0)| (N m), the energy of the first direction without the penalty energy of strips
+/// and rigid bodies, whose prescribed motion is in this direction. With the penalty energy the criterion would be too
+/// lenient by the ratio of the penalty to the stiffness. `work` is du_0 . f_0.
 pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, du: &[f64], work: f64) -> f64 {
     let rigid = &problem.nodes.rigid;
     if problem.model.boundary.strips.is_empty() && rigid.is_empty() {
@@ -192,7 +194,7 @@ pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D
     (work - penalty[0]).abs()
 }
 
-/// The error of a state in which points have inverted, or have no pores left.
+/// Creates the error of a state in which points have inverted or pores have closed.
 pub fn inverted<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     residual: &Residual<K, D>,
@@ -216,7 +218,7 @@ pub fn inverted<K: Kinematics<D>, const D: usize>(
     }
 }
 
-/// This rank's own nodes whose forces are the least balanced, worst first.
+/// Returns this rank's own nodes with the largest out-of-balance forces, in descending order.
 pub fn worst_nodes<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, balance: &Balance) -> Vec<WorstNode> {
     let grid = &problem.model.grid;
     let force = |node: usize| Vector::<D>::from_column_slice(&balance.f_oob[Nodal::<D>::of(node)]).norm();

@@ -5,11 +5,11 @@ use crate::exact::Exact;
 use crate::parallel::{Halo, Krylov};
 use crate::solve::unknowns::Unknowns;
 
-/// Most products of one solution; a vector and its image are held of each.
+/// Largest number of products of one solution; each stores a basis vector and a direction.
 pub const MOST: usize = 300;
 
-/// Solves A x = b for packed vectors of the `unknowns` from x = 0, `product` A x and `precondition` about A^-1 r, to
-/// the residual `relative` to b or as far as it gets; two reductions an iteration.
+/// Solves A x = b for packed vectors of the `unknowns` from x = 0. `product` computes A x, `precondition` approximates
+/// A^-1 r. Iterates to the residual `relative` to b, or as far as possible. Three reductions per iteration.
 pub fn solve(
     unknowns: &Unknowns,
     halo: &dyn Halo,
@@ -66,10 +66,10 @@ pub fn solve(
     Ok((x, krylov))
 }
 
-/// Takes what lies along the `basis` from `image`; returns how much of it, a number for every vector. Two reductions.
+/// Removes the components along `basis` from `image` and returns them, one number per vector. Two reductions.
 fn orthogonalise(basis: &[Vec<f64>], image: &mut [f64], unknowns: &Unknowns, halo: &dyn Halo) -> Vec<f64> {
     let mut column = vec![0.0; basis.len()];
-    // Twice: once leaves what rounding makes of nearly parallel vectors.
+    // Twice, because one pass leaves round-off for nearly parallel vectors.
     for _ in 0..2 {
         let products: Vec<Exact> = basis.iter().flat_map(|v| unknowns.dots([v], image)).collect();
         let along = halo.reproducible_sum(&products);
@@ -85,9 +85,9 @@ fn scaled(a: &[f64], factor: f64) -> Vec<f64> {
     a.iter().map(|a| a * factor).collect()
 }
 
-/// min |size e_1 - H y| of a Hessenberg matrix H that grows by columns, by rotations (Givens).
+/// Minimises |size e_1 - H y| for a Hessenberg matrix H that grows by columns, by Givens rotations.
 struct LeastSquares {
-    columns: Vec<Vec<f64>>, // of the triangle
+    columns: Vec<Vec<f64>>, // of the triangular factor
     rotations: Vec<(f64, f64)>,
     right: Vec<f64>,
 }
@@ -105,7 +105,7 @@ impl LeastSquares {
         self.right.last().map_or(0.0, |last| last.abs())
     }
 
-    /// A column, and its entry below the diagonal.
+    /// Adds a column and its entry below the diagonal.
     fn add(&mut self, mut column: Vec<f64>, below: f64) {
         for (k, (c, s)) in self.rotations.iter().enumerate() {
             (column[k], column[k + 1]) = (c * column[k] + s * column[k + 1], c * column[k + 1] - s * column[k]);

@@ -7,41 +7,42 @@ use crate::step::residual::Residual;
 use crate::step::trial::DeformationIncrement;
 use crate::water::residual::WaterBalance;
 
-/// A converged displacement.
+/// A converged displacement with the quantities evaluated there.
 #[derive(Clone, Debug)]
 pub struct StepSolution<K: Kinematics<D>, const D: usize> {
-    /// m, nodal
+    /// Nodal displacement (m).
     pub u: Vec<f64>,
-    /// Pa, nodal  excess pore pressure, where water flows
+    /// Nodal excess pore pressure (Pa), where water flows.
     pub p: Vec<f64>,
-    /// balance of the water, where it flows
+    /// Balance of the water, where it flows.
     pub water: Option<WaterBalance>,
-    /// deformation under `u`
+    /// Deformation increment under `u`.
     pub trial: DeformationIncrement<K, D>,
-    /// N  force of the supports on the body, nodal
+    /// Nodal force of the supports on the body (N).
     pub reaction: Vec<f64>,
-    /// both measures of every iteration
+    /// Convergence measures of every iteration.
     pub history: Vec<Measures>,
-    /// the measures that it was accepted by; none of a state that was in balance before any direction was known
+    /// Measures that met the criteria; `None` if the state was in equilibrium before any direction was known.
     pub judged: Option<Measures>,
-    /// force measure
+    /// Force measure (-).
     pub force: f64,
-    /// N  largest force, norm of all nodes
+    /// Reference force of the force measure, a norm over all nodes (N).
     pub scale: f64,
-    /// N m  |du_0 . f_0|, which energies were measured by; none where no direction was needed
+    /// |du_0 . f_0| (N m), the reference of all energies; `None` if no direction was needed.
     pub first_energy: Option<f64>,
-    /// J  magnitudes of the works of all internal forces, with a background
+    /// Sum of the magnitudes of the works of all internal forces (J), with a background.
     pub work: f64,
-    /// Newton iterations
+    /// Number of Newton iterations.
     pub newton_iterations: usize,
-    /// whether the forces alone decided
+    /// Whether only the force criterion was met.
     pub settled: bool,
-    /// whether the first guess led here
+    /// Whether the iteration converged from the first guess.
     pub first_guess: bool,
 }
 
 impl<K: Kinematics<D>, const D: usize> StepSolution<K, D> {
-    /// The state that an iteration reached: displacements, and pressures behind them where water flows.
+    /// Collects the state that an iteration reached. `u` contains displacements, followed by pressures where water
+    /// flows.
     pub fn new(mut u: Vec<f64>, residual: Residual<K, D>, convergence: &Convergence) -> Self {
         let newton_iterations = convergence.by_newton();
         let force = convergence.measure(&residual.balance);

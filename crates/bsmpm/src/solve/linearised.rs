@@ -18,28 +18,28 @@ use crate::tensor::{Tensor, Vector};
 use crate::water::linearised::WaterTangent;
 use std::borrow::Cow;
 
-/// The derivative at one displacement.
+/// Derivative of the out-of-balance force at one displacement.
 pub struct ForceTangent<'a, K: Kinematics<D>, const D: usize> {
     problem: &'a Problem<'a, K, D>,
     trial: &'a DeformationIncrement<K, D>,
     reaction: &'a [f64], // N
-    /// N m  V0 d(tau dF^-T)/d(grad v), one unit gradient after the other
+    /// V0 d(tau dF^-T)/d(grad v) (N m), one unit gradient after the other.
     moduli: Vec<GradientModuli<K, D>>,
-    /// under F-bar
+    /// Contribution of F-bar, if used.
     dilation: Option<Vec<Dilation<K::Gradient>>>,
-    /// under consistent F-bar in dilatant material; of all points
+    /// Contribution of the adjoint force at all points, under consistent F-bar in dilatant material.
     adjoint: Option<(Adjoint, Vec<Pressure<K::Gradient>>)>,
-    /// where water flows
+    /// Contribution of flowing water, if any.
     water: Option<WaterTangent<'a, D>>,
 }
 
-/// What the adjoint force adds at a point: its pressure is that of an average.
+/// Contribution of the adjoint force at a point, whose pressure is an average.
 struct Pressure<G> {
-    /// J  d(V0 tau : I / dof) per gradient
+    /// d(V0 tau : I / dof) per displacement gradient (J).
     by_gradient: G,
-    /// J  the same per unit of d ln(dJ-bar/dJ)
+    /// d(V0 tau : I / dof) per unit of d ln(dJ-bar/dJ) (J).
     by_rate: f64,
-    /// J  V0 tau : I / dof of the point itself
+    /// V0 tau : I / dof of the point itself (J).
     own: f64,
 }
 
@@ -49,12 +49,12 @@ struct LinearisedPoint {
     inverse: Tensor,       // dF^-1
     tau: Tensor,           // Pa
     volume: f64,           // m^D  V0
-    pressure: Option<f64>, // J  of the adjoint force
-    pore: Option<f64>,     // Pa  J p of the water
+    pressure: Option<f64>, // of the adjoint force (J)
+    pore: Option<f64>,     // pore pressure times J (Pa)
 }
 
 impl LinearisedPoint {
-    /// V0 d(tau dF^-T) for the unit gradient of a row and a column, N m.
+    /// Returns V0 d(tau dF^-T) for the unit gradient of a row and a column (N m).
     fn change<K: Kinematics<D>, const D: usize>(&self, row: usize, column: usize) -> K::Gradient {
         let l = K::gradient::<f64>(&K::Gradient::unit(row, column)) * self.inverse;
         let mut change = self.tangent.apply(&l) - self.tau * l.transpose();
@@ -70,7 +70,8 @@ impl LinearisedPoint {
         K::working(&(change * self.inverse.transpose())) * self.volume
     }
 
-    /// What F-bar adds, of a point whose viscous stress changes by `viscous` of a gradient, if it has any.
+    /// Returns the contribution of F-bar. `viscous` gives the change of the viscous stress with a gradient, if the
+    /// point has damping.
     fn dilation<K: Kinematics<D>, const D: usize>(
         &self,
         viscous: Option<&impl Fn(&Tensor) -> Tensor>,
@@ -90,16 +91,16 @@ impl LinearisedPoint {
     }
 }
 
-/// What F-bar adds at a point.
+/// Contribution of F-bar at a point.
 struct Dilation<G> {
-    /// -  tr l per gradient: dF^-T
+    /// tr l per gradient: dF^-T (-).
     trace: G,
-    /// N m  V0 d(tau dF^-T) per unit of d ln(dJ-bar/dJ)
+    /// V0 d(tau dF^-T) per unit of d ln(dJ-bar/dJ) (N m).
     flux: G,
 }
 
 impl<G> Pressure<G> {
-    /// Of a point.
+    /// Differentiates the pressure of a point.
     fn of<K: Kinematics<D, Gradient = G>, const D: usize>(point: &LinearisedPoint) -> Self
     where
         G: Gradient<D, Of<f64> = G>,
@@ -117,7 +118,7 @@ impl<G> Pressure<G> {
 }
 
 impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
-    /// The derivative where `residual` was evaluated; no point of it may have inverted.
+    /// Computes the derivative where `residual` was evaluated. No point may have inverted there.
     pub fn at(problem: &'a Problem<'a, K, D>, residual: &'a Residual<K, D>) -> Self {
         let trial = &residual.trial;
         let points = problem.points;
@@ -131,7 +132,7 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
             let inverse = dF.try_inverse();
             let response = trial.respond(problem.model, points, p).ok();
             let Some((response, inverse)) = response.zip(inverse) else {
-                moduli.push(K::Gradient::moduli(|_, _| K::Gradient::zeros())); // cannot be: the residual has refused such a point
+                moduli.push(K::Gradient::moduli(|_, _| K::Gradient::zeros())); // unreachable: the residual rejects it
                 continue;
             };
             let point = LinearisedPoint {
@@ -168,7 +169,7 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
         }
     }
 
-    /// The same with the water that flows, where `x` has the nodal excess pressures behind the displacements, Pa.
+    /// Adds flowing water to the derivative. In `x` the nodal excess pore pressures (Pa) follow the displacements.
     pub fn with_water(mut self, x: &'a [f64]) -> Self {
         let Problem { nodes, .. } = *self.problem;
         let p = &x[nodes.free.len()..];
@@ -179,8 +180,8 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
         self
     }
 
-    /// K v on nodal arrays, `v` zero where it is not free: one exchange with the neighbours, one more under F-bar and
-    /// one with water.
+    /// Computes K v for nodal arrays; `v` is zero where it is not free. One exchange with the neighbours, one more each
+    /// under F-bar, for the adjoint force and with water.
     pub fn multiply(&self, v: &[f64], out: &mut [f64]) {
         let Problem {
             shape,
@@ -241,8 +242,8 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
             .for_each(|(out, _)| *out = 0.0);
     }
 
-    /// What the pressures of the adjoint force change by at the points for a gradient and the rate of ln(dJ-bar/dJ), J;
-    /// `None` without such a force. One exchange with the neighbours.
+    /// Returns the change of the adjoint force's pressures at the points (J) for a gradient and the rate of
+    /// ln(dJ-bar/dJ); `None` without such a force. One exchange with the neighbours.
     fn pressed(&self, dilation: &[Dilation<K::Gradient>], rate: &[f64], grad: &[K::Gradient]) -> Option<Vec<f64>> {
         let Problem { model, points, .. } = *self.problem;
         let (adjoint, at) = self.adjoint.as_ref()?;
@@ -253,7 +254,7 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
         }))
     }
 
-    /// Adds what inertia and dashpots resist a nodal displacement `v`, m, with, N.
+    /// Adds the resistance of inertia and dashpots to a nodal displacement `v` (m) to `out` (N).
     fn add_inertia(&self, inertia: &Inertia, v: &[f64], out: &mut [f64]) {
         let factor = inertia.factor();
         let mut scaled = Cow::Borrowed(v);
@@ -270,8 +271,8 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
         }
     }
 
-    /// Assembles and factorises the matrix that preconditions the product: all of it, but for F-bar's average where
-    /// that reaches farther than the matrix. One exchange with the neighbours where it does not.
+    /// Assembles and factorises the preconditioner of the product. It is the complete derivative except for the F-bar
+    /// average where this couples nodes beyond the sparsity pattern. One exchange with the neighbours otherwise.
     pub fn factorise(&self, solver: &mut dyn LinearSolver) -> Result<(), SolveError> {
         let Problem { model, nodes, halo, .. } = *self.problem;
         let Some(extension) = &nodes.extension else {
@@ -322,8 +323,8 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
         complete(self.problem, solver, Symmetry::General)
     }
 
-    /// Moduli of point `p`, and its flux per unit of d ln(dJ-bar/dJ), of a force that is not the adjoint: that one
-    /// reaches twice as far as a matrix.
+    /// Returns the moduli of point `p` and its flux per unit of d ln(dJ-bar/dJ) for a local force in place of the
+    /// adjoint force, which couples nodes twice as far apart as the matrix does.
     fn narrow(&self, p: usize) -> (GradientModuli<K, D>, K::Gradient) {
         let flux = self
             .dilation
@@ -344,7 +345,7 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
         (moduli, flux + *trace * *by_rate)
     }
 
-    /// Adds point `p`, whose dilation is averaged: flux_p (S(w dJ tr l)_p / S(w dJ)_p - tr l_p) besides its moduli.
+    /// Adds point `p` with averaged dilation: its moduli and flux_p (S(w dJ tr l)_p / S(w dJ)_p - tr l_p).
     fn add_coupled(&self, p: usize, slopes: &[Slope<K, D>], dilations: &mut Dilations, block: &mut [f64]) {
         let Problem {
             model, nodes, points, ..
@@ -379,7 +380,8 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
     }
 }
 
-/// Change of the flux of a viscous stress for a unit gradient, per volume: (d tau_v - tau_v l^T) dF^-T.
+/// Returns the change of the flux of a viscous stress for a unit gradient, per volume: (d tau_v - tau_v l^T) dF^-T
+/// (Pa).
 fn viscous_flux<K: Kinematics<D>, const D: usize>(
     tau: &Tensor,
     change: &impl Fn(&Tensor) -> Tensor,
@@ -391,7 +393,7 @@ fn viscous_flux<K: Kinematics<D>, const D: usize>(
     K::working(&((change(&l) - tau * l.transpose()) * inverse.transpose()))
 }
 
-/// Change of the flux for a gradient: sum_kl moduli_kl grad_kl.
+/// Returns the change of the flux for a gradient: sum_kl moduli_kl grad_kl.
 #[inline]
 fn contract<K: Kinematics<D>, const D: usize>(moduli: &GradientModuli<K, D>, grad: &K::Gradient) -> K::Gradient {
     let mut flux = K::Gradient::zeros();

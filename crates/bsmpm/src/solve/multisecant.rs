@@ -8,17 +8,18 @@ use crate::threads::{self, CHUNK};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use rayon::prelude::*;
 
-/// Secants that are kept: older ones tell little of a plastic state that has changed.
+/// Largest number of stored secants: older ones do not describe a plastic state that has changed.
 const MOST: usize = 20;
-/// Eigenvalues of the scaled products below this part of the largest are round-off: their secants repeat others.
+/// Relative size of eigenvalues of the scaled products below which they are round-off: their secants are linearly
+/// dependent.
 const DEPENDENT: f64 = 1e-12;
 
-/// Steps of this iteration and what they changed, in packed vectors.
+/// Steps of this iteration and the changes that they caused, in packed vectors.
 #[derive(Clone, Debug)]
 pub struct Multisecant {
     unknowns: Unknowns,
     secants: Vec<Secant>,
-    products: Vec<Vec<f64>>, // N m  dw_i . df_j for j <= i
+    products: Vec<Vec<f64>>, // dw_i . df_j for j <= i (N m)
     last: Option<Last>,
 }
 
@@ -36,7 +37,7 @@ struct Last {
 }
 
 impl Multisecant {
-    /// Nothing seen yet.
+    /// Creates an empty history.
     pub fn new(unknowns: Unknowns) -> Self {
         Self {
             unknowns,
@@ -46,7 +47,7 @@ impl Multisecant {
         }
     }
 
-    /// Turns the nodal w = K_0^-1 f into the direction du, and reports du . f: one reduction for everything.
+    /// Turns the nodal w = K_0^-1 f into the direction du, and returns du . f (N m). One reduction.
     pub fn correct(&mut self, nodal_w: &mut [f64], f: &[f64], halo: &dyn Halo) -> f64 {
         let w = self.unknowns.packed(nodal_w);
         let f = self.unknowns.packed(f);
@@ -74,14 +75,14 @@ impl Multisecant {
         energy
     }
 
-    /// Reports how much of the last direction was taken: 1 for a full step.
+    /// Records the fraction of the last direction that was taken: 1 for a full step.
     pub fn took(&mut self, length: f64) {
         if let Some(last) = &mut self.last {
             last.s.iter_mut().for_each(|s| *s *= length);
         }
     }
 
-    /// Adds the secant of the last step, and forgets the oldest one if there are too many; what w changed by.
+    /// Adds the secant of the last step and removes the oldest one if there are too many. Returns the change of w.
     fn learn(&mut self, w: &[f64], f: &[f64]) -> Option<Vec<f64>> {
         let last = self.last.take()?;
         let dw: Vec<f64> = w.iter().zip(&last.w).map(|(w, before)| w - before).collect();
@@ -98,8 +99,8 @@ impl Multisecant {
         Some(dw)
     }
 
-    /// Products with the present force, from one reduction; rows of `products` are completed on the way, of the newest
-    /// secant's `dw`.
+    /// Computes the products with the present force and completes `products` with the row of the newest secant, whose
+    /// change of w is `dw`. One reduction.
     fn products(&mut self, w: &[f64], f: &[f64], dw: Option<&[f64]>, halo: &dyn Halo) -> Products {
         let Self { unknowns, secants, .. } = self;
         let count = secants.len();
@@ -111,6 +112,7 @@ impl Multisecant {
         let mut sums: Vec<Exact> = of_secants.into_iter().flatten().collect();
         sums.extend(unknowns.dots([w], f));
         let sums = halo.reproducible_sum(&sums);
+        // Secant k has three sums: dw . df_k (the row of the newest secant), df_k . w, and (s_k + dw_k) . f.
         let every_third = |from: usize| sums[..3 * count].iter().skip(from).step_by(3).copied().collect();
         if count > 0 {
             self.products.push(every_third(0));
@@ -123,14 +125,14 @@ impl Multisecant {
     }
 }
 
-/// Products of the secants with the force f, N m.
+/// Products of the secants with the force f (N m).
 struct Products {
     right: Vec<f64>, // df_j . w
     both: Vec<f64>,  // (s_j + dw_j) . f
     energy: f64,     // w . f
 }
 
-/// Solves the symmetric system of the products (lower triangle by rows) where its secants are independent.
+/// Solves the symmetric system of the products (lower triangle by rows) in the subspace of independent secants.
 fn least_squares(products: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     let size = right.len();
     let unit = unit(products);
@@ -161,8 +163,8 @@ fn least_squares(products: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// The power of two (N m) of the largest diagonal product. Square roots round otherwise in other units: without unit,
-/// the same problem has the same bits in all units that differ by powers of two.
+/// Returns the power of two of the largest diagonal product (N m). Division by it makes results bitwise independent of
+/// units that differ by powers of two, although square roots are rounded.
 fn unit(products: &[Vec<f64>]) -> f64 {
     let largest = products
         .iter()

@@ -19,22 +19,22 @@ use crate::step::residual::{Balance, Residual};
 use crate::step::stiffness;
 use crate::water::newton::{Exact, Scales, direction as coupled};
 
-/// Iterations after which a step is given up: near a solution five or six do.
+/// Iterations after which a step is given up. Near a solution five or six suffice.
 const MOST: usize = 30;
-/// Loosest and tightest relative residual of a direction; between them it follows the force measure, so that the
-/// convergence stays quadratic (Dembo, Eisenstat and Steihaug, 1982).
+/// Smallest and largest relative residual of a direction. In between it follows the force measure, so that convergence
+/// stays quadratic (Dembo, Eisenstat and Steihaug, 1982).
 const FORCING: (f64, f64) = (1e-10, 1e-3);
-/// The loosest where water flows, around a rough solver, and in space: what preconditions is no factor of the
-/// derivative, and each tenth takes products.
+/// Largest relative residual with flowing water, with an inexact solver, and in three dimensions. The preconditioner is
+/// then no factorisation of the derivative, and each factor of ten costs matrix-vector products.
 const LOOSE: f64 = 1e-1;
-/// Relative residual above which a direction is none.
+/// Relative residual above which a direction is rejected.
 const USELESS: f64 = 0.5;
-/// Shortest part of a direction that is tried.
+/// Smallest fraction of a direction that the line search tries.
 const SHORTEST: f64 = 1.0 / 64.0;
-/// Part of the predicted decrease of the force that a step must bring (Armijo).
+/// Fraction of the predicted decrease of the force that a step must achieve (Armijo).
 const DECREASE: f64 = 1e-4;
 
-/// Iterates from the displacement `u`, whose measures continue in `progress`.
+/// Iterates from the displacement `u`. The measures continue those in `convergence`.
 pub fn iterate<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     mut u: Vec<f64>,
@@ -46,7 +46,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     if !residual.balance.is_sound() {
         return Err(inverted(problem, &residual, convergence.iterations()).into());
     }
-    // The state that the last direction leads to is judged, too.
+    // The state after the last direction is judged, too.
     for iteration in 0..=MOST {
         if convergence.is_balanced(&residual.balance, problem) {
             return Ok(StepSolution::new(u, residual, convergence));
@@ -88,7 +88,8 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     })
 }
 
-/// K du = f_oob with the complete K at this state, and du . f_oob; with the pressures behind them where water flows.
+/// Solves K du = f_oob with the complete derivative K at this state. Returns du and the energy du . f_oob (N m). Where
+/// water flows, the pressures follow the displacements in du.
 fn direction<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     x: &[f64],
@@ -113,7 +114,7 @@ fn direction<K: Kinematics<D>, const D: usize>(
     let measure = residual.balance.measure();
     counts.factorisations += 1;
     counts.iterations += 1;
-    // In space a general matrix takes more than twice the memory for the same iterations.
+    // In three dimensions a general matrix takes more than twice the memory for the same number of iterations.
     let (du, krylov) = if solver.is_rough() || D == 3 {
         around_stiffness(problem, residual, measure.clamp(FORCING.0, LOOSE), solver)?
     } else {
@@ -137,8 +138,8 @@ fn direction<K: Kinematics<D>, const D: usize>(
     Ok((du, energy))
 }
 
-/// The direction without a general matrix: the derivative's product in a Krylov method that the symmetric stiffness of
-/// the secants at this state preconditions.
+/// Solves for the direction without a general matrix: a Krylov method with the product of the derivative,
+/// preconditioned by the symmetric stiffness at this state.
 fn around_stiffness<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     residual: &Residual<K, D>,
@@ -175,8 +176,8 @@ fn around_stiffness<K: Kinematics<D>, const D: usize>(
     Ok((du, krylov))
 }
 
-/// The longest of the direction's first part, half, quarter, .. that lessens the out-of-balance force, and where water
-/// flows what is out of balance in both.
+/// Tries the full direction, half of it, a quarter, .., and returns the first state that reduces the out-of-balance
+/// force; where water flows, the combined measure of forces and water.
 fn search<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     u: &[f64],

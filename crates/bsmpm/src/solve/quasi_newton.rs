@@ -17,31 +17,31 @@ use crate::step::residual::{Balance, Residual};
 use crate::water::follow::Follow;
 use crate::water::split::Split;
 
-/// Shortest part of a direction that is tried when points invert.
+/// Smallest fraction of a direction that is tried if points invert.
 const SHORTEST: f64 = 1.0 / 16.0;
 
-/// A direction and what it took.
+/// A search direction and its cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
-    /// m, nodal; and Pa behind them, where water flows
+    /// Nodal displacements (m), followed by pressures (Pa) where water flows.
     pub du: Vec<f64>,
-    /// du . f, N m
+    /// Energy du . f (N m).
     pub energy: f64,
-    /// what the solution with K_0 took
+    /// Report of the solution with K_0.
     pub solved: SolveReport,
 }
 
-/// The state of one iteration; both methods cost one solve with K_0 a direction.
+/// Secants of one iteration. Both methods need one solution with K_0 per direction.
 #[derive(Clone, Debug)]
 pub enum Secants {
-    /// see [`Multisecant`]
+    /// See [`Multisecant`].
     Multisecant(Multisecant),
-    /// see [`Broyden`]
+    /// See [`Broyden`].
     Broyden(Broyden),
 }
 
 impl Secants {
-    /// Nothing seen yet of a system whose unknowns are the `free` components, `D` a node.
+    /// Creates an empty history for a system whose unknowns are the `free` components, `D` per node.
     pub fn new<const D: usize>(method: QuasiNewton, free: &[bool], halo: &dyn Halo) -> Self {
         match method {
             QuasiNewton::Multisecant => Self::Multisecant(Multisecant::new(Unknowns::of::<D>(free, halo))),
@@ -49,7 +49,8 @@ impl Secants {
         }
     }
 
-    /// The same of the unknowns of a problem, pressures among them where water flows: there by all secants.
+    /// Creates an empty history for the unknowns of a problem. Where water flows, pressures are among them and the
+    /// multisecant method is used.
     fn of<K, const D: usize>(method: QuasiNewton, problem: &Problem<'_, K, D>) -> Self {
         let free = &problem.nodes.free;
         let halo = problem.halo;
@@ -60,7 +61,7 @@ impl Secants {
         Self::Multisecant(Multisecant::new(unknowns))
     }
 
-    /// Direction du = H f for the out-of-balance force `f`, `D` components a node.
+    /// Returns the direction du = H f for the out-of-balance force `f` (N), `D` components per node.
     pub fn direction<const D: usize>(
         &mut self,
         f: &[f64],
@@ -72,7 +73,7 @@ impl Secants {
         Ok(self.corrected::<D>(w, f, halo, solved))
     }
 
-    /// Direction of a problem's displacements, and of its pressures behind them where water flows.
+    /// Returns the direction of a problem's displacements, followed by pressures where water flows.
     fn towards<K: Kinematics<D>, const D: usize>(
         &mut self,
         problem: &Problem<'_, K, D>,
@@ -90,7 +91,7 @@ impl Secants {
         }
     }
 
-    /// Direction from w = K_0^-1 f.
+    /// Corrects w = K_0^-1 f to the direction du.
     fn corrected<const D: usize>(
         &mut self,
         mut w: Vec<f64>,
@@ -112,7 +113,7 @@ impl Secants {
         Direction { du, energy, solved }
     }
 
-    /// Reports how much of the last direction was taken: 1 for a full step.
+    /// Records the fraction of the last direction that was taken: 1 for a full step.
     pub fn took(&mut self, length: f64) {
         match self {
             Self::Multisecant(secants) => secants.took(length),
@@ -124,15 +125,15 @@ impl Secants {
 /// An iteration that did not converge.
 #[derive(Clone, Debug)]
 pub struct FailedIteration {
-    /// why
+    /// Cause of the failure.
     pub error: Box<StepError>,
-    /// m, nodal  the displacement with the smallest out-of-balance force, if any was sound
+    /// Nodal displacement with the smallest out-of-balance force (m), if any state was sound.
     pub best: Option<Vec<f64>>,
 }
 
 impl FailedIteration {
-    /// An iteration whose linear system could not be solved at a state; where nothing was iterated before, the system
-    /// itself is at fault.
+    /// Reports that the linear system could not be solved at a state. Without earlier iterations, the system itself is
+    /// reported as the cause.
     pub fn without_direction<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         best: Vec<f64>,
@@ -146,7 +147,7 @@ impl FailedIteration {
         Self::with_best(convergence.failed(problem, residual, Some(unsolved)), best)
     }
 
-    /// An iteration that had the displacement `best`, m, nodal, before it failed.
+    /// Reports a failure with the nodal displacement `best` before it (m).
     fn with_best(error: StepError, best: Vec<f64>) -> Self {
         Self {
             error: Box::new(error),
@@ -164,17 +165,17 @@ impl<E: Into<StepError>> From<E> for FailedIteration {
     }
 }
 
-/// How secants are used.
+/// How the secants are used.
 #[derive(Clone, Copy, Debug)]
 pub struct SecantMethod {
     /// Quasi-Newton update.
     pub update: QuasiNewton,
-    /// Whether the iteration goes on to the limit of iterations where it converges slowly.
+    /// Whether slow convergence is continued up to the limit of iterations.
     pub is_patient: bool,
 }
 
-/// Iterates from the displacement `u` and its `residual` with K_0 factorised, to the limit of iterations; unless
-/// it is patient, only as long as convergence is in reach.
+/// Iterates from the displacement `u` and its `residual` with the factorised K_0, up to the limit of iterations. Unless
+/// the method is patient, the iteration stops when convergence is out of reach.
 pub fn iterate<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     method: SecantMethod,
@@ -202,7 +203,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         if convergence.reaches(Method::QuasiNewton(method.update), energy, &u, &residual.balance) {
             return Ok(StepSolution::new(u, residual, convergence)); // (9)
         }
-        // The direction's own energy is a sum of products with secants, whose round-off is another.
+        // The direction's own energy is a sum of products with secants, which has a different round-off.
         let work = stability::is_decisive(problem, &residual.balance)
             .then(|| dots(problem.halo, D, &[(&direction.du, &residual.balance.f_oob)])[0]);
         let of_water = convergence.water(&residual.balance).unwrap_or(0.0);
@@ -231,8 +232,8 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     ))
 }
 
-/// Steps (6), (7): solves for the next direction. Fails with the `best` displacement so far where the linear system
-/// cannot be solved.
+/// Steps (6), (7): solves for the next direction. Fails with the `best` displacement so far if the linear system cannot
+/// be solved.
 fn next_direction<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     secants: &mut Secants,
@@ -257,7 +258,7 @@ fn next_direction<K: Kinematics<D>, const D: usize>(
     Ok(direction)
 }
 
-/// Step (8): takes the direction, or the first half, quarter, .. of it under which no point inverts.
+/// Step (8): takes the full direction, or half, a quarter, .. of it until no point inverts. Returns the fraction.
 fn advance<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     u: &mut Vec<f64>,

@@ -8,21 +8,21 @@ use crate::step::residual::Balance;
 
 /// Round-off of the internal force, relative to E h^(D-1) x 1 m^(3-D).
 const INTERNAL: f64 = 1e-13;
-/// Round-off of the inertia, relative to |4/dt M v| (with numerical damping: its factor): a few roundings.
+/// Round-off of the inertia, relative to |4/dt M v| (with numerical damping: the factor of M v): a few rounding errors.
 const CANCELLED: f64 = 4.0 * f64::EPSILON;
 
-/// Round-off of the forces in one step. Each node has its own: the stiffest material of a scene must not excuse what is
-/// out of balance in the softest.
+/// Round-off of the forces in one step. Each node has its own, so that the stiffest material does not hide
+/// out-of-balance forces in the softest.
 #[derive(Clone, Debug)]
 pub struct RoundOff {
-    force: Vec<f64>, // N  1e-13 E h^(D-1), E the largest at the node, and of 4/dt^2 u, 4/dt v, which cancel if dt is tiny
-    norm: f64,       // N  of all nodes
-    apart: Vec<f64>, // N  of each material's own nodes; empty in a scene of one material
-    water: f64,      // m3  in the balance of the water
+    force: Vec<f64>, // per component (N): 1e-13 E h^(D-1), E the largest at the node, plus inertia
+    norm: f64,       // of all nodes (N)
+    apart: Vec<f64>, // of the nodes of each single material (N); empty with one material
+    water: f64,      // of the water balance (m3)
 }
 
 impl RoundOff {
-    /// Of the forces of a step, D numbers a node; one reduction, and one exchange where moduli differ.
+    /// Computes the round-off of a step. One reduction, and one exchange with the neighbours if moduli differ.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>) -> Self {
         let nodes = problem.nodes;
         let area = problem.model.grid.smallest_edge().powi(D as i32 - 1);
@@ -60,18 +60,18 @@ impl RoundOff {
         }
     }
 
-    /// Norm of the round-off of all nodes' forces, N.
+    /// Returns the norm of the round-off of all nodes' forces (N).
     pub fn norm(&self) -> f64 {
         self.norm
     }
 
-    /// Norm of the round-off of the water's balance, m3.
+    /// Returns the norm of the round-off of the water balance (m3).
     pub fn of_water(&self) -> f64 {
         self.water
     }
 
-    /// The force measure: the larger of |f_oob| / largest force of all nodes and that of any material's own nodes,
-    /// where it is not round-off; with the number of the material that it is of.
+    /// Returns the force measure (-): the largest of |f_oob| / largest force over all nodes and over each single
+    /// material's nodes, where it exceeds round-off. Also returns the number of the material, if it is the largest.
     pub fn measure(&self, balance: &Balance) -> (f64, Option<usize>) {
         let parts = balance.apart.iter().zip(&self.apart).enumerate();
         let apart = parts
@@ -83,8 +83,8 @@ impl RoundOff {
         )
     }
 
-    /// Whether no node is further out of balance than by round-off. All ranks must ask; they share an exchange only
-    /// where the norm leaves a doubt.
+    /// Returns whether at every node the out-of-balance force is round-off. All ranks must call this together. One
+    /// reduction, only if the norm does not already exceed its round-off.
     pub fn covers<K, const D: usize>(&self, balance: &Balance, problem: &Problem<'_, K, D>) -> bool {
         if balance.norm > self.norm {
             return false;
@@ -96,7 +96,7 @@ impl RoundOff {
     }
 }
 
-/// Largest Young's modulus of the points in the cells of each node, Pa.
+/// Returns the largest Young's modulus of the points in the cells of each node (Pa).
 fn largest_moduli<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>) -> Vec<f64> {
     let model = problem.model;
     let shape = problem.shape;

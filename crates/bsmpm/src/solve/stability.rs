@@ -10,11 +10,12 @@ use crate::stabilisation::Stabilisation;
 use crate::step::problem::Problem;
 use crate::step::residual::Balance;
 
-/// Force measure below which a state counts as near equilibrium: farther off a step may pass several equilibria.
+/// Force measure below which a state counts as near equilibrium. Farther away, a step may pass several equilibria.
 const NEAR: f64 = 1e-3;
 
-/// Whether anything follows from the work of a direction that is taken at this state: not far from equilibrium, nor in
-/// dynamics, where inertia decides where an unstable body goes, nor without symmetry.
+/// Returns whether the work of a direction from this state decides on stability: near equilibrium, without inertia
+/// (which decides where an unstable body moves), and with a symmetric derivative (no friction, yielding or flowing
+/// water).
 pub fn is_decisive<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Balance) -> bool {
     let has_friction = problem
         .model
@@ -32,9 +33,9 @@ pub fn is_decisive<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Bala
     before.measure() < NEAR && problem.nodes.inertia.is_none() && !has_friction && !flows && is_symmetric(problem.model)
 }
 
-/// Refuses a direction du (m, nodal; how much of it was taken changes no sign) near static equilibrium whose
-/// second-order work is negative beyond round-off: `work` is du . f_oob before it was taken, N m, where it
-/// [`is_decisive`]; `after` are the forces then. Agreed by all ranks; one reduction.
+/// Rejects a direction `du` (m, nodal; its length does not matter) near static equilibrium whose second-order work is
+/// negative beyond round-off. `work` is du . f_oob before the direction was taken (N m), if it [`is_decisive`]; `after`
+/// contains the forces afterwards. All ranks agree. One reduction.
 pub fn check<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     convergence: &Convergence,
@@ -56,7 +57,7 @@ pub fn check<K: Kinematics<D>, const D: usize>(
     Ok(())
 }
 
-/// Whether the complete derivative is symmetric.
+/// Returns whether the complete derivative is symmetric.
 fn is_symmetric<K, const D: usize>(model: &Model<K, D>) -> bool {
     let elastic = model
         .materials
@@ -65,8 +66,8 @@ fn is_symmetric<K, const D: usize>(model: &Model<K, D>) -> bool {
     elastic && (model.materials.len() == 1 || model.stabilisation == Stabilisation::None)
 }
 
-/// Largest stiffness against dilation over Young's modulus, by which the round-off of nearly incompressible stress is
-/// larger.
+/// Returns the largest ratio of oedometric modulus to Young's modulus, the factor by which round-off is larger in
+/// nearly incompressible material.
 fn bulkiness<K, const D: usize>(model: &Model<K, D>) -> f64 {
     model
         .materials
@@ -75,8 +76,8 @@ fn bulkiness<K, const D: usize>(model: &Model<K, D>) -> f64 {
         .fold(1.0, f64::max)
 }
 
-/// Whether a `work` in N m along a direction of the length `du` in m is negative for forces that are each known to
-/// `round_off` in N.
+/// Returns whether a `work` (N m) along a direction of length `du` (m) is negative, if each force is known to
+/// `round_off` (N).
 fn is_negative(work: f64, du: f64, round_off: f64) -> bool {
     work < -2.0 * round_off * du
 }

@@ -5,18 +5,18 @@ use crate::nodal::Nodal;
 use crate::parallel::Halo;
 use std::ops::Range;
 
-/// Terms that are summed side by side: sums one after the other would wait for each other.
+/// Terms that are summed in parallel lanes. Within one sum, each addition waits for the one before.
 const LANES: usize = 8;
 
-/// The components without zeros by definition, packed one after the other.
+/// Packed vectors of the unknowns: components that are zero by definition are left out.
 #[derive(Clone, Debug)]
 pub struct Unknowns {
-    places: Vec<u32>,          // nodal component of each, those of pressures behind those of displacements
-    layers: Vec<Range<usize>>, // those of this rank's own nodes, layer by layer
+    places: Vec<u32>,          // nodal component of each; pressures follow displacements
+    layers: Vec<Range<usize>>, // unknowns of this rank's own nodes, by layer
 }
 
 impl Unknowns {
-    /// The `free` ones among the components of the window's nodes, `D` a node.
+    /// Packs the `free` components of the window's nodes, `D` per node.
     pub fn of<const D: usize>(free: &[bool], halo: &dyn Halo) -> Self {
         let places: Vec<u32> = (0..)
             .zip(free)
@@ -29,7 +29,7 @@ impl Unknowns {
         Self { places, layers }
     }
 
-    /// The same with the `free` pressures of the pore water behind those `components`, one a node.
+    /// Appends the `free` pore pressures, one per node. In nodal arrays they follow the `components` displacements.
     pub fn with_pressures(mut self, components: usize, free: &[bool], halo: &dyn Halo) -> Self {
         let pressures = Self::of::<1>(free, halo);
         let before = self.places.len();
@@ -44,12 +44,12 @@ impl Unknowns {
         self
     }
 
-    /// The packed vector of a nodal array.
+    /// Returns the packed vector of a nodal array.
     pub fn packed(&self, nodal: &[f64]) -> Vec<f64> {
         self.places.iter().map(|&place| nodal[place as usize]).collect()
     }
 
-    /// Puts a packed vector in the place of those components of a nodal array.
+    /// Copies a packed vector into the corresponding components of a nodal array.
     pub fn unpack(&self, packed: &[f64], nodal: &mut [f64]) {
         self.places
             .iter()
@@ -57,7 +57,7 @@ impl Unknowns {
             .for_each(|(&place, value)| nodal[place as usize] = *value);
     }
 
-    /// Dot products of packed vectors with another one over this rank's own nodes: plainly within a layer, exactly over
+    /// Returns dot products of packed vectors with `a` over this rank's own nodes: rounded within a layer, exact over
     /// the layers.
     pub fn dots<const M: usize>(&self, with: [&[f64]; M], a: &[f64]) -> [Exact; M] {
         let mut sums = [Exact::ZERO; M];
@@ -71,7 +71,7 @@ impl Unknowns {
     }
 }
 
-/// Several at a time, as what is kept of many steps comes from memory.
+/// Computes several dot products at a time, since reading the stored vectors from memory dominates the cost.
 fn dots<const M: usize>(with: [&[f64]; M], a: &[f64]) -> [f64; M] {
     let mut sums = [[0.0; LANES]; M];
     let (eights, rest) = a.as_chunks::<LANES>();

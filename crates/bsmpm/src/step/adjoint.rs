@@ -9,25 +9,24 @@ use crate::step::problem::Problem;
 use crate::step::trial::DeformationIncrement;
 use crate::tensor::{Symmetric, Tensor};
 
-/// Dilation angle beyond which it is used, rad: 6 degrees. In the short collapse it has less noise from between 5 and
-/// 7.5 degrees on.
+/// Dilation angle above which the adjoint force is used (rad): 6 degrees. In the short collapse it reduces noise above
+/// a threshold between 5 and 7.5 degrees.
 const DILATANT: f64 = 0.105;
 
-/// Whether a material dilates so much that the adjoint force is used. Materials of which one does and one does not
+/// Returns whether a material dilates so much that the adjoint force is used. Materials with and without this force
 /// belong to different [`Groups`](crate::stabilisation::Groups).
 pub fn is_dilatant(material: &Material) -> bool {
     material.dilation() > DILATANT
 }
 
-/// Which points have the adjoint force.
+/// Marks the points that have the adjoint force.
 #[derive(Clone, Debug)]
 pub struct Adjoint {
     groups: Vec<bool>,
 }
 
 impl Adjoint {
-    /// Under consistent and sub-grid F-bar those of the groups of materials of which one is dilatant; `None` where none
-    /// has.
+    /// Selects groups with a dilatant material, under consistent and sub-grid F-bar; `None` if there are none.
     pub fn of<K, const D: usize>(model: &Model<K, D>) -> Option<Self> {
         if !model.stabilisation.lowers() {
             return None;
@@ -39,19 +38,20 @@ impl Adjoint {
         groups.contains(&true).then_some(Self { groups })
     }
 
-    /// Whether point `p` has.
+    /// Returns whether point `p` has the adjoint force.
     #[inline]
     pub fn has<K, const D: usize>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> bool {
         self.groups[model.groups.of(points.material[p])]
     }
 }
 
-/// What the points press with, J: pi-bar of those that have the adjoint force.
+/// Averaged mean stress times volume, pi-bar, of the points with the adjoint force (J).
 #[derive(Clone, Debug)]
 pub struct Pressures(Option<Vec<Option<f64>>>);
 
 impl Pressures {
-    /// Under a trial; one exchange with the neighbours where anything has the adjoint force.
+    /// Computes the pressures of a trial deformation. One exchange with the neighbours if any point has the adjoint
+    /// force.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         trial: &DeformationIncrement<K, D>,
@@ -72,13 +72,14 @@ impl Pressures {
         Self(Some(pressures.collect()))
     }
 
-    /// pi-bar of point `p`, if it has the adjoint force.
+    /// Returns pi-bar of point `p` (J), if it has the adjoint force.
     #[inline]
     pub fn at(&self, p: usize) -> Option<f64> {
         self.0.as_ref().and_then(|pressures| pressures[p])
     }
 
-    /// The Kirchhoff stress of point `p` whose force acts.
+    /// Returns the Kirchhoff stress whose internal force acts at point `p` (Pa): `tau` with its mean stress replaced by
+    /// pi-bar / `volume`.
     #[inline]
     pub fn acting<K: Kinematics<D>, const D: usize>(&self, p: usize, volume: f64, mut tau: Symmetric) -> Symmetric {
         if let Some(pressure) = self.at(p) {
@@ -89,7 +90,8 @@ impl Pressures {
     }
 }
 
-/// m_p w_p dJ_p sum_A A_p (1/m_A) sum_r A_r value_r, over points with the adjoint force: the transpose of the average.
+/// Computes m_p w_p dJ_p sum_A A_p (1/m_A) sum_r A_r value_r over points r with the adjoint force, the transpose of the
+/// average.
 pub fn transposed<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     adjoint: &Adjoint,
@@ -118,7 +120,7 @@ pub fn transposed<K: Kinematics<D>, const D: usize>(
     sums
 }
 
-/// What a stress works on a unit of dilation in the grid's directions.
+/// Returns the work of a stress per unit of dilation in the grid's directions.
 #[inline]
 pub fn works<K: Kinematics<D>, const D: usize>(stress: &Tensor) -> f64 {
     stress.diagonal().dot(&K::dilation().diagonal())

@@ -6,16 +6,16 @@ use crate::grid::Shape;
 use crate::parallel::Halo;
 use crate::points::Points;
 
-/// Which nodes are a material's own, in a scene of several.
+/// Nodes that only one material touches, in a case with several materials.
 #[derive(Clone, Debug)]
 pub struct MaterialNodeSets {
-    /// number of materials
+    /// Number of materials.
     pub materials: usize,
-    of: Vec<Option<u16>>, // per node of the window
+    of: Vec<Option<u16>>, // material per node of the window
 }
 
 impl MaterialNodeSets {
-    /// Of `nodes` nodes, the same on all ranks; one exchange. `None` where there is one material only.
+    /// Finds these nodes; equal on all ranks. `None` if there is only one material. One exchange with the neighbours.
     pub fn of<const D: usize>(
         materials: usize,
         shape: &Shape<D>,
@@ -26,7 +26,8 @@ impl MaterialNodeSets {
         if materials < 2 {
             return None;
         }
-        // The largest of the materials' numbers, and of them taken from zero, which is the smallest.
+        // Per node, the largest number of a material and the largest negative number, whose magnitude is the smallest
+        // number.
         let mut ends = vec![f64::NEG_INFINITY; 2 * nodes];
         for patch in shape.patches() {
             let of = &points.material[patch.points.clone()];
@@ -46,8 +47,9 @@ impl MaterialNodeSets {
         Some(Self { materials, of })
     }
 
-    /// For each material, sums over the components of this rank's own nodes that are the material's alone, `width` a
-    /// node; all of one material behind each other. Formed like [`over_layers`](crate::parallel::over_layers).
+    /// Sums `terms` for each material over the components of this rank's own nodes that only this material touches,
+    /// `width` per node. The N sums of a material are consecutive. Rounded like
+    /// [`over_layers`](crate::parallel::over_layers).
     pub fn sums<const N: usize>(&self, halo: &dyn Halo, width: usize, terms: impl Fn(usize) -> [f64; N]) -> Vec<Exact> {
         let mut sums = vec![Exact::ZERO; self.materials * N];
         for run in halo.owned().runs() {

@@ -11,15 +11,15 @@ use crate::step::mass::{MassMatrix, SHARE};
 use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 
-/// Nodes of a point, at most: cubic splines in three dimensions.
+/// Largest number of nodes of a point: cubic splines in three dimensions.
 pub const MOST: usize = 64;
 
-/// Node pairs (a, b) of a patch.
+/// Node pairs (a, b) of a patch (occupied cell).
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Pairs {
-    /// All.
+    /// All pairs.
     All,
-    /// Those with a <= b.
+    /// Pairs with a <= b.
     Upper,
 }
 
@@ -33,7 +33,8 @@ pub fn add_point<K: Kinematics<D>, const D: usize>(
     let order = slopes.len() * D;
     let numbers = K::Gradient::SLOPES;
     for (a, of_a) in slopes.iter().enumerate() {
-        // Along the rows, so that nodes b follow each other in memory: D numbers of each row for one product.
+        // Entry (a i, b k) = sum_jl of_a[j] moduli[(k, l)][(i, j)] of_b[l], with the unit gradient (k, l) and the flux
+        // (i, j). `along` is the sum over j, formed once per row. In a row, nodes b are consecutive in memory.
         let first = if pairs == Pairs::All { 0 } else { a };
         for i in 0..D {
             let row = &mut block[(a * D + i) * order..][..order];
@@ -47,7 +48,7 @@ pub fn add_point<K: Kinematics<D>, const D: usize>(
     }
 }
 
-/// Adds strips, rigid bodies and inertia to a matrix whose patches are assembled, and factorises it.
+/// Adds strips, rigid bodies and inertia to a matrix with assembled patches, and factorises it.
 pub fn complete<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     solver: &mut dyn LinearSolver,
@@ -75,7 +76,7 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
     solver.factorise(symmetry)
 }
 
-/// Adds what couples the nodes of a patch by their mass, if that is consistent; [`complete`] adds the diagonal.
+/// Adds the off-diagonal mass of a patch if the mass is consistent; [`complete`] adds the diagonal.
 pub fn add_mass<const D: usize>(
     matrix: MassMatrix,
     nodes: &GridState<D>,
@@ -100,6 +101,7 @@ pub fn add_mass<const D: usize>(
                 .for_each(|(pair, N_b)| *pair += weight * N_a * N_b);
         }
     }
+    // Pair a * size + b has the entries (a D + i, b D + i) of a matrix with size * D columns.
     for (pair, mass) in pairs.iter().enumerate() {
         for i in 0..D {
             block[(pair / size * D + i) * size * D + pair % size * D + i] += mass;

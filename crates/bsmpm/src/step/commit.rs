@@ -22,8 +22,8 @@ use crate::water::saved;
 use rayon::prelude::*;
 use std::sync::Mutex;
 
-/// Refuses a displacement that takes a point out of the grid, but through an outlet; there, too, one that a strip,
-/// load or drain is anchored to, and the last one. Agreed by all ranks.
+/// Rejects a displacement that moves a point out of the grid other than through an outlet. At an outlet, it rejects the
+/// loss of a point to which a strip, load or drain is anchored, and of the last point. All ranks agree.
 pub fn check_inside<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
@@ -73,44 +73,44 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
     Ok(())
 }
 
-/// What a saved step leaves besides the points.
-pub struct StepUpdate {
-    /// m  its nodal displacement
+/// Quantities of a saved step that are not stored in the points.
+pub struct CommitReport {
+    /// Nodal displacement (m).
     pub u: Vec<f64>,
-    /// share of a pass of S by which the elastic state was smoothed afterwards, mean over the points; 0 if it was not
+    /// Smoothing of the elastic state as a fraction of one pass of S, mean over the points (-); 0 without smoothing.
     pub smoothed: f64,
-    /// m  the farthest that a point moved, over all ranks
+    /// Largest displacement of a point, over all ranks (m).
     pub advance: f64,
-    /// m3  of water that the points took in, over all ranks
+    /// Water that the points took in, over all ranks (m3).
     pub content: f64,
-    /// J  kinetic energy of points beside fixed faces beyond that of their motion, over all ranks; in dynamics with
-    /// such a face
+    /// Kinetic energy of points near fixed faces in excess of that of their displacement, over all ranks (J). Only in
+    /// dynamics with such a face.
     pub beside_fixed: Option<f64>,
 }
 
-/// What is kept of the constitution's answer to the converged step at a point.
+/// Response of the constitutive law at a point in the converged state.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PointUpdate {
-    /// Pa  Kirchhoff stress
+    /// Kirchhoff stress (Pa).
     pub tau: Symmetric,
-    /// -  elastic left Cauchy-Green tensor
+    /// Elastic left Cauchy-Green tensor (-).
     pub b_e: Symmetric,
-    /// -  equivalent plastic strain of the step
+    /// Increment of equivalent plastic strain (-).
     pub plastic_increment: f64,
-    /// -  that is open, as a logarithm of volume
+    /// Open gap, as a logarithm of volume (-).
     pub gap: f64,
-    /// J/m3  plastic dissipation, of the volume at the start
+    /// Plastic dissipation per reference volume (J/m3).
     pub dissipation: f64,
-    /// J/m3  elastic energy, of the volume at the start
+    /// Elastic energy per reference volume (J/m3).
     pub elastic_energy: f64,
-    /// J/m3  second-order works, of the volume at the start: that of elastic ground, and its own; zero where none are
-    /// asked for
+    /// Second-order works per reference volume (J/m3): for elastic soil, and the actual one; zero if they are not
+    /// needed.
     pub second_order_works: [f64; 2],
     flow: smooth::PlasticFlow,
 }
 
 impl PointUpdate {
-    /// Of a response of a point whose `gap` was open before.
+    /// Copies the data of a `response`; `gap` is the gap before the step.
     fn of(response: &Response, gap: f64) -> Self {
         Self {
             tau: response.tau(),
@@ -125,15 +125,15 @@ impl PointUpdate {
     }
 }
 
-/// What the laws make of a converged step.
+/// Responses of the constitutive laws to a converged step.
 pub struct ConstitutiveUpdate {
-    /// Of every point.
+    /// Response of every point.
     pub answers: Vec<PointUpdate>,
     /// State variables of the laws after the step, if they have any.
     pub state: Option<Rows>,
 }
 
-/// Returns what the laws make of the converged step. Fails on all ranks if a law refuses a state that it answered
+/// Evaluates the constitutive laws for the converged step. Fails on all ranks if a law rejects a state that it accepted
 /// during the iteration.
 pub fn constitutive_update<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
@@ -170,17 +170,18 @@ pub fn constitutive_update<K: Kinematics<D>, const D: usize>(
     })
 }
 
-/// The laws of the points at a converged state.
+/// Evaluates the laws of the points at a converged state.
 struct LawsOfPoints<'a, K: Kinematics<D>, const D: usize> {
     model: &'a Model<K, D>,
     trial: &'a DeformationIncrement<K, D>,
     points: &'a Points<D>,
-    asks: bool,                                     // for second-order works
-    refused: Mutex<Option<(usize, MaterialError)>>, // the first point that a law refused, and why
+    asks: bool,                                     // whether second-order works are needed
+    refused: Mutex<Option<(usize, MaterialError)>>, // first point that a law rejected, and why
 }
 
 impl<K: Kinematics<D>, const D: usize> LawsOfPoints<'_, K, D> {
-    /// Returns the answer at point `p`, whose state variables are its `row`, if its law has any; remembers a refusal.
+    /// Returns the response at point `p` and updates its state variables `row`, if its law has any. Records a rejected
+    /// state.
     fn answer(&self, p: usize, row: Option<&mut [f64]>) -> PointUpdate {
         let response = match self.trial.respond(self.model, self.points, p) {
             Ok(response) => response,
@@ -204,16 +205,16 @@ impl<K: Kinematics<D>, const D: usize> LawsOfPoints<'_, K, D> {
     }
 }
 
-/// Whether second-order works measure how far the ground is from failure: in quasi-static analysis of material that
-/// yields, without water that flows, whose pressure takes load from the ground in time.
+/// Returns whether second-order works measure the distance from failure: in quasi-static analysis with yielding
+/// materials and without flowing water, whose pressure changes the load on the soil over time.
 fn has_second_order_works<K, const D: usize>(model: &Model<K, D>) -> bool {
     let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
     model.regime == Regime::QuasiStatic && !flows && model.materials.iter().any(Material::yields)
 }
 
-/// Second-order works of a step over all points of all ranks, J: `Σ V0 Δε : D : Δε` of elastic ground, and the actual
-/// `Σ V0 Δε : D : Δεᵉ`, which is the work of the change of the loads on the displacement of the step. `None` where
-/// they measure nothing.
+/// Returns the second-order works of a step over all points of all ranks (J): `Σ V0 Δε : D : Δε` for elastic soil, and
+/// the actual `Σ V0 Δε : D : Δεᵉ`, the work of the load increment on the displacement increment. `None` where they are
+/// not meaningful. One reduction.
 pub fn second_order_works<K, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
@@ -230,8 +231,8 @@ pub fn second_order_works<K, const D: usize>(
     Some([total[0], total[1]])
 }
 
-/// Magnitudes of the works of the points' stresses in a step over all points of all ranks, J: `Σ V0 |τ : Δε|`. Unlike
-/// the works of nodal forces, these do not vanish in a body whose internal forces balance at each node.
+/// Returns `Σ V0 |τ : Δε|`, the magnitudes of the works of the points' stresses in a step over all ranks (J). Unlike
+/// the works of nodal forces, these do not vanish where internal forces balance at each node. One reduction.
 pub fn stress_work<K: Kinematics<D>, const D: usize>(
     trial: &DeformationIncrement<K, D>,
     points: &Points<D>,
@@ -245,7 +246,7 @@ pub fn stress_work<K: Kinematics<D>, const D: usize>(
     halo.reproducible_sum(&[sum])[0]
 }
 
-/// Saves the converged step and the update of the laws into the points.
+/// Saves the converged step and the responses of the laws into the points.
 pub fn update_points<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
@@ -254,7 +255,7 @@ pub fn update_points<K: Kinematics<D>, const D: usize>(
     update: ConstitutiveUpdate,
     points: &mut Points<D>,
     halo: &dyn Halo,
-) -> StepUpdate {
+) -> CommitReport {
     let ConstitutiveUpdate { answers, state } = update;
     let StepSolution {
         u, p: pressures, trial, ..
@@ -292,7 +293,7 @@ pub fn update_points<K: Kinematics<D>, const D: usize>(
     };
     points.smoothing = before.map(|before| smooth::change(&before, &points.b_e));
     points.gap = gaps(model, points, &answers);
-    StepUpdate {
+    CommitReport {
         u,
         advance: advance[0],
         smoothed,
@@ -301,7 +302,7 @@ pub fn update_points<K: Kinematics<D>, const D: usize>(
     }
 }
 
-/// Deformation, stress, elastic and plastic strain of every point.
+/// Saves deformation, stress, elastic and plastic strain of every point.
 fn keep<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     trial: &DeformationIncrement<K, D>,
@@ -343,7 +344,7 @@ fn keep<K: Kinematics<D>, const D: usize>(
     points.dilation = dilation.or(points.dilation.take());
 }
 
-/// Gap of every point after the step, if some material closes its gaps.
+/// Returns the gap of every point after the step, if some material has closing gaps.
 fn gaps<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, answers: &[PointUpdate]) -> Option<Vec<f64>> {
     let closes: Vec<bool> = model
         .materials
@@ -363,9 +364,11 @@ fn gaps<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, answers: &[P
     Some(gaps.collect())
 }
 
-/// Steps (10a), (11c), (11d): a_I by Newmark, a_p = sum_I N_Ip a_I, v_p += dt ((1 - gamma) a_p(t) + gamma a_p(t+dt)).
-/// With a consistent mass v_p += sum_I N_Ip (v_I(t+dt) - v_I(t)) instead, what supports took included: with it the
-/// points gain what the nodes gain, and with the accelerations that points keep to themselves they gain more.
+/// Updates velocities and accelerations, steps (10a), (11c), (11d): a_I by Newmark, a_p = sum_I N_Ip a_I, v_p += dt ((1
+/// - gamma) a_p(t) + gamma a_p(t+dt)).
+///
+/// With a consistent mass, v_p += sum_I N_Ip (v_I(t+dt) - v_I(t)) instead, where v_I(t) is the velocity before supports
+/// changed it. The points then gain the same momentum as the nodes; with point accelerations they would gain more.
 fn move_with_inertia<const D: usize>(
     shape: &Shape<D>,
     matrix: MassMatrix,

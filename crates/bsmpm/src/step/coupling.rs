@@ -6,56 +6,56 @@ use crate::parallel::{Halo, LinearSolver, OwnedNodes};
 use crate::step::nodes::GridState;
 use crate::tensor::Vector;
 
-/// What one unit of dilation raises.
+/// Nodal force per unit of averaged dilation.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum DilationForce {
-    /// The force of the dilation itself, times the mean stiffness of the points.
+    /// Parallel to the nodal dilation g, times the mean stiffness of the points.
     Along,
-    /// A force of its own.
+    /// An independent vector f.
     Own,
 }
 
-/// Sums of all functions h, of every group of materials that the average does not mix.
+/// Sums (T5.9) of all functions h, for every group of materials that the average does not mix.
 pub struct Coupling<'a, const D: usize> {
     grid: &'a Grid<D>,
     lower: &'a Shape<D>,
     cells: FunctionSums,
-    pairs: Option<FunctionSums>, // where functions are merged
+    pairs: Option<FunctionSums>, // if functions are merged
     raised: DilationForce,
 }
 
-/// Functions on cells, or on pairs of cells.
+/// Sums of functions on cells, or on pairs of cells.
 struct FunctionSums {
-    /// per group and function its head, W and kappa_h W, and g of the nodes that its cells touch; f of them, if it is
-    /// its own
+    /// Per group and function: the head (W and kappa_h W), then g of the nodes that its cells touch, then f if it is
+    /// independent.
     sums: Vec<Contributions>,
-    /// nodes that a function's cells touch, along an axis
+    /// Nodes along an axis that a function's cells touch.
     side: usize,
-    /// place of node k of a cell in the g of a function that starts with it
+    /// Position of node k of a cell in the g of a function that starts at the cell.
     places: Vec<usize>,
 }
 
 /// Numbers of a function before g and f.
 const HEAD: usize = 2;
 
-/// The same of one patch: per group and function of the cell its head, and g and f of the cell's nodes.
+/// Sums of one patch: per group and function of the cell the head, g and f of the cell's nodes.
 pub struct Dilations {
     numbers: Vec<f64>,
     of_group: usize,
     of_function: usize,
 }
 
-/// A point in the sums of its functions.
+/// Contribution of a point to the sums of its functions.
 pub struct Share<'a, const D: usize> {
-    /// group of its material
+    /// Group of the point's material.
     pub group: usize,
-    /// w of the point: m3, or kg
+    /// Weight w of the point (m3 or kg).
     pub weight: f64,
-    /// kappa of the point, Pa; of no use where the force is its own
+    /// Bulk stiffness kappa of the point (Pa); unused if the force is independent.
     pub bulk: f64,
-    /// w grad N of its nodes
+    /// w grad N at the nodes of the point.
     pub dilation: &'a [Vector<D>],
-    /// force at its nodes per unit of averaged dilation; empty unless it is its own
+    /// Force at the nodes per unit of averaged dilation; empty unless it is independent.
     pub force: &'a [Vector<D>],
 }
 
@@ -82,14 +82,14 @@ impl Dilations {
 }
 
 impl<'a, const D: usize> Coupling<'a, D> {
-    /// No sums yet; `None` where dilations are not averaged by functions of a lower degree, or windows do not reach as
-    /// far as these couple ([`Grid::reaching`]).
+    /// Creates zero sums. `None` if dilations are not averaged by functions of lower degree, or if windows do not reach
+    /// as far as the coupling ([`Grid::reaching`]).
     pub fn of<K>(model: &'a Model<K, D>, nodes: &'a GridState<D>, raised: DilationForce) -> Option<Self> {
         let grid = &model.grid;
         let groups = model.groups.count();
         let lower = nodes.lowered().filter(|_| grid.beyond() + 1 >= grid.order())?;
         let q = grid.order();
-        // A function spans q cells or q pairs of them, and these touch q nodes more.
+        // A function spans q cells or q pairs of cells, which touch q more nodes than cells.
         Some(Self {
             grid,
             lower,
@@ -99,7 +99,7 @@ impl<'a, const D: usize> Coupling<'a, D> {
         })
     }
 
-    /// Zeros for one patch.
+    /// Returns zero sums for one patch.
     pub fn of_patch(&self) -> Dilations {
         let of_function = HEAD + self.raised.vectors() * self.grid.cell_nodes() * D;
         let of_group = self.lower.offsets().len() * of_function;
@@ -110,7 +110,7 @@ impl<'a, const D: usize> Coupling<'a, D> {
         }
     }
 
-    /// Adds what the patch of a number contributes.
+    /// Adds the sums of patch `number`.
     pub fn add(&mut self, number: usize, dilations: &Dilations) {
         let grid = self.grid;
         let lower = self.lower;
@@ -144,8 +144,8 @@ impl<'a, const D: usize> Coupling<'a, D> {
         }
     }
 
-    /// Adds the products to a matrix, each on the rank that owns the first of its nodes. One exchange with the
-    /// neighbours for every group, and one more where functions are merged.
+    /// Adds the products g f^T of all functions to a matrix, each on the rank that owns the first of its nodes. One
+    /// exchange with the neighbours for every group, and one more if functions are merged.
     pub fn assemble(&self, halo: &dyn Halo, solver: &mut dyn LinearSolver) {
         let grid = self.grid;
         let degree = self.grid.order() - 1;
@@ -173,8 +173,8 @@ impl<'a, const D: usize> Coupling<'a, D> {
         }
     }
 
-    /// `first`: along an axis, by the number under which a function is kept, the first node that its cells touch; it
-    /// may lie before the grid.
+    /// Assembles one group. `first(axis, number)` is the first node along an axis that the cells of a function touch;
+    /// it may lie before the grid.
     fn assemble_group(
         &self,
         sums: &Contributions,
@@ -233,7 +233,7 @@ impl<'a, const D: usize> Coupling<'a, D> {
 }
 
 impl FunctionSums {
-    /// Zeros of functions whose cells touch `side` nodes along an axis.
+    /// Creates zero sums of functions whose cells touch `side` nodes along an axis.
     fn of<const D: usize>(grid: &Grid<D>, groups: usize, side: usize, raised: DilationForce) -> Self {
         let width = HEAD + raised.vectors() * side.pow(D as u32) * D;
         let places = (0..grid.cell_nodes())
@@ -245,8 +245,8 @@ impl FunctionSums {
         }
     }
 
-    /// Adds a share of the `numbers` of a patch's function to the one that is kept `offset` from the patch's `first`
-    /// node, whose support starts `shift` cells before the patch.
+    /// Adds a `share` of the `numbers` of a patch's function to the function that is stored `offset` from the patch's
+    /// `first` node and starts `shift` cells before the patch.
     fn add<const D: usize>(
         &mut self,
         group: usize,
@@ -262,6 +262,8 @@ impl FunctionSums {
         sums.iter_mut()
             .zip(&numbers[..HEAD])
             .for_each(|(sum, number)| *sum += share * number);
+        // A function's nodes form a box with `side` nodes along each axis, the last axis fastest. The patch begins
+        // `shift` cells after the function, so its node k is at `start + places[k]` in this box.
         let start = shift.iter().fold(0, |place, along| place * side + along);
         let vectors = numbers[HEAD..].chunks_exact(self.places.len() * D);
         for (sums, vectors) in sums[HEAD..].chunks_exact_mut(side.pow(D as u32) * D).zip(vectors) {
@@ -275,7 +277,7 @@ impl FunctionSums {
     }
 }
 
-/// Whether this rank owns the first node of a function that the grid has, of those that begin at `starts`.
+/// Returns whether this rank owns the first node inside the grid of a function that begins at `starts`.
 fn is_owned<const D: usize>(grid: &Grid<D>, starts: &[Option<isize>; D], owned: &OwnedNodes) -> bool {
     let first = starts.map(|start| start.map(|start| start.max(0) as usize));
     let node = grid.cells_along().each_ref().map(|cells| cells.start);
@@ -283,7 +285,7 @@ fn is_owned<const D: usize>(grid: &Grid<D>, starts: &[Option<isize>; D], owned: 
     first[0].is_some() && grid.node_index(&node).is_some_and(|node| owned.contains(node))
 }
 
-/// The node of the window at a place along each axis; `None` where there is none.
+/// Returns the node of the window at a position along each axis; `None` outside the window.
 fn node_at<const D: usize>(grid: &Grid<D>, along: impl Fn(usize) -> Option<isize>) -> Option<usize> {
     let mut node = [0; D];
     for (axis, at) in node.iter_mut().enumerate() {
@@ -293,7 +295,7 @@ fn node_at<const D: usize>(grid: &Grid<D>, along: impl Fn(usize) -> Option<isize
 }
 
 impl DilationForce {
-    /// Vectors of the nodes that a function keeps: g, and f.
+    /// Returns the number of nodal vectors of a function: g, and f if it is independent.
     fn vectors(self) -> usize {
         if self == Self::Own { 2 } else { 1 }
     }

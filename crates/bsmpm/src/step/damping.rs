@@ -8,20 +8,20 @@ use crate::points::Points;
 use crate::step::nodes::GridState;
 use crate::tensor::{Symmetric, Tensor};
 
-/// β/Δt of every material; empty where none has any.
+/// β/Δt of every material (-); empty without damping.
 #[derive(Clone, Debug, Default)]
 pub struct Damping(Vec<f64>);
 
-/// The viscous stress of a point, and how it changes.
+/// Viscous stress of a point and its derivative.
 pub struct Viscous {
-    /// Pa
+    /// Viscous Kirchhoff stress (Pa).
     pub tau: Symmetric,
-    elastic: Response, // to the strain of the step, by moduli times β/Δt
+    elastic: Response, // to the strain of the step, with moduli times β/Δt
     share: f64,        // β/Δt
 }
 
 impl Damping {
-    /// Of a step; none without inertia, whose time is none, and of a state that no step has led to.
+    /// Computes the ratios of a step. Without inertia, or in a state that no step led to, there is no damping.
     pub fn of<K, const D: usize>(model: &Model<K, D>, nodes: &GridState<D>) -> Self {
         match &nodes.inertia {
             Some(inertia) if inertia.dt > 0.0 => Self(model.damping.iter().map(|time| time / inertia.dt).collect()),
@@ -29,7 +29,7 @@ impl Damping {
         }
     }
 
-    /// What multiplies the elastic stiffness of a material.
+    /// Returns the ratio of viscous to elastic stiffness of a material, if it is damped.
     #[inline(always)]
     pub fn relative(&self, material: u16) -> Option<f64> {
         self.0
@@ -38,7 +38,7 @@ impl Damping {
             .filter(|&relative| relative > 0.0)
     }
 
-    /// Lamé's moduli of point `p` times β/Δt, Pa; `None` where it has no damping.
+    /// Returns Lamé's moduli of point `p` times β/Δt (Pa); `None` without damping.
     #[inline(always)]
     pub fn moduli<K, const D: usize>(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Moduli> {
         let relative = self.relative(points.material[p])?;
@@ -53,12 +53,12 @@ impl Damping {
 }
 
 impl Viscous {
-    /// Under the strain of a step as a left Cauchy-Green tensor, ΔF̄ c ΔF̄ᵀ, with Lamé's moduli times β/Δt, where a
-    /// return took `returned`, Pa, from the trial stress, if it did, and β/Δt; a `gap` that was open before, as a
-    /// logarithm of volume, is no strain.
+    /// Computes the viscous stress from the strain of a step as a left Cauchy-Green tensor, ΔF̄ c ΔF̄ᵀ. `moduli` are
+    /// Lamé's moduli times β/Δt, `returned` is the stress that the return mapping removed (Pa), if it did, and `share`
+    /// is β/Δt. A `gap` that was open before (logarithm of volume) is not strain.
     ///
     /// # Errors
-    /// A step that is no strain.
+    /// If the step has no valid strain.
     pub fn of(
         strained: &Symmetric,
         moduli: Moduli,
@@ -82,15 +82,15 @@ impl Viscous {
         Ok(Self { tau, elastic, share })
     }
 
-    /// The stress beside `tau`, Pa.
+    /// Returns the viscous stress plus `tau` (Pa).
     #[inline]
     pub fn beside(&self, mut tau: Symmetric) -> Symmetric {
         tau.0.iter_mut().zip(self.tau.0).for_each(|(tau, more)| *tau += more);
         tau
     }
 
-    /// How the stress changes with a spatial gradient at the end of the step, Pa, where `returned` is how that changes
-    /// which the return took.
+    /// Returns the change of the viscous stress with a spatial gradient at the end of the step (Pa). `returned` is the
+    /// change of the stress that the return mapping removed.
     pub fn tangent<R: Fn(&Tensor) -> Tensor>(&self, returned: Option<R>) -> impl Fn(&Tensor) -> Tensor + use<R> {
         let elastic = self.elastic.tangent();
         let share = self.share;

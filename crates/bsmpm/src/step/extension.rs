@@ -17,54 +17,54 @@ use crate::parallel::Halo;
 use crate::points::Points;
 use std::collections::BTreeMap;
 
-/// Part of a cell that its points fill from which on it is full. Of 1 a cell would not be full once it has shrunk.
+/// Filled fraction of a cell from which it counts as full. With 1, a cell would not be full after slight compression.
 const FULL: f64 = 0.8;
 
-/// An outer function that is tied to the functions of its home.
+/// An outer spline that is tied to the splines of a full cell, its home.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tie<const D: usize> {
-    /// number of its node in the whole grid
+    /// Number of its node in the whole grid.
     pub number: usize,
-    /// its node in the window, if it is there
+    /// Its node in the window, if it is there.
     pub node: Option<usize>,
-    /// components that are tied; others are prescribed
+    /// Tied components; the other components are prescribed.
     pub tied: [bool; D],
-    /// whether all ranks know it
+    /// Whether all ranks know this tie.
     pub is_published: bool,
-    /// cell (global, along each axis) whose functions carry it
+    /// Home: global cell number along each axis.
     home: [usize; D],
-    /// functions of the home with a weight
+    /// Splines of the home with a non-zero weight.
     pub inner: Vec<InnerFunction>,
 }
 
-/// A function of a home.
+/// A spline of a home.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InnerFunction {
-    /// number of its node in the whole grid
+    /// Number of its node in the whole grid.
     pub number: usize,
-    /// its node in the window, if it is there
+    /// Its node in the window, if it is there.
     pub node: Option<usize>,
-    /// e_ij
+    /// Weight e_ij (-).
     pub weight: f64,
 }
 
-/// All ties that concern the window of this rank, and those that are published.
+/// Ties that concern the window of this rank, and the published ties.
 #[derive(Clone, Debug, Default)]
 pub struct Extension<const D: usize> {
     ties: Vec<Tie<D>>, // ascending by number
-    of_node: Vec<u32>, // of every node of the window: place of its tie, and one; 0: none
+    of_node: Vec<u32>, // per node of the window: position of its tie + 1; 0 without a tie
     published: usize,
-    loose: Vec<usize>, // nodes of the window whose functions are outer without a home
-    /// outer functions that are tied, over all ranks
+    loose: Vec<usize>, // nodes of the window whose splines are outer and have no home
+    /// Outer splines that are tied, over all ranks.
     pub tied: usize,
-    /// outer functions without a full cell near enough, or at a rigid body, over all ranks: they stay unknowns
+    /// Outer splines that remain unknowns, over all ranks: at a rigid body, or without a full cell near enough.
     pub untied: usize,
 }
 
 impl<const D: usize> Extension<D> {
-    /// Ties the outer functions among the `active` nodes but for those `at_bodies`; tied components leave `free`.
-    /// `None` where no rank has outer functions. Two exchanges with the neighbours, two reductions, and two gatherings
-    /// where ranks share outer functions.
+    /// Ties the outer splines of the `active` nodes, except those `at_bodies`; tied components are removed from `free`.
+    /// `None` if no rank has outer splines. Two exchanges with the neighbours, two reductions, and two gathers if ranks
+    /// share outer splines.
     pub fn of<K: Kinematics<D>>(
         model: &Model<K, D>,
         shape: &Shape<D>,
@@ -119,41 +119,41 @@ impl<const D: usize> Extension<D> {
         Some(extension)
     }
 
-    /// All ties that concern the window, ascending by number.
+    /// Returns all ties that concern the window, ascending by number.
     pub fn ties(&self) -> &[Tie<D>] {
         &self.ties
     }
 
-    /// The tie of a node of the window.
+    /// Returns the tie of a node of the window.
     #[inline]
     pub fn tie_of(&self, node: usize) -> Option<&Tie<D>> {
         self.place_of(node).map(|place| &self.ties[place])
     }
 
-    /// Place among [`Extension::ties`] of the tie of a node of the window.
+    /// Returns the position in [`Extension::ties`] of the tie of a node of the window.
     #[inline]
     pub fn place_of(&self, node: usize) -> Option<usize> {
         self.of_node[node].checked_sub(1).map(|place| place as usize)
     }
 
-    /// The same of a node by its number in the whole grid.
+    /// Returns the position in [`Extension::ties`] of the tie of a node, given by its number in the whole grid.
     pub fn place_of_number(&self, number: usize) -> Option<usize> {
         self.ties.binary_search_by_key(&number, |tie| tie.number).ok()
     }
 
-    /// Whether a component (place in a nodal array) is tied.
+    /// Returns whether a component (position in a nodal array) is tied.
     pub fn is_tied(&self, component: usize) -> bool {
         let (node, axis) = Nodal::<D>::split(component);
         self.tie_of(node).is_some_and(|tie| tie.tied[axis])
     }
 
-    /// Whether any tie is known to all ranks: only then do they exchange anything.
+    /// Returns whether any tie is published. Only then do ranks communicate here.
     pub fn is_published(&self) -> bool {
         self.published > 0
     }
 
-    /// u_J = E u_I: sets the tied components of a nodal array, D numbers a node, right at all nodes of the window. One
-    /// gathering where ties are published.
+    /// Sets the tied components of a nodal array, D numbers per node: u_J = E u_I. Valid at all nodes of the window.
+    /// One gather if ties are published.
     pub fn extend(&self, grid: &Grid<D>, u: &mut [f64], halo: &dyn Halo) {
         let mut message = Vec::new();
         for tie in self.ties.iter().filter(|tie| grid.holds(&tie.home)) {
@@ -172,13 +172,13 @@ impl<const D: usize> Extension<D> {
         }
     }
 
-    /// Sets the functions to zero that are outer and have no home, in a nodal array of D numbers a node.
+    /// Sets outer splines without a home to zero in a nodal array of D numbers per node.
     pub fn drop_loose(&self, u: &mut [f64]) {
         self.loose.iter().for_each(|&node| u[Nodal::<D>::of(node)].fill(0.0));
     }
 
-    /// f_I + E^T f_J: moves the forces of tied components to the functions of their homes, in several nodal arrays of D
-    /// numbers a node, right at all nodes of the window. One gathering where ties are published.
+    /// Moves the forces of tied components to the splines of their homes: f_I + E^T f_J, in several nodal arrays of D
+    /// numbers per node. Valid at all nodes of the window. One gather if ties are published.
     pub fn reduce(&self, forces: &mut [&mut [f64]], halo: &dyn Halo) {
         let width = forces.len() * D;
         let mut known = BTreeMap::new();
@@ -210,7 +210,7 @@ impl<const D: usize> Extension<D> {
 }
 
 impl<const D: usize> Tie<D> {
-    /// sum_i e_ij u_i; all functions of the home must be in the window.
+    /// Returns sum_i e_ij u_i; all splines of the home must be in the window.
     fn value(&self, u: &[f64]) -> [f64; D] {
         let mut value = [0.0; D];
         for (node, weight) in self.inner.iter().filter_map(|inner| Some((inner.node?, inner.weight))) {
@@ -230,7 +230,7 @@ impl<const D: usize> Tie<D> {
             .for_each(|i| u[Nodal::<D>::at(node, i)] = value[i]);
     }
 
-    /// Takes the tied components of the function's force away from it, and gives them to the home's functions.
+    /// Moves the tied components of a spline's force from its node to the splines of the home.
     fn move_force(&self, own: [f64; D], force: &mut [f64]) {
         for i in (0..D).filter(|&i| self.tied[i]) {
             if let Some(node) = self.node {
@@ -243,7 +243,7 @@ impl<const D: usize> Tie<D> {
     }
 }
 
-/// `width` numbers of every tie in a message, by the number of its node.
+/// Returns `width` numbers of every tie in a message, by the number of its node.
 fn values_by_number<const D: usize>(message: &[f64], width: usize) -> BTreeMap<usize, Vec<f64>> {
     message
         .chunks_exact(width + 1)
@@ -251,7 +251,7 @@ fn values_by_number<const D: usize>(message: &[f64], width: usize) -> BTreeMap<u
         .collect()
 }
 
-/// Per cell of the window: whether its points fill it.
+/// Marks the cells of the window that their points fill.
 fn full_cells<K: Kinematics<D>, const D: usize>(grid: &Grid<D>, shape: &Shape<D>, points: &Points<D>) -> Vec<bool> {
     let mut full = vec![false; grid.cells()];
     for patch in shape.patches() {
@@ -265,7 +265,7 @@ fn full_cells<K: Kinematics<D>, const D: usize>(grid: &Grid<D>, shape: &Shape<D>
     full
 }
 
-/// Per node of the window: whether a cell of its function is full, on any rank. One exchange with the neighbours.
+/// Marks the nodes of the window whose splines cover a full cell of any rank. One exchange with the neighbours.
 fn inner_functions<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, full: &[bool], halo: &dyn Halo) -> Vec<bool> {
     let mut marks = vec![0.0; grid.nodes()];
     for patch in shape.patches().iter().filter(|patch| full[patch.cell]) {
@@ -278,7 +278,7 @@ fn inner_functions<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, full: &[boo
     marks.into_iter().map(|mark| mark > 0.0).collect()
 }
 
-/// Whether all that a tie of this node touches is this rank's alone: the nodes of its home, those that it couples with
+/// Returns whether a tie of this node concerns this rank alone: the nodes of its home, the nodes that it couples with
 /// in a matrix, and the homes of these.
 fn is_surrounded_by_private_nodes<const D: usize>(grid: &Grid<D>, node: usize, halo: &dyn Halo) -> bool {
     let place = grid.node_at(node);
@@ -291,14 +291,14 @@ fn is_surrounded_by_private_nodes<const D: usize>(grid: &Grid<D>, node: usize, h
             (place[axis] + far).min(last),
         ]
     });
-    // Private nodes fill a box, so its corners are enough.
+    // Private nodes form a box, so it suffices to test its corners.
     (0..1 << D).all(|corner: usize| {
         let corner: [usize; D] = std::array::from_fn(|axis| ends[axis][corner >> axis & 1]);
         grid.node_index(&corner).is_some_and(|node| halo.is_private(node))
     })
 }
 
-/// An outer function that has no home yet.
+/// An outer spline that has no home yet.
 #[derive(Clone, Copy, Debug)]
 struct Candidate<const D: usize> {
     number: usize,
@@ -306,7 +306,7 @@ struct Candidate<const D: usize> {
 }
 
 impl<const D: usize> Candidate<D> {
-    /// Of a node, whose `free` components are to be tied.
+    /// Creates the candidate of a node whose `free` components are to be tied.
     fn of(grid: &Grid<D>, node: usize, free: &[bool]) -> Self {
         Self {
             number: grid.number_of(node),
@@ -315,7 +315,7 @@ impl<const D: usize> Candidate<D> {
     }
 }
 
-/// Cell number `at` of a box of cells, axis 0 slowest.
+/// Returns cell number `at` of a box of cells, axis 0 slowest.
 fn cell_within<const D: usize>(ranges: &[std::ops::Range<usize>; D], mut at: usize) -> [usize; D] {
     let mut cell = [0; D];
     for axis in (0..D).rev() {
@@ -325,7 +325,7 @@ fn cell_within<const D: usize>(ranges: &[std::ops::Range<usize>; D], mut at: usi
     cell
 }
 
-/// Looks for homes among the full cells of this rank.
+/// Search for homes among the full cells of this rank.
 struct HomeSearch<'a, const D: usize> {
     grid: &'a Grid<D>,
     full: &'a [bool],
@@ -333,7 +333,7 @@ struct HomeSearch<'a, const D: usize> {
 }
 
 impl<const D: usize> HomeSearch<'_, D> {
-    /// The nearest full cell of this rank that may be the function's home.
+    /// Finds the nearest full cell of this rank that may be the spline's home.
     fn nearest(&self, number: usize) -> Option<Nearness> {
         let grid = self.grid;
         let place = self.grid.place_of_number(number);
@@ -350,7 +350,7 @@ impl<const D: usize> HomeSearch<'_, D> {
             .min_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal))
     }
 
-    /// Ties of the `outer` nodes of all ranks as far as they have homes, ascending by number.
+    /// Ties the `outer` nodes of all ranks that have homes; ascending by number.
     fn ties(&self, outer: Vec<usize>, free: &[bool], halo: &dyn Halo) -> Vec<Tie<D>> {
         let (own, shared): (Vec<usize>, Vec<usize>) = outer
             .into_iter()
@@ -363,14 +363,14 @@ impl<const D: usize> HomeSearch<'_, D> {
         ties
     }
 
-    /// The tie of a function whose surroundings are this rank's alone, if there is a home.
+    /// Ties a spline whose surroundings belong to this rank alone, if there is a home.
     fn tie(&self, outer: Candidate<D>) -> Option<Tie<D>> {
         self.nearest(outer.number)
             .map(|nearest| self.tied_to(outer, nearest, false))
     }
 
-    /// Ties of functions that other ranks see, too: every rank sends its candidates to all, and then the best home
-    /// that it has for each of all ranks' candidates.
+    /// Ties splines that several ranks see. Every rank sends its candidates to all ranks, then its best home for each
+    /// of all candidates.
     fn published_ties(&self, own: &[Candidate<D>], halo: &dyn Halo) -> Vec<Tie<D>> {
         let mut message = Vec::with_capacity(own.len() * 2);
         for candidate in own {
@@ -448,7 +448,7 @@ impl<const D: usize> HomeSearch<'_, D> {
         }
     }
 
-    /// Cell along each axis by its number in the whole grid.
+    /// Returns the cell along each axis from its number in the whole grid.
     fn cell_of_number(&self, mut number: usize) -> [usize; D] {
         let mut cell = [0; D];
         for axis in (0..D).rev() {

@@ -7,39 +7,40 @@ use crate::step::mass::{Mass, MassMatrix};
 use crate::step::newmark::Newmark;
 use crate::tensor::Vector;
 
-/// Nodal velocity and acceleration at the start of the step, and how they go on.
+/// Nodal velocity and acceleration at the start of the step, and their time integration.
 #[derive(Clone, Debug)]
 pub struct Inertia {
-    /// m/s, D numbers a node
+    /// Velocity (m/s), D numbers per node.
     pub v: Vec<f64>,
-    /// m/s2, D numbers a node
+    /// Acceleration (m/s2), D numbers per node.
     pub a: Vec<f64>,
-    /// J  per component, what a motion that is prescribed works on material that comes with another velocity: the
-    /// velocity times the jump of the momentum; empty where nothing moves
+    /// Per component: work of a prescribed motion on material that arrives with another velocity (J), the velocity
+    /// times the jump of momentum; empty without prescribed motion.
     pub struck: Vec<f64>,
-    /// m/s  by which supports change the velocity of the nodes as the step begins, D numbers a node, of a consistent
-    /// mass; the points share in it, so that what lies beside a support moves as its velocity says. Empty where nothing
-    /// does: with the lumped mass the nodes of a support see the velocity of the points above them, and would take it
-    /// away in every step.
+    /// Change of nodal velocity by supports as the step begins (m/s), D numbers per node, for a consistent mass. The
+    /// points share this change, so that material next to a support moves with its own velocity. Empty with the lumped
+    /// mass: nodes of a support average over the points above them, whose velocity would be removed in every step.
     pub blow: Vec<f64>,
-    /// components that a face with contact may stop in this step, which go by backward Euler, as Newmark's formula
-    /// would throw back what is stopped; empty where there is none
+    /// Components that a face with contact may stop in this step. They are integrated by backward Euler, because
+    /// Newmark's method would make stopped material rebound. Empty if there are none.
     pub moving: Vec<bool>,
-    /// those of them that it holds
+    /// Those of the `moving` components that the face stops.
     pub stopped: Vec<bool>,
-    /// s  length of the step
+    /// Step size (s).
     pub dt: f64,
-    /// time integration
+    /// Time integration.
     pub newmark: Newmark,
 }
 
 impl Inertia {
-    /// 1/s2  factor of the mass in the tangent of the out-of-balance force; 4/dt^2 without numerical damping.
+    /// Returns the factor of the mass in the tangent of the out-of-balance force (1/s2); 4/dt^2 without numerical
+    /// damping.
     pub fn factor(&self) -> f64 {
         self.newmark.factor(self.dt)
     }
 
-    /// m/s2  acceleration of a component at the end (steps 5b, 10a); 4/dt^2 u - 4/dt v - a without numerical damping.
+    /// Returns the acceleration of a component at the end (m/s2; steps 5b, 10a); 4/dt^2 u - 4/dt v - a without
+    /// numerical damping.
     #[inline]
     pub fn acceleration(&self, component: usize, u: f64) -> f64 {
         if self.is_moving(component) {
@@ -53,7 +54,8 @@ impl Inertia {
             .acceleration(self.dt, u, self.v[component], self.a[component])
     }
 
-    /// m/s2  what the mass of a component resists with: times the mass, its inertia in the balance of forces.
+    /// Returns the acceleration that enters the balance of forces (m/s2): times the mass it is the inertia of a
+    /// component.
     #[inline]
     pub fn acting(&self, component: usize, u: f64) -> f64 {
         if self.is_moving(component) {
@@ -62,7 +64,7 @@ impl Inertia {
         self.newmark.acting(self.a[component], self.acceleration(component, u))
     }
 
-    /// m/s  velocity of a component at the end (step 10b).
+    /// Returns the velocity of a component at the end (m/s; step 10b).
     #[inline]
     pub fn velocity(&self, component: usize, u: f64) -> f64 {
         if self.is_moving(component) {
@@ -74,7 +76,7 @@ impl Inertia {
                 .gained(self.dt, self.a[component], self.acceleration(component, u))
     }
 
-    /// 1/s2  the factor of a component's mass.
+    /// Returns the factor of a component's mass in the tangent (1/s2).
     pub fn factor_of(&self, component: usize) -> f64 {
         if self.is_moving(component) {
             1.0 / (self.dt * self.dt)
@@ -83,7 +85,7 @@ impl Inertia {
         }
     }
 
-    /// 1/s  how a component's velocity at the end changes with its displacement.
+    /// Returns the derivative of a component's velocity at the end with respect to its displacement (1/s).
     pub fn velocity_factor(&self, component: usize) -> f64 {
         if self.is_moving(component) {
             1.0 / self.dt
@@ -92,7 +94,8 @@ impl Inertia {
         }
     }
 
-    /// m/s  what a component gains as a face stops it, of lumped mass: the points gain their part of it at once.
+    /// Returns the change of velocity of a component that a face stops (m/s), for lumped mass. The points gain their
+    /// part of it at once.
     pub fn blow_of(&self, component: usize, u: f64) -> f64 {
         if self.stopped.get(component) == Some(&true) {
             self.gained_by(component, u)
@@ -106,14 +109,14 @@ impl Inertia {
         self.moving.get(component) == Some(&true)
     }
 
-    /// m/s  what a component gains that goes by backward Euler.
+    /// Returns the change of velocity by backward Euler (m/s).
     fn gained_by(&self, component: usize, u: f64) -> f64 {
         u / self.dt - self.v[component]
     }
 }
 
-/// v_I and a_I (steps 2b, 2c). Where a motion is prescribed, the node already has it: else Newmark's formula would turn
-/// the points' velocity near a wall into an acceleration of the wall.
+/// Transfers v_I and a_I (steps 2b, 2c). A node with prescribed motion starts with its prescribed velocity; otherwise
+/// Newmark's method would turn the points' velocity near a wall into an acceleration of the wall.
 pub(super) fn map<const D: usize>(
     mass: &Mass<'_, D>,
     points: &Points<D>,
@@ -138,7 +141,7 @@ pub(super) fn map<const D: usize>(
     let arriving = momentum(mass, points, &motion.v);
     inertia.a = mass.solve(momentum(mass, points, &motion.a), &still);
     inertia.v = mass.solve(arriving.clone(), prescribed);
-    // On any rank: solutions are collective, and the nodes of one rank may all be free.
+    // On any rank: solutions are collective, and all nodes of one rank may be free.
     let flags = [
         prescribed.iter().flatten().any(|&velocity| velocity != 0.0),
         prescribed.iter().any(Option::is_some),
@@ -165,7 +168,7 @@ pub(super) fn map<const D: usize>(
     inertia
 }
 
-/// Nodal sums of m_p times a `field` of the points, D numbers a node.
+/// Returns the nodal sums of m_p times a `field` of the points, D numbers per node.
 fn momentum<const D: usize>(mass: &Mass<'_, D>, points: &Points<D>, field: &[Vector<D>]) -> Vec<f64> {
     mass.halo.assemble_ghosts(&transfer::to_nodes::<D, D>(mass.shape, |p| {
         (field[p] * points.mass[p]).into()

@@ -5,45 +5,45 @@ use crate::grid::{Shape, transfer};
 use crate::nodal::Nodal;
 use crate::parallel::{Halo, dots};
 
-/// How the mass of the points becomes that of the nodes.
+/// Nodal mass matrix.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MassMatrix {
-    /// `M_I = Σ_p N_Ip m_p`, diagonal: the paper's.
+    /// `M_I = Σ_p N_Ip m_p`, diagonal, as in the paper.
     #[default]
     Lumped,
     /// `(1 - s) Σ_p N_Ip m_p δ_IJ + s Σ_p N_Ip m_p N_Jp` with s = [`SHARE`].
     Consistent,
 }
 
-/// Part s of the consistent matrix that is consistent. As `0 <= x · M_c x <= x · M_l x`, the eigenvalues relative to
-/// the lumped one lie in [1 - s, 1], whatever nodes a body hardly touches: solutions take some tens of iterations.
+/// Fraction s of the consistent matrix in the blend. As `0 <= x · M_c x <= x · M_l x`, the eigenvalues relative to the
+/// lumped matrix are in [1 - s, 1] even if a body barely touches some nodes. Solutions take some tens of iterations.
 pub const SHARE: f64 = 0.95;
 
-/// Square of the part of a momentum, in the norm of the kinetic energy, that a solution may leave.
+/// Tolerance of a solution: square of the relative residual momentum in the norm of the kinetic energy.
 const LEFT: f64 = 1e-24;
 
-/// Iterations that a solution may take: with the eigenvalues of [`SHARE`] each leaves 0.64 of the error at most, and 80
-/// reach 1e-12.
+/// Largest number of iterations. With the eigenvalues of [`SHARE`], each iteration reduces the error to at most 0.64,
+/// and 80 iterations reach 1e-12.
 const MOST: usize = 120;
 
-/// The mass matrix of a step. Fields are flat, D numbers a node of the window.
+/// Mass matrix of a step. Fields are flat, D numbers per node of the window.
 pub struct Mass<'a, const D: usize> {
-    /// lumped or consistent
+    /// Lumped or consistent.
     pub matrix: MassMatrix,
-    /// shape functions of the points
+    /// Shape functions at the points.
     pub shape: &'a Shape<D>,
-    /// kg  of the points
+    /// Masses of the points (kg).
     pub of_points: &'a [f64],
-    /// kg  Σ_p N_Ip m_p of the nodes
+    /// Lumped nodal masses Σ_p N_Ip m_p (kg).
     pub lumped: &'a [f64],
-    /// kg  at and below which a node counts as massless
+    /// Mass at and below which a node counts as massless (kg).
     pub threshold: f64,
-    /// the other ranks
+    /// Communication with the other ranks.
     pub halo: &'a dyn Halo,
 }
 
 impl<const D: usize> Mass<'_, D> {
-    /// M times a nodal field: one exchange with the neighbours where M is consistent.
+    /// Multiplies M by a nodal field. One exchange with the neighbours if M is consistent.
     pub fn times(&self, field: &[f64]) -> Vec<f64> {
         let lumped = field
             .iter()
@@ -62,9 +62,9 @@ impl<const D: usize> Mass<'_, D> {
         product
     }
 
-    /// The field whose momentum is `momentum` at every component that is not `held`, and which has the value of those
-    /// that are. Massless nodes have none. Conjugate gradients with the lumped matrix where M is consistent, one
-    /// exchange and two reductions an iteration.
+    /// Solves for the field with the given `momentum` at every component that is not `held`, and the prescribed values
+    /// at those that are. Massless nodes have no momentum. A consistent M uses conjugate gradients, preconditioned by
+    /// the lumped matrix: one exchange and two reductions per iteration.
     pub fn solve(&self, momentum: Vec<f64>, held: &[Option<f64>]) -> Vec<f64> {
         let mut x = self.by_lumped(momentum.clone());
         let scale = dots(self.halo, D, &[(&momentum, &x)])[0];
@@ -102,13 +102,13 @@ impl<const D: usize> Mass<'_, D> {
         x
     }
 
-    /// The lumped matrix's solution.
+    /// Solves with the lumped matrix.
     fn by_lumped(&self, mut momentum: Vec<f64>) -> Vec<f64> {
         transfer::divide(&mut momentum, self.lumped, self.threshold);
         momentum
     }
 
-    /// Leaves out what is held, and massless nodes.
+    /// Sets held components and massless nodes to zero.
     fn clear(&self, field: &mut [f64], held: &[Option<f64>]) {
         for (c, value) in field.iter_mut().enumerate() {
             if held[c].is_some() || self.lumped[Nodal::<D>::node(c)] <= self.threshold {

@@ -26,80 +26,81 @@ use crate::step::inertia::{self, Inertia};
 use crate::step::mass::Mass;
 use crate::tensor::Vector;
 use crate::water::carried;
-use crate::water::nodes::PoreField;
+use crate::water::nodes::PorePressureField;
 use crate::water::pore_pressure::PorePressure;
 use std::borrow::Cow;
 
-/// Nodes lighter than this fraction of the heaviest one have no velocity, acceleration or average: 1/m is never formed.
+/// Fraction of the largest nodal mass below which a node has no velocity, acceleration or average, so that 1/m stays
+/// bounded.
 const MASSLESS: f64 = 1e-14;
 
-/// What averages run over: weights of every group of materials.
+/// Weights of the averages over points, separate for each group of materials.
 #[derive(Clone, Debug)]
 struct Averages<const D: usize> {
-    /// m^D (or kg)  of the nodes; `None`: those that the nodes have
+    /// Weights of the nodes (m^D or kg); `None`: the weights in `GridState`.
     weight: Option<Vec<f64>>,
-    /// weight at and below which a node has no average
+    /// Weight at and below which a node has no average.
     threshold: f64,
-    /// of dilations under consistent and sub-grid F-bar: the splines of degree q - 1 at the points, and what they
-    /// weigh; they are numbered within the nodes (see [`Shape::lowered`]), and those that no point touches weigh
-    /// nothing
+    /// Splines of degree q - 1 at the points and their nodal weights, for averages of dilations under consistent and
+    /// sub-grid F-bar. Numbered like the nodes (see [`Shape::lowered`]); splines without points have zero weight.
     lower: Option<(Shape<D>, Vec<f64>)>,
-    /// m^D (or kg)  what the points weigh in averages of dilations; `None`: as in all averages
+    /// Weights of the points in averages of dilations (m^D or kg); `None`: as in all averages.
     of_points: Option<Vec<f64>>,
 }
 
-/// Nodal quantities of one step; flat arrays over the window's nodes, the same on every rank that shares a node.
+/// Nodal quantities of one step: flat arrays over the nodes of the window, equal on all ranks that share a node.
 #[derive(Clone, Debug)]
 pub struct GridState<const D: usize> {
-    /// kg (or m^D, see `Model::inertial_weighting`)  m_I = sum_p N_Ip m_p
+    /// Nodal mass m_I = sum_p N_Ip m_p (kg; or nodal volume in m^D, see `Model::inertial_weighting`).
     pub weight: Vec<f64>,
-    /// present in dynamics; then `weight` is the mass
+    /// Inertia, in dynamics; `weight` is then the mass.
     pub inertia: Option<Inertia>,
-    /// N  external force at t + dt, D numbers a node, reduced to inner functions, but for loads that follow the surface
+    /// External force at the end of the step (N), D numbers per node, reduced to inner splines, without follower loads.
     pub f_ext: Vec<f64>,
-    /// those
+    /// Follower loads.
     pub followers: FollowerLoads<D>,
-    /// m  prescribed displacement of the step per component; `None` where it is not prescribed
+    /// Prescribed displacement of the step per component (m); `None` where it is not prescribed.
     pub prescribed: Vec<Option<f64>>,
-    /// per component: an unknown of the linear system
+    /// Per component: whether it is an unknown of the linear system.
     pub free: Vec<bool>,
-    /// per node: supported by an occupied cell
+    /// Per node: whether its spline covers an occupied cell.
     pub active: Vec<bool>,
-    /// nodes on faces with contact
+    /// Nodes on faces with contact.
     pub contacts: Contacts<D>,
-    /// points near rigid bodies
+    /// Material points near rigid bodies.
     pub rigid: RigidContacts<D>,
-    /// pore pressure that the soil carries, which friction does not act on; `None` without, or without friction
+    /// Pore pressure that friction does not act on; `None` without pore pressure or without friction.
     pub pore_pressure: Option<PorePressure<D>>,
-    /// of faces that absorb waves
+    /// Dashpots of absorbing faces.
     pub dashpots: Dashpots,
-    /// nodes of one material alone, in a scene of several
+    /// Nodes that only one material touches, in a case with several materials.
     pub apart: Option<MaterialNodeSets>,
-    /// pressures of the pore water, where it flows
-    pub pores: Option<PoreField<D>>,
-    /// soft background of the step
+    /// Pressures of flowing pore water, if any.
+    pub pores: Option<PorePressureField<D>>,
+    /// Soft background of the step, if any.
     pub background: Option<Blocks>,
-    /// m  part of the step's displacement that the background does not resist, D numbers a node; `None`: it resists all
+    /// Part of the step's displacement that the background does not resist (m), D numbers per node; `None`: it resists
+    /// all.
     pub unresisted: Option<Vec<f64>>,
-    /// functions that are tied to others, where there are any
+    /// Splines that are tied to others, if any.
     pub extension: Option<Extension<D>>,
-    /// active nodes, over all ranks
+    /// Active nodes, over all ranks.
     pub active_nodes: usize,
-    /// unknowns, over all ranks
+    /// Unknowns, over all ranks.
     pub unknowns: usize,
-    /// active nodes without mass, over all ranks
+    /// Active nodes without mass, over all ranks.
     pub massless_nodes: usize,
-    /// cells with the soft background, over all ranks
+    /// Cells with the soft background, over all ranks.
     pub background_cells: usize,
-    /// weight at and below which a node counts as massless
+    /// Weight at and below which a node counts as massless.
     threshold: f64,
     averages: Averages<D>,
-    /// m^D  what the points weigh in the integrals of the stress; `None`: their volumes
+    /// Weights of the points in the integrals of the stress (m^D); `None`: their volumes.
     fitted: Option<Vec<f64>>,
 }
 
 impl<const D: usize> GridState<D> {
-    /// Maps the points to the nodes for the step from `t` to `t + dt`. Fails if a load has lost its material.
+    /// Transfers the points to the nodes for a step over `interval`. Fails if a load has lost its material.
     pub fn from_points<K: Kinematics<D>>(
         model: &Model<K, D>,
         shape: &Shape<D>,
@@ -110,8 +111,8 @@ impl<const D: usize> GridState<D> {
         Self::from_points_after(model, shape, points, &[], interval, halo)
     }
 
-    /// The same after a step that had the displacement `last`, m, nodal, up to a factor: faces with contact go on as
-    /// they were in it.
+    /// Transfers the points as [`Self::from_points`], after a step with the nodal displacement `last` (m, up to a
+    /// factor). Faces with contact keep the statuses that follow from this displacement.
     pub fn from_points_after<K: Kinematics<D>>(
         model: &Model<K, D>,
         shape: &Shape<D>,
@@ -131,13 +132,13 @@ impl<const D: usize> GridState<D> {
         nodes.dashpots = nodes.dashpots(model, shape, points, halo);
         nodes.inertia = nodes.start_inertia(model, shape, points, interval.dt, halo);
         nodes.load(model, shape, points, interval.end(), halo)?;
-        nodes.pores = PoreField::of(model, shape, points, interval, halo)?;
+        nodes.pores = PorePressureField::of(model, shape, points, interval, halo)?;
         nodes.apply_contact_statuses();
         nodes.count(halo);
         Ok(nodes)
     }
 
-    /// Nodes that the points give weight and stiffness, before bodies, faces and loads act on them.
+    /// Creates nodes with weight and active cells, before bodies, faces and loads act on them.
     fn of_points<K: Kinematics<D>>(
         model: &Model<K, D>,
         shape: &Shape<D>,
@@ -190,7 +191,7 @@ impl<const D: usize> GridState<D> {
         }
     }
 
-    /// Points near rigid bodies in a step after one with the displacement `last`.
+    /// Finds the points near rigid bodies, in a step after one with the displacement `last` (m).
     fn rigid_contacts<K: Kinematics<D>>(
         &self,
         model: &Model<K, D>,
@@ -215,7 +216,8 @@ impl<const D: usize> GridState<D> {
         RigidContacts::of(&around, |p| model.young(points, p), interval, last, halo)
     }
 
-    /// Nodes on faces with contact in a step from `t`, in the statuses that the displacement `last` had.
+    /// Finds the nodes on faces with contact in a step from `t` (s). Their statuses follow from the displacement `last`
+    /// (m).
     fn face_contacts<K: Kinematics<D>>(
         &self,
         model: &Model<K, D>,
@@ -237,7 +239,7 @@ impl<const D: usize> GridState<D> {
         Contacts::of(model, mapped, &self.free, t, last, water.as_deref(), halo)
     }
 
-    /// Dashpots of faces that absorb waves; none without inertia.
+    /// Creates the dashpots of absorbing faces; none without inertia.
     fn dashpots<K: Kinematics<D>>(
         &self,
         model: &Model<K, D>,
@@ -259,7 +261,7 @@ impl<const D: usize> GridState<D> {
         )
     }
 
-    /// Inertia at the start of a step of the length `dt`, s; `None` in quasi-static analysis.
+    /// Returns the inertia at the start of a step of size `dt` (s); `None` in quasi-static analysis.
     fn start_inertia<K>(
         &self,
         model: &Model<K, D>,
@@ -285,7 +287,7 @@ impl<const D: usize> GridState<D> {
         Some(inertia)
     }
 
-    /// Sets the external forces at time `t`. Fails if a load has lost its material.
+    /// Sets the external forces at time `t` (s). Fails if a load has lost its material.
     fn load<K: Kinematics<D>>(
         &mut self,
         model: &Model<K, D>,
@@ -317,7 +319,7 @@ impl<const D: usize> GridState<D> {
         Ok(())
     }
 
-    /// The components that move: unknowns, those that statuses of contact decide, and those that are tied to others.
+    /// Marks components that can move: unknowns, those with a contact status, and those that are tied to others.
     pub fn movable(&self) -> Vec<bool> {
         let mut movable = self.contacts.movable(&self.free);
         if let Some(extension) = &self.extension {
@@ -329,22 +331,22 @@ impl<const D: usize> GridState<D> {
         movable
     }
 
-    /// Sets the tied components of a nodal displacement or its change, D numbers a node, see [`Extension::extend`].
+    /// Sets the tied components of a nodal displacement or its change, D numbers per node, see [`Extension::extend`].
     pub fn extend(&self, grid: &Grid<D>, u: &mut [f64], halo: &dyn Halo) {
         if let Some(extension) = &self.extension {
             extension.extend(grid, u, halo);
         }
     }
 
-    /// Moves nodal forces, D numbers a node, from tied components to unknowns, see [`Extension::reduce`].
+    /// Moves nodal forces, D numbers per node, from tied components to unknowns, see [`Extension::reduce`].
     pub fn reduce(&self, forces: &mut [&mut [f64]], halo: &dyn Halo) {
         if let Some(extension) = &self.extension {
             extension.reduce(forces, halo);
         }
     }
 
-    /// Lets the background resist only what differs from the displacement `last`, D numbers a node. Outer functions
-    /// take the displacement of their homes in it, since next to no stiffness holds their own.
+    /// Limits the background's resistance to the difference from the displacement `last` (m, D numbers per node). In
+    /// `last`, outer splines take the values that their homes imply, because their own have next to no stiffness.
     pub fn resist_change_from(&mut self, last: &[f64], grid: &Grid<D>, halo: &dyn Halo) {
         let mut unresisted = last.to_vec();
         let inactive = self.active.iter().enumerate().filter(|(_, active)| !**active);
@@ -356,7 +358,7 @@ impl<const D: usize> GridState<D> {
         self.unresisted = Some(unresisted);
     }
 
-    /// The part of a nodal displacement that the background resists.
+    /// Returns the part of a nodal displacement that the background resists (m).
     pub fn resisted<'a>(&self, u: &'a [f64]) -> Cow<'a, [f64]> {
         match &self.unresisted {
             Some(unresisted) => u.iter().zip(unresisted).map(|(u, unresisted)| u - unresisted).collect(),
@@ -364,7 +366,7 @@ impl<const D: usize> GridState<D> {
         }
     }
 
-    /// Holds, stops and frees the nodes on faces with contact as their statuses say.
+    /// Fixes, stops or frees the nodes on faces with contact according to their statuses.
     pub fn apply_contact_statuses(&mut self) {
         self.contacts.apply(&mut self.free, &mut self.prescribed);
         if let Some(inertia) = &mut self.inertia {
@@ -382,8 +384,9 @@ impl<const D: usize> GridState<D> {
         }
     }
 
-    /// What `found` makes of S(a)_p = sum_I N_Ip a_I, for every point: a_I = 1/m_I sum_p N_Ip m_p a_p (Eqs 16, 17),
-    /// zero at massless nodes, both sums over the points of one group of materials.
+    /// Projects the values of the points to nodes and back: S(a)_p = sum_I N_Ip a_I with a_I = 1/m_I sum_p N_Ip m_p a_p
+    /// (Eqs 16, 17), a_I = 0 at massless nodes. Both sums run over one group of materials. Returns `found(p, S(a)_p)`
+    /// for every point.
     pub fn average<K, const C: usize, T: Clone + Send>(
         &self,
         model: &Model<K, D>,
@@ -402,20 +405,20 @@ impl<const D: usize> GridState<D> {
         projection.average(model.grouped(points), weights, halo, value, found)
     }
 
-    /// What these points, which the nodes were mapped from, weigh in the integrals of the stress: m^D of the reference
-    /// volume.
+    /// Returns the weights of `points` in the integrals of the stress (m^D of reference volume). The nodes must have
+    /// been created from the same points.
     #[inline]
     pub fn volume<'a>(&'a self, points: &'a Points<D>) -> &'a [f64] {
         self.fitted.as_deref().unwrap_or(&points.volume)
     }
 
-    /// The splines of degree q - 1 that dilations are averaged with, under consistent F-bar.
+    /// Returns the splines of degree q - 1 that average dilations under consistent and sub-grid F-bar.
     pub fn lowered(&self) -> Option<&Shape<D>> {
         self.averages.lower.as_ref().map(|(shape, _)| shape)
     }
 
-    /// Mean of the points' dilations that F-bar puts into their place: S (Eqs 16-18), or S with the splines of degree
-    /// q - 1 under consistent F-bar.
+    /// Returns the mean dilation that F-bar uses at every point: S (Eqs 16-18), under consistent and sub-grid F-bar
+    /// with splines of degree q - 1.
     pub fn mean_dilation<K>(
         &self,
         model: &Model<K, D>,
@@ -438,8 +441,8 @@ impl<const D: usize> GridState<D> {
         }
     }
 
-    /// What the points weigh in averages of dilations, m^D (or kg). Where water flows by their volumes now, as in its
-    /// balance: so that the averages of ground that keeps its water are 1.
+    /// Returns the weights of the points in averages of dilations (m^D or kg). With flowing water they are multiplied
+    /// by J, as in the water balance, so that the average is 1 for soil that keeps its water.
     pub fn dilation_weights<'a, K>(&'a self, model: &Model<K, D>, points: &'a Points<D>) -> &'a [f64] {
         self.averages
             .of_points
@@ -447,7 +450,7 @@ impl<const D: usize> GridState<D> {
             .unwrap_or_else(|| weights(model.weighting, points))
     }
 
-    /// The mass matrix, in dynamics.
+    /// Returns the mass matrix (for dynamics).
     pub fn mass<'a, K>(
         &'a self,
         model: &Model<K, D>,
@@ -466,7 +469,7 @@ impl<const D: usize> GridState<D> {
         }
     }
 
-    /// Counts what is reported of the nodes, over all ranks.
+    /// Counts active nodes, unknowns, massless nodes and background cells over all ranks. One reduction.
     pub fn count(&mut self, halo: &dyn Halo) {
         let owned = halo.owned();
         let active = owned.nodes().filter(|&node| self.active[node]);
@@ -492,11 +495,11 @@ impl<const D: usize> GridState<D> {
 struct Projection<'a, const D: usize> {
     shape: &'a Shape<D>,
     weight: &'a [f64],
-    threshold: f64, // of the weight, at and below which a projected value is zero
+    threshold: f64, // weight at and below which a projected value is zero
 }
 
 impl<const D: usize> Projection<'_, D> {
-    /// Returns what `found` makes of the projected `value` at every point. `weights` are those of the points.
+    /// Returns `found(p, mean)` with the projected `value` at every point p. `weights` are those of the points.
     fn average<const C: usize, T: Clone + Send>(
         &self,
         grouped: GroupedPoints<'_>,
@@ -514,7 +517,7 @@ impl<const D: usize> Projection<'_, D> {
 }
 
 impl<const D: usize> Averages<D> {
-    /// `threshold` is that of the nodes' own weights.
+    /// Computes the weights. `threshold` is that of the nodes' own weights.
     fn of<K>(model: &Model<K, D>, shape: &Shape<D>, points: &Points<D>, threshold: f64, halo: &dyn Halo) -> Self {
         let weights = weights(model.weighting, points);
         let grouped = model.grouped(points);
@@ -564,7 +567,7 @@ fn scatter_weight<const D: usize>(
     halo.assemble_ghosts(&transfer::to_nodes(shape, |p| [weights[p]]))
 }
 
-/// Nodal sums of the points' `weights`, of every group of materials by itself.
+/// Sums the points' `weights` at the nodes, separately for each group of materials.
 fn scatter_grouped<const D: usize>(
     shape: &Shape<D>,
     grouped: GroupedPoints<'_>,
@@ -574,8 +577,8 @@ fn scatter_grouped<const D: usize>(
     halo.assemble_ghosts(&transfer::to_nodes_grouped(shape, grouped, |p| [weights[p]]))
 }
 
-/// Per node: touched by an occupied cell, and: touched by a point with a gradient or by a background, so that its
-/// stiffness is positive.
+/// Marks nodes that are touched by an occupied cell, and nodes with positive stiffness: touched by a point with a
+/// gradient, or by a background.
 fn supported<const D: usize>(
     shape: &Shape<D>,
     volume: &[f64],
@@ -604,7 +607,7 @@ fn supported<const D: usize>(
     (touched, stiff)
 }
 
-/// Body force (step 2d): sum_p N_Ip m_p g(t + dt), and that of still water.
+/// Computes the body force (step 2d), sum_p N_Ip m_p g(t + dt), and the force of hydrostatic water (N).
 fn external_force<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
@@ -638,7 +641,7 @@ fn external_force<K: Kinematics<D>, const D: usize>(
     f_ext
 }
 
-/// Weight at and below which a node counts as massless.
+/// Returns the weight at and below which a node counts as massless.
 fn threshold(weight: &[f64], halo: &dyn Halo) -> f64 {
     let mut heaviest = [weight.iter().copied().fold(0.0, f64::max)];
     halo.all_reduce_max(&mut heaviest);

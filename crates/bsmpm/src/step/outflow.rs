@@ -11,17 +11,17 @@ use std::collections::HashSet;
 /// Material that has left the grid in a step, over all ranks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outflow {
-    /// points
+    /// Number of points.
     pub points: u64,
-    /// kg
+    /// Mass (kg).
     pub mass: f64,
-    /// J  energy of the points with it, and without it
+    /// Energy of the points with this material, and without it (J).
     pub stored: [StoredEnergy; 2],
 }
 
 impl Outflow {
-    /// Takes the points away that have left by the time `t`; `None` if none has. One reduction in a model with
-    /// outlets.
+    /// Removes the points that have left the grid by time `t` (s); `None` if there are none. One reduction in a model
+    /// with outlets, and two more if points leave.
     pub fn of<K: Kinematics<D>, const D: usize>(
         model: &Model<K, D>,
         points: &mut Points<D>,

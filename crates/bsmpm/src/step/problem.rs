@@ -8,29 +8,29 @@ use crate::points::Points;
 use crate::step::mass::Mass;
 use crate::step::nodes::GridState;
 
-/// Everything that is fixed while a step is iterated.
+/// Quantities that stay constant during the iterations of a step.
 pub struct Problem<'a, K, const D: usize> {
-    /// grid, materials, supports and the measures of convergence
+    /// Grid, materials, supports and convergence criteria.
     pub model: &'a Model<K, D>,
-    /// step (1)
+    /// Shape functions at the material points, step (1).
     pub shape: &'a Shape<D>,
-    /// step (2)
+    /// Nodal quantities, step (2).
     pub nodes: &'a GridState<D>,
-    /// strips, attached to the nodes
+    /// Rigid strips with their constraints on the nodes.
     pub attachments: &'a StripConstraints<D>,
-    /// state at t
+    /// Material points at the start of the step.
     pub points: &'a Points<D>,
-    /// the other ranks
+    /// Communication with the other ranks.
     pub halo: &'a dyn Halo,
 }
 
 impl<'a, K, const D: usize> Problem<'a, K, D> {
-    /// The mass matrix, in dynamics.
+    /// Returns the mass matrix (for dynamics).
     pub fn mass(&self) -> Mass<'_, D> {
         self.nodes.mass(self.model, self.shape, self.points, self.halo)
     }
 
-    /// What the points weigh in the integrals of the stress, m^D of the reference volume.
+    /// Returns the integration weights of the points for the stress (m^D of reference volume).
     #[inline]
     pub fn volume(&self) -> &'a [f64] {
         self.nodes.volume(self.points)

@@ -16,7 +16,7 @@ use crate::step::extension::{Extension, InnerFunction, Tie};
 use crate::tensor::{Square, Vector};
 use std::collections::BTreeMap;
 
-/// A linear system behind which there is one of the inner functions alone.
+/// A linear system that is reduced to the inner splines before it reaches the solver.
 pub struct ReducedSystem<'a, const D: usize> {
     solver: &'a mut dyn LinearSolver,
     extension: &'a Extension<D>,
@@ -26,23 +26,23 @@ pub struct ReducedSystem<'a, const D: usize> {
     kept: Vec<KeptBlocks<D>>, // of every tie
 }
 
-/// Entries of a tied node and others.
+/// Blocks between a tied node and other nodes.
 #[derive(Clone, Debug, Default)]
 struct KeptBlocks<const D: usize> {
-    /// K_Jm of the tied node J and any node m
+    /// K_Jm of the tied node J and any node m.
     row: Blocks<D>,
-    /// K_iJ of any node i that is not tied
+    /// K_iJ of any node i that is not tied.
     column: Blocks<D>,
 }
 
 type Blocks<const D: usize> = BTreeMap<BlockOrigin, Square<D>>;
 
-/// The other node of a block, and where it comes from.
+/// The other node of a block, and the column of cells that contributes the block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct BlockOrigin {
-    /// number in the whole grid
+    /// Number of the other node in the whole grid.
     other: usize,
-    /// column of cells: the layer of the lowest node of the sum
+    /// Column of cells: the layer of the lowest node of the contribution.
     cells: usize,
 }
 
@@ -50,7 +50,7 @@ struct BlockOrigin {
 type NodePair = [usize; 2];
 
 impl<'a, const D: usize> ReducedSystem<'a, D> {
-    /// In front of a `solver` for the window of a grid.
+    /// Wraps a `solver` for the window of a grid.
     pub fn new(
         solver: &'a mut dyn LinearSolver,
         extension: &'a Extension<D>,
@@ -67,7 +67,7 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
         }
     }
 
-    /// Keeps the entries of a dense block that have a tied row or column.
+    /// Keeps the blocks of a dense matrix that have a tied row or column.
     fn keep(&mut self, nodes: &[usize], block: &[f64]) {
         let ties: Vec<Option<usize>> = nodes.iter().map(|&node| self.extension.place_of(node)).collect();
         let cells = self.grid.node_at(nodes[0])[0];
@@ -91,13 +91,13 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
         }
     }
 
-    /// Whether blocks couple with a tie that is this rank's alone.
+    /// Returns whether a block couples with a tie that belongs to this rank alone.
     fn is_own(&self, origin: &BlockOrigin) -> bool {
         let place = self.extension.place_of_number(origin.other);
         place.is_some_and(|place| !self.extension.ties()[place].is_published)
     }
 
-    /// Completes the blocks of published ties by those of other ranks. One gathering.
+    /// Completes the blocks of published ties by those of other ranks. One gather.
     fn exchange(&self, kept: &mut [KeptBlocks<D>]) {
         let extension = self.extension;
         let mut message = Vec::new();
@@ -130,8 +130,8 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
         }
     }
 
-    /// The blocks that the kept ones add between inner functions: E^T K_Jm E_m of every tied row J, and K_iJ E_J of
-    /// every tied column.
+    /// Returns the contributions of the kept blocks between inner splines: E^T K_Jm E_m of every tied row J, and K_iJ
+    /// E_J of every tied column.
     fn carried_blocks(&mut self) -> BTreeMap<NodePair, Square<D>> {
         let mut kept = std::mem::take(&mut self.kept);
         if self.extension.is_published() {
@@ -164,8 +164,8 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
         carried
     }
 
-    /// Adds E^T K E - K_II to the solver's matrix, every entry on one rank. The blocks of patches are square, so that
-    /// each pair of nodes has the block of either order.
+    /// Adds E^T K E - K_II to the solver's matrix, every entry on one rank. Blocks of patches are square, so each pair
+    /// of nodes has both blocks.
     fn add_carried_blocks(&mut self) {
         let mut diagonal = vec![0.0; self.grid.nodes() * D];
         let carried = self.carried_blocks();
@@ -190,14 +190,14 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
         self.solver.add_diagonal(&diagonal);
     }
 
-    /// Whether the pattern of the matrix has the block of two nodes.
+    /// Returns whether the sparsity pattern contains the block of two nodes.
     fn couples(&self, row: usize, column: usize) -> bool {
         let [row, column] = [row, column].map(|number| self.grid.place_of_number(number));
         let reach = self.grid.order() + self.grid.beyond();
         (0..D).all(|axis| row[axis].abs_diff(column[axis]) <= reach)
     }
 
-    /// Whether the lowest node of the box around two nodes is this rank's own: its window has both.
+    /// Returns whether this rank owns the lowest node of the box around two nodes, so that its window contains both.
     fn owns_lowest(&self, row: usize, column: usize) -> bool {
         let [row, column] = [row, column].map(|number| self.grid.place_of_number(number));
         let lowest = std::array::from_fn(|axis| row[axis].min(column[axis]));
@@ -206,7 +206,7 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
             .is_some_and(|node| self.halo.owned().contains(node))
     }
 
-    /// Adds the blocks of two nodes: of the first and the second, and of the second and the first.
+    /// Adds the two off-diagonal blocks of a pair of nodes: (first, second) and (second, first).
     fn add_pair(&mut self, nodes: [usize; 2], blocks: [&Square<D>; 2]) {
         let mut pair = vec![0.0; 4 * D * D];
         for i in 0..D {
@@ -219,7 +219,7 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
     }
 }
 
-/// Adds half the absolute values of a block to the diagonals of its row's and its column's node, where they are in the
+/// Adds half the absolute values of a block to the diagonals of its row's and its column's node, if they are in the
 /// window.
 fn add_lumped<const D: usize>(block: &Square<D>, nodes: [Option<usize>; 2], diagonal: &mut [f64]) {
     let absolute = block.abs() * 0.5;
@@ -233,7 +233,7 @@ fn add_lumped<const D: usize>(block: &Square<D>, nodes: [Option<usize>; 2], diag
     }
 }
 
-/// The blocks of each other node, summed over the columns of cells in their order.
+/// Sums the blocks of each other node over the columns of cells, in their order.
 fn sums_over_cells<const D: usize>(blocks: Blocks<D>) -> Vec<(usize, Square<D>)> {
     let mut sums: Vec<(usize, Square<D>)> = Vec::new();
     for (origin, block) in blocks {
@@ -245,7 +245,7 @@ fn sums_over_cells<const D: usize>(blocks: Blocks<D>) -> Vec<(usize, Square<D>)>
     sums
 }
 
-/// e_ij of the tied components, 0 of the others: a diagonal matrix.
+/// Returns e_ij for tied components and 0 for others, as a diagonal matrix.
 fn weights<const D: usize>(tie: &Tie<D>, inner: &InnerFunction) -> Square<D> {
     Square::from_diagonal(&Vector::from_fn(|i, _| if tie.tied[i] { inner.weight } else { 0.0 }))
 }
@@ -271,7 +271,7 @@ impl<const D: usize> LinearSolver for ReducedSystem<'_, D> {
         self.solver.add_block_among(nodes, block);
     }
 
-    /// Of nodes that are not tied: without inertia no others have any.
+    /// Adds the diagonal of nodes that are not tied; without inertia no other nodes have any.
     fn add_diagonal(&mut self, diagonal: &[f64]) {
         self.solver.add_diagonal(diagonal);
     }

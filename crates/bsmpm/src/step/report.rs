@@ -11,91 +11,92 @@ use crate::step::outflow::Outflow;
 use crate::step::problem::Problem;
 use crate::water::saved::WaterReport;
 
-/// Work of one or more attempts, failed ones included.
+/// Computational work of one or more attempts, including failed ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// quasi-Newton and Newton iterations
+    /// Quasi-Newton and Newton iterations.
     pub iterations: usize,
-    /// evaluations of the residual
+    /// Evaluations of the residual.
     pub evaluations: usize,
-    /// iterations of the linear solver
+    /// Iterations of the linear solver.
     pub linear_iterations: usize,
-    /// products with the complete derivative
+    /// Matrix-vector products with the complete derivative.
     pub products: usize,
-    /// factorisations
+    /// Factorisations.
     pub factorisations: usize,
 }
 
-/// What an accepted step did.
+/// Report of an accepted step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReport {
-    /// s  length of the step
+    /// Step size (s).
     pub dt: f64,
-    /// iterations from the guess that led to convergence
+    /// Iterations from the initial guess that led to convergence.
     pub iterations: usize,
-    /// Newton iterations among them; 0 where the quasi-Newton method got there
+    /// Newton iterations among these; 0 if the quasi-Newton method converged.
     pub newton_iterations: usize,
-    /// both measures of every iteration
+    /// Convergence measures of every iteration.
     pub history: Vec<Measures>,
-    /// those that it was accepted by; none of a state that was in balance before any direction was known
+    /// Measures that met the criteria; `None` if the initial state was already in equilibrium.
     pub judged: Option<Measures>,
-    /// force measure |f_oob| / largest force of the accepted state
+    /// Force measure of the accepted state: |f_oob| / largest force (-).
     pub force: f64,
-    /// nodes that carry material, over all ranks
+    /// Nodes that carry material, over all ranks.
     pub active_nodes: usize,
-    /// unknowns of the linear system, over all ranks
+    /// Unknowns of the linear system, over all ranks.
     pub unknowns: usize,
-    /// active nodes without mass, whose velocity and averages count as zero
+    /// Active nodes whose mass is negligible, over all ranks. Their velocity and averages are set to zero.
     pub massless_nodes: usize,
-    /// cells with the soft background, over all ranks
+    /// Cells with the soft background, over all ranks.
     pub background_cells: usize,
-    /// functions that are tied to those of full cells, over all ranks
+    /// Splines that are tied to those of full cells, over all ranks.
     pub tied_functions: usize,
-    /// functions of nearly empty cells alone that are not tied, over all ranks: no full cell is near enough, or a
-    /// footing, a prescribed segment or a rigid body holds them
+    /// Splines of nearly empty cells that are not tied, over all ranks: no full cell is near enough, or a footing, a
+    /// prescribed segment or a rigid body touches them.
     pub untied_functions: usize,
-    /// whether the forces alone decided: the methods led on no further, and forces balanced far below their tolerance
+    /// Whether only the force criterion was met: no method converged further, and the forces balance far below their
+    /// tolerance.
     pub settled: bool,
-    /// whether the first guess of the displacement led to convergence
+    /// Whether the iteration converged from the first guess of the displacement.
     pub first_guess: bool,
-    /// N  force of every support on the body, by component, in the order of the model's supports
+    /// Force of each support on the body (N), by component, in the order of the model's supports.
     pub reactions: Vec<Vec<f64>>,
-    /// what every face with contact did
+    /// Reports of the faces with contact.
     pub contacts: Vec<ContactReport>,
-    /// what every rigid body did
+    /// Reports of the rigid bodies.
     pub rigid: Vec<RigidReport>,
-    /// what every rigid strip did
+    /// Reports of the rigid strips.
     pub strips: Vec<StripReport>,
-    /// J  work (u - w) . B (u - w) on the soft background, w the displacement that it does not resist; and the larger
-    /// of the magnitudes of the works f_int u of all nodes and components, the background's among them, and of the
-    /// works of the points' stresses. Only with a background.
+    /// Two works (J), only with a background. First (u - w) . B (u - w) on the soft background, where the background
+    /// does not resist the displacement w. Then the larger of two sums of magnitudes: the works f_int u of all nodes
+    /// and components (background included), and the works of the points' stresses.
     pub background: Option<[f64; 2]>,
-    /// largest force of the background on a node over the RMS force of the nodes, with a background and without
-    /// prescribed motions in the step
+    /// Largest force of the background on a node divided by the RMS force of the nodes (-). Only with a background, and
+    /// in steps without prescribed motion.
     pub background_share: Option<f64>,
-    /// J  second-order works of the step: that of elastic ground with its strain, and the actual one; in quasi-static
-    /// analysis of material that yields, without water that flows
+    /// Second-order works of the step (J): for elastic soil with the same strain, and the actual one. Only in
+    /// quasi-static analysis with yielding materials and without flowing water.
     pub second_order_works: Option<[f64; 2]>,
-    /// J  where the energy went, if the model balances it
+    /// Energy flows of the step (J), if the model balances its energy.
     pub energy: Option<Flows>,
-    /// J  what bounds the energy, in dynamics and where the model balances it
+    /// Terms of the energy bound (J), in dynamics and if the model balances its energy.
     pub turnover: Option<Turnover>,
-    /// m  the farthest that a point moved, over all ranks
+    /// Largest displacement of a material point in the step, over all ranks (m).
     pub advance: f64,
-    /// J  kinetic energy that points within a cell of a fixed face have beyond that of their motion, in dynamics with
-    /// such a face
+    /// Kinetic energy of points within a cell of a fixed face in excess of that of their displacement (J). Only in
+    /// dynamics with such a face.
     pub beside_fixed: Option<f64>,
-    /// what left the grid, if anything did
+    /// Material that left the grid, if any.
     pub outflow: Option<Outflow>,
-    /// what the water did, where it flows
+    /// Report of the flowing water, if any.
     pub water: Option<WaterReport>,
-    /// share of a pass of S by which the elastic state was smoothed, mean over the points
+    /// Smoothing of the elastic state as a fraction of one pass of S, mean over the points (-).
     pub smoothed: f64,
 }
 
 impl StepReport {
-    /// Of a displacement that was found, before the points have taken it; one reduction for the supports' forces, and
-    /// one with a background.
+    /// Creates the report of a converged displacement, before the points are updated. One reduction for the forces of
+    /// the supports, and one with a background.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &StepSolution<K, D>) -> Self {
         let nodes = problem.nodes;
         let resisted = nodes.resisted(&found.u);
@@ -141,10 +142,10 @@ impl StepReport {
     }
 }
 
-/// The largest force of the background on a free node of all ranks over the RMS force of the active nodes; `None`
-/// without a background or without forces. A function that has no other stiffness creeps by it.
+/// Returns the largest force of the background on a free node of all ranks, divided by the RMS force of the active
+/// nodes (-). A spline without other stiffness creeps under this force. `None` without a background or without forces.
 ///
-/// One exchange with the neighbours, one reduction, and one gathering where ties are published.
+/// One exchange with the neighbours, one reduction, and one gather if ties are published.
 pub fn background_share<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     found: &StepSolution<K, D>,

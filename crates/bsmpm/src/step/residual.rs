@@ -19,47 +19,47 @@ use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicU64, AtomicUsize};
 
-/// Forces of the points under a nodal displacement, balanced at the nodes.
+/// Forces of the material points under a nodal displacement, balanced at the nodes.
 #[derive(Clone, Debug)]
 pub struct Residual<K: Kinematics<D>, const D: usize> {
-    /// deformation that they follow from
+    /// Deformation increment from which the forces follow.
     pub trial: DeformationIncrement<K, D>,
-    /// the nodes
+    /// Balance of forces at the nodes.
     pub balance: Balance,
-    /// the first point of this rank that inverted or is not finite
+    /// First point of this rank that inverted or is not finite.
     pub first_inverted: Option<usize>,
 }
 
-/// Step (5b): what is out of balance at the nodes, with the norms that judge it.
+/// Step (5b): out-of-balance force at the nodes, with the norms for the convergence criteria.
 #[derive(Clone, Debug)]
 pub struct Balance {
-    /// N  f_ext + strips and rigid bodies + dashpots + friction - f_int - M a - background (a: `Inertia::acting`), zero
-    /// at components that are not free
+    /// Out-of-balance force (N): f_ext + strips and rigid bodies + dashpots + friction - f_int - M a - background, with
+    /// a from `Inertia::acting`; zero at components that are not free.
     pub f_oob: Vec<f64>,
-    /// N  force of the supports on the body, zero at components that are neither prescribed nor loaded by friction nor
-    /// damped
+    /// Force of the supports on the body (N); zero at components without a prescribed motion, friction or a dashpot.
     pub reaction: Vec<f64>,
-    /// N  |f_oob|
+    /// Norm |f_oob| (N).
     pub norm: f64,
-    /// N  max(|f_ext|, |f_int|, |M a|, |reaction, strips|)
+    /// Reference force max(|f_ext|, |f_int|, |M a|, |reaction, strips|) (N).
     pub scale: f64,
-    /// N  the same two of each material's own nodes; empty in a scene of one material
+    /// `norm` and `scale` over the nodes that only one material touches (N), per material; empty in a case with one
+    /// material.
     pub apart: Vec<[f64; 2]>,
-    /// J  magnitudes of the works f_int u of all nodes and components, the background's part among it; 0 without a
-    /// background, which nobody else asks for
+    /// Sum of the magnitudes of the works f_int u over all nodes and components, background included (J); 0 without a
+    /// background, where it is not needed.
     pub work: f64,
-    /// points inverted or not finite, over all ranks
+    /// Points inverted or not finite, over all ranks.
     pub inverted: u64,
-    /// of the water, where it flows
+    /// Balance of the water, if it flows.
     pub water: Option<WaterBalance>,
-    /// no norm overflowed
+    /// Whether no norm overflowed.
     finite: bool,
 }
 
 impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
-    /// Evaluates the forces under `x`, the displacements, and behind them the excess pressures where water flows (none:
-    /// zero): one exchange with the neighbours, one more each for F-bar, its adjoint, strips and water, and one
-    /// reduction, with water two.
+    /// Evaluates the forces under `x`: displacements (m), followed by excess pore pressures (Pa) if water flows;
+    /// missing pressures are zero. One exchange with the neighbours, one more each for F-bar, its adjoint, strips and
+    /// water, and one reduction (two with water).
     pub fn of(problem: &Problem<'_, K, D>, x: &[f64]) -> Self {
         let Problem {
             model,
@@ -100,18 +100,19 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
     }
 }
 
-/// Step (5a): what the stress of this rank's points makes at the nodes.
+/// Step (5a): nodal forces of the stresses of this rank's points.
 pub struct InternalForce {
-    /// N  forces
+    /// Internal forces (N).
     pub f_int: Contributions,
-    /// points that inverted or are not finite
+    /// Points that inverted or are not finite.
     pub inverted: u64,
-    /// the first of them
+    /// First of these points.
     pub first_inverted: Option<usize>,
 }
 
 impl InternalForce {
-    /// Under a trial; one exchange with the neighbours where a point has the adjoint force.
+    /// Integrates the stresses of a trial deformation. One exchange with the neighbours if a point has the adjoint
+    /// force.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         trial: &DeformationIncrement<K, D>,
@@ -144,7 +145,7 @@ impl InternalForce {
     }
 }
 
-/// Fluxes of consecutive points, eight at a time; of those one by one of which one is not like the others.
+/// Computes the fluxes of consecutive points, eight at a time; one by one if the eight cannot be computed together.
 struct Fluxes<'a, K: Kinematics<D>, const D: usize> {
     model: &'a Model<K, D>,
     points: &'a Points<D>,
@@ -195,8 +196,8 @@ impl<K: Kinematics<D>, const D: usize> Fluxes<'_, K, D> {
         Some(K::Gradient::of(|i, j| flux[(i, j)] * volume))
     }
 
-    /// Flux of one point, N m; zero of one that inverted, which is counted. Not inlined into the code of each
-    /// instruction set.
+    /// Computes the flux of one point (N m). An inverted point has zero flux and is counted. Not inlined, so that it is
+    /// compiled once and not for each instruction set.
     #[inline(never)]
     fn of_point(&self, p: usize) -> K::Gradient {
         let Self {
@@ -214,8 +215,8 @@ impl<K: Kinematics<D>, const D: usize> Fluxes<'_, K, D> {
 }
 
 impl Balance {
-    /// Balance of an internal force that is summed over the ranks, with `inverted` points on this one, under the
-    /// displacement `u`, extended, that deforms points by `dF`.
+    /// Balances an internal force that is summed over the ranks, with `inverted` points on this rank. `u` is the
+    /// displacement including tied components (m); it deforms the points by `dF`.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         u: &[f64],
@@ -242,7 +243,7 @@ impl Balance {
             over_active(problem, |c| if soft { (f_int[c] * u[c]).abs() } else { 0.0 }),
         ];
         let kinds = whole.len() - 2;
-        // Out of balance, external, internal, inertial, of supports and strips.
+        // Per material: out-of-balance, external, internal, inertial forces, and those of supports and strips.
         let apart = problem.nodes.apart.as_ref().map_or_else(Vec::new, |apart| {
             apart.sums(problem.halo, D, |c| {
                 let forces = [forces.f_oob[c], f_ext[c], f_int[c], forces.inertial_at(c)];
@@ -253,7 +254,8 @@ impl Balance {
         let sums = problem.halo.reproducible_sum(&[&whole[..], &apart].concat());
         let (sums, apart) = sums.split_at(whole.len());
         let [norm, scale] = norms(&sums[1..=kinds]);
-        // Where nothing but stress acts on a material's own nodes, that is all out of balance: no scale to judge it by.
+        // If only stress acts on the nodes of a single material, its internal force equals the out-of-balance force and
+        // cannot serve as a reference.
         let apart = apart.chunks_exact(kinds).map(|sums| {
             let acts = [sums[1], sums[3], sums[4]].into_iter().any(|sum| sum > 0.0);
             if acts { norms(sums) } else { [0.0; 2] }
@@ -271,12 +273,12 @@ impl Balance {
         }
     }
 
-    /// |f_oob| / largest force, of all nodes; zero where no force acts at all.
+    /// Returns |f_oob| / largest force over all nodes (-); zero if no force acts.
     pub fn measure(&self) -> f64 {
         if self.norm == 0.0 { 0.0 } else { self.norm / self.scale }
     }
 
-    /// No point inverted or without pores, and no number overflowed, on any rank.
+    /// Returns whether, on all ranks, no point inverted, no pores closed, and no number overflowed.
     pub fn is_sound(&self) -> bool {
         let of_water = self
             .water
@@ -286,7 +288,7 @@ impl Balance {
     }
 }
 
-/// N  external force at the end of the step, that of the loads that follow the surface among it.
+/// Returns the external force at the end of the step, including follower loads (N).
 fn external_force<'a, K: Kinematics<D>, const D: usize>(
     problem: &Problem<'a, K, D>,
     u: &[f64],
@@ -315,8 +317,8 @@ fn external_force<'a, K: Kinematics<D>, const D: usize>(
     f_ext
 }
 
-/// N  force of strips and rigid bodies, D numbers a node; empty without any. One exchange with the neighbours where
-/// there are some.
+/// Returns the force of strips and rigid bodies (N), D numbers per node; empty without any. Otherwise one exchange with
+/// the neighbours.
 fn force_of_strips<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, u: &[f64]) -> Vec<f64> {
     if problem.model.boundary.strips.is_empty() && problem.nodes.rigid.is_empty() {
         return Vec::new();
@@ -327,12 +329,13 @@ fn force_of_strips<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>
     problem.halo.assemble_ghosts(&force)
 }
 
-/// Norm of the force out of balance and the largest of the others', of the sums of their squares.
+/// Returns the norm of the out-of-balance force and the largest norm of the other forces, from the sums of their
+/// squares.
 fn norms(sums: &[f64]) -> [f64; 2] {
     [sums[0], sums[1..].iter().copied().fold(0.0, f64::max)].map(f64::sqrt)
 }
 
-/// Sum over the components of this rank's own active nodes.
+/// Sums over the components of this rank's own active nodes.
 fn over_active<K, const D: usize>(problem: &Problem<'_, K, D>, term: impl Fn(usize) -> f64) -> Exact {
     over_layers(problem.halo, D, |c| {
         if problem.nodes.active[Nodal::<D>::node(c)] {
@@ -343,7 +346,7 @@ fn over_active<K, const D: usize>(problem: &Problem<'_, K, D>, term: impl Fn(usi
     })
 }
 
-/// Step (5b) at the nodes of the window.
+/// Forces of step (5b) at the nodes of the window (N).
 struct Forces {
     f_oob: Vec<f64>,
     reaction: Vec<f64>,
@@ -390,7 +393,7 @@ impl Forces {
         forces
     }
 
-    /// N  of inertia at a component; 0 without.
+    /// Returns the inertial force at a component (N); 0 without inertia.
     fn inertial_at(&self, component: usize) -> f64 {
         self.inertial.get(component).copied().unwrap_or(0.0)
     }

@@ -11,13 +11,13 @@ use crate::step::nodes::GridState;
 use crate::tensor::Symmetric;
 use crate::threads;
 
-/// Length (m) along which so many passes of S smooth on splines of degree `order` over cells of size `h` (m):
-/// `h sqrt(passes (q+1)/6)` (T3.6).
+/// Returns the length (m) over which `passes` passes of S smooth, with splines of degree `order` on cells of size `h`
+/// (m): `h sqrt(passes (q+1)/6)` (T3.6).
 pub fn length(order: usize, h: f64, passes: f64) -> f64 {
     h * (passes * (order as f64 + 1.0) / 6.0).sqrt()
 }
 
-/// Eq. 20, modified F-bar: b^e_p <- sum_I N_Ip (1/m_I sum_p N_Ip m_p b^e_p).
+/// Averages b^e under modified F-bar (Eq. 20): b^e_p <- sum_I N_Ip (1/m_I sum_p N_Ip m_p b^e_p).
 pub fn average_b_e<K, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
@@ -36,8 +36,8 @@ pub fn average_b_e<K, const D: usize>(
     points.b_e = averaged;
 }
 
-/// What smoothing made of elastic strains: of b^e before and after it the left Cauchy-Green tensor that leads from the
-/// one to the other, L^-1 b^e L^-T with the Cholesky factor L of that before; where nothing changed it is the identity.
+/// Returns the change of elastic strain by smoothing as a left Cauchy-Green tensor: L^-1 b^e L^-T, where L is the
+/// Cholesky factor of b^e before. It is the identity where nothing changed.
 pub fn change<const D: usize>(
     before: &PackedTensors<D, Symmetric>,
     after: &PackedTensors<D, Symmetric>,
@@ -49,7 +49,7 @@ pub fn change<const D: usize>(
     .collect()
 }
 
-/// The same of one point; `None` where nothing changed.
+/// Returns the change of one point; `None` where nothing changed.
 fn change_of_point(before: Symmetric, after: Symmetric) -> Option<Symmetric> {
     if before == after {
         return None;
@@ -58,17 +58,18 @@ fn change_of_point(before: Symmetric, after: Symmetric) -> Option<Symmetric> {
     Some(Symmetric::of(&(inverse * after.full() * inverse.transpose())))
 }
 
-/// What the filter of consistent F-bar needs of a point's return.
+/// Plastic flow of a point in the step, for the filter of consistent F-bar.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PlasticFlow {
-    /// -  sqrt(2/3) |eps_trial - eps^e|, the plastic strain of the step with its dilation
+    /// Plastic strain of the step including dilation, sqrt(2/3) |eps_trial - eps^e| (-).
     plastic: f64,
-    /// -  eps_v = tr eps^e = 1/2 ln det b^e
+    /// Elastic dilation eps_v = tr eps^e = 1/2 ln det b^e (-).
     dilation: f64,
 }
 
 impl PlasticFlow {
-    /// Of one response; `gap` is what gaped before the step, which is in its trial but did not flow in it.
+    /// Evaluates a response. `gap` was open before the step; the trial strain contains it, but it did not flow in the
+    /// step.
     pub fn of(response: &Response, gap: f64) -> Self {
         let trial = response.principal_eps_trial();
         let elastic = response.principal_eps_e();
@@ -84,17 +85,17 @@ impl PlasticFlow {
     }
 }
 
-/// Plastic strain (-) that removes 63 % of the fluctuation of the elastic dilation: of the order in which points move
-/// relative to each other, not of the elastic strain.
+/// Plastic strain that removes 63 % of the fluctuation of the elastic dilation (-): of the order of the relative
+/// displacement of points, not of the elastic strain.
 const RENEWING: f64 = 0.01;
 
-/// Consistent F-bar: b^e_p <- exp(2/3 theta_p (S(eps_v)_p - eps_v,p)) b^e_p, theta_p = S(1 - exp(-x/0.01))_p.
+/// Filters b^e under consistent F-bar: b^e_p <- exp(2/3 theta_p (S(eps_v)_p - eps_v,p)) b^e_p, with theta_p = S(1 -
+/// exp(-x/0.01))_p. Returns the mean of theta over all points.
 ///
-/// x_p = sum_I N_Ip chi_I, chi_I the largest plastic strain of the step among the points that node I sees, of those
-/// groups of materials by themselves that averages do not mix. Two half
-/// steps have the flow of the whole, so that the filter converges in the step size, and where nothing flows within
-/// reach b^e stays bit by bit. The factor is a positive scalar on the whole tensor: 1/2 ln det b^e changes by
-/// theta (S(eps_v) - eps_v), the deviator of the elastic strain not at all. Returns the mean of theta over all points.
+/// x_p = sum_I N_Ip chi_I, where chi_I is the largest plastic strain of the step among the points of node I, separately
+/// for the groups of materials that averages do not mix. Two half steps filter as much as the whole step, so the filter
+/// converges in the step size. Where nothing flows nearby, b^e is bitwise unchanged. The factor is a positive scalar:
+/// 1/2 ln det b^e changes by theta (S(eps_v) - eps_v), and the deviator of the elastic strain is unchanged.
 pub fn filter_dilation<K, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,

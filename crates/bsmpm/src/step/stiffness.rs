@@ -21,8 +21,8 @@ use crate::tensor::{Tensor, Vector};
 use nalgebra::SMatrix;
 use rayon::prelude::*;
 
-/// Assembles K_0 patch by patch into `solver` and factorises it: at the state `at`, or, without any, of elastic
-/// material whose dilation is not averaged. One exchange with the neighbours where the average couples patches.
+/// Assembles K_0 patch by patch into `solver` and factorises it, at the state `at`, or for `None` of elastic material
+/// without averaged dilation. One exchange with the neighbours if the average couples patches.
 pub fn assemble<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     at: Option<&DeformationIncrement<K, D>>,
@@ -52,7 +52,7 @@ fn assemble_into<K: Kinematics<D>, const D: usize>(
     solver.reinit(&nodes.free);
     let damping = Damping::of(model, nodes);
     let mut coupling = at.and_then(|_| Coupling::of(model, nodes, DilationForce::Along));
-    // Threads work on a column each; what they found is added in the order of the patches.
+    // Each thread computes columns of patches; the results are added in the order of the patches.
     for columns in shape.columns().chunks(columns_at_a_time(shape)) {
         let state = Assembly {
             model,
@@ -83,10 +83,10 @@ fn assemble_into<K: Kinematics<D>, const D: usize>(
     complete(problem, solver, Symmetry::Definite)
 }
 
-/// Bytes of blocks that are held before they are added: threads wait for each other once in so many.
+/// Bytes of blocks that are stored before they are added; threads synchronise once per this amount.
 const BLOCKS: usize = 1 << 23;
 
-/// Columns whose blocks are held, one for every thread at least; one where there are no others.
+/// Returns the number of columns whose blocks are stored: at least one per thread; one if there is a single thread.
 fn columns_at_a_time<const D: usize>(shape: &Shape<D>) -> usize {
     let threads = rayon::current_num_threads();
     let patches = shape.patches().len().div_ceil(shape.columns().len().max(1));
@@ -98,15 +98,15 @@ fn columns_at_a_time<const D: usize>(shape: &Shape<D>) -> usize {
     }
 }
 
-/// What one patch contributes.
+/// Contribution of one patch.
 struct PatchPart {
-    /// N/m  row-major square, D unknowns a node
+    /// Row-major square block (N/m), D unknowns per node.
     block: Vec<f64>,
-    /// dilations of its points, where their average couples it with others
+    /// Dilations of the patch's points, if their average couples patches.
     dilations: Option<Dilations>,
 }
 
-/// What the parts are made of.
+/// Data from which contributions of patches are computed.
 struct Assembly<'a, K: Kinematics<D>, const D: usize> {
     model: &'a Model<K, D>,
     shape: &'a Shape<D>,
@@ -134,14 +134,14 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
             dilations: coupling.map(Coupling::of_patch),
         };
         let mut slopes = [K::Gradient::NO_SLOPE; MOST];
-        // All of them first: responses of neighbours do not wait for each other.
+        // All responses first: those of neighbouring points are independent, and the processor overlaps them.
         let yielding: Vec<Option<Stiffness>> = patch.points.clone().map(|p| self.yielding(p)).collect();
         for run in runs_of_one_material(patch, &points.material) {
             let mut moments = vec![K::Gradient::NO_MOMENT; size * size];
             let material = &model.materials[usize::from(points.material[run.start])];
             let Moduli { lambda, mu } = material.elastic().moduli();
-            // What F-bar averages of isotropic stiffness is lambda + 2 mu/dof times the dilation; the rest has -2
-            // mu/dof.
+            // F-bar averages the part (lambda + 2 mu/dof) times dilation of isotropic stiffness; in the rest lambda
+            // becomes -2 mu/dof.
             let averaged = 2.0 * mu * K::dilation().norm_squared();
             for p in run {
                 let stiffness = yielding[p - patch.points.start].as_ref();
@@ -165,15 +165,15 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
         part
     }
 
-    /// The stiffness of point `p` where the state yields.
+    /// Returns the stiffness of point `p` if it yields.
     #[inline(always)]
     fn yielding(&self, p: usize) -> Option<Stiffness> {
         self.at?.respond(self.model, self.points, p).ok()?.yielding()
     }
 
-    /// Adds a point: to the `moments` of its material where it is elastic, and where it yields with a stiffness of its
-    /// own to the block; its dilation, against which elastic material has the stiffness `bulk` in Pa, where that is
-    /// averaged. `slopes` is room to work.
+    /// Adds a point: an elastic one to the `moments` of its material, a yielding one with its own stiffness to the
+    /// block. Where dilation is averaged, adds its dilation, with the elastic bulk stiffness `bulk` (Pa). `slopes` is
+    /// workspace.
     fn add(
         &self,
         p: usize,
@@ -193,7 +193,7 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
         } = *self;
         transfer::slopes_of::<K, D>(shape, &points.x, p, slopes);
         let volume = self.volume[p];
-        // What damps a point is its stiffness, too, times a share.
+        // Damping adds a fraction of the stiffness.
         let damped = 1.0 + self.damping.relative(points.material[p]).unwrap_or(0.0);
         let raised = if let Some(stiffness) = stiffness {
             let (moduli, bulk) = of_point::<K, D>(stiffness, volume * damped, coupling.is_some());
@@ -228,8 +228,8 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
     }
 }
 
-/// V0 D_p of a point that yields, one unit gradient after the other, and its stiffness against dilation in Pa; where
-/// that is `averaged` it is no part of the first.
+/// Returns V0 D_p of a yielding point, one unit gradient after the other, and its stiffness against dilation (Pa). If
+/// dilation is `averaged`, the first excludes this stiffness.
 #[inline]
 fn of_point<K: Kinematics<D>, const D: usize>(
     stiffness: &Stiffness,
@@ -260,8 +260,7 @@ fn runs_of_one_material(patch: &Patch, material: &[u16]) -> Vec<std::ops::Range<
         .collect()
 }
 
-/// Adds V0 grad N_a (x) grad N_b for a <= b to the moments, `volume` weighted with the stiffness relative to the
-/// material's.
+/// Adds V0 grad N_a (x) grad N_b for a <= b to the moments. `volume` includes the stiffness relative to the material's.
 fn accumulate<K: Kinematics<D>, const D: usize>(volume: f64, slopes: &[Slope<K, D>], moments: &mut [Moment<K, D>]) {
     let size = slopes.len();
     for a in 0..size {

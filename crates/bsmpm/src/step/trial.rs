@@ -16,25 +16,25 @@ use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 use crate::tensor::{Symmetric, Tensor};
 
-/// dF (-) and the Kirchhoff stress (Pa) that it causes, of one point or of several.
+/// Deformation increment dF (-) and the Kirchhoff stress (Pa) that it causes, at one point or several.
 pub type Stressed<R> = (Tensor<R>, Symmetric<R>);
 
-/// Increment of the deformation of every point.
+/// Deformation increment of every material point.
 #[derive(Clone, Debug)]
 pub struct DeformationIncrement<K: Kinematics<D>, const D: usize> {
-    /// -  grad u of the step (step 4a); not a number at a point that inverted
+    /// Displacement gradient of the step (-, step 4a); NaN at a point that inverted.
     grad: Vec<K::Gradient>,
-    /// -  S(w dJ) of every point, w dJ: dJ, or J under Zhao's F-bar (steps 4c, 4e); under F-bar only
+    /// Mean S(w dJ) at every point (-), where w dJ is dJ, or J under Zhao's F-bar (steps 4c, 4e); `None` without F-bar.
     mean: Option<Vec<f64>>,
-    /// beside the stress of the law
+    /// Damping that adds a viscous stress to the stress of the law.
     damping: Damping,
-    /// Pa  J p of every point, where water flows: what it presses with beside the skeleton's Kirchhoff stress
+    /// Pore pressure times J at every point (Pa), if water flows; subtracted from the skeleton's Kirchhoff stress.
     pub(crate) pore: Option<Vec<f64>>,
 }
 
 impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
-    /// Deformation under the nodal displacement `u`. A point that inverted gets a dF that is not finite, which the
-    /// constitution refuses: all ranks decide together once the residual's norms are reduced.
+    /// Computes the deformation under the nodal displacement `u` (m). A point that inverted gets a non-finite dF, which
+    /// the constitutive law rejects. All ranks detect this together when the norms of the residual are reduced.
     pub fn of(
         model: &Model<K, D>,
         shape: &Shape<D>,
@@ -59,7 +59,7 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         };
         let mean = model.stabilisation.averages().then(|| {
             nodes.mean_dilation(model, shape, points, halo, |p| match trial.own(model, points, p) {
-                // No other point shall suffer for it.
+                // An inverted point must not spoil the averages of other points.
                 inverted if inverted.is_nan() => weight(model.stabilisation, points, p),
                 own => own,
             })
@@ -67,19 +67,19 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         Self { mean, ..trial }
     }
 
-    /// dF of point `p`, -.
+    /// Returns dF of point `p` (-).
     #[inline]
     pub fn dF(&self, p: usize) -> Tensor {
         K::deformation::<f64>(&self.grad[p])
     }
 
-    /// w dJ of point `p`.
+    /// Returns w dJ of point `p` (-).
     #[inline]
     fn own(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
         weight(model.stabilisation, points, p) * K::jacobian::<f64>(&self.grad[p])
     }
 
-    /// ratio_p = S(w dJ)_p / (w_p dJ_p kept_p), r_p of (T3.2); 1 without F-bar.
+    /// Returns the F-bar factor r_p of (T3.2), S(w dJ)_p / (w_p dJ_p kept_p); 1 without F-bar.
     #[inline]
     pub fn ratio(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
         let Some(mean) = &self.mean else { return 1.0 };
@@ -90,7 +90,7 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         )
     }
 
-    /// J-bar/J of point `p` at the end of the step.
+    /// Returns J-bar/J of point `p` at the end of the step (-).
     pub(crate) fn dilation(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
         let before = if model.stabilisation == Stabilisation::FBarZhao {
             1.0
@@ -100,7 +100,7 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         self.averaged(model, points, p) * before
     }
 
-    /// S(w dJ)_p / (w_p dJ_p).
+    /// Returns S(w dJ)_p / (w_p dJ_p).
     #[inline]
     fn averaged(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
         self.mean
@@ -108,7 +108,7 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
             .map_or(1.0, |mean| mean[p] / self.own(model, points, p))
     }
 
-    /// w dJ and S(w dJ) of point `p`; 1 for the latter without F-bar.
+    /// Returns w dJ and S(w dJ) of point `p`; 1 for the latter without F-bar.
     pub(crate) fn means(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> (f64, f64) {
         (
             self.own(model, points, p),
@@ -116,8 +116,8 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         )
     }
 
-    /// Rate of ln ratio_p for a displacement whose spatial gradient has the trace `trace`_p at every point:
-    /// S(w dJ tr l)_p / S(w dJ)_p - tr l_p. `None` without F-bar; one exchange with the neighbours.
+    /// Returns the rate of ln ratio_p for a displacement whose spatial gradient l has the trace `trace`_p at every
+    /// point: S(w dJ tr l)_p / S(w dJ)_p - tr l_p. `None` without F-bar. One exchange with the neighbours.
     pub fn dilation_rate(&self, problem: &Problem<'_, K, D>, trace: &[f64]) -> Option<Vec<f64>> {
         let mean = self.mean.as_ref()?;
         let Problem {
@@ -136,14 +136,14 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         Some(rate)
     }
 
-    /// Whether F-bar acts.
+    /// Returns whether F-bar acts.
     pub fn is_averaged(&self) -> bool {
         self.mean.is_some()
     }
 
-    /// Steps (4f)-(4i) of eight points: dF and the stress. `None` where [`DeformationIncrement::respond`] has to
-    /// answer: of points of several materials, of graded and damped ones, of those that gape, and where the material
-    /// says so.
+    /// Computes steps (4f)-(4i) for eight points: dF and the stress. Returns `None` if
+    /// [`DeformationIncrement::respond`] must be used: for points of several materials, graded or damped materials,
+    /// open gaps, and laws without a vectorised form.
     #[inline(always)]
     pub fn respond_in_lanes<S: Simd>(
         &self,
@@ -205,7 +205,7 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         Some((dF, tau))
     }
 
-    /// The viscous stress of point `p` beside that of its law's `response`, if it has any.
+    /// Returns the viscous stress of point `p`, in addition to the `response` of its law, if it has damping.
     #[inline]
     pub fn viscous(&self, model: &Model<K, D>, points: &Points<D>, p: usize, response: &Response) -> Option<Viscous> {
         let moduli = self.damping.moduli(model, points, p)?;
@@ -215,7 +215,7 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         Viscous::of(&strained, moduli, response.returned(), share, points.gap_of(p)).ok()
     }
 
-    /// `tau` and the viscous stress of point `p`, Pa, of the constitution's `response` there.
+    /// Returns `tau` plus the viscous stress of point `p` (Pa). `response` is that of the law at this point.
     #[inline]
     pub fn damped(
         &self,
@@ -229,25 +229,25 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
             .map_or(tau, |viscous| viscous.beside(tau))
     }
 
-    /// What the viscous stress of point `p` takes in the step per reference volume, J/m3, if it has any.
+    /// Returns the work of the viscous stress of point `p` in the step per reference volume (J/m3), if it has damping.
     pub(crate) fn damping_takes(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<f64> {
         let viscous = self.viscous_at(model, points, p)?;
         Some(viscous.tau.full().dot(&self.strain(model, points, p)?))
     }
 
-    /// The viscous stress of point `p` where the constitution's response is not at hand, if it has any.
+    /// Computes the viscous stress of point `p` without a given response of the law, if the point has damping.
     fn viscous_at(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Viscous> {
         self.damping.relative(points.material[p])?;
         self.viscous(model, points, p, &self.respond(model, points, p).ok()?)
     }
 
-    /// `tau` and that viscous stress, Pa.
+    /// Returns `tau` plus the viscous stress of point `p` (Pa), without a given response.
     pub(crate) fn damped_at(&self, model: &Model<K, D>, points: &Points<D>, p: usize, tau: Symmetric) -> Symmetric {
         self.viscous_at(model, points, p)
             .map_or(tau, |viscous| viscous.beside(tau))
     }
 
-    /// `tau` of the skeleton less what the water presses with at point `p`, Pa.
+    /// Returns `tau` of the skeleton minus J times the pore pressure at point `p` (Pa).
     #[inline]
     pub fn pressed(&self, p: usize, mut tau: Symmetric) -> Symmetric {
         if let Some(pore) = &self.pore {
@@ -256,14 +256,15 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         tau
     }
 
-    /// J p of point `p`, Pa, where water flows.
+    /// Returns J times the pore pressure at point `p` (Pa), if water flows.
     #[inline]
     pub(crate) fn pore_at(&self, p: usize) -> Option<f64> {
         self.pore.as_ref().map(|pore| pore[p])
     }
 
-    /// Hencky strain of point `p` in the step: `½ ln (I + e)`, e = dF-bar dF-bar^T - I; none of a point that inverted.
-    /// Of a small e it is the series ½ (e - e²/2 + e³/3 - e⁴/4), right to 1e-12, which saves an eigenvalue problem.
+    /// Returns the Hencky strain of point `p` in the step, `½ ln (I + e)` with e = dF-bar dF-bar^T - I; `None` for an
+    /// inverted point. For small e the series ½ (e - e²/2 + e³/3 - e⁴/4) saves an eigenvalue problem; its error is
+    /// below 1e-12.
     pub(crate) fn strain(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Tensor> {
         let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
         let strained = K::push_forward(&dF_bar, &Symmetric::IDENTITY);
@@ -280,7 +281,7 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         )
     }
 
-    /// Steps (4f)-(4i): trial b^e of point `p` under dF-bar, widened by its gap, and the constitution's answer.
+    /// Computes steps (4f)-(4i): trial b^e of point `p` under dF-bar, expanded by its gap, and the response of the law.
     #[inline(always)]
     pub fn respond(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Result<Response, MaterialError> {
         let dF = self.dF(p);
@@ -295,16 +296,16 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
     }
 }
 
-/// Strains of a step whose logarithm is a series.
+/// Largest component of e for which the logarithm is replaced by a series.
 const SMALL: f64 = 1e-3;
 
-/// S(w dJ) / (w dJ kept).
+/// Returns S(w dJ) / (w dJ kept).
 #[inline(always)]
 fn ratio<R: Real>(mean: R, own: R, kept: R) -> R {
     mean / own * (kept.like(1.0) / kept)
 }
 
-/// J-bar/J at the start of the step where the total J is averaged, else 1.
+/// Returns J-bar/J at the start of the step if the total J is averaged (Zhao's F-bar), else 1.
 #[inline]
 fn kept<const D: usize>(stabilisation: Stabilisation, points: &Points<D>, p: usize) -> f64 {
     if stabilisation == Stabilisation::FBarZhao {
@@ -314,7 +315,7 @@ fn kept<const D: usize>(stabilisation: Stabilisation, points: &Points<D>, p: usi
     }
 }
 
-/// w_p: J at the start of the step where the total J is averaged, else 1.
+/// Returns w_p: J at the start of the step if the total J is averaged (Zhao's F-bar), else 1.
 #[inline]
 fn weight<const D: usize>(stabilisation: Stabilisation, points: &Points<D>, p: usize) -> f64 {
     if stabilisation == Stabilisation::FBarZhao {

@@ -9,27 +9,27 @@ use crate::points::Points;
 use crate::tensor::Vector;
 use crate::threads;
 
-/// Rate of the relaxation (-), over the path of the excess velocity in cells. For the run-outs that chose it see
+/// Rate of the relaxation (-) per path of the excess velocity in cells. For the run-outs that determined it see
 /// `decisions.md` of the manual.
 const RATE: f64 = 4.0;
 
-/// Cells by which a point beside a fixed face must have been displaced since the start for its velocity to count.
-/// Ground that vibrates about its place keeps such velocities too, but nothing slides by them.
+/// Displacement since the start (in cells) from which the velocity of a point near a fixed face counts. Vibrating
+/// ground has such velocities too, but does not slide by them.
 const LEAST_PATH: f64 = 0.05;
 
-/// The cells at a face of the grid that holds all components.
+/// Layer of cells at a face of the grid where all components are fixed.
 #[derive(Clone, Copy, Debug)]
 struct Layer {
-    /// normal of the face
+    /// Axis normal to the face.
     axis: usize,
-    /// m  the face
+    /// Position of the face (m).
     face: f64,
-    /// m  the other end of the cells
+    /// Position of the other end of the cells (m).
     end: f64,
 }
 
 impl Layer {
-    /// The cells at the face of a support.
+    /// Returns the layer at the face of a support.
     fn at<const D: usize>(grid: &Grid<D>, support: &Support<D>) -> Self {
         let axis = &grid.axes()[support.axis];
         let cells = axis.cells();
@@ -41,19 +41,19 @@ impl Layer {
         }
     }
 
-    /// Distance (-) from the face in cells, if the place is in the layer.
+    /// Returns the distance from the face in cells (-), if the position is in the layer.
     fn depth<const D: usize>(&self, x: &Vector<D>) -> Option<f64> {
         let depth = (x[self.axis] - self.face) / (self.end - self.face);
         (0.0..=1.0).contains(&depth).then_some(depth)
     }
 
-    /// Thickness, m.
+    /// Returns the thickness (m).
     fn thickness(&self) -> f64 {
         (self.end - self.face).abs()
     }
 }
 
-/// The cells at all faces that hold all components.
+/// Returns the layers at all faces where all components are fixed.
 fn layers<K, const D: usize>(model: &Model<K, D>) -> Vec<Layer> {
     model
         .boundary
@@ -64,8 +64,8 @@ fn layers<K, const D: usize>(model: &Model<K, D>) -> Vec<Layer> {
         .collect()
 }
 
-/// Relaxes the velocities of the points near fixed faces to those of their displacement `du`, m, in the step of the
-/// length `dt`, s. The points are still where they were at its start.
+/// Relaxes the velocities of the points near fixed faces towards du/dt. `du` is their displacement (m) in the step of
+/// size `dt` (s). The points are still at their positions at the start.
 pub fn relax<K, const D: usize>(model: &Model<K, D>, points: &mut Points<D>, du: &[Vector<D>], dt: f64) {
     if model.wall_velocity == WallVelocity::Own {
         return;
@@ -96,9 +96,9 @@ pub fn relax<K, const D: usize>(model: &Model<K, D>, points: &mut Points<D>, du:
     });
 }
 
-/// Kinetic energy, J, that points within a cell of a face which holds all components have by their velocities, beyond
-/// that of the motion `du`, m, which they make in the step of the length `dt`, over all ranks. Points that have hardly
-/// moved since the start do not count. `None` without such a face, or without inertia.
+/// Returns the kinetic energy of points within a cell of a fixed face in excess of that of du/dt (J), over all ranks.
+/// `du` is their displacement (m) in the step of size `dt` (s). Points that have hardly moved since the start do not
+/// count. `None` without such a face or without inertia.
 pub fn excess<K, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,

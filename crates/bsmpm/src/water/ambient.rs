@@ -6,35 +6,36 @@ use crate::schedule::TimeInterval;
 use crate::schedule::{between, turns};
 use crate::tensor::Vector;
 
-/// Still water, by its level.
+/// Hydrostatic pressure field, given by its level.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ambient {
-    /// none: the excess is the whole pore pressure
+    /// No hydrostatic pressure: the excess pressure is the whole pore pressure.
     None,
-    /// m  rows of time (s or pseudo-time, increasing) and height above the grid's lower corner; constant after the last
+    /// Water level: rows of time (s or pseudo-time, increasing) and height above the lower corner of the grid (m);
+    /// constant after the last row.
     Level(Vec<(f64, f64)>),
-    /// phreatic line: places whose x increases; linear between them, level beyond
+    /// Phreatic line: levels at increasing x, linear in between and horizontal outside.
     Line(Vec<LevelAt>),
 }
 
-/// The level of water at a place.
+/// Water level at one x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LevelAt {
-    /// m  along axis 0, from the grid's lower corner
+    /// Coordinate along axis 0 from the lower corner of the grid (m).
     pub x: f64,
-    /// m  rows as of a level
+    /// Rows of time and height, as in [`Ambient::Level`].
     pub rows: Vec<(f64, f64)>,
 }
 
 impl LevelAt {
-    /// m  height of the level at time `t`; `None` without rows.
+    /// Returns the height of the level at time `t` (m); `None` without rows.
     fn height(&self, t: f64) -> Option<f64> {
         level(&self.rows, t)
     }
 }
 
 impl Ambient {
-    /// m  height of the water table at `x` (m, along axis 0) and time `t`, and its slope along `x` (-).
+    /// Returns the height of the water table at `x` (m, along axis 0) and time `t` (m), and its slope along `x` (-).
     pub fn table(&self, x: f64, t: f64) -> Option<(f64, f64)> {
         match self {
             Self::None => None,
@@ -54,7 +55,7 @@ impl Ambient {
         }
     }
 
-    /// Levels in time: that everywhere, or those of the places of a line.
+    /// Returns the levels as functions of time: the single one, or those along a phreatic line.
     pub fn levels(&self) -> Vec<&[(f64, f64)]> {
         match self {
             Self::None => Vec::new(),
@@ -63,7 +64,7 @@ impl Ambient {
         }
     }
 
-    /// The same, to be changed.
+    /// Returns the same levels for modification.
     pub fn levels_mut(&mut self) -> Vec<&mut Vec<(f64, f64)>> {
         match self {
             Self::None => Vec::new(),
@@ -72,14 +73,14 @@ impl Ambient {
         }
     }
 
-    /// Whether it turns sharply in a step.
+    /// Returns whether a level changes abruptly in a step.
     pub fn turns(&self, interval: TimeInterval) -> bool {
         self.levels()
             .iter()
             .any(|rows| turns(rows, rows.first().map_or(0.0, |row| row.1), f64::abs, interval))
     }
 
-    /// Whether it rises or falls.
+    /// Returns whether a level rises or falls.
     pub fn moves(&self) -> bool {
         self.levels()
             .iter()
@@ -87,20 +88,20 @@ impl Ambient {
     }
 }
 
-/// How far a point spans upwards and downwards; as nothing is known of it, not at all.
+/// Vertical extent of a material point. The default is a point without extent.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Span {
-    /// m  to each side, of the part of its cell that is its own
+    /// Distance from the point to either end of the subcell that belongs to it (m).
     pub reach: f64,
-    /// -  its volume by that of the part, which it fills from below
+    /// Volume of the point relative to that of the subcell, which it fills from below (-).
     pub filled: f64,
 }
 
 impl Span {
-    /// Of a point `at` (m) above the lower side of its cell, whose parts have this height (m), with its volume by that
-    /// of a part. In the middle of a part it is what the body fills of that from below, as bodies are cut by their
-    /// surface more often than by their base, with what a neighbour had too little of for a point of its own. Elsewhere
-    /// it is as thick as it has volume.
+    /// Returns the extent of a point `at` (m) above the lower side of its cell, whose subcells have the height `part`
+    /// (m) and the volume ratio `filled`. In the middle of a subcell the point fills it from below, because bodies end
+    /// at their surface within cells more often than at their base; `filled` may exceed 1, if the volume of a neighbour
+    /// without a point of its own was added. Elsewhere the extent is proportional to the volume.
     pub fn of(at: f64, part: f64, filled: f64) -> Self {
         let row = at / part - 0.5;
         let whole = (row - row.round()).abs() < 1e-6 && (0.5 - 1e-9..=2.0).contains(&filled);
@@ -117,13 +118,13 @@ impl Span {
         }
     }
 
-    /// The same under a table of this slope: none if that slopes, as it often is the surface of the ground, which cuts
-    /// the points itself.
+    /// Returns the extent for a water table of this slope. It is zero for an inclined table, which often coincides with
+    /// the ground surface, along which the points end anyway.
     pub fn under(self, slope: f64) -> Self {
         if slope == 0.0 { self } else { Self::default() }
     }
 
-    /// Share of the point below a table that is `above` (m) its place.
+    /// Returns the fraction of the point below a water table that lies `above` (m) its position.
     pub fn share_below(self, above: f64) -> f64 {
         let Self { reach, filled } = self;
         match reach * filled > 0.0 {
@@ -133,22 +134,22 @@ impl Span {
     }
 }
 
-/// The height of rows of time and height, at time `t`.
+/// Returns the height at time `t` from rows of time and height; `None` without rows.
 fn level(rows: &[(f64, f64)], t: f64) -> Option<f64> {
     let (first, last) = rows.first().zip(rows.last())?;
     Some(between(rows, first.1, t).unwrap_or(last.1))
 }
 
-/// Still water at a time.
+/// Hydrostatic pressure field at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct StillWater<'a> {
     ambient: &'a Ambient,
-    unit_weight: f64, // N/m3  as far as gravity has grown
+    unit_weight: f64, // unit weight at the present fraction of gravity (N/m3)
     t: f64,
 }
 
 impl<'a> StillWater<'a> {
-    /// At time `t`, of the `unit_weight` (N/m3) that it has then.
+    /// Creates the field at time `t` with the `unit_weight` (N/m3) at that time.
     pub fn new(ambient: &'a Ambient, unit_weight: f64, t: f64) -> Self {
         Self {
             ambient,
@@ -157,15 +158,16 @@ impl<'a> StillWater<'a> {
         }
     }
 
-    /// Pa  p_a at the place `x` (m, from the grid's lower corner): unit weight times the depth below the water table
-    /// straight above; 0 above the table.
+    /// Returns the pressure p_a at `x` (m, from the lower corner of the grid): the unit weight times the depth below
+    /// the water table; 0 above it (Pa).
     pub fn pressure<const D: usize>(&self, x: &Vector<D>) -> f64 {
         let table = self.ambient.table(x[0], self.t);
         table.map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(0.0))
     }
 
-    /// N  force of the water on point `p`, which has this height: -J V0 grad p_a, and, unless its mass `follows`, what
-    /// the water weighs that its pores have taken up or given off, of what is below the water table.
+    /// Returns the force of hydrostatic pressure on point `p` of the extent `span` (N): -J V0 grad p_a over the part
+    /// below the water table. Unless the mass of the point `follows` its water content, the weight of water that the
+    /// pores have taken in or released is included.
     pub fn force<const D: usize>(&self, points: &Points<D>, p: usize, span: Span, follows: bool) -> Vector<D> {
         let x = &points.x[p];
         let mut force = Vector::zeros();

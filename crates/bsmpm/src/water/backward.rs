@@ -6,18 +6,18 @@ use crate::points::Points;
 use crate::schedule::TimeInterval;
 use crate::water::flow::{Course, Motion};
 
-/// A step over the one before it, above which that says nothing: the differences are stable below 1 + sqrt 2, but what
-/// dies away goes beyond its end the further the nearer to it.
+/// Largest ratio of a step to the step before for which the second-order difference is used. It is stable below 1 +
+/// sqrt 2, but decaying solutions overshoot more, the closer the ratio is to that bound.
 pub const LONGEST: f64 = 1.6;
 
-/// What a step makes of the last one and of its own flow.
+/// Coefficients of the time integration of flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Differences {
-    /// -  part of what the last step took in that this one takes in, too
+    /// Factor of the change in the last step (-).
     pub last: f64,
-    /// -  part of the step that flows at its end count for
+    /// Factor of the flow at the end of this step (-).
     pub now: f64,
-    /// s  length of the last step, where it goes on
+    /// Length of the last step; 0 for backward Euler (s).
     pub before: f64,
 }
 
@@ -29,7 +29,8 @@ impl Differences {
         before: 0.0,
     };
 
-    /// Of second order, for a step of `dt` after one of `before`, s.
+    /// Returns the second-order coefficients for a step `dt` after a step `before` (s); backward Euler if the ratio
+    /// exceeds [`LONGEST`].
     pub fn of_second_order(dt: f64, before: f64) -> Self {
         let ratio = dt / before;
         if ratio <= LONGEST {
@@ -43,7 +44,7 @@ impl Differences {
         }
     }
 
-    /// Those of the model's step, by what the points carry.
+    /// Returns the coefficients of the step `interval` from the previous flow that the points store.
     pub fn of<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, interval: TimeInterval) -> Self {
         let goes_on = is_smooth(model) && points.content_change.is_some() && !turns(model, interval);
         let before = points.surface.flowed.as_ref().filter(|_| goes_on);
@@ -52,15 +53,16 @@ impl Differences {
         })
     }
 
-    /// The rate that counts in the step of `dt` from `t` for a given one: with it all that has come in is the integral
-    /// of that, however it turns.
+    /// Returns the equivalent rate of the step `interval` for a prescribed `rate`. With it the total inflow equals the
+    /// integral of `rate`, whatever its course.
     pub fn of_rate(&self, rate: &Course, interval: TimeInterval) -> f64 {
         let before = self.last * rate.integral(interval.start - self.before, interval.start);
         (rate.integral(interval.start, interval.end()) - before) / (self.now * interval.dt)
     }
 }
 
-/// Whether what drives the flow turns sharply in a step: then the last one says nothing of it.
+/// Returns whether a condition that drives the flow changes abruptly in a step. The last step then gives no
+/// information.
 fn turns<K, const D: usize>(model: &Model<K, D>, interval: TimeInterval) -> bool {
     let of_water = model.water.as_ref().is_some_and(|water| {
         water.ambient.turns(interval) || water.flow.as_ref().is_some_and(|flow| flow.turns(interval))
@@ -68,8 +70,8 @@ fn turns<K, const D: usize>(model: &Model<K, D>, interval: TimeInterval) -> bool
     of_water || model.boundary.turns(interval)
 }
 
-/// Whether the flow of a step says anything about the next one's: not where pores fill, surfaces open and close,
-/// inertia makes waves, or nothing flows.
+/// Returns whether the flow is smooth from step to step: quasi-static, permeable, fully saturated, and without seepage
+/// faces or runoff.
 pub fn is_smooth<K, const D: usize>(model: &Model<K, D>) -> bool {
     let Some(flow) = model.water.as_ref().and_then(|water| water.flow.as_ref()) else {
         return false;

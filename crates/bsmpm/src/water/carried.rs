@@ -10,8 +10,9 @@ use crate::tensor::{Tensor, Vector};
 use crate::water::flow::Motion;
 use crate::water::pore_pressure::PorePressure;
 
-/// N  what the pressure does to the nodes: sum_p V0 J p div N_Ip by the place at the start of the step, at time `t`;
-/// `volume` (m^D) is what points weigh in integrals of the stress.
+/// Returns the nodal force of stored pore pressures at time `t`, sum_p V0 J p div N_Ip (N), with gradients at the start
+/// of the step. `volume` (m^D) are the weights of the points in integrals of the stress. `None` if points store no
+/// pressure.
 pub fn force<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
@@ -26,7 +27,7 @@ pub fn force<K: Kinematics<D>, const D: usize>(
     }))
 }
 
-/// J  work of the pressures of the times `t` on the displacements `u` (m, nodal), of every point.
+/// Returns the work of the pressures at both times `t` on the displacements `u` (m, nodal), of every point (J).
 pub fn work<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
@@ -45,8 +46,9 @@ pub fn work<K: Kinematics<D>, const D: usize>(
     }))
 }
 
-/// Pore pressure that the soil carries at the nodes at time `t`; `volume` (m^D) is what points weigh in integrals of
-/// the stress. `None` where nothing has friction, and where points carry no such pressure. A sum over the ranks.
+/// Returns the pore pressure at the nodes at time `t` for the effective normal force of friction. `volume` (m^D) are
+/// the weights of the points in integrals of the stress. `None` without friction, or without a stored or excess
+/// pressure. One exchange with the neighbours.
 pub fn pore_pressure<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
@@ -64,8 +66,9 @@ pub fn pore_pressure<K: Kinematics<D>, const D: usize>(
     Some(PorePressure::fitted(shape, &points.x, &weights, &pressures, halo))
 }
 
-/// N  normal force of pore water on the contact faces of the grid, D numbers a node: what a face carries of the total
-/// stress without friction. It acts on the area int N dA = |sum_p V div N|. A sum over the ranks.
+/// Returns the normal force of pore water on contact faces of the grid with friction, D numbers per node (N). It acts
+/// on the area int N dA = |sum_p V div N| and belongs to the total stress, but causes no friction. One exchange with
+/// the neighbours.
 pub fn forces_on_faces<K: Kinematics<D>, const D: usize>(
     pores: &PorePressure<D>,
     model: &Model<K, D>,
@@ -94,13 +97,13 @@ pub fn forces_on_faces<K: Kinematics<D>, const D: usize>(
     forces
 }
 
-/// m^D  volume of a point as it is deformed.
+/// Returns the present volume of a point (m^D).
 fn weight<const D: usize>(points: &Points<D>, volume: &[f64], p: usize) -> f64 {
     volume[p] * points.F.at(p).determinant()
 }
 
-/// Pa  of every point, at time `t`: the share of the weight, as far as gravity has grown; or what the excess that is
-/// held presses with. `None` where points carry neither.
+/// Returns the stored pressures of all points at time `t` (Pa): r_u times the weight of the present gravity, or the
+/// constant excess pressure. `None` if points store neither.
 fn pressures<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Points<D>, t: f64) -> Option<Vec<f64>> {
     let shares = points.carried_pressure.as_ref().zip(model.gravity.as_ref());
     if let Some((shares, gravity)) = shares {
@@ -116,8 +119,8 @@ fn pressures<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Poi
     excess_pressures(model, points, t)
 }
 
-/// Pa  by which pore pressure in the total stress exceeds that of still water, of every point: of water that flows at
-/// the start of the step. `None` where none flows.
+/// Returns the difference of the pore pressure in the total stress from the hydrostatic pressure, of all points at the
+/// start of the step (Pa). `None` without coupled flow.
 fn excess_pressures<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,

@@ -4,14 +4,14 @@ use crate::water::flow::Soil;
 use crate::water::retention::{RetainedChange, RetentionState};
 
 impl<const D: usize> Soil<D> {
-    /// Water per volume of the start, of soil that has become `J` times that volume, under the excess pressure `p`, Pa;
-    /// `bulk`: of the water, Pa. Grains keep their volume.
+    /// Returns the water content of full pores per initial volume, at the volume ratio `J` and the pressure `p` (Pa),
+    /// for water of the bulk modulus `bulk` (Pa). Grains are incompressible.
     #[inline]
     pub fn content(&self, bulk: f64, J: f64, p: f64) -> f64 {
         self.pores(J) * (p / bulk).exp()
     }
 
-    /// Under the whole pore pressure `p`, Pa, of water of the unit weight `weight`, N/m3.
+    /// Returns the retention state under the whole pore pressure `p` (Pa) for water of the unit weight `weight` (N/m3).
     #[inline]
     pub fn retained(&self, p: f64, weight: f64) -> RetentionState {
         self.retention
@@ -19,7 +19,7 @@ impl<const D: usize> Soil<D> {
             .map_or(RetentionState::FULL, |retention| retention.under(p, weight))
     }
 
-    /// What those change by with the whole pore pressure, which was `before`, Pa.
+    /// Returns derivatives of the retention state at the whole pore pressure `now` after `before` (Pa).
     #[inline]
     pub fn retained_change(&self, before: f64, now: f64, weight: f64) -> RetainedChange {
         match &self.retention {
@@ -28,7 +28,8 @@ impl<const D: usize> Soil<D> {
         }
     }
 
-    /// 1/Pa  see [`Retention::chord`](crate::water::retention::Retention::chord); 0 of pores that stay full
+    /// Returns the chord of the saturation (1/Pa), see [`Retention::chord`](crate::water::retention::Retention::chord);
+    /// 0 without retention.
     #[inline]
     pub fn chord(&self, before: f64, now: f64, weight: f64) -> f64 {
         self.retention
@@ -36,7 +37,7 @@ impl<const D: usize> Soil<D> {
             .map_or(0.0, |retention| retention.chord(before, now, weight))
     }
 
-    /// Pores per volume of the start; none is left where that is not positive
+    /// Returns the pore volume per initial volume; not positive if the pores are closed.
     #[inline]
     pub fn pores(&self, J: f64) -> f64 {
         J - 1.0 + self.porosity

@@ -1,21 +1,21 @@
 //! Volumes of water that left or entered the ground.
 
-/// m3 (per metre in plane strain)  volumes of water, per surface
+/// Water volumes through the surfaces of the ground (m3, per metre in plane strain).
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct CumulativeFlux {
-    /// out of the ground, through every drain
+pub struct CrossedVolumes {
+    /// Outflow of every drain.
     pub drains: Vec<f64>,
-    /// out of the ground, through every drained face of the grid
+    /// Outflow of every drained face of the grid.
     pub faces: Vec<f64>,
-    /// into the ground, through every inflow
+    /// Inflow of every inflow surface.
     pub inflows: Vec<f64>,
-    /// that ground had taken in since the start which stages took away, less what ground that they placed held more
-    /// than it would have at the start
+    /// Water that removed ground had taken in since the start, less the surplus of placed ground over its content at
+    /// the start.
     pub removed: f64,
 }
 
-impl CumulativeFlux {
-    /// Adds `times` as much as has gone through since.
+impl CrossedVolumes {
+    /// Adds `times` the volumes of `more`.
     pub fn add(&mut self, times: f64, more: &Self) {
         let lists = [&mut self.drains, &mut self.faces, &mut self.inflows];
         for (sums, more) in lists.into_iter().zip([&more.drains, &more.faces, &more.inflows]) {
@@ -25,7 +25,7 @@ impl CumulativeFlux {
         self.removed += times * more.removed;
     }
 
-    /// What has left the ground through its surface, or what has come in, whichever is more.
+    /// Returns the total of net outflows or the total of net inflows through the surfaces, whichever is larger.
     pub fn through(&self) -> f64 {
         let out = self
             .drains
@@ -39,19 +39,19 @@ impl CumulativeFlux {
         f64::max(left, come)
     }
 
-    /// All that has left the ground through its surface, less what has come in.
+    /// Returns total outflow less total inflow through the surfaces.
     pub fn out(&self) -> f64 {
         self.drains.iter().chain(&self.faces).sum::<f64>() - self.inflows.iter().sum::<f64>()
     }
 }
 
-/// The last step's flow, which the next one goes on with; what points took in stands with them.
+/// Flow in the last step, which the second-order difference uses. The points store the changes of their water content.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PreviousFlow {
-    /// s  length of the step
+    /// Length of the step (s).
     pub dt: f64,
-    /// m3  that crossed the surface of the ground in it
-    pub crossed: CumulativeFlux,
-    /// m3  that it left out of balance
+    /// Volumes through the surfaces of the ground (m3).
+    pub crossed: CrossedVolumes,
+    /// Sum of the residual of the water balance (m3).
     pub left: f64,
 }

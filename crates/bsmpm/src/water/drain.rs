@@ -15,48 +15,47 @@ use crate::tensor::Vector;
 use crate::water::backward::Differences;
 use crate::water::flow::{Drain, Flow, Given, Inflow, Motion};
 
-/// Conductance of a drain over that of the soil of a cell, k/(gamma_w h).
+/// Conductance of a drain relative to that of the soil of a cell, k/(gamma_w h).
 ///
-/// With more of it a curved surface that cuts the cells asks more of the pressure than its functions have. Flow through
-/// a ring whose inner radius is 4, 8, 16 cells is off by 0.5, 0.02, 0.02 % with 1e2, by 5.7, 1.0, 0.4 % with 1e4, and
-/// by
-/// -1.7, -1.2, -0.5 % with 1e1, where the drain itself resists.
+/// A larger value over-constrains the pressure functions at curved surfaces that cut cells. Errors of the flow through
+/// a ring with an inner radius of 4, 8 and 16 cells are 0.5, 0.02 and 0.02 % with 1e2; 5.7, 1.0 and 0.4 % with 1e4; and
+/// -1.7, -1.2 and -0.5 % with 1e1, where the drain itself resists.
 const CONDUCTANCE: f64 = 1e2;
-/// Parts of a cell by which ends of neighbours may lie apart.
+/// Tolerance for coinciding corners of neighbours, in cells.
 const ON: f64 = 1e-9;
 
-/// What a drain or inflow did in a step.
+/// Result of a drain or an inflow in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DrainReport {
-    /// m3  of water that went through: out of a drain, into the ground by an inflow
+    /// Water volume out of a drain, or into the ground by an inflow (m3).
     pub through: f64,
-    /// points with material near
+    /// Number of surface points with material nearby.
     pub held: usize,
 }
 
-/// Drains and inflows of one step: the points of this rank.
+/// Drains and inflows of one step, with the surface points of this rank.
 #[derive(Clone, Debug, Default)]
 pub struct Drainage {
     offsets: Vec<usize>,
-    of: [usize; 2], // drains, inflows
+    of: [usize; 2], // numbers of drains and inflows
     outlets: Vec<WaterCrossing>,
-    /// cells between points of every surface that were neighbours at the start: the most, 0 of those that do not act
+    /// Largest distance between initially neighbouring points, per surface, in cells; 0 for inactive surfaces.
     pub torn: Vec<f64>,
 }
 
-/// A surface point that water goes through: a sink, or a source.
+/// Surface point through which water flows: a sink or a source.
 #[derive(Clone, Debug)]
 struct WaterCrossing {
-    surface: usize, // of the drains, then of the inflows
+    surface: usize, // drains first, then inflows
     attachment: Attachment,
-    conductance: f64, // m3/Pa  in that time
-    given: f64,       // Pa  excess
-    inflow: f64,      // m3  in that time
-    one_way: bool,    // lets water out only, where the pressure is above the given one
+    conductance: f64, // over the duration (m3/Pa)
+    given: f64,       // prescribed excess pressure (Pa)
+    inflow: f64,      // over the duration (m3)
+    one_way: bool,    // outflow only, above the prescribed pressure
 }
 
 impl WaterCrossing {
-    /// m3  out of the ground in that time, under the excess pressures `p`, Pa, nodal.
+    /// Returns the outflow over the duration for the nodal excess pressures `p` (Pa) (m3).
     fn out(&self, offsets: &[usize], p: &[f64]) -> f64 {
         if !self.is_open(offsets, p) {
             return -self.inflow;
@@ -64,25 +63,26 @@ impl WaterCrossing {
         self.conductance * (self.attachment.value(offsets, p) - self.given) - self.inflow
     }
 
-    /// Whether its conductance acts.
+    /// Returns whether the conductance is active.
     fn is_open(&self, offsets: &[usize], p: &[f64]) -> bool {
         !self.one_way || self.attachment.value(offsets, p) > self.given
     }
 }
 
-/// A surface that water crosses in a step.
+/// Surface of a body through which water flows in a step.
 struct CrossedSurface<'a, const D: usize> {
     number: usize,
     drain: Option<&'a Drain<D>>,
-    inflow: Option<&'a Inflow<D>>, // if it is no drain
-    rate: f64,                     // m/s  of the inflow
+    inflow: Option<&'a Inflow<D>>, // `None` for a drain
+    rate: f64,                     // rate of the inflow (m/s)
     duration: f64,                 // s
     end: f64,                      // s
-    unit_weight: f64,              // N/m3  of water
+    unit_weight: f64,              // unit weight of water (N/m3)
 }
 
 impl<'a, const D: usize> CrossedSurface<'a, D> {
-    /// Of a number among the drains and then the inflows, in a step that takes these `differences`.
+    /// Creates the surface with this number among the drains, followed by the inflows, for a step with these
+    /// `differences`.
     fn of(
         flow: &'a Flow<D>,
         number: usize,
@@ -103,7 +103,7 @@ impl<'a, const D: usize> CrossedSurface<'a, D> {
         }
     }
 
-    /// Of a point at a `place`, whose `area` is that at the start, m2.
+    /// Creates the surface point at a `place`, with its `area` at the start (m2).
     fn crossing(
         &self,
         grid: &Grid<D>,
@@ -144,9 +144,9 @@ impl<'a, const D: usize> CrossedSurface<'a, D> {
 }
 
 impl Drainage {
-    /// Of a step that takes these `differences`, and the points at its start; by the functions of
-    /// degree q - 1 that `counts` says. `still` is the pressure of the still water at the end, Pa. One reduction,
-    /// before the first step three. Fails on all ranks where a surface is on material that lets no water through.
+    /// Creates the drains and inflows of a step with these `differences`; only functions of degree q - 1 for which
+    /// `counts` is true are used. `still` returns the hydrostatic pressure at the end of the step (Pa). One reduction,
+    /// three before the first step. Fails on all ranks if a surface lies on impermeable material.
     pub fn at<K, const D: usize>(
         model: &Model<K, D>,
         points: &Points<D>,
@@ -199,8 +199,8 @@ impl Drainage {
         })
     }
 
-    /// Adds what leaves the ground in the step under the excess pressures `p` (Pa, nodal, one number a node) to the
-    /// balance of the water, m3, the last of the numbers of every node; other ranks' parts are not yet in it.
+    /// Adds the outflow under the excess pressures `p` (Pa, nodal) to the water balance, as the last number of every
+    /// node (m3). Contributions of other ranks are not yet included.
     pub fn add_to(&self, p: &[f64], out: &mut Contributions) {
         for outlet in &self.outlets {
             outlet
@@ -209,7 +209,7 @@ impl Drainage {
         }
     }
 
-    /// Adds what that changes by where the pressures `p` change by `v`, Pa.
+    /// Adds the change of the outflow for a change `v` of the pressures `p` (Pa).
     pub fn add_changes(&self, p: &[f64], v: &[f64], out: &mut Contributions) {
         for outlet in self.outlets.iter().filter(|outlet| outlet.is_open(&self.offsets, p)) {
             let change = outlet.conductance * outlet.attachment.value(&self.offsets, v);
@@ -217,15 +217,14 @@ impl Drainage {
         }
     }
 
-    /// Which of the surface points of this rank let water through under the excess pressures `p`, Pa: of those that let
-    /// it out only.
+    /// Returns whether each one-way surface point of this rank is open under the excess pressures `p` (Pa).
     pub fn open(&self, p: &[f64]) -> Vec<bool> {
         let one_way = self.outlets.iter().filter(|outlet| outlet.one_way);
         one_way.map(|outlet| outlet.is_open(&self.offsets, p)).collect()
     }
 
-    /// Adds the derivative of that to the matrix of the pressures, m3/Pa: of drains that let water out only where they
-    /// are open under `p`.
+    /// Adds the derivative of the outflow to the pressure matrix (m3/Pa). One-way surface points contribute only if
+    /// they are open under `p`.
     pub fn assemble(&self, p: &[f64], solver: &mut dyn LinearSolver) {
         let conducting = self.outlets.iter().filter(|outlet| outlet.conductance > 0.0);
         for outlet in conducting.filter(|outlet| outlet.is_open(&self.offsets, p)) {
@@ -238,7 +237,7 @@ impl Drainage {
         }
     }
 
-    /// J  what the water that leaves under the excess pressures `p`, Pa, takes along, on this rank, `times` as often.
+    /// Returns `times` the work of the outflow against the excess pressures `p` (Pa) on this rank (J).
     pub fn work(&self, p: &[f64], times: f64) -> Exact {
         self.outlets
             .iter()
@@ -246,7 +245,8 @@ impl Drainage {
             .collect()
     }
 
-    /// What every drain, and every inflow, did under the converged excess pressures `p`, Pa. One reduction.
+    /// Returns the results of all drains, and of all inflows, for the converged excess pressures `p` (Pa). One
+    /// reduction.
     pub fn report(&self, p: &[f64], halo: &dyn Halo) -> [Vec<DrainReport>; 2] {
         let surfaces: usize = self.of.iter().sum();
         if surfaces == 0 {
@@ -267,16 +267,16 @@ impl Drainage {
     }
 }
 
-/// What a surface point is at.
+/// Present state at a surface point.
 struct SurfacePlace<const D: usize> {
-    x: Vector<D>,            // m
-    normal: Vector<D>,       // of the length that the area is now over that of the start
-    permeability: Vector<D>, // m/s  along the axes
-    drained: bool,           // whether the material lets water through at all
+    x: Vector<D>,            // position (m)
+    normal: Vector<D>,       // normal times the ratio of present to initial area
+    permeability: Vector<D>, // along the axes (m/s)
+    drained: bool,           // whether the material is permeable
 }
 
 impl<const D: usize> SurfacePlace<D> {
-    /// 1/s  permeability across the surface over the edges of the cell that it is in.
+    /// Returns the permeability normal to the surface, divided by the edges of the cell at the point (1/s).
     fn leads(&self, grid: &Grid<D>) -> f64 {
         let edges = edges_at(grid, &self.x);
         let along = (0..D).map(|axis| self.normal[axis].powi(2) * self.permeability[axis] / edges[axis]);
@@ -284,8 +284,8 @@ impl<const D: usize> SurfacePlace<D> {
     }
 }
 
-/// The most cells that are now between points of a surface whose corners met at the start, or which were within a cell,
-/// in the order of the surface: what the ground has laid bare between them is closed.
+/// Returns the largest present distance between initially neighbouring points of a surface, in cells. The surface is
+/// closed where ground has been exposed in between.
 fn cells_apart<const D: usize>(grid: &Grid<D>, starts: &[SurfacePoint<D>], places: &[SurfacePlace<D>]) -> f64 {
     let edge = grid.smallest_edge();
     let mut most = 0.0_f64;
@@ -298,7 +298,8 @@ fn cells_apart<const D: usize>(grid: &Grid<D>, starts: &[SurfacePoint<D>], place
     most
 }
 
-/// Whether two surface points have corners that meet, or are within an `edge` of each other, m.
+/// Returns whether two surface points are neighbours: corners coincide, or the points are less than an `edge` (m)
+/// apart.
 fn are_neighbours<const D: usize>(a: &SurfacePoint<D>, b: &SurfacePoint<D>, edge: f64) -> bool {
     let mut pairs = a
         .corners
@@ -307,7 +308,7 @@ fn are_neighbours<const D: usize>(a: &SurfacePoint<D>, b: &SurfacePoint<D>, edge
     pairs.any(|apart| apart.norm() <= ON * edge) || (a.x - b.x).norm() < edge
 }
 
-/// Edges of the cell at `x`, m; outside the grid the smallest of all.
+/// Returns the edges of the cell at `x` (m); outside the grid the smallest edge of all cells.
 fn edges_at<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D> {
     grid.locate(x).map_or_else(
         || Vector::from_element(grid.smallest_edge()),
@@ -315,7 +316,7 @@ fn edges_at<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D> {
     )
 }
 
-/// Those of all surface points, now. One reduction.
+/// Returns the present states at all surface points. One reduction.
 fn places<const D: usize>(
     flow: &Flow<D>,
     points: &Points<D>,
@@ -348,7 +349,7 @@ fn places<const D: usize>(
             .zip(all)
             .for_each(|(number, value)| *number = value);
     });
-    // Each number is of one rank alone.
+    // Only one rank contributes to each number.
     halo.all_reduce_sum(&mut numbers);
     let places = numbers.chunks_exact(width).map(|numbers| {
         let [x, normal, permeability] = [0, 1, 2].map(|k| Vector::from_column_slice(&numbers[k * D..][..D]));
@@ -363,8 +364,8 @@ fn places<const D: usize>(
 }
 
 impl Given {
-    /// Pa  excess pressure at the place `x` at time `t`, where `still` is the pressure of the still water; `weight`:
-    /// the water's, N/m3
+    /// Returns the excess pressure at `x` at time `t` (Pa). `still` returns the hydrostatic pressure, and `weight` is
+    /// the unit weight of water (N/m3).
     pub(super) fn excess<const D: usize>(
         &self,
         weight: f64,
@@ -373,7 +374,7 @@ impl Given {
         still: impl Fn(&Vector<D>) -> f64,
     ) -> f64 {
         match self {
-            // Suction above the level is of the ground, not of its surface.
+            // A surface does not impose the suction above the water level, only zero pressure.
             Self::StillWater | Self::Seepage => {
                 let still = still(x);
                 if still < 0.0 { -still } else { 0.0 }

@@ -6,38 +6,38 @@ use crate::schedule::{between, turns};
 use crate::tensor::Vector;
 use crate::water::retention::Retention;
 
-/// Everything that makes the excess pressure an unknown.
+/// Coupled pore-water flow, with the excess pressure as an unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flow<const D: usize> {
-    /// Pa  bulk modulus of the water; infinite: incompressible
+    /// Bulk modulus of water; infinite if incompressible (Pa).
     pub bulk: f64,
-    /// by the material's number; `None` where the pressure is that of the still water
+    /// Soils by the number of the material; `None` if the pressure is hydrostatic.
     pub soils: Vec<Option<Soil<D>>>,
-    /// surfaces of bodies at which the pressure is given
+    /// Surfaces of bodies with a prescribed pressure.
     pub drains: Vec<Drain<D>>,
-    /// faces of the grid at which the pressure is given
+    /// Faces of the grid with a prescribed pressure.
     pub faces: Vec<DrainedFace>,
-    /// surfaces of bodies through which water is put in
+    /// Surfaces of bodies with a prescribed inflow.
     pub inflows: Vec<Inflow<D>>,
-    /// Pa  the largest suction above still water at the start, where soils keep water under suction
+    /// Largest suction above the water level at the start, for soils that retain water under suction (Pa).
     pub suction: f64,
-    /// what the water does
+    /// Mode of analysis.
     pub motion: Motion,
 }
 
-/// What water does that may flow.
+/// Mode of a coupled analysis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
-    /// It flows.
+    /// Water flows through the ground.
     Flows,
-    /// It stays where it is: nothing flows, crosses a surface or is given, and the pressure follows the strain.
+    /// Undrained: no water flows or crosses a surface, no pressure is prescribed; the pressure follows from the strain.
     Undrained,
-    /// No pressure is an unknown: every point keeps the one that it has.
+    /// Constant: every point keeps its pressure, which is not an unknown.
     Held,
 }
 
 impl<const D: usize> Flow<D> {
-    /// Points and normals of all surfaces of bodies that water crosses: those of the drains, then those of the inflows.
+    /// Returns points and normals of all surfaces of bodies with flow: the drains, then the inflows.
     pub fn surfaces(&self) -> impl Iterator<Item = (&[SurfacePoint<D>], &[Vector<D>])> {
         let drains = self.drains.iter().map(|drain| (&drain.points[..], &drain.normals[..]));
         drains.chain(
@@ -47,13 +47,13 @@ impl<const D: usize> Flow<D> {
         )
     }
 
-    /// Which of those water crosses now.
+    /// Returns whether each surface of [`Flow::surfaces`] is active.
     pub fn acting(&self) -> impl Iterator<Item = bool> {
         let drains = self.drains.iter().map(|drain| drain.acts);
         drains.chain(self.inflows.iter().map(|inflow| inflow.acts))
     }
 
-    /// Whether a surface lets water through one way only.
+    /// Returns whether an active surface lets water through in one direction only (seepage face, or runoff).
     pub fn is_one_way(&self) -> bool {
         self.drains
             .iter()
@@ -61,7 +61,7 @@ impl<const D: usize> Flow<D> {
             || self.inflows.iter().any(|inflow| inflow.acts && inflow.runs_off)
     }
 
-    /// Whether what is given at a surface that water crosses now turns sharply in a step.
+    /// Returns whether a prescribed value at an active surface changes abruptly in a step.
     pub fn turns(&self, interval: TimeInterval) -> bool {
         self.drains
             .iter()
@@ -73,21 +73,20 @@ impl<const D: usize> Flow<D> {
                 .any(|inflow| inflow.acts && inflow.rate.turns(interval))
     }
 
-    /// m  the largest suction head at which air enters a soil
+    /// Returns the largest air-entry suction head of the soils (m).
     pub fn entry(&self) -> f64 {
         let retention = self.soils.iter().flatten().filter_map(|soil| soil.retention.as_ref());
         retention.map(|retention| retention.curve.entry()).fold(0.0, f64::max)
     }
 
-    /// Whether a soil may be partly saturated.
+    /// Returns whether any soil retains water under suction and may be partly saturated.
     pub fn retains(&self) -> bool {
         self.soils.iter().flatten().any(|soil| soil.retention.is_some())
     }
 }
 
 impl<const D: usize> Flow<D> {
-    /// m/s  of a material, along the axes, where it has become `J` times the volume of the start; `None` where nothing
-    /// flows
+    /// Returns the permeability of a material along the axes at the volume ratio `J` (m/s); `None` without flow.
     pub fn permeability(&self, material: u16, J: f64) -> Option<Vector<D>> {
         if self.motion != Motion::Flows {
             return None;
@@ -100,7 +99,7 @@ impl<const D: usize> Flow<D> {
 }
 
 impl PermeabilityLaw {
-    /// Permeability over that of the start, of a soil of this porosity then that has become `J` times its volume.
+    /// Returns the ratio of the permeability at the volume ratio `J` to the initial one, for the initial `porosity`.
     pub fn relative(self, porosity: f64, J: f64) -> f64 {
         match self {
             Self::Constant => 1.0,
@@ -108,8 +107,9 @@ impl PermeabilityLaw {
         }
     }
 
-    /// What the logarithm of that changes by per change of ln J.
+    /// Returns the derivative of ln of that ratio with respect to ln J.
     pub fn relative_change(self, porosity: f64, J: f64) -> f64 {
+        // With the share of solids c = (1 - n0)/J: dc/d ln J = -c and ln k = 3 ln(1 - c) - 2 ln c.
         let solid = (1.0 - porosity) / J;
         match self {
             Self::KozenyCarman if solid < 1.0 => solid * (3.0 / (1.0 - solid) + 2.0 / solid),
@@ -118,60 +118,59 @@ impl PermeabilityLaw {
     }
 }
 
-/// n^3/(1-n)^2 of a porosity n.
+/// Returns n^3/(1-n)^2 of the porosity n.
 fn kozeny_carman(n: f64) -> f64 {
     n.powi(3) / (1.0 - n).powi(2)
 }
 
-/// What a soil is to water.
+/// Hydraulic properties of a soil.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Soil<const D: usize> {
-    /// -  share of pores in the volume at the start
+    /// Initial porosity (-).
     pub porosity: f64,
-    /// `None`: undrained, nothing flows
+    /// Permeability; `None`: undrained.
     pub permeability: Option<Permeability<D>>,
-    /// how much water it keeps under suction; `None`: its pores stay full
+    /// Retention under suction; `None`: the soil stays saturated.
     pub retention: Option<Retention>,
 }
 
 /// Hydraulic conductivity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Permeability<const D: usize> {
-    /// m/s  along each axis of space, at the porosity of the start
+    /// Permeability along the axes of the grid at the initial porosity (m/s).
     pub along: Vector<D>,
-    /// how it follows the porosity
+    /// Dependence on the porosity.
     pub law: PermeabilityLaw,
 }
 
-/// How the permeability follows the porosity.
+/// Dependence of the permeability on the porosity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PermeabilityLaw {
-    /// not at all
+    /// Constant permeability.
     Constant,
-    /// n^3/(1-n)^2 (Kozeny 1927, Carman 1937)
+    /// Proportional to n^3/(1-n)^2 (Kozeny 1927, Carman 1937).
     KozenyCarman,
 }
 
-/// The pressure that is given at a surface.
+/// Prescribed pressure at a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Given {
-    /// that of the still water: no excess
+    /// Hydrostatic pressure, without excess pressure.
     StillWater,
-    /// m above the grid's lower corner: water that would rise to this height
+    /// Height to which water rises, above the lower corner of the grid (m).
     Head(Course),
-    /// Pa  of the pore water
+    /// Pore pressure (Pa).
     Pressure(Course),
-    /// that of the still water below its level; above it no pressure, and water only comes out: a seepage face
+    /// Seepage face: hydrostatic below the water level; above it, water leaves at zero pressure and cannot enter.
     Seepage,
 }
 
-/// A number that follows time (s): rows, increasing in time; linear between, constant before the first and after the
-/// last.
+/// Value as a function of time: rows (time in s, value), increasing in time; linear in between, constant outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course(pub Vec<(f64, f64)>);
 
 impl Given {
-    /// What follows time of itself.
+    /// Returns the prescribed value as a function of time; `None` if it follows from the hydrostatic pressure.
     pub fn course(&self) -> Option<&Course> {
         match self {
             Self::Head(course) | Self::Pressure(course) => Some(course),
@@ -179,24 +178,24 @@ impl Given {
         }
     }
 
-    /// Whether that turns sharply in a step.
+    /// Returns whether the value changes abruptly in a step.
     fn turns(&self, interval: TimeInterval) -> bool {
         self.course().is_some_and(|course| course.turns(interval))
     }
 }
 
 impl Course {
-    /// Whether it turns sharply in a step.
+    /// Returns whether the value changes abruptly in a step.
     fn turns(&self, interval: TimeInterval) -> bool {
         turns(&self.0, self.at(0.0), f64::abs, interval)
     }
 
-    /// Of its rows, s.
+    /// Returns the times of the rows (s).
     pub fn times(&self) -> impl Iterator<Item = f64> {
         self.0.iter().map(|row| row.0)
     }
 
-    /// Its integral over a time: exact, wherever the rows are.
+    /// Returns the integral over time, exact for any position of the rows.
     pub fn integral(&self, from: f64, to: f64) -> f64 {
         let within = self.times().filter(|t| from < *t && *t < to);
         let mut start = from;
@@ -208,7 +207,7 @@ impl Course {
         sum
     }
 
-    /// At time `t`; 0 of none.
+    /// Returns the value at time `t`; 0 without rows.
     pub fn at(&self, t: f64) -> f64 {
         let first = self.0.first().map_or(0.0, |row| row.1);
         let last = self.0.last().map_or(0.0, |row| row.1);
@@ -216,43 +215,43 @@ impl Course {
     }
 }
 
-/// A drained surface of a body.
+/// Drain: surface of a body with a prescribed pressure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drain<const D: usize> {
-    /// on the surface, at the start
+    /// Surface points at the start.
     pub points: Vec<SurfacePoint<D>>,
-    /// -  of every point: unit normal of the surface at the start, to either side
+    /// Unit normal of the surface at every point at the start, of either sign (-).
     pub normals: Vec<Vector<D>>,
-    /// the pressure there
+    /// Prescribed pressure.
     pub given: Given,
-    /// whether water crosses it now
+    /// Whether the drain is active.
     pub acts: bool,
 }
 
-/// A drained face of the grid.
+/// Face of the grid with a prescribed pressure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrainedFace {
-    /// that the face is normal to
+    /// Axis normal to the face.
     pub axis: usize,
-    /// the face at the end of the axis
+    /// Whether it is the face at the upper end of the axis.
     pub upper: bool,
-    /// the pressure there
+    /// Prescribed pressure.
     pub given: Given,
-    /// whether water crosses it now
+    /// Whether the drain is active.
     pub acts: bool,
 }
 
-/// A surface through which water is put in.
+/// Surface of a body with a prescribed inflow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inflow<const D: usize> {
-    /// on the surface, at the start
+    /// Surface points at the start.
     pub points: Vec<SurfacePoint<D>>,
-    /// -  of every point: unit normal of the surface at the start, to either side
+    /// Unit normal of the surface at every point at the start, of either sign (-).
     pub normals: Vec<Vector<D>>,
-    /// m/s  into the ground
+    /// Rate into the ground (m/s).
     pub rate: Course,
-    /// no more than the ground takes without pressure at its surface: what is left runs off (rain)
+    /// Whether the inflow is limited to what the ground takes at zero surface pressure (rain); the rest runs off.
     pub runs_off: bool,
-    /// whether water crosses it now
+    /// Whether the inflow is active.
     pub acts: bool,
 }

@@ -5,27 +5,27 @@ use crate::kinematics::Kinematics;
 use crate::parallel::LinearSolver;
 use crate::step::problem::Problem;
 use crate::water::matrix;
-use crate::water::nodes::PoreField;
+use crate::water::nodes::PorePressureField;
 use crate::water::split;
 
-/// Iterations that pores which empty are followed for.
+/// Largest number of iterations with reassembly because of changes of saturation.
 const FIRST: usize = 12;
-/// Part of the water out of balance below which secants do better.
+/// Relative residual of the water balance below which quasi-Newton secants converge better than reassembly.
 const NEAR: f64 = 1e-2;
-/// Changes of open seepage faces that are followed in an iteration.
+/// Largest number of reassemblies because seepage faces open or close.
 const CHANGES: usize = 40;
 
-/// What the matrix of the pressures was assembled with last.
+/// State with which the pressure matrix was last assembled.
 #[derive(Clone, Debug, Default)]
 pub struct Follow {
-    open: Vec<bool>, // seepage faces' points
+    open: Vec<bool>, // open points of seepage faces
     changes: usize,
     first: usize,
-    tamed: bool, // the last direction was not taken as it was
+    tamed: bool, // whether the last direction was limited
 }
 
 impl Follow {
-    /// Of the state behind the displacements of `x` that the matrix is assembled at.
+    /// Creates the state for a matrix that is assembled at the displacements and pressures `x`.
     pub fn of<K, const D: usize>(problem: &Problem<'_, K, D>, x: &[f64]) -> Self {
         let open = problem.nodes.pores.as_ref().map_or_else(Vec::new, |pores| {
             let p = &x[problem.nodes.free.len()..];
@@ -39,12 +39,12 @@ impl Follow {
         }
     }
 
-    /// Holds a direction `dx` back where it would fill pores beyond full ones, or empty them to more than twice the
-    /// suction and the air's entry, as long as the first iterations are followed.
+    /// Limits the pressures of a direction `dx` in the first iterations. A step may not fill pores beyond saturation,
+    /// nor more than double the suction plus the air-entry value.
     pub fn tame<K, const D: usize>(
         &mut self,
         problem: &Problem<'_, K, D>,
-        pores: &PoreField<D>,
+        pores: &PorePressureField<D>,
         x: &[f64],
         dx: &mut [f64],
         measure: f64,
@@ -71,12 +71,12 @@ impl Follow {
         }
     }
 
-    /// Assembles the matrix again at `x` where that is due by the `measure` of the water; whether it has. One reduction
-    /// where a seepage face is or pores may empty.
+    /// Reassembles the matrix at `x` if saturation or seepage faces require it; `measure` is the relative residual of
+    /// the water balance. Returns whether it did. One reduction if there are seepage faces or retention.
     pub fn up<K: Kinematics<D>, const D: usize>(
         &mut self,
         problem: &Problem<'_, K, D>,
-        pores: &PoreField<D>,
+        pores: &PorePressureField<D>,
         x: &[f64],
         measure: f64,
         solver: &mut dyn LinearSolver,

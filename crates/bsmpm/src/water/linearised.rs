@@ -17,43 +17,43 @@ use crate::points::Points;
 use crate::step::problem::Problem;
 use crate::step::trial::DeformationIncrement;
 use crate::tensor::{Tensor, Vector};
-use crate::water::nodes::{PoreField, SaturatedPoint};
+use crate::water::nodes::{FlowPoint, PorePressureField};
 use crate::water::residual::{ExcessPressure, FlowState, pushed};
 
-/// The derivative at one state.
+/// Tangent of the water balance at one state.
 pub struct WaterTangent<'a, const D: usize> {
-    pores: &'a PoreField<D>,
-    p: &'a [f64], // Pa, nodal
+    pores: &'a PorePressureField<D>,
+    p: &'a [f64], // nodal excess pressures (Pa)
     points: Vec<Option<Change<D>>>,
 }
 
-/// What changes at a point that water flows through.
+/// Derivatives at a point with pore-water flow.
 #[derive(Clone)]
 struct Change<const D: usize> {
     inverse: Tensor, // dF^-1
     J: f64,
-    stored: (f64, f64),          // per reference volume, by tr l and, 1/Pa, by the pressure
-    w: Vector<D>,                // m/s
-    now: Vector<D>,              // Pa/m  dF^-T grad p
-    conducts: Vector<D>,         // m/s per Pa/m  k k_r/gamma_w
-    relative: (f64, f64),        // of w, by d ln J-bar and, 1/Pa, by the pressure
-    tau: (Vector<D>, Vector<D>), // of the tau term, by the pressure's gradient and by the pressure
-    presses: f64,                // -  d(J chi p)/dp
+    stored: (f64, f64),          // per reference volume, by tr l (-) and by the pressure (1/Pa)
+    w: Vector<D>,                // Darcy flux (m/s)
+    now: Vector<D>,              // dF^-T grad p (Pa/m)
+    conducts: Vector<D>,         // k k_r/gamma_w (m/s per Pa/m)
+    relative: (f64, f64),        // of w, by d ln J-bar (-) and by the pressure (1/Pa)
+    tau: (Vector<D>, Vector<D>), // stabilisation, by the pressure gradient and by the pressure
+    presses: f64,                // d(J chi p)/dp (-)
 }
 
-/// Changes at a point for displacements and pressures.
+/// Changes of storage and flux at a point for a change of displacements and pressures.
 pub struct FlowChange<const D: usize> {
-    /// m3
+    /// Change of the stored volume (m3).
     pub stored: f64,
-    /// m3 m  what flows in the step, and the tau term
+    /// Change of the flow in the step and of the stabilisation term (m3 m).
     pub flux: Vector<D>,
 }
 
 impl<'a, const D: usize> WaterTangent<'a, D> {
-    /// Where the nodal excess pressures are `p`, Pa.
+    /// Linearises the balance at the nodal excess pressures `p` (Pa).
     pub fn at<K: Kinematics<D>>(
         problem: &Problem<'_, K, D>,
-        pores: &'a PoreField<D>,
+        pores: &'a PorePressureField<D>,
         trial: &DeformationIncrement<K, D>,
         p: &'a [f64],
     ) -> Self {
@@ -66,9 +66,9 @@ impl<'a, const D: usize> WaterTangent<'a, D> {
         Self { pores, p, points }
     }
 
-    /// What a change `v` of the nodal pressures (Pa), with the gradients of the displacements `grad`, and what they
-    /// make of ln(J-bar/J) under F-bar, makes of the water's balance, m3, nodal, zero where the pressure is no unknown.
-    /// One exchange with the neighbours.
+    /// Returns the change of the water balance (m3, nodal; zero where the pressure is not an unknown). `grad` are the
+    /// gradients of the displacement change, `averaged` the resulting changes of ln(J-bar/J) with F-bar, `v` the change
+    /// of the nodal pressures (Pa), and `pressures` its values at the points. One exchange with the neighbours.
     pub fn multiply<K: Kinematics<D>>(
         &self,
         problem: &Problem<'_, K, D>,
@@ -98,7 +98,7 @@ impl<'a, const D: usize> WaterTangent<'a, D> {
         sums
     }
 
-    /// Changes of the pressure at the points, and of its gradient, for one of the nodal pressures, Pa.
+    /// Returns the changes of pressure and its gradient at the points for a change `v` of the nodal pressures (Pa).
     pub fn pressures(&self, v: &[f64]) -> Vec<ExcessPressure<D>> {
         scalars::scalars(&self.pores.shape, v, |_, value, gradient| ExcessPressure {
             value,
@@ -106,7 +106,8 @@ impl<'a, const D: usize> WaterTangent<'a, D> {
         })
     }
 
-    /// What the pressure's change at point `p`, Pa, adds to what works on the gradients there, per volume.
+    /// Returns the change of stress, work-conjugate to the displacement gradient, per volume for the pressure `change`
+    /// (Pa) at point `p`.
     pub fn pressed<K: Kinematics<D>>(&self, p: usize, change: f64) -> K::Gradient {
         self.points[p].as_ref().map_or_else(K::Gradient::zeros, |at| {
             K::working::<f64>(&at.inverse.transpose()) * (-at.presses * change)
@@ -119,7 +120,7 @@ impl<const D: usize> Change<D> {
         model: &Model<K, D>,
         points: &Points<D>,
         p: usize,
-        wet: &SaturatedPoint<D>,
+        wet: &FlowPoint<D>,
         dF: &Tensor,
         dilation: f64,
         excess: ExcessPressure<D>,
@@ -167,7 +168,7 @@ impl<const D: usize> Change<D> {
         l: &Tensor,
         averaged: f64,
         excess: ExcessPressure<D>,
-        wet: &SaturatedPoint<D>,
+        wet: &FlowPoint<D>,
         duration: f64,
     ) -> FlowChange<D> {
         let ExcessPressure {
@@ -175,9 +176,11 @@ impl<const D: usize> Change<D> {
             gradient,
         } = excess;
         let trace = l.trace();
+        // l^T dF^-T grad p, see the head of the module.
         let turned = Vector::from_fn(|i, _| (0..D).map(|j| l[(j, i)] * self.now[j]).sum::<f64>());
         let now = pushed(&self.inverse, &gradient) - turned;
         let relative = self.relative.0 * (trace + averaged) + self.relative.1 * pressure;
+        // J dF^-1 (tr l w - l w + δw) with δw = w (δ ln k + δ ln k_r) - k k_r/gamma_w δ(dF^-T grad p).
         let w = self.w * (relative + trace) - now.component_mul(&self.conducts);
         let w = w - Vector::from_fn(|i, _| (0..D).map(|j| l[(i, j)] * self.w[j]).sum::<f64>());
         let flux = Vector::from_fn(|i, _| self.J * (0..D).map(|j| self.inverse[(i, j)] * w[j]).sum::<f64>());

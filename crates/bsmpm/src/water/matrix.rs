@@ -8,13 +8,13 @@ use crate::step::problem::Problem;
 use crate::tensor::Vector;
 use crate::water::Water;
 use crate::water::flow::Flow;
-use crate::water::nodes::{PoreField, SHORTEST_WAVE};
+use crate::water::nodes::{PorePressureField, SHORTEST_WAVE};
 
-/// Assembles S at the state of the step's start into `solver` and factorises it; pores empty and seepage faces are open
-/// as under the nodal excess pressures `p`, Pa.
+/// Assembles S into `solver` and factorises it. S uses the geometry at the start of the step; saturation and open
+/// seepage faces are those of the nodal excess pressures `p` (Pa).
 pub fn assemble<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    pores: &PoreField<D>,
+    pores: &PorePressureField<D>,
     p: &[f64],
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
@@ -58,18 +58,18 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
     solver.factorise(Symmetry::Definite)
 }
 
-/// What a point adds to S.
+/// Contributions of a point to S.
 struct MatrixFactors<const D: usize> {
-    stored: f64,      // m3/Pa  per product of two functions
-    along: Vector<D>, // m5/Pa  per product of their gradients, along the axes
+    stored: f64,      // factor of the product of two functions (m3/Pa)
+    along: Vector<D>, // factors of the product of their gradients along the axes (m5/Pa)
 }
 
 impl<const D: usize> MatrixFactors<D> {
-    /// Of point `p`; `None` where no water flows. `pressures` are the points' excess pressures where pores may empty,
-    /// Pa, and `wave` 1/k^2 of the shortest wave, m2.
+    /// Returns the contributions of point `p`; `None` without pore-water flow. `pressures` are the excess pressures of
+    /// the points if soils retain water (Pa), and `wave` is 1/k^2 of the shortest wave (m2).
     fn of<K: Kinematics<D>>(
         problem: &Problem<'_, K, D>,
-        pores: &PoreField<D>,
+        pores: &PorePressureField<D>,
         water: &Water<D>,
         flow: &Flow<D>,
         pressures: &[f64],
@@ -78,8 +78,8 @@ impl<const D: usize> MatrixFactors<D> {
     ) -> Option<Self> {
         let material = problem.points.material[p];
         let wet = pores.wet[p].as_ref()?;
-        // What gives way to a pressure of the wave number k, k^2/(M k^2 + rho a), by its tangent at the shortest
-        // wave: a part as at rest, and one that grows with k^2.
+        // Volume change of the ground under a pressure of wave number k: k^2/(M k^2 + rho a), linearised in k^2 at the
+        // shortest wave. The result is a static part and a part proportional to k^2.
         let [at_rest, in_waves] = [wet.stiffness - wet.inertia, wave * wet.inertia]
             .map(|part| wet.volume * wet.J.powi(2) * part / wet.stiffness.powi(2));
         let mut gives_way = 1.0;

@@ -11,11 +11,11 @@ use crate::step::problem::Problem;
 use crate::step::residual::{Balance, Residual};
 use crate::step::stiffness;
 use crate::water::matrix;
-use crate::water::nodes::PoreField;
+use crate::water::nodes::PorePressureField;
 use crate::water::residual::WaterBalance;
 use crate::water::split::{Split, system};
 
-/// By what both out-of-balance vectors are measured.
+/// Scales that make out-of-balance forces and water volumes comparable.
 #[derive(Clone, Copy, Debug)]
 pub struct Scales {
     force: f64, // N
@@ -23,8 +23,8 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// Of a state: the largest force, and the largest of what is stored, flows and leaves, or of what such forces would
-    /// strain of the stiffest material.
+    /// Returns the scales of a state: the largest force, and the largest norm of storage, flow and water through
+    /// surfaces. The scale of water is at least the volume by which that force strains a cell of the stiffest material.
     pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, balance: &Balance) -> Self {
         let materials = problem.model.materials.iter();
         let stiffest = materials
@@ -38,28 +38,29 @@ impl Scales {
         }
     }
 
-    /// Root of the sum of the squares of what is out of balance in both.
+    /// Returns the root of the sum of squares of both scaled norms.
     pub fn measure(&self, balance: &Balance) -> f64 {
         let water = balance.water.as_ref().map_or(0.0, |water| water.norm);
         (balance.norm / self.force).hypot(water / self.water)
     }
 }
 
-/// A direction, m and behind it Pa; the work of it that energies are measured by, N m, that of the secants, by its
-/// magnitude in the skeleton and in the water; and how the Krylov method ended.
+/// Newton direction, its energy, and the result of the Krylov method.
 pub struct Exact {
-    /// m, and Pa behind them; nodal
+    /// Displacements (m), followed by pressures (Pa), nodal.
     pub dx: Vec<f64>,
-    /// N m
+    /// Sum of the magnitudes of the works of skeleton and water in the direction (N m), in the measure of the
+    /// quasi-Newton method.
     pub energy: f64,
-    /// to the tolerance asked for, or as far as it came
+    /// Krylov method: converged to the requested tolerance, or stopped before.
     pub krylov: Krylov,
 }
 
-/// The direction at the state `x` to the residual `relative`, by systems that are assembled there.
+/// Solves for the direction at the state `x` to the relative residual `relative`. The preconditioner is assembled at
+/// that state.
 pub fn direction<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    pores: &PoreField<D>,
+    pores: &PorePressureField<D>,
     x: &[f64],
     residual: &Residual<K, D>,
     water: &WaterBalance,
@@ -108,12 +109,13 @@ pub fn direction<K: Kinematics<D>, const D: usize>(
     unknowns.unpack(&found, &mut dx);
     let (du, dp) = dx.split_at(components);
     let (f_u, f_p) = first.f.split_at(components);
-    // Of either sign by itself: what one lacks must not hide what the other does.
+    // Magnitudes are added, so that works of opposite sign do not cancel.
     let energy = dots(halo, D, &[(du, f_u)])[0].abs() + dots(halo, 1, &[(dp, f_p)])[0].abs();
     Ok(Exact { dx, energy, krylov })
 }
 
-/// Multiplies a nodal array's `components` of the force by one factor, and the water behind them by another.
+/// Multiplies the first `components` numbers of a nodal array (forces) by `factors[0]` and the others (water) by
+/// `factors[1]`.
 fn scale(nodal: &mut [f64], components: usize, factors: [f64; 2]) {
     let (forces, volumes) = nodal.split_at_mut(components);
     forces.iter_mut().for_each(|force| *force *= factors[0]);

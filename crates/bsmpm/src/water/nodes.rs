@@ -16,87 +16,90 @@ use crate::water::drain::Drainage;
 use crate::water::flow::{Flow, Motion, Soil};
 use crate::water::ties::Ties;
 
-/// Share of the tau term, of h^2/M: with it the pair of splines of degree q and q - 1 is stable, and in one dimension
-/// the storage is lumped (T8.11).
+/// Factor of the stabilisation term, in units of h^2/M (T8.11). With 1/6, splines of degree q for displacements and q -
+/// 1 for pressures are stable together; in one dimension the storage is then lumped.
 const TAU: f64 = 1.0 / 6.0;
-/// Square of the wave number of the shortest wave that cells hold, over 1/h^2.
+/// Square of the largest wave number that cells of the edge h resolve, in units of 1/h^2.
 pub(super) const SHORTEST_WAVE: f64 = 10.0;
-/// Functions that see less than this part of the largest volume have no pressure.
+/// Smallest volume in the support of a pressure function relative to the largest one; below it the function has no
+/// pressure.
 const UNSEEN: f64 = 1e-14;
-/// Round-off of the water's balance, of the volume that a function sees.
+/// Round-off of the water balance, relative to the volume in the support of a function.
 const ROUND_OFF: f64 = 1e-13;
-/// Numbers of a function: the volume that it sees, that times the pressure, and what it stores and lets flow.
+/// Sums of a function over points: volume, volume times excess pressure, and capacity for storage and flow.
 const SUMS: usize = 3;
 
-/// A point that water flows through, at the start of a step.
+/// State of a material point with pore-water flow at the start of a step.
 #[derive(Clone, Copy, Debug)]
-pub struct SaturatedPoint<const D: usize> {
-    /// m^D  reference volume
+pub struct FlowPoint<const D: usize> {
+    /// Reference volume (m^D).
     pub volume: f64,
-    /// -  J at t
+    /// Volume ratio J at t (-).
     pub J: f64,
-    /// -  J-bar at t, which the skeleton's stress has felt, and the pores with it
+    /// Volume ratio J-bar at t, which determines the stress of the skeleton and the pore volume (-).
     pub mean_J: f64,
-    /// -  water per reference volume at t
+    /// Water content at t per reference volume (-).
     pub content: f64,
-    /// -  as much as comes in because it came in before, see [`Differences`]
+    /// Change of the water content that the second-order difference carries over from the last step (-), see
+    /// [`Differences`].
     pub goes_on: f64,
-    /// Pa  whole pore pressure at t; of pores that stay full the excess alone
+    /// Whole pore pressure at t; the excess pressure if no soil retains water under suction (Pa).
     pub pressure: f64,
-    /// Pa  still water at t + dt, which with the excess is the whole pressure; 0 where all pores stay full
+    /// Hydrostatic pressure at t + dt, to which the excess pressure is added; 0 if no soil retains water (Pa).
     pub ambient: f64,
-    /// Pa  as much of it as acts on the ground as a force of its own
+    /// Part of `ambient` that acts as a separate nodal force, equation (T8.3) (Pa).
     pub borne: f64,
-    /// Pa  what resists the shortest waves that cells hold: lambda + 2 mu, and in dynamics the inertia of a step
+    /// Stiffness M against the shortest wave that cells resolve: lambda + 2 mu plus `inertia` (Pa).
     pub stiffness: f64,
-    /// Pa  as much of it as is inertia
+    /// Inertia of the step at the wave number of the shortest wave; 0 in quasi-static analyses (Pa).
     pub inertia: f64,
-    /// m^D m2/Pa  V0 J tau h_i^2 over the stiffness, along the axes
+    /// V0 J tau h_i^2 / M along the axes (m^D m2/Pa).
     pub tau: Vector<D>,
-    /// Pa/m  gradient of the whole pore pressure at t, and as much of it as goes on
+    /// Gradient of the whole pore pressure at t plus the carried-over part of its last change (Pa/m).
     pub before: Vector<D>,
-    /// Pa/m  of the still water at t + dt
+    /// Gradient of the hydrostatic pressure at t + dt (Pa/m).
     pub still: Vector<D>,
-    /// Pa/m  what drives water against the excess pressure's gradient: that of the still water less the water's weight
+    /// Gradient of the hydrostatic pressure less the unit weight of water: the driving term of Darcy's law besides the
+    /// gradient of the excess pressure; zero without permeability (Pa/m).
     pub drive: Vector<D>,
 }
 
-/// The pore pressures of one step; nodal arrays of one number a node, by the functions of degree q - 1.
+/// Pore pressures of one step. Nodal arrays have one number per node and belong to the functions of degree q - 1.
 #[derive(Clone, Debug)]
-pub struct PoreField<const D: usize> {
-    /// those functions at the points
+pub struct PorePressureField<const D: usize> {
+    /// Functions of degree q - 1 at the points.
     pub shape: Shape<D>,
-    /// per node: points see it
+    /// Whether material points lie in the support, per node.
     pub seen: Vec<bool>,
-    /// per node: an unknown
+    /// Whether the pressure is an unknown, per node.
     pub free: Vec<bool>,
-    /// Pa  excess pressure at t + dt where it is given
+    /// Prescribed excess pressure at t + dt, nodal (Pa).
     pub prescribed: Vec<Option<f64>>,
-    /// Pa  excess pressure to begin with: the points' mean, or what is given
+    /// Initial excess pressure of the iteration: the mean of the points, or the prescribed value, nodal (Pa).
     pub guess: Vec<f64>,
-    /// Pa  still water at the functions' places, where pores may empty; else none
+    /// Hydrostatic pressure at the Greville abscissae of the functions, nodal (Pa); empty if no soil retains water.
     pub still: Vec<f64>,
-    /// per point: of those that water flows through
-    pub wet: Vec<Option<SaturatedPoint<D>>>,
-    /// drains and inflows
+    /// States of the material points; `None` without pore-water flow.
+    pub wet: Vec<Option<FlowPoint<D>>>,
+    /// Drains and inflows of the step.
     pub drainage: Drainage,
-    /// across lines where strains may jump
+    /// Couplings across C0 lines, where strains may jump.
     pub ties: Ties,
-    /// the step's differences in time
+    /// Coefficients of the time integration.
     pub differences: Differences,
-    /// s  for which flows at the end of the step count
+    /// Duration for which flows at the end of the step count (s).
     pub duration: f64,
-    /// s  end of the step
+    /// End of the step (s).
     pub end: f64,
-    /// unknowns, over all ranks
+    /// Number of unknown pressures over all ranks.
     pub unknowns: usize,
-    /// m3  norm of what is round-off in the balance
+    /// Norm of the round-off of the water balance (m3).
     pub round_off: f64,
 }
 
-impl<const D: usize> PoreField<D> {
-    /// Of the step from `t` to `t + dt`; `None` where no water flows, or its pressures are held. Fails where a drain is
-    /// on tight material.
+impl<const D: usize> PorePressureField<D> {
+    /// Returns the pore pressures of the step `interval`; `None` without pore-water flow, or if pressures are kept
+    /// constant. Fails if a drain lies on impermeable material.
     pub fn of<K: Kinematics<D>>(
         model: &Model<K, D>,
         full: &Shape<D>,
@@ -113,7 +116,7 @@ impl<const D: usize> PoreField<D> {
         let differences = Differences::of(model, points, interval);
         let duration = differences.now * interval.dt;
         let ground = FlowingGround::of(model, water, flow, points, interval, differences.last);
-        let wet: Vec<Option<SaturatedPoint<D>>> = (0..points.len()).map(|p| ground.wet(p)).collect();
+        let wet: Vec<Option<FlowPoint<D>>> = (0..points.len()).map(|p| ground.wet(p)).collect();
         let sums = halo.assemble_ghosts(&ground.sums(&shape, &wet, duration));
         let mut largest = [sums.chunks_exact(SUMS).map(|of| of[0]).fold(0.0, f64::max)];
         halo.all_reduce_max(&mut largest);
@@ -155,8 +158,8 @@ impl<const D: usize> PoreField<D> {
     }
 }
 
-/// m2/s2  what inertia resists the shortest waves with in a step of the length `dt`, s, per density: the factor of the
-/// mass over the square of their wave number; 0 at rest.
+/// Returns the inertia per density at the wave number of the shortest wave in a step of length `dt` (s): the factor of
+/// the mass matrix over the square of the wave number (m2/s2). It is 0 in quasi-static analyses.
 fn inertia<K, const D: usize>(model: &Model<K, D>, dt: f64) -> f64 {
     match model.regime {
         Regime::QuasiStatic => 0.0,
@@ -164,7 +167,7 @@ fn inertia<K, const D: usize>(model: &Model<K, D>, dt: f64) -> f64 {
     }
 }
 
-/// Pa  excess pressures to begin with, nodal: what is `prescribed`, else the points' mean.
+/// Returns initial excess pressures, nodal (Pa): the values of `prescribed`, else the means of the points.
 fn guess(sums: &[f64], seen: &[bool], prescribed: &[Option<f64>]) -> Vec<f64> {
     let nodes = sums.chunks_exact(SUMS).enumerate();
     let pressures = nodes.map(|(node, of)| match prescribed[node] {
@@ -175,7 +178,7 @@ fn guess(sums: &[f64], seen: &[bool], prescribed: &[Option<f64>]) -> Vec<f64> {
     pressures.collect()
 }
 
-/// m3  norm of what is round-off in the balance of the functions that are `free`.
+/// Returns the norm of the round-off of the water balance over the functions that are `free` (m3). One reduction.
 fn round_off(sums: &[f64], free: &[bool], halo: &dyn Halo) -> f64 {
     let squares = over_layers(halo, 1, |node| {
         if free[node] {
@@ -187,8 +190,8 @@ fn round_off(sums: &[f64], free: &[bool], halo: &dyn Halo) -> f64 {
     halo.reproducible_sum(&[squares])[0].sqrt()
 }
 
-/// Pa  pressure of the still water at the places of the functions of degree q - 1, nodal; none where all pores stay
-/// full.
+/// Returns hydrostatic pressures at the Greville abscissae of the functions of degree q - 1, nodal (Pa); empty if no
+/// soil retains water.
 fn still_at_nodes<const D: usize>(grid: &Grid<D>, water: &Water<D>, flow: &Flow<D>, t: f64) -> Vec<f64> {
     if !flow.retains() {
         return Vec::new();
@@ -204,19 +207,19 @@ fn still_at_nodes<const D: usize>(grid: &Grid<D>, water: &Water<D>, flow: &Flow<
     pressures.collect()
 }
 
-/// Ground through which water flows in a step.
+/// Ground with pore-water flow in a step.
 struct FlowingGround<'a, K, const D: usize> {
     model: &'a Model<K, D>,
     water: &'a Water<D>,
     flow: &'a Flow<D>,
     points: &'a Points<D>,
     interval: TimeInterval,
-    last: f64,    // -  factor of the last change in the difference in time
-    inertia: f64, // m2/s2, see `inertia`
+    last: f64,    // factor of the last change in the time integration (-)
+    inertia: f64, // see `inertia` (m2/s2)
 }
 
 impl<'a, K: Kinematics<D>, const D: usize> FlowingGround<'a, K, D> {
-    /// Of a step whose difference in time has the factor `last` of the last change.
+    /// Creates the ground of a step whose time integration has the factor `last` of the last change.
     fn of(
         model: &'a Model<K, D>,
         water: &'a Water<D>,
@@ -236,8 +239,8 @@ impl<'a, K: Kinematics<D>, const D: usize> FlowingGround<'a, K, D> {
         }
     }
 
-    /// The numbers that every function sums up, see [`SUMS`].
-    fn sums(&self, shape: &Shape<D>, wet: &[Option<SaturatedPoint<D>>], duration: f64) -> Contributions {
+    /// Returns the sums of all functions over the points of this rank, see [`SUMS`].
+    fn sums(&self, shape: &Shape<D>, wet: &[Option<FlowPoint<D>>], duration: f64) -> Contributions {
         let Self { model, water, flow, .. } = *self;
         scalars::of_scalars(shape, |p| {
             let wet = wet[p].as_ref();
@@ -248,7 +251,7 @@ impl<'a, K: Kinematics<D>, const D: usize> FlowingGround<'a, K, D> {
         })
     }
 
-    /// Pa  excess pressure at point `p` at the start of the step.
+    /// Returns the excess pressure of point `p` at the start of the step (Pa).
     fn excess(&self, p: usize) -> f64 {
         match &self.points.pore_pressure {
             Some(pressure) => pressure[p],
@@ -256,7 +259,8 @@ impl<'a, K: Kinematics<D>, const D: usize> FlowingGround<'a, K, D> {
         }
     }
 
-    /// Pa/m  gradient of the whole pore pressure at point `p` at the start of the step, and as much of it as goes on.
+    /// Returns the gradient of the whole pore pressure at point `p` at the start of the step, plus the carried-over
+    /// part of its last change (Pa/m).
     fn gradient(&self, p: usize) -> Vector<D> {
         let points = self.points;
         let before = match &points.pressure_gradient {
@@ -267,8 +271,8 @@ impl<'a, K: Kinematics<D>, const D: usize> FlowingGround<'a, K, D> {
         before + change.map_or_else(Vector::zeros, |change| change[p] * self.last)
     }
 
-    /// The state of point `p` at the start of the step; `None` if no water flows through its material.
-    fn wet(&self, p: usize) -> Option<SaturatedPoint<D>> {
+    /// Returns the state of point `p` at the start of the step; `None` if its material has no pore-water flow.
+    fn wet(&self, p: usize) -> Option<FlowPoint<D>> {
         let Self {
             model,
             water,
@@ -307,7 +311,7 @@ impl<'a, K: Kinematics<D>, const D: usize> FlowingGround<'a, K, D> {
         } else {
             0.0
         };
-        Some(SaturatedPoint {
+        Some(FlowPoint {
             volume,
             J,
             mean_J: J * points.dilation_of(p),
@@ -329,23 +333,26 @@ impl<'a, K: Kinematics<D>, const D: usize> FlowingGround<'a, K, D> {
     }
 }
 
-impl<const D: usize> SaturatedPoint<D> {
-    /// m3 m  what the tau term makes of the gradient of the excess pressure, Pa/m, where nothing is lumped besides
+impl<const D: usize> FlowPoint<D> {
+    /// Returns the stabilisation term for the gradient of the excess pressure (Pa/m), before the factor `lumped` (m3
+    /// m).
     pub fn tau_of(&self, gradient: Vector<D>) -> Vector<D> {
         self.tau.component_mul(&(gradient + self.still - self.before))
     }
 
-    /// -  share of the tau term whose pores fill by `chord`, 1/Pa: 1 and what it lumps of that storage
+    /// Returns the factor of the stabilisation term (-): 1 plus the lumped storage of pores whose saturation changes by
+    /// `chord` (1/Pa).
     pub fn lumped(&self, soil: &Soil<D>, chord: f64) -> f64 {
         1.0 + self.lumps(soil) * chord
     }
 
-    /// Pa  what that changes by with the chord
+    /// Returns the derivative of `lumped` with respect to the chord (Pa).
     pub fn lumps(&self, soil: &Soil<D>) -> f64 {
         self.stiffness / self.J * soil.pores(self.mean_J)
     }
 
-    /// m3/Pa  what the point stores and lets flow through a cell in `duration`, s, per pressure.
+    /// Returns the volume of water that the point stores, and that flows through a cell in `duration` (s), per pressure
+    /// (m3/Pa).
     fn takes<K>(&self, model: &Model<K, D>, water: &Water<D>, flow: &Flow<D>, material: u16, duration: f64) -> f64 {
         let conductivity = flow.permeability(material, self.mean_J).unwrap_or_else(Vector::zeros);
         let flows = duration * conductivity.max() / (water.unit_weight * model.grid.smallest_edge().powi(2));
@@ -353,7 +360,7 @@ impl<const D: usize> SaturatedPoint<D> {
     }
 }
 
-/// Pa  excess pressures that faces of the grid give their nodes, nodal.
+/// Returns the excess pressures that faces of the grid prescribe at time `t`, nodal (Pa).
 fn given<const D: usize>(grid: &Grid<D>, water: &Water<D>, flow: &Flow<D>, t: f64) -> Vec<Option<f64>> {
     let mut prescribed = vec![None; grid.nodes()];
     if flow.motion != Motion::Flows {
@@ -362,7 +369,7 @@ fn given<const D: usize>(grid: &Grid<D>, water: &Water<D>, flow: &Flow<D>, t: f6
     for face in flow.faces.iter().filter(|face| face.acts) {
         for node in face_functions(grid, face.axis, face.upper) {
             let number = grid.node_at(node);
-            // One function more than there are of degree q - 1 has the last node's number.
+            // The grid has one more function per axis than the functions of degree q - 1; the last number is unused.
             if (0..D).any(|axis| number[axis] + 2 > grid.axes()[axis].functions()) {
                 continue;
             }
@@ -376,7 +383,7 @@ fn given<const D: usize>(grid: &Grid<D>, water: &Water<D>, flow: &Flow<D>, t: f6
     prescribed
 }
 
-/// Nodes of the functions of degree q - 1 that are not zero on a face.
+/// Returns the nodes whose functions of degree q - 1 are not zero on a face of the grid.
 pub fn face_functions<const D: usize>(grid: &Grid<D>, axis: usize, upper: bool) -> Vec<usize> {
     let wanted = if upper { grid.axes()[axis].functions() - 2 } else { 0 };
     (0..grid.nodes())

@@ -13,21 +13,21 @@ use crate::tensor::{Symmetric, Vector};
 use crate::water::Water;
 use crate::water::flow::{Flow, Motion, Soil};
 
-/// Part of the pores that counts for nothing beside what is lost: of ground at rest round-off is all that moves.
+/// Volume relative to that of the pores below which the largest flow is considered round-off, as in ground at rest.
 const NOTHING: f64 = 1e-9;
 
-/// A scene's water and the points at a time, if it has water.
+/// Pore water of a case and its points at one time.
 #[derive(Clone, Copy)]
 pub struct PoreWater<'a, const D: usize> {
     water: &'a Water<D>,
     points: &'a Points<D>,
     t: f64,
-    weight: Vector<D>, // Pa/m  of the water
-    grown: f64,        // part of its weight that still water has
+    weight: Vector<D>, // weight of water per volume (Pa/m)
+    grown: f64,        // present fraction of gravity
 }
 
 impl<'a, const D: usize> PoreWater<'a, D> {
-    /// At time `t`.
+    /// Creates the view at time `t`; `None` without pore water.
     pub fn of<K>(model: &'a Model<K, D>, points: &'a Points<D>, t: f64) -> Option<Self> {
         let water = model.water.as_ref()?;
         let grown = model.gravity.as_ref().map_or(0.0, |gravity| gravity.grown(t));
@@ -45,22 +45,22 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         Some((flow, flow.soils[usize::from(self.points.material[p])].as_ref()?))
     }
 
-    /// m3  (per metre in plane strain)  present volume of point `p`
+    /// Returns the present volume of point `p` (m3, per metre in plane strain).
     fn volume(&self, p: usize) -> f64 {
         self.points.volume[p] * self.points.F.at(p).determinant()
     }
 
-    /// J-bar of point `p`
+    /// Returns the volume ratio J-bar of point `p`.
     fn mean_J(&self, p: usize) -> f64 {
         self.points.F.at(p).determinant() * self.points.dilation_of(p)
     }
 
-    /// Pa  pressure of the still water at point `p`
+    /// Returns the hydrostatic pressure at point `p` (Pa).
     fn still(&self, p: usize) -> f64 {
         self.grown * self.water.still_pressure(&self.points.x[p], self.t)
     }
 
-    /// Pa  excess pressure at point `p`; 0 where no water flows
+    /// Returns the excess pressure at point `p`; before the first step its initial value (Pa).
     pub fn excess(&self, p: usize) -> f64 {
         match &self.points.pore_pressure {
             Some(pressure) => pressure[p],
@@ -68,7 +68,7 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         }
     }
 
-    /// Pa  pore pressure at point `p`, positive in compression
+    /// Returns the pore pressure at point `p`, positive in compression (Pa).
     pub fn pressure(&self, p: usize) -> f64 {
         let carried = self
             .points
@@ -78,8 +78,8 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         self.still(p) + self.excess(p) + carried
     }
 
-    /// Pa  mean pore pressure of the points of a part, weighted with their present volumes, the least and the largest;
-    /// 0 without points. Two reductions.
+    /// Returns the volume-weighted mean, the smallest and the largest pore pressure of a part (Pa); 0 without points.
+    /// Two reductions.
     pub fn range(&self, part: &Part, halo: &dyn Halo) -> [f64; 3] {
         let weighted = part.of(self.points).map(|p| self.volume(p) * self.pressure(p));
         let volumes = part.of(self.points).map(|p| self.volume(p));
@@ -96,7 +96,7 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         }
     }
 
-    /// Pa  as much of it as acts in the total stress: chi p
+    /// Returns the contribution chi p of the pore pressure to the total stress (Pa).
     fn borne(&self, p: usize) -> f64 {
         let pressure = self.pressure(p);
         self.flow(p).map_or(1.0, |(_, soil)| {
@@ -104,32 +104,33 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         }) * pressure
     }
 
-    /// -  share of the pores that water fills at point `p`; 1 where none may empty
+    /// Returns the saturation at point `p` (-); 1 without retention.
     pub fn saturation(&self, p: usize) -> f64 {
         self.flow(p).map_or(1.0, |(_, soil)| {
             soil.retained(self.pressure(p), self.water.unit_weight).saturation
         })
     }
 
-    /// Pa  Cauchy stress of grains and water together at point `p`
+    /// Returns the total Cauchy stress at point `p` (Pa).
     pub fn total_stress(&self, p: usize) -> Symmetric {
         let mut stress = self.points.sigma.at(p);
         stress.0[..3].iter_mut().for_each(|normal| *normal -= self.borne(p));
         stress
     }
 
-    /// -  share of pores in the volume at point `p`; 0 where no water flows
+    /// Returns the porosity at point `p` (-); 0 without pore-water flow.
     pub fn porosity(&self, p: usize) -> f64 {
         let J = self.mean_J(p);
         self.flow(p).map_or(0.0, |(_, soil)| soil.pores(J) / J)
     }
 
-    /// m/s  Darcy's flux relative to the grains at every point; zero where nothing flows, and before the first step
+    /// Returns the Darcy flux relative to the grains at every point (m/s); zero without permeability, and before the
+    /// first step.
     ///
-    /// The balance has what the points of a cell let through together: where cells that deform have more of them, or
-    /// fewer, than fill it, the pressure's gradient is so much smaller, or larger. In cells that ground surrounds the
-    /// flux is that of the cell's volume, which does not jump with the count. The points must be sorted by cell. One
-    /// exchange with the neighbours.
+    /// The balance determines the total flow through the points of a cell. If the points of a deformed cell overfill or
+    /// underfill it, the pressure gradient is smaller or larger accordingly. In cells surrounded by ground the flux is
+    /// therefore scaled to the volume of the cell, so that it does not jump with the number of points. The points must
+    /// be sorted by cell. One exchange with the neighbours.
     pub fn fluxes<K: Kinematics<D>>(&self, grid: &Grid<D>, halo: &dyn Halo) -> Result<Vec<Vector<D>>, StepError> {
         let shape = agreed(halo, Shape::at(grid, self.points), StepError::OtherRank)?;
         let is_inside = inside(grid, &shape, halo);
@@ -142,7 +143,7 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         Ok(fluxes)
     }
 
-    /// m/s  by the pressure's gradient at point `p`
+    /// Returns the Darcy flux from the pressure gradient at point `p` (m/s).
     fn flux(&self, p: usize) -> Vector<D> {
         let J = self.mean_J(p);
         let conductivity = self
@@ -159,10 +160,10 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         -conductivity.component_mul(&(gradient[p] - self.weight)) * relative / self.water.unit_weight
     }
 
-    /// What the points have gained of water since the start and what has left the ground, or was removed with it, over
-    /// the largest of what has left, what has come, and what the points have taken in and given off, added; a billionth
-    /// of the pores counts for nothing. 0 where no water is lost, `None` where none flows or its pressures are held.
-    /// One reduction.
+    /// Returns the relative error of the global water balance since the start: water gained by the points plus water
+    /// that left or was removed, divided by the largest of outflow, inflow, removed water and the sum of the points'
+    /// changes, at least 1e-9 of the pore volume. `None` without coupled flow or with constant pressures. One
+    /// reduction.
     pub fn balance(&self, halo: &dyn Halo) -> Option<f64> {
         self.water.flow.as_ref().filter(|flow| flow.motion != Motion::Held)?;
         let pores: Exact = (0..self.points.len())
@@ -181,8 +182,8 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         Some(if scale > 0.0 { (sums[0] + out) / scale } else { 0.0 })
     }
 
-    /// m3  (per metre in plane strain)  of water that the points whose ids `wanted` says have taken in since the start;
-    /// 0 where none flows. One reduction.
+    /// Returns the water volume that the points with the ids selected by `wanted` have taken in since the start (m3,
+    /// per metre in plane strain); 0 without coupled flow. One reduction.
     pub fn taken_by(&self, wanted: impl Fn(u64) -> bool, halo: &dyn Halo) -> f64 {
         if self.water.flow.is_none() {
             return 0.0;
@@ -198,12 +199,14 @@ impl<'a, const D: usize> PoreWater<'a, D> {
         halo.reproducible_sum(&[own])[0]
     }
 
-    /// m3  (per metre in plane strain)  of water that every point has taken in since the start, at its density then
+    /// Returns the water volume that every point has taken in since the start, at its initial density (m3, per metre in
+    /// plane strain).
     fn taken(&self) -> impl Iterator<Item = f64> {
         (0..self.points.len()).map(move |p| self.taken_at(p))
     }
 
-    /// m3  (per metre in plane strain)  of water that point `p` has taken in since the start, at its density then
+    /// Returns the water volume that point `p` has taken in since the start, at its initial density (m3, per metre in
+    /// plane strain).
     fn taken_at(&self, p: usize) -> f64 {
         let Some((flow, soil)) = self.flow(p) else { return 0.0 };
         let J = self.points.F.at(p).determinant();
@@ -220,8 +223,8 @@ impl<'a, const D: usize> PoreWater<'a, D> {
     }
 }
 
-/// Which cells have ground in all cells around them: in the support of the functions in their middle. One exchange with
-/// the neighbours.
+/// Returns a predicate for cells that are surrounded by cells with ground, in the support of the functions at their
+/// middle. One exchange with the neighbours.
 fn inside<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, halo: &dyn Halo) -> impl Fn(&&Patch) -> bool {
     let mut counts = Contributions::none(grid, 1, Vec::new());
     for patch in shape.patches() {
@@ -244,7 +247,7 @@ fn inside<const D: usize>(grid: &Grid<D>, shape: &Shape<D>, halo: &dyn Halo) -> 
     move |patch| middle.iter().all(|offset| is_full[patch.first_node + offset])
 }
 
-/// Cells with a length in the support of a node's function.
+/// Returns the number of cells of nonzero length in the support of a node's function.
 fn cells_in_support<const D: usize>(grid: &Grid<D>, node: usize) -> f64 {
     let number = grid.node_at(node);
     let counts = grid.axes().iter().zip(number).map(|(knots, number)| {

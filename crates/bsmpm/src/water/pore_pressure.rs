@@ -5,17 +5,17 @@ use crate::parallel::Halo;
 use crate::tensor::Vector;
 use std::ops::Range;
 
-/// Pore pressure of every node: along each axis linear, fitted to the points that the node sees.
+/// Pore pressure at the nodes: linear along each axis, fitted to the points in the support of the node.
 #[derive(Clone, Debug)]
 pub struct PorePressure<const D: usize> {
-    moments: Vec<f64>, // per node sum w, sum w p, and for each axis sum w x, sum w x^2, sum w p x
+    moments: Vec<f64>, // per node sum w, sum w p, and per axis sum w x, sum w x^2, sum w p x
 }
 
 impl<const D: usize> PorePressure<D> {
     const WIDTH: usize = 2 + 3 * D;
 
-    /// Of all nodes, fitted to points at `places` (m, from the grid's lower corner) with `weights` (m^D) and
-    /// `pressures` (Pa). A sum over the ranks.
+    /// Fits the pressures at all nodes to the points at `places` (m, from the lower corner of the grid) with `weights`
+    /// (m^D) and `pressures` (Pa). One exchange with the neighbours.
     pub fn fitted(shape: &Shape<D>, places: &[Vector<D>], weights: &[f64], pressures: &[f64], halo: &dyn Halo) -> Self {
         let moments = match D {
             2 => transfer::to_nodes(shape, |p| moments_of::<D, 8>(weights[p], &places[p], pressures[p])),
@@ -26,8 +26,8 @@ impl<const D: usize> PorePressure<D> {
         }
     }
 
-    /// Pa  at `x` (m, from the grid's lower corner), by the function of a node in the given axes; along the others it
-    /// is that of the middle of what the node sees.
+    /// Returns the pressure at `x` (m, from the lower corner of the grid) from the fit of a node, linear along the
+    /// given axes and constant along the others (Pa).
     pub(super) fn of_node(&self, node: usize, axes: Range<usize>, x: &Vector<D>) -> f64 {
         let moments = &self.moments[Self::WIDTH * node..][..Self::WIDTH];
         let weight = moments[0];
@@ -42,7 +42,7 @@ impl<const D: usize> PorePressure<D> {
         (value / weight + rises.sum::<f64>()).max(0.0)
     }
 
-    /// Pa  at `x` (m, from the grid's lower corner), the mean by `weights` of what nodes have there.
+    /// Returns the weighted mean of the nodal fits at `x` (m, from the lower corner of the grid) (Pa).
     pub fn at(&self, weights: impl Iterator<Item = (usize, f64)>, x: &Vector<D>) -> f64 {
         let mut sum = 0.0;
         let mut whole = 0.0;
@@ -54,7 +54,7 @@ impl<const D: usize> PorePressure<D> {
     }
 }
 
-/// What a point adds to the N = 2 + 3 D moments of a node.
+/// Returns the contribution of a point to the N = 2 + 3 D moments of a node.
 fn moments_of<const D: usize, const N: usize>(weight: f64, x: &Vector<D>, pressure: f64) -> [f64; N] {
     let mut moments = [0.0; N];
     moments[..2].copy_from_slice(&[weight, weight * pressure]);
@@ -64,8 +64,8 @@ fn moments_of<const D: usize, const N: usize>(weight: f64, x: &Vector<D>, pressu
     moments
 }
 
-/// By how much the line through weighted points is higher at `x` than their mean: of `moments` per weight of x, x^2, y
-/// and x y. 0 where all have one place.
+/// Returns the regression line at `x` less the mean value, from the weighted means of x, x^2, y and x y (`moments`). It
+/// is 0 if all points have the same position.
 fn rise([middle, second, mean, product]: [f64; 4], x: f64) -> f64 {
     let variance = second - middle * middle;
     let covariance = product - middle * mean;

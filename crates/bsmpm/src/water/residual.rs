@@ -9,41 +9,42 @@ use crate::points::Points;
 use crate::step::problem::Problem;
 use crate::step::trial::DeformationIncrement;
 use crate::tensor::{Tensor, Vector};
-use crate::water::nodes::{PoreField, SaturatedPoint};
+use crate::water::nodes::{FlowPoint, PorePressureField};
 use crate::water::retention::RetentionState;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Numbers of a node in the balance: what is stored, what flows, the tau term, and what drains and inflows let through.
+/// Terms of the balance at a node: storage, flow, stabilisation, and drains with inflows.
 const TERMS: usize = 4;
-/// Place of what flows among them.
+/// Index of the flow among the terms.
 const FLOWS: usize = 1;
 
-/// What is out of balance in the water, m3, nodal.
+/// Out-of-balance water volume, nodal (m3).
 #[derive(Clone, Debug, Default)]
 pub struct WaterBalance {
-    /// R: more than came in; zero where the pressure is no unknown
+    /// Residual R: stored volume less inflow; zero where the pressure is not an unknown.
     pub excess: Vec<f64>,
-    /// what leaves where the pressure is given at a face: -R there, else zero
+    /// Outflow -R at faces with a prescribed pressure; zero elsewhere.
     pub out: Vec<f64>,
-    /// |R|
+    /// Norm |R|.
     pub norm: f64,
-    /// the largest of the norms of what is stored, flows, and leaves
+    /// Largest of the norms of storage, flow, and water through surfaces.
     pub scale: f64,
-    /// sum of R, which conservation is short of
+    /// Sum of R, the error in conservation of volume.
     pub left: f64,
-    /// points whose pores are closed, over all ranks
+    /// Number of points with closed pores, over all ranks.
     pub closed: u64,
-    /// no norm overflowed
+    /// Whether all norms are finite.
     pub finite: bool,
 }
 
 impl WaterBalance {
-    /// Of nodal excess pressures `p` (Pa; none: zero) under the deformation of `trial`, which then carries what the
-    /// water presses with. One exchange with the neighbours and one reduction.
+    /// Computes the balance for nodal excess pressures `p` (Pa; empty: zero) and the deformation of `trial`, and stores
+    /// the pore-pressure term J p of the Kirchhoff stress in `trial`. One exchange with the neighbours and one
+    /// reduction.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        pores: &PoreField<D>,
+        pores: &PorePressureField<D>,
         trial: &mut DeformationIncrement<K, D>,
         p: &[f64],
     ) -> Self {
@@ -83,7 +84,7 @@ impl WaterBalance {
 
     fn at_nodes<K, const D: usize>(
         problem: &Problem<'_, K, D>,
-        pores: &PoreField<D>,
+        pores: &PorePressureField<D>,
         sums: &[f64],
         closed: u64,
     ) -> Self {
@@ -119,7 +120,7 @@ impl WaterBalance {
         }
     }
 
-    /// |R| over the largest of what is stored, flows and leaves; zero where it is no more than `round_off`, m3.
+    /// Returns |R| relative to `scale`; zero if |R| is at most `round_off` (m3).
     pub fn measure(&self, round_off: f64) -> f64 {
         if self.norm <= round_off {
             0.0
@@ -129,11 +130,11 @@ impl WaterBalance {
     }
 }
 
-/// J p of every point, Pa: what the water presses with, beside the Kirchhoff stress of the skeleton; of pores that it
-/// does not fill chi p, less what acts as a force of its own.
+/// Returns the pore-pressure term of the Kirchhoff stress, J (chi p - p_b), of every point (Pa). p_b is the part of the
+/// hydrostatic pressure that acts as a separate nodal force.
 fn of_points<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    pores: &PoreField<D>,
+    pores: &PorePressureField<D>,
     trial: &DeformationIncrement<K, D>,
     pressures: &[ExcessPressure<D>],
 ) -> Vec<f64> {
@@ -146,7 +147,7 @@ fn of_points<K: Kinematics<D>, const D: usize>(
     of_points.collect()
 }
 
-/// The water of a material under the whole pore pressure `p`, Pa.
+/// Returns the retention state of a material under the whole pore pressure `p` (Pa).
 fn retained<K, const D: usize>(model: &Model<K, D>, material: u16, p: f64) -> RetentionState {
     let Some(water) = &model.water else {
         return RetentionState::FULL;
@@ -159,48 +160,48 @@ fn retained<K, const D: usize>(model: &Model<K, D>, material: u16, p: f64) -> Re
 /// Excess pore pressure at a point, or a change of it.
 #[derive(Clone, Copy)]
 pub struct ExcessPressure<const D: usize> {
-    /// Excess pore pressure, Pa.
+    /// Excess pore pressure (Pa).
     pub value: f64,
-    /// Gradient with respect to the position at the start of the step, Pa/m.
+    /// Gradient with respect to the position at the start of the step (Pa/m).
     pub gradient: Vector<D>,
 }
 
-/// What water does at a point under a trial.
+/// Pore water of a point in the trial state.
 #[derive(Clone)]
 pub struct FlowState<const D: usize> {
-    /// -  pores per reference volume, by J-bar: those that the skeleton's stress has felt
+    /// Pore volume per reference volume, computed with J-bar as the stress of the skeleton (-).
     pub pores: f64,
-    /// -  water per reference volume
+    /// Water content per reference volume (-).
     pub content: f64,
-    /// m/s  J dF^-1 w: what flows, per area at the start of the step and J there
+    /// Darcy flux J dF^-1 w pulled back to the start of the step and multiplied by J (m/s).
     pub flux: Vector<D>,
-    /// m/s  w: what flows, relative to the skeleton
+    /// Darcy flux w relative to the skeleton (m/s).
     pub w: Vector<D>,
-    /// Pa/m  gradient of the excess pressure, now
+    /// Gradient of the excess pressure with respect to the present position (Pa/m).
     pub gradient: Vector<D>,
-    /// -  share of the tau term: 1, and more where pores fill or empty, whose storage it lumps as well
+    /// Factor of the stabilisation term: 1 plus the lumped storage of pores that fill or empty (-).
     pub lumped: f64,
-    /// m/s  permeability of full pores along the axes; zero where nothing flows
+    /// Saturated permeability along the axes; zero without flow (m/s).
     pub permeability: Vector<D>,
-    /// what the pores keep
+    /// Retention state of the pores.
     pub retained: RetentionState,
-    /// Pa  whole pore pressure; of pores that stay full the excess alone
+    /// Whole pore pressure; the excess pressure if no soil retains water (Pa).
     pub whole: f64,
-    /// -
+    /// Volume ratio J at the end of the step (-).
     pub J: f64,
-    /// dF^-1
+    /// Inverse dF^-1 of the deformation gradient of the step.
     pub inverse: Tensor,
 }
 
 impl<const D: usize> FlowState<D> {
-    /// Of a wet point with dF and J-bar/J at the end of the step, and with the excess pressure, Pa, and its gradient by
-    /// the places at t, Pa/m; `None` where dF has no inverse.
+    /// Computes the pore water of a point for the deformation gradient `dF` of the step, the ratio `dilation` = J-bar/J
+    /// at the end of the step, and its excess pressure. Returns `None` if dF has no inverse.
     #[inline]
     pub fn at<K>(
         model: &Model<K, D>,
         points: &Points<D>,
         p: usize,
-        wet: &SaturatedPoint<D>,
+        wet: &FlowPoint<D>,
         dF: &Tensor,
         dilation: f64,
         excess: ExcessPressure<D>,
@@ -238,16 +239,16 @@ impl<const D: usize> FlowState<D> {
     }
 }
 
-/// dF^-T times a gradient.
+/// Returns dF^-T times a gradient.
 pub fn pushed<const D: usize>(inverse: &Tensor, gradient: &Vector<D>) -> Vector<D> {
     Vector::from_fn(|i, _| (0..D).map(|j| inverse[(j, i)] * gradient[j]).sum())
 }
 
-/// Sum over the points of V0 J p grad N with the shape functions of the displacement: the force of a nodal pressure at
-/// t (Q p), N, of this rank's and the others' points.
+/// Returns the nodal force Q p of nodal pressures `p` (Pa) at the start of the step (N), the sum over all ranks: sum
+/// over points of V0 J chi p grad N with the functions N of the displacements. One exchange with the neighbours.
 pub fn pressing<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
-    pores: &PoreField<D>,
+    pores: &PorePressureField<D>,
     p: &[f64],
 ) -> Vec<f64> {
     let at_points = scalars::scalars(&pores.shape, p, |_, value, _| value);

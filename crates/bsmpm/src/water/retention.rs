@@ -6,79 +6,79 @@ pub use measured::MeasuredCurve;
 
 use crate::gauss::GAUSS;
 
-/// Least relative permeability: what a soil lets through as films and vapour, and what keeps a dry one from being cut
-/// off. A flux of a millionth of the saturated one changes no balance; the flow past a dry zone would lose its only
-/// way.
+/// Smallest relative permeability. It represents film and vapour flow and keeps dry zones connected. A flux of 1e-6 of
+/// the saturated one does not change any balance noticeably.
 const LEAST: f64 = 1e-6;
 
-/// Least alpha s at which the derivative of the relative permeability is taken: below n = 2 that goes beyond all bounds
-/// where air enters, as (alpha s)^(n-2).
+/// Smallest alpha s at which the derivative of the relative permeability is evaluated. For n < 2 it grows without bound
+/// at air entry, as (alpha s)^(n-2).
 const ENTERED: f64 = 1e-3;
 
 /// Retention curve of a soil.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Retention {
-    /// what the suction lets go, and what still conducts
+    /// Effective saturation and relative permeability under suction.
     pub curve: Curve,
-    /// -  saturation that no suction removes, of which Bishop's chi takes no part
+    /// Residual saturation, which is excluded from Bishop's chi (-).
     pub residual: f64,
-    /// m and m  heads at which the curve changes its course, from 0 on, and its integral until there
+    /// Suction heads at the breakpoints of the curve, from 0 on, and the integral of the effective saturation up to
+    /// each (m).
     filled: Vec<[f64; 2]>,
 }
 
-/// How the effective saturation and the relative permeability follow the suction head s, m.
+/// Effective saturation and relative permeability as functions of the suction head s (m).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Curve {
-    /// (1 + (alpha s)^n)^-m, m = 1 - 1/n (van Genuchten 1980), and the permeability of Mualem (1976)
+    /// Effective saturation (1 + (alpha s)^n)^-m with m = 1 - 1/n (van Genuchten 1980), permeability of Mualem (1976).
     VanGenuchten {
-        /// 1/m  over the head at which air enters
+        /// Inverse of the air-entry suction head (1/m).
         alpha: f64,
-        /// -  above 1: the larger, the more alike the pores
+        /// Exponent above 1; larger for more uniform pores (-).
         n: f64,
     },
-    /// rows as measured
+    /// Measured curve.
     Measured(MeasuredCurve),
 }
 
-/// Heads at most up to which a curve is integrated once for all.
+/// Largest number of breakpoints up to which the integral of a curve is tabulated.
 const BENDS: usize = 32;
 
-/// What a curve says under one suction.
+/// Values of a curve at one suction head.
 struct RetentionPoint {
-    /// -
+    /// Effective saturation (-).
     effective: f64,
-    /// 1/m  what the effective saturation loses by suction, not negative
+    /// Decrease of the effective saturation per suction head, not negative (1/m).
     by_head: f64,
-    /// -  may be less than the least
+    /// Relative permeability, before the lower bound (-).
     permeability: f64,
 }
 
-/// A soil under a pore pressure.
+/// Retention state of a soil under a pore pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RetentionState {
-    /// -  share of the pores that water fills
+    /// Saturation (-).
     pub saturation: f64,
-    /// 1/Pa  its derivative by the pressure, not negative
+    /// Derivative of the saturation with respect to the pressure, not negative (1/Pa).
     pub slope: f64,
-    /// -  effective saturation: 0 where only the residual water is left; what Bishop's chi is taken as
+    /// Effective saturation, 0 at residual saturation; equal to Bishop's chi (-).
     pub effective: f64,
-    /// -  permeability over that of the saturated soil
+    /// Relative permeability (-).
     pub permeability: f64,
 }
 
-/// Derivatives by the pore pressure.
+/// Derivatives of the retention state with respect to the pore pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RetainedChange {
-    /// 1/Pa  of the effective saturation
+    /// Of the effective saturation (1/Pa).
     pub effective: f64,
-    /// 1/Pa  of the relative permeability; where air enters, that at a thousandth of the entry's suction
+    /// Of the relative permeability (1/Pa); near air entry, its value at a thousandth of the entry suction.
     pub permeability: f64,
-    /// 1/Pa2  of [`Retention::chord`]
+    /// Of [`Retention::chord`] (1/Pa2).
     pub chord: f64,
 }
 
 impl RetentionState {
-    /// All pores full of water.
+    /// Saturated pores.
     pub const FULL: Self = Self {
         saturation: 1.0,
         slope: 0.0,
@@ -88,7 +88,8 @@ impl RetentionState {
 }
 
 impl Curve {
-    /// m  the suction head at which air has entered: that of the rows at which half of the water has left
+    /// Returns the air-entry suction head (m); for measured curves the first row with an effective saturation of at
+    /// most 0.5.
     pub fn entry(&self) -> f64 {
         match self {
             Self::VanGenuchten { alpha, .. } => 1.0 / alpha,
@@ -99,8 +100,8 @@ impl Curve {
         }
     }
 
-    /// m  the least head above `s` at which it changes its course: where it is drawn so, and doubled from the entry's
-    /// sixty-fourth on
+    /// Returns the next breakpoint of the curve above the head `s` (m): the rows of a measured curve, otherwise a
+    /// geometric sequence from 1/64 of the entry head with the ratio 2.
     fn bend(&self, s: f64) -> f64 {
         match self {
             Self::VanGenuchten { alpha, .. } => (2.0 * s).max(1.0 / (64.0 * alpha)),
@@ -113,7 +114,8 @@ impl Curve {
         }
     }
 
-    /// m  integral of the effective saturation over heads between which it does not change its course: Gauss' rule
+    /// Returns the integral of the effective saturation between two heads without a breakpoint in between, by Gauss
+    /// quadrature (m).
     fn between(&self, from: f64, to: f64) -> f64 {
         let middle = 0.5 * (from + to);
         let half = 0.5 * (to - from);
@@ -123,7 +125,7 @@ impl Curve {
             .sum()
     }
 
-    /// Under the suction head `s`, m, above 0.
+    /// Returns the values of the curve at the suction head `s` > 0 (m).
     fn drawn(&self, s: f64) -> RetentionPoint {
         match self {
             Self::VanGenuchten { alpha, n } => {
@@ -151,8 +153,8 @@ impl Curve {
         }
     }
 
-    /// 1/m  what the relative permeability loses by suction under the head `s`, m, above 0; where air enters, that at a
-    /// thousandth of the entry's suction
+    /// Returns the decrease of the relative permeability per suction head at `s` > 0 (m) (1/m). Near air entry it is
+    /// that at a thousandth of the entry suction.
     fn closes(&self, s: f64) -> f64 {
         match self {
             Self::VanGenuchten { alpha, n } => {
@@ -173,7 +175,7 @@ impl Curve {
 }
 
 impl Retention {
-    /// Of a curve with what no suction removes, -.
+    /// Creates the retention curve with the residual saturation `residual` (-).
     pub fn new(curve: Curve, residual: f64) -> Self {
         let mut filled = vec![[0.0; 2]];
         while filled.len() < BENDS {
@@ -191,12 +193,12 @@ impl Retention {
         }
     }
 
-    /// Of van Genuchten's curve: `alpha`, 1/m, `n` and `residual`, -.
+    /// Creates van Genuchten's curve with `alpha` (1/m), `n` and `residual` (-).
     pub fn van_genuchten(alpha: f64, n: f64, residual: f64) -> Self {
         Self::new(Curve::VanGenuchten { alpha, n }, residual)
     }
 
-    /// Under the pore pressure `p`, Pa, of water of the unit weight `weight`, N/m3.
+    /// Returns the retention state under the pore pressure `p` (Pa) for water of the unit weight `weight` (N/m3).
     pub fn under(&self, p: f64, weight: f64) -> RetentionState {
         if p >= 0.0 {
             return RetentionState::FULL;
@@ -210,8 +212,8 @@ impl Retention {
         }
     }
 
-    /// What changes with the pore pressure `now`, Pa, which was `before`; where its functions have kinks on their sides
-    /// of the full and of the driest soil.
+    /// Returns the derivatives at the pore pressure `now` (Pa) after the pressure `before`. At kinks they are
+    /// one-sided, from the saturated and from the driest soil.
     pub fn change(&self, before: f64, now: f64, weight: f64) -> RetainedChange {
         let chord = self.chord_change(before, now, weight);
         if now >= 0.0 {
@@ -235,25 +237,26 @@ impl Retention {
 
     fn chord_change(&self, before: f64, now: f64, weight: f64) -> f64 {
         let change = now - before;
-        // Where the chord is the slope itself, half of what that changes by; next to nothing of the tau term.
+        // For a small change the chord is the tangent, and its derivative half the curvature, which is negligible in
+        // the stabilisation term.
         if change.abs() < 1e-6 * weight {
             return 0.0;
         }
         (self.under(now, weight).slope - self.chord(before, now, weight)) / change
     }
 
-    /// 1/Pa  what the saturation changes by over what the pressure does between `before` and `now`, Pa.
+    /// Returns the change of saturation per change of pressure between `before` and `now` (Pa) (1/Pa).
     pub fn chord(&self, before: f64, now: f64, weight: f64) -> f64 {
         let change = now - before;
-        // Below a thousandth of a millimetre of water the difference is round-off.
+        // Below 1e-6 m of water head the difference quotient is dominated by round-off.
         if change.abs() < 1e-6 * weight {
             return self.under(now, weight).slope;
         }
         ((self.under(now, weight).saturation - self.under(before, weight).saturation) / change).max(0.0)
     }
 
-    /// J/m3  what the suction of the pore pressure `p`, Pa, has put into the pores: the integral of -q dS from full
-    /// pores on, by Gauss' rule between the heads at which the curve changes its course; `weight`: of the water, N/m3.
+    /// Returns the work of suction per pore volume at the pore pressure `p` (Pa), the integral of -q dS from saturated
+    /// pores on, by Gauss quadrature between breakpoints (J/m3). `weight` is the unit weight of water (N/m3).
     pub fn stored(&self, p: f64, weight: f64) -> f64 {
         let suction = -p / weight;
         if suction <= 0.0 {
@@ -265,7 +268,7 @@ impl Retention {
             area += self.curve.between(from, to);
             from = to;
         }
-        // By parts: the area under the curve, above what it ends with.
+        // Integration by parts from saturation on: -int s dSe = int Se ds - s Se.
         area -= suction * self.curve.drawn(suction).effective;
         (1.0 - self.residual) * weight * area
     }

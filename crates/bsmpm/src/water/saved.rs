@@ -11,53 +11,54 @@ use crate::step::problem::Problem;
 use crate::step::trial::DeformationIncrement;
 use crate::tensor::Vector;
 use crate::water::backward::is_smooth;
-use crate::water::crossed::CumulativeFlux;
+use crate::water::crossed::CrossedVolumes;
 use crate::water::flow::{DrainedFace, Flow};
-use crate::water::nodes::{PoreField, face_functions};
+use crate::water::nodes::{PorePressureField, face_functions};
 use crate::water::residual::{ExcessPressure, FlowState};
 
-/// Part of a cell by which ground is off a drained face when it is reported: a column that had settled by 0.1 of a
-/// cell was 1 % short of its settlement, by 0.3 of a cell 4 %, and by one it settled no more.
+/// Settlement away from a drained face, in cells, from which on it is reported. A column that had settled by 0.1 cells
+/// was 1 % short of its settlement, by 0.3 cells 4 %; with a gap of one cell it settled no more.
 const OFF: f64 = 0.2;
-/// Cells from the face within which ground is at it: no row of points of a cell, (k + 1/2)/n, is just there.
+/// Distance from the face, in cells, within which points belong to it; no regular row of points, (k + 1/2)/n, lies
+/// exactly there.
 const NEAR: f64 = 0.6;
 
-/// The ground at a drained face of the grid, which does not go with it.
+/// Ground at a drained face of the grid, which does not follow the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FaceReport {
-    /// points that lay within 0.6 of a cell of the face at the start
+    /// Number of points initially within 0.6 cells of the face.
     pub near: usize,
-    /// those of them that have moved off it by more than a fifth of a cell
+    /// Number of those that have moved away by more than 0.2 cells.
     pub off: usize,
-    /// functions of the pressure on the face that see ground
+    /// Number of pressure functions on the face with ground in their support.
     pub held: usize,
 }
 
-/// What the water of an accepted step did, over all ranks.
+/// Pore-water results of an accepted step, over all ranks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WaterReport {
-    /// m3  that the points took in: what they hold now less what they held before
+    /// Increase of the stored water (m3).
     pub stored: f64,
-    /// m3  that crossed the surface of the ground, of second order with what goes on of the step before
-    pub crossed: CumulativeFlux,
-    /// points of every drain with material near, then of every inflow
+    /// Water through the surfaces of the ground, including the part carried over by the second-order difference (m3).
+    pub crossed: CrossedVolumes,
+    /// Number of surface points with material nearby, for every drain, then every inflow.
     pub held: Vec<usize>,
-    /// cells between points of every drain, then of every inflow, that were neighbours on the surface at the start: the
-    /// most
+    /// Largest distance between initially neighbouring surface points in cells, for every drain, then every inflow.
     pub torn: Vec<f64>,
-    /// the ground at every drained face of the grid
+    /// Ground at every drained face of the grid.
     pub faces: Vec<FaceReport>,
-    /// m3  sum of what is left out of balance: stored + out of the ground - this is round-off
+    /// Sum of the residual; stored + outflow - residual is round-off (m3).
     pub left: f64,
-    /// measure that the step was accepted by: |R| over the largest of what is stored, flows and leaves
+    /// Relative residual of the water balance at acceptance, see
+    /// [`WaterBalance::measure`](crate::water::residual::WaterBalance::measure).
     pub measure: f64,
-    /// unknown pressures
+    /// Number of unknown pressures.
     pub unknowns: usize,
 }
 
 impl WaterReport {
-    /// Of what was found, before the points have taken it; `None` where no water flows. Two reductions,
-    /// with drained faces three.
+    /// Returns the results of the step solution `found` before the points are updated; `None` without pore-water flow.
+    /// Two reductions, three with drained faces.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         found: &StepSolution<K, D>,
@@ -69,7 +70,7 @@ impl WaterReport {
         let owned = halo.owned();
         let mut counted = vec![false; water.out.len()];
         let mut sums = vec![Exact::ZERO; flow.faces.len()];
-        // The face that is named last decides a pressure of two.
+        // Where two faces meet, the last one of the input determines the pressure.
         for (face, sum) in flow.faces.iter().zip(&mut sums).rev().filter(|(face, _)| face.acts) {
             let nodes = face_functions(&model.grid, face.axis, face.upper).into_iter();
             for node in nodes.filter(|&node| owned.contains(node)) {
@@ -81,7 +82,7 @@ impl WaterReport {
         let faces = halo.reproducible_sum(&sums);
         let [drains, inflows] = pores.drainage.report(&found.p, halo);
         let held = drains.iter().chain(&inflows).map(|report| report.held).collect();
-        let mut crossed = CumulativeFlux {
+        let mut crossed = CrossedVolumes {
             drains: drains.iter().map(|report| report.through).collect(),
             faces,
             inflows: inflows.iter().map(|report| report.through).collect(),
@@ -109,8 +110,12 @@ impl WaterReport {
     }
 }
 
-/// The ground at the drained faces, before the step. One reduction, if there are some.
-fn at_faces<K, const D: usize>(problem: &Problem<'_, K, D>, pores: &PoreField<D>, flow: &Flow<D>) -> Vec<FaceReport> {
+/// Returns the ground at the drained faces before the step. One reduction if there are any.
+fn at_faces<K, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    pores: &PorePressureField<D>,
+    flow: &Flow<D>,
+) -> Vec<FaceReport> {
     if flow.faces.is_empty() {
         return Vec::new();
     }
@@ -125,10 +130,10 @@ fn at_faces<K, const D: usize>(problem: &Problem<'_, K, D>, pores: &PoreField<D>
     reports.collect()
 }
 
-/// The numbers of a [`FaceReport`], on this rank.
+/// Returns the numbers of a [`FaceReport`] on this rank.
 fn at_face<K, const D: usize>(
     problem: &Problem<'_, K, D>,
-    pores: &PoreField<D>,
+    pores: &PorePressureField<D>,
     flow: &Flow<D>,
     face: &DrainedFace,
 ) -> [Exact; 3] {
@@ -154,11 +159,11 @@ fn at_face<K, const D: usize>(
     [near, off, held.map(|_| 1.0).collect()]
 }
 
-/// Saves nodal excess pressures `p`, Pa, into the points, which have moved, and the mass of the water that they took
-/// in; m3 of it, over all ranks.
+/// Stores the nodal excess pressures `p` (Pa) and the mass of absorbed water in the points, which have moved. Returns
+/// the volume of that water over all ranks (m3). One reduction.
 pub fn save<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    pores: &PoreField<D>,
+    pores: &PorePressureField<D>,
     trial: &DeformationIncrement<K, D>,
     p: &[f64],
     points: &mut Points<D>,
@@ -185,8 +190,8 @@ pub fn save<K: Kinematics<D>, const D: usize>(
         let Some(((pressure, state), wet)) = state.as_ref().zip(wet.as_ref()) else {
             continue;
         };
-        // What the whole pressure is now is what counts where it empties pores: the excess is over the place it came
-        // to.
+        // With retention the whole pressure is the state: the excess pressure refers to the hydrostatic pressure at the
+        // new position.
         let moved = if holds {
             wet.ambient - water.still_pressure(&points.x[p], pores.end)
         } else {
@@ -196,11 +201,11 @@ pub fn save<K: Kinematics<D>, const D: usize>(
         gradients[p] = state.gradient + water.still_gradient(&points.x[p], pores.end);
         let taken = wet.volume * (state.content - wet.content);
         if let Some((contents, changes)) = &mut goes_on {
-            // In the first step nothing goes on.
+            // In the first step there is no previous gradient.
             let before = points.pressure_gradient.as_ref().map_or(wet.before, |before| before[p]);
             (contents[p], changes[p]) = (state.content - wet.content, gradients[p] - before);
         }
-        // What is weightless stays so.
+        // Massless points stay massless.
         if points.mass[p] > 0.0 {
             points.mass[p] += density * taken;
         }

@@ -5,25 +5,25 @@ use crate::error::SolveError;
 use crate::kinematics::Kinematics;
 use crate::parallel::{LinearSolver, SolveReport};
 use crate::step::problem::Problem;
-use crate::water::nodes::PoreField;
+use crate::water::nodes::PorePressureField;
 use crate::water::residual::pressing;
 
-/// A direction before secants, the forces that it balances, and what it took.
+/// Direction of the fixed-stress split, the right-hand side that it balances, and the cost.
 pub struct Split {
-    /// m and Pa, nodal
+    /// Displacements (m), followed by pressures (Pa), nodal.
     pub z: Vec<f64>,
-    /// N and m3, nodal
+    /// Forces (N), followed by water volumes (m3), nodal.
     pub f: Vec<f64>,
-    /// both systems
+    /// Iterations and factorisations of both systems.
     pub solved: SolveReport,
 }
 
 impl Split {
-    /// Of forces, N, and behind them what the water lacks, m3: (f_oob, -R). One exchange with the neighbours besides
-    /// those of the solutions.
+    /// Solves for the out-of-balance forces (N) followed by water volumes (m3), (f_oob, -R). One exchange with the
+    /// neighbours in addition to those of the two solutions.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
-        pores: &PoreField<D>,
+        pores: &PorePressureField<D>,
         out_of_balance: &[f64],
         solver: &mut dyn LinearSolver,
     ) -> Result<Self, SolveError> {
@@ -42,7 +42,7 @@ impl Split {
     }
 }
 
-/// The system of the pressures.
+/// Returns the linear system of the pressures. Fails if the solver has none.
 pub fn system(solver: &mut dyn LinearSolver) -> Result<&mut dyn LinearSolver, SolveError> {
     solver
         .water()

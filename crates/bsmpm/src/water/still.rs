@@ -6,16 +6,17 @@ use crate::tensor::Vector;
 use crate::water::Water;
 use crate::water::ambient::Ambient;
 
-/// m/s2  by which a weight is a mass, where a model has no gravity
+/// Gravity that converts the unit weight of water to a density in models without gravity (m/s2).
 const GRAVITY: f64 = 9.81;
 
 impl<const D: usize> Water<D> {
-    /// Whether a soil may be partly saturated: the still water then goes on above its level, as suction.
+    /// Returns whether any soil may be partly saturated. The hydrostatic pressure then continues above its level as
+    /// suction.
     fn holds(&self) -> bool {
         self.flow.as_ref().is_some_and(|flow| flow.retains())
     }
 
-    /// Pa  pressure of the still water at the place `x` at time `t`: 0 above its level, or suction where soils hold it
+    /// Returns the hydrostatic pressure at `x` at time `t`; above its level 0, or suction if soils retain water (Pa).
     pub fn still_pressure(&self, x: &Vector<D>, t: f64) -> f64 {
         let least = if self.holds() { f64::NEG_INFINITY } else { 0.0 };
         self.ambient
@@ -23,13 +24,13 @@ impl<const D: usize> Water<D> {
             .map_or(0.0, |(height, _)| self.unit_weight * (height - x[D - 1]).max(least))
     }
 
-    /// Pa  excess pressure at the place `x` before the first step: none, but where the suction above the level has its
-    /// limit
+    /// Returns the excess pressure at `x` before the first step: 0 unless the hydrostatic suction exceeds its limit
+    /// (Pa).
     pub fn excess_at_start(&self, x: &Vector<D>) -> f64 {
         self.excess_at_rest(x, 0.0)
     }
 
-    /// Pa  the same of ground that comes at time `t`
+    /// Returns the initial excess pressure at `x` of ground that is placed at time `t` (Pa).
     fn excess_at_rest(&self, x: &Vector<D>, t: f64) -> f64 {
         let Some(flow) = self.flow.as_ref().filter(|flow| flow.retains()) else {
             return 0.0;
@@ -37,8 +38,8 @@ impl<const D: usize> Water<D> {
         (-flow.suction - self.still_pressure(x, t)).max(0.0)
     }
 
-    /// Gives the points from `first` on, which are placed at time `t`, the water that ground has before the first step:
-    /// without excess, at the level of that time.
+    /// Sets the initial pore pressure of the points from `first` on, which are placed at time `t`: hydrostatic at the
+    /// level of that time, with limited suction.
     pub fn fill(&self, points: &mut Points<D>, first: usize, t: f64) {
         for p in first..points.len() {
             let x = points.x[p];
@@ -55,7 +56,7 @@ impl<const D: usize> Water<D> {
         }
     }
 
-    /// Pa/m  its gradient
+    /// Returns the gradient of the hydrostatic pressure at `x` at time `t` (Pa/m).
     pub fn still_gradient(&self, x: &Vector<D>, t: f64) -> Vector<D> {
         let Some((_, slope)) = self
             .ambient
@@ -70,8 +71,9 @@ impl<const D: usize> Water<D> {
         gradient
     }
 
-    /// Pa/m  the water's own weight at time `t`: against the last axis where there is still water, which it holds in
-    /// balance; else as the model's gravity acts, in a quasi-static analysis its vertical part
+    /// Returns the weight of water per volume at time `t` (Pa/m). With a water level it acts against the last axis, in
+    /// equilibrium with the hydrostatic pressure; else along the gravity of the model, of which quasi-static analyses
+    /// use the vertical part.
     pub fn weight<K>(&self, model: &Model<K, D>, t: f64) -> Vector<D> {
         if self.ambient != Ambient::None {
             let mut down = Vector::zeros();
@@ -89,15 +91,15 @@ impl<const D: usize> Water<D> {
         }
     }
 
-    /// kg/m3
+    /// Returns the density of water (kg/m3).
     pub fn density<K>(&self, model: &Model<K, D>) -> f64 {
         let whole = weighing(model).map_or(0.0, |gravity| gravity.acceleration.norm());
         self.unit_weight / if whole > 0.0 { whole } else { GRAVITY }
     }
 }
 
-/// What water weighs by: pseudo-static inertia, the horizontal part of gravity in a quasi-static analysis, leaves pore
-/// pressures as they are.
+/// Returns the gravity that acts on water. Pseudo-static inertia, the horizontal part of gravity in quasi-static
+/// analyses, does not change pore pressures.
 fn weighing<K, const D: usize>(model: &Model<K, D>) -> Option<Gravity<D>> {
     let is_static = model.regime == Regime::QuasiStatic;
     model

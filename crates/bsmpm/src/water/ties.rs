@@ -4,26 +4,28 @@
 use crate::grid::{Grid, KnotVector};
 use crate::parallel::{Halo, LinearSolver};
 
-/// Conductance of the skin, of what a function stores and lets flow: jumps are such parts of the pressures' changes.
+/// Conductance of a coupling relative to storage and flow of its functions; pressure jumps are then 1e-4 of the
+/// pressure changes.
 const STIFF: f64 = 1e4;
 
-/// Pairs of functions of degree q - 1 that are one on a line.
+/// Couplings of functions of degree q - 1 that equal 1 on either side of a C0 line.
 #[derive(Clone, Debug, Default)]
 pub struct Ties {
     pairs: Vec<Tie>,
 }
 
-/// One of them.
+/// Coupling of two functions.
 #[derive(Clone, Copy, Debug)]
 struct Tie {
-    /// before the line and behind it
+    /// Nodes before and behind the line.
     nodes: [usize; 2],
-    /// m3/Pa  conductance times the step
+    /// Conductance times the length of the step (m3/Pa).
     flow: f64,
 }
 
 impl Ties {
-    /// Of the functions that are `seen`, each of which stores and lets flow `takes`, m3/Pa; nodal arrays of the window.
+    /// Creates the couplings of the functions that are `seen`; `takes` is the storage and flow of each function
+    /// (m3/Pa). Both arrays are nodal, on the window of this rank.
     pub fn of<const D: usize>(grid: &Grid<D>, seen: &[bool], takes: &[f64]) -> Self {
         let torn = grid.axes().each_ref().map(torn);
         let mut pairs = Vec::new();
@@ -45,8 +47,8 @@ impl Ties {
         Self { pairs }
     }
 
-    /// Adds what flows from each of a pair to the other under the nodal pressures `p`, Pa: m3, with the sums that a
-    /// node has at `at`.
+    /// Adds the flow within each pair under the nodal pressures `p` (Pa) to `sums` (m3); `at` gives the index of a node
+    /// in `sums`.
     pub fn add_to(&self, p: &[f64], sums: &mut [f64], at: impl Fn(usize) -> usize) {
         for Tie {
             nodes: [before, behind],
@@ -59,7 +61,7 @@ impl Ties {
         }
     }
 
-    /// Adds its derivative, each pair on the rank that owns the first of them.
+    /// Adds the derivative of the flow to the matrix. The rank that owns the first node of a pair adds it.
     pub fn assemble(&self, halo: &dyn Halo, solver: &mut dyn LinearSolver) {
         for Tie { nodes, flow } in self.pairs.iter().filter(|tie| halo.owned().contains(tie.nodes[0])) {
             solver.add_block_among(nodes, &[*flow, -flow, -flow, *flow]);
@@ -67,7 +69,7 @@ impl Ties {
     }
 }
 
-/// Numbers of the functions of degree q - 1 of an axis that are 1 on a line from below.
+/// Returns the numbers of the functions of degree q - 1 of an axis that equal 1 on a C0 line, approached from below.
 fn torn(axis: &KnotVector) -> Vec<usize> {
     let order = axis.order();
     let before = (0..axis.cells()).filter(|cell| {

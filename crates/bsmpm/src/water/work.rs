@@ -12,25 +12,25 @@ use crate::water::flow::{Flow, Soil};
 use crate::water::residual::ExcessPressure;
 use crate::water::residual::FlowState;
 
-/// J, on this rank; see the [books](crate::energy).
+/// Work of pore water on this rank (J); see the energy balance in [`crate::energy`].
 #[derive(Clone, Debug)]
 pub struct Work {
-    /// `- dt sum V0 J w . drive - sum p out`: what drives water through the ground, and what comes in or goes out; less
-    /// what lifts the water that suction takes in above the still one, and what lets it fall to where pores fill below
+    /// External work `- dt sum V0 J w . drive - sum p out`: of the driving term, and of water that crosses surfaces.
+    /// The work that lifts water into pores above the hydrostatic level, or is released below it, is subtracted.
     pub external: Exact,
-    /// `- dt sum V0 J w . (dF^-T grad p + drive)`, never negative
+    /// Dissipation by seepage, `- dt sum V0 J w . (dF^-T grad p + drive)`, never negative.
     pub seepage: Exact,
-    /// `sum V0 p (zeta - zeta^n)`; above the still water, and where pores fill, of the whole pressure; and by what the
-    /// balance of second order differs from flows that count for all of dt
+    /// Storage `sum V0 p (zeta - zeta^n)`, with the whole pressure for changes of saturation. It includes the
+    /// difference between the second-order balance and flow over the full dt.
     pub stored: Exact,
-    /// of the term that makes the pair of splines stable
+    /// Work of the stabilisation term.
     pub tau: Exact,
-    /// in the water that is compressed and in the pores that suction has emptied, at the end
+    /// Energy of compressed water and of suction in emptied pores, at the end of the step.
     pub held: Exact,
 }
 
 impl Work {
-    /// Of what was found, before the points have taken it; `None` where no water flows.
+    /// Computes the work of the step solution `found` before the points are updated; `None` without pore-water flow.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         found: &StepSolution<K, D>,
@@ -63,8 +63,8 @@ impl Work {
             let fall = -through * fall.sum::<f64>();
             let driven = through * state.flux.dot(&gradient);
             let taken = wet.volume * (state.content - wet.content);
-            // What pores take up comes with the whole pressure; what suction keeps above the still water has been
-            // lifted there.
+            // Changes of saturation occur at the whole pressure. Water that suction keeps above the hydrostatic level
+            // has been lifted there.
             let filled = soil.map_or(0.0, |soil| {
                 let before = soil.retained(wet.pressure, weight).saturation;
                 wet.volume * soil.content(flow.bulk, state.J, state.whole) * (state.retained.saturation - before)
@@ -96,7 +96,7 @@ impl Work {
     }
 }
 
-/// J  in the water of the points at time `t`, and in the pores that suction has emptied.
+/// Returns the energy of compressed water and of suction in emptied pores over the points of this rank at time `t` (J).
 pub fn in_points<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, t: f64) -> Exact {
     let flow = model
         .water
@@ -123,7 +123,8 @@ pub fn in_points<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, t: 
     sum
 }
 
-/// J/m^D  to the excess pressure from none, in water that is compressed; and to the `whole` one from full pores.
+/// Returns the energy per reference volume (J/m^D): of water compressed by the `excess` pressure, and of suction in
+/// pores that are emptied from saturation to the `whole` pressure.
 fn held<const D: usize>(flow: &Flow<D>, soil: &Soil<D>, pores: f64, excess: f64, whole: f64, weight: f64) -> f64 {
     let emptied = soil
         .retention

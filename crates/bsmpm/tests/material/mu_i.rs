@@ -23,7 +23,7 @@ fn returns_have_the_friction_of_their_own_rate() {
     for _ in 0..30_000 {
         let dt = random.pick(&[1e-9, 1e-5, 1e-3, 1.0, 1e6]);
         let law = law(random.pick(&[-0.5, 0.0, 0.3, 0.49]), NUMBERS)
-            .at_time_step(dt)
+            .with_time_step(dt)
             .expect("it follows the rate");
         let material = Material::MuI(law);
         let found = respond(&material, &random.trial(-6.0, -0.7));
@@ -76,7 +76,7 @@ fn without_a_rate_it_is_a_cone() {
     let slope = cone.cone().0;
     for law in [
         law(0.3, [slope, 0.9, 0.3, 2e-3, 2.5e3]),
-        law(0.3, [slope, slope, 0.3, 2e-3, 2.5e3]).at_time_step(1e-4).unwrap(),
+        law(0.3, [slope, slope, 0.3, 2e-3, 2.5e3]).with_time_step(1e-4).unwrap(),
     ] {
         for _ in 0..3_000 {
             let b = random.trial(-6.0, -0.7);
@@ -97,7 +97,7 @@ fn tangent_is_the_derivative() {
     let mut seen = [0, 0];
     for trial in 0..40_000 {
         let dt = random.pick(&[1e-7, 1e-4, 1e-2, 1e3]);
-        let material = Material::MuI(law(random.pick(&[0.0, 0.3, 0.49]), NUMBERS).at_time_step(dt).unwrap());
+        let material = Material::MuI(law(random.pick(&[0.0, 0.3, 0.49]), NUMBERS).with_time_step(dt).unwrap());
         let eps = random.strains(-3.5, -0.7).map(|strain| strain - 0.02);
         let eps = if trial % 4 == 0 { [eps[0], eps[0], eps[2]] } else { eps };
         let rotation = random.rotation();

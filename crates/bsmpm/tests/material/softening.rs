@@ -110,7 +110,7 @@ fn tangent_is_the_derivative() {
         let law = if !rated {
             law
         } else {
-            law.at_rate(rate).at_time_step(1.0).expect("a rate")
+            law.at_rate(rate).with_time_step(1.0).expect("a rate")
         };
         let strain = law.parameters()[6];
         let before = 0.05 * random.unit();
@@ -161,7 +161,7 @@ fn a_strength_by_the_rate_is_found_whatever_the_plastic_strain() {
         let law = law(poisson, [0.0, 0.0, peak], [0.0, 0.0, peak], 1.0, Decay::Exponential);
         let law = law
             .at_rate(Rate { per_decade, reference })
-            .at_time_step(1.0)
+            .with_time_step(1.0)
             .expect("a rate");
         let material = Material::SofteningMohrCoulomb(law);
         let beyond = peak * (1.0 + 2.2 * f64::from(k) / 2_000.0); // of the strength at rest

@@ -165,7 +165,7 @@ pub fn run_from(
             &mut scene.points,
             &mut guess,
             TimeInterval { start: t, dt },
-            ResistedDisplacement::Displacement,
+            ResistedDisplacement::Whole,
             &mut Backend {
                 halo: &halo,
                 solver: &mut solver,

@@ -294,7 +294,7 @@ fn steps(scene: &mut Plane, times: &[f64]) -> Result<(f64, Vec<StepReport>, usiz
             &mut scene.points,
             &mut guess,
             TimeInterval { start: t, dt },
-            ResistedDisplacement::Displacement,
+            ResistedDisplacement::Whole,
             &mut Backend {
                 halo: &halo,
                 solver: &mut solver,

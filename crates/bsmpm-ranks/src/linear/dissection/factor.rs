@@ -1,33 +1,33 @@
 //! Stores the Cholesky factor in groups of four columns, which makes triangular solutions faster (memory bandwidth
 //! limits them).
 
-/// Columns that are kept, and worked on, together.
+/// Number of columns that are stored and processed together.
 const GROUP: usize = 4;
 
-/// What a number of a factor is kept in.
+/// Number format of a factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
-    /// 32 bits
+    /// 32 bits.
     Single,
-    /// 64 bits
+    /// 64 bits.
     Double,
 }
 
-/// Factorised columns of fronts, one after another.
+/// Factorised columns of fronts, front by front.
 #[derive(Debug)]
 pub enum Factor {
-    /// of single precision
+    /// Single precision.
     Single(Vec<f32>),
-    /// of double precision
+    /// Double precision.
     Double(Vec<f64>),
 }
 
-/// Room for the columns of some fronts that follow each other.
+/// Memory for the columns of consecutive fronts.
 #[derive(Debug)]
 pub enum Room<'a> {
-    /// of single precision
+    /// Single precision.
     Single(&'a mut [f32]),
-    /// of double precision
+    /// Double precision.
     Double(&'a mut [f64]),
 }
 
@@ -38,7 +38,7 @@ impl Default for Factor {
 }
 
 impl Factor {
-    /// Room for `entries` numbers, in place of those that it has; their memory is kept if the precision is.
+    /// Returns memory for `entries` numbers, which replace the present ones. It is reused if the precision is the same.
     pub fn restart(&mut self, precision: Precision, entries: usize) -> Room<'_> {
         match (precision, &mut *self) {
             (Precision::Single, Self::Double(_)) => *self = Self::Single(Vec::new()),
@@ -51,8 +51,8 @@ impl Factor {
         }
     }
 
-    /// Solves with `columns` of a front of order `rows`, which begin at the number `start`, for the first entries of
-    /// `x`, and takes their part from the others.
+    /// Forward substitution with `columns` of a front of order `rows`, which begin at index `start`: solves for the
+    /// first entries of `x` and subtracts their contribution from the others.
     pub fn forward(&self, start: usize, rows: usize, columns: usize, x: &mut [f64]) {
         let range = start..start + entries(rows, columns);
         match self {
@@ -61,7 +61,8 @@ impl Factor {
         }
     }
 
-    /// Solves with the transpose of these columns for the first entries of `x`; the others are known.
+    /// Back substitution with the transpose of these columns: solves for the first entries of `x`; the others are
+    /// known.
     pub fn backward(&self, start: usize, rows: usize, columns: usize, x: &mut [f64]) {
         let range = start..start + entries(rows, columns);
         match self {
@@ -72,7 +73,7 @@ impl Factor {
 }
 
 impl<'a> Room<'a> {
-    /// The first `entries` numbers, and the others.
+    /// Splits off the first `entries` numbers.
     pub fn split_at(self, entries: usize) -> (Self, Self) {
         match self {
             Self::Single(numbers) => {
@@ -86,7 +87,7 @@ impl<'a> Room<'a> {
         }
     }
 
-    /// Keeps the factorised `columns` of a front, `rows` long, from the number `start` on.
+    /// Stores the factorised `columns` of a front, `rows` long, from index `start` on.
     pub fn keep(&mut self, start: usize, columns: &[f64], rows: usize) {
         match self {
             Self::Single(numbers) => keep(columns, rows, &mut numbers[start..]),
@@ -95,7 +96,7 @@ impl<'a> Room<'a> {
     }
 }
 
-/// So many numbers, whatever they are.
+/// Returns `entries` numbers with unspecified values.
 fn resized<T: Scalar>(numbers: &mut Vec<T>, entries: usize) -> &mut [T] {
     if numbers.len() < entries {
         numbers.clear();
@@ -105,7 +106,8 @@ fn resized<T: Scalar>(numbers: &mut Vec<T>, entries: usize) -> &mut [T] {
     &mut numbers[..entries]
 }
 
-/// Numbers that are kept of `columns` of a front of order `rows`.
+/// Returns the count of stored numbers of `columns` of a front of order `rows`. A group that begins in column s stores
+/// rows s to `rows` of each of its columns.
 pub fn entries(rows: usize, columns: usize) -> usize {
     (0..columns)
         .step_by(GROUP)
@@ -113,7 +115,7 @@ pub fn entries(rows: usize, columns: usize) -> usize {
         .sum()
 }
 
-/// A number of a factor.
+/// Number of a factor.
 trait Scalar: Copy {
     fn of(value: f64) -> Self;
     fn double(self) -> f64;
@@ -139,8 +141,8 @@ impl Scalar for f64 {
     }
 }
 
-/// Groups of columns one after another, and of each its rows from the first diagonal entry on; what stands above the
-/// diagonal is copied, too, and not read.
+/// Stores groups of columns one after the other, each row by row from its first diagonal entry on. Entries above the
+/// diagonal are stored but not read.
 fn keep<T: Scalar>(columns: &[f64], rows: usize, numbers: &mut [T]) {
     let mut numbers = numbers.iter_mut();
     for (group, columns) in columns.chunks(GROUP * rows.max(1)).enumerate() {
@@ -153,7 +155,7 @@ fn keep<T: Scalar>(columns: &[f64], rows: usize, numbers: &mut [T]) {
     }
 }
 
-/// Calls `$solve` with the numbers of columns of a group as a constant.
+/// Calls `$solve` with the number of columns of a group as a constant.
 macro_rules! with_columns {
     ($columns:expr, $solve:ident($($argument:expr),*)) => {
         match $columns {
@@ -199,7 +201,7 @@ fn forward_group<const W: usize, T: Scalar>(l: &[T], x: &mut [f64]) {
 fn backward_group<const W: usize, T: Scalar>(l: &[T], x: &mut [f64]) {
     let (diagonal, below) = l.as_chunks::<W>().0.split_at(W);
     let (own, others) = x.split_at_mut(W);
-    // Two sums a column, so that one row need not wait for the other.
+    // Two sums per column let the processor overlap two rows.
     let mut sums = [[0.0; W]; 2];
     let (pairs, last) = below.as_chunks::<2>();
     let (x_pairs, x_last) = others.as_chunks::<2>();

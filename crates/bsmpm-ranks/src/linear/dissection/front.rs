@@ -4,10 +4,11 @@
 
 use nalgebra::{Dyn, MatrixView, MatrixViewMut};
 
-/// Columns that are factorised together: few enough for the second-level cache, many enough for a matrix product.
+/// Number of columns that are factorised together: few enough for the level-2 cache, many enough for a matrix product.
 const WIDTH: usize = 32;
 
-/// L of the columns `a` of a symmetric matrix, `rows` long, in place. `false` where a pivot is not positive and finite.
+/// Computes L for the columns `a` of a symmetric matrix, `rows` long, in place. Returns `false` if a pivot is not
+/// positive and finite.
 pub fn factorise(a: &mut [f64], rows: usize) -> bool {
     let columns = a.len().checked_div(rows).unwrap_or(0);
     (0..columns).step_by(WIDTH).all(|start| {
@@ -19,7 +20,7 @@ pub fn factorise(a: &mut [f64], rows: usize) -> bool {
     })
 }
 
-/// Subtracts from the matrix `target` of order rows - columns what the factorised columns `l` take from it.
+/// Subtracts the contribution of the factorised columns `l` from the matrix `target` of order rows - columns.
 pub fn subtract_from_rest(l: &[f64], rows: usize, target: &mut [f64]) {
     let columns = l.len().checked_div(rows).unwrap_or(0);
     let order = rows - columns;
@@ -30,7 +31,8 @@ pub fn subtract_from_rest(l: &[f64], rows: usize, target: &mut [f64]) {
     }
 }
 
-/// C -= L_below L_at^T: rows from `first` on of the columns `l`, times the `width` rows that begin there.
+/// Computes C -= L_below L_at^T: L_below are the rows of the columns `l` from `first` on, L_at their first `width`
+/// rows.
 fn subtract_product(l: &[f64], rows: usize, columns: usize, first: usize, c: &mut [f64], stride: usize, width: usize) {
     if columns == 0 || first == rows {
         return;
@@ -42,7 +44,7 @@ fn subtract_product(l: &[f64], rows: usize, columns: usize, first: usize, c: &mu
     c.gemm(-1.0, &factor, &turned, 1.0);
 }
 
-/// The columns from `start` on, from which all earlier ones have been subtracted.
+/// Factorises the columns from `start` on, from which all earlier ones have been subtracted.
 fn factorise_block(block: &mut [f64], rows: usize, start: usize) -> bool {
     (0..block.len() / rows).all(|c| {
         let (done, column) = block.split_at_mut(c * rows);
@@ -75,7 +77,7 @@ fn subtract_columns(columns: &[f64], rows: usize, first: usize, target: &mut [f6
     }
 }
 
-/// target -= the rows from `first` on of four columns, times four factors.
+/// Subtracts the rows from `first` on of four columns, times four factors, from `target`.
 fn subtract_four(columns: &[f64], rows: usize, first: usize, by: [f64; 4], target: &mut [f64]) {
     let [a, b, c, d] = [0, 1, 2, 3].map(|column| &columns[column * rows + first..(column + 1) * rows]);
     let pairs = a.iter().zip(b).zip(c.iter().zip(d));

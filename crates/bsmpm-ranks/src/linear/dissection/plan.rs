@@ -5,64 +5,67 @@ use super::factor;
 use bsmpm::nodal::Nodal;
 use std::ops::Range;
 
-/// Unknowns of a box below which cutting costs more than it saves, by trial between 32 and 192 on plane grids.
+/// Number of unknowns below which a box is not divided further. Dividing smaller boxes costs more than it saves (tried
+/// between 32 and 192 on plane grids).
 const LEAF: usize = 64;
 
-/// Elimination number of a component that is no unknown.
+/// Elimination number of a component that is not an unknown.
 pub const NONE: u32 = u32::MAX;
 
-/// Unknowns that are eliminated together, a part of the order.
+/// Unknowns that are eliminated together.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Supernode {
-    /// elimination numbers
+    /// Elimination numbers of these unknowns.
     pub own: Range<usize>,
-    /// elimination numbers of what they and all that was eliminated below them couple with, ascending
+    /// Elimination numbers of later unknowns that couple with these or with their descendants, ascending.
     pub rim: Vec<u32>,
-    /// parts right before this one (and theirs) that hand their rest to it
+    /// Number of children: supernodes directly before this one (and its other descendants) whose update matrices it
+    /// receives.
     pub children: usize,
-    /// the first part of those below it, itself if it has no children
+    /// First descendant, or itself without children.
     pub first: usize,
-    /// places of the rim in the front of the part that it hands its rest to
+    /// Positions of the rim in the front of the parent.
     pub above: Vec<usize>,
-    /// where its columns begin among the numbers of the factor
+    /// Index in the factor at which its columns begin.
     pub start: usize,
 }
 
 impl Supernode {
-    /// Order of its front.
+    /// Returns the order of its front.
     pub fn rows(&self) -> usize {
         self.own.len() + self.rim.len()
     }
 
-    /// Where the columns of the next part begin.
+    /// Returns the index in the factor at which the columns of the next supernode begin.
     fn end(&self) -> usize {
         self.start + factor::entries(self.rows(), self.own.len())
     }
 }
 
-/// The order, children before parents. The last part eliminates nothing: its rim is what other ranks touch.
+/// Elimination order, children before parents. The last supernode eliminates nothing: its rim are the unknowns shared
+/// with other ranks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plan {
-    /// component by elimination number; those of the last part's rim last, ascending
+    /// Component by elimination number. The shared components come last, ascending.
     pub order: Vec<u32>,
-    /// elimination number by component, or [`NONE`]
+    /// Elimination number by component, or [`NONE`].
     pub number: Vec<u32>,
-    /// parts
+    /// Supernodes.
     pub parts: Vec<Supernode>,
 }
 
-/// The box of nodes that is cut up.
+/// Nested dissection of a box of nodes.
 struct Cutter<'a, const D: usize, const C: usize> {
     counts: [usize; D], // nodes of the window along each axis
-    order: usize,       // of the splines
+    order: usize,       // distance at which nodes couple
     free: &'a [bool],
     plan: Plan,
-    boxes: Vec<[Range<usize>; D]>, // of each part with all that lies below it
+    boxes: Vec<[Range<usize>; D]>, // of each supernode with its descendants
 }
 
 impl Plan {
-    /// Plan for the `free` components of a window of `counts` nodes with C each, of which no other rank touches the box
-    /// `inner`.
+    /// Creates the plan for the `free` components of a window of `counts` nodes with C components each. Nodes couple up
+    /// to the distance `order`. Only this rank uses the box `inner`.
     pub fn new<const D: usize, const C: usize>(
         counts: [usize; D],
         order: usize,
@@ -106,7 +109,7 @@ impl Plan {
         plan
     }
 
-    /// Hangs every part below the one that it hands its rest to.
+    /// Finds for every supernode its first descendant and the positions of its rim in the front of its parent.
     fn hang(&mut self) {
         for parent in 0..self.parts.len() {
             let children: Vec<usize> = self.children(parent).collect();
@@ -133,7 +136,7 @@ impl Plan {
         }
     }
 
-    /// The parts that hand their rest to a part, the last one first.
+    /// Iterates over the children of a supernode, the last one first.
     pub fn children(&self, parent: usize) -> impl Iterator<Item = usize> + use<'_> {
         let mut next = parent;
         (0..self.parts[parent].children).map(move |_| {
@@ -143,39 +146,39 @@ impl Plan {
         })
     }
 
-    /// Elimination numbers of a part and of all below it.
+    /// Returns the elimination numbers of a supernode and its descendants.
     pub fn numbers_to(&self, root: usize) -> Range<usize> {
         self.parts[self.parts[root].first].own.start..self.parts[root].own.end
     }
 
-    /// Where the columns of a part and of all below it stand among the numbers of the factor.
+    /// Returns the range in the factor of a supernode's columns and those of its descendants.
     pub fn columns_to(&self, root: usize) -> Range<usize> {
         self.parts[self.parts[root].first].start..self.parts[root].end()
     }
 
-    /// Numbers of the factor, all parts together.
+    /// Returns the count of numbers of the factor.
     pub fn entries(&self) -> usize {
         self.parts.last().map_or(0, |part| part.start)
     }
 
-    /// Unknowns that only this rank touches.
+    /// Returns the number of unknowns that only this rank uses.
     pub fn eliminated(&self) -> usize {
         self.parts.last().map_or(0, |part| part.own.end)
     }
 
-    /// Components that other ranks touch too.
+    /// Returns the components that other ranks also use.
     pub fn shared(&self) -> &[u32] {
         &self.order[self.eliminated()..]
     }
 
-    /// Elimination numbers of the rows of a part's front.
+    /// Iterates over the elimination numbers of the rows of a supernode's front.
     pub fn front<'a>(&self, part: &'a Supernode) -> impl Iterator<Item = usize> + use<'a> {
         part.own.clone().chain(part.rim.iter().map(|&number| number as usize))
     }
 }
 
 impl<const D: usize, const C: usize> Cutter<'_, D, C> {
-    /// Eliminates the unknowns of a box; `false` if it has none.
+    /// Orders the unknowns of a box by nested dissection; `false` if it has none.
     fn cut(&mut self, region: [Range<usize>; D]) -> bool {
         let Some((region, unknowns)) = self.tight(&region) else {
             return false;
@@ -206,7 +209,7 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
         true
     }
 
-    /// The smallest box around the unknowns of a box, and their number; `None` if there are none.
+    /// Returns the smallest box around the unknowns of a box, and their number; `None` if there are none.
     fn tight(&self, region: &[Range<usize>; D]) -> Option<([Range<usize>; D], usize)> {
         let mut least = [usize::MAX; D];
         let mut most = [0; D];
@@ -223,7 +226,7 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
         (count > 0).then(|| (std::array::from_fn(|axis| least[axis]..most[axis]), count))
     }
 
-    /// First of the layers across `axis` that leave about as many unknowns before as behind them.
+    /// Returns the first layer of a separator across `axis` that leaves about equally many unknowns on either side.
     fn middle(&self, region: &[Range<usize>; D], axis: usize) -> usize {
         let start = region[axis].start;
         let mut layers = vec![0; region[axis].len()];
@@ -241,7 +244,7 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
         start + at
     }
 
-    /// Index of a node of the window.
+    /// Returns the index of a node of the window.
     fn index(&self, node: &[usize; D]) -> usize {
         (0..D).fold(0, |index, axis| index * self.counts[axis] + node[axis])
     }
@@ -267,7 +270,7 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
         self.boxes.push(region);
     }
 
-    /// Gives the unknowns among `components` the next numbers.
+    /// Gives the unknowns among `components` the next elimination numbers.
     fn number(&mut self, components: Vec<usize>) {
         for component in components.into_iter().filter(|&component| self.free[component]) {
             self.plan.number[component] = self.plan.order.len() as u32;
@@ -275,8 +278,8 @@ impl<const D: usize, const C: usize> Cutter<'_, D, C> {
         }
     }
 
-    /// The rims: unknowns within the splines' reach of a part's box. All of them come later, as q layers part the
-    /// boxes.
+    /// Finds the rims: unknowns within the coupling distance of a supernode's box. All of them are eliminated later,
+    /// because a separator is as wide as this distance.
     fn rims(&mut self) {
         let mut start = 0;
         for (part, region) in (0..).zip(&self.boxes) {

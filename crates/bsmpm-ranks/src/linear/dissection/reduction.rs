@@ -5,32 +5,32 @@ use super::front;
 use crate::halo::Link;
 use std::ops::Range;
 
-/// What a rank does in the pairing, from the ranks' boxes upwards.
+/// Role of a rank in the pairing of groups.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Role {
-    /// the rank, itself perhaps, that joins its box with others; none if it is alone
+    /// Rank that joins its box with others (possibly itself); none if it is the only rank.
     pub joined_by: Option<usize>,
-    /// the two groups that it joins; the first rank joins none
+    /// Join that this rank performs; none for the first rank.
     pub join: Option<Join>,
 }
 
-/// Two groups of ranks that become one.
+/// Join of two groups of ranks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Join {
-    /// the ranks, itself perhaps, from which it hears of the lower and of the upper group
+    /// Ranks (possibly itself) that send the lower and the upper group's data.
     pub from: [usize; 2],
-    /// the ranks of the two: what only they touch is eliminated
+    /// Ranks of the two groups. Unknowns that only these ranks use are eliminated.
     pub group: Range<usize>,
-    /// the rank that joins them with others; none for the last two
+    /// Rank that joins the result with others; none for the last join.
     pub joined_by: Option<usize>,
 }
 
-/// The rank that holds what a group of ranks leaves: the first of its upper half, which is that of no other group.
+/// Returns the rank that stores the result of a group: the first of its upper half, which does this for no other group.
 fn holder(group: &Range<usize>) -> usize {
     usize::midpoint(group.start, group.end)
 }
 
-/// The role of a rank of so many.
+/// Returns the role of `rank` among `ranks`.
 pub fn role(ranks: usize, rank: usize) -> Role {
     let mut group = 0..ranks;
     let mut role = Role::default();
@@ -54,16 +54,16 @@ pub fn role(ranks: usize, rank: usize) -> Role {
     role
 }
 
-/// The dense front of a cut.
+/// Dense front of a join.
 struct Joint {
     join: Join,
     rows: usize,
     own: usize,
-    places: [Vec<usize>; 2], // of the components of either group
+    places: [Vec<usize>; 2], // positions of the components of either group
     factor: Factor,
 }
 
-/// A rank in the pairing, with its front.
+/// Rank in the pairing, with its front.
 #[derive(Default)]
 pub struct TreeReduction {
     rank: usize,
@@ -72,8 +72,8 @@ pub struct TreeReduction {
 }
 
 impl TreeReduction {
-    /// The front of the `rank` whose box leaves the `shared` components of the whole grid, ascending; `touching` are
-    /// the ranks from the first to the last one that touch a component. Collective.
+    /// Creates the front of `rank`, whose box shares the components `shared` (numbers in the whole grid, ascending).
+    /// `touching` returns the ranks, from the first to the last one, that use a component. Collective.
     pub fn new(
         link: &dyn Link,
         rank: usize,
@@ -99,7 +99,8 @@ impl TreeReduction {
         reduction
     }
 
-    /// Factorises, given what this rank's slab leaves, packed. `false` where a pivot was not positive. Collective.
+    /// Factorises, given the packed update matrix of this rank. Returns `false` if a pivot was not positive.
+    /// Collective.
     pub fn factorise(&mut self, link: &dyn Link, precision: Precision, packed: Vec<f64>) -> bool {
         let packed = self.hand(link, self.joined_by, packed);
         let Some(mut joint) = self.joint.take() else {
@@ -111,8 +112,8 @@ impl TreeReduction {
         good
     }
 
-    /// Solves for what the slabs share: `x` holds what this rank's slab leaves of the right-hand side, then the
-    /// solution there. Collective.
+    /// Solves for the shared unknowns: `x` is this rank's contribution to the right-hand side, then the solution.
+    /// Collective.
     pub fn solve(&self, link: &dyn Link, x: &mut [f64]) {
         let mut slab = self.hand(link, self.joined_by, x.to_vec());
         if let Some(joint) = &self.joint {
@@ -133,7 +134,7 @@ impl TreeReduction {
         }
     }
 
-    /// Sends to another rank; what is for this rank, or nobody, comes back.
+    /// Sends numbers to another rank; returns them if they are for this rank or for none.
     fn hand(&self, link: &dyn Link, to: Option<usize>, numbers: Vec<f64>) -> Option<Vec<f64>> {
         match to {
             Some(to) if to != self.rank => {
@@ -144,7 +145,7 @@ impl TreeReduction {
         }
     }
 
-    /// What two ranks have sent, one of which may be this one, with `own`.
+    /// Returns the messages of two ranks; `own` is the message if one of them is this rank.
     fn hear(&self, link: &dyn Link, from: [usize; 2], mut own: Option<Vec<f64>>) -> [Vec<f64>; 2] {
         from.map(|of| {
             if of == self.rank {
@@ -157,7 +158,7 @@ impl TreeReduction {
 }
 
 impl Joint {
-    /// Of two groups with their components; what is not eliminated here is left.
+    /// Creates the front of two groups with their components. Returns the components that are not eliminated here, too.
     fn new(join: Join, groups: &[Vec<usize>; 2], touching: impl Fn(usize) -> Range<usize>) -> (Self, Vec<usize>) {
         let keys = groups.each_ref().map(|group| {
             let keys = group.iter().map(|&component| {
@@ -187,8 +188,8 @@ impl Joint {
         )
     }
 
-    /// Factorises the front of what the groups leave, packed; whether all pivots were positive, and what is left,
-    /// packed.
+    /// Factorises the front from the packed update matrices of the groups. Returns whether all pivots were positive,
+    /// and the packed update matrix.
     fn factorise(&mut self, precision: Precision, groups: [Vec<f64>; 2]) -> (bool, Vec<f64>) {
         let order = self.rows - self.own;
         let mut columns = vec![0.0; self.own * self.rows];
@@ -204,7 +205,7 @@ impl Joint {
         (good, pack(&rest, order))
     }
 
-    /// The right-hand side of the front, with its own unknowns eliminated.
+    /// Returns the right-hand side of the front, with its own unknowns eliminated.
     fn forward(&self, groups: &[Vec<f64>; 2]) -> Vec<f64> {
         let mut all = vec![0.0; self.rows];
         for (places, values) in self.places.iter().zip(groups) {
@@ -217,21 +218,22 @@ impl Joint {
         all
     }
 
-    /// The solution of either group, from that of what is left.
+    /// Returns the solution of either group from that of the remaining unknowns.
     fn backward(&self, mut all: Vec<f64>) -> [Vec<f64>; 2] {
         self.factor.backward(0, self.rows, self.own, &mut all);
         [0, 1].map(|group: usize| self.places[group].iter().map(|&place| all[place]).collect())
     }
 }
 
-/// The lower triangle of a matrix of order `n`, by columns.
+/// Returns the lower triangle of a matrix of order `n`, by columns.
 pub fn pack(matrix: &[f64], n: usize) -> Vec<f64> {
     let mut packed = Vec::with_capacity(n * (n + 1) / 2);
     (0..n).for_each(|column| packed.extend_from_slice(&matrix[column * n + column..(column + 1) * n]));
     packed
 }
 
-/// Adds a packed triangle whose rows stand at `places` of a front: `own` columns, and the rest's matrix.
+/// Adds a packed triangle, whose rows are at the positions `places` of a front, to its `own` columns and to the matrix
+/// of the rest.
 pub fn add_packed(packed: &[f64], places: &[usize], columns: &mut [f64], own: usize, rest: &mut [f64]) {
     let mut start = 0;
     let rows = columns.len().checked_div(own).unwrap_or(0);

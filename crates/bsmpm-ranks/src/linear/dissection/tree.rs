@@ -8,30 +8,30 @@ use crate::stencil::Stencil;
 use std::ops::Range;
 use std::sync::Mutex;
 
-/// Numbers of a subtree's factor from which on its halves are worth two threads: 2^14 and 2^16 take as long.
+/// Size of a subtree's factor above which its halves are given to two threads; 2^14 and 2^16 take equally long.
 pub(super) const WORTH: usize = 1 << 15;
 
-/// Whether the subtree of a part is worth being cut for threads.
+/// Returns whether the subtree of a supernode is large enough to be divided between threads.
 fn is_worth(plan: &Plan, root: usize) -> bool {
     rayon::current_num_threads() > 1 && plan.columns_to(root).len() >= WORTH && plan.parts[root].children > 0
 }
 
-/// The first child of a part, and the last one if there are two.
+/// Returns the first child of a supernode, and the last one if there are two.
 fn halves(plan: &Plan, root: usize) -> (usize, Option<usize>) {
     let mut children = plan.children(root);
     let last = children.next().expect("what is worth a cut has children");
     children.next().map_or((last, None), |first| (first, Some(last)))
 }
 
-/// What one thread works with.
+/// Work arrays of one thread.
 #[derive(Default)]
 pub struct Desk {
-    columns: Vec<f64>,  // of the front in work
-    matrix: Vec<f64>,   // what it leaves
-    places: Vec<usize>, // in its front by elimination number
+    columns: Vec<f64>,  // of the present front
+    matrix: Vec<f64>,   // update matrix of the front
+    places: Vec<usize>, // positions in the front by elimination number
 }
 
-/// What parts leave that has not been taken, packed, and whether all pivots so far were positive.
+/// Packed update matrices that parents have not received yet, and whether all pivots so far were positive.
 struct Left {
     packed: Vec<Vec<f64>>,
     good: bool,
@@ -46,25 +46,25 @@ impl Left {
     }
 }
 
-/// The matrix that is factorised: a stencil's entries times a power of two.
+/// Matrix to be factorised: a stencil's entries times a power of two.
 pub struct Elimination<'a, const D: usize, const C: usize> {
     pub plan: &'a Plan,
     pub stencil: &'a Stencil<D, C>,
     pub scale: f64,
-    /// one for every thread
+    /// One per thread.
     pub desks: &'a [Mutex<Desk>],
 }
 
 impl<const D: usize, const C: usize> Elimination<'_, D, C> {
-    /// Eliminates all parts into `room`. What is left of the last one's front, packed, and whether all pivots were
-    /// positive and finite.
+    /// Eliminates all supernodes into `room`. Returns the packed update matrix of the last one, and whether all pivots
+    /// were positive and finite.
     pub fn run(&self, room: Room<'_>) -> (Vec<f64>, bool) {
         let mut left = Left::nothing();
         self.subtree(self.plan.parts.len() - 1, room, &mut left);
         (left.packed.pop().expect("a plan has a last part"), left.good)
     }
 
-    /// Eliminates a part and all below it, whose columns `room` begins with; what it leaves comes last.
+    /// Eliminates a supernode and its descendants, whose columns begin `room`. Its update matrix is appended last.
     fn subtree(&self, root: usize, room: Room<'_>, left: &mut Left) {
         if !is_worth(self.plan, root) {
             return self.in_order(self.plan.parts[root].first..root + 1, room, left);
@@ -86,7 +86,8 @@ impl<const D: usize, const C: usize> Elimination<'_, D, C> {
         self.in_order(root..root + 1, own, left);
     }
 
-    /// Eliminates parts one after another, whose columns `room` begins with. Nothing in here waits for other threads.
+    /// Eliminates supernodes one after another, whose columns begin `room`. Does not wait for other threads, because it
+    /// locks a desk.
     fn in_order(&self, parts: Range<usize>, mut room: Room<'_>, Left { packed, good }: &mut Left) {
         let start = self.plan.parts[parts.start].start;
         let thread = rayon::current_thread_index().unwrap_or(0) % self.desks.len();
@@ -119,8 +120,8 @@ impl<const D: usize, const C: usize> Elimination<'_, D, C> {
         }
     }
 
-    /// Adds the matrix's own entries of a part: its rows against what is eliminated later; of the last part, what it
-    /// shares.
+    /// Adds the matrix entries of a supernode: its rows and the columns that are eliminated later. For the last one,
+    /// the entries between shared unknowns.
     fn take(&self, index: usize, places: &[usize], columns: &mut [f64], matrix: &mut [f64]) {
         let Self {
             plan, stencil, scale, ..
@@ -128,7 +129,7 @@ impl<const D: usize, const C: usize> Elimination<'_, D, C> {
         let part = &plan.parts[index];
         let rows = part.rows();
         let order = part.rim.len();
-        // Between two bodies a separator may be without unknowns, too.
+        // A separator between two bodies may also have no unknowns, so an empty supernode need not be the last.
         let last = index + 1 == plan.parts.len();
         let numbers = if last {
             plan.eliminated()..plan.order.len()
@@ -153,14 +154,14 @@ impl<const D: usize, const C: usize> Elimination<'_, D, C> {
     }
 }
 
-/// What one thread solves with.
+/// Work arrays of one thread for a solution.
 #[derive(Default)]
 pub struct Scratch {
-    x: Vec<f64>,    // of the front in work
-    rims: Vec<f64>, // of parts whose neighbours in the tree have not taken theirs
+    x: Vec<f64>,    // of the present front
+    rims: Vec<f64>, // values at rims that neighbours in the tree have not received yet
 }
 
-/// The triangular solves with a factor.
+/// Triangular solution with a factor.
 #[derive(Clone, Copy)]
 pub struct Triangles<'a> {
     pub plan: &'a Plan,
@@ -168,7 +169,7 @@ pub struct Triangles<'a> {
 }
 
 impl Triangles<'_> {
-    /// Takes what is eliminated from the right-hand side `work`, by elimination numbers.
+    /// Eliminates this rank's own unknowns from the right-hand side `work`, in elimination order.
     pub fn forward(&self, work: &mut [f64], scratch: &mut Scratch) {
         let (eliminated, others) = work.split_at_mut(self.plan.eliminated());
         self.forward_to(self.plan.parts.len() - 1, eliminated, scratch);
@@ -179,7 +180,7 @@ impl Triangles<'_> {
         scratch.rims.clear();
     }
 
-    /// Solves for what is eliminated, given the solution of the last numbers of `work`.
+    /// Solves for this rank's own unknowns, given the solution of the shared ones at the end of `work`.
     pub fn backward(&self, work: &mut [f64], scratch: &mut Scratch) {
         let (eliminated, others) = work.split_at_mut(self.plan.eliminated());
         scratch.rims.extend_from_slice(others);
@@ -264,7 +265,7 @@ impl Triangles<'_> {
             rims.truncate(start);
             self.factor.backward(part.start, part.rows(), part.own.len(), x);
             own.copy_from_slice(&x[..own.len()]);
-            // The last child is the next one.
+            // The last child is processed next, so its values go on top.
             let children: [Option<usize>; 2] = {
                 let mut children = self.plan.children(index);
                 [children.next(), children.next()]

@@ -3,19 +3,19 @@
 use super::Operator;
 use crate::linear::dissection::front;
 
-/// Lanes of sums.
+/// Number of partial sums of a product.
 const LANES: usize = 8;
 
-/// Boxes of nodes with their factors.
+/// Boxes of nodes with their Cholesky factors.
 pub(super) struct Patches {
-    members: Vec<u32>,  // components, box after box
-    counts: Vec<usize>, // of every box
-    factors: Vec<f32>,  // columns of L from the diagonal on, the diagonal inverted
+    members: Vec<u32>,  // components, box by box
+    counts: Vec<usize>, // components of every box
+    factors: Vec<f32>,  // columns of L from the diagonal on, with inverted diagonal entries
 }
 
 impl Patches {
-    /// Boxes of `side` nodes along an axis, from one to the next so many, of a window of `along` nodes; `None` if one
-    /// is not positive definite.
+    /// Creates boxes of `side` nodes along an axis, `apart` nodes from one to the next, in a window of `along` nodes.
+    /// Returns `None` if the matrix of a box is not positive definite.
     pub fn new<const D: usize, const C: usize>(
         operator: Operator<'_, D, C>,
         along: [usize; D],
@@ -28,7 +28,7 @@ impl Patches {
             factors: Vec::new(),
         };
         let mut places = vec![u32::MAX; along.iter().product::<usize>() * C];
-        // Another box begins where the last one does not reach the end.
+        // A further box is added where the last one does not extend to the end.
         let boxes = along.map(|nodes| nodes.saturating_sub(side).div_ceil(apart) + 1);
         for number in 0..boxes.iter().product() {
             let mut rest = number;
@@ -98,11 +98,11 @@ impl Patches {
         Some(())
     }
 
-    /// z += the sum of the boxes' solutions for r.
+    /// Adds the sum of the boxes' solutions for `r` to `z`.
     pub fn add(&self, r: &[f64], z: &mut [f64]) {
         let mut members = &self.members[..];
         let mut factors = &self.factors[..];
-        // Single precision has a short range: about 1 whatever the units are.
+        // Single precision has a small range, so values are scaled to about 1 in any units.
         let scale = r.iter().fold(0.0_f64, |largest, r| largest.max(r.abs()));
         if scale == 0.0 {
             return;
@@ -122,7 +122,7 @@ impl Patches {
     }
 }
 
-/// x = L^-T L^-1 x.
+/// Computes x = L^-T L^-1 x.
 fn solve(factor: &[f32], x: &mut [f32]) {
     let order = x.len();
     let mut at = 0;
@@ -141,7 +141,7 @@ fn solve(factor: &[f32], x: &mut [f32]) {
     }
 }
 
-/// a . b by lanes.
+/// Returns a . b by several partial sums.
 fn product(a: &[f32], b: &[f32]) -> f32 {
     let mut sums = [0.0; LANES];
     let blocks = a.chunks_exact(LANES);

@@ -5,17 +5,17 @@ use crate::stencil::Stencil;
 use bsmpm::grid::{Grid, KnotVector};
 use std::ops::Range;
 
-/// Cells along an axis that is not made coarser.
+/// Smallest number of cells along an axis that is coarsened.
 const FEWEST: usize = 4;
 
-/// Nodes of a coarser window of which those of a window are made, axis by axis.
+/// Transfer between a window and its coarser window, axis by axis.
 pub(super) struct Transfer<const D: usize> {
     parents: [Vec<Vec<(usize, f64)>>; D], // of every node along an axis: coarse nodes with their weights
-    coarse: [usize; D],                   // nodes of the coarse window
+    coarse: [usize; D],                   // number of nodes of the coarse window
 }
 
 impl<const D: usize> Transfer<D> {
-    /// The coarser grid of a window, and how it becomes the window; `None` if no axis can be made coarser.
+    /// Returns the coarser grid of a window and the transfer between them; `None` if no axis can be coarsened.
     pub fn new(grid: &Grid<D>) -> Option<(Grid<D>, Self)> {
         let axes = grid.axes().each_ref().map(coarser);
         if (0..D).all(|axis| axes[axis].cells() == grid.axes()[axis].cells()) {
@@ -47,19 +47,19 @@ impl<const D: usize> Transfer<D> {
         Some((coarse, Self { parents, coarse: nodes }))
     }
 
-    /// Nodal values of the window for those of the coarse one.
+    /// Returns the nodal values of the window from those of the coarse window.
     pub fn prolong<const C: usize>(&self, coarse: &[f64]) -> Vec<f64> {
         (0..D).fold(coarse.to_vec(), |values, axis| self.along::<C>(axis, &values, false))
     }
 
-    /// The transpose.
+    /// Applies the transpose of [`Transfer::prolong`].
     pub fn restrict<const C: usize>(&self, fine: &[f64]) -> Vec<f64> {
         (0..D)
             .rev()
             .fold(fine.to_vec(), |values, axis| self.along::<C>(axis, &values, true))
     }
 
-    /// Along one axis: those before it are fine, those after it coarse.
+    /// Transfers along one axis. The axes before it have fine nodes, those after it coarse nodes.
     fn along<const C: usize>(&self, axis: usize, from: &[f64], back: bool) -> Vec<f64> {
         let inner = self.coarse[axis + 1..].iter().product::<usize>() * C;
         let [fine, coarse] = [self.parents[axis].len(), self.coarse[axis]].map(|nodes| nodes * inner);
@@ -80,7 +80,7 @@ impl<const D: usize> Transfer<D> {
         to
     }
 
-    /// P^T A P, and its unknowns: components without stiffness are none.
+    /// Returns the coarse matrix P^T A P with its unknowns. Components without stiffness are not unknowns.
     pub fn galerkin<const C: usize>(&self, operator: Operator<'_, D, C>, coarse: &Grid<D>) -> CoarseOperator<D, C> {
         let Operator { stencil, free } = operator;
         let mut made = Stencil::<D, C>::new(coarse);
@@ -92,7 +92,8 @@ impl<const D: usize> Transfer<D> {
         made.keep(|node| reached[node]);
         let mut sums = Vec::new();
         for node in 0..nodes {
-            let around: Vec<[usize; D]> = stencil.blocks(node).map(|(other, _)| self.split(other)).collect();
+            let blocks: Vec<(usize, &[f64])> = stencil.blocks(node).collect();
+            let around: Vec<[usize; D]> = blocks.iter().map(|&(other, _)| self.split(other)).collect();
             if around.is_empty() {
                 continue;
             }
@@ -100,7 +101,7 @@ impl<const D: usize> Transfer<D> {
             let widths = parents.each_ref().map(Range::len);
             sums.clear();
             sums.resize(widths.iter().product::<usize>() * C * C, 0.0);
-            for (other, block) in stencil.blocks(node) {
+            for ((other, block), at) in blocks.into_iter().zip(around) {
                 let mut known = [[0.0; C]; C];
                 for (i, j) in (0..C * C).map(|k| (k / C, k % C)) {
                     known[i][j] = if free[node * C + i] && free[other * C + j] {
@@ -110,7 +111,7 @@ impl<const D: usize> Transfer<D> {
                     };
                 }
                 let known = known.as_flattened();
-                self.parents_of(self.split(other), |_, place, weight| {
+                self.parents_of(at, |_, place, weight| {
                     let local = (0..D).fold(0, |local, axis| {
                         local * widths[axis] + place[axis] - parents[axis].start
                     });
@@ -139,7 +140,7 @@ impl<const D: usize> Transfer<D> {
         CoarseOperator { stencil: made, free }
     }
 
-    /// The box of coarse nodes that the nodes at these places of the window are made of.
+    /// Returns the box of coarse nodes on which the nodes at the given positions of the window depend.
     fn parents_around(&self, places: &[[usize; D]]) -> [Range<usize>; D] {
         std::array::from_fn(|axis| {
             let parents = places.iter().flat_map(|at| &self.parents[axis][at[axis]]);
@@ -150,7 +151,7 @@ impl<const D: usize> Transfer<D> {
         })
     }
 
-    /// Visits the coarse nodes that a node is made of: their numbers, places and weights.
+    /// Visits the coarse nodes on which a node depends: number, position and weight.
     fn parents_of(&self, at: [usize; D], mut visit: impl FnMut(usize, [usize; D], f64)) {
         let lists: [&[(usize, f64)]; D] = std::array::from_fn(|axis| &self.parents[axis][at[axis]][..]);
         for number in 0..lists.iter().map(|list| list.len()).product() {
@@ -167,7 +168,7 @@ impl<const D: usize> Transfer<D> {
         }
     }
 
-    /// Place along every axis of a node of the window.
+    /// Returns the position along every axis of a node of the window.
     fn split(&self, mut node: usize) -> [usize; D] {
         let mut at = [0; D];
         for axis in (0..D).rev() {
@@ -177,13 +178,13 @@ impl<const D: usize> Transfer<D> {
         at
     }
 
-    /// Number of a node of the coarse window.
+    /// Returns the number of a node of the coarse window.
     fn joined(&self, place: &[usize; D]) -> usize {
         (0..D).fold(0, |number, axis| number * self.coarse[axis] + place[axis])
     }
 }
 
-/// Every other place of the breakpoints, each as often as it stands.
+/// Keeps every second breakpoint with its multiplicity, and the last one.
 fn coarser(axis: &KnotVector) -> KnotVector {
     let all: Vec<f64> = (0..=axis.cells()).map(|i| axis.breakpoint(i)).collect();
     let runs: Vec<&[f64]> = all.chunk_by(|a, b| a == b).collect();
@@ -199,7 +200,8 @@ fn coarser(axis: &KnotVector) -> KnotVector {
     KnotVector::graded(&kept, axis.order()).unwrap_or_else(|_| axis.clone())
 }
 
-/// Position of `x` between the knots `j` and `j + degree`, as a part of their distance; 0 where they coincide.
+/// Returns the position of `x` between the knots `j` and `j + degree` as a fraction of their distance; 0 if they
+/// coincide.
 fn part(coarse: &KnotVector, j: usize, degree: usize, x: f64) -> f64 {
     let length = coarse.knot(j + degree) - coarse.knot(j);
     if length > 0.0 {
@@ -209,11 +211,11 @@ fn part(coarse: &KnotVector, j: usize, degree: usize, x: f64) -> f64 {
     }
 }
 
-/// Weights of a function in the coarse ones, its discrete B-splines (Cohen, Lyche and Riesenfeld 1980, Comput. Graph.
-/// Image Process. 14, 87-111).
+/// Returns the weights of a fine function's coefficient in those of the coarse functions, the discrete B-splines
+/// (Cohen, Lyche and Riesenfeld 1980, Comput. Graph. Image Process. 14, 87-111).
 fn weights(fine: &KnotVector, coarse: &KnotVector, number: usize) -> Vec<(usize, f64)> {
     let q = fine.order();
-    // The last coarse cell with a length that begins at or before the function does.
+    // Last coarse cell with a length that begins at or before the start of the function's support.
     let begins = (q..coarse.functions())
         .rev()
         .find(|&j| coarse.knot(j) <= fine.knot(number))
@@ -222,7 +224,7 @@ fn weights(fine: &KnotVector, coarse: &KnotVector, number: usize) -> Vec<(usize,
     for degree in 1..=q {
         let x = fine.knot(number + degree);
         let first = begins - degree;
-        // Weights of the degree before, which the functions from `first + 1` to `begins` have, between zeros.
+        // Weights of the degree before, of the functions from `first + 1` to `begins`, with a zero on either side.
         let old = [&[0.0], &found[..], &[0.0]].concat();
         found = (first..=begins)
             .map(|j| {

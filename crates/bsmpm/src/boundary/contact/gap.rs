@@ -5,18 +5,19 @@ use crate::grid::{Grid, digit};
 use crate::parallel::Halo;
 use crate::points::MappedPoints;
 
-/// Part of a cell below which a gap, and a displacement against what is allowed, is round-off.
+/// Length, in cell edges, below which a gap or a penetration is round-off.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// m  edge of the cells at a face, normal to it.
+/// Returns the edge of the cells at a face, normal to it (m).
 pub(in crate::boundary) fn face_cell<const D: usize>(grid: &Grid<D>, axis: usize, upper: bool) -> f64 {
     let knots = &grid.axes()[axis];
     let cell = if upper { knots.cells() - 1 } else { 0 };
     knots.breakpoint(cell + 1) - knots.breakpoint(cell)
 }
 
-/// m  per node of the window: how far the nearest material is from a face; infinite but at nodes of the face that see
-/// some. A point reaches as far as its box in the lattice of the cell that it was in at the start, deformed by its F.
+/// Returns, per local node, the distance of the nearest material from a face (m); infinite for nodes that are not on
+/// the face or have no material in range. A material point extends to the boundary of its initial box, deformed by its
+/// F. One ghost exchange.
 pub(super) fn gaps<const D: usize>(
     boundary: &Boundary<D>,
     grid: &Grid<D>,

@@ -8,9 +8,9 @@ use crate::parallel::Halo;
 use std::collections::BTreeMap;
 
 impl<const D: usize> Contacts<D> {
-    /// Lets nodes stick at which the direction of sliding changes along a face, those that slide least under `u` (m),
-    /// or have done so for longer; how many over all ranks. None where some node sticks already. A
-    /// reduction, and an exchange with the neighbours where all that has friction slides.
+    /// Makes a node stick wherever the direction of slip changes along a face: the one of the two neighbours with less
+    /// slip under `u` (m), or that did not start to slip in the last correction. Returns the number of these nodes on
+    /// all ranks; 0 if any node sticks already. One reduction; if no node sticks, a second one and a ghost exchange.
     pub fn hold_neutral(&mut self, grid: &Grid<D>, u: &[f64], halo: &dyn Halo) -> usize {
         let mut sticking = [f64::from(u8::from(
             self.nodes.iter().any(|at| at.status == Status::Stick),
@@ -38,7 +38,7 @@ impl<const D: usize> Contacts<D> {
         held[0] as usize
     }
 
-    /// Numbers of nodes that slide less than a neighbour which slides in the opposite direction.
+    /// Returns the indices of nodes with less slip than a neighbour that slides in the opposite direction.
     fn neutral(&self, grid: &Grid<D>, u: &[f64]) -> Vec<usize> {
         let numbered = self
             .nodes
@@ -66,7 +66,7 @@ impl<const D: usize> Contacts<D> {
         found
     }
 
-    /// Component along an axis of the direction in which a node slides, 0 where it does not.
+    /// Returns the component of a node's slip direction along an axis; 0 if it does not slide.
     fn direction(&self, number: usize, axis: usize) -> f64 {
         match self.nodes[number].status {
             Status::Slip(direction) => direction[axis],
@@ -74,13 +74,14 @@ impl<const D: usize> Contacts<D> {
         }
     }
 
-    /// Order in which nodes are taken to stick: what has just come to slide would stick at its limit again.
+    /// Returns the sort key by which nodes are made to stick: nodes that just began to slide come last, because they
+    /// would reach Coulomb's limit again.
     fn order(&self, number: usize, u: &[f64]) -> (bool, f64) {
         (self.released[number], self.nodes[number].slip(u).norm())
     }
 }
 
-/// Whether a node slides against friction.
+/// Returns whether a node slides against friction.
 fn has_friction<const D: usize>(status: Status<D>) -> bool {
     matches!(status, Status::Slip(direction) if direction.norm_squared() > 0.0)
 }

@@ -4,53 +4,53 @@ use crate::boundary::coulomb::{Contact, Status, transverse};
 use crate::nodal::Nodal;
 use crate::tensor::Vector;
 
-/// Part of a cell within which material cannot have come since the last step, if its node was not free to move then:
-/// what F says of the gap is off by the curvature of the motion.
+/// Gap, in cell edges, below which a node without normal displacement in the last step counts as closed: a gap computed
+/// from F is inaccurate where the deformation varies.
 const KEPT: f64 = 0.05;
 
-/// Times the force by which statuses may be contradicted, by which friction may be off Coulomb's law for the slip, or
-/// for a node that alone sticks: the tolerance of the forces themselves.
+/// Tolerance for the direction of friction, and for the stick status of a neutral node, as a multiple of the tolerance
+/// of forces.
 const TURNED: f64 = 100.0;
 
-/// Parts of the displacement that is round-off, beside friction, from which on a slip has left it.
+/// Slip across the direction of friction, as a fraction of the round-off length, above which the direction may be
+/// corrected.
 const BESIDE: f64 = 1e-3;
 
-/// Displacements that are round-off, of the smallest slip about which friction is linearised: one that is not known, or
-/// less, is taken for it.
+/// Smallest slip about which friction is linearised, in round-off lengths. It replaces an unknown or smaller slip.
 const LEAST: f64 = 1e3;
 
-/// A node on a face with contact whose normal component nothing else holds.
+/// A node on a contact face. No other condition prescribes its normal component.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContactNode<const D: usize> {
-    /// of the window
+    /// Local node.
     pub node: usize,
-    /// number of the face among the supports
+    /// Index of the face among the supports.
     pub support: usize,
-    /// that the face is normal to
+    /// Axis normal to the face.
     pub axis: usize,
-    /// sign along the axis of what leads off the face
+    /// Sign of the inward normal along the axis.
     pub inward: f64,
-    /// of the face
+    /// Contact law of the face.
     pub law: Contact,
-    /// components that friction acts on: not those that a support, or another such face, decides
+    /// Components on which friction acts; not those that a support or another contact face decides.
     pub along: [bool; D],
-    /// m  at the start of the step; infinite without material
+    /// Gap at the start of the step (m); infinite without material.
     pub gap: f64,
-    /// N  part of the normal force that pore water carries
+    /// Part of the normal force that pore water carries (N).
     pub water_force: f64,
-    /// what it does
+    /// Contact status.
     pub status: Status<D>,
-    /// whether it sticks as the one between others that slide in opposite directions
+    /// Whether the node was made to stick between nodes that slide in opposite directions.
     pub is_neutral: bool,
-    /// components that did not move in the last step
+    /// Components without displacement in the last step.
     pub rested: [bool; D],
-    /// N/m  what resists a slip beside the direction of friction: in space, where it is known
+    /// Stiffness against slip across the direction of friction (N/m); 0 in 2-D.
     pub transverse_stiffness: f64,
-    /// m  slip about which that is linear; that of the last step as it begins
+    /// Slip about which friction is linearised (m); at first the slip of the last step.
     pub slip_length: f64,
 }
 
-/// What a displacement and reaction ask of a node: its status, and what resists a slip beside that.
+/// Status and linearisation of friction that follow from a displacement and reaction.
 pub(super) struct StatusCorrection<const D: usize> {
     pub status: Status<D>,
     pub transverse_stiffness: f64,
@@ -58,8 +58,9 @@ pub(super) struct StatusCorrection<const D: usize> {
 }
 
 impl<const D: usize> ContactNode<D> {
-    /// The status that the last displacement had, and which components were at rest; `edge` is that of the cell, m,
-    /// `had_material` whether something moved behind the node: where nothing was, nothing rested.
+    /// Predicts the status, and the components at rest, from `guess`, the displacement of the last step (m). `edge` is
+    /// the cell edge (m). `had_material` states whether material moved behind the node; if not, no component counts as
+    /// at rest.
     pub fn predict_status(&mut self, t: f64, guess: &[f64], edge: f64, had_material: bool) {
         let last = Vector::<D>::from_fn(|c, _| guess.get(Nodal::<D>::at(self.node, c)).copied().unwrap_or(0.0));
         let normal = self.inward * last[self.axis];
@@ -80,7 +81,7 @@ impl<const D: usize> ContactNode<D> {
         });
     }
 
-    /// On the face, coming along it by `slip`.
+    /// Returns the status of a closed node with this `slip` (m).
     pub fn met(&self, slip: &Vector<D>) -> Status<D> {
         match slip.try_normalize(0.0) {
             _ if self.law.friction == 0.0 => Status::Slip(Vector::zeros()),
@@ -89,12 +90,12 @@ impl<const D: usize> ContactNode<D> {
         }
     }
 
-    /// Whether the statuses decide a component.
+    /// Returns whether the contact status decides a component.
     pub fn decides(&self, component: usize) -> bool {
         component == self.axis || self.along[component]
     }
 
-    /// m  where the status holds a component.
+    /// Returns the displacements that the status prescribes (m).
     pub fn holds(&self) -> [Option<f64>; D] {
         std::array::from_fn(|component| match self.status {
             Status::Stick | Status::Slip(_) if component == self.axis => Some(-self.inward * self.gap),
@@ -103,7 +104,7 @@ impl<const D: usize> ContactNode<D> {
         })
     }
 
-    /// N  normal force of the face on the body, positive where it pushes.
+    /// Returns the normal force of the face on the body, positive in compression (N).
     pub fn pushed(&self, reaction: &[f64]) -> f64 {
         let normal = reaction[Nodal::<D>::at(self.node, self.axis)];
         if self.status == Status::Open {
@@ -113,12 +114,12 @@ impl<const D: usize> ContactNode<D> {
         }
     }
 
-    /// N  most that friction can be, by Coulomb's law for the effective normal force.
+    /// Returns Coulomb's limit for the effective normal force (N).
     pub fn limit(&self, reaction: &[f64]) -> f64 {
         self.law.friction * (self.pushed(reaction) - self.water_force).max(0.0)
     }
 
-    /// The components along the face of a nodal array.
+    /// Returns the components of a nodal array on which friction acts.
     fn tangential(&self, nodal: &[f64]) -> Vector<D> {
         Vector::from_fn(|c, _| {
             if self.along[c] {
@@ -129,7 +130,7 @@ impl<const D: usize> ContactNode<D> {
         })
     }
 
-    /// N  force of the face along itself on the body.
+    /// Returns the tangential force of the face on the body (N).
     pub fn friction(&self, reaction: &[f64]) -> Vector<D> {
         match self.status {
             Status::Open => Vector::zeros(),
@@ -137,7 +138,7 @@ impl<const D: usize> ContactNode<D> {
         }
     }
 
-    /// m  displacement along the face.
+    /// Returns the displacement along the face (m).
     pub fn slip(&self, u: &[f64]) -> Vector<D> {
         match self.status {
             Status::Open => Vector::zeros(),
@@ -145,8 +146,9 @@ impl<const D: usize> ContactNode<D> {
         }
     }
 
-    /// Whether friction about `direction` is off Coulomb's law for the slip by more than the forces are known, N, and
-    /// the slip beside it more than round-off, m.
+    /// Returns whether linearised friction along `direction` differs from Coulomb's law along `now` by more than the
+    /// tolerance, based on `force` (N), while the slip and its part across `direction` exceed round-off, based on
+    /// `length` (m).
     fn is_off(
         &self,
         direction: &Vector<D>,
@@ -161,8 +163,8 @@ impl<const D: usize> ContactNode<D> {
         slip.norm() > length && beside > BESIDE * length && off.norm() > TURNED * force
     }
 
-    /// N  friction on the body where it slips along `direction` but for `slip`, m: Newton's linear form of
-    /// mu N u_t / |u_t| about the last slip, of which the part beside `direction` turns it.
+    /// Returns the friction on the body (N): mu N u_t / |u_t|, linearised about the last slip along `direction`. The
+    /// part of `slip` (m) across `direction` rotates the friction.
     pub fn friction_force(&self, direction: &Vector<D>, slip: &Vector<D>, limit: f64) -> Vector<D> {
         let along = -direction * limit;
         if self.transverse_stiffness == 0.0 {
@@ -171,7 +173,7 @@ impl<const D: usize> ContactNode<D> {
         along - transverse(slip, direction) * self.transverse_stiffness
     }
 
-    /// Row-major square of what resists a slip beside the direction of friction, N/m; none where nothing does.
+    /// Returns the stiffness against slip across the direction of friction, row-major, D by D (N/m); `None` if zero.
     pub fn resists(&self) -> Option<Vec<f64>> {
         let Status::Slip(direction) = self.status else {
             return None;
@@ -185,7 +187,7 @@ impl<const D: usize> ContactNode<D> {
         (self.transverse_stiffness > 0.0).then(|| entries.collect())
     }
 
-    /// A status with what then resists a slip beside it, linear about a slip of `slip_length`, m.
+    /// Returns a status with friction linearised about a slip of `slip_length` (m).
     fn linearised(&self, status: Status<D>, slip_length: f64, reaction: &[f64]) -> StatusCorrection<D> {
         let slips = D > 2 && self.law.friction > 0.0 && matches!(status, Status::Slip(_));
         let transverse_stiffness = if slips { self.limit(reaction) / slip_length } else { 0.0 };
@@ -196,7 +198,8 @@ impl<const D: usize> ContactNode<D> {
         }
     }
 
-    /// What displacement and reaction ask for.
+    /// Returns the status and linearisation that follow from the displacement `u` (m) and the reaction (N), with the
+    /// tolerances `force` (N) and `length` (m).
     pub fn corrected(&self, u: &[f64], reaction: &[f64], force: f64, length: f64) -> StatusCorrection<D> {
         let least = LEAST * length;
         let kept = StatusCorrection {
@@ -232,8 +235,8 @@ impl<const D: usize> ContactNode<D> {
                 if along < -length {
                     return self.linearised(Status::Stick, least, reaction);
                 }
-                // In space friction turns with the slip: once it resists what is beside it, as else a node that hardly
-                // slips would go where friction does not look. On a line there is nothing to turn.
+                // In 3-D, friction rotates with the slip. It first gets a stiffness across its direction; without it, a
+                // node with little slip would move freely across. In 2-D there is one direction only.
                 if D > 2 && self.transverse_stiffness == 0.0 && self.limit(reaction) > force {
                     return self.linearised(self.status, self.slip_length.max(least), reaction);
                 }

@@ -12,17 +12,17 @@ use crate::points::Points;
 use crate::tensor::{Tensor, Vector};
 use std::collections::BTreeMap;
 
-/// Part of the longest edge of a load's pieces by which their corners may differ and still be one.
+/// Distance, as a fraction of the longest edge of a load's pieces, below which corners count as one.
 const SAME: f64 = 1e-6;
 
-/// Corners of the pieces of all loads that follow the surface.
+/// Corners of the surface pieces of all follower loads. Adjacent pieces share corners.
 #[derive(Clone, Debug, Default)]
 struct LoadCorners<const D: usize> {
-    /// per piece, in the order of loads and points
+    /// Per piece, in the order of loads and points: indices of its corners.
     of_piece: Vec<[usize; CORNERS]>,
-    /// m  at the start
+    /// Initial positions of the corners (m).
     start: Vec<Vector<D>>,
-    /// pieces that have it
+    /// Per corner: number of pieces that share it.
     pieces: Vec<usize>,
 }
 
@@ -59,15 +59,16 @@ impl<const D: usize> LoadCorners<D> {
         self.start.len() - 1
     }
 
-    /// Where these `carriers` bring the corners, m, to the places and by the deformation that `material` has of a point
-    /// of this rank. One reduction.
+    /// Returns the present positions of the corners (m): the mean over the adjacent pieces of the position extrapolated
+    /// from the piece's carrier. `material` returns the position (m) and deformation gradient of a carrier. One
+    /// reduction.
     fn carried(
         &self,
         carriers: &[Carrier<D>],
         material: impl Fn(&Carrier<D>) -> (Vector<D>, Tensor),
         halo: &dyn Halo,
     ) -> Vec<Vector<D>> {
-        // Each by one rank alone: sums have one order, whoever has the points.
+        // One rank computes each entry, so sums have the same order on any number of ranks.
         let mut brought = vec![vec![Vector::zeros(); CORNERS * self.of_piece.len()]];
         for carrier in carriers {
             let (x, F) = material(carrier);
@@ -84,8 +85,8 @@ impl<const D: usize> LoadCorners<D> {
         mean
     }
 
-    /// Of every load that follows the surface its traction at every point when fully applied, Pa, per area of the
-    /// start, with the corners at these places; empty for the others.
+    /// Returns the tractions at all points of every follower load at full amplitude, per initial area (Pa), with the
+    /// corners at these positions (m); empty for dead loads.
     fn tractions<K: Kinematics<D>>(&self, loads: &[Load<D>], corners: &[Vector<D>]) -> Vec<Vec<Vector<D>>> {
         let mut pieces = self.of_piece.iter();
         let mut tractions = vec![Vec::new(); loads.len()];
@@ -99,45 +100,45 @@ impl<const D: usize> LoadCorners<D> {
     }
 }
 
-/// A point's traction per area of the start, with the corners of its piece at these places.
+/// Returns the traction of a point per initial area (Pa) with the corners of its piece at these positions (m).
 fn turned<K: Kinematics<D>, const D: usize>(
     traction: &Vector<D>,
     point: &SurfacePoint<D>,
     corners: [Vector<D>; CORNERS],
 ) -> Vector<D> {
-    // By its own corners, as the point's share is: a thin piece may have none of its own left.
+    // The initial area uses the piece's own corners: merged corners may leave a thin piece without area.
     let start = weighed::<K, D>(point.corners);
     let size = start.norm();
-    // On an axis there is no area.
+    // A piece on the axis of symmetry has no area.
     if size == 0.0 {
         return *traction;
     }
     weighed::<K, D>(corners) * (traction.dot(&start) / size.powi(2))
 }
 
-/// Area of a piece as it weighs, a vector along its normal.
+/// Returns the area vector of a piece, along its normal, times the geometry weight at its centre.
 fn weighed<K: Kinematics<D>, const D: usize>(corners: [Vector<D>; CORNERS]) -> Vector<D> {
     area(&corners) * K::weight(&(corners.iter().sum::<Vector<D>>() / CORNERS as f64))
 }
 
-/// A point of this rank that carries a piece.
+/// A material point of this rank that anchors a piece.
 #[derive(Clone, Debug)]
 struct Carrier<const D: usize> {
     point: usize,
-    /// m  where it was at the start
+    /// Initial position of the material point (m).
     start: Vector<D>,
-    /// of all loads that follow the surface
+    /// Index of the piece among those of all follower loads.
     piece: usize,
-    /// the point as the nodes see it
+    /// Interpolation of nodal values at the material point.
     seen: Attachment,
 }
 
-/// A point of a load that follows the surface, attached to the nodes.
+/// A surface point of a follower load, attached to the nodes.
 #[derive(Clone, Debug)]
 pub(super) struct AttachedPoint {
     pub load: usize,
-    pub point: usize, // of the load
-    pub area: f64,    // m^(D-1)  times the share that acts at the step's end
+    pub point: usize, // index in the load
+    pub area: f64,    // m^(D-1), times the amplitude at the end of the step
     pub attachment: Attachment,
 }
 
@@ -150,7 +151,7 @@ pub struct FollowerLoads<const D: usize> {
 }
 
 impl<const D: usize> FollowerLoads<D> {
-    /// Of the loads that follow the surface, which are `pushed` as said there; nothing without any.
+    /// Creates the follower loads of a step from their attached points `pushed`; empty without follower loads.
     pub(super) fn of(
         loads: &[Load<D>],
         pushed: Vec<AttachedPoint>,
@@ -168,7 +169,7 @@ impl<const D: usize> FollowerLoads<D> {
         }
     }
 
-    /// Of every load how many of its pieces this rank carries; empty where none follows the surface.
+    /// Returns, per load, the number of its pieces whose anchor is on this rank; empty without follower loads.
     pub(super) fn carried(&self, loads: &[Load<D>]) -> Vec<f64> {
         if self.is_empty() {
             return Vec::new();
@@ -185,13 +186,14 @@ impl<const D: usize> FollowerLoads<D> {
         carried
     }
 
-    /// Whether no load follows the surface.
+    /// Returns whether there is no follower load.
     pub fn is_empty(&self) -> bool {
         self.corners.of_piece.is_empty()
     }
 
-    /// Of every load that follows the surface its traction at every point when fully applied, Pa, per area of the
-    /// start, after the nodal displacement `u` of the step, m, that deforms a point by `dF`. One reduction.
+    /// Returns the tractions at all points of every follower load at full amplitude, per initial area (Pa), after the
+    /// nodal displacement `u` of the step (m); `dF` returns the deformation increment of a material point. One
+    /// reduction.
     pub fn tractions<K: Kinematics<D>>(
         &self,
         loads: &[Load<D>],
@@ -214,7 +216,7 @@ impl<const D: usize> FollowerLoads<D> {
         self.corners.tractions::<K>(loads, &corners)
     }
 
-    /// Nodal forces of these tractions, N. One exchange with the neighbours.
+    /// Returns the nodal forces of these tractions (N). One ghost exchange.
     pub fn forces(&self, traction: &[Vec<Vector<D>>], grid: &Grid<D>, halo: &dyn Halo) -> Vec<f64> {
         let offsets = grid.offsets();
         let mut force = Contributions::none(grid, D, Vec::new());
@@ -226,8 +228,8 @@ impl<const D: usize> FollowerLoads<D> {
     }
 }
 
-/// What [`Surface::pressure`](crate::boundary::Surface) is with the points as they are. One reduction, if a load
-/// follows.
+/// Returns [`Surface::pressure`](crate::boundary::Surface) for the present material points. One reduction if there are
+/// follower loads.
 pub fn now<K: Kinematics<D>, const D: usize>(
     loads: &[Load<D>],
     grid: &Grid<D>,
@@ -247,7 +249,7 @@ pub fn now<K: Kinematics<D>, const D: usize>(
     pressures.corners.tractions::<K>(loads, &corners)
 }
 
-/// The points of this rank that pieces are anchored to.
+/// Returns the material points of this rank that anchor pieces of follower loads.
 fn carriers<const D: usize>(
     loads: &[Load<D>],
     grid: &Grid<D>,

@@ -4,61 +4,67 @@ use super::outline::Outline;
 use crate::schedule::{Row, between};
 use crate::tensor::Vector;
 
-/// Part of a body's size by which another one that only touches it may be in it.
+/// Overlap, as a fraction of the size of a body, below which two bodies only touch.
 const TOUCHING: f64 = 1e-6;
-/// Motions of a body: in the plane along x, along y, and its rotation; in space along x, y and z.
+/// Number of motions of a body: 2-D: displacements along x and y, rotation; 3-D: displacements along x, y and z.
 pub const MOTIONS: usize = 3;
 
-/// A rigid body. Its three motions in the plane are those of its reference point along x and y, m, and its rotation
-/// about it, rad, counter-clockwise, and all is per metre of thickness; in space it does not turn.
+/// A rigid body. In 2-D its motions are the displacements of its reference point along x and y (m) and the rotation
+/// about it (rad, counter-clockwise); forces and masses are per metre of thickness. In 3-D it does not rotate, and the
+/// units are those of translations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigidBody<const D: usize = 2> {
-    /// whether it is there; one that is not goes on along its path, and else stays where it is, at rest
+    /// Whether the body is present. An absent body follows its path; its free motions rest.
     pub acts: bool,
-    /// about the reference point, as it stands at the start
+    /// Outline about the reference point, in its initial orientation.
     pub outline: Outline,
-    /// m  the reference point at the start, from the grid's lower corner; of a body with mass its centre
+    /// Initial position of the reference point (m), from the grid's lower corner; for a body with mass, its centre of
+    /// mass.
     pub center: Vector<D>,
-    /// -  coefficient of friction
+    /// Friction coefficient (-).
     pub friction: f64,
-    /// which motions follow from forces; the others are on the path
+    /// Motions that follow from forces; the path prescribes the others.
     pub free: [bool; MOTIONS],
-    /// s (or pseudo-time), increasing, and the motions; linear between, from 0 at time 0, constant after the last
+    /// Increasing times (s, or pseudo-time) and prescribed motions: linear between rows, from 0 at time 0, constant
+    /// after the last row.
     pub path: Vec<(f64, Vector<3>)>,
-    /// kg, kg and kg m2
+    /// Mass of each motion (kg, kg and kg m2).
     pub mass: Vector<3>,
-    /// s (or pseudo-time), increasing, and what acts: N, N and N m; linear between, constant after the last
+    /// Increasing times (s, or pseudo-time) and external forces (N, N and N m): linear between rows, from 0
+    /// at time 0, constant after the last row.
     pub load: Vec<(f64, Vector<3>)>,
-    /// m/s, m/s and rad/s  at the start, of motions that are free
+    /// Initial velocity of the free motions (m/s, m/s and rad/s).
     pub velocity: Vector<3>,
 }
 
-/// What a body carries from step to step; the same on every rank.
+/// State of a rigid body between steps; the same on every rank.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RigidState {
-    /// m, m and rad  since the start
+    /// Motion since the start (m, m and rad).
     pub moved: Vector<3>,
-    /// m/s, m/s and rad/s; without inertia per pseudo-time
+    /// Velocity (m/s, m/s and rad/s); per pseudo-time without inertia.
     pub velocity: Vector<3>,
-    /// m/s2, m/s2 and rad/s2  that the next step starts with; `None` without inertia, at the start and after a blow
+    /// Acceleration at the start of the next step (m/s2, m/s2 and rad/s2); `None` without inertia, at the start and
+    /// after an impact.
     pub acceleration: Option<Vector<3>>,
-    /// m  way of the material along its outline, mean by normal force of every step
+    /// Slip distance of the material along the outline (m): sum over the steps of the mean slip, weighted with the
+    /// normal force.
     pub slipped: f64,
-    /// J  its work on the material so far
+    /// Work on the material since the start (J).
     pub work: f64,
 }
 
-/// Where a body is.
+/// Position and orientation of a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose<const D: usize> {
-    /// m  its reference point
+    /// Reference point (m).
     pub center: Vector<D>,
     cos: f64,
     sin: f64,
 }
 
 impl<const D: usize> RigidBody<D> {
-    /// Its state at the start.
+    /// Returns the initial state.
     pub fn at_rest(&self) -> RigidState {
         RigidState {
             velocity: self.pick(&self.velocity, &Vector::zeros()),
@@ -66,38 +72,39 @@ impl<const D: usize> RigidBody<D> {
         }
     }
 
-    /// On the path at time `t`.
+    /// Returns the motions on the path at time `t`.
     pub fn on_path(&self, t: f64) -> Vector<3> {
         course(&self.path, t)
     }
 
-    /// Motions that the path prescribes at time `t`; 0 of those that are free.
+    /// Returns the prescribed motions at time `t`; 0 for free motions.
     pub fn prescribed(&self, t: f64) -> Vector<3> {
         self.pick(&Vector::zeros(), &self.on_path(t))
     }
 
-    /// What acts on it at time `t` but for the soil: its load, and the force per mass `g`, m/s2.
+    /// Returns the external forces at time `t`: the load, and the mass times `g` (m/s2). The forces of the soil are not
+    /// included.
     pub fn acting(&self, t: f64, g: &Vector<D>) -> Vector<3> {
         course(&self.load, t) + Vector::<3>::from_fn(|k, _| if k < D { self.mass[k] * g[k] } else { 0.0 })
     }
 
-    /// Whether any motion follows from forces.
+    /// Returns whether any motion is free.
     pub fn is_free(&self) -> bool {
         self.free.contains(&true)
     }
 
-    /// 1 of motions that are free, 0 of the others.
+    /// Returns 1 for free motions, 0 for prescribed ones.
     pub fn freedom(&self) -> [f64; MOTIONS] {
         self.free.map(|is_free| if is_free { 1.0 } else { 0.0 })
     }
 
-    /// Of motions that are free those of one, else those of the other.
+    /// Combines the free motions of `free` with the prescribed motions of `other`.
     pub fn pick(&self, free: &Vector<3>, other: &Vector<3>) -> Vector<3> {
         Vector::from_fn(|k, _| if self.free[k] { free[k] } else { other[k] })
     }
 
-    /// Whether its outline, once it has `moved`, has a part inside of another body's, which has moved, too: looked for
-    /// at places along it.
+    /// Returns whether a point of its outline lies inside the outline of `other`, after the motions `moved` and
+    /// `there`. Checked at the points of [`Outline::places`].
     pub fn reaches_into(&self, moved: &Vector<3>, other: &Self, there: &Vector<3>) -> bool {
         let own = self.pose(moved);
         let others = other.pose(there);
@@ -110,8 +117,8 @@ impl<const D: usize> RigidBody<D> {
             })
     }
 
-    /// m  the least and the largest coordinate of its outline along an axis of the plane once it has `moved`, from the
-    /// grid's lower corner; none in space.
+    /// Returns the least and the largest coordinate of its outline along an axis after the motion `moved` (m from the
+    /// grid's lower corner); `None` in 3-D.
     pub fn extent(&self, moved: &Vector<3>, axis: usize) -> Option<[f64; 2]> {
         let pose = self.pose(moved);
         let along = self.outline.places().into_iter().map(|x| pose.place(&x)[axis]);
@@ -120,7 +127,7 @@ impl<const D: usize> RigidBody<D> {
         })
     }
 
-    /// Where it is once it has `moved`.
+    /// Returns the pose after the motion `moved`.
     pub fn pose(&self, moved: &Vector<3>) -> Pose<D> {
         let (sin, cos) = if D == 2 { moved[2].sin_cos() } else { (0.0, 1.0) };
         Pose {
@@ -131,8 +138,8 @@ impl<const D: usize> RigidBody<D> {
     }
 }
 
-/// The first pair of bodies that overlap, if any do. Such a pair that has not moved against each other since the start
-/// does not count: it may be drawn so, as parts of one shape.
+/// Returns the first pair of bodies that overlap. Pairs without relative motion since the start do not count, because
+/// they may be parts of one shape.
 pub fn overlapping<const D: usize>(bodies: &[RigidBody<D>], states: &[RigidState]) -> Option<[usize; 2]> {
     let mut pairs = (0..states.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
     pairs.find(|&[a, b]| {
@@ -144,7 +151,7 @@ pub fn overlapping<const D: usize>(bodies: &[RigidBody<D>], states: &[RigidState
 }
 
 impl<const D: usize> Pose<D> {
-    /// A vector of the body as it stood at the start, turned with it.
+    /// Rotates a vector from the initial to the present orientation.
     pub fn turned(&self, v: &Vector<D>) -> Vector<D> {
         self.rotated(v, self.sin)
     }
@@ -157,18 +164,18 @@ impl<const D: usize> Pose<D> {
         turned
     }
 
-    /// A place as the body sees it, from its reference point and turned back.
+    /// Returns the position `x` relative to the reference point, in the initial orientation.
     pub fn seen(&self, x: &Vector<D>) -> Vector<D> {
         self.rotated(&(x - self.center), -self.sin)
     }
 
-    /// Where a place that the body sees is.
+    /// Returns the position in space of a position relative to the body; the inverse of [`Self::seen`].
     pub fn place(&self, seen: &Vector<D>) -> Vector<D> {
         self.center + self.turned(seen)
     }
 }
 
-/// Linear between rows, from zero at time 0, constant after the last.
+/// Interpolates linearly between rows, from zero at time 0; constant after the last row.
 fn course(rows: &[Row<Vector<3>>], t: f64) -> Vector<3> {
     between(rows, Vector::zeros(), t).unwrap_or_else(|| rows.last().map_or_else(Vector::zeros, |(_, value)| *value))
 }

@@ -10,12 +10,12 @@ use super::surroundings::ParticleDomains;
 use crate::parallel::Halo;
 use crate::tensor::Vector;
 
-/// The least, unless it was less, and the most of the part of its F's reach that contact leaves a point.
+/// Bounds of the factor e_p after a step; the lower bound is the previous factor if that is smaller.
 const EXTENT: [f64; 2] = [0.25, 1.5];
-/// Part of a distance by which a place is moved to see whether what is nearest to it is a corner.
+/// Offset, as a fraction of the distance, for the check whether the nearest part of an outline is a corner.
 const ASIDE: f64 = 1e-3;
 
-/// A point near a body.
+/// A material point near a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Held {
     point: usize,
@@ -25,8 +25,8 @@ pub struct Held {
 }
 
 impl<const D: usize> RigidContacts<D> {
-    /// How far off a body the points of this rank are under `u` that are near one, m: of several the one that they
-    /// touch, or that is nearest. Those that touch two are left out.
+    /// Returns the gaps under `u` (m) of this rank's material points near a body. Of several bodies, the one in contact
+    /// or the nearest counts. Points in contact with two bodies are omitted. One reduction if a body moves freely.
     pub fn held(&self, u: &[f64], halo: &dyn Halo) -> Vec<Held> {
         let motions = self.found(u, halo);
         let mut all = Vec::with_capacity(self.points.len());
@@ -51,9 +51,9 @@ impl<const D: usize> RigidContacts<D> {
             .collect()
     }
 
-    /// Part of what every point of this rank reaches that it has from the end of the step on, with the bodies'
-    /// `states` and the points as they are then: what is near one goes on as far from it as the step has left it,
-    /// whatever its F has become. None without bodies: on all ranks or on none.
+    /// Returns the factors e_p of all material points of this rank after the step, so that points near a body keep
+    /// their gap although their F has changed. `states` are the bodies' states, and `after` has the material points, at
+    /// the end of the step. `None` on all ranks without bodies.
     pub fn extents_after(
         &self,
         held: &[Held],
@@ -80,10 +80,10 @@ impl<const D: usize> RigidContacts<D> {
     }
 }
 
-/// Of every point how much of its reach it has at the start, with the bodies as they stand. Points of soil that an
-/// outline cuts lie as near to it as the rule of their cell puts them, and are not thrown out; where soil begins at the
-/// outline, `is_soil` just off it, and no point reaches there, as in lattices that an outline is inclined to, the
-/// nearest do. Corners touch nothing beside them so.
+/// Returns the initial factors e_p of all material points. A point whose domain overlaps an outline gets the factor
+/// with which it just touches. If soil begins at an outline (`is_soil` at a position just outside) but no domain
+/// reaches it, as with inclined outlines, the nearest points get a factor above 1, with which they touch; not at
+/// corners.
 pub fn extents<const D: usize>(
     bodies: &[RigidBody<D>],
     states: &[RigidState],
@@ -116,8 +116,8 @@ pub fn extents<const D: usize>(
     extents
 }
 
-/// Whether what of an outline is nearest to a place moves with the place along it: that of a side does, that of a
-/// corner, which pushes what is below the sides at it, does not.
+/// Returns whether the nearest point of the outline moves when `x` moves tangentially, as at a side. At a corner it
+/// stays; a corner pushes points below the adjacent sides.
 fn is_beside_a_side<const D: usize>(
     body: &RigidBody<D>,
     pose: &Pose<D>,

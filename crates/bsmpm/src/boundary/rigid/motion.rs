@@ -7,32 +7,32 @@ use crate::step::newmark::Newmark;
 use crate::tensor::Vector;
 use nalgebra::Matrix3;
 
-/// A body in one step.
+/// A rigid body in one step.
 #[derive(Clone, Debug)]
 pub(super) struct BodyInStep<const D: usize> {
     pub body: RigidBody<D>,
     pub before: RigidState,
-    /// m, m, rad  since the start, at the end of the step without the soil
+    /// Predicted motion since the start, at the end of the step, without the soil (m, m, rad).
     pub predicted: Vector<3>,
-    /// N, N, N m  but for the soil's
+    /// External force without the soil's (N, N, N m).
     pub external: Vector<3>,
-    /// N, N, N m  what is left of the external and inertial forces at the predicted place, without the soil
+    /// Residual of the external and inertial forces at the predicted position, without the soil (N, N, N m).
     pub unbalanced: Vector<3>,
-    /// kg/s2, kg/s2, kg m2/s2  by which motions resist; 0 without inertia
+    /// Stiffness from inertia (kg/s2, kg/s2, kg m2/s2); 0 without inertia.
     pub inertia: Vector<3>,
-    /// inverse of what free motions resist with, the soil held; 0 for the others
+    /// Inverse stiffness of the free motions with the soil fixed; 0 for prescribed motions.
     pub resists: Matrix3<f64>,
-    /// m/s, m/s, rad/s  at the end of the step, if no material is near
+    /// Velocity at the end of the step if no material is near (m/s, m/s, rad/s).
     pub flight: Option<Vector<3>>,
-    /// m  distance of the nearest material at the start, as the body is at the end
+    /// Least gap between the material at the start of the step and the body at its end (m).
     pub least: f64,
     newmark: Option<Newmark>,
-    is_struck: bool,         // whether it meets material in the step that it did not touch before
-    acceleration: Vector<3>, // m/s2, m/s2, rad/s2  at the start of the step, as the integration takes it
+    is_struck: bool,         // whether it touches new material in the step
+    acceleration: Vector<3>, // m/s2, m/s2, rad/s2, at the start of the step, for the integration
 }
 
 impl<const D: usize> BodyInStep<D> {
-    /// With its motions as they are without the soil.
+    /// Creates the body for the step from `t` to `t + dt`, with its motion predicted without the soil.
     pub fn of(body: &RigidBody<D>, state: &RigidState, t: f64, dt: f64, around: &Surroundings<'_, D>) -> Self {
         let [before, after] = [t, t + dt].map(|t| body.pick(&state.moved, &body.on_path(t)));
         let zero = Vector::zeros();
@@ -67,7 +67,7 @@ impl<const D: usize> BodyInStep<D> {
             ..still
         };
         let Some(newmark) = around.newmark else {
-            // Without inertia it goes on as it did: soil is expected to.
+            // Without inertia, the prediction continues with the velocity of the last step.
             at.predicted = body.pick(&(before + state.velocity * dt), &after);
             at.unbalanced = external;
             return at;
@@ -79,11 +79,13 @@ impl<const D: usize> BodyInStep<D> {
         at
     }
 
-    /// m, m, rad  of the step, of motions that the soil does not hinder.
+    /// Returns the displacements of the step without contact forces (m, m, rad).
     fn unhindered(&self, dt: f64) -> Vector<3> {
         let Some(newmark) = self.newmark else {
             return Vector::zeros();
         };
+        // Balance m ((1 - alpha) a' + alpha a) = F, with Newmark's a' = c d + a'(d = 0) linear in the displacement d;
+        // `factor` is that of d in the balance per mass, so d = (F / m - acting(a, a'(0))) / factor.
         Vector::from_fn(|k, _| {
             let v = self.before.velocity[k];
             let a = self.acceleration[k];
@@ -92,7 +94,7 @@ impl<const D: usize> BodyInStep<D> {
         })
     }
 
-    /// Integrates the step by backward Euler from now on, from the place that was predicted.
+    /// Changes the step to backward Euler and keeps the predicted position.
     pub fn strike(&mut self, dt: f64) {
         let blow = Newmark::backward_euler();
         self.is_struck = true;
@@ -106,7 +108,7 @@ impl<const D: usize> BodyInStep<D> {
         self.unbalanced = self.body.pick(&self.inertia.component_mul(&off), &Vector::zeros());
     }
 
-    /// Goes on as nothing is near: a constant force is then exact.
+    /// Moves the body under its external force alone, because no material is near; exact for a constant force.
     pub fn fly(&mut self, dt: f64) {
         let gained = self.external.component_div(&self.body.mass) * dt;
         let moved = self.before.moved + (self.before.velocity + gained * 0.5) * dt;
@@ -114,8 +116,8 @@ impl<const D: usize> BodyInStep<D> {
         self.flight = Some(self.before.velocity + gained);
     }
 
-    /// The state after the step of this `length` (s or pseudo-time), with what its free `motions` add to those that
-    /// were predicted, what the material has slipped (m) and what work it was done (J).
+    /// Returns the state after a step of this `length` (s or pseudo-time) with the free `motions` beyond the predicted
+    /// ones, the `slip` of the material (m) and the `work` on it (J).
     pub fn state(&self, motions: &Vector<3>, length: f64, slip: f64, work: f64) -> RigidState {
         let moved = self.predicted + motions;
         let mean = (moved - self.before.moved) / length;
@@ -129,7 +131,7 @@ impl<const D: usize> BodyInStep<D> {
         }
     }
 
-    /// Velocity and acceleration of free motions after a `step` (m, m, rad).
+    /// Returns the velocity and acceleration of free motions after the displacement `step` (m, m, rad).
     fn motion_after(&self, step: &Vector<3>, length: f64) -> (Vector<3>, Option<Vector<3>>) {
         let zero = Vector::zeros();
         if let Some(end) = self.flight {

@@ -1,6 +1,7 @@
 //! Contact detection: material points near a rigid body, their gaps, contact positions and stiffness, theory-manual
 //! equations (T7.7) to (T7.9).
 
+use super::body::Pose;
 use super::motion::BodyInStep;
 use super::point::{ContactStatus, RigidPoint, along, tangents};
 use super::surroundings::{ParticleDomains, Surroundings};
@@ -13,18 +14,20 @@ use crate::schedule::TimeInterval;
 use crate::tensor::Vector;
 use crate::water::pore_pressure::PorePressure;
 
-/// Steps ahead of the meeting from which on material is near a body: it may be faster or slower than it starts.
+/// Material counts as near a body if the two could meet within this number of steps at their present velocities, which
+/// may change in the step.
 const MEETING: f64 = 2.0;
-/// Value of a node's function at a body from which on the body may stop the node.
+/// Least shape function of a node at a body for which the body may stop the node.
 const SEEN: f64 = 1e-3;
-/// What a point reaches to a side at least and at most, over what it did at the start: large shear makes of a box what
-/// no material fills.
+/// Bounds of a material point's half width after deformation, relative to its initial value: after large shear, the
+/// deformed box is larger than the material.
 const STRETCH: [f64; 2] = [0.25, 1.5];
 
 impl<const D: usize> RigidContacts<D> {
-    /// In a step from `t` to `t + dt`, with the statuses that the last displacement, `guess`, asks for; what touches as
-    /// the step begins is on the outline all the same. `young` of a point, Pa. Two reductions, and an exchange with the
-    /// neighbours in dynamics. Fails on all ranks where nothing holds a body.
+    /// Detects the contacts of a step and predicts their statuses from `guess`, the displacement of the last step (m).
+    /// Points in contact at the start of the step remain closed. `young` returns the Young's modulus of a material
+    /// point (Pa). One reduction; in dynamic analyses also a ghost exchange; further reductions if a body moves freely.
+    /// Fails on all ranks if nothing supports a free motion.
     pub fn of(
         around: &Surroundings<'_, D>,
         young: impl Fn(usize) -> f64,
@@ -60,8 +63,8 @@ impl<const D: usize> RigidContacts<D> {
         Ok(contacts)
     }
 
-    /// Adds the bodies with the points near them, and returns marks of the nodes that they may stop; none without
-    /// inertia. One reduction.
+    /// Adds the bodies and the material points near them, and returns marks of the nodes that a body may stop; empty
+    /// without inertia. One reduction.
     fn gather(
         &mut self,
         around: &Surroundings<'_, D>,
@@ -103,15 +106,15 @@ impl<const D: usize> RigidContacts<D> {
         moving
     }
 
-    /// Gives every point the status that the last displacement, `guess`, asks for, and returns how the material at it
-    /// moves then as seen from its body, m.
+    /// Predicts the status of every point from `guess` and returns the displacement of the material there relative to
+    /// its body (m).
     fn recall(&mut self, guess: &[f64]) -> Vec<Vector<D>> {
         let motions = vec![Vector::zeros(); self.bodies.len()];
         let moved = self.points.iter().map(|point| self.moved(point, guess, &motions));
         let moved: Vec<Vector<D>> = moved.collect();
         for (point, moved) in self.points.iter_mut().zip(&moved) {
-            // What touches as the step begins goes on to: a body that goes away faster than the guess followed would
-            // let go of all that it holds, which soil that yields cannot stand.
+            // A point in contact at the start of the step remains closed. If the body moves away faster than the guess,
+            // all points would open otherwise, and yielding soil could not bear that.
             let is_met = point.gap_after(moved).min(point.gap_before()) <= CLOSE * self.edge;
             let status = if is_met { point.met(moved) } else { ContactStatus::Open };
             point.take(status, moved);
@@ -119,7 +122,7 @@ impl<const D: usize> RigidContacts<D> {
         moved
     }
 
-    /// Adds the points near a body; the distance of the nearest, m.
+    /// Adds the material points near a body and returns the least gap (m).
     fn gather_at(
         &mut self,
         number: usize,
@@ -129,14 +132,19 @@ impl<const D: usize> RigidContacts<D> {
         dt: f64,
     ) -> f64 {
         let outline = &at.body.outline;
-        let after = at.body.pose(&at.predicted);
+        let radius = outline.radius();
+        let poses = BodyPoses {
+            before: at.body.pose(&at.before.moved),
+            after: at.body.pose(&at.predicted),
+        };
+        let after = &poses.after;
         let ParticleDomains { grid, points, .. } = around.reaching;
         let mut least = f64::INFINITY;
         let longest = (0..D).map(|axis| longest_edge(grid, axis)).fold(0.0, f64::max);
         for patch in around.shape.patches() {
             for p in patch.points.clone() {
                 let x = points.x[p];
-                let bound = (x - after.center).norm() - outline.radius() - 2.0 * longest;
+                let bound = (x - after.center).norm() - radius - 2.0 * longest;
                 if bound > least.max(longest) {
                     continue;
                 }
@@ -162,25 +170,33 @@ impl<const D: usize> RigidContacts<D> {
                     stiffness: PENALTY * stiffness,
                 };
                 self.points
-                    .push(rigid_point(number, at, around, patch.first_node, p, &foot));
+                    .push(rigid_point(number, at, &poses, around, patch.first_node, p, &foot));
             }
         }
         least
     }
 }
 
-/// Where a point comes nearest to a body at the end of its motion.
+/// Poses of a body at both ends of a step.
+struct BodyPoses<const D: usize> {
+    before: Pose<D>,
+    after: Pose<D>,
+}
+
+/// Contact position of a material point, for the body at the end of its motion.
 struct Foot<const D: usize> {
     place: Vector<D>,  // m
     normal: Vector<D>, // unit vector out of the body
     gap: f64,          // m
-    stiffness: f64,    // N/m  of the contact there
+    stiffness: f64,    // N/m, penalty
 }
 
-/// A point, off the body of that number, of the cell whose functions begin with a node.
+/// Creates the contact point of material point `p` with body `number`; `first_node` is the first node of the point's
+/// cell.
 fn rigid_point<const D: usize>(
     number: usize,
     at: &BodyInStep<D>,
+    poses: &BodyPoses<D>,
     around: &Surroundings<'_, D>,
     first_node: usize,
     p: usize,
@@ -188,8 +204,8 @@ fn rigid_point<const D: usize>(
 ) -> RigidPoint<D> {
     let Foot { place, normal, .. } = *foot;
     let points = around.reaching.points;
-    let seen = at.body.pose(&at.before.moved).seen(&place);
-    let after = at.body.pose(&at.predicted);
+    let seen = poses.before.seen(&place);
+    let after = &poses.after;
     let tangents = tangents(&normal);
     let step = after.place(&seen) - place;
     let pores = around.pore_pressure.filter(|_| at.body.friction > 0.0);
@@ -215,7 +231,8 @@ fn rigid_point<const D: usize>(
     }
 }
 
-/// How far a point and the body at it come in a step as they start it, m.
+/// Returns the distance that a material point and the body there move together in a step at their initial velocities
+/// (m).
 fn comes<const D: usize>(point: &RigidPoint<D>, at: &BodyInStep<D>, around: &Surroundings<'_, D>, dt: f64) -> f64 {
     let v = around
         .reaching
@@ -227,7 +244,7 @@ fn comes<const D: usize>(point: &RigidPoint<D>, at: &BodyInStep<D>, around: &Sur
     dt * v.norm() + point.carried_by(&step).norm()
 }
 
-/// m  longest edge of the cells along an axis.
+/// Returns the longest cell edge along an axis (m).
 pub(super) fn longest_edge<const D: usize>(grid: &Grid<D>, axis: usize) -> f64 {
     let knots = &grid.axes()[axis];
     (0..knots.cells())
@@ -235,15 +252,16 @@ pub(super) fn longest_edge<const D: usize>(grid: &Grid<D>, axis: usize) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// m  how far a point reaches along a normal, by the ellipse in its box in the lattice of the cell that it was in at
-/// the start, deformed by its F; and an edge of that cell.
+/// Returns the half width of a material point's domain along a normal (m), and the shortest edge of its initial cell
+/// (m). The domain is the ellipse in the point's initial box, deformed by F.
 pub(super) fn reach<const D: usize>(around: &ParticleDomains<'_, D>, p: usize, normal: &Vector<D>) -> (f64, f64) {
     let (half, size, edge) = half_edges(around, p, normal);
     let reach = half.iter().map(|half| half.powi(2)).sum::<f64>().sqrt();
     (reach.clamp(STRETCH[0] * size.min(), STRETCH[1] * size.max()), edge)
 }
 
-/// N  force of pore water at a point of a cell whose functions begin with a node, along the normal at a place, m.
+/// Returns the force of pore water on the outline at the position `place` (m) of material point `p` (N), along the
+/// normal.
 fn pressing<const D: usize>(
     pores: &PorePressure<D>,
     around: &Surroundings<'_, D>,
@@ -259,15 +277,15 @@ fn pressing<const D: usize>(
     pressure * points.volume[p] * points.F.at(p).determinant() / column(&around.reaching, p, normal)
 }
 
-/// m  how far a point spans along a normal with the edge of its box that spans most: its volume over that is the area
-/// of an outline that belongs to it, as one row of points touches an outline.
+/// Returns the width of a material point's domain along a normal, by the box edge with the largest extent there (m).
+/// One row of points touches an outline, so the volume divided by this width is the point's area on the outline.
 fn column<const D: usize>(around: &ParticleDomains<'_, D>, p: usize, normal: &Vector<D>) -> f64 {
     let (half, size, _) = half_edges(around, p, normal);
     (2.0 * half.amax()).max(STRETCH[0] * size.min())
 }
 
-/// m  how far each half edge of a point's box, deformed by its F, goes along a normal; those half edges; and an edge of
-/// the point's cell at the start.
+/// Returns the extents of the half edges of a material point's box, deformed by F, along a normal (m); the undeformed
+/// half edges (m); and the shortest edge of its initial cell (m).
 fn half_edges<const D: usize>(
     around: &ParticleDomains<'_, D>,
     p: usize,
@@ -289,7 +307,8 @@ fn half_edges<const D: usize>(
     let size = start.map_or_else(|| Vector::repeat(grid.smallest_edge()), |cell| grid.cell_box(&cell).1);
     let share = reach.get(usize::from(points.material[p])).copied().unwrap_or(0.5);
     let box_volume: f64 = size.iter().map(|edge| 2.0 * share * edge).product();
-    // A box that was cut holds less.
+    // A point that fills only part of its box, because the boundary of the material cut it, gets a smaller box of the
+    // same shape.
     let share = share
         * (points.volume[p] / weight(&placed) / box_volume)
             .min(1.0)
@@ -302,9 +321,9 @@ fn half_edges<const D: usize>(
     (along, size * share, size.min())
 }
 
-/// What the nodes of a point's cell have to say of a place beside it: N_I + grad N_I . (place - x), so that a force
-/// there keeps its moment. The functions themselves, gone on with to the place, would let a node that the point hardly
-/// touches take up all that is asked there; linear ones do so either way, and speak of the point alone.
+/// Returns the shape functions at an `offset` (m) from a material point, extrapolated linearly: N_I + grad N_I .
+/// offset, so that a force there keeps its moment. Splines evaluated outside their cell could load a node that hardly
+/// touches the point with most of the force. Degree 1 is not extrapolated.
 fn values<const D: usize>(shape: &Shape<D>, p: usize, offset: &Vector<D>) -> Vec<f64> {
     let reaches = if shape.width() > 2 { 1.0 } else { 0.0 };
     let functions = shape.of(p).into_iter();

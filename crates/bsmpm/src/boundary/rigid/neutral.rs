@@ -8,22 +8,24 @@ use crate::parallel::Halo;
 use crate::tensor::Vector;
 use nalgebra::Matrix3;
 
-/// Stiffness of a motion over that with all points stuck, below which it is loose: a base that is inclined by its root
-/// to the motion.
+/// Ratio of the stiffness of a motion to that with all points sticking, below which the motion is loose. Its root is
+/// the inclination of the base to the motion at that limit.
 const LOOSE: f64 = 1e-6;
-/// Part by which slips are taken to be larger that go against the motion, so that of two equal ones one point sticks.
+/// Relative increase of slips against the motion, so that only one of two equal slips sticks.
 const AGAINST: f64 = 0.01;
 
-/// What the points that slide are for a loose motion.
+/// Direction and slip of a sliding point with respect to a loose motion.
 #[derive(Clone, Copy)]
 struct SlidingPoints {
-    towards: f64, // of the friction along the motion: 1 or -1
-    slip: f64,    // m  of the motion that it takes to undo the slip, by which the neutral point is chosen
+    towards: f64, // direction of friction along the motion: 1 or -1
+    slip: f64,    // size of the motion that undoes the slip; the least one sticks
 }
 
 impl<const D: usize> RigidContacts<D> {
-    /// Takes points to stick, of each body with a loose motion, about what has `moved`, m, of every point; those that
-    /// have just come to slide are left out. How many. Two reductions for each motion that is loose, and one.
+    /// Makes the point with the least slip stick, for each body with a loose motion whose points slide in both
+    /// directions. `moved` is the displacement of the material at every point relative to its body (m). Points that
+    /// were just `released` do not count for the least slip. Returns the number of these points on all ranks. Two
+    /// reductions for each check, and two more per loose motion.
     pub(super) fn hold_neutral(&mut self, moved: &[Vector<D>], released: &[bool], halo: &dyn Halo) -> usize {
         if self.dt > 0.0 || !self.is_coupled() || !self.has_friction() {
             return 0;
@@ -69,7 +71,7 @@ impl<const D: usize> RigidContacts<D> {
         held
     }
 
-    /// Of every body the motion that resists least, if it is loose.
+    /// Returns, per body, the motion with the least stiffness if it is loose. Two reductions.
     fn loose_motions(&self, halo: &dyn Halo) -> Vec<Option<Vector<3>>> {
         let stuck = self.stiffness_by(RigidPoint::rate_if_stuck, halo);
         let now = self.stiffness(false, halo);
@@ -78,7 +80,8 @@ impl<const D: usize> RigidContacts<D> {
     }
 }
 
-/// The motion of least stiffness `now` over that with all points `stuck`, if it is loose.
+/// Returns the motion with the least ratio of the stiffness `now` to that with all points `stuck`, if it is loose: the
+/// lowest mode of a generalised eigenvalue problem.
 fn loosest<const D: usize>(at: &BodyInStep<D>, stuck: &Matrix3<f64>, now: &Matrix3<f64>) -> Option<Vector<3>> {
     if !at.body.is_free() {
         return None;
@@ -92,12 +95,12 @@ fn loosest<const D: usize>(at: &BodyInStep<D>, stuck: &Matrix3<f64>, now: &Matri
     (eigen.eigenvalues[least] < LOOSE).then(|| inverse.transpose() * eigen.eigenvectors.column(least))
 }
 
-/// The stiffness of the free motions; 1 of each of the others by itself.
+/// Returns the stiffness of the free motions, with a unit diagonal for the prescribed ones.
 fn among_free(stiffness: &Matrix3<f64>, free: [f64; MOTIONS]) -> Matrix3<f64> {
     Matrix3::from_fn(|k, l| stiffness[(k, l)] * free[k] * free[l] + if k == l { 1.0 - free[k] } else { 0.0 })
 }
 
-/// Of a point that slides along the loose motion of its body.
+/// Returns direction and slip of a point that slides along the loose motion of its body; `None` for others.
 fn sliding<const D: usize>(
     point: &RigidPoint<D>,
     moved: &Vector<D>,

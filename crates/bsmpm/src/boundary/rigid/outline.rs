@@ -4,50 +4,51 @@ use super::terrain::Terrain;
 use crate::tensor::Vector;
 use std::f64::consts::PI;
 
-/// Part of an outline's size below which a place counts as on it, whose normal is then that of the edge.
+/// Distance, as a fraction of an outline's size, within which a position counts as on the outline; its normal is then
+/// that of the edge.
 const ON: f64 = 1e-12;
 
-/// Places along an edge or a circle at which others are looked for.
+/// Number of points along an edge or a circle at which overlap with other bodies is checked.
 const PLACES: usize = 32;
 
-/// The outline of a body, m from its reference point.
+/// Outline of a body, relative to the reference point (m).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outline {
     /// Corners, counter-clockwise.
     Polygon(Vec<Vector<2>>),
-    /// Radius about the reference point; in space a sphere.
+    /// Radius about the reference point; in 3-D a sphere.
     Circle(f64),
-    /// In space: half edges of a cuboid about the reference point.
+    /// 3-D: half edges of a cuboid about the reference point.
     Box([f64; 3]),
-    /// In space: a polygon of the distance from the vertical through the reference point and the height; what reaches
-    /// that vertical goes on as its mirror image beyond it.
+    /// 3-D: body of revolution about the vertical axis through the reference point. The polygon has the distance from
+    /// the axis and the height; a part that reaches the axis continues as its mirror image.
     Revolved(Vec<Vector<2>>),
-    /// In space: what lies under heights, from the grid's lower corner.
+    /// 3-D: the space below a raster of heights, from the grid's lower corner.
     Terrain(Box<Terrain>),
 }
 
-/// What is nearest to a place.
+/// Distance and normal of an outline at a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest<const D: usize = 2> {
-    /// m  from the outline, negative inside
+    /// Distance from the outline (m), negative inside.
     pub distance: f64,
-    /// unit normal of the outline, out of the body
+    /// Unit normal of the outline, out of the body.
     pub normal: Vector<D>,
 }
 
-/// Integrals over a shape.
+/// Area integrals of an outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sizes {
-    /// m2
+    /// Area (m2).
     pub area: f64,
-    /// m  centroid
+    /// Centroid (m).
     pub centroid: Vector<2>,
-    /// m4  polar second moment about the centroid
+    /// Polar second moment of area about the centroid (m4).
     pub polar: f64,
 }
 
 impl Outline {
-    /// Of the place `x`, m from the reference point.
+    /// Returns the distance and the normal at the position `x` (m from the reference point).
     pub fn nearest<const D: usize>(&self, x: &Vector<D>) -> Nearest<D> {
         match self {
             Self::Circle(radius) => {
@@ -82,7 +83,7 @@ impl Outline {
         }
     }
 
-    /// Largest distance of the outline from the reference point, m.
+    /// Returns the largest distance of the outline from the reference point (m).
     pub fn radius(&self) -> f64 {
         match self {
             Self::Circle(radius) => *radius,
@@ -92,7 +93,7 @@ impl Outline {
         }
     }
 
-    /// Places along it, corners among them; of a plane.
+    /// Returns points along the outline, including its corners, in 2-D; none in 3-D.
     pub fn places<const D: usize>(&self) -> Vec<Vector<D>> {
         let places: Vec<Vector<2>> = match self {
             _ if D != 2 => Vec::new(),
@@ -118,8 +119,8 @@ impl Outline {
             .collect()
     }
 
-    /// m3 per radian  that it sweeps about the axis x = `axis`, m from the reference point, beyond which its part is
-    /// one half of a section of a body of revolution.
+    /// Returns the volume per radian (m3) of the part beyond x = `axis` (m from the reference point), rotated about
+    /// that axis: half of the section of a body of revolution.
     pub fn swept(&self, axis: f64) -> f64 {
         match self {
             Self::Circle(radius) => {
@@ -130,7 +131,7 @@ impl Outline {
         }
     }
 
-    /// Area, centroid and polar moment, of a plane; nothing of what has no mass of its own.
+    /// Returns area, centroid and polar moment of a 2-D outline; zero for 3-D outlines, which need no mass integrals.
     pub fn sizes(&self) -> Sizes {
         match self {
             Self::Circle(radius) => Sizes {
@@ -164,13 +165,13 @@ impl Outline {
     }
 }
 
-/// What a circle sweeps about the axis x = `axis` with its part up to x = `s`, but for a constant.
+/// Returns the antiderivative at x = `s` of the volume per radian of a circle rotated about x = `axis` (m3).
 fn swept_by_circle(radius: f64, axis: f64, s: f64) -> f64 {
     let half = (radius.powi(2) - s.powi(2)).max(0.0).sqrt();
     -axis * (s * half + radius.powi(2) * (s / radius).asin()) - 2.0 / 3.0 * half.powi(3)
 }
 
-/// Part of an edge in the integral of x - `axis` over what of a polygon is beyond x = `axis`.
+/// Returns the contribution of an edge to the integral of x - `axis` over the part of a polygon beyond x = `axis` (m3).
 fn moment_beyond(axis: f64, a: &Vector<2>, b: &Vector<2>) -> f64 {
     let [a, b] = [a, b].map(|x| Vector::<2>::new(x[0] - axis, x[1]));
     let cut = a + (b - a) * (a[0] / (a[0] - b[0]));
@@ -182,6 +183,7 @@ fn moment_beyond(axis: f64, a: &Vector<2>, b: &Vector<2>) -> f64 {
     }
 }
 
+/// Returns the distance and the normal of a cuboid at `x`.
 fn nearest_of_box<const D: usize>(half: &[f64; 3], x: &Vector<D>) -> Nearest<D> {
     let beyond = Vector::<D>::from_fn(|k, _| x[k].abs() - half[k]);
     let outside = beyond.map(|part| part.max(0.0));
@@ -199,16 +201,18 @@ fn nearest_of_box<const D: usize>(half: &[f64; 3], x: &Vector<D>) -> Nearest<D> 
     }
 }
 
-/// Edges of a closed polygon, from corner to corner.
+/// Returns the edges of a closed polygon, from corner to corner.
 fn edges(corners: &[Vector<2>]) -> impl Iterator<Item = (&Vector<2>, &Vector<2>)> {
     corners.iter().zip(corners.iter().cycle().skip(1))
 }
 
-/// Part of an edge in the integral of x over a polygon; edges along x = 0 have none.
+/// Returns the contribution of an edge to the integral of x over a polygon (m3); 0 for edges along x = 0.
 fn moment_about_y(a: &Vector<2>, b: &Vector<2>) -> f64 {
     (b[1] - a[1]) * (a[0] * a[0] + a[0] * b[0] + b[0] * b[0]) / 6.0
 }
 
+/// Returns the distance and the normal of a polygon at `x`; a count of edges crossed by a horizontal ray decides
+/// whether `x` is inside.
 fn nearest_of(corners: &[Vector<2>], x: &Vector<2>) -> Nearest {
     let mut least = f64::INFINITY;
     let mut foot = Vector::zeros();
@@ -231,7 +235,7 @@ fn nearest_of(corners: &[Vector<2>], x: &Vector<2>) -> Nearest {
     }
     let side = if inside { -1.0 } else { 1.0 };
     let off = (x - foot) * side;
-    // Counter-clockwise, the body is on the left of its edges.
+    // The corners are counter-clockwise, so the body is on the left of its edges.
     let normal = off
         .try_normalize(ON * size)
         .unwrap_or_else(|| Vector::<2>::new(edge[1], -edge[0]).normalize());

@@ -3,18 +3,19 @@
 use crate::nodal::Nodal;
 use crate::tensor::Vector;
 
-/// What a point does at an outline in a step.
+/// Contact status of a material point at an outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContactStatus {
-    /// Off it: no force.
+    /// Separated: no force.
     Open,
-    /// On it, and held along it.
+    /// In contact, without slip.
     Stick,
-    /// On it, and slipping towards here along it: a unit vector of its tangents' components; 0 without friction.
+    /// In contact, sliding. Friction on the material acts along this unit vector of tangential components; 0 without
+    /// friction.
     Slip(Along),
 }
 
-/// Components along the tangents of an outline: of a plane the first.
+/// Components along the tangents of an outline; in 2-D only the first is used.
 pub type Along = [f64; 2];
 
 fn size(along: Along) -> f64 {
@@ -29,54 +30,56 @@ fn product(a: Along, b: Along) -> f64 {
     }
 }
 
-/// Part of the friction by which it may be off Coulomb's law for what would hold the point, in space.
+/// Error of linearised friction, as a fraction of Coulomb's limit, above which its direction is corrected (3-D).
 const TURNED: f64 = 0.02;
 
-/// A point near a body. Forces on it act where its box comes nearest to the outline, by the functions of its own cell.
+/// A material point near a body. Contact forces act where its domain is nearest to the outline, through the shape
+/// functions of its own cell.
 #[derive(Clone, Debug)]
 pub(super) struct RigidPoint<const D: usize> {
-    /// number of the body
+    /// Index of the body.
     pub body: usize,
-    /// number of the point
+    /// Index of the material point.
     pub point: usize,
-    /// first node of its cell
+    /// First node of its cell.
     pub first_node: usize,
-    /// N_I of the cell's nodes at that place
+    /// N_I of the cell's nodes at the contact position.
     pub N: Vec<f64>,
-    /// unit normal out of the body, at the end of its motion
+    /// Unit normal out of the body, at the end of its motion.
     pub normal: Vector<D>,
-    /// m  from the body as it is at the end of the step, of the point as it is at the start
+    /// Gap between the body at the end of the step and the point at the start (m).
     pub gap: f64,
-    /// m  of the body along the outline in the step, as predicted
+    /// Predicted tangential motion of the body in the step (m).
     pub motion: Along,
-    /// m  of the body towards the point in the step, as predicted
+    /// Predicted motion of the body towards the point in the step (m).
     pub approach: f64,
-    /// m  of the body there in any direction
+    /// Length of the predicted motion of the body at the contact position (m).
     pub way: f64,
-    /// m  from the body's reference point to the place, at the end
+    /// Lever arm from the body's reference point to the contact position at the end of the step (m).
     pub arm: Vector<D>,
-    /// N/m
+    /// Penalty stiffness (N/m).
     pub stiffness: f64,
-    /// -
+    /// Friction coefficient (-).
     pub friction: f64,
-    /// N  part of the normal force that pore water carries
+    /// Part of the normal force that pore water carries (N).
     pub water: f64,
-    /// N  along the outline, from the last step
+    /// Tangential force at the end of the last step (N).
     pub carried: Along,
-    /// what it does
+    /// Contact status.
     pub status: ContactStatus,
-    /// of what would hold it, the part that friction leaves of what is beside its direction; in space
+    /// Stiffness across the direction of friction, as a fraction of the penalty stiffness (3-D).
     pub transverse_share: f64,
 }
 
-/// The tangents of an outline: of a plane the normal turned by a right angle.
+/// Returns the unit tangents for a normal; in 2-D the normal rotated by a right angle, and zero.
 pub(super) fn tangents<const D: usize>(normal: &Vector<D>) -> [Vector<D>; 2] {
     let mut tangents = [Vector::zeros(); 2];
     if D == 2 {
         (tangents[0][0], tangents[0][1]) = (-normal[1], normal[0]);
         return tangents;
     }
-    // The axis that is least along the normal, without its part along it; and what is across both.
+    // The first tangent is the coordinate axis with the least normal component, projected onto the tangential plane;
+    // the second is the cross product of normal and first tangent.
     let least = (0..D)
         .min_by(|a, b| normal[*a].abs().total_cmp(&normal[*b].abs()))
         .unwrap_or(0);
@@ -87,13 +90,13 @@ pub(super) fn tangents<const D: usize>(normal: &Vector<D>) -> [Vector<D>; 2] {
     [first, Vector::from_fn(|k, _| second[k])]
 }
 
-/// Components of a vector along tangents.
+/// Returns the components of a vector along tangents.
 pub(super) fn along<const D: usize>(tangents: &[Vector<D>; 2], v: &Vector<D>) -> Along {
     [tangents[0].dot(v), if D == 2 { 0.0 } else { tangents[1].dot(v) }]
 }
 
 impl<const D: usize> RigidPoint<D> {
-    /// The vector of components along the outline.
+    /// Returns the vector with these tangential components.
     pub fn vector(&self, along: Along) -> Vector<D> {
         let [first, second] = tangents(&self.normal);
         if D == 2 {
@@ -107,7 +110,7 @@ impl<const D: usize> RigidPoint<D> {
         along(&tangents(&self.normal), v)
     }
 
-    /// m  of the material at the place.
+    /// Returns the displacement of the material at the contact position (m).
     pub fn displacement(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
         let mut sum = Vector::<D>::zeros();
         for (N, offset) in self.N.iter().zip(offsets) {
@@ -118,7 +121,7 @@ impl<const D: usize> RigidPoint<D> {
         sum
     }
 
-    /// m  of the body's place, of small motions of the body.
+    /// Returns the displacement of the body at the contact position for small motions of the body (m).
     pub fn carried_by(&self, motions: &Vector<3>) -> Vector<D> {
         let mut carried = Vector::<D>::from_fn(|k, _| motions[k]);
         if D == 2 {
@@ -128,39 +131,39 @@ impl<const D: usize> RigidPoint<D> {
         carried
     }
 
-    /// N, N, N m  of a force at the place, as the body's motions feel it; in space N.
+    /// Returns a force at the contact position as forces on the body's motions (N, N, N m; in 3-D N).
     pub fn on_motions(&self, force: &Vector<D>) -> Vector<3> {
         let turns = self.arm[0] * force[1] - self.arm[1] * force[0];
         Vector::<3>::from_fn(|k, _| if k < D { force[k] } else { turns })
     }
 
-    /// m  along the outline of small motions of the body.
+    /// Returns the tangential displacement at the contact position for small motions of the body (m).
     pub fn along_motion(&self, motions: &Vector<3>) -> Along {
         self.components(&self.carried_by(motions))
     }
 
-    /// m  from the outline as the step begins.
+    /// Returns the gap at the start of the step (m).
     pub fn gap_before(&self) -> f64 {
         self.gap + self.approach
     }
 
-    /// m  from the outline, of material that has `moved` as seen from the body.
+    /// Returns the gap of material that has `moved` relative to the body (m).
     pub fn gap_after(&self, moved: &Vector<D>) -> f64 {
         self.gap + self.normal.dot(moved)
     }
 
-    /// m  of the material along the outline.
+    /// Returns the slip of the material relative to the body (m).
     pub fn slip(&self, moved: &Vector<D>) -> Along {
         let along = self.components(moved);
         [along[0] - self.motion[0], along[1] - self.motion[1]]
     }
 
-    /// m  its length.
+    /// Returns the length of the slip (m).
     pub fn slipped(&self, moved: &Vector<D>) -> f64 {
         size(self.slip(moved))
     }
 
-    /// N  normal and tangential force on the material, that of its status.
+    /// Returns the normal and the tangential force on the material for the present status (N).
     pub fn pushed(&self, moved: &Vector<D>) -> (f64, Along) {
         let normal = -self.stiffness * self.gap_after(moved);
         match self.status {
@@ -174,7 +177,7 @@ impl<const D: usize> RigidPoint<D> {
         }
     }
 
-    /// N  the most that friction can be, by Coulomb's law for the effective normal force.
+    /// Returns Coulomb's limit for the effective normal force (N).
     fn limit(&self, normal: f64) -> f64 {
         let effective = if self.water > 0.0 {
             (normal - self.water).max(0.0)
@@ -184,7 +187,8 @@ impl<const D: usize> RigidPoint<D> {
         self.friction * effective
     }
 
-    /// What friction leaves of what is beside its direction: Newton's linear form of mu N t/|t| about the last t.
+    /// Returns the part of friction across `towards`: mu N t/|t| linearised about the trial force t of the last
+    /// correction (Newton).
     fn transverse(&self, towards: Along, held: impl Fn() -> Along) -> Along {
         if self.transverse_share == 0.0 {
             return [0.0; 2];
@@ -194,7 +198,7 @@ impl<const D: usize> RigidPoint<D> {
         [0, 1].map(|k| self.transverse_share * (held[k] - towards[k] * along))
     }
 
-    /// Takes a status that what has `moved` asks for.
+    /// Sets a status and linearises friction about the displacement `moved` (m).
     pub fn take(&mut self, status: ContactStatus, moved: &Vector<D>) {
         let held = size(self.held(moved));
         let limit = self.limit(-self.stiffness * self.gap_after(moved));
@@ -203,19 +207,19 @@ impl<const D: usize> RigidPoint<D> {
         self.transverse_share = if turns { (limit.max(0.0) / held).min(1.0) } else { 0.0 };
     }
 
-    /// N  tangential force if it sticks.
+    /// Returns the tangential trial force, which acts if the point sticks (N).
     fn held(&self, moved: &Vector<D>) -> Along {
         let slip = self.slip(moved);
         [0, 1].map(|k| self.carried[k] - self.stiffness * slip[k])
     }
 
-    /// N  force on the material.
+    /// Returns the force on the material (N).
     pub fn force(&self, moved: &Vector<D>) -> Vector<D> {
         let (normal, along) = self.pushed(moved);
         self.normal * normal + self.vector(along)
     }
 
-    /// N  force on the material as a step without inertia begins.
+    /// Returns the force on the material at the start of a step without inertia (N).
     fn before(&self) -> Vector<D> {
         let depth = -self.gap_before();
         if depth > 0.0 {
@@ -225,15 +229,16 @@ impl<const D: usize> RigidPoint<D> {
         }
     }
 
-    /// N  mean of the forces as the step begins and ends, which counts for work; and what the one at its end is more.
-    /// With inertia it is the one at the end: the stiffness, and with it the force at the start, is one of the step.
+    /// Returns the mean force of the step, which the work uses, and the force at the end less the mean (N). With
+    /// inertia, the force at the end replaces the mean, because the penalty stiffness, and with it the force at the
+    /// start, depends on the step size.
     pub fn mean(&self, moved: &Vector<D>, inertia: bool) -> (Vector<D>, Vector<D>) {
         let after = self.force(moved);
         let mean = if inertia { after } else { (self.before() + after) * 0.5 };
         (mean, after - mean)
     }
 
-    /// N  change of the force with a change of what has moved; `whole`: with the part that is not symmetric.
+    /// Returns the derivative of the force in the direction `moved` (N); `whole`: including the unsymmetric part.
     pub fn rate(&self, moved: &Vector<D>, whole: bool) -> Vector<D> {
         let normal = -self.stiffness * self.normal.dot(moved);
         match self.status {
@@ -249,13 +254,13 @@ impl<const D: usize> RigidPoint<D> {
         }
     }
 
-    /// N  the same of a point that sticks.
+    /// As [`Self::rate`], for a point that sticks.
     fn rate_if_held(&self, moved: &Vector<D>) -> Vector<D> {
         let held = self.components(moved).map(|along| self.stiffness * along);
         -self.normal * (self.stiffness * self.normal.dot(moved)) - self.vector(held)
     }
 
-    /// N  the same with friction that holds whatever touches.
+    /// As [`Self::rate`], with the symmetric part only and with sliding points that have friction made to stick.
     pub fn rate_if_stuck(&self, moved: &Vector<D>) -> Vector<D> {
         match self.status {
             ContactStatus::Slip(_) if self.friction > 0.0 => self.rate_if_held(moved),
@@ -263,7 +268,7 @@ impl<const D: usize> RigidPoint<D> {
         }
     }
 
-    /// N m  friction's work on what slides, not positive; 0 where nothing does.
+    /// Returns the work of friction on the slip (N m), not positive; 0 unless the point slides.
     pub fn friction_work(&self, moved: &Vector<D>) -> f64 {
         match self.status {
             ContactStatus::Slip(_) => product(self.pushed(moved).1, self.slip(moved)),
@@ -271,7 +276,7 @@ impl<const D: usize> RigidPoint<D> {
         }
     }
 
-    /// The status that a displacement asks for that closes the gap.
+    /// Returns the status of a closed point after the displacement `moved` (m).
     pub fn met(&self, moved: &Vector<D>) -> ContactStatus {
         let held = self.held(moved);
         let limit = self.limit(-self.stiffness * self.gap_after(moved));
@@ -282,9 +287,9 @@ impl<const D: usize> RigidPoint<D> {
         }
     }
 
-    /// The status that a displacement asks for, as far as forces are known to `force`, N, and lengths to `length`, m;
-    /// and by how much it contradicts the one that is, N: of what has moved too far, what soil would have resisted
-    /// with.
+    /// Returns the status that follows from the displacement `moved` (m), and the force by which it contradicts the
+    /// present status (N). `force` (N) and `length` (m) are the tolerances. A displacement is converted to a force with
+    /// the stiffness of the soil.
     pub fn corrected(&self, moved: &Vector<D>, force: f64, length: f64) -> (ContactStatus, f64) {
         let soil = 1.0 / super::PENALTY;
         if self.status == ContactStatus::Open {
@@ -308,7 +313,7 @@ impl<const D: usize> RigidPoint<D> {
         }
     }
 
-    /// As [`Self::corrected`] of a point that slips `towards`; `limit`: the largest friction force, N.
+    /// As [`Self::corrected`], for a point that slides `towards`; `limit` is Coulomb's limit (N).
     fn slip_on(&self, towards: Along, moved: &Vector<D>, limit: f64, force: f64) -> (ContactStatus, f64) {
         let soil = 1.0 / super::PENALTY;
         let held = self.held(moved);
@@ -321,7 +326,7 @@ impl<const D: usize> RigidPoint<D> {
         if sticks {
             return (ContactStatus::Stick, soil * (limit - against));
         }
-        // On a line there is nothing to turn.
+        // In 2-D, friction has one direction only.
         if D == 2 {
             return (self.status, 0.0);
         }
@@ -335,7 +340,7 @@ impl<const D: usize> RigidPoint<D> {
         }
     }
 
-    /// Row-major square of the symmetric part of its stiffness, D unknowns for each node of the cell.
+    /// Returns the symmetric part of its stiffness, a row-major square with D unknowns per node of the cell (N/m).
     pub fn block(&self) -> Vec<f64> {
         let order = self.N.len() * D;
         let mut block = vec![0.0; order * order];

@@ -7,33 +7,33 @@ use crate::step::newmark::Newmark;
 use crate::tensor::Vector;
 use crate::water::pore_pressure::PorePressure;
 
-/// What gives how far points reach.
+/// Data from which the domains of material points follow.
 #[derive(Clone, Copy)]
 pub struct ParticleDomains<'a, const D: usize> {
-    /// the grid
+    /// The grid.
     pub grid: &'a Grid<D>,
-    /// the points
+    /// Material points.
     pub points: &'a Points<D>,
-    /// parts of a cell that the points of a material reach to each side at the start, at most
+    /// Per material: initial half width of a material point's domain, in cell edges, at most.
     pub reach: &'a [f64],
-    /// volume per m^D of the grid at a place
+    /// Returns the volume per m^D of the grid at a position (geometry weight).
     pub weight: fn(&Vector<D>) -> f64,
 }
 
-/// What of the scene the bodies see.
+/// Data of the step that contact with rigid bodies needs.
 pub struct Surroundings<'a, const D: usize> {
-    /// the bodies, and what they carry
+    /// Bodies and their states.
     pub bodies: (&'a [RigidBody<D>], &'a [RigidState]),
-    /// the points on their grid
+    /// Material points and their grid.
     pub reaching: ParticleDomains<'a, D>,
-    /// shape functions
+    /// Shape functions at the material points.
     pub shape: &'a Shape<D>,
-    /// m/s2  force per mass at the end of the step
+    /// Body force per mass at the end of the step (m/s2).
     pub body_force: Vector<D>,
-    /// components that nothing else holds
+    /// Nodal components that no other condition prescribes.
     pub free: &'a [bool],
-    /// integration of inertia; `None` without
+    /// Time integration; `None` without inertia.
     pub newmark: Option<Newmark>,
-    /// pore pressure that the soil carries, if any
+    /// Pore pressure, if there is water.
     pub pore_pressure: Option<&'a PorePressure<D>>,
 }

@@ -2,24 +2,25 @@
 
 use crate::tensor::Vector;
 
-/// Searches for the foot of the perpendicular.
+/// Number of fixed-point iterations for the foot of the perpendicular.
 const SEARCHES: usize = 3;
 
-/// Heights at posts; beyond them it goes on level.
+/// Raster of heights. Outside the raster, the heights at its rim continue horizontally.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Terrain {
-    /// m  the first post, from the grid's lower corner
+    /// Position of the first raster point (m), from the grid's lower corner.
     pub lower: [f64; 2],
-    /// m  between posts
+    /// Spacing of the raster (m).
     pub spacing: [f64; 2],
-    /// posts along x and y, at least two each
+    /// Number of raster points along x and y, at least two each.
     pub count: [usize; 2],
-    /// m  of every post, x running fastest
+    /// Heights (m), x running fastest.
     pub heights: Vec<f64>,
 }
 
 impl Terrain {
-    /// The post below a place along an axis, and the part of the spacing beyond it.
+    /// Returns the index of the last raster point before a position along an axis, and the fraction of the spacing
+    /// beyond it.
     fn post(&self, axis: usize, at: f64) -> (usize, f64) {
         let last = (self.count[axis] - 1) as f64;
         let part = ((at - self.lower[axis]) / self.spacing[axis]).clamp(0.0, last);
@@ -27,7 +28,7 @@ impl Terrain {
         (post, part - post as f64)
     }
 
-    /// Bilinear between what posts have.
+    /// Interpolates bilinearly between the values `of` the raster points.
     fn between(&self, [x, y]: [f64; 2], of: impl Fn([usize; 2]) -> f64) -> f64 {
         let (i, s) = self.post(0, x);
         let (j, t) = self.post(1, y);
@@ -35,18 +36,18 @@ impl Terrain {
         (1.0 - t) * row + t * next
     }
 
-    /// m  at a post.
+    /// Returns the height of a raster point (m).
     fn height_at(&self, [i, j]: [usize; 2]) -> f64 {
         self.heights[j * self.count[0] + i]
     }
 
-    /// m  over a place, m from the grid's lower corner.
+    /// Returns the height (m) at a position (m from the grid's lower corner).
     pub fn height(&self, at: [f64; 2]) -> f64 {
         self.between(at, |post| self.height_at(post))
     }
 
-    /// Slope along an axis: central differences at the posts, bilinear between them, so that normals do not jump where
-    /// the heights have a kink.
+    /// Returns the slope along an axis. Central differences at the raster points are interpolated bilinearly, so that
+    /// normals are continuous where the heights have a kink.
     fn slope(&self, at: [f64; 2], axis: usize) -> f64 {
         let far = self.lower[axis] + (self.count[axis] - 1) as f64 * self.spacing[axis];
         if at[axis] < self.lower[axis] || at[axis] > far {
@@ -62,8 +63,8 @@ impl Terrain {
         })
     }
 
-    /// Distance (m) of a place (m, from the grid's lower corner) and the unit normal there: at the foot of a
-    /// perpendicular, found in a few searches from the place below.
+    /// Returns the distance (m) of a position (m from the grid's lower corner) and the unit normal at the foot of its
+    /// perpendicular.
     pub(super) fn nearest<const D: usize>(&self, x: &Vector<D>) -> (f64, Vector<D>) {
         let mut foot = [x[0], x[1]];
         let mut found = (0.0, Vector::zeros());
@@ -72,7 +73,7 @@ impl Terrain {
             let slopes = [0, 1].map(|axis| self.slope(foot, axis));
             let size = (1.0 + slopes[0].powi(2) + slopes[1].powi(2)).sqrt();
             let normal = Vector::<D>::from_fn(|k, _| if k + 1 == D { 1.0 } else { -slopes[k] } / size);
-            // The distance from the plane through the foot.
+            // Distance from the tangential plane at the foot.
             let from = Vector::<D>::from_fn(|k, _| if k + 1 == D { x[k] - height } else { x[k] - foot[k] });
             found = (normal.dot(&from), normal);
             foot = [0, 1].map(|axis| x[axis] - found.0 * normal[axis]);

@@ -3,33 +3,33 @@
 use crate::boundary::coulomb::{Contact, Status, transverse};
 use crate::tensor::Vector;
 
-/// Times the traction by which statuses may be contradicted, by which friction may be off Coulomb's law for its trial:
-/// the tolerance of the forces themselves.
+/// Tolerance for the direction of friction, as a multiple of the tolerance for statuses: beyond it, the direction is
+/// corrected to that of the trial.
 const TURNED: f64 = 100.0;
 
-/// Contact of a strip (T7.5), (T7.6).
+/// Contact of a strip with the soil (T7.5), (T7.6).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripContact<const D: usize> {
-    /// friction, and whether material comes off it
+    /// Friction coefficient, and whether the material can separate.
     pub law: Contact,
-    /// unit normal of the base, towards the material
+    /// Unit normal of the base, towards the material.
     pub inward: Vector<D>,
 }
 
-/// The law at a point, and what the point does in a step. Friction is along the unit vector of [`Status::Slip`], which
-/// is zero where there is no friction.
+/// Contact law and status of a point in a step. Friction acts along the unit vector of [`Status::Slip`], which is zero
+/// without friction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ContactState<const D: usize> {
     contact: StripContact<D>,
     pub status: Status<D>,
-    /// Pa  what pore water carries of the pressure
+    /// Pore pressure (Pa).
     pub water: f64,
-    transverse_share: f64, // of a tangential trial, the part that friction leaves of what is beside its direction; in space
+    transverse_share: f64, // stiffness across the direction of friction, part of the penalty (3-D)
     open_before: bool,     // at the start of the step
 }
 
 impl<const D: usize> StripContact<D> {
-    /// Pa  the traction on the body of what is `carried` from step to step.
+    /// Returns the traction on the body for the `carried` state (Pa): zero for an open point.
     pub fn acting(&self, carried: &Vector<D>) -> Vector<D> {
         if self.is_open(carried) {
             Vector::zeros()
@@ -38,14 +38,14 @@ impl<const D: usize> StripContact<D> {
         }
     }
 
-    /// Whether what is carried is a gap and no traction.
+    /// Returns whether the `carried` state is a gap, that is a negative normal part.
     pub fn is_open(&self, carried: &Vector<D>) -> bool {
         self.law.lifts && self.inward.dot(carried) < 0.0
     }
 }
 
 impl<const D: usize> ContactState<D> {
-    /// At the start of a step, as far as what is `carried` reports.
+    /// Creates the state at the start of a step from the `carried` traction or gap.
     pub fn of(contact: StripContact<D>, carried: &Vector<D>) -> Self {
         let open_before = contact.is_open(carried);
         let closed = if contact.law.friction == 0.0 {
@@ -62,12 +62,12 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// Pa  on the body at the start of the step.
+    /// Returns the traction on the body at the start of the step (Pa).
     pub fn before(&self, carried: &Vector<D>) -> Vector<D> {
         self.contact.acting(carried)
     }
 
-    /// What the elastic law goes on from, Pa: material that comes back has no friction yet.
+    /// Returns the traction from which the elastic trial starts (Pa). A point that was open starts without friction.
     pub fn start(&self, carried: &Vector<D>) -> Vector<D> {
         if self.open_before {
             self.normal(carried)
@@ -76,12 +76,13 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// Pa  on the body, of an elastic law's `trial`.
+    /// Returns the traction on the body for an elastic `trial` (Pa).
     pub fn traction(&self, trial: &Vector<D>) -> Vector<D> {
         self.part(trial) + self.friction(trial)
     }
 
-    /// The part of a traction, or of a displacement by what stiffness it has, that acts in the direction of itself.
+    /// Returns the part of a trial traction, or of a displacement, on which the status acts with a symmetric stiffness:
+    /// all of it, the normal part, or nothing; in 3-D slip also a share across the direction of friction.
     pub fn part(&self, vector: &Vector<D>) -> Vector<D> {
         match self.status {
             Status::Open => Vector::zeros(),
@@ -94,7 +95,7 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// Pa  the most that friction can be at a pressure, by Coulomb's law for the effective one.
+    /// Returns Coulomb's limit at a total pressure, from the effective pressure (Pa).
     fn limit(&self, pressure: f64) -> f64 {
         let effective = if self.water > 0.0 {
             (pressure - self.water).max(0.0)
@@ -104,7 +105,7 @@ impl<const D: usize> ContactState<D> {
         self.contact.law.friction * effective
     }
 
-    /// Pa  friction under an elastic law's `trial`.
+    /// Returns the friction for an elastic `trial` (Pa).
     fn friction(&self, trial: &Vector<D>) -> Vector<D> {
         match self.status {
             Status::Slip(along) if self.water > 0.0 => along * self.limit(self.contact.inward.dot(trial)),
@@ -112,7 +113,7 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// How friction grows with a normal part.
+    /// Returns friction, or its derivative, linear in the normal part of `vector`.
     pub fn rubbing(&self, vector: &Vector<D>) -> Vector<D> {
         match self.status {
             Status::Slip(along) => along * (self.contact.law.friction * self.contact.inward.dot(vector)),
@@ -120,8 +121,9 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// Pa  what the next step goes on from. Of a point that is off the material the penalty times what the strip is
-    /// ahead of it: against the normal the gap, along it what it has moved on since it came off.
+    /// Returns the state carried to the next step (Pa). For an open point it is the penalty times the displacement of
+    /// the strip relative to the material since separation: the normal part is the negative gap, the tangential part
+    /// the relative motion along the base.
     pub fn carry(&self, trial: &Vector<D>, carried: &Vector<D>) -> Vector<D> {
         let offset = if self.open_before {
             carried - self.normal(carried)
@@ -135,7 +137,7 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// Part of the step in which the point is on the material, if it comes off it or meets it; 1 if it does not.
+    /// Returns the share of the step in which a point that opens or closes is in contact; 1 for other points.
     pub fn share(&self, carried: &Vector<D>, trial: &Vector<D>) -> f64 {
         let [before, after] = [carried, trial].map(|traction| self.contact.inward.dot(traction));
         match (self.open_before, self.status == Status::Open) {
@@ -145,7 +147,7 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// m  the gap that a step starts with.
+    /// Returns the gap at the start of the step (m).
     pub fn gap_before(&self, carried: &Vector<D>, penalty: f64) -> f64 {
         if self.open_before {
             -self.contact.inward.dot(carried) / penalty
@@ -154,7 +156,7 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// m  the gap under a `trial`.
+    /// Returns the gap for a `trial` (m).
     pub fn gap(&self, trial: &Vector<D>, penalty: f64) -> f64 {
         if self.status == Status::Open {
             (-self.contact.inward.dot(trial) / penalty).max(0.0)
@@ -163,7 +165,7 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// m  how far a point that has come back has moved along itself while it was off.
+    /// Returns the tangential distance that a point that closes in this step moved while it was open (m).
     pub fn moved_on(&self, carried: &Vector<D>, penalty: f64) -> f64 {
         let came_back = self.open_before && self.status != Status::Open;
         if came_back {
@@ -173,7 +175,7 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// Pa  normal traction, positive where the strip pushes.
+    /// Returns the normal traction, positive in compression (Pa).
     pub fn pressure(&self, trial: &Vector<D>) -> f64 {
         if self.status == Status::Open {
             0.0
@@ -182,7 +184,8 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// m  the part of a slip that friction takes: of the `trial`, what the return to Coulomb's cone took off.
+    /// Returns the plastic slip (m): what the return mapping to Coulomb's cone removed from the `trial`, divided by the
+    /// penalty.
     pub fn slid(&self, trial: &Vector<D>, penalty: f64) -> Vector<D> {
         match self.status {
             Status::Slip(_) => (trial - self.traction(trial)) / penalty,
@@ -190,9 +193,9 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// The status that the last step's displacement makes likely; `before`: what the law started from. What is on the
-    /// material as the step begins is expected to stay on it, even if nothing presses there yet: initial stress does
-    /// from the first step on, and soil that yields could not stand if all points let go of it.
+    /// Predicts the status from the `trial` traction of the last step's displacement; `before` is the traction from
+    /// which the trial starts. A point that is closed at the start of the step stays closed even without pressure:
+    /// initial stress arises in the first step only, and yielding soil would find no equilibrium if all points opened.
     pub fn recall(&mut self, trial: &Vector<D>, before: &Vector<D>) {
         let [pressed, presses] = [before, trial].map(|traction| self.contact.inward.dot(traction));
         if self.contact.law.lifts && self.open_before && presses < 0.0 {
@@ -203,7 +206,7 @@ impl<const D: usize> ContactState<D> {
         self.take(self.met(trial, pressure, 0.0), trial);
     }
 
-    /// Corrects the status that a `trial` contradicts by more than `doubt`, Pa; whether it did.
+    /// Corrects the status if the `trial` contradicts it by more than `doubt` (Pa). Returns whether it changed.
     pub fn correct(&mut self, trial: &Vector<D>, doubt: f64) -> bool {
         let before = self.status;
         let status = self.corrected(trial, doubt);
@@ -213,8 +216,8 @@ impl<const D: usize> ContactState<D> {
         status != before
     }
 
-    /// Takes a status, about the `trial` that asked for it: of friction in space the derivative of mu p t/|t| is beside
-    /// its direction mu p/|t|.
+    /// Sets the status and the stiffness across the direction of friction, mu p/|t|: the derivative of mu p t/|t|
+    /// there, for the tangential trial t.
     fn take(&mut self, status: Status<D>, trial: &Vector<D>) {
         self.status = status;
         let limit = self.limit(self.contact.inward.dot(trial).max(0.0));
@@ -223,7 +226,7 @@ impl<const D: usize> ContactState<D> {
         self.transverse_share = if turns { (limit / shear).min(1.0) } else { 0.0 };
     }
 
-    /// The status that a `trial` asks for, where it contradicts the present one by more than `doubt`, Pa.
+    /// Returns the status that follows from a `trial` if this contradicts the present one by more than `doubt` (Pa).
     fn corrected(&self, trial: &Vector<D>, doubt: f64) -> Status<D> {
         let pressure = self.contact.inward.dot(trial);
         match self.status {
@@ -238,8 +241,8 @@ impl<const D: usize> ContactState<D> {
                 let is_off = (friction_force - shear.normalize() * limit).norm() > TURNED * doubt;
                 match shear.dot(&along) {
                     _ if pressure < -doubt => Status::Slip(Vector::zeros()),
-                    // Whoever slid against friction has to stick first: to turn it at once goes back and forth for
-                    // ever.
+                    // A point that slid against friction has to stick first. Reversing the direction at once alternates
+                    // without end.
                     slid if slid < limit - doubt => Status::Stick,
                     _ if is_off => Status::Slip(shear.normalize()),
                     _ => self.status,
@@ -250,7 +253,7 @@ impl<const D: usize> ContactState<D> {
         }
     }
 
-    /// On the material, under a `trial` of that pressure.
+    /// Returns the status of a closed point for a `trial` with this pressure (Pa).
     fn met(&self, trial: &Vector<D>, pressure: f64, doubt: f64) -> Status<D> {
         let friction = self.contact.law.friction;
         let shear = trial - self.normal(trial);

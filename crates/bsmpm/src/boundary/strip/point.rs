@@ -7,9 +7,9 @@ use crate::exact::Exact;
 use crate::grid::Contributions;
 use crate::tensor::Vector;
 
-/// Lengths of a strip's points of which the largest count.
+/// Number of lengths per point of which the largest is reported for the strip.
 pub(super) const LENGTHS: usize = 5;
-/// Parts of a cell from which on a point that comes back to material has moved on.
+/// Distance, in cell edges, beyond which a point that closes counts as having moved along the base.
 pub(super) const FAR: f64 = 0.5;
 
 /// Sums over the points of a strip.
@@ -17,16 +17,18 @@ pub(super) const FAR: f64 = 0.5;
 pub(super) struct StripSums {
     pub(super) held: Exact,
     pub(super) given: Exact, // J
-    // closed, their normal force, that of those that slide, that times what they slid, dissipated, moved on
+    // Closed points, normal force, normal force of sliding points, the same times the slip, dissipation, points moved
+    // on.
     pub(super) contact: [Exact; 6],
 }
 
+/// A surface point of a strip, attached to the free components of the nodes.
 #[derive(Clone, Debug)]
 pub(super) struct StripPoint<const D: usize> {
     pub(super) strip: usize,
     pub(super) point: usize,
-    pub(super) place: Vector<D>, // m  of the material at it, from the grid's lower corner
-    pub(super) attachment: [Option<Attachment>; D], // per component: where a support holds all of its nodes, the strip does not
+    pub(super) place: Vector<D>, // m, of the material at the point, from the grid's lower corner
+    pub(super) attachment: [Option<Attachment>; D], // per component; `None`: a support prescribes all nodes
     pub(super) area: f64,
     pub(super) penalty: f64,
     pub(super) normal: Option<Vector<D>>,
@@ -36,7 +38,7 @@ pub(super) struct StripPoint<const D: usize> {
 }
 
 impl<const D: usize> StripPoint<D> {
-    /// The components that the strip and no support holds.
+    /// Returns the components of a vector that no support prescribes.
     pub(super) fn own(&self, vector: Vector<D>) -> Vector<D> {
         Vector::from_fn(|component, _| {
             if self.attachment[component].is_some() {
@@ -47,7 +49,7 @@ impl<const D: usize> StripPoint<D> {
         })
     }
 
-    /// The part of a vector that is held.
+    /// Returns the part of a vector in the directions that the strip constrains.
     pub(super) fn part(&self, vector: Vector<D>) -> Vector<D> {
         let own = self.own(vector);
         if let Some(state) = &self.state {
@@ -56,7 +58,7 @@ impl<const D: usize> StripPoint<D> {
         self.normal.map_or(own, |normal| self.own(normal * normal.dot(&own)))
     }
 
-    /// m  of the material at the point; zero in components that are not held.
+    /// Returns the displacement of the material at the point (m); zero in components that a support prescribes.
     pub(super) fn displacement(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
         Vector::from_fn(|component, _| {
             let attachment = self.attachment[component].as_ref();
@@ -64,22 +66,22 @@ impl<const D: usize> StripPoint<D> {
         })
     }
 
-    /// m  what the material lags behind the strip.
+    /// Returns the motion of the strip relative to the material (m).
     pub(super) fn slip(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
         self.part(self.motion - self.displacement(offsets, u))
     }
 
-    /// Pa  elastic trial of a point in contact.
+    /// Returns the elastic trial traction of a point in contact (Pa).
     pub(super) fn trial(&self, state: &ContactState<D>, offsets: &[usize], u: &[f64]) -> Vector<D> {
         self.own(state.start(&self.carried) + (self.motion - self.displacement(offsets, u)) * self.penalty)
     }
 
-    /// Pa  on the body at the start of the step.
+    /// Returns the traction on the body at the start of the step (Pa).
     pub(super) fn before(&self) -> Vector<D> {
         self.own(self.state.map_or(self.carried, |state| state.before(&self.carried)))
     }
 
-    /// Pa  on the body.
+    /// Returns the traction on the body under `u` (Pa).
     pub(super) fn traction(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
         if let Some(state) = &self.state {
             return self.own(state.traction(&self.trial(state, offsets, u)));
@@ -87,8 +89,8 @@ impl<const D: usize> StripPoint<D> {
         self.own(self.carried) + self.slip(offsets, u) * self.penalty
     }
 
-    /// N  the mean force of the step; where the point comes off or meets the material, of the part of the step in
-    /// which it is on it, as a part of the whole.
+    /// Returns the mean force of the step (N). For a point that opens or closes, the mean over its time in contact is
+    /// multiplied by the share of that time.
     pub(super) fn mean(&self, offsets: &[usize], u: &[f64]) -> Vector<D> {
         let mean = (self.before() + self.traction(offsets, u)) * (0.5 * self.area);
         match &self.state {
@@ -97,8 +99,8 @@ impl<const D: usize> StripPoint<D> {
         }
     }
 
-    /// m  slip, what has slipped in all steps, motion, and of a point in contact less the gap and the gap; what it adds
-    /// to the sums. `edge`, m, is that of the shortest cell.
+    /// Returns the slip, the total slip, the motion, the negative gap and the gap (m; gaps are 0 without contact), and
+    /// adds the point to the `sums`. `edge` is the shortest cell edge (m).
     pub(super) fn lengths(&self, offsets: &[usize], u: &[f64], edge: f64, sums: &mut StripSums) -> [f64; LENGTHS] {
         let motion = self.part(self.motion).norm();
         let after = self.traction(offsets, u);
@@ -130,7 +132,7 @@ impl<const D: usize> StripPoint<D> {
         [slip, accumulated, motion, -gap, gap]
     }
 
-    /// Adds a force at the point to the nodes.
+    /// Adds a force at the point (N) to the nodes.
     pub(super) fn spread(&self, offsets: &[usize], force: &Vector<D>, out: &mut Contributions) {
         for (component, attachment) in self.attachment.iter().enumerate() {
             let mut along = Vector::<D>::zeros();
@@ -141,7 +143,8 @@ impl<const D: usize> StripPoint<D> {
         }
     }
 
-    /// Dense block of beta A N_a N_b in the held direction, over the nodes of the cell.
+    /// Returns the first node of the cell and its dense block beta A N_a N_b in the constrained directions, row-major;
+    /// `None` for an open point.
     pub(super) fn block(&self, size: usize) -> Option<(usize, Vec<f64>)> {
         if self.state.is_some_and(|state| state.status == Status::Open) {
             return None;
@@ -165,14 +168,14 @@ impl<const D: usize> StripPoint<D> {
 }
 
 impl StripSums {
-    /// Two of all strips, and where one is in `contact` eight.
+    /// Returns two sums without contact, eight if any strip has `contact`.
     pub(super) fn each(&self, contact: bool) -> impl Iterator<Item = Exact> {
         let of_contact = if contact { &self.contact[..] } else { &[] };
         [&self.held, &self.given].into_iter().chain(of_contact).cloned()
     }
 }
 
-/// What the `totals` and the lengths of a strip's points say of its contact.
+/// Assembles the contact results of a strip from the sums and the largest lengths of its points.
 pub(super) fn contact_report(strip: usize, totals: &[f64], lengths: &[f64]) -> ContactReport {
     let [held, _, closed, pushed, sliding, slid, dissipated] = std::array::from_fn(|k| totals[k]);
     ContactReport {

@@ -7,37 +7,40 @@ use crate::grid::{Contributions, Grid, digit};
 use crate::parallel::Halo;
 use crate::stabilisation::GroupedPoints;
 
-/// What the functions of every patch are merged to; numbers of the functions on pairs stand beside those of the nodes.
+/// Merged functions of every patch: functions on pairs, where these are inside a body, and functions on cells. Nodal
+/// arrays have two numbers per node and group: first that of the function on cells, then that of the function on pairs.
 #[derive(Clone, Debug)]
 pub struct MergedFunctions<const D: usize> {
     axes: [CellPairs; D],
-    functions: usize, // of a cell, n
+    functions: usize, // n: functions of a cell
     groups: usize,
-    offsets: Vec<usize>, // per patch: where its n functions on pairs are kept, from the patch's first node
+    offsets: Vec<usize>, // per patch: nodes that store its n functions on pairs, from the patch's first node
     shares: Vec<f64>,    // per patch: r, n x n, a row for every function on pairs
-    inside: Vec<bool>,   // per patch, group and function on pairs: whether it takes part
+    inside: Vec<bool>,   // per patch, group and function on pairs: whether it is used
 }
 
 impl<const D: usize> Shape<D> {
-    /// The same lowered functions, those inside a body merged to the ones of pairs of cells.
+    /// Returns the same lowered functions, with those inside a body merged to functions on pairs of cells. Two
+    /// exchanges with the neighbours.
     pub(crate) fn merged(mut self, grid: &Grid<D>, grouped: GroupedPoints<'_>, halo: &dyn Halo) -> Self {
         self.merged = Some(MergedFunctions::of(grid, &self, grouped, halo));
         self
     }
 
-    /// What lowered functions are merged to, if they are.
+    /// Returns the merged functions, if lowered functions are merged.
     pub(crate) fn merger(&self) -> Option<&MergedFunctions<D>> {
         self.merged.as_ref()
     }
 
-    /// Numbers that sums have per node and group: one, and one of the function on pairs that is kept there.
+    /// Returns the count of numbers per node and group in sums: two if functions are merged, else one.
     pub(crate) fn levels(&self) -> usize {
         1 + usize::from(self.merged.is_some())
     }
 }
 
 impl<const D: usize> MergedFunctions<D> {
-    /// Of the splines `lower` of degree q - 1 in a grid that reaches 2q - 1 layers; two exchanges with the neighbours.
+    /// Merges the splines `lower` of degree q - 1. The grid must have at least 2q - 1 additional layers. Two exchanges
+    /// with the neighbours.
     pub(crate) fn of(grid: &Grid<D>, lower: &Shape<D>, grouped: GroupedPoints<'_>, halo: &dyn Halo) -> Self {
         debug_assert!(
             grid.beyond() + 1 >= 2 * grid.order(),
@@ -59,6 +62,7 @@ impl<const D: usize> MergedFunctions<D> {
             }));
             for (k, h) in (0..n).flat_map(|k| (0..n).map(move |h| (k, h))) {
                 let along = (0..D).map(|axis| {
+                    // Splines are products over the axes, and so is r.
                     let pair = digit::<D>(k, axis, width);
                     axes[axis].share(cell[axis], pair, digit::<D>(h, axis, width))
                 });
@@ -77,7 +81,8 @@ impl<const D: usize> MergedFunctions<D> {
         merged
     }
 
-    /// Which functions on pairs have all cells of their support inside the body of the group.
+    /// Returns per patch, group and function on pairs whether all cells of its support are inside the group's body. One
+    /// exchange.
     fn inside(&self, grid: &Grid<D>, lower: &Shape<D>, grouped: GroupedPoints<'_>, halo: &dyn Halo) -> Vec<bool> {
         let deep = inner_cells(grid, lower, grouped, halo);
         let columns = lower.columns().iter().map(|column| column.column).collect();
@@ -109,12 +114,12 @@ impl<const D: usize> MergedFunctions<D> {
         inside
     }
 
-    /// Where the functions on pairs that a patch sees are kept, from its first node.
+    /// Returns the nodes that store a patch's functions on pairs, as offsets from the patch's first node.
     pub(crate) fn offsets(&self, patch: usize) -> &[usize] {
         &self.offsets[patch * self.functions..(patch + 1) * self.functions]
     }
 
-    /// r of the functions k on pairs that a patch sees and that take part, with k, and those on cells.
+    /// Iterates over the used functions k on pairs of a patch, each with its row of r over the functions on cells.
     pub(crate) fn rows(&self, patch: usize, group: usize) -> impl Iterator<Item = (usize, &[f64])> {
         let n = self.functions;
         let inside = &self.inside[(patch * self.groups + group) * n..][..n];
@@ -125,7 +130,7 @@ impl<const D: usize> MergedFunctions<D> {
             .map(|(row, _)| row)
     }
 
-    /// rho of function `h` on the cells: what functions on pairs that do not take part would have of it.
+    /// Returns rho of function `h` on cells: the sum of r over the functions on pairs that are not used.
     pub(crate) fn rest(&self, patch: usize, group: usize, h: usize) -> f64 {
         let n = self.functions;
         let inside = &self.inside[(patch * self.groups + group) * n..][..n];
@@ -135,14 +140,16 @@ impl<const D: usize> MergedFunctions<D> {
             .sum()
     }
 
-    /// First cell along an axis of the function on pairs that is kept under the number of a node, if there is one.
+    /// Returns the first cell along an axis of the function on pairs that is stored under the number of a node, if
+    /// there is one.
     pub(crate) fn first_cell(&self, axis: usize, slot: usize) -> Option<usize> {
         self.axes[axis]
             .at_slot(slot)
             .map(|function| self.axes[axis].support(function).start)
     }
 
-    /// Numbers of a patch's functions on the cells, as those of all functions that are merged: of cells, and of pairs.
+    /// Distributes numbers of a patch's functions on cells to the merged functions: those on cells (times rho) and
+    /// those on pairs (times r).
     pub(crate) fn spread<const C: usize, const N: usize>(
         &self,
         patch: usize,
@@ -163,7 +170,8 @@ impl<const D: usize> MergedFunctions<D> {
         [cells, pairs]
     }
 
-    /// The transpose of [`MergedFunctions::spread`]: values of the functions on the cells that make up all.
+    /// Combines values of the merged functions to values of a patch's functions on cells: the transpose of
+    /// [`MergedFunctions::spread`].
     pub(crate) fn combine<const C: usize, const N: usize>(
         &self,
         patch: usize,
@@ -183,13 +191,13 @@ impl<const D: usize> MergedFunctions<D> {
     }
 }
 
-/// Whether a patch holds points of the group.
+/// Returns whether a patch contains points of the group.
 fn holds(patch: &Patch, grouped: GroupedPoints<'_>, group: usize) -> bool {
     patch.points.clone().any(|p| grouped.of(p) == group)
 }
 
-/// Per patch and group: whether all cells about it hold points of the group, too. What lies behind a face of the grid
-/// or a repeated breakpoint does not count: an edge that lies there cuts no cell.
+/// Returns per patch and group whether the cell and all its neighbours contain points of the group. Cells behind a face
+/// of the grid or a repeated breakpoint do not count, because a body's edge that lies there cuts no cell. One exchange.
 fn inner_cells<const D: usize>(
     grid: &Grid<D>,
     lower: &Shape<D>,
@@ -204,7 +212,8 @@ fn inner_cells<const D: usize>(
         let sums = around.patch(patch.first_node);
         for group in (0..groups).filter(|&group| holds(patch, grouped, group)) {
             for k in (0..3_usize.pow(D as u32)).filter(|&k| neighbour(grid, &cell, k)) {
-                // The count of cell m is kept at node m + 1, that no column's reaches below itself.
+                // The count of cell m is stored at node m + 1, because a column contributes only to layers from its own
+                // index on.
                 let offset = offset(grid, |axis| k / 3_usize.pow(axis as u32) % 3);
                 sums[offset * groups + group] += 1.0;
             }
@@ -224,7 +233,7 @@ fn inner_cells<const D: usize>(
     inner
 }
 
-/// Whether the neighbour `k` of a cell, of 3^D with itself, is a cell that has a length.
+/// Returns whether cell `k` of the 3^D cells around and including `cell` exists and has a length.
 fn neighbour<const D: usize>(grid: &Grid<D>, cell: &[usize; D], k: usize) -> bool {
     (0..D).all(|axis| {
         let along = (cell[axis] + k / 3_usize.pow(axis as u32) % 3).checked_sub(1);
@@ -232,7 +241,7 @@ fn neighbour<const D: usize>(grid: &Grid<D>, cell: &[usize; D], k: usize) -> boo
     })
 }
 
-/// Distance in the numbering of local nodes of so many nodes along each axis.
+/// Returns the offset in the local numbering for a shift by `along` nodes along each axis.
 fn offset<const D: usize>(grid: &Grid<D>, along: impl Fn(usize) -> usize) -> usize {
     (1..D).fold(along(0), |offset, axis| offset * grid.nodes_along(axis) + along(axis))
 }

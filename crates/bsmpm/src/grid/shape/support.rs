@@ -2,7 +2,7 @@
 
 use crate::tensor::Vector;
 
-/// One point's values: D rows of W.
+/// Shape function values of one point: D rows of W numbers.
 #[derive(Clone, Copy)]
 pub(crate) struct Values<'a, const D: usize, const W: usize> {
     pub(super) rows: &'a [f64],
@@ -10,7 +10,7 @@ pub(crate) struct Values<'a, const D: usize, const W: usize> {
 }
 
 impl<const D: usize, const W: usize> Values<'_, D, W> {
-    /// N_Ip of local node `k`.
+    /// Returns N_Ip of local node `k`, the product of one value per axis.
     #[inline(always)]
     pub fn value(&self, k: usize) -> f64 {
         let mut product = 1.0;
@@ -21,20 +21,20 @@ impl<const D: usize, const W: usize> Values<'_, D, W> {
     }
 }
 
-/// One point's functions: D rows of W values and W derivatives.
+/// Shape functions of one point: D rows of W values and W derivatives (1/m).
 #[derive(Clone, Copy)]
 pub(crate) struct PointSupport<'a, const D: usize, const W: usize> {
     pub rows: &'a [f64],
 }
 
 impl<const D: usize, const W: usize> PointSupport<'_, D, W> {
-    /// Position of local node `k` along `axis`.
+    /// Returns the index of local node `k` along `axis`.
     #[inline(always)]
     fn along(k: usize, axis: usize) -> usize {
         k / W.pow((D - 1 - axis) as u32) % W
     }
 
-    /// N_Ip of local node `k`.
+    /// Returns N_Ip of local node `k`.
     #[inline(always)]
     pub fn value(&self, k: usize) -> f64 {
         let mut product = self.rows[Self::along(k, 0)];
@@ -44,7 +44,7 @@ impl<const D: usize, const W: usize> PointSupport<'_, D, W> {
         product
     }
 
-    /// grad N_Ip of local node `k`, 1/m.
+    /// Returns grad N_Ip of local node `k` (1/m).
     #[inline(always)]
     pub fn gradient(&self, k: usize) -> Vector<D> {
         Vector::from_fn(|component, _| {
@@ -56,7 +56,8 @@ impl<const D: usize, const W: usize> PointSupport<'_, D, W> {
         })
     }
 
-    /// Factor along `axis` of a component of the gradient: the function of one dimension, or its derivative.
+    /// Returns the factor along `axis` in a component of the gradient: the derivative if `axis` is the component, else
+    /// the value.
     #[inline(always)]
     fn factor(&self, k: usize, axis: usize, component: usize) -> f64 {
         let a = 2 * W * axis + Self::along(k, axis);

@@ -8,10 +8,10 @@ use crate::tensor::Vector;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// Rows of nodes along the last axis of a patch at most: four by four in three dimensions.
+/// Largest number of rows of nodes along the last axis of a patch: 4 x 4 in three dimensions.
 const MOST_ROWS: usize = 16;
 
-/// What is found of the gradients of the points of a patch, appended.
+/// Appends to `out` what `found` returns for the gradient at each point of a patch.
 pub(super) struct Gradients<'a, K: Kinematics<D>, F, T, const D: usize, const W: usize> {
     pub rows: &'a [f64],
     pub x: &'a [Vector<D>],
@@ -50,7 +50,7 @@ where
     }
 }
 
-/// What the fluxes of a patch's points add up to, point by point.
+/// Sums the fluxes of a patch's points to `block`, point by point.
 pub(super) struct Divergence<'a, K: Kinematics<D>, const D: usize, const W: usize> {
     pub rows: &'a [f64],
     pub x: &'a [Vector<D>],
@@ -62,7 +62,8 @@ pub(super) struct Divergence<'a, K: Kinematics<D>, const D: usize, const W: usiz
 impl<K: Kinematics<D>, const D: usize, const W: usize> InLanes for Divergence<'_, K, D, W> {
     type Output = ();
 
-    /// The nodes along the last axis stand side by side, up to four; places beyond them collect what nobody reads.
+    /// Each SIMD vector has the (up to four) nodes of one row along the last axis. With fewer than four nodes, the
+    /// remaining lanes collect sums that are not used.
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let size = 2 * D * W;
@@ -72,6 +73,9 @@ impl<K: Kinematics<D>, const D: usize, const W: usize> InLanes for Divergence<'_
             let rows = &self.rows[p * size..];
             let x = Vector::from_fn(|i, _| Quad::splat(simd, self.x[p][i]));
             let last = [0, W].map(|derivative| Quad::first_of(simd, &rows[2 * W * (D - 1) + derivative..]));
+            // Row k of nodes has the indices of the first D - 1 axes as its digits in base W, axis 0 first.
+            // `along(axis, 1)` is the derivative of the factor of `axis`, so `product(i)` is component i of the
+            // gradient, and `product(D)` the value.
             for (k, sums) in sums.iter_mut().enumerate() {
                 let along = |axis: usize, derivative: usize| {
                     if axis == D - 1 {
@@ -99,7 +103,7 @@ impl<K: Kinematics<D>, const D: usize, const W: usize> InLanes for Divergence<'_
     }
 }
 
-/// What the values of a patch's points add up to, point by point.
+/// Sums the values of a patch's points to `block`, point by point.
 pub(super) struct PatchSums<'a, const D: usize, const C: usize, const W: usize> {
     pub rows: &'a [f64],
     pub stride: usize,
@@ -111,7 +115,7 @@ pub(super) struct PatchSums<'a, const D: usize, const C: usize, const W: usize> 
 impl<const D: usize, const C: usize, const W: usize> InLanes for PatchSums<'_, D, C, W> {
     type Output = ();
 
-    /// As in [`Divergence`], the nodes along the last axis stand side by side.
+    /// Each SIMD vector has the nodes of one row along the last axis, as in [`Divergence`].
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let mut sums = [[Quad::splat(simd, 0.0); C]; MOST_ROWS];
@@ -134,7 +138,7 @@ impl<const D: usize, const C: usize, const W: usize> InLanes for PatchSums<'_, D
     }
 }
 
-/// Puts rows of sums in the places of their nodes.
+/// Writes rows of sums to the positions of their nodes in `block`.
 #[inline(always)]
 fn spread<S: Simd, const C: usize, const W: usize>(sums: &[[Quad<S>; C]], block: &mut PatchBlock<C>) {
     for (k, sums) in sums.iter().enumerate() {

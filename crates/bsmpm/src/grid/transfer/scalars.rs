@@ -6,10 +6,11 @@ use crate::grid::{Contributions, Shape};
 use crate::stabilisation::GroupedPoints;
 use crate::tensor::Vector;
 
-/// Functions of a patch at a point, at most: quadratic ones in three dimensions.
+/// Largest number of functions at a point: quadratic splines in three dimensions.
 pub const MOST_FUNCTIONS: usize = 27;
 
-/// Gather: what `found` makes of p_p = sum_h A_hp p_h and of grad p_p = sum_h p_h grad A_hp, for every point.
+/// Computes p_p = sum_h A_hp p_h and grad p_p = sum_h p_h grad A_hp at every point, and returns `found(p, p_p, grad
+/// p_p)`.
 pub fn scalars<const D: usize, T: Clone + Send>(
     shape: &Shape<D>,
     nodal: &[f64],
@@ -33,12 +34,12 @@ pub fn scalars<const D: usize, T: Clone + Send>(
     }))
 }
 
-/// Scatter, the adjoint of [`scalars`]: sum_p A_hp value_p + grad A_hp . flux_p, `C` such numbers a node.
+/// Computes sum_p A_hp value_p + grad A_hp . flux_p at the nodes, the adjoint of [`scalars`], `C` such sums per node.
 pub fn of_scalars<const D: usize, const C: usize>(
     shape: &Shape<D>,
     of_point: impl Fn(usize) -> [(f64, Vector<D>); C] + Sync,
 ) -> Contributions {
-    with_width!(shape.width(), W => scatter(shape, GroupedPoints::NOT, |points, block: &mut PatchBlock<C>| {
+    with_width!(shape.width(), W => scatter(shape, GroupedPoints::ONE_GROUP, |points, block: &mut PatchBlock<C>| {
         for p in points {
             let support = shape.support::<W>(p);
             let of_point = of_point(p);
@@ -53,17 +54,17 @@ pub fn of_scalars<const D: usize, const C: usize>(
     }))
 }
 
-/// A function of degree q - 1 at a point.
+/// Function of degree q - 1 at a point.
 #[derive(Clone, Copy)]
 pub struct FunctionAtPoint<const D: usize> {
-    /// Value A_hp, -.
+    /// Value A_hp (-).
     pub value: f64,
-    /// Gradient grad A_hp, 1/m.
+    /// Gradient grad A_hp (1/m).
     pub gradient: Vector<D>,
 }
 
 impl<const D: usize> FunctionAtPoint<D> {
-    /// A function that does not reach the point.
+    /// Returns a function that is zero at the point.
     pub fn zero() -> Self {
         Self {
             value: 0.0,
@@ -72,7 +73,7 @@ impl<const D: usize> FunctionAtPoint<D> {
     }
 }
 
-/// Writes every function of point `p` to `out`, for pair sums over a patch; returns how many there are.
+/// Writes every function of point `p` to `out`, for sums over pairs of functions of a patch. Returns their number.
 pub fn functions_of<const D: usize>(shape: &Shape<D>, p: usize, out: &mut [FunctionAtPoint<D>]) -> usize {
     with_width!(shape.width(), W => {
         let support = shape.support::<W>(p);

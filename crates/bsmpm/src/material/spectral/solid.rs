@@ -3,17 +3,17 @@
 use super::{EigenvalueSum, Turn, tangent};
 use crate::real::Real;
 
-/// Vectors, one a row.
+/// Vectors, one per row.
 pub(super) type Rows<R> = [[R; 3]; 3];
 
-/// Distance of b from I up to which its eigenvalues are distinguished from 1, which loses no digit there.
+/// Distance of b from I up to which eigenvalues are stored as differences from 1, without loss of digits.
 const NEAR: f64 = 0.5;
-/// Below this a deviator counts as none: its squares would lose digits.
+/// Bound below which a deviator counts as zero; its squares would lose digits.
 const NONE: f64 = 1e-140;
-/// Of a root between √3 and 2: a first guess that is off by 3e-3, 7e-6, 4e-11, and less than a digit.
+/// Newton iterations for a root between √3 and 2; the errors are 3e-3 initially, then 7e-6, 4e-11, and below one digit.
 const NEWTON: usize = 3;
 
-/// Eigenvalues, as sums, of the tensor with the components XX, YY, ZZ, XY, YZ, XZ, and its axes.
+/// Returns the eigenvalues, as sums, and axes of the tensor with the components XX, YY, ZZ, XY, YZ, XZ.
 #[inline(always)]
 pub(super) fn solid<R: Real>(b: [R; 6]) -> ([EigenvalueSum<R>; 3], Rows<R>) {
     let [xx, yy, zz, xy, yz, xz] = b;
@@ -25,6 +25,8 @@ pub(super) fn solid<R: Real>(b: [R; 6]) -> ([EigenvalueSum<R>; 3], Rows<R>) {
     let b = yy - zz;
     let c = zz - xx;
     let deviator = [(a - c) / 3.0, (b - a) / 3.0, (c - b) / 3.0, xy, yz, xz];
+    // n is the axis of the most distinct eigenvalue. u and v span the plane normal to n, in which one rotation makes
+    // the deviator diagonal.
     let n = distinct(deviator);
     let (u, v) = beside(n);
     let of_n = times(deviator, n);
@@ -56,7 +58,7 @@ pub(super) fn solid<R: Real>(b: [R; 6]) -> ([EigenvalueSum<R>; 3], Rows<R>) {
     (sums, [n, [ux, uy, uz], [vx, vy, vz]])
 }
 
-/// Unit axis of the most distinct eigenvalue of a deviator; of none axis x.
+/// Returns the unit axis of the most distinct eigenvalue of a deviator; the axis x for a zero deviator.
 #[inline(always)]
 fn distinct<R: Real>([xx, yy, zz, xy, yz, xz]: [R; 6]) -> [R; 3] {
     let zero = xx.like(0.0);
@@ -70,12 +72,13 @@ fn distinct<R: Real>([xx, yy, zz, xy, yz, xz]: [R; 6]) -> [R; 3] {
     let p = xy * unit;
     let q = yz * unit;
     let s = xz * unit;
+    // Scaled to J2 = 3, the characteristic equation is t³ - 3 t - 2 half = 0 with half = det/2.
     let half = (x * (y * z - q * q) - p * (p * z - q * s) + s * (p * q - y * s)) * 0.5;
     let root = root(half.magnitude()).signed(half);
     let x = x - root;
     let y = y - root;
     let z = z - root;
-    // Of the matrix with rows (x p s), (p y q), (s q z), whose rank is 2.
+    // Matrix with rows (x p s), (p y q), (s q z) of rank 2: cross products of its rows are parallel to the axis.
     let products = [
         [y * z - q * q, q * s - p * z, p * q - y * s],
         [q * s - p * z, x * z - s * s, p * s - x * q],
@@ -94,7 +97,7 @@ fn distinct<R: Real>([xx, yy, zz, xy, yz, xz]: [R; 6]) -> [R; 3] {
     [at(0), at(1), at(2)]
 }
 
-/// The root `t ≥ √3` of `t³ - 3 t - 2 r` for 0 <= r <= 1: `2 cos(acos(r)/3)`.
+/// Returns the root `t ≥ √3` of `t³ - 3 t - 2 r` for 0 <= r <= 1: `2 cos(acos(r)/3)`.
 #[inline(always)]
 fn root<R: Real>(r: R) -> R {
     let r = R::choose(r.below(r.like(1.0)), r, r.like(1.0));
@@ -106,7 +109,7 @@ fn root<R: Real>(r: R) -> R {
     t
 }
 
-/// Two unit vectors that are orthogonal to one and to each other (Duff et al. 2017).
+/// Returns two unit vectors that are orthogonal to a unit vector and to each other (Duff et al. 2017).
 #[inline(always)]
 fn beside<R: Real>([x, y, z]: [R; 3]) -> ([R; 3], [R; 3]) {
     let sign = z.like(1.0).signed(z);

@@ -1,16 +1,17 @@
 //! Measured retention curve, interpolated by monotone cubics.
 
-/// Rows of suction head, m, effective saturation and relative permeability, from the full soil on, with cubics between
-/// that rise nowhere (Fritsch and Butland 1984); constant beyond the last row.
+/// Rows of suction head (m), effective saturation and relative permeability, starting at saturation. Monotone cubics
+/// interpolate (Fritsch and Butland 1984); values are constant beyond the last row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredCurve {
     pub(super) rows: Vec<[f64; 3]>,
-    /// 1/m  of both at each row
+    /// Slopes of both quantities at each row (1/m).
     slopes: Vec<[f64; 2]>,
 }
 
 impl MeasuredCurve {
-    /// Of rows whose heads rise from 0, and whose others fall from 1, or stay, without going below 0; at least two.
+    /// Creates the curve from at least two rows: heads increase from 0, the other values start at 1, do not increase
+    /// and are not negative.
     pub fn new(rows: Vec<[f64; 3]>) -> Self {
         let slopes = (0..rows.len())
             .map(|k| [1, 2].map(|of| slope_at(&rows, k, of)))
@@ -18,7 +19,7 @@ impl MeasuredCurve {
         Self { rows, slopes }
     }
 
-    /// Value and derivative by the head of both, under the suction head `s`, m, not negative.
+    /// Returns value and derivative with respect to the head of both quantities at the suction head `s` ≥ 0 (m).
     pub(super) fn at(&self, s: f64) -> [[f64; 2]; 2] {
         let above = self.rows.partition_point(|row| row[0] <= s);
         let Some(to) = self.rows.get(above) else {
@@ -29,6 +30,7 @@ impl MeasuredCurve {
         let length = to[0] - from[0];
         let t = (s - from[0]) / (to[0] - from[0]);
         [0, 1].map(|of| {
+            // Hermite cubic in t on [0, 1] with values a, b and slopes da, db: a + da t + square t^2 + cube t^3.
             let a = from[of + 1];
             let b = to[of + 1];
             let da = self.slopes[above - 1][of] * length;
@@ -43,8 +45,8 @@ impl MeasuredCurve {
     }
 }
 
-/// Slope of column `of` at row `k`: the harmonic mean of its neighbours', weighed by their lengths; at the ends the
-/// parabola's, where that keeps the sense.
+/// Returns the slope of column `of` at row `k`: the weighted harmonic mean of the adjacent chords; at the ends the
+/// slope of a parabola, limited to keep monotonicity.
 fn slope_at(rows: &[[f64; 3]], k: usize, of: usize) -> f64 {
     let length = |k: usize| rows[k + 1][0] - rows[k][0];
     let chord = |k: usize| (rows[k + 1][of] - rows[k][of]) / length(k);
@@ -66,8 +68,8 @@ fn slope_at(rows: &[[f64; 3]], k: usize, of: usize) -> f64 {
     }
 }
 
-/// Slope of a parabola at its end, of the lengths a, b and the chords of the two intervals next to it; limited so that
-/// it keeps the sense.
+/// Returns the slope of a parabola at its end, from the lengths a, b and the chords of the two nearest intervals,
+/// limited to keep monotonicity.
 fn slope_at_end([a, b]: [f64; 2], [near, next]: [f64; 2]) -> f64 {
     let slope = ((2.0 * a + b) * near - a * next) / (a + b);
     slope.clamp(3.0 * near, 0.0)
