@@ -6,8 +6,9 @@ use bsmpm_book::{
 };
 use bsmpm_scene::Case;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs};
 
 /// Languages of blocks.
 const LANGUAGES: [&str; 5] = ["toml", "sh", "python", "text", "rust"];
@@ -130,36 +131,59 @@ fn the_catalogue_of_messages_is_current() {
     assert_is_current("reference/messages.md", &bsmpm_messages::catalogue(), "explain --all");
 }
 
-/// Compares a chapter with what `bsmpm COMMAND` prints.
+/// Compares a chapter with what `bsmpm COMMAND` prints; with `BSMPM_RENEW=1` writes the chapter.
 fn assert_is_current(file: &str, generated: &str, command: &str) {
-    let committed = fs::read_to_string(source().join(file)).unwrap();
-    let renew = format!("target/release/bsmpm {command} > crates/bsmpm-book/src/{file}");
+    let path = source().join(file);
+    if env::var_os("BSMPM_RENEW").is_some() {
+        fs::write(&path, generated).unwrap();
+    }
+    let committed = fs::read_to_string(path).unwrap();
     assert!(
         committed == generated,
-        "{file} is not what the program prints; renew it: {renew}"
+        "{file} is not what `bsmpm {command}` prints; renew it: BSMPM_RENEW=1 cargo test -p bsmpm-book"
     );
 }
 
 #[test]
 fn every_link_leads_somewhere() {
+    let tracked = tracked_files();
     let mut wrong = Vec::new();
-    for chapter in chapters().unwrap() {
-        for link in links(&chapter.text).into_iter().filter(|link| !link.is_external()) {
-            if !leads_somewhere(&chapter, &link) {
-                wrong.push(format!("{}: {}", place(&chapter, link.line), link.target));
+    for page in tracked
+        .iter()
+        .filter(|file| file.extension().is_some_and(|extension| extension == "md"))
+    {
+        let text = fs::read_to_string(page).unwrap();
+        for link in links(&text).into_iter().filter(|link| !link.is_external()) {
+            if !leads_somewhere(page, &link, &tracked) {
+                wrong.push(format!("{}:{}: {}", page.display(), link.line, link.target));
             }
         }
     }
     assert!(wrong.is_empty(), "broken links:\n{}", wrong.join("\n"));
 }
 
-/// Whether the file of a link exists and has its anchor.
-fn leads_somewhere(chapter: &Chapter, link: &Link) -> bool {
+/// The files that git tracks, which are those of a clean clone.
+fn tracked_files() -> BTreeSet<PathBuf> {
+    let mut list = Command::new("git");
+    let list = list
+        .args(["ls-files", "-z"])
+        .current_dir(repository())
+        .output()
+        .unwrap();
+    assert!(list.status.success(), "git: {}", String::from_utf8_lossy(&list.stderr));
+    let names = String::from_utf8(list.stdout).unwrap();
+    let files = names.split('\0').filter(|name| !name.is_empty());
+    files.map(|name| normalised(&repository().join(name))).collect()
+}
+
+/// Whether a clean clone has the file or folder of a link, and the file has its anchor.
+fn leads_somewhere(page: &Path, link: &Link, tracked: &BTreeSet<PathBuf>) -> bool {
     let path = match link.path() {
-        "" => source().join(&chapter.file),
-        path => normalised(&chapter.folder().join(path)),
+        "" => page.to_owned(),
+        path => normalised(&page.parent().unwrap().join(path)),
     };
-    path.exists() && (link.anchor().is_empty() || anchors(&path).contains(link.anchor()))
+    let is_there = tracked.iter().any(|file| file.starts_with(&path));
+    is_there && (link.anchor().is_empty() || anchors(&path).contains(link.anchor()))
 }
 
 /// Anchors of the headings of a file.

@@ -7,6 +7,7 @@ mod concentration;
 mod limit_load;
 mod rigid;
 mod scene;
+mod table;
 mod waves;
 
 use crate::document::{self, DocumentEntry, DocumentTable, Node, Value};
@@ -20,6 +21,7 @@ use bsmpm::stabilisation::Stabilisation;
 use cells::Cells;
 use scene::PresetScene;
 pub(crate) use scene::around;
+pub(crate) use table::preset_table;
 
 /// The key.
 const ACCURACY: &str = "accuracy";

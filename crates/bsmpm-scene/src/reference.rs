@@ -1,5 +1,6 @@
 //! Writes the reference of all case keys as Markdown.
 
+use crate::preset::preset_table;
 use crate::schema::{Dimension, Group, Key, Kind, Presence, ROOT, Range, Table};
 use crate::unit;
 use crate::words::{Measurement, Word, Words};
@@ -35,6 +36,7 @@ pub fn reference() -> String {
          other components are zero. `run.json` stores the rows, so that a restart does not need the file. `--set` and \
          the parameters of a sweep accept rows, but no file.",
     );
+    page.presets();
     page.shared_words();
     page.histories();
     page.text
@@ -157,6 +159,13 @@ impl Page {
         }
     }
 
+    fn presets(&mut self) {
+        self.line("## Presets of `accuracy`\n");
+        let [introduction, table] = preset_table();
+        self.paragraph(&introduction);
+        self.line(&format!("{table}\n"));
+    }
+
     /// The words that several keys have, once.
     fn shared_words(&mut self) {
         self.line("## Words of several keys\n");
@@ -182,13 +191,16 @@ impl Page {
         self.line("## Quantities of a history\n");
         self.paragraph(
             "Words of `quantity` in `[[history]]`, with their unit in plane strain, where extensive quantities are per metre \
-             of thickness. A quantity with several values has a column for each, whose name ends as listed here.",
+             of thickness. A quantity with several values has a column for each, whose name ends as listed here. The \
+             examples are items of the list `history`; below a heading `[[history]]`, each key has its own line.",
         );
         for (word, doc) in Measurement::WORDS.all() {
             let Some(measured) = Measurement::of(word) else {
                 continue;
             };
-            self.wrapped("- ", &format!("**`{word}`** ({}): {}", measured.unit(), doc));
+            let example = measured.example();
+            let text = format!("**`{word}`** ({}): {doc} Example: `{example}`.", measured.unit());
+            self.wrapped("- ", &text);
             for (suffix, part) in measured.columns().iter().filter(|(suffix, _)| !suffix.is_empty()) {
                 self.wrapped("  - ", &format!("`{suffix}`: {part}"));
             }
@@ -359,7 +371,7 @@ mod tests {
     use super::*;
     use crate::report::Report;
     use crate::source::Source;
-    use crate::{document, record};
+    use crate::{Case, document, record};
 
     /// Geometries and analyses in which a key may have its meaning.
     const SETTINGS: [[&str; 2]; 4] = [
@@ -400,11 +412,7 @@ mod tests {
         for table in ROOT.all() {
             for key in table.keys.iter().filter(|key| key.presence != Presence::Retired) {
                 let place = format!("{} in {}", key.name, table.header);
-                let Some(value) = key.example_value() else {
-                    let has_table = matches!(key.kind, Kind::Table(_) | Kind::Named(_) | Kind::Tables(_));
-                    assert!(has_table, "{place}: no example");
-                    continue;
-                };
+                let value = key.example_value().unwrap_or_else(|| panic!("{place}: no example"));
                 // A file is read before the table.
                 if value.contains("file = ") {
                     continue;
@@ -412,6 +420,30 @@ mod tests {
                 let tried = SETTINGS.map(|setting| errors_of(key, &value, setting));
                 assert!(tried.iter().any(Vec::is_empty), "{place} = {value}: {tried:?}");
             }
+        }
+    }
+
+    /// Cases with a footing and a rigid body; with frictional contact; with pore-water flow; with an outflow boundary.
+    fn cases() -> [String; 4] {
+        let outflow =
+            include_str!("../tests/bad_cases/static.toml").replace("[boundary]", "[boundary]\nright = \"outflow\"");
+        [
+            include_str!("../tests/full.toml").to_owned(),
+            include_str!("../tests/bad_cases/rubbing.toml").to_owned(),
+            include_str!("../tests/bad_cases/seeping.toml").to_owned(),
+            outflow,
+        ]
+    }
+
+    #[test]
+    fn every_history_quantity_has_an_example_that_a_case_accepts() {
+        for (word, _) in Measurement::WORDS.all() {
+            let keys = Measurement::of(word)
+                .map_or(&[][..], Measurement::example_keys)
+                .join("\n");
+            let history = format!("\n[[history]]\nname = \"example\"\nquantity = \"{word}\"\n{keys}\n");
+            let tried = cases().map(|case| Case::from_text("case.toml", &format!("{case}{history}"), &[]));
+            assert!(tried.iter().any(Result::is_ok), "{history}: {tried:#?}");
         }
     }
 

@@ -109,7 +109,7 @@ impl Key {
         Self { value, ..self }
     }
 
-    /// A value as written in a case file, which its kind accepts; none for tables, which have examples of their keys.
+    /// A value as written in a case file, which its kind accepts.
     pub fn example_value(&self) -> Option<String> {
         if !self.value.is_empty() {
             return Some(self.value.to_owned());

@@ -44,7 +44,8 @@ pub(super) static ELEMENT: Table = Table {
             Tables(&STAGE),
             Required,
             "Stages of the test, one after the other.",
-        ),
+        )
+        .example(r#"[{ test = "isotropic", pressure = "200 kPa" }, { test = "triaxial", compression = 0.1 }]"#),
     ],
     exclusive: &[],
 };

@@ -358,13 +358,15 @@ pub(crate) static MATERIAL: Table = Table {
             Kind::Table(&RETENTION),
             Optional,
             "Soil-water retention curve of a coupled material. Without this table the soil stays saturated.",
-        ),
+        )
+        .example(r#"{ alpha = 2.0, n = 1.6, residual = 0.1 }"#),
         key(
             "damping",
             Kind::Table(&DAMPING),
             Optional,
             "Viscous damping in dynamic analyses. Without this table there is no viscous damping.",
-        ),
+        )
+        .example(r#"{ ratio = 0.05, frequency = 2.0 }"#),
     ],
     exclusive: &[
         one_of(&["unit_weight", "density"], false),

@@ -70,7 +70,8 @@ pub(super) static OUTPUT: Table = Table {
             Kind::Table(&CHECKPOINT),
             Optional,
             "Times at which the run writes restart files. A run that stops early always writes one.",
-        ),
+        )
+        .example(r#"{ wall = "10 min", keep = 3 }"#),
     ],
     exclusive: &[one_of(&["every", "every_steps"], false)],
 };

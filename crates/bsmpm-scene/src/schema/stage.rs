@@ -57,13 +57,15 @@ pub(super) static STAGE: Table = Table {
             Kind::Table(&FACES),
             Optional,
             "New supports at faces of the grid. The other faces keep their supports.",
-        ),
+        )
+        .example(r#"{ left = "free" }"#),
         key(
             "materials",
             Tables(&EXCHANGE),
             Optional,
             "Changes of the laws that bodies follow.",
-        ),
+        )
+        .example(r#"[{ from = "clay", to = "stiff_clay" }]"#),
         key(
             "strength_reduction",
             Quantity(In::Number, loads::FACTOR),

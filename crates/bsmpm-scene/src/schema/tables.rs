@@ -35,8 +35,8 @@ pub static ROOT: Table = Table {
             "accuracy",
             Choice(Accuracy::WORDS),
             Optional,
-            "Chooses the cells, material points, steps and tolerances that the case does not give. Not available in \
-             3-D.",
+            "Chooses the cells, material points, steps and tolerances that the case does not give, by the [table of \
+             presets](#presets-of-accuracy). Not available in 3-D.",
         )
         .example(r#""draft""#),
         key(
@@ -44,147 +44,174 @@ pub static ROOT: Table = Table {
             Kind::Table(&ANALYSIS),
             Required,
             "Type of the analysis and its duration.",
-        ),
-        key("grid", Kind::Table(&GRID), Required, "The grid of B-splines."),
+        )
+        .example(r#"{ type = "dynamic", end = "5 s", dt = "5 ms" }"#),
+        key("grid", Kind::Table(&GRID), Required, "The grid of B-splines.")
+            .example(r#"{ lower = [0.0, 0.0], upper = [40.0, 12.0], cell = "0.5 m" }"#),
         key(
             "material",
             Named(&material::MATERIAL),
             Required,
             "Materials, each with a name.",
-        ),
+        )
+        .example(r#"{ clay = { model = "tresca", young = "10 MPa", poisson = 0.49, cohesion = "30 kPa" } }"#),
         key(
             "body",
             Tables(&body::BODY),
             Required,
             "Bodies of soil, which are filled with material points.",
-        ),
+        )
+        .example(r#"[{ material = "clay", box = { lower = [0.0, 0.0], upper = [20.0, 8.0] } }]"#),
         key(
             "gravity",
             Kind::Table(&GRAVITY),
             Optional,
             "Gravity. Without this table there is no gravity.",
-        ),
+        )
+        .example(r#"{ acceleration = [0.0, -9.81] }"#),
         key(
             "water",
             Kind::Table(&water::WATER),
             Optional,
             "Water in the ground. Without this table there is no water.",
-        ),
+        )
+        .example(r#"{ level = "4 m" }"#),
         key(
             "drain",
             Tables(&flow::DRAIN),
             Optional,
             "A surface through which water flows freely.",
-        ),
+        )
+        .example(r#"[{ face = "bottom", head = "3 m" }]"#),
         key(
             "inflow",
             Tables(&flow::INFLOW),
             Optional,
             "A surface through which water enters the ground at a given rate.",
-        ),
+        )
+        .example(r#"[{ from = [0.0, 8.0], to = [20.0, 8.0], rate = "10 mm/h", runoff = true }]"#),
         key(
             "shaking",
             Kind::Table(&loads::SHAKING),
             Optional,
             "Acceleration of the ground in an earthquake.",
-        ),
+        )
+        .example(r#"{ acceleration = [[0.0, 0.0, 0.0], [0.5, "0.1 g", 0.0], [1.0, 0.0, 0.0]] }"#),
         key(
             "boundary",
             Kind::Table(&BOUNDARY),
             Default("{}"),
             "Supports at the faces of the grid.",
-        ),
+        )
+        .example(r#"{ bottom = "fixed", left = "roller", right = "roller" }"#),
         key(
             "stabilisation",
             Kind::Table(&STABILISATION),
             Optional,
             "Method that prevents volumetric locking and oscillating stresses. Without this table no such method is \
              used.",
-        ),
+        )
+        .example(r#"{ method = "consistent-f-bar" }"#),
         key(
             "solver",
             Kind::Table(&SOLVER),
             Default("{}"),
             "Nonlinear iteration and linear solver.",
-        ),
+        )
+        .example(r#"{ nonlinear = "newton", linear = "direct" }"#),
         key(
             "output",
             Kind::Table(&output::OUTPUT),
             Optional,
             "Frames for ParaView. Without this table the run writes one frame at the start and one at the end.",
-        ),
+        )
+        .example(r#"{ every = "0.5 s", fields = ["q", "yielding"] }"#),
         key(
             "history",
             Tables(&output::HISTORY),
             Optional,
             "A quantity that history.csv records at every step.",
-        ),
+        )
+        .example(r#"[{ quantity = "runout", percentile = 99.0 }]"#),
         key(
             "check",
             Tables(&output::CHECK),
             Optional,
             "Bounds of a column of history.csv.",
-        ),
+        )
+        .example(r#"[{ quantity = "max-displacement", max = "2 cm" }]"#),
         key(
             "footing",
             Kind::Table(&loads::FOOTING),
             Optional,
             "A rigid footing with a prescribed motion.",
-        ),
+        )
+        .example(r#"{ from = [0.0, 8.0], to = [1.0, 8.0], displacement = [0.0, "-10 cm"] }"#),
         key(
             "prescribed",
             Tables(&loads::PRESCRIBED),
             Optional,
             "A prescribed motion of the soil at a face of the grid or at a segment.",
-        ),
+        )
+        .example(r#"[{ face = "right", displacement = ["-5 cm", 0.0], components = "normal" }]"#),
         key(
             "rigid",
             Tables(&rigid::RIGID),
             Optional,
             "A rigid body in frictional contact with the soil.",
-        ),
+        )
+        .example(r#"[{ name = "pipe", circle = { centre = [10.0, 6.0], radius = 0.3 }, displacement = [0.0, 0.2] }]"#),
         key(
             "traction",
             Tables(&loads::TRACTION),
             Optional,
             "A load per area on the surface of a body.",
-        ),
+        )
+        .example(r#"[{ from = [0.0, 8.0], to = [5.0, 8.0], stress = [0.0, "-20 kPa"], ramp = "0.5 s" }]"#),
         key(
             "point_load",
             Tables(&loads::POINT_LOAD),
             Optional,
             "A force at a point of a body.",
-        ),
+        )
+        .example(r#"[{ at = [5.0, 8.0], force = [0.0, "-10 kN/m"] }]"#),
         key(
             "strength_reduction",
             Kind::Table(&loads::REDUCTION),
             Optional,
             "Reduction of the strength of all materials.",
-        ),
+        )
+        .example(r#"{ factor = 1.25 }"#),
         key(
             "initial",
             Kind::Table(&loads::INITIAL),
             Optional,
             "Initial stress. Without this table the bodies start without stress.",
-        ),
+        )
+        .example(r#"{ k0 = 0.5 }"#),
         key(
             "element",
             Named(&element::ELEMENT),
             Optional,
             "Laboratory tests of one material point, which `bsmpm element` computes.",
+        )
+        .example(
+            r#"{ test = { material = "clay", pressure = 1e5, stage = [{ test = "triaxial", compression = 0.1 }] } }"#,
         ),
         key(
             "stage",
             Tables(&stage::STAGE),
             Optional,
             "A change at a given time, for instance an excavation or a layer of fill.",
-        ),
+        )
+        .example(r#"[{ name = "excavated", at = "0.5 s", remove = ["upper_layer"] }]"#),
         key(
             "profile",
             Tables(&output::PROFILE),
             Optional,
             "Values along a line, written to a file.",
-        ),
+        )
+        .example(r#"[{ name = "wall", from = [2.0, 0.0], to = [2.0, 6.0], count = 25, quantities = ["stress"] }]"#),
     ],
     exclusive: &[],
 };
@@ -330,7 +357,8 @@ static GRID: Table = Table {
             Kind::Table(&KNOTS),
             Optional,
             "Alternative to `cell`: grid lines with any spacing.",
-        ),
+        )
+        .example(r#"{ x = [0.0, 1.0, 2.0, 4.0], y = [0.0, 0.5, 1.0] }"#),
         key(
             "degree",
             Choice(Order::WORDS),
@@ -513,7 +541,7 @@ static SOLVER: Table = Table {
             "background",
             Quantity(In::Number, UP_TO_1),
             Optional,
-            "Fictitious elastic stiffness of all cells with material, as a fraction of the largest Young's modulus in \
+            "Artificial elastic stiffness of all cells with material, as a fraction of the largest Young's modulus in \
              the cell. Default: 1e-4 in quasi-static and 0 in dynamic analyses. Values above 1e-4 make ground under \
              permanent loads too strong.",
         )
@@ -522,13 +550,13 @@ static SOLVER: Table = Table {
             "background_kind",
             Choice(BACKGROUND_KIND),
             Retired,
-            "the background always resists strain",
+            "the artificial stiffness always resists strain",
         ),
         key(
             "background_cells",
             Choice(BACKGROUND_CELLS),
             Retired,
-            "all occupied cells always have the background",
+            "all occupied cells always have the artificial stiffness",
         ),
         key(
             "linear",

@@ -1,4 +1,6 @@
-//! Accepted words for history quantities, with units and columns.
+//! Accepted words for history quantities, with units, columns and examples.
+
+use super::Word;
 
 choice! {
     /// What a history records, without what it needs besides, which [`Quantity`](crate::Quantity) has.
@@ -220,7 +222,7 @@ const ENERGY: &[(&str, &str)] = &[
     ("-smoothing", "dissipation by the averaging of elastic strains"),
     (
         "-background",
-        "dissipation by the fictitious stiffness `solver.background`",
+        "dissipation by the artificial stiffness `solver.background`",
     ),
     (
         "-penalty",
@@ -233,6 +235,41 @@ const ENERGY: &[(&str, &str)] = &[
 ];
 
 impl Measurement {
+    /// An item of the list `history` that records it, as written in a case file.
+    pub fn example(self) -> String {
+        let quantity = format!("quantity = \"{}\"", self.word());
+        let keys = self.example_keys().iter().map(|key| (*key).to_owned());
+        let keys: Vec<String> = std::iter::once(quantity).chain(keys).collect();
+        format!("{{ {} }}", keys.join(", "))
+    }
+
+    /// The keys besides `quantity` in the example.
+    pub(crate) fn example_keys(self) -> &'static [&'static str] {
+        match self {
+            Self::Runout => &["percentile = 99.0"],
+            Self::Height => &["at_x = 2.0"],
+            Self::Mass | Self::Momentum | Self::CentreOfMass => &[r#"body = "fill""#],
+            Self::AngularMomentum | Self::KineticEnergy | Self::MeanVelocity => &[r#"body = "fill""#],
+            Self::MeanStress | Self::PressureNoise => &["box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }"],
+            Self::MeanDisplacement | Self::PlasticStrain => &[r#"material = "sand""#],
+            Self::PorePressures => &[r#"material = "clay""#],
+            Self::SectionForces => &["from = [1.0, 0.0]", "to = [1.0, 1.25]"],
+            Self::Reaction => &[r#"face = "bottom""#],
+            Self::Displacement | Self::PorePressure | Self::ExcessPressure => &["at = [2.0, 0.5]"],
+            Self::Porosity | Self::Flux => &["at = [2.0, 0.5]"],
+            Self::Velocity | Self::Stress => &["at = [2.0, 1.0]", "surface = true"],
+            Self::Moment | Self::Work => &[r#"of = "footing""#],
+            Self::Contact | Self::Gap | Self::SlipRate | Self::FrictionPower => &[r#"of = "footing""#],
+            Self::WaterOutflow => &[r#"drain = "base""#],
+            Self::RigidForce | Self::RigidMoment | Self::RigidDisplacement => &[r#"rigid = "pipe""#],
+            Self::RigidRotation | Self::RigidVelocity => &[r#"rigid = "pipe""#],
+            Self::RigidSlip | Self::RigidGap | Self::RigidWork => &[r#"rigid = "pipe""#],
+            Self::Front | Self::MaxDisplacement | Self::Outflow | Self::WaterBalance | Self::StressNoise => &[],
+            Self::Heave | Self::FootingPressure | Self::FootingForce | Self::Penetration | Self::Slip => &[],
+            Self::Energy => &[],
+        }
+    }
+
     /// Whether there must be a footing.
     pub fn is_of_footing(self) -> bool {
         matches!(
