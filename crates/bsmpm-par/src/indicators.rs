@@ -312,8 +312,8 @@ fn course(case: &Case, summary: &Summary) -> impl Iterator<Item = (&'static str,
     .flatten()
 }
 
-/// What the soft background takes of the work, if there is one: over all steps, or where a limit load is read at the
-/// end of the run in the last one; and its force under dead load.
+/// Share of the artificial stiffness in the work: over all steps, or, if a limit load is read at the end of the run,
+/// in the last step; and its force under dead load. None without an artificial stiffness.
 fn of_background(case: &Case, summary: &Summary) -> [Option<(&'static str, Indicator)>; 2] {
     let load = summary
         .background_forces

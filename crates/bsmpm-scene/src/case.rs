@@ -320,7 +320,7 @@ pub struct Solver {
     pub quadrature: Quadrature,
     /// Whether functions of nearly empty cells are tied to those of full ones; in quasi-static analysis only.
     pub extended_splines: ExtendedSplines,
-    /// -  coefficient of the soft background; 0: none
+    /// -  coefficient of the artificial stiffness; 0: none
     pub background: f64,
     /// The linear solver.
     pub linear: Linear,

@@ -190,18 +190,18 @@ pub struct Summary {
     /// recorded.
     #[serde(default)]
     pub largest_front_setback: Option<f64>,
-    /// Work done on the fictitious stiffness (`solver.background`) in all steps (J); none without one.
+    /// Work done on the artificial stiffness (`solver.background`) in all steps (J); none without one.
     #[serde(default)]
     pub background_work: Option<f64>,
-    /// Absolute works of the internal forces at all nodes, including the fictitious stiffness, added over the steps
-    /// (J); none without a fictitious stiffness.
+    /// Absolute works of the internal forces at all nodes, including the artificial stiffness, added over the steps
+    /// (J); none without an artificial stiffness.
     #[serde(default)]
     pub internal_work: Option<f64>,
-    /// Largest force of the fictitious stiffness on a node divided by the RMS force of the nodes, added over the steps
-    /// without prescribed motion; none without a fictitious stiffness or such steps.
+    /// Largest force of the artificial stiffness on a node divided by the RMS force of the nodes, added over the steps
+    /// without prescribed motion; none without an artificial stiffness or such steps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub background_forces: Option<f64>,
-    /// Share of the fictitious stiffness in the work of the last step; none without one.
+    /// Share of the artificial stiffness in the work of the last step; none without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last_background: Option<BackgroundShares>,
     /// Largest displacement of a point in a step, added over the steps (m); none if the stiffness is not judged.
@@ -235,10 +235,10 @@ pub struct Summary {
     pub peak_memory: Vec<u64>,
 }
 
-/// Share of the fictitious stiffness in a step.
+/// Share of the artificial stiffness in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BackgroundShares {
-    /// Work done on the fictitious stiffness, divided by the absolute works of all internal forces, or by their mean
+    /// Work done on the artificial stiffness, divided by the absolute works of all internal forces, or by their mean
     /// over the steps so far if that is larger.
     pub work: f64,
 }

@@ -126,7 +126,7 @@ fn extended_splines(
     Some(ExtendedSplines::Off)
 }
 
-/// The coefficient of the soft background.
+/// The coefficient of the artificial stiffness.
 fn background(solver: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<f64> {
     if solver.gives("background") {
         return solver.number("background");

@@ -100,7 +100,7 @@ pub(super) struct Conditions {
     /// along each axis, of every body
     pub points_per_cell: Vec<usize>,
     pub stabilisation: String,
-    /// of the soft background, over Young's modulus
+    /// of the artificial stiffness, over Young's modulus
     pub background: f64,
     /// of the energy
     pub tolerance: f64,

@@ -15,7 +15,7 @@ const MODIFIED: &str = "modified-f-bar";
 const CONSISTENT: &str = "consistent-f-bar";
 
 const EDGE: &str =
-    "nodes at a free edge have almost no stiffness; a background stiffness, which is off in dynamics, helps";
+    "nodes at a free edge have almost no stiffness; an artificial stiffness, which is off in dynamics, helps";
 const SEPARATION: &str =
     "a pulled footing loses contact where points enter the empty cell before it: its force acts on nodes without soil";
 const NOISE_P: &str = "two cells under the footing are too few";
@@ -173,13 +173,13 @@ fn strains() -> Vec<Row> {
 #[rustfmt::skip] // a row is a line or two
 fn edges() -> Vec<Row> {
     vec![
-        row("N06", "body at 200 positions in a cell, no background stiffness: change of the stress inside", AtMost(0.01),
+        row("N06", "body at 200 positions in a cell, no artificial stiffness: change of the stress inside", AtMost(0.01),
             || geometry::crossing(0.0)).fails(EDGE),
-        row("N06", "body at 200 positions in a cell, background stiffness 1e-4: change of the stress inside", AtMost(0.01),
+        row("N06", "body at 200 positions in a cell, artificial stiffness 1e-4: change of the stress inside", AtMost(0.01),
             || geometry::crossing(1e-4)),
-        row("N06", "edge of the body 0 to 1e-2 cells beyond a grid line, no background stiffness: change of the stress inside",
+        row("N06", "edge of the body 0 to 1e-2 cells beyond a grid line, no artificial stiffness: change of the stress inside",
             AtMost(0.01), || geometry::entering(0.0)).fails(EDGE),
-        row("N06", "edge of the body 0 to 1e-2 cells beyond a grid line, background stiffness 1e-4: change of the stress inside",
+        row("N06", "edge of the body 0 to 1e-2 cells beyond a grid line, artificial stiffness 1e-4: change of the stress inside",
             AtMost(0.01), || geometry::entering(1e-4)),
         row("N06", "body falls across a cell: largest acceleration of a node / g", AtMost(100.0), geometry::nodal_acceleration),
         row("N06", "body falls across a cell: relative loss of momentum", AtMost(1e-12), geometry::lost_momentum),

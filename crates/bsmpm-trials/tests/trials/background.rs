@@ -1,4 +1,4 @@
-//! Tests indicators of the soft background stiffness.
+//! Tests indicators of the artificial stiffness.
 
 use crate::support::cases::{changed, slope};
 use crate::support::results::manifest;

@@ -186,7 +186,7 @@ fn the_advice_against_noise_is_not_the_method_in_use() {
     }
 }
 
-/// Beyond failure the soft background takes more than a tenth of the work.
+/// Beyond failure the artificial stiffness takes more than a tenth of the work.
 const ACCEPTING: &str = "output.accept=[\"background-work\"]";
 
 /// Loss of stiffness of the case with what is set, the time at which the ground failed, and the log.

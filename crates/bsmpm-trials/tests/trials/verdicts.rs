@@ -4,7 +4,7 @@ use crate::support::Scratch;
 use crate::support::cases::slope;
 use crate::support::results::manifest;
 
-/// A soft background that carries a part of the slope's weight.
+/// An artificial stiffness that carries a part of the slope's weight.
 const HELD: [&str; 2] = ["--set", "solver.background=1.0"];
 const ACCEPTING: [&str; 2] = ["--set", "output.accept=[\"background-work\"]"];
 const CHECKED: [&str; 2] = ["--set", "check=[{ quantity = \"max-displacement\", max = 1e-4 }]"];
