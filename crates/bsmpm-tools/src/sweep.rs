@@ -119,6 +119,7 @@ pub fn run(arguments: &SweepArguments, mut report: impl FnMut(&str)) -> Result<(
         command: &command,
         axes: plan.axes.iter().map(|axis| axis.key.clone()).collect(),
         quantities: &plan.quantities,
+        histories: &plan.own.histories,
         points: &plan.points,
         outcomes: &outcomes,
         within: arguments.within,

@@ -12,12 +12,22 @@ pub(crate) const BELOW: f64 = 120.0;
 /// Below this height of the axes over their width a bar lies: an upright one has no room for its numbers and label.
 pub(crate) const LYING: f64 = 0.5;
 const THICK: f64 = 30.0;
+/// Length of a pointed end.
+const POINT: f64 = 26.0;
 const SHADES: usize = 512;
+
+/// The ends of a bar beyond which there are values; such an end is pointed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct PointedEnds {
+    pub lower: bool,
+    pub upper: bool,
+}
 
 /// A range of numbers that colours stand for.
 pub(crate) struct Bar<'a> {
     pub range: ValueRange,
     pub label: Label<'a>,
+    pub pointed: PointedEnds,
 }
 
 impl Bar<'_> {
@@ -26,14 +36,21 @@ impl Bar<'_> {
         let ticks = Ticks::between(self.range.low, self.range.high, 8.0);
         let label = ticks.label(self.label.quantity, self.label.unit);
         let size = fitting(&label, LABEL, 0.5 * (axes.right - axes.left));
-        let left = axes.left + width(&label, size) + 28.0;
-        let right = axes.right;
+        let left = axes.left + width(&label, size) + 28.0 + POINT * f64::from(self.pointed.lower);
+        let right = axes.right - POINT * f64::from(self.pointed.upper);
         let top = axes.bottom + axes::BELOW + 20.0;
         let bottom = top + THICK;
         for (from, to, shade) in shades(left, right) {
             canvas.fill([from, top], [to, bottom], shade);
         }
         canvas.frame([left, top], [right, bottom], THIN, INK);
+        let middle = f64::midpoint(top, bottom);
+        if self.pointed.lower {
+            point(canvas, [[left, top], [left, bottom]], [left - POINT, middle], 0.0);
+        }
+        if self.pointed.upper {
+            point(canvas, [[right, top], [right, bottom]], [right + POINT, middle], 1.0);
+        }
         for &value in &ticks.values {
             let at = left + (right - left) * self.share(value);
             canvas.fill([at - THIN / 2.0, bottom], [at + THIN / 2.0, bottom + TICK], INK);
@@ -56,7 +73,8 @@ impl Bar<'_> {
 
     /// Draws the bar standing right of the axes, its label reading upward.
     pub fn upright(&self, canvas: &mut Canvas, axes: &ChartAxes) {
-        let ChartAxes { top, bottom, .. } = *axes;
+        let top = axes.top + POINT * f64::from(self.pointed.upper);
+        let bottom = axes.bottom - POINT * f64::from(self.pointed.lower);
         let ticks = Ticks::between(self.range.low, self.range.high, (bottom - top) / 90.0);
         let left = axes.right + 50.0;
         let right = left + THICK;
@@ -64,6 +82,13 @@ impl Bar<'_> {
             canvas.fill([left, to], [right, from], shade);
         }
         canvas.frame([left, top], [right, bottom], THIN, INK);
+        let middle = f64::midpoint(left, right);
+        if self.pointed.lower {
+            point(canvas, [[left, bottom], [right, bottom]], [middle, bottom + POINT], 0.0);
+        }
+        if self.pointed.upper {
+            point(canvas, [[left, top], [right, top]], [middle, top - POINT], 1.0);
+        }
         let mut widest: f64 = 0.0;
         for &value in &ticks.values {
             let at = bottom - (bottom - top) * self.share(value);
@@ -82,6 +107,12 @@ impl Bar<'_> {
     pub fn share(&self, value: f64) -> f64 {
         (value - self.range.low) / self.range.length()
     }
+}
+
+/// Draws a pointed end from the edge of a bar to its tip, in the colour of this share of the range.
+fn point(canvas: &mut Canvas, [first, second]: [[f64; 2]; 2], tip: [f64; 2], share: f64) {
+    canvas.triangle([first, tip, second], colour::map(share));
+    canvas.line([first, tip, second], THIN, INK);
 }
 
 /// The colours in strips along the way between two edges.

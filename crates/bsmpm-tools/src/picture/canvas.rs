@@ -69,6 +69,16 @@ impl Canvas {
         self.draw(|sheet| sheet.draw_text(text, &style, place).map_err(|error| error.to_string()));
     }
 
+    /// A filled triangle.
+    pub fn triangle(&mut self, corners: [[f64; 2]; 3], colour: Rgb) {
+        self.draw(|sheet| {
+            let corners = corners.map(|corner| fine(corner).into());
+            sheet
+                .fill_polygon(corners, &filled(colour, 1.0))
+                .map_err(|error| error.to_string())
+        });
+    }
+
     /// A line through `points` with round joints. Points nearer than half a pixel to the one before add nothing.
     pub fn line(&mut self, points: impl IntoIterator<Item = [f64; 2]>, width: f64, colour: Rgb) {
         let style = filled(colour, width);

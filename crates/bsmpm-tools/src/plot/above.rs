@@ -8,7 +8,7 @@ use super::section;
 use super::space::slope;
 use crate::Error;
 use crate::picture::axes::{self, Label, title};
-use crate::picture::bar::{self, Bar};
+use crate::picture::bar::{self, Bar, PointedEnds};
 use crate::picture::canvas::Canvas;
 use crate::picture::colour::{self, Rgb};
 use crate::picture::layout::{Layout, aspect};
@@ -114,6 +114,7 @@ pub(super) fn draw(record: &RunRecord, frames: &[Frame]) -> Result<Vec<String>, 
         let bar = Bar {
             range: ends,
             label: Label::of("Height of the surface", "m"),
+            pointed: PointedEnds::default(),
         };
         picture(record, frame, heights, bar).save(&record.directory.join(&name))?;
         names.push(name);

@@ -61,6 +61,7 @@ pub(super) fn draw(
         let bar = Bar {
             range: colours,
             label: field.label(section.map(|section| section.axis)),
+            pointed: FieldName::exceeded(values, colours),
         };
         let beyond = field.beyond(values, colours);
         picture

@@ -4,6 +4,7 @@ use bsmpm_io::frame::{FieldValues, Frame};
 use clap::ValueEnum;
 
 use crate::picture::axes::Label;
+use crate::picture::bar::PointedEnds;
 use crate::picture::ticks::ValueRange;
 
 /// The share of points whose values lie beyond each end of the range of colours, so that a few wild ones do not set it.
@@ -209,18 +210,25 @@ impl FieldName {
         }
     }
 
-    /// What lies beyond the range of colours by more than a twentieth of it, to be said below a title.
-    pub(super) fn beyond(self, values: &[f64], range: ValueRange) -> String {
+    /// The ends of the range of colours beyond which values lie by more than a twentieth of it.
+    pub(super) fn exceeded(values: &[f64], range: ValueRange) -> PointedEnds {
         let ValueRange { low, high } = range;
-        let least = values.iter().fold(high, |least, &x| x.min(least));
-        let largest = values.iter().fold(low, |largest, &x| x.max(largest));
         let room = 0.05 * range.length();
-        let mut text = String::new();
-        if least < low - room {
-            text += &self.extreme("least", least);
+        PointedEnds {
+            lower: least(values, high) < low - room,
+            upper: largest(values, low) > high + room,
         }
-        if largest > high + room {
-            text += &self.extreme("largest", largest);
+    }
+
+    /// The extreme values beyond the ends of the range of colours, to be said below a title.
+    pub(super) fn beyond(self, values: &[f64], range: ValueRange) -> String {
+        let exceeded = Self::exceeded(values, range);
+        let mut text = String::new();
+        if exceeded.lower {
+            text += &self.extreme("least", least(values, range.high));
+        }
+        if exceeded.upper {
+            text += &self.extreme("largest", largest(values, range.low));
         }
         text
     }
@@ -242,4 +250,14 @@ impl FieldName {
             Self::PlasticStrain | Self::Displacement | Self::Velocity | Self::Q | Self::Flux
         ) || matches!(self, Self::MobilisedStrength | Self::DeviatoricStrain | Self::Yielding)
     }
+}
+
+/// The least of some values, at most `bound`.
+fn least(values: &[f64], bound: f64) -> f64 {
+    values.iter().fold(bound, |least, &value| value.min(least))
+}
+
+/// The largest of some values, at least `bound`.
+fn largest(values: &[f64], bound: f64) -> f64 {
+    values.iter().fold(bound, |largest, &value| value.max(largest))
 }

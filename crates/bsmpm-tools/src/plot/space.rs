@@ -174,6 +174,7 @@ pub(super) fn draw(
         let bar = Bar {
             range,
             label: field.label(Some(2)),
+            pointed: FieldName::exceeded(values, range),
         };
         let beyond = field.beyond(values, range);
         picture(record, [lower, upper], frame, values, &beyond, bar).save(&record.directory.join(&name))?;

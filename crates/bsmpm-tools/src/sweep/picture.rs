@@ -71,7 +71,7 @@ pub(super) fn draw(report: &SweepReport, quantity: usize, path: &Path) -> Result
         scales: [Scale::Logarithmic; 2],
     };
     let mut canvas = Canvas::new(SHEET.0, SHEET.1);
-    let below = format!("{}: error against {}", report.quantities[quantity], against(report));
+    let below = format!("Error of {} against {}", report.subjects[quantity], against(report));
     title(&mut canvas, SHEET.0, &report.title, &below);
     legend::draw(&mut canvas, &entries, 40.0, ABOVE, room);
     axes.rules(&mut canvas);

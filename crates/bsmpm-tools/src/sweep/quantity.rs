@@ -1,6 +1,7 @@
 //! Quantities of a run, and their relative error.
 
 use bsmpm_io::table::Columns;
+use bsmpm_scene::History;
 
 use crate::plot;
 
@@ -61,6 +62,22 @@ impl SweepQuantity {
         self.parts.iter().any(|part| part.column == FACTOR)
     }
 
+    /// The quantity in words, with its columns and times: `footing pressure (p_over_c) at t = 0.25 and 1`.
+    pub fn subject(&self, histories: &[History]) -> String {
+        let columns = distinct(self.parts.iter().map(|part| part.column.clone()).collect());
+        let words = distinct(columns.iter().map(|column| in_words(column, histories)).collect());
+        let times = self.parts.iter().filter_map(|part| part.at).map(|at| at.to_string());
+        let times = distinct(times.collect());
+        let mut subject = words.join(", ");
+        if columns.join(", ").replace('-', " ") != subject {
+            subject += &format!(" ({})", columns.join(", "));
+        }
+        if !times.is_empty() {
+            subject += &format!(" at t = {}", times.join(" and "));
+        }
+        subject
+    }
+
     /// Its numbers in a history.
     pub fn values(&self, history: &Columns) -> Result<Vec<f64>, String> {
         self.parts.iter().map(|part| part.value(history)).collect()
@@ -108,6 +125,25 @@ impl QuantityPart {
     }
 }
 
+/// The texts without those that equal the text before.
+fn distinct(mut texts: Vec<String>) -> Vec<String> {
+    texts.dedup();
+    texts
+}
+
+/// What the history of a column records, in words; the name of a column that no history has.
+fn in_words(column: &str, histories: &[History]) -> String {
+    let of_column = histories.iter().find(|history| {
+        let suffix = column.strip_prefix(history.name.as_str());
+        suffix.is_some_and(|suffix| suffix.is_empty() || suffix.starts_with('-'))
+    });
+    let name = of_column.map_or_else(
+        || column.to_owned(),
+        |history| history.quantity.measurement().to_string(),
+    );
+    name.replace('-', " ")
+}
+
 /// A column of a history, or that there is none.
 fn column<'a>(history: &'a Columns, name: &str) -> Result<&'a [f64], String> {
     let column = history.get(name);
@@ -117,11 +153,30 @@ fn column<'a>(history: &'a Columns, name: &str) -> Result<&'a [f64], String> {
 #[cfg(test)]
 mod tests {
     use bsmpm_io::table;
+    use bsmpm_scene::Case;
 
     use super::*;
 
     fn quantity(text: &str) -> SweepQuantity {
         SweepQuantity::parse(text).unwrap()
+    }
+
+    #[test]
+    fn a_subject_has_the_words_of_the_field() {
+        let case = "geometry = \"plane-strain\"\nanalysis = { type = \"quasi-static\", steps = 2 }\n\
+             grid = { lower = [0, 0], upper = [2, 2], cell = 1 }\n\
+             material.soil = { model = \"elastic\", young = 1e6, poisson = 0.3 }\n\
+             body = [{ material = \"soil\", box = { lower = [0, 0], upper = [2, 1] }, points_per_cell = 3 }]\n\
+             boundary.bottom = \"fixed\"\n\
+             history = [{ quantity = \"max-displacement\", name = \"crest\" }, { quantity = \"height\" }]\n";
+        let case = Case::from_text("case.toml", case, &[]).unwrap();
+        let subject = |text: &str| quantity(text).subject(&case.histories);
+        assert_eq!(
+            subject("crest@0.5,crest@1"),
+            "max displacement (crest) at t = 0.5 and 1"
+        );
+        assert_eq!(subject("height"), "height");
+        assert_eq!(subject("factor-of-safety"), "factor of safety");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Writes error and cost of each setting of a sweep as text, CSV and JSON.
 
+use bsmpm_scene::History;
 use serde::Serialize;
 
 use super::front::{CostError, cheapest, front};
@@ -61,6 +62,9 @@ pub(super) struct SweepReport {
     pub cheapest: Vec<Cheapest>,
     #[serde(skip)]
     pub heads: Vec<String>,
+    /// The quantities in words.
+    #[serde(skip)]
+    pub subjects: Vec<String>,
 }
 
 /// What a report is made of.
@@ -70,6 +74,7 @@ pub(super) struct ReportParts<'a> {
     pub command: &'a [String],
     pub axes: Vec<String>,
     pub quantities: &'a [SweepQuantity],
+    pub histories: &'a [History],
     pub points: &'a [Point],
     pub outcomes: &'a [Outcome],
     pub within: f64,
@@ -131,6 +136,10 @@ impl SweepReport {
                 .collect(),
             axes: parts.axes,
             quantities: quantities.iter().map(|quantity| quantity.name.clone()).collect(),
+            subjects: quantities
+                .iter()
+                .map(|quantity| quantity.subject(parts.histories))
+                .collect(),
             reference,
             within,
             runs,
@@ -381,6 +390,7 @@ mod tests {
             command: &[],
             axes: vec!["grid.cell".into(), "body.*.points_per_cell".into()],
             quantities: &quantities,
+            histories: &[],
             points: &points,
             outcomes: &outcomes,
             within,
