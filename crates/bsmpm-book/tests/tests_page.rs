@@ -177,10 +177,24 @@ fn tests_of(text: &str) -> Vec<TestRow> {
     tests
 }
 
-/// A name in words, with a capital letter.
+/// Names of persons in names of tests, which are written in lower case there.
+const PERSONS: [&str; 14] = [
+    "bishop", "bossak", "coulomb", "dupuit", "hencky", "hertz", "janssen", "lamberts", "lame", "lames", "mohr",
+    "newmark", "richards", "tresca",
+];
+
+/// A name in words, with capital letters at its beginning and in names of persons.
 fn statement(name: &str) -> String {
-    let words = name.replace('_', " ");
-    let mut letters = words.chars();
+    let words = name.split('_').enumerate().map(|(number, word)| {
+        let is_capital = number == 0 || PERSONS.contains(&word);
+        if is_capital { capitalised(word) } else { word.to_owned() }
+    });
+    words.collect::<Vec<_>>().join(" ")
+}
+
+/// A word with a capital letter.
+fn capitalised(word: &str) -> String {
+    let mut letters = word.chars();
     letters
         .next()
         .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())

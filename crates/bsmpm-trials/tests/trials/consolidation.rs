@@ -320,9 +320,9 @@ fn nearly_incompressible_clay_as_undrained_soil_takes_a_third_of_the_iterations(
     assert!((undrained / load - 1.0).abs() < 0.12, "{undrained} {load}"); // coarse cells: 3 % with 0.25 m
 }
 
-/// A month of flood at a levee: what seeps out in the end against Casagrande (1937), who knows neither a fringe that
-/// conducts above the line nor the suction in it: +6.3 % in cells of 1 m, +5.3 of 0.25 m. On two ranks, and in parts,
-/// the same.
+/// Casagrande (1937): seepage through a levee at the end of a flood of a month, without the flow above the phreatic
+/// line that the program includes. The difference is +6.3 % in cells of 1 m, +5.3 % in cells of 0.25 m. On two ranks,
+/// and in parts, the same.
 #[test]
 fn a_river_that_rises_seeps_through_a_levee() {
     let coarse = "material.silt.retention={ alpha = 8, n = 2.5, residual = 0.1 }";

@@ -16,10 +16,11 @@ fn run(case: &str, set: &[&str]) -> bsmpm_io::table::Columns {
     history(&scratch.path("out"))
 }
 
-/// Janssen (1895), after each lift, with K of grain that stays elastic and of grain that yields at the walls: there
-/// Mohr's circle of radius p sin(phi) meets the wall's friction, tan(delta) = 0.4. Cells of 0.5 m: 2.2 and 4.2 %.
+/// Janssen (1895) after each lift, with the stress ratio K of elastic grain, and of grain that yields at the walls,
+/// where the wall friction is tan(delta) = 0.4. Mohr's circle of radius p sin(phi) gives this K. Cells of 0.5 m: 2.2
+/// and 4.2 %.
 #[test]
-fn what_presses_on_the_bottom_of_a_silo_is_janssens() {
+fn the_pressure_on_the_bottom_of_a_silo_is_that_of_janssen() {
     let friction = 0.4_f64;
     let grain = 0.5_f64;
     let turned = (friction.atan().sin() / grain).asin() - friction.atan();
@@ -82,7 +83,7 @@ fn a_strip_on_strong_clay_over_soft_clay_carries_less_than_a_circle() {
 /// Discs, smooth (Eason and Shield, 1960) and rough (Cox, Eason and Hopkins, 1961), and Prandtl's strip are between the
 /// bounds of coarse triangles.
 #[test]
-fn bounds_of_triangles_hold_what_is_known() {
+fn limit_analysis_with_triangles_encloses_known_limit_loads() {
     let disc = Footing {
         round: true,
         rough: false,
@@ -126,11 +127,11 @@ fn a_pipe_that_is_pulled_out_of_clay_carries_less_than_blocks_above_it() {
     }
 }
 
-/// A smooth plate, B/4 thick, its upper side 2 B below the surface: blocks with four nodes to its width allow 3.75, and
-/// a rough one carries 2.56 ln(2 H/B) = 3.55 c B by lower bounds (Merifield, Sloan and Yu, 2001). Cells of B/8 and
-/// B/16, two and four in its thickness, gave 4.06 and 3.85: too much by 8 and 3 % of what blocks allow.
+/// Merifield, Sloan and Yu (2001): a rough plate at the depth H = 2 B carries at least 2.56 ln(2 H/B) = 3.55 c B; for
+/// the smooth plate of the test, of thickness B/4, a mechanism of rigid blocks gives the upper bound 3.75 c B. Cells of
+/// B/8 and B/16, two and four in its thickness, gave 4.06 and 3.85: above the upper bound by 8 and 3 %.
 #[test]
-fn an_anchor_plate_carries_less_in_smaller_cells_towards_what_blocks_allow() {
+fn the_load_of_an_anchor_plate_decreases_with_the_cell_size_to_the_upper_bound() {
     let hole = "body.0.subtract=[{ box = { lower = [0.0, 1.75], upper = [0.5, 2.0] } }]";
     let corners = "[[-0.5, 1.75], [0.5, 1.75], [0.5, 2.0], [-0.5, 2.0]]";
     let body = format!("rigid.0={{ name = \"pipe\", polygon = {corners}, displacement = [0.0, 0.01] }}");

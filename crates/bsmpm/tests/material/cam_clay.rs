@@ -203,8 +203,9 @@ fn isotropic_compression_follows_both_lines() {
     }
 }
 
-/// Without drainage p (1 + (η/M)²)^Λ stays from yield on, Λ = 1 - κ̂/λ̂, so that s_u = M/2 p_0 (R/2)^Λ; the strain
-/// follows with the first order of the step: `ε_s = q/3μ + κ̂ Λ/M (ln((M + η)/(M - η)) - 2 arctan(η/M))`.
+/// Closed form: in undrained shear p (1 + (η/M)²)^Λ is constant after yield, with Λ = 1 - κ̂/λ̂, so that the strength
+/// is s_u = M/2 p_0 (R/2)^Λ; to first order in the step size the strain is `ε_s = q/3μ + κ̂ Λ/M (ln((M + η)/(M - η)) -
+/// 2 arctan(η/M))`.
 #[test]
 fn undrained_triaxial_path_strength_and_strain() {
     let (swelling, compression) = slopes();
@@ -310,7 +311,8 @@ fn drained_triaxial_volume_and_strain_to_the_critical_state() {
     assert!((p / (3.0 * p0 / (3.0 - M)) - 1.0).abs() < 1e-6 && (sample.volume_strain() - volume(M)).abs() < 1e-7);
 }
 
-/// First loading without lateral strain has one η where shear is stiff: `(M² - η²)/2η = 3/2 (1 - κ̂/λ̂)`.
+/// Closed form: virgin compression without lateral strain has a constant η if the shear modulus is large,
+/// `(M² - η²)/2η = 3/2 (1 - κ̂/λ̂)`.
 #[test]
 fn oedometer_tends_to_its_stress_ratio_and_slope() {
     let (swelling, compression) = slopes();

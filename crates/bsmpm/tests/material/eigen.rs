@@ -57,7 +57,7 @@ fn plane_path_is_the_general_path() {
     assert!(worst <= 1e-13, "{worst:e}");
 }
 
-/// `τ = E ε` for ν = 0, axes along the grid (exact b) and turned: strains from 1e-10 to ln 10 on each axis.
+/// Closed form: `τ = E ε` for ν = 0, with principal axes along the grid and rotated, for strains from 1e-10 to ln 10.
 #[test]
 fn hencky_holds_from_tiny_to_large_strain() {
     let material = hencky(1.0, 0.0);
@@ -87,7 +87,7 @@ fn hencky_holds_from_tiny_to_large_strain() {
     }
 }
 
-/// `½ ln [1 g; g 1]` has `½ artanh g` off its diagonal: nothing is lost near b = I when b itself is exact.
+/// Closed form: the off-diagonal entry of the strain `½ ln [1 g; g 1]` is `½ artanh g`, also for very small g.
 #[test]
 fn pure_shear_is_exact_at_any_size() {
     let material = hencky(1.0, 0.0);
@@ -114,7 +114,7 @@ fn determinants_from_1e_minus_6_to_1e6() {
     }
 }
 
-/// `exp(2 τ)` for E = 1, ν = 0 is b again, for gaps between eigenvalues from 1 to 1e-16 (no branch jumps either).
+/// Closed form: `exp(2 τ)` is b for E = 1 and ν = 0, if the eigenvalues differ by 1 to 1e-16.
 #[test]
 fn nearly_equal_eigenvalues_rebuild_b() {
     let material = hencky(1.0, 0.0);

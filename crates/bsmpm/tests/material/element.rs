@@ -73,7 +73,8 @@ fn undrained_triaxial_strength_and_pore_pressure() {
     assert!(sample.volume_strain().abs() < 1e-14);
 }
 
-/// `σ_x/σ_y = ν/(1 - ν)`, `σ_y = M ln l/l`, loaded by strain and by that stress, unloaded to nothing.
+/// Closed form: `σ_x/σ_y = ν/(1 - ν)` and `σ_y = M ln l/l`, loaded by a given strain and by a given stress, and
+/// unloaded.
 #[test]
 fn oedometer_follows_the_constrained_modulus_and_its_k0() {
     let law = hencky(1e7, 0.3);
@@ -92,7 +93,7 @@ fn oedometer_follows_the_constrained_modulus_and_its_k0() {
     assert!((sample.strain()[1] / 0.9_f64.ln() - 1.0).abs() < 1e-10);
 }
 
-/// In plane strain `-σ_y = -σ_x N`; in simple shear of clay the circle has the radius c.
+/// Closed form: Mohr's circle at yield; in plane strain `-σ_y = -σ_x N`, and in simple shear of clay its radius is c.
 #[test]
 fn biaxial_and_simple_shear_strength() {
     let mut sample = point(mohr_coulomb(4e7, 0.25, 30.0, 0.0, 0.0), 1e5, 1.0);

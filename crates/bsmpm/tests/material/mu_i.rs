@@ -120,7 +120,7 @@ fn tangent_is_the_derivative() {
     assert!(seen[0] > 5_000 && seen[1] > 500 && worst < 1e-6, "{seen:?} {worst}");
 }
 
-/// Simple shear at a constant rate under a constant pressure: `τ = μ(I) p`, however long the steps are.
+/// Closed form: simple shear at a constant rate under a constant pressure, `τ = μ(I) p`, for any step size.
 #[test]
 fn steady_shear_has_the_friction_of_its_inertial_number() {
     let [mu_s, mu_2, i_0, diameter, density] = NUMBERS;

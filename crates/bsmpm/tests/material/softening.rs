@@ -179,7 +179,7 @@ fn a_strength_by_the_rate_is_found_whatever_the_plastic_strain() {
     assert!(least < 1e-12, "{least}");
 }
 
-/// Shear without friction or change of volume: `2μ (e - p) = c(κ)`, κ = 2p/√3, in one step or many.
+/// Closed form: shear of constant volume without friction, `2μ (e - p) = c(κ)` with κ = 2p/√3, in one step or many.
 #[test]
 fn pure_shear_softens_by_its_own_plastic_strain_in_any_number_of_steps() {
     let peak = 3.0;

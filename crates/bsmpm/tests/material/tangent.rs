@@ -66,7 +66,7 @@ fn tangent_is_the_derivative_in_every_region() {
 
 /// Reference: central differences of fourth order.
 #[test]
-fn tangent_holds_for_equal_and_nearly_equal_eigenvalues() {
+fn tangent_is_the_derivative_for_equal_and_nearly_equal_eigenvalues() {
     let mut random = Random::new(51);
     let mut worst = [0.0_f64; 5];
     let mut seen = [0; 5];
@@ -96,7 +96,7 @@ fn tangent_holds_for_equal_and_nearly_equal_eigenvalues() {
     assert!([0, 2, 3, 4].iter().all(|k| seen[*k] > 100), "{seen:?}");
 }
 
-/// A spin leaves b's principal values: `dτ = w τ - τ w`.
+/// Closed form: a rigid rotation rotates the stress, `dτ = w τ - τ w`.
 #[test]
 fn spin_only_rotates_the_stress() {
     let mut random = Random::new(52);

@@ -198,8 +198,8 @@ fn late(n: usize) -> f64 {
     worst / FASTEST
 }
 
-/// In the frame of the outcrop: what the base takes is what comes down, `2 ρ c v` of the wave that comes up is the
-/// frame's (Joyner and Chen, 1975).
+/// Joyner and Chen (1975): an absorbing base takes up the wave that comes down; in the frame of the outcrop, the wave
+/// that comes up needs no traction `2 ρ c v`, because it is the acceleration of the frame.
 #[test]
 fn a_base_that_absorbs_lets_the_motion_of_the_outcrop_in() {
     let [coarse, fine] = [10, 20].map(late);
@@ -273,7 +273,7 @@ fn most_leaves<K: Kinematics<2>>(bounds: [f64; 4], least: f64) {
 
 /// Reference: the same source in a square twice as wide, from which no wave has returned.
 #[test]
-fn of_a_source_at_a_point_most_leaves() {
+fn most_of_the_waves_of_a_point_source_leave() {
     // 5.8, 1.7 %; right at a side and in a corner 23 %. Faces that are fixed: 77 % and more.
     most_leaves::<PlaneStrain>([0.07, 0.025, 0.26, 0.26], 0.7);
     // 6.2, 4.3, 21, 17 %; fixed 32, 35, 105, 79 %.

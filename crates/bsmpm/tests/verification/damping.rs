@@ -259,8 +259,8 @@ fn a_mode_of_the_bar_decays_and_slows_down_as_the_theory_says() {
     }
 }
 
-/// A quarter wave of circular frequency omega with the damping ratio `xi = beta omega/2` loses `exp(-xi omega t)`; the
-/// frequency is higher by `xi omega dt/2`, as the force comes half a step late, of which the decay knows nothing.
+/// Closed form: a quarter wave of circular frequency omega with the damping ratio `xi = beta omega/2` decays by
+/// `exp(-xi omega t)`, and its frequency is higher by `xi omega dt/2`, because the viscous force acts half a step late.
 #[test]
 fn a_damped_mode_decays_by_its_ratio_to_second_order_and_is_late_by_half_a_step() {
     let ratio = 0.05;

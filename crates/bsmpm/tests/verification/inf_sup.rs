@@ -80,7 +80,7 @@ fn constant(method: Stabilisation, grid: (usize, usize)) -> (f64, usize) {
 
 /// Chapelle and Bathe (1993): numerical inf-sup test.
 #[test]
-fn over_pairs_of_cells_it_does_not_depend_on_the_size_of_cells() {
+fn averages_over_pairs_of_cells_make_the_inf_sup_constant_independent_of_the_cell_size() {
     let betas = [4, 8, 16].map(|cells| {
         let (beta, count) = constant(Stabilisation::SubgridFBar, (2, cells));
         assert_eq!(count, (cells / 2 + 1).pow(2) - 1, "all pressures but the constant one");

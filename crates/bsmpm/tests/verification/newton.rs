@@ -61,7 +61,7 @@ fn indented(nonlinear: Nonlinear, method: Stabilisation) -> (Plane, Vec<Accepted
 
 /// Theory: quadratic convergence of Newton's method.
 #[test]
-fn the_force_falls_with_its_square() {
+fn the_residual_force_converges_quadratically() {
     for method in [Stabilisation::None, Stabilisation::FBar, Stabilisation::ConsistentFBar] {
         let (_, steps) = indented(Nonlinear::Newton, method);
         let last = steps.last().expect("ten steps");

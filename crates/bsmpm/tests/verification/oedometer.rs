@@ -58,7 +58,7 @@ fn one_step_of_a_prescribed_face_gives_the_exact_stress_in_two_and_three_dimensi
 
 /// Closed form: confined compression of a Hencky material, M ln(l)/l.
 #[test]
-fn one_step_over_many_cells_too() {
+fn one_step_over_many_cells_gives_the_exact_stress() {
     for method in METHODS {
         let (scene, steps) = compressed::<PlaneStrain, 2>(6, 0.95, method);
         println!(
@@ -113,7 +113,7 @@ fn without_mass_the_averages_weigh_with_volume() {
 
 /// Closed form: stress times area.
 #[test]
-fn the_face_feels_the_stress_times_its_area() {
+fn the_reaction_of_a_face_is_the_stress_times_its_area() {
     let (scene, steps) = compressed::<PlaneStrain, 2>(2, 0.8, Stabilisation::None);
     let M = scene.model.materials[0].elastic().oedometric();
     let reactions = &steps[0].report.reactions;

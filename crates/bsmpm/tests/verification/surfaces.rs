@@ -108,7 +108,7 @@ fn a_platens_force_follows_the_exact_curve_across_cells_and_the_points_stress_le
 
 /// Closed form: slip of a penalty constraint, pressure over penalty.
 #[test]
-fn what_a_strip_has_slipped_in_all_steps_is_its_pressure_over_the_penalty() {
+fn the_accumulated_slip_of_a_strip_is_its_pressure_over_the_penalty() {
     for penalty in [1e5, 1e6, 1e7] {
         let mut scene = pressed(block([4, 4], 2), 0.1, false, penalty);
         let mut slip = 0.0;

@@ -314,7 +314,7 @@ fn steps(scene: &mut Plane, times: &[f64]) -> Result<(f64, Vec<StepReport>, usiz
 
 /// Theory: quadratic convergence of Newton's method.
 #[test]
-fn forces_and_water_fall_with_their_squares() {
+fn the_residuals_of_force_and_water_converge_quadratically() {
     for method in [Stabilisation::None, Stabilisation::ConsistentFBar] {
         for law in [PermeabilityLaw::Constant, PermeabilityLaw::KozenyCarman] {
             let mut found = Vec::new();
