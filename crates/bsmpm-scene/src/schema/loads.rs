@@ -468,7 +468,8 @@ const FRICTION_KEY: Key = key(
     "friction_coefficient",
     Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
     Required,
-    "Friction coefficient, the tangent of the friction angle of the interface. [strength_reduction] also reduces it.",
+    "Friction coefficient, the tangent of the friction angle δ of the interface (wall friction): 0.364 for 20 degrees. \
+     [strength_reduction] also reduces it.",
 )
 .symbol("μ")
 .example("0.3")

@@ -76,8 +76,9 @@ choice! {
         /// Volume of water that has left the ground through a drain since the start. Without `drain` it is the volume
         /// through all drains minus the volume of all inflows.
         WaterOutflow = "water-outflow",
-        /// Relative error of the water balance: water stored in the ground since the start plus water that has left it,
-        /// divided by the larger of the two volumes. It is 0 if no water is created or lost.
+        /// Relative error of the water balance: the change of the water volume in the ground since the start plus the
+        /// volume that has left the ground, divided by the larger of these volumes. It is 0 if no water is created or
+        /// lost.
         WaterBalance = "water-balance",
         /// Oscillation of the vertical stress between neighbouring material points: its root mean square, divided by
         /// the mean of |sigma_yy|.
