@@ -1,9 +1,9 @@
 //! Runs a case on one rank, without MPI and PETSc, for the fuzz targets.
 
 use crate::solver::Skyline;
-use bsmpm::background::ResistedDisplacement;
 use bsmpm::error::{SolveError, StepError};
 use bsmpm::initial;
+use bsmpm::interactions::background::ResistedDisplacement;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Model;
 use bsmpm::parallel::Backend;

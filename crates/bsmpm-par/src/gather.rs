@@ -1,10 +1,10 @@
 //! Gathers the material points of all ranks on rank 0, sorted by id, for a frame.
 
+use bsmpm::field::pore_water::observed::PoreWater;
 use bsmpm::material::{Material, Variable};
 use bsmpm::observe::invariants;
 use bsmpm::points::{Column, ColumnInfo, Number, Points};
 use bsmpm::tensor::Vector;
-use bsmpm::water::observed::PoreWater;
 use bsmpm_io::frame::{Field, FieldValues, Frame};
 use bsmpm_io::vtu;
 use bsmpm_scene::words::FrameField;

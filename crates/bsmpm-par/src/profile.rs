@@ -1,6 +1,7 @@
 //! Computes profiles: fields along a line.
 
 use crate::gather;
+use bsmpm::field::pore_water::observed::PoreWater;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::observe::invariants;
@@ -8,7 +9,6 @@ use bsmpm::observe::place::{self, Configuration};
 use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::tensor::{Symmetric, Vector};
-use bsmpm::water::observed::PoreWater;
 use bsmpm_scene::Profile;
 use bsmpm_scene::model::vector;
 use bsmpm_scene::words::ProfileQuantity;

@@ -6,12 +6,12 @@ use crate::checkpoint::{self, CheckpointChoice, CheckpointState, OpenCheckpoint,
 use crate::cli::{Arguments, Restart};
 use bsmpm::boundary::Surface;
 use bsmpm::control::Stepper;
+use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
-use bsmpm::step::mass::MassMatrix;
 use bsmpm_io::checkpoint::{FOLDER, FoundCheckpoint};
 use bsmpm_io::directory::{ExistingRunPolicy, OutputDirectory};
 use bsmpm_io::exit;

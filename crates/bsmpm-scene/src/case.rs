@@ -30,14 +30,14 @@ use crate::grid::{GridSpec, Line};
 use crate::region::Region;
 use crate::words::{AnalysisType, Factor, FrameField, Ksp, LimitedIndicator, Pc};
 use bsmpm::boundary::Contact;
+use bsmpm::dynamics::mass::MassMatrix;
+use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
 use bsmpm::model::WallVelocity;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::mass::MassMatrix;
-use bsmpm::step::newmark::Newmark;
 
 /// The key of the mass matrix.
 pub const MASS: &str = "analysis.mass";

@@ -3,11 +3,14 @@
 use crate::seed::seed_bodies;
 use crate::words::AnalysisType;
 use crate::{ActiveLoads, Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Shares, Stage, surfaces};
-use bsmpm::background::Background;
-use bsmpm::boundary::rigid::{self, ParticleDomains, RigidBody, RigidState};
 use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
+use bsmpm::field::pore_water::Water;
+use bsmpm::field::pore_water::ambient::Ambient;
+use bsmpm::field::pore_water::flow::{Course, Flow};
 use bsmpm::grid::{Grid, KnotVector};
+use bsmpm::interactions::background::Background;
+use bsmpm::interactions::rigid::{self, ParticleDomains, RigidBody, RigidState};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::material::state_width;
 use bsmpm::method::Criteria;
@@ -19,9 +22,6 @@ use bsmpm::schedule::{Growth, Schedule};
 use bsmpm::stabilisation::Groups;
 use bsmpm::step::adjoint::is_dilatant;
 use bsmpm::tensor::{Symmetric, Vector};
-use bsmpm::water::Water;
-use bsmpm::water::ambient::Ambient;
-use bsmpm::water::flow::{Course, Flow};
 use std::marker::PhantomData;
 
 pub use crate::grid::vector;

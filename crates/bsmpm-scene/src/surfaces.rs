@@ -9,13 +9,13 @@ pub use strips::{penalty, strips};
 use crate::case::{Traction, Triangle, keeps_direction};
 use crate::grid::vector;
 use crate::{ActiveLoads, Case, DrainSite, Face, Geometry, LoadedLine, Plate, Push, Rigid, RigidShape, Shares, Site};
-use bsmpm::boundary::rigid::Outline;
 use bsmpm::boundary::{Load, Path, RigidBody, StripReport, SurfacePoint, surface};
+use bsmpm::field::pore_water::flow::{Course, Drain, DrainedFace, Given, Inflow, Permeability, Soil};
 use bsmpm::grid::Grid;
+use bsmpm::interactions::rigid::Outline;
 use bsmpm::kinematics::{Axisymmetric, Kinematics};
 use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;
-use bsmpm::water::flow::{Course, Drain, DrainedFace, Given, Inflow, Permeability, Soil};
 
 /// The strip that holds a face of the grid, if any.
 pub fn strip_of_face(case: &Case, face: Face) -> Option<usize> {
@@ -239,7 +239,7 @@ pub fn flow<K: Kinematics<D>, const D: usize>(
     case: &Case,
     grid: &Grid<D>,
     t: f64,
-) -> Option<bsmpm::water::flow::Flow<D>> {
+) -> Option<bsmpm::field::pore_water::flow::Flow<D>> {
     let flow = case.flow.as_ref()?;
     let base = case.grid.lower()[D - 1];
     let mut drains = Vec::new();
@@ -284,7 +284,7 @@ pub fn flow<K: Kinematics<D>, const D: usize>(
             acts: case.acts_since(ActiveLoads::Inflow(number), t).is_some(),
         });
     }
-    Some(bsmpm::water::flow::Flow {
+    Some(bsmpm::field::pore_water::flow::Flow {
         bulk: flow.bulk,
         soils: flow.soils.iter().map(|soil| soil.as_ref().map(of_ground)).collect(),
         drains,

@@ -47,11 +47,11 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::words::{AnalysisType, Geometry, Side, Word};
 use bsmpm::boundary::Contact;
+use bsmpm::dynamics::mass::MassMatrix;
+use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::model::Regime;
 use bsmpm::model::WallVelocity;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::mass::MassMatrix;
-use bsmpm::step::newmark::Newmark;
 use domain::{Domain, Loads, Structures};
 
 /// Coefficient of friction up to which faces and strips in contact were verified.

@@ -4,7 +4,7 @@ use crate::record::{ListRow, Record};
 use crate::region;
 use crate::spectrum::{InputKind, Signal};
 use crate::words::{Side, Support, Word};
-use bsmpm::step::mass::MassMatrix;
+use bsmpm::dynamics::mass::MassMatrix;
 
 /// What loads are given by, and which loads. Rigid bodies are left out: in contact material flows more than it swings.
 const FORCES: [&str; 4] = ["amplitude", "stress_path", "pressure_path", "force_path"];

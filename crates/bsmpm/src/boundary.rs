@@ -3,30 +3,24 @@
 //!
 //! `(T6.1)` is equation (6.1) of the theory manual, `crates/bsmpm-book/src/theory/boundaries.md`.
 
-pub mod absorbing;
 pub mod anchor;
-pub mod contact;
-pub mod coulomb;
-pub mod load;
-pub mod rigid;
-pub mod strip;
 pub mod surface;
 
+pub use crate::interactions::coulomb::{Contact, ContactReport};
+pub use crate::interactions::load::Load;
+pub use crate::interactions::rigid::{RigidBody, RigidReport, RigidState};
+pub use crate::interactions::strip::{MotionShare, Path, Strip, StripContact, StripReport};
 use crate::schedule::TimeInterval;
 pub use anchor::Idle;
-pub use coulomb::{Contact, ContactReport};
-pub use load::Load;
-pub use rigid::{RigidBody, RigidReport, RigidState};
-pub use strip::{MotionShare, Path, Strip, StripContact, StripReport};
 pub use surface::{Anchors, Surface, SurfacePoint};
 
 use crate::exact::Exact;
+use crate::field::pore_water::crossed::CrossedVolumes;
 use crate::grid::Grid;
 use crate::nodal::Nodal;
 use crate::parallel::{Halo, OwnedNodes};
 use crate::points::Points;
 use crate::tensor::Vector;
-use crate::water::crossed::CrossedVolumes;
 
 /// Support of one face of the grid: prescribed motion, contact, absorbing boundary or free field.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,17 +1,17 @@
 //! Step size control. A failed step is halved; the step size is doubled again after two easy steps. Step sizes are the
 //! nominal one divided by powers of two, so the nominal end is reached exactly.
 
-use crate::background::ResistedDisplacement;
+use crate::dynamics::newmark::Newmark;
 use crate::energy::{EnergyBound, StoredEnergy};
 use crate::error::StepError;
 use crate::grid::extension::ExtendedSplines;
+use crate::interactions::background::ResistedDisplacement;
 use crate::kinematics::Kinematics;
 use crate::method::Criteria;
 use crate::model::{Model, Regime};
 use crate::parallel::{Backend, Halo, LinearSolver};
 use crate::points::Points;
 use crate::schedule::{Schedule, TimeInterval};
-use crate::step::newmark::Newmark;
 use crate::step::{Counts, StepReport, step};
 use std::borrow::Cow;
 

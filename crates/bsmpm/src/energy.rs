@@ -7,9 +7,11 @@ mod budget;
 use crate::schedule::TimeInterval;
 pub use budget::{EnergyBound, Turnover};
 
-use crate::boundary::{Surface, load};
+use crate::boundary::Surface;
 use crate::exact::Exact;
+use crate::field::pore_water::{carried, work};
 use crate::grid::{Contributions, transfer};
+use crate::interactions::load;
 use crate::kinematics::{Gradient, Kinematics};
 use crate::model::Model;
 use crate::parallel::{Halo, over_layers};
@@ -20,7 +22,6 @@ use crate::step::commit::PointUpdate;
 use crate::step::problem::Problem;
 use crate::tensor::Vector;
 use crate::threads;
-use crate::water::{carried, work};
 use std::ops::AddAssign;
 
 /// Strain below which energy is round-off.

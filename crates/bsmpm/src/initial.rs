@@ -10,9 +10,9 @@ use crate::schedule::TimeInterval;
 pub use settle::{EquilibriumSearchReport, set_spread, settle};
 
 use crate::boundary::StripReport;
-use crate::boundary::strip::StripConstraints;
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
+use crate::interactions::strip::StripConstraints;
 use crate::kinematics::Kinematics;
 use crate::material::{Branch, Elastic, Material, Separation};
 use crate::model::Model;

@@ -4,17 +4,18 @@
 // The fields of section 2.4 of the paper keep its letters (F, dF, J, N) if these are unique in mechanics.
 #![allow(non_snake_case)]
 
-pub mod background;
 pub mod boundary;
 pub mod control;
+pub mod dynamics;
 pub mod element;
 pub mod energy;
 pub mod error;
 pub mod exact;
-pub mod free_field;
+pub mod field;
 mod gauss;
 pub mod grid;
 pub mod initial;
+pub mod interactions;
 pub mod kinematics;
 pub mod lanes;
 pub mod material;
@@ -32,4 +33,3 @@ pub mod stabilisation;
 pub mod step;
 pub mod tensor;
 pub mod threads;
-pub mod water;

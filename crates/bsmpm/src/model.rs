@@ -1,11 +1,16 @@
 //! Data that do not change within a stage: grid, materials, loads, supports and convergence criteria.
 
-use crate::background::Background;
 use crate::boundary::Boundary;
 use crate::boundary::anchor::Surfaces;
-use crate::boundary::rigid::ParticleDomains;
+use crate::dynamics::mass::MassMatrix;
+use crate::dynamics::newmark::Newmark;
+use crate::field::pore_water::Water;
+use crate::field::pore_water::ambient::{Ambient, Span, StillWater};
+use crate::field::pore_water::flow::Motion;
 use crate::grid::Grid;
 use crate::grid::extension::ExtendedSplines;
+use crate::interactions::background::Background;
+use crate::interactions::rigid::ParticleDomains;
 use crate::kinematics::Kinematics;
 use crate::material::Moduli;
 use crate::material::{Material, MaterialError, Response};
@@ -14,12 +19,7 @@ use crate::points::Points;
 use crate::quadrature::Quadrature;
 use crate::schedule::between;
 use crate::stabilisation::{GroupedPoints, Groups, Stabilisation};
-use crate::step::mass::MassMatrix;
-use crate::step::newmark::Newmark;
 use crate::tensor::{Symmetric, Vector};
-use crate::water::Water;
-use crate::water::ambient::{Ambient, Span, StillWater};
-use crate::water::flow::Motion;
 use std::borrow::Cow;
 use std::marker::PhantomData;
 

@@ -15,6 +15,7 @@ pub mod stability;
 pub mod unknowns;
 
 use crate::error::StepError;
+use crate::field::pore_water::{matrix, split};
 use crate::kinematics::Kinematics;
 use crate::method::{Nonlinear, QuasiNewton};
 use crate::parallel::LinearSolver;
@@ -24,7 +25,6 @@ use crate::step::problem::Problem;
 use crate::step::report::Counts;
 use crate::step::residual::Residual;
 use crate::step::stiffness;
-use crate::water::{matrix, split};
 use convergence::{Convergence, inverted};
 use found::StepSolution;
 use quasi_newton::FailedIteration;

@@ -1,9 +1,9 @@
 //! Measures the loops of a step.
 
-use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::error::{SolveError, StepError};
-use bsmpm::free_field::FreeField;
 use bsmpm::grid::{Shape, transfer};
+use bsmpm::interactions::free_field::FreeField;
+use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::{Gradient, Kinematics};
 use bsmpm::model::Model;
 use bsmpm::parallel::{Halo, Krylov, LinearSolver, SolveReport, Symmetry};

@@ -1,11 +1,11 @@
 //! Texts of indicators outside their usual range.
 
+use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::Regime;
 use bsmpm::model::WallVelocity;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::mass::MassMatrix;
 use bsmpm_scene::{Case, Geometry};
 
 /// Poisson's ratio from which on material is nearly incompressible: the lid-driven square and the strip

@@ -2,6 +2,7 @@
 
 use crate::gather::shown;
 use bsmpm::error::StepError;
+use bsmpm::field::pore_water::observed::PoreWater;
 use bsmpm::grid::Grid;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
@@ -10,7 +11,6 @@ use bsmpm::observe::{self, Section, SectionForces, noise};
 use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::tensor::Vector;
-use bsmpm::water::observed::PoreWater;
 use bsmpm_scene::model::vector;
 use bsmpm_scene::words::Measurement;
 use bsmpm_scene::{GridSpec, Quantity};

@@ -3,9 +3,9 @@
 use super::FreshStart;
 use crate::checkpoint::Refusal;
 use crate::ledger;
+use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::quadrature::Quadrature;
-use bsmpm::step::mass::MassMatrix;
 use bsmpm_io::checkpoint::FoundCheckpoint;
 use bsmpm_io::directory::ExistingRunPolicy;
 use bsmpm_io::exit;

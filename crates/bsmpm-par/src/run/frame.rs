@@ -3,10 +3,10 @@
 use super::Run;
 use crate::gather::{self, FrameMoment, GatheredFrame, PointContext};
 use crate::{launch, profile};
+use bsmpm::field::pore_water::observed::PoreWater;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::observe::projection::projected_pressure;
 use bsmpm::tensor::Vector;
-use bsmpm::water::observed::PoreWater;
 use bsmpm_io::exit;
 use bsmpm_io::frame::Parts;
 use bsmpm_ranks::simulation::Simulation;

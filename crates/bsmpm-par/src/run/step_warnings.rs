@@ -3,9 +3,9 @@
 use super::Run;
 use crate::checkpoint::Outlet;
 use bsmpm::control::AcceptedStep;
+use bsmpm::field::pore_water::flow::Motion;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::tensor::Vector;
-use bsmpm::water::flow::Motion;
 use bsmpm_io::manifest::ManifestOutflow;
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_scene::{Face, GridSpec, Support};

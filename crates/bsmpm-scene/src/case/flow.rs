@@ -1,7 +1,7 @@
 //! Data of pore-water flow, drains and inflows.
 
 use super::{Case, Face, LoadedLine, Plate, Site};
-use bsmpm::water::flow::{Course, Given, Motion, Soil};
+use bsmpm::field::pore_water::flow::{Course, Given, Motion, Soil};
 
 /// Pore water whose excess pressure is an unknown.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Data of rigid bodies.
 
 use super::{MotionPath, Shares};
-use bsmpm::boundary::rigid::{Outline, Terrain};
+use bsmpm::interactions::rigid::{Outline, Terrain};
 use bsmpm::schedule::between;
 
 /// A rigid body that pushes the soil, with friction.

@@ -2,8 +2,8 @@
 
 use super::{Body, Case, DrainSite, Face, NamedMaterial, Shares, Support, keeps_direction};
 use bsmpm::boundary::{Contact, Idle};
+use bsmpm::field::pore_water::flow::Motion;
 use bsmpm::tensor::Vector;
-use bsmpm::water::flow::Motion;
 use std::ops::Range;
 
 /// What changes at a time, between two steps.

@@ -2,7 +2,7 @@
 
 use super::{Body, Case};
 use crate::grid::GridSpec;
-use bsmpm::water::ambient::{Ambient, Span};
+use bsmpm::field::pore_water::ambient::{Ambient, Span};
 
 /// Still water.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use crate::schema::LawName;
 use crate::spectrum::SHARE;
 use crate::waves::{WaveInput, fewest_cells, inputs};
 use crate::words::{AnalysisType, Side, Support, Word};
-use bsmpm::step::mass::MassMatrix;
+use bsmpm::dynamics::mass::MassMatrix;
 
 /// Part of the cells of a preset to which waves make them smaller at most: each half costs eight times as much.
 const SMALLEST: f64 = 0.25;

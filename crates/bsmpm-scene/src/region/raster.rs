@@ -1,7 +1,7 @@
 //! Terrain between two rasters of heights (top and base), with bilinear interpolation.
 
 use crate::report::brief;
-use bsmpm::boundary::rigid::Terrain;
+use bsmpm::interactions::rigid::Terrain;
 
 /// Parts of the spacing by which posts may miss their places: rounding of what wrote them.
 const ROUNDING: f64 = 1e-3;

@@ -5,8 +5,8 @@ use super::Presence::{Default, Optional, Required};
 use super::laws::LawName;
 use super::{Dimension as In, Range, Table, key, loads, one_of};
 use crate::words::{Drainage, Word};
+use bsmpm::field::pore_water::flow::PermeabilityLaw;
 use bsmpm::material::{Decay, Match, Separation};
-use bsmpm::water::flow::PermeabilityLaw;
 use std::ops::Bound::{Excluded, Included, Unbounded};
 
 pub(crate) static MATERIAL: Table = Table {

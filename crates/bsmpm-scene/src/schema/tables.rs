@@ -10,11 +10,11 @@ use crate::words::{
     Accuracy, AnalysisType, BACKGROUND_CELLS, BACKGROUND_KIND, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear,
     Order, Pc, Purpose, Word,
 };
+use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::WallVelocity;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::mass::MassMatrix;
 use std::ops::Bound::{Excluded, Included};
 
 /// The whole file.

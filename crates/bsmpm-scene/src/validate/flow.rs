@@ -22,9 +22,9 @@ use crate::record::Record;
 use crate::region::{Region, skin};
 use crate::report::Report;
 use crate::words::{AnalysisType, Drainage, Geometry, Side};
+use bsmpm::field::pore_water::flow::{Course, Given, Motion, Soil};
+use bsmpm::field::pore_water::retention::{Curve, MeasuredCurve, Retention};
 use bsmpm::model::Regime;
-use bsmpm::water::flow::{Course, Given, Motion, Soil};
-use bsmpm::water::retention::{Curve, MeasuredCurve, Retention};
 
 /// N/m3  of water, unless a case gives it.
 const WATER: f64 = 9810.0;

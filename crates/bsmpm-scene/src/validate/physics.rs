@@ -9,14 +9,14 @@ use crate::case::{ActiveLoads, Base, Body, Case, Geometry, Initial, Quantity, Si
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{AnalysisType, Measurement, Side, Word};
+use bsmpm::dynamics::mass::MassMatrix;
+use bsmpm::dynamics::newmark::Newmark;
+use bsmpm::field::pore_water::flow::Given;
 use bsmpm::material::Material;
 use bsmpm::model::Regime;
 use bsmpm::model::WallVelocity;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::mass::MassMatrix;
-use bsmpm::step::newmark::Newmark;
 use bsmpm::tensor::Vector;
-use bsmpm::water::flow::Given;
 
 /// Components of a normal below which it does not hold them.
 pub(super) const ALONG: f64 = 1e-9;

@@ -7,10 +7,10 @@ use crate::nearest::unknown_name;
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::Failure;
+use bsmpm::field::pore_water::flow::Motion;
 use bsmpm::model::Regime;
 use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;
-use bsmpm::water::flow::Motion;
 
 /// Parts of a step by which stages lie apart.
 const APART: f64 = 1e-6;

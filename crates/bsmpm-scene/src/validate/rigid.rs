@@ -13,7 +13,7 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces;
 use crate::words::{Geometry, RigidMotion, Word};
-use bsmpm::boundary::rigid::{Outline, Sizes};
+use bsmpm::interactions::rigid::{Outline, Sizes};
 use bsmpm::model::Regime;
 use bsmpm::tensor::Vector;
 

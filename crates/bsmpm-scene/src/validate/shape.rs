@@ -12,7 +12,7 @@ use crate::record::Record;
 use crate::region::{self, Edge, Outline, PolygonFault, Region};
 use crate::report::Report;
 use crate::words::Geometry;
-use bsmpm::boundary::rigid;
+use bsmpm::interactions::rigid;
 
 /// A shape as it is written, m in the case's coordinates.
 #[derive(Clone, Debug)]

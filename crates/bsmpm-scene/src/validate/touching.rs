@@ -7,7 +7,7 @@ use crate::report::Report;
 use crate::surfaces;
 use crate::words::Geometry;
 use bsmpm::boundary::RigidBody;
-use bsmpm::boundary::rigid::Outline;
+use bsmpm::interactions::rigid::Outline;
 use bsmpm::tensor::Vector;
 
 /// Places on a path between two of its rows at which an overlap is looked for.

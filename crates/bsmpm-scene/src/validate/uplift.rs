@@ -3,7 +3,7 @@
 use crate::case::{Case, RigidShape, Water};
 use crate::report::Report;
 use crate::words::Geometry;
-use bsmpm::boundary::rigid::Outline;
+use bsmpm::interactions::rigid::Outline;
 use bsmpm::tensor::Vector;
 use std::f64::consts::TAU;
 

@@ -8,8 +8,8 @@ use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{Side, Word};
+use bsmpm::field::pore_water::ambient::{Ambient, LevelAt};
 use bsmpm::model::Regime;
-use bsmpm::water::ambient::{Ambient, LevelAt};
 
 /// Slope of a phreatic line up to which the depth straight below it is taken for the pressure without a word: along a
 /// slope that water flows down in parallel it is cos^2 less, 6 % here.

@@ -5,9 +5,9 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::waves::{WaveInput, fewest_cells, inputs};
 use crate::words::Word;
+use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::material::Moduli;
 use bsmpm::model::Regime;
-use bsmpm::step::mass::MassMatrix;
 
 /// Part of the cells asked for that are enough: those of a preset are stretched to come out whole.
 const WHOLE: f64 = 0.98;

@@ -1,11 +1,11 @@
 //! Accepted words for options of the numerical method, such as the mass matrix.
 
+use bsmpm::dynamics::mass::MassMatrix;
+use bsmpm::field::pore_water::flow::PermeabilityLaw;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::WallVelocity;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::mass::MassMatrix;
-use bsmpm::water::flow::PermeabilityLaw;
 
 words! { MassMatrix {
     Lumped = "lumped": "Lumped (diagonal) mass matrix.",

@@ -4,11 +4,11 @@ mod loads;
 mod materials;
 mod motion;
 
+use bsmpm::field::pore_water::flow::Motion;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Law, Material, MohrCoulomb};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
-use bsmpm::water::flow::Motion;
 use bsmpm_scene::words::{Factor, Ksp, Pc};
 use bsmpm_scene::{
     Case, Error, Every, Face, GridAxis, Made, Place, PointSelection, Quadrature, Quantity, Site, Support, differences,

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use bsmpm::water::flow::Motion;
+use bsmpm::field::pore_water::flow::Motion;
 use bsmpm_scene::words::{Geometry, Side, Support, Word};
 use bsmpm_scene::{Case, NamedMaterial, PointSelection, Quantity, Rigid, RigidShape, Traction};
 use serde::Serialize;

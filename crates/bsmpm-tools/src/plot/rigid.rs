@@ -1,7 +1,7 @@
 //! Draws outlines of rigid bodies.
 
 use bsmpm::boundary::RigidBody;
-use bsmpm::boundary::rigid::Outline;
+use bsmpm::interactions::rigid::Outline;
 use bsmpm::tensor::Vector;
 use bsmpm_io::frame::Frame;
 use bsmpm_scene::words::Measurement;

@@ -1,6 +1,6 @@
 //! Draws a 3-D run in perspective.
 
-use bsmpm::boundary::rigid::Outline;
+use bsmpm::interactions::rigid::Outline;
 use bsmpm_io::frame::Frame;
 use bsmpm_scene::{Case, surfaces};
 use std::iter::repeat;

@@ -1,10 +1,10 @@
 //! Anchors surface points of footings, loads and drains to the nearest material points, with which they move after each
 //! step, theory-manual equation (T6.4).
 
-use super::strip::{Strip, displacement, reduce};
 use super::surface::{Anchors, SurfacePoint};
 use super::{Boundary, Support};
 use crate::grid::Grid;
+use crate::interactions::strip::{Strip, displacement, reduce};
 use crate::parallel::Halo;
 use crate::points::PackedTensors;
 use crate::tensor::{Tensor, Vector};

@@ -1,13 +1,13 @@
 //! Surface points of footings, loads and drains, and their shape functions at nodes, theory-manual equation (T6.3). All
 //! ranks store all surface points; the rank of the cell computes forces.
 
-use super::rigid::RigidState;
+use crate::field::pore_water::crossed::{CrossedVolumes, PreviousFlow};
 use crate::grid::shape::with_width;
 use crate::grid::{Contributions, Grid, KnotVector, digit};
+use crate::interactions::rigid::RigidState;
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;
 use crate::tensor::Vector;
-use crate::water::crossed::{CrossedVolumes, PreviousFlow};
 
 /// Least sum of the shape functions of the admissible nodes at a surface point; below it, no material is near enough.
 /// It sets the reach beyond occupied cells: 0.75, 1.29 and 1.85 cells for degrees 1, 2 and 3. With a much shorter
@@ -56,7 +56,7 @@ impl<const D: usize> SurfacePoint<D> {
 }
 
 /// Returns the area vector of a piece (m^(D-1)), along its normal; in 3-D half the cross product of the diagonals.
-pub(super) fn area<const D: usize>(corners: &[Vector<D>; CORNERS]) -> Vector<D> {
+pub(crate) fn area<const D: usize>(corners: &[Vector<D>; CORNERS]) -> Vector<D> {
     let [along, across] = [corners[2] - corners[0], corners[3] - corners[1]];
     match D {
         2 => Vector::from_fn(|axis, _| if axis == 0 { -along[1] } else { along[0] }),
@@ -270,12 +270,13 @@ fn cuts<const D: usize>(grid: &Grid<D>, from: &Vector<D>, to: &Vector<D>) -> Vec
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface<const D: usize> {
     /// Traction of every strip on the body at its points, in the last converged state (Pa). For an open point it is the
-    /// penalty times the displacement of the point relative to the material (see [`strip`](super::strip)).
+    /// penalty times the displacement of the point relative to the material, see
+    /// [`strip`](crate::interactions::strip).
     pub traction: Vec<Vec<Vector<D>>>,
     /// Positions of the points of every load (m). They move with the material that anchors them.
     pub position: Vec<Vec<Vector<D>>>,
     /// Traction of every follower load at full amplitude, per initial area (Pa), rotated and stretched with the
-    /// material (see [`follower`](super::load::follower)); empty for dead loads.
+    /// material (see [`follower`](crate::interactions::load::follower)); empty for dead loads.
     pub pressure: Vec<Vec<Vector<D>>>,
     /// Material points that anchor the surface points.
     pub anchors: Anchors,
@@ -416,7 +417,7 @@ impl Attachment {
 }
 
 /// Returns `x`, or its projection onto a face if it lies outside by round-off.
-pub(super) fn on_grid<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D> {
+pub(crate) fn on_grid<const D: usize>(grid: &Grid<D>, x: &Vector<D>) -> Vector<D> {
     let mut inside = *x;
     for (x, knots) in inside.iter_mut().zip(grid.axes()) {
         let nearest = x.clamp(0.0, knots.length());

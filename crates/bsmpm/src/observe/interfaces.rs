@@ -1,12 +1,12 @@
 //! Distance that material interfaces have moved from their initial grid lines. Strains can jump only at these grid
 //! lines.
 
+use crate::field::pore_water::flow::Flow;
 use crate::grid::KnotVector;
 use crate::model::Model;
 use crate::parallel::Halo;
 use crate::points::Points;
 use crate::tensor::Vector;
-use crate::water::flow::Flow;
 use std::collections::BTreeMap;
 
 /// Ratio of two permeabilities above which the position of their interface affects the flow.

@@ -1,8 +1,8 @@
 //! Eliminates the motions of free rigid bodies from the linear system by the Woodbury formula, theory-manual equation
 //! (T7.10).
 
-use crate::boundary::rigid::MOTIONS;
 use crate::error::SolveError;
+use crate::interactions::rigid::MOTIONS;
 use crate::parallel::{Halo, Krylov, LinearSolver, SolveReport, Symmetry, dots};
 use crate::step::problem::Problem;
 use nalgebra::{DMatrix, DVector};

@@ -1,8 +1,8 @@
 //! Active-set method for contact, theory-manual equations (T7.1), (T7.2): finds equilibrium with fixed contact
 //! statuses, then corrects wrong statuses.
 
-use crate::boundary::strip::StripConstraints;
 use crate::error::StepError;
+use crate::interactions::strip::StripConstraints;
 use crate::kinematics::Kinematics;
 use crate::method::Criteria;
 use crate::model::Model;

@@ -1,11 +1,11 @@
 //! Converged state of a step.
 
 use crate::error::Measures;
+use crate::field::pore_water::residual::WaterBalance;
 use crate::kinematics::Kinematics;
 use crate::solve::convergence::Convergence;
 use crate::step::residual::Residual;
 use crate::step::trial::DeformationIncrement;
-use crate::water::residual::WaterBalance;
 
 /// A converged displacement with the quantities evaluated there.
 #[derive(Clone, Debug)]

@@ -1,7 +1,9 @@
 //! Complete derivative of the out-of-balance force for Newton's method, theory-manual equation (T5.14): exact as a
 //! matrix-vector product, partly approximated as an assembled matrix.
 
+use crate::dynamics::inertia::Inertia;
 use crate::error::SolveError;
+use crate::field::pore_water::linearised::WaterTangent;
 use crate::grid::transfer;
 use crate::kinematics::{Gradient, GradientModuli, Kinematics, Slope};
 use crate::material::Tangent;
@@ -9,13 +11,11 @@ use crate::parallel::{LinearSolver, Symmetry};
 use crate::step::adjoint::{Adjoint, Pressures, transposed, works};
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, DilationForce, Dilations, Share};
-use crate::step::inertia::Inertia;
 use crate::step::problem::Problem;
 use crate::step::reduced_system::ReducedSystem;
 use crate::step::residual::Residual;
 use crate::step::trial::DeformationIncrement;
 use crate::tensor::{Tensor, Vector};
-use crate::water::linearised::WaterTangent;
 use std::borrow::Cow;
 
 /// Derivative of the out-of-balance force at one displacement.

@@ -2,6 +2,7 @@
 //! Used where quasi-Newton stalls.
 
 use crate::error::{SolveError, StepError};
+use crate::field::pore_water::newton::{Exact, Scales, direction as coupled};
 use crate::kinematics::Kinematics;
 use crate::method::Method;
 use crate::parallel::{Krylov, LinearSolver, dots};
@@ -17,7 +18,6 @@ use crate::step::problem::Problem;
 use crate::step::report::Counts;
 use crate::step::residual::{Balance, Residual};
 use crate::step::stiffness;
-use crate::water::newton::{Exact, Scales, direction as coupled};
 
 /// Iterations after which a step is given up. Near a solution five or six suffice.
 const MOST: usize = 30;

@@ -1,6 +1,8 @@
 //! Quasi-Newton iteration of a step, with one factorised stiffness K_0.
 
 use crate::error::{SolveError, StepError};
+use crate::field::pore_water::follow::Follow;
+use crate::field::pore_water::split::Split;
 use crate::kinematics::Kinematics;
 use crate::method::{Method, QuasiNewton};
 use crate::parallel::{Halo, LinearSolver, SolveReport, dots};
@@ -14,8 +16,6 @@ use crate::solve::unknowns::Unknowns;
 use crate::step::problem::Problem;
 use crate::step::report::Counts;
 use crate::step::residual::{Balance, Residual};
-use crate::water::follow::Follow;
-use crate::water::split::Split;
 
 /// Smallest fraction of a direction that is tried if points invert.
 const SHORTEST: f64 = 1.0 / 16.0;

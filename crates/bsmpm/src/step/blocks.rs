@@ -1,13 +1,13 @@
 //! Assembles parts that the matrices of theory-manual equations (T5.8), (T5.14) share: tangent moduli, mass, footings
 //! and rigid bodies.
 
+use crate::dynamics::mass::{MassMatrix, SHARE};
 use crate::error::SolveError;
 use crate::grid::Shape;
 use crate::grid::shape::Patch;
 use crate::kinematics::{Gradient, GradientModuli, Kinematics, Slope};
 use crate::nodal::Nodal;
 use crate::parallel::{LinearSolver, Symmetry};
-use crate::step::mass::{MassMatrix, SHARE};
 use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 

@@ -1,7 +1,10 @@
 //! Updates the material points from the converged state, theory-manual equations (T2.6), (T2.7), (T3.8), (T4.3).
 //! Smoothing, (T3.5) or (T3.7), changes the elastic tensor b^e, not the Cauchy stress.
 
+use crate::dynamics::inertia::Inertia;
+use crate::dynamics::mass::MassMatrix;
 use crate::error::StepError;
+use crate::field::pore_water::saved;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::material::{Material, MaterialError, Response, Separation};
@@ -10,15 +13,12 @@ use crate::parallel::{Halo, agreed};
 use crate::points::{Points, Rows};
 use crate::solve::found::StepSolution;
 use crate::stabilisation::Stabilisation;
-use crate::step::inertia::Inertia;
-use crate::step::mass::MassMatrix;
 use crate::step::nodes::GridState;
 use crate::step::smooth;
 use crate::step::trial::DeformationIncrement;
 use crate::step::walls;
 use crate::tensor::{Symmetric, Tensor, Vector};
 use crate::threads;
-use crate::water::saved;
 use rayon::prelude::*;
 use std::sync::Mutex;
 

@@ -1,15 +1,20 @@
 //! Start of a step: transfer from material points to nodes, theory-manual equations (T2.4), (T2.5), and choice of the
 //! unknowns.
 
-use crate::background::Blocks;
-use crate::boundary::absorbing::Dashpots;
-use crate::boundary::contact::Contacts;
-use crate::boundary::load::LoadForces;
-use crate::boundary::load::{self, follower::FollowerLoads};
-use crate::boundary::rigid::{RigidContacts, Surroundings};
-use crate::boundary::strip;
+use crate::dynamics::inertia::{self, Inertia};
+use crate::dynamics::mass::Mass;
 use crate::error::StepError;
+use crate::field::pore_water::carried;
+use crate::field::pore_water::nodes::PorePressureField;
+use crate::field::pore_water::pore_pressure::PorePressure;
 use crate::grid::{Grid, Shape, transfer};
+use crate::interactions::absorbing::Dashpots;
+use crate::interactions::background::Blocks;
+use crate::interactions::contact::Contacts;
+use crate::interactions::load::LoadForces;
+use crate::interactions::load::{self, follower::FollowerLoads};
+use crate::interactions::rigid::{RigidContacts, Surroundings};
+use crate::interactions::strip;
 use crate::kinematics::Kinematics;
 use crate::model::{AverageWeight, Model, Regime};
 use crate::nodal::Nodal;
@@ -22,12 +27,7 @@ use crate::stabilisation::GroupedPoints;
 use crate::stabilisation::Stabilisation;
 use crate::step::apart::MaterialNodeSets;
 use crate::step::extension::Extension;
-use crate::step::inertia::{self, Inertia};
-use crate::step::mass::Mass;
 use crate::tensor::Vector;
-use crate::water::carried;
-use crate::water::nodes::PorePressureField;
-use crate::water::pore_pressure::PorePressure;
 use std::borrow::Cow;
 
 /// Fraction of the largest nodal mass below which a node has no velocity, acceleration or average, so that 1/m stays

@@ -1,11 +1,11 @@
 //! Data of a step that do not change during its iterations.
 
-use crate::boundary::strip::StripConstraints;
+use crate::dynamics::mass::Mass;
 use crate::grid::Shape;
+use crate::interactions::strip::StripConstraints;
 use crate::model::Model;
 use crate::parallel::Halo;
 use crate::points::Points;
-use crate::step::mass::Mass;
 use crate::step::nodes::GridState;
 
 /// Quantities that stay constant during the iterations of a step.

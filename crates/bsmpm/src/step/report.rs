@@ -3,13 +3,13 @@
 use crate::boundary::{ContactReport, RigidReport, StripReport};
 use crate::energy::{Flows, Turnover};
 use crate::error::Measures;
+use crate::field::pore_water::saved::WaterReport;
 use crate::grid::Contributions;
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;
 use crate::solve::found::StepSolution;
 use crate::step::outflow::Outflow;
 use crate::step::problem::Problem;
-use crate::water::saved::WaterReport;
 
 /// Computational work of one or more attempts, including failed ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,6 +2,7 @@
 //! iteration.
 
 use crate::exact::Exact;
+use crate::field::pore_water::residual::WaterBalance;
 use crate::grid::{Contributions, transfer};
 use crate::kinematics::{Gradient, GradientOf, Kinematics};
 use crate::lanes::{self, Eight, InLanes, LANES, Lanes, Simd};
@@ -13,7 +14,6 @@ use crate::step::adjoint::Pressures;
 use crate::step::problem::Problem;
 use crate::step::trial::DeformationIncrement;
 use crate::tensor::Tensor;
-use crate::water::residual::WaterBalance;
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;

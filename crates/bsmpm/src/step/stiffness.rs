@@ -1,6 +1,7 @@
 //! Symmetric positive definite stiffness K_0, theory-manual equations (T5.7) to (T5.9), assembled at the first guess of
 //! a step.
 
+use crate::dynamics::damping::Damping;
 use crate::error::SolveError;
 use crate::grid::shape::Patch;
 use crate::grid::{Shape, transfer};
@@ -12,7 +13,6 @@ use crate::parallel::{LinearSolver, Symmetry};
 use crate::points::Points;
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, DilationForce, Dilations, Share};
-use crate::step::damping::Damping;
 use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 use crate::step::reduced_system::ReducedSystem;

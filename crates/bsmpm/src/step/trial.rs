@@ -1,6 +1,7 @@
 //! Deformation of the material points by a nodal displacement, theory-manual equation (T2.6), with F-bar (T3.2),
 //! (T3.3), in each iteration.
 
+use crate::dynamics::damping::{Damping, Viscous};
 use crate::grid::{Shape, transfer};
 use crate::kinematics::{Gradient, Kinematics};
 use crate::lanes::{Eight, Lanes, Simd};
@@ -11,7 +12,6 @@ use crate::parallel::Halo;
 use crate::points::Points;
 use crate::real::Real;
 use crate::stabilisation::Stabilisation;
-use crate::step::damping::{Damping, Viscous};
 use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 use crate::tensor::{Symmetric, Tensor};

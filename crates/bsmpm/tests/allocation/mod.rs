@@ -1,8 +1,8 @@
 //! Tests that the number of memory allocations in a residual evaluation does not depend on the number of points.
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
-use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::grid::Shape;
+use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::TimeInterval;

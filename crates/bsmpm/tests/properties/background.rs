@@ -2,8 +2,8 @@
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::background::{Background, Blocks};
 use bsmpm::grid::{Contributions, Grid, KnotVector, Shape};
+use bsmpm::interactions::background::{Background, Blocks};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
 use bsmpm::tensor::Vector;

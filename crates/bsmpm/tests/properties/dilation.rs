@@ -2,8 +2,8 @@
 
 use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis, hencky};
-use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::grid::{Grid, KnotVector, Shape, transfer};
+use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;

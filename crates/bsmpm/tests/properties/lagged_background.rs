@@ -1,11 +1,11 @@
 //! Tests that in steady motion the soft background resists only changes of the displacement per step.
 
 use crate::support::scene::{Scene, axis};
-use bsmpm::background::Background;
-use bsmpm::boundary::rigid::Outline;
 use bsmpm::boundary::{Boundary, Path, RigidBody, Strip, Support, surface};
 use bsmpm::control::AcceptedStep;
 use bsmpm::grid::extension::ExtendedSplines;
+use bsmpm::interactions::background::Background;
+use bsmpm::interactions::rigid::Outline;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;

@@ -2,10 +2,10 @@
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};
-use bsmpm::background::Background;
-use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::grid::Shape;
+use bsmpm::interactions::background::Background;
+use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Branch, CamClay, Elastic, Law, Material, MohrCoulomb, Separation};
 use bsmpm::model::Regime;

@@ -2,11 +2,13 @@
 
 use super::random::Random;
 use super::solver::Skyline;
-use bsmpm::background::Background;
 use bsmpm::boundary::{Boundary, Load, RigidBody, Strip, Support};
 use bsmpm::control::{AcceptedStep, Stepper};
+use bsmpm::dynamics::mass::MassMatrix;
+use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::grid::{Grid, KnotVector};
+use bsmpm::interactions::background::Background;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::material::{Elastic, Hencky, Material};
 use bsmpm::method::Criteria;
@@ -18,8 +20,6 @@ use bsmpm::points::{Points, Seed};
 use bsmpm::quadrature::Quadrature;
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::{Groups, Stabilisation};
-use bsmpm::step::mass::MassMatrix;
-use bsmpm::step::newmark::Newmark;
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
 use std::marker::PhantomData;
 use std::ops::Range;

@@ -2,11 +2,11 @@
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::boundary::Support;
+use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::mass::MassMatrix;
 use std::f64::consts::PI;
 
 pub const CELLS: usize = 20;

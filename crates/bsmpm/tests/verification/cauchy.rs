@@ -1,8 +1,8 @@
 //! Tests that the Cauchy stress remains on the yield surface during large plastic flow.
 
 use crate::support::scene::{METHODS, Scene, axis};
-use bsmpm::background::Background;
 use bsmpm::boundary::{Path, Strip, Support, surface};
+use bsmpm::interactions::background::Background;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Criteria;

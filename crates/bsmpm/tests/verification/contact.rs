@@ -4,13 +4,13 @@ use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
 use bsmpm::boundary::{Contact, ContactReport, Path, Strip, Support, surface};
 use bsmpm::control::{AcceptedStep, Stepper};
+use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::kinematics::{PlaneStrain, Solid};
 use bsmpm::method::Nonlinear;
 use bsmpm::model::{Gravity, Regime};
 use bsmpm::points::Points;
 use bsmpm::schedule::Schedule;
-use bsmpm::step::mass::MassMatrix;
 use bsmpm::tensor::Vector;
 
 const G: f64 = 9.81;

@@ -4,13 +4,13 @@
 use super::bar::{CELLS, PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::{Path, Strip, Support, SurfacePoint};
+use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Nonlinear;
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::newmark::Newmark;
 use bsmpm::tensor::Vector;
 use nalgebra::Matrix3;
 use std::collections::BTreeMap;

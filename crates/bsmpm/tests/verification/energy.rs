@@ -3,18 +3,18 @@
 use super::bar::{PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
-use bsmpm::background::Background;
 use bsmpm::boundary::{Load, Path, Strip, Support, surface};
 use bsmpm::control::Stepper;
+use bsmpm::dynamics::mass::MassMatrix;
+use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::error::StepError;
+use bsmpm::interactions::background::Background;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb, Separation};
 use bsmpm::model::{AverageWeight, Gravity, Regime};
 use bsmpm::schedule::Schedule;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::mass::MassMatrix;
-use bsmpm::step::newmark::Newmark;
 use bsmpm::tensor::Vector;
 
 const METHODS: [Stabilisation; 3] = [Stabilisation::None, Stabilisation::FBar, Stabilisation::ModifiedFBar];

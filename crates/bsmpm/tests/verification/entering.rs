@@ -2,10 +2,10 @@
 
 use crate::support::scene::{Scene, axis, by_id, hencky};
 use crate::support::solver::Dense;
-use bsmpm::background::Background;
 use bsmpm::boundary::Support;
-use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::grid::Shape;
+use bsmpm::interactions::background::Background;
+use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::TimeInterval;

@@ -1,9 +1,9 @@
 //! Tests that results do not depend on mirroring, axes, position and units, and depend little on the soft background.
 
 use crate::support::scene::{METHODS, Scene, axis, by_id, hencky};
-use bsmpm::background::Background;
 use bsmpm::boundary::Support;
 use bsmpm::grid::KnotVector;
+use bsmpm::interactions::background::Background;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb, Separation};
 use bsmpm::model::{Gravity, Regime};

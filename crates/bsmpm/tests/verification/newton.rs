@@ -2,9 +2,9 @@
 //! quasi-Newton.
 
 use crate::support::scene::{Scene, axis};
-use bsmpm::background::Background;
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::control::AcceptedStep;
+use bsmpm::interactions::background::Background;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Criteria;

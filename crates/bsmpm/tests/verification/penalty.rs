@@ -1,8 +1,8 @@
 //! Tests of the influence of a rigid footing's penalty stiffness on the collapse pressure.
 
 use crate::support::scene::{Scene, axis};
-use bsmpm::background::Background;
 use bsmpm::boundary::{Path, Strip, Support, surface};
+use bsmpm::interactions::background::Background;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Criteria;

@@ -1,10 +1,10 @@
 //! Tests of rigid bodies: friction, impact, Hertz contact, punches, separation and free motion.
 
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::boundary::rigid::Outline;
 use bsmpm::boundary::{Path, RigidBody, RigidReport, Strip, Support, surface};
 use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::grid::Shape;
+use bsmpm::interactions::rigid::Outline;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Nonlinear;
 use bsmpm::model::{Gravity, Regime};

@@ -2,13 +2,13 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::Support;
+use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::energy::StoredEnergy;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::model::WallVelocity;
 use bsmpm::observe::{self, Part};
 use bsmpm::points::Points;
-use bsmpm::step::mass::MassMatrix;
 use bsmpm::tensor::Vector;
 use std::f64::consts::TAU;
 

@@ -3,17 +3,17 @@
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
 use bsmpm::boundary::SurfacePoint;
+use bsmpm::field::pore_water::Water;
+use bsmpm::field::pore_water::ambient::Ambient;
+use bsmpm::field::pore_water::backward::Differences;
+use bsmpm::field::pore_water::drain::{DrainReport, Drainage};
+use bsmpm::field::pore_water::flow::{Course, Drain, Flow, Given, Inflow, Motion, Permeability, PermeabilityLaw, Soil};
 use bsmpm::grid::Contributions;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::parallel::{LinearSolver, Symmetry};
 use bsmpm::schedule::TimeInterval;
 use bsmpm::tensor::Vector;
-use bsmpm::water::Water;
-use bsmpm::water::ambient::Ambient;
-use bsmpm::water::backward::Differences;
-use bsmpm::water::drain::{DrainReport, Drainage};
-use bsmpm::water::flow::{Course, Drain, Flow, Given, Inflow, Motion, Permeability, PermeabilityLaw, Soil};
 use std::f64::consts::{FRAC_PI_2, LN_2};
 
 type Plane = Scene<PlaneStrain, 2>;

@@ -2,10 +2,11 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
-use bsmpm::boundary::{Support, strip::StripConstraints};
+use bsmpm::boundary::Support;
 use bsmpm::control::{AcceptedStep, Failure, Stepper};
 use bsmpm::error::StepError;
 use bsmpm::grid::Shape;
+use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;

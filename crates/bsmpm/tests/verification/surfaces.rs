@@ -1,10 +1,10 @@
 //! Tests of rigid footings, tractions and point loads: exact stress, global equilibrium, and halved steps.
 
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::background::Background;
 use bsmpm::boundary::{Load, Path, Strip, Support, SurfacePoint, surface};
 use bsmpm::control::AcceptedStep;
 use bsmpm::error::StepError;
+use bsmpm::interactions::background::Background;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::schedule::Schedule;

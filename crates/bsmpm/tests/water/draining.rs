@@ -2,14 +2,14 @@
 
 use super::{M, Plane, at, column, flowing, geometric, run, settlement};
 use crate::support::scene::{axis, hencky};
-use bsmpm::background::Background;
 use bsmpm::boundary::surface;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
+use bsmpm::field::pore_water::flow::{Course, Drain, Given, PermeabilityLaw};
+use bsmpm::interactions::background::Background;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::points::Points;
 use bsmpm::tensor::Vector;
-use bsmpm::water::flow::{Course, Drain, Given, PermeabilityLaw};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 

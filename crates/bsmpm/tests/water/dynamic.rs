@@ -1,12 +1,12 @@
 //! Tests of a saturated column under a sudden load: damped waves of the telegraph equation.
 
 use super::{M, column, run, settlement};
+use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::energy::{EnergyAccounts, EnergyBound, StoredEnergy};
+use bsmpm::field::pore_water::flow::PermeabilityLaw;
 use bsmpm::model::Regime;
 use bsmpm::points::Motion;
-use bsmpm::step::mass::MassMatrix;
 use bsmpm::tensor::Vector;
-use bsmpm::water::flow::PermeabilityLaw;
 
 /// s M/(q H) at t sqrt(M/rho)/H = 0.5, 1, 2, 4, 10, of gamma_w H/(k sqrt(M rho)) = 1, 10, 100.
 const TABLE: [(f64, [f64; 5]); 3] = [

@@ -3,12 +3,12 @@
 use super::{LOAD_PARTS, M, Plane, at, column, flowing, run};
 use crate::support::scene::axis;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
+use bsmpm::field::pore_water::flow::PermeabilityLaw;
 use bsmpm::initial;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Symmetric;
-use bsmpm::water::flow::PermeabilityLaw;
 
 /// Confined compression without flow: the water takes 1/(1 + n M/K_w) of the load (Skempton).
 #[test]

@@ -3,13 +3,13 @@
 use super::{Plane, at, flowing};
 use crate::support::scene::{axis, hencky};
 use bsmpm::boundary::{Contact, Support};
+use bsmpm::field::pore_water::carried;
+use bsmpm::field::pore_water::flow::{Motion, PermeabilityLaw};
+use bsmpm::field::pore_water::pore_pressure::PorePressure;
 use bsmpm::grid::Shape;
 use bsmpm::model::Regime;
 use bsmpm::schedule::TimeInterval;
 use bsmpm::step::nodes::GridState;
-use bsmpm::water::carried;
-use bsmpm::water::flow::{Motion, PermeabilityLaw};
-use bsmpm::water::pore_pressure::PorePressure;
 
 /// A square of 1 m with an excess pore pressure that is linear in the place, Pa, and a left face with friction; what
 /// `of` finds in the pressures that friction takes off.

@@ -2,12 +2,12 @@
 //! cells.
 
 use super::{DENSITY, M, Plane, WEIGHT, column_of, geometric, run};
-use bsmpm::background::Background;
+use bsmpm::field::pore_water::flow::{Course, DrainedFace, Given, PermeabilityLaw};
+use bsmpm::field::pore_water::observed::PoreWater;
+use bsmpm::interactions::background::Background;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::points::Points;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::water::flow::{Course, DrainedFace, Given, PermeabilityLaw};
-use bsmpm::water::observed::PoreWater;
 
 /// N/m3  of water whose own weight does nothing to a column of the stiffness M
 const LIGHT: f64 = 1.0;

@@ -4,8 +4,8 @@
 use super::{Plane, WEIGHT, at, flowing, geometric};
 use crate::support::scene::{axis, hencky};
 use bsmpm::boundary::Support;
+use bsmpm::field::pore_water::flow::{DrainedFace, Given, PermeabilityLaw};
 use bsmpm::model::Regime;
-use bsmpm::water::flow::{DrainedFace, Given, PermeabilityLaw};
 
 const E: f64 = 1e6;
 /// Pa  what the plate presses with

@@ -13,8 +13,11 @@ mod terzaghi;
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
-use bsmpm::background::ResistedDisplacement;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
+use bsmpm::field::pore_water::Water;
+use bsmpm::field::pore_water::ambient::Ambient;
+use bsmpm::field::pore_water::flow::{Drain, DrainedFace, Flow, Given, Motion, Permeability, PermeabilityLaw, Soil};
+use bsmpm::interactions::background::ResistedDisplacement;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::parallel::Backend;
@@ -22,9 +25,6 @@ use bsmpm::points::Points;
 use bsmpm::schedule::TimeInterval;
 use bsmpm::step::{Counts, StepReport, step};
 use bsmpm::tensor::Vector;
-use bsmpm::water::Water;
-use bsmpm::water::ambient::Ambient;
-use bsmpm::water::flow::{Drain, DrainedFace, Flow, Given, Motion, Permeability, PermeabilityLaw, Soil};
 
 /// Where the points of a load on an edge of 1 m are.
 pub const LOAD_PARTS: [f64; 6] = [1.0 / 12.0, 3.0 / 12.0, 5.0 / 12.0, 7.0 / 12.0, 9.0 / 12.0, 11.0 / 12.0];

@@ -5,12 +5,18 @@ use super::{DENSITY, Plane, at, flowing};
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};
 use crate::support::solver::Skyline;
-use bsmpm::background::Background;
-use bsmpm::background::ResistedDisplacement;
-use bsmpm::boundary::strip::StripConstraints;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
 use bsmpm::error::StepError;
+use bsmpm::field::pore_water::Water;
+use bsmpm::field::pore_water::ambient::Ambient;
+use bsmpm::field::pore_water::flow::{
+    Course, Drain, DrainedFace, Flow, Given, Inflow, Motion, Permeability, PermeabilityLaw, Soil,
+};
+use bsmpm::field::pore_water::retention::Retention;
 use bsmpm::grid::Shape;
+use bsmpm::interactions::background::Background;
+use bsmpm::interactions::background::ResistedDisplacement;
+use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::{Criteria, Method, Nonlinear, QuasiNewton};
@@ -25,12 +31,6 @@ use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::step::{Counts, StepReport, step};
 use bsmpm::tensor::Vector;
-use bsmpm::water::Water;
-use bsmpm::water::ambient::Ambient;
-use bsmpm::water::flow::{
-    Course, Drain, DrainedFace, Flow, Given, Inflow, Motion, Permeability, PermeabilityLaw, Soil,
-};
-use bsmpm::water::retention::Retention;
 
 /// Soil of which some yields, with water that flows, a drain, a seepage face and rain that runs off.
 fn wet<K: Kinematics<D>, const D: usize>(

@@ -5,9 +5,12 @@ use super::{Plane, at, flowing};
 use crate::support::scene::{axis, hencky};
 use crate::support::solver::Dense;
 use bsmpm::boundary::Support;
-use bsmpm::boundary::strip::StripConstraints;
+use bsmpm::field::pore_water::flow::PermeabilityLaw;
+use bsmpm::field::pore_water::matrix;
+use bsmpm::field::pore_water::residual::pressing;
 use bsmpm::grid::transfer::scalars;
 use bsmpm::grid::{Shape, transfer};
+use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::TimeInterval;
@@ -15,9 +18,6 @@ use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::tensor::Vector;
-use bsmpm::water::flow::PermeabilityLaw;
-use bsmpm::water::matrix;
-use bsmpm::water::residual::pressing;
 use nalgebra::DMatrix;
 
 /// A unit square of `cells` x `cells` on rollers but for its top, whose last row of cells is filled by the share `cut`.

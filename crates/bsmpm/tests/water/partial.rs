@@ -5,12 +5,14 @@ use super::{Plane, WEIGHT, at, run, through};
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::{Support, SurfacePoint};
 use bsmpm::energy::{EnergyAccounts, StoredEnergy};
+use bsmpm::field::pore_water::ambient::Ambient;
+use bsmpm::field::pore_water::flow::{
+    Course, Drain, DrainedFace, Flow, Given, Inflow, Permeability, PermeabilityLaw, Soil,
+};
+use bsmpm::field::pore_water::retention::Retention;
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::tensor::Vector;
-use bsmpm::water::ambient::Ambient;
-use bsmpm::water::flow::{Course, Drain, DrainedFace, Flow, Given, Inflow, Permeability, PermeabilityLaw, Soil};
-use bsmpm::water::retention::Retention;
 
 /// m/s
 const K: f64 = 1e-5;

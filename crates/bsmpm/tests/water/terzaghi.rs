@@ -1,10 +1,10 @@
 //! Tests of one-dimensional consolidation of a column under a sudden load (Terzaghi).
 
 use super::{M, Plane, column, geometric, run, run_from, settlement};
+use bsmpm::field::pore_water::flow::{Course, DrainedFace, Given, PermeabilityLaw, Soil};
+use bsmpm::field::pore_water::observed::PoreWater;
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::step::StepReport;
-use bsmpm::water::flow::{Course, DrainedFace, Given, PermeabilityLaw, Soil};
-use bsmpm::water::observed::PoreWater;
 
 /// T, U, and p/p0 at depths of 0.25, 0.5 and 1 of the column below its top.
 const TABLE: [(f64, f64, [f64; 3]); 5] = [

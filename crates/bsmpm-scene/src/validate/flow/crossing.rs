@@ -7,7 +7,7 @@ use crate::report::{Report, listed};
 use crate::validate::side::side;
 use crate::validate::site::normal_of;
 use crate::validate::{place, site};
-use bsmpm::water::flow::Given;
+use bsmpm::field::pore_water::flow::Given;
 
 /// Parts of a cell by which surfaces may be apart and still be one, and by which they overlap at least to be reported.
 const APART: f64 = 0.05;

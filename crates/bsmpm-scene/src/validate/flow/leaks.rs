@@ -9,7 +9,7 @@ use crate::validate::lines;
 use crate::validate::place::{beyond, is_beyond, is_in};
 use crate::validate::site::normal;
 use crate::words::Measurement;
-use bsmpm::water::flow::Soil;
+use bsmpm::field::pore_water::flow::Soil;
 use std::collections::BTreeMap;
 
 /// Ratio of two permeabilities from which an interface inside cells is warned of. A layer of one cell, half a cell off

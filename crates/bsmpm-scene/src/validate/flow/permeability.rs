@@ -2,7 +2,7 @@
 
 use crate::record::Record;
 use crate::report::Report;
-use bsmpm::water::flow::{Permeability, PermeabilityLaw};
+use bsmpm::field::pore_water::flow::{Permeability, PermeabilityLaw};
 
 /// Permeability, m/s, beyond which a number is taken for a slip: that of gravel without sand.
 const MOST_PERMEABLE: f64 = 1.0;

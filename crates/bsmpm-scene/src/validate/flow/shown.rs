@@ -9,11 +9,11 @@ use crate::schema::LawName;
 use crate::validate::flow::crossing::{is_beside, places};
 use crate::validate::side::side;
 use crate::words::{AnalysisType, Side, Word};
+use bsmpm::field::pore_water::flow::{Course, Given, Motion};
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::water::flow::{Course, Given, Motion};
 
 /// Points along each axis of a cell with cubic splines: with fewer the pressure oscillates at surfaces that cut cells.
 const POINTS_OF_CUBIC: usize = 4;

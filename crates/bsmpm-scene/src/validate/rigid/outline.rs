@@ -1,7 +1,7 @@
 //! Thickness and sharpest corner of a rigid body.
 
 use crate::validate::site::normal;
-use bsmpm::boundary::rigid::Outline;
+use bsmpm::interactions::rigid::Outline;
 use bsmpm::tensor::Vector;
 
 /// The least extent of corners across any edge, m.

@@ -7,7 +7,7 @@ use crate::case::{Case, Rigid, RigidShape, RigidSolid};
 use crate::record::Record;
 use crate::report::Report;
 use bsmpm::boundary::RigidBody;
-use bsmpm::boundary::rigid::Outline;
+use bsmpm::interactions::rigid::Outline;
 use bsmpm::tensor::Vector;
 
 /// Shapes that only a plane knows.

@@ -1,0 +1,337 @@
+//! Free-field boundaries: before each step, every rank advances a soil column, whose stress and velocity act on a side
+//! of the grid, theory-manual equations (T6.14), (T6.15).
+
+mod tied;
+
+use crate::boundary::{Boundary, Support};
+use crate::dynamics::newmark::Newmark;
+use crate::error::StepError;
+use crate::grid::{Grid, KnotVector, Shape, transfer};
+use crate::initial;
+use crate::interactions::strip::StripConstraints;
+use crate::kinematics::Kinematics;
+use crate::model::Model;
+use crate::nodal::Nodal;
+use crate::parallel::Halo;
+use crate::points::Points;
+use crate::schedule::TimeInterval;
+use crate::solve;
+use crate::step::adjoint::Pressures;
+use crate::step::commit;
+use crate::step::nodes::GridState;
+use crate::step::problem::Problem;
+use crate::step::report::Counts;
+use crate::step::trial::DeformationIncrement;
+use crate::tensor::Vector;
+use tied::{Band, TiedHalo};
+
+/// Free-field columns after a step, and their action on the faces that they drive.
+#[derive(Clone, Debug, Default)]
+pub struct FreeField<const D: usize> {
+    /// Material points of the columns at the end of the step.
+    pub columns: Vec<Points<D>>,
+    beside: Vec<Beside<D>>,
+}
+
+/// Action of a column on the nodes of its face.
+#[derive(Clone, Debug)]
+struct Beside<const D: usize> {
+    face: usize,                   // index among the absorbing faces
+    force: Vec<Vector<D>>,         // N, of the column's stress
+    start: Option<Vec<Vector<D>>>, // N, the same at the start of the column's first step
+    velocity: Vec<Vector<D>>,      // m/s
+}
+
+impl<const D: usize> FreeField<D> {
+    /// Advances every column over the interval. Each rank computes all columns. In their first step, columns are copied
+    /// from the material `points` next to the faces, with two reductions per face. Empty without free-field faces.
+    pub fn after<K: Kinematics<D>>(
+        model: &Model<K, D>,
+        points: &Points<D>,
+        interval: TimeInterval,
+        halo: &dyn Halo,
+    ) -> Result<Self, StepError> {
+        let mut field = Self::default();
+        let followers = model.boundary.absorbing().enumerate().filter(|(_, face)| face.follows);
+        for (number, (face, support)) in followers.enumerate() {
+            let alone = beside(model, support)?;
+            let (column, start) = match points.free_field.get(number) {
+                Some(column) => (column.clone(), None),
+                None => begin(model, &alone, support, points, interval.start, halo)?,
+            };
+            let (column, beside) = advance(&alone, support, column, interval)?;
+            field.beside.push(Beside { face, start, ..beside });
+            field.columns.push(column);
+        }
+        Ok(field)
+    }
+
+    /// Applies forces and velocities of the columns to the dashpots of the step.
+    pub fn drive(&self, nodes: &mut GridState<D>) {
+        for Beside {
+            face,
+            force,
+            start,
+            velocity,
+        } in &self.beside
+        {
+            nodes.dashpots.drive(*face, &less(force, start.as_deref()), velocity);
+        }
+    }
+
+    /// Subtracts the columns' initial forces from the forces `held` that carry the initial stress, because the columns
+    /// carry their part from now on.
+    pub fn settle(&self, held: &mut [Vec<Vector<D>>]) {
+        for Beside { face, start, .. } in &self.beside {
+            if let Some(held) = held.get_mut(*face) {
+                *held = less(held, start.as_deref());
+            }
+        }
+    }
+}
+
+/// Updates columns and held forces at time `t` after a stage has changed the ground. The columns act all along, so
+/// their forces are subtracted from the new held forces. The forces at a column's base are recomputed, because the base
+/// may have become absorbing.
+pub fn go_on<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    points: &mut Points<D>,
+    t: f64,
+) -> Result<(), StepError> {
+    let followers = model.boundary.absorbing().enumerate().filter(|(_, face)| face.follows);
+    for ((face, support), column) in followers.zip(&mut points.free_field) {
+        let now = hold(&beside(model, support)?, support, column, t)?;
+        if let Some(held) = points.surface.held.get_mut(face) {
+            *held = less(held, Some(&now));
+        }
+    }
+    Ok(())
+}
+
+fn less<const D: usize>(forces: &[Vector<D>], start: Option<&[Vector<D>]>) -> Vec<Vector<D>> {
+    match start {
+        Some(start) => forces.iter().zip(start).map(|(force, start)| force - start).collect(),
+        None => forces.to_vec(),
+    }
+}
+
+/// Returns the model of the column next to a face: one cell wide, with the supports of the other axes.
+fn beside<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, face: &Support<D>) -> Result<Model<K, D>, StepError> {
+    let mut axes = model.grid.axes().clone();
+    let axis = face.axis;
+    debug_assert!(axis == 0, "layers of nodes across axis 0 are tied");
+    let width = model.grid.axes()[axis].breakpoint(face.last_cell(&model.grid) + 1)
+        - model.grid.axes()[axis].breakpoint(face.last_cell(&model.grid));
+    // Neither call fails, because the axes come from a valid grid.
+    axes[axis] = KnotVector::uniform(width, 1, model.grid.order()).map_err(|_| StepError::OtherRank)?;
+    let grid = Grid::new(axes).map_err(|_| StepError::OtherRank)?;
+    let grid = grid.reaching(model.grid.beyond());
+    let supports = model
+        .boundary
+        .supports
+        .iter()
+        .filter(|support| support.axis != axis)
+        .copied()
+        .collect();
+    let boundary = Boundary {
+        supports,
+        reach: model.boundary.reach.clone(),
+        ..Boundary::default()
+    };
+    Ok(Model {
+        grid,
+        boundary,
+        balances_energy: false,
+        ..model.clone()
+    })
+}
+
+/// Creates the column at time `t`, and computes its force on the face (N) if there is initial stress. Two reductions.
+#[allow(clippy::type_complexity)]
+fn begin<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    alone: &Model<K, D>,
+    face: &Support<D>,
+    points: &Points<D>,
+    t: f64,
+    halo: &dyn Halo,
+) -> Result<(Points<D>, Option<Vec<Vector<D>>>), StepError> {
+    let last = face.last_cell(&model.grid);
+    let at_face = (0..points.len()).filter(|&p| {
+        let cell = model.grid.locate(&points.x[p]);
+        cell.is_some_and(|cell| cell[face.axis] == last)
+    });
+    let own: Vec<u32> = at_face.map(|p| p as u32).collect();
+    let mut column = everywhere(points.only(&own), halo);
+    let lower = model.grid.axes()[face.axis].breakpoint(last);
+    column.x.iter_mut().for_each(|x| x[face.axis] -= lower);
+    column.sort_by_cell(&alone.grid);
+    if points.surface.held.is_empty() {
+        return Ok((column, None));
+    }
+    let force = hold(alone, face, &mut column, t)?;
+    Ok((column, Some(force)))
+}
+
+/// Computes the forces that hold a column in equilibrium at time `t` where its base absorbs. Returns its force on the
+/// face (N).
+fn hold<K: Kinematics<D>, const D: usize>(
+    alone: &Model<K, D>,
+    face: &Support<D>,
+    column: &mut Points<D>,
+    t: f64,
+) -> Result<Vec<Vector<D>>, StepError> {
+    let tied = TiedHalo::of(&alone.grid);
+    let mut solver = Band::of(&alone.grid);
+    column.surface.held.clear();
+    initial::hold_at(alone, column, t, &tied, &mut solver)?;
+    for held in &mut column.surface.held {
+        let row = held.len() / (alone.grid.order() + 1);
+        let first = held[..row].to_vec();
+        held.chunks_exact_mut(row)
+            .for_each(|layer| layer.copy_from_slice(&first));
+    }
+    let shape = Shape::at(&alone.grid, column)?;
+    let instant = TimeInterval { start: t, dt: 0.0 };
+    let nodes = GridState::from_points(alone, &shape, column, instant, &tied)?;
+    let attachments = StripConstraints::at(&[], &column.surface, &alone.grid, &nodes.free, instant);
+    let problem = Problem {
+        model: alone,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points: column,
+        halo: &tied,
+    };
+    let trial = DeformationIncrement::of(alone, &shape, &nodes, column, &vec![0.0; nodes.free.len()], &tied);
+    force(&problem, &trial, face)
+}
+
+/// Broadcasts the material points of the one rank that has any. Two reductions.
+fn everywhere<const D: usize>(mut own: Points<D>, halo: &dyn Halo) -> Points<D> {
+    let mut message = Vec::new();
+    for p in 0..own.len() {
+        own.columns().into_iter().for_each(|column| column.put(p, &mut message));
+    }
+    let mut length = [message.len() as f64];
+    halo.all_reduce_sum(&mut length);
+    let mut bytes: Vec<f64> = message.iter().map(|&byte| f64::from(byte)).collect();
+    bytes.resize(length[0] as usize, 0.0);
+    halo.all_reduce_sum(&mut bytes);
+    let message: Vec<u8> = bytes.iter().map(|&byte| byte as u8).collect();
+    let mut all = own.only(&[]);
+    let mut rest = &message[..];
+    while !rest.is_empty() {
+        all.columns().into_iter().for_each(|column| column.take(&mut rest));
+    }
+    all
+}
+
+/// Advances a column by one step, and returns it with its action on the face.
+fn advance<K: Kinematics<D>, const D: usize>(
+    alone: &Model<K, D>,
+    face: &Support<D>,
+    mut column: Points<D>,
+    interval: TimeInterval,
+) -> Result<(Points<D>, Beside<D>), StepError> {
+    let tied = TiedHalo::of(&alone.grid);
+    let mut solver = Band::of(&alone.grid);
+    let shape = Shape::at(&alone.grid, &column)?;
+    let nodes = mapped(alone, &shape, &column, interval, &tied)?;
+    let attachments = StripConstraints::at(&[], &column.surface, &alone.grid, &nodes.free, interval);
+    let problem = Problem {
+        model: alone,
+        shape: &shape,
+        nodes: &nodes,
+        attachments: &attachments,
+        points: &column,
+        halo: &tied,
+    };
+    let guess: Vec<f64> = nodes
+        .inertia
+        .iter()
+        .flat_map(|inertia| inertia.v.iter().map(|v| v * interval.dt))
+        .collect();
+    let found = solve::find(&problem, &guess, &mut solver, &mut Counts::default())?;
+    commit::check_inside(alone, &shape, &column, &found.u, &tied)?;
+    let force = force(&problem, &found.trial, face)?;
+    let inertia = nodes.inertia.as_ref();
+    let layer = tied.owned().places::<D>();
+    let velocity = layer.map(|c| inertia.map_or(0.0, |inertia| inertia.velocity(c, found.u[c])));
+    let velocity: Vec<f64> = velocity.collect();
+    let velocity = velocity.chunks_exact(D).map(Vector::from_column_slice).collect();
+    let update = commit::constitutive_update(alone, &found.trial, &column, &tied)?;
+    let across: Vec<f64> = column.x.iter().map(|x| x[face.axis]).collect();
+    commit::update_points(alone, &shape, &nodes, found, update, &mut column, &tied);
+    // The state is uniform across the column, so its points keep their position normal to the face.
+    column
+        .x
+        .iter_mut()
+        .zip(across)
+        .for_each(|(x, across)| x[face.axis] = across);
+    column.sort_by_cell(&alone.grid);
+    Ok((
+        column,
+        Beside {
+            face: 0,
+            force,
+            start: None,
+            velocity,
+        },
+    ))
+}
+
+/// Returns the grid state of a column for a step. The first step at time 0 uses a dissipative integration if the forces
+/// are out of balance.
+fn mapped<K: Kinematics<D>, const D: usize>(
+    alone: &Model<K, D>,
+    shape: &Shape<D>,
+    column: &Points<D>,
+    interval: TimeInterval,
+    tied: &TiedHalo,
+) -> Result<GridState<D>, StepError> {
+    let mut nodes = GridState::from_points(alone, shape, column, interval, tied)?;
+    if let Some(inertia) = nodes.inertia.as_mut().filter(|_| interval.start == 0.0)
+        && initial::is_pushed(alone, column, tied)?
+    {
+        inertia.newmark = Newmark::for_sudden_load();
+    }
+    Ok(nodes)
+}
+
+/// Computes the force of the column's stress on every node of the face (N). It uses the same flux as the internal
+/// forces of the ground, so that both balance where ground and column move alike.
+fn force<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    trial: &DeformationIncrement<K, D>,
+    face: &Support<D>,
+) -> Result<Vec<Vector<D>>, StepError> {
+    let Problem {
+        model,
+        shape,
+        points,
+        halo,
+        ..
+    } = *problem;
+    let pressures = Pressures::of(problem, trial);
+    let volume = problem.volume();
+    let width = model.grid.axes()[face.axis].length();
+    let outward = if face.upper { 1.0 } else { -1.0 };
+    let mut fluxes: Vec<[f64; D]> = Vec::with_capacity(points.len());
+    for (p, &volume) in volume.iter().enumerate() {
+        let response = trial.respond(model, points, p);
+        let response = response.map_err(|source| StepError::Material {
+            id: points.id[p],
+            source,
+        })?;
+        let tau = pressures.acting::<K, D>(p, volume, response.tau());
+        let flux = K::flux(&trial.damped(model, points, p, &response, tau), &trial.dF(p));
+        fluxes.push(std::array::from_fn(|i| outward * flux[(i, face.axis)] * volume / width));
+    }
+    let nodal = halo.assemble_ghosts(&transfer::to_nodes::<D, D>(shape, |p| fluxes[p]));
+    Ok(halo
+        .owned()
+        .nodes()
+        .map(|node| Vector::from_column_slice(&nodal[Nodal::<D>::of(node)]))
+        .collect())
+}

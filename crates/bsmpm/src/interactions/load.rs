@@ -1,0 +1,217 @@
+//! Tractions and point loads. Dead loads, theory-manual equation (T6.8), are added to the external force at the start
+//! of a step. [Follower loads](follower) change during a step.
+
+pub mod follower;
+
+use super::strip::reduce;
+use crate::boundary::anchor::{AnchorCandidates, Surfaces};
+use crate::boundary::surface::{Anchors, Attachment, Surface, SurfacePoint};
+use crate::error::StepError;
+use crate::grid::{Contributions, Grid};
+use crate::parallel::Halo;
+use crate::schedule::TimeInterval;
+use crate::schedule::{between, turns};
+use crate::tensor::Vector;
+use follower::{AttachedPoint, FollowerLoads};
+
+/// A traction or point load on a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Load<const D: usize> {
+    /// Initial surface points; a point load has one, of area 1.
+    pub points: Vec<SurfacePoint<D>>,
+    /// Traction at every point at full amplitude, per initial area (Pa; point load: N).
+    pub traction: Vec<Vector<D>>,
+    /// Whether it is a follower load, which rotates and stretches with the surface like a pressure.
+    pub follows: bool,
+    /// Time over which the load grows linearly (s, or pseudo-time); 0: at once.
+    pub ramp: f64,
+    /// Increasing times (s, or pseudo-time) and amplitudes, which replace the ramp: linear between rows, from 0 at time
+    /// 0 to the first row, constant after the last. Empty: the ramp applies.
+    pub amplitude: Vec<(f64, f64)>,
+}
+
+impl<const D: usize> Load<D> {
+    /// Creates a dead load with the same traction (Pa) at all points.
+    pub fn dead(points: Vec<SurfacePoint<D>>, traction: Vector<D>, ramp: f64) -> Self {
+        Self {
+            traction: vec![traction; points.len()],
+            points,
+            follows: false,
+            ramp,
+            amplitude: Vec::new(),
+        }
+    }
+
+    /// Returns the initial follower tractions (Pa); empty for a dead load.
+    pub(crate) fn at_rest(&self) -> Vec<Vector<D>> {
+        if self.follows {
+            self.traction.clone()
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// Returns whether the amplitude is always zero. Such a load may lie where there is no material.
+    pub fn is_idle(&self) -> bool {
+        !self.amplitude.is_empty() && self.amplitude.iter().all(|row| row.1 == 0.0)
+    }
+
+    /// Returns whether the slope of the amplitude changes sharply in the interval.
+    pub(crate) fn turns(&self, interval: TimeInterval) -> bool {
+        let rows = if self.amplitude.is_empty() {
+            &[(self.ramp, 1.0)][..]
+        } else {
+            &self.amplitude
+        };
+        turns(rows, 0.0, f64::abs, interval)
+    }
+
+    /// Returns the amplitude of the load at time `t`.
+    fn grown(&self, t: f64) -> f64 {
+        match self.amplitude.last() {
+            Some((_, stays)) => between(&self.amplitude, 0.0, t).unwrap_or(*stays),
+            None if self.ramp > 0.0 => (t / self.ramp).clamp(0.0, 1.0),
+            None => 1.0,
+        }
+    }
+}
+
+/// Nodal forces of all loads.
+pub struct LoadForces<const D: usize> {
+    /// Nodal forces of the dead loads, N, D per node; empty without loads.
+    pub dead: Vec<f64>,
+    /// Follower loads.
+    pub followers: FollowerLoads<D>,
+}
+
+/// Returns the forces of all loads at time `t`, with the state `surface` of their points. Fails on all ranks if a load
+/// has lost its material. One reduction and one ghost exchange; before the first step, follower loads need two more
+/// reductions.
+pub fn forces<const D: usize>(
+    surfaces: &Surfaces<'_, D>,
+    surface: &Surface<D>,
+    points: AnchorCandidates<'_, D>,
+    grid: &Grid<D>,
+    active: &[bool],
+    t: f64,
+    halo: &dyn Halo,
+) -> Result<LoadForces<D>, StepError> {
+    let loads = &surfaces.boundary.loads[..];
+    if loads.is_empty() {
+        return Ok(LoadForces {
+            dead: Vec::new(),
+            followers: FollowerLoads::default(),
+        });
+    }
+    let offsets = grid.offsets();
+    let mut applied = vec![0.0; loads.len()];
+    let mut pushed = Vec::new();
+    let mut force = Contributions::none(grid, D, Vec::new());
+    for (number, load) in loads.iter().enumerate() {
+        let grown = load.grown(t);
+        for (k, (point, x)) in load.points.iter().zip(&surface.position[number]).enumerate() {
+            if let Some(attachment) = Attachment::at(grid, &offsets, |node| active[node], x) {
+                applied[number] += 1.0;
+                if load.follows {
+                    pushed.push(AttachedPoint {
+                        load: number,
+                        point: k,
+                        area: grown * point.area,
+                        attachment,
+                    });
+                } else {
+                    attachment.scatter(&offsets, &(load.traction[k] * (grown * point.area)), &mut force);
+                }
+            }
+        }
+    }
+    let followers = if loads.iter().any(|load| load.follows) {
+        let anchors = Anchors::of(surfaces, &surface.anchors, points, halo);
+        FollowerLoads::of(loads, pushed, grid, &anchors, points)
+    } else {
+        FollowerLoads::default()
+    };
+    applied.extend(followers.carried(loads));
+    halo.all_reduce_sum(&mut applied);
+    if let Some(error) = lost_load(loads, &applied) {
+        return Err(error);
+    }
+    Ok(LoadForces {
+        dead: halo.assemble_ghosts(&force),
+        followers,
+    })
+}
+
+/// Returns the error of the first load that has lost material. `applied` has, per load, the number of points with
+/// material in range, and then, if there are follower loads, the number of points whose anchor is present.
+fn lost_load<const D: usize>(loads: &[Load<D>], applied: &[f64]) -> Option<StepError> {
+    for (number, load) in loads.iter().enumerate().filter(|(_, load)| !load.is_idle()) {
+        let carried = applied.get(loads.len() + number).filter(|_| load.follows);
+        let found = carried.map_or(applied[number], |carried| carried.min(applied[number]));
+        if found < load.points.len() as f64 {
+            return Some(StepError::Unloaded {
+                load: number,
+                points: load.points.len() - found as usize,
+            });
+        }
+    }
+    None
+}
+
+/// Returns the positions of all load points after the converged displacement `u` (m), interpolated with the nodes on
+/// which the forces act; the work of the loads uses them. One reduction.
+pub fn moved<const D: usize>(
+    loads: &[Load<D>],
+    surface: &Surface<D>,
+    grid: &Grid<D>,
+    active: &[bool],
+    u: &[f64],
+    halo: &dyn Halo,
+) -> Vec<Vec<Vector<D>>> {
+    if loads.is_empty() {
+        return Vec::new();
+    }
+    let offsets = grid.offsets();
+    let mut position = surface.position.clone();
+    for x in position.iter_mut().flatten() {
+        let attachment = Attachment::at(grid, &offsets, |node| active[node], x);
+        let moved = attachment.map(|attachment| *x + attachment.displacement::<D>(&offsets, u));
+        *x = moved.unwrap_or_else(Vector::zeros);
+    }
+    reduce(&mut position, halo);
+    position
+}
+
+/// Returns the work of all loads in the interval by the mean of their tractions (N m), and half of the increase of the
+/// tractions times the displacement of the points (N m). `before` and `after` are the states of the surfaces.
+pub fn work<const D: usize>(
+    loads: &[Load<D>],
+    before: &Surface<D>,
+    after: &Surface<D>,
+    interval: TimeInterval,
+) -> (f64, f64) {
+    let mut sums = (0.0, 0.0);
+    for (number, load) in loads.iter().enumerate() {
+        let places = before.position[number].iter().zip(&after.position[number]);
+        let moved: Vec<Vector<D>> = places.map(|(from, to)| to - from).collect();
+        let works = [(before, interval.start), (after, interval.end())].map(|(surface, t)| {
+            let traction = match load.follows {
+                true => &surface.pressure[number],
+                false => &load.traction,
+            };
+            load.grown(t) * full_work(load, traction, &moved)
+        });
+        sums.0 += 0.5 * (works[0] + works[1]);
+        sums.1 += 0.5 * (works[1] - works[0]);
+    }
+    sums
+}
+
+/// Returns the work of the tractions of a load at full amplitude (Pa) on displacements `moved` of its points (m), in N
+/// m.
+fn full_work<const D: usize>(load: &Load<D>, traction: &[Vector<D>], moved: &[Vector<D>]) -> f64 {
+    let moved = moved.iter().enumerate();
+    moved
+        .map(|(k, moved)| load.points[k].area * traction[k].dot(moved))
+        .sum()
+}
