@@ -4,8 +4,6 @@ mod first;
 mod restart;
 mod stiffness;
 
-pub(crate) use first::versions;
-
 use crate::cli::Arguments;
 use crate::restart::FreshStart;
 use bsmpm::control::AcceptedStep;

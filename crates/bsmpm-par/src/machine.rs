@@ -1,5 +1,6 @@
-//! Processor time, memory and BLAS library of this process (Linux only).
+//! Processor time, memory and libraries of this process (Linux only).
 
+use std::collections::BTreeMap;
 use std::fs;
 
 /// Clock ticks a second in /proc, fixed on Linux.
@@ -51,4 +52,22 @@ pub fn blas() -> Option<String> {
 pub fn has_reference_blas() -> bool {
     let maps = fs::read_to_string("/proc/self/maps").unwrap_or_default();
     maps.contains("/blas/libblas.so")
+}
+
+/// Versions of the libraries in use, by name.
+pub(crate) fn library_versions() -> BTreeMap<String, String> {
+    let (major, minor, subminor) = petsc_rs::version();
+    let mpi = mpi::environment::library_version().unwrap_or_default();
+    let hdf5 = hdf5_collective::version();
+    [
+        (
+            "petsc",
+            format!("{major}.{minor}.{subminor}, {}-bit indices", petsc_rs::petsc_int_bits()),
+        ),
+        ("mpi", mpi.split(',').next().unwrap_or_default().trim().to_owned()),
+        ("hdf5", format!("{}.{}.{}", hdf5.0, hdf5.1, hdf5.2)),
+        ("blas", blas().unwrap_or_else(|| "unknown".into())),
+    ]
+    .map(|(name, version)| (name.to_owned(), version))
+    .into()
 }

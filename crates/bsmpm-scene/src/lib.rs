@@ -15,6 +15,7 @@ pub mod unit;
 
 mod case;
 mod connected;
+mod constants;
 mod difference;
 mod document;
 mod earlier;

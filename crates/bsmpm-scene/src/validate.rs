@@ -43,6 +43,7 @@ mod waves;
 pub use flow::HELD_WATER;
 
 use crate::case::{Analysis, Case, Gravity, Support};
+use crate::constants::STANDARD_GRAVITY;
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{AnalysisType, Geometry, Side, Word};
@@ -61,12 +62,8 @@ const MOST_STEPS: f64 = 1e9;
 /// Of a key that belongs to dynamics, in an analysis of another type.
 const NO_INERTIA: &str = "E0218: this key needs inertia, which only a dynamic analysis has. Delete the key, or use \
                           analysis.type = \"dynamic\".";
-/// m/s2  by which a unit weight is divided, whatever the scene's gravity is.
-pub(crate) const STANDARD_GRAVITY: f64 = 9.81;
 /// Relative difference from it that the rounded components of an inclined gravity may have.
 const NEARLY_STANDARD: f64 = 1e-6;
-/// Poisson's ratio above which elastic material is taken to lock.
-pub(crate) const NEARLY_INCOMPRESSIBLE: f64 = 0.45;
 pub(crate) use site::normal_of as normal_of_site;
 
 /// Longest edge over the shortest one of cells that count as squares of one size.

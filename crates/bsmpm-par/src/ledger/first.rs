@@ -51,7 +51,7 @@ pub(super) fn manifest(arguments: &Arguments, case: &Case, ranks: usize) -> Mani
         .collect();
     manifest.choices.extend(setup::choices(case, ranks, &arguments.petsc));
     manifest.warnings = setup::warnings(case, ranks);
-    manifest.versions = versions();
+    manifest.versions = machine::library_versions();
     let smooths = case.stabilisation.lowers() || case.stabilisation == Stabilisation::ModifiedFBar;
     manifest.summary.smoothing_passes = smooths.then_some(0.0);
     manifest.checks = case.checks.iter().map(unmade).collect();
@@ -68,22 +68,4 @@ fn unmade(check: &Check) -> ManifestCheck {
         max: check.max,
         passed: false,
     }
-}
-
-/// Versions of the libraries in use, by name.
-pub(crate) fn versions() -> std::collections::BTreeMap<String, String> {
-    let (major, minor, subminor) = petsc_rs::version();
-    let mpi = mpi::environment::library_version().unwrap_or_default();
-    let hdf5 = hdf5_collective::version();
-    [
-        (
-            "petsc",
-            format!("{major}.{minor}.{subminor}, {}-bit indices", petsc_rs::petsc_int_bits()),
-        ),
-        ("mpi", mpi.split(',').next().unwrap_or_default().trim().to_owned()),
-        ("hdf5", format!("{}.{}.{}", hdf5.0, hdf5.1, hdf5.2)),
-        ("blas", machine::blas().unwrap_or_else(|| "unknown".into())),
-    ]
-    .map(|(name, version)| (name.to_owned(), version))
-    .into()
 }

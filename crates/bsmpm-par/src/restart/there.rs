@@ -2,7 +2,7 @@
 
 use super::FreshStart;
 use crate::checkpoint::Refusal;
-use crate::ledger;
+use crate::machine;
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::quadrature::Quadrature;
@@ -222,7 +222,7 @@ pub(super) fn other_machine(past: &Manifest, ranks: u32, found: &FoundCheckpoint
             past.version
         ));
     }
-    for (library, now) in ledger::versions() {
+    for (library, now) in machine::library_versions() {
         if let Some(before) = past.versions.get(&library).filter(|before| **before != now) {
             reasons.push(format!(
                 "W0736: the checkpoint was written with {library} {before}, and the run continues with {now}. Results may differ slightly. \

@@ -3,10 +3,10 @@
 
 use super::Preset;
 use super::rigid::{self, RigidExtent};
+use crate::constants::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
 use crate::record::Record;
 use crate::region;
 use crate::schema::LawName;
-use crate::validate::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
 use crate::words::{AnalysisType, Purpose};
 
 /// What steps follow from.

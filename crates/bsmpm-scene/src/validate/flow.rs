@@ -9,13 +9,13 @@ pub use shown::HELD_WATER;
 pub(super) use shown::check;
 
 use self::permeability::permeability;
-use super::STANDARD_GRAVITY;
 use super::load::{circle, increasing};
 use super::place;
 use super::site::{AroundStrip, places, plate, segment};
 use crate::case::{
     ActiveLoads, Body, Drain, DrainSite, Face, Flow, Inflow, NamedMaterial, Plate, Site, Stage, Support,
 };
+use crate::constants::STANDARD_GRAVITY;
 use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;

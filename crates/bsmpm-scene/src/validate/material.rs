@@ -3,8 +3,9 @@
 pub(super) mod band;
 mod law;
 
-use super::{STANDARD_GRAVITY, limit_load, reduction};
+use super::{limit_load, reduction};
 use crate::case::{Body, NamedMaterial, Stage};
+use crate::constants::STANDARD_GRAVITY;
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;

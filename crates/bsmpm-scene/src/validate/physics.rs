@@ -1,11 +1,11 @@
 //! Checks supports and doubtful combinations in the whole case.
 
-use super::NEARLY_INCOMPRESSIBLE;
 use super::place;
 use super::rigid;
 use super::site::{normal_of, places};
 use super::strip::{moves, with_body};
 use crate::case::{ActiveLoads, Base, Body, Case, Geometry, Initial, Quantity, Site, Support};
+use crate::constants::NEARLY_INCOMPRESSIBLE;
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::{AnalysisType, Measurement, Side, Word};

@@ -1,9 +1,9 @@
 //! Validates hydrostatic water.
 
-use super::STANDARD_GRAVITY;
 use super::load::increasing;
 use super::uplift;
 use crate::case::{Case, Gravity, Support, Water};
+use crate::constants::STANDARD_GRAVITY;
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
