@@ -248,7 +248,7 @@ impl Tree {
             let child = child.unwrap_or_else(|| panic!("{file} declares {name}, which is not there"));
             self.load(
                 sources,
-                &[path, &[name.clone()]].concat(),
+                &[path, std::slice::from_ref(name)].concat(),
                 child,
                 &format!("{folder}{name}/"),
             );

@@ -1,7 +1,7 @@
 //! Table of the presets for the reference of keys.
 
 use super::{GRADED_POINTS, METHOD, ORDER, Preset};
-use crate::validate::NEARLY_INCOMPRESSIBLE;
+use crate::constants::NEARLY_INCOMPRESSIBLE;
 use crate::words::{Accuracy, Word};
 
 /// A row of the table: a number that each preset has.
