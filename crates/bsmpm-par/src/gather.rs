@@ -1,7 +1,7 @@
 //! Gathers the material points of all ranks on rank 0, sorted by id, for a frame.
 
 use bsmpm::field::pore_water::observed::PoreWater;
-use bsmpm::material::{Material, Variable};
+use bsmpm::material::{LayeredMaterial, Material, Variable};
 use bsmpm::observe::invariants;
 use bsmpm::points::{Column, ColumnInfo, Number, Points};
 use bsmpm::tensor::Vector;
@@ -37,7 +37,7 @@ enum FieldSource<'a, const D: usize> {
     /// Pa
     Projected(&'a [f64]),
     /// of the materials that have it
-    State(Variable, &'a [Material]),
+    State(Variable, &'a [LayeredMaterial]),
     Volume,
     /// what the case asks for
     Asked(FrameField, PointContext<'a, D>),
@@ -47,7 +47,7 @@ enum FieldSource<'a, const D: usize> {
 #[derive(Clone, Copy)]
 pub struct PointContext<'a, const D: usize> {
     /// laws by number
-    pub materials: &'a [Material],
+    pub materials: &'a [LayeredMaterial],
     /// ids of every body's points; empty if no frame reports bodies
     pub bodies: &'a [Range<u64>],
     /// water at the time of the frame

@@ -33,7 +33,7 @@ use bsmpm::boundary::Contact;
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::grid::extension::ExtendedSplines;
-use bsmpm::material::Material;
+use bsmpm::material::LayeredMaterial;
 use bsmpm::model::Regime;
 use bsmpm::model::WallVelocity;
 use bsmpm::quadrature::Quadrature;
@@ -209,7 +209,7 @@ pub struct NamedMaterial {
     /// Name in the file.
     pub name: String,
     /// Law and parameters.
-    pub material: Material,
+    pub material: LayeredMaterial,
     /// kg/m3; `None`: weightless
     pub density: Option<f64>,
     /// kg/m3  of points below the water table at the start; `None`: the same

@@ -108,7 +108,7 @@ struct Attempt {
 }
 
 impl Element {
-    /// Creates a point of `law` under the Cauchy stress `sigma` (Pa). The law must not depend on the height.
+    /// Creates a point of `law` under the Cauchy stress `sigma` (Pa).
     ///
     /// # Errors
     /// If the material cannot have that stress.

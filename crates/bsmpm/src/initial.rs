@@ -117,8 +117,7 @@ fn exchange_own<K: Kinematics<D>, const D: usize>(
 }
 
 /// Returns the elastic left Cauchy-Green tensor of a Cauchy stress (Pa) in the undeformed configuration, and replaces
-/// the zeros in `state` by the state of `law`. NaN if the law does not admit the stress. `law` must be evaluated at one
-/// height.
+/// the zeros in `state` by the state of `law`. NaN if the law does not admit the stress.
 pub fn b_e_of(law: &Material, stress: &Symmetric, state: &mut [f64]) -> Symmetric {
     if law.is_linear() {
         return exponential(&strain_of(law.elastic(), stress));

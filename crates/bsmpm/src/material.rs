@@ -10,6 +10,7 @@ mod elastic;
 mod graded;
 mod hencky;
 mod law;
+mod layered;
 mod mobilised;
 mod mohr_coulomb;
 mod mu_i;
@@ -26,6 +27,7 @@ pub use elastic::{Elastic, Moduli};
 pub use graded::{GradedLaw, Profile};
 pub use hencky::Hencky;
 pub use law::{Branch, Law, Projection, Separation, Variable, split};
+pub use layered::{LayeredMaterial, state_width};
 pub use mohr_coulomb::MohrCoulomb;
 pub use mu_i::MuI;
 pub use response::Response;
@@ -37,17 +39,14 @@ pub use von_mises::VonMises;
 use crate::real::Real;
 use crate::tensor::{Symmetric, Tensor};
 use spectral::Spectrum;
-use std::borrow::Cow;
 
 /// Defines the enum of all laws with its dispatch, and the enum of their return data.
 macro_rules! laws {
     ($($(#[$doc:meta])* $module:ident::$Law:ident,)*) => {
-        /// Material of the case.
+        /// Constitutive law with its parameters at one height.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Material {
             $($(#[$doc])* $Law($module::$Law),)*
-            /// Any other law, with parameters that depend on the height.
-            Graded(GradedLaw),
         }
 
         /// Return data of a response; `Elastic` without a return.
@@ -58,19 +57,17 @@ macro_rules! laws {
         }
 
         impl Material {
-            /// Returns the elastic part of the law; for a graded law where it is stiffest.
+            /// Returns the elastic part of the law.
             pub fn elastic(&self) -> &Elastic {
                 match self {
                     $(Self::$Law(law) => law.elastic(),)*
-                    Self::Graded(law) => law.stiffest(),
                 }
             }
 
-            /// Returns the dilation angle (rad); for a graded law the largest one, before strength reduction.
+            /// Returns the dilation angle (rad).
             pub fn dilation(&self) -> f64 {
                 match self {
                     $(Self::$Law(law) => law.dilation(),)*
-                    Self::Graded(law) => law.most().dilation(),
                 }
             }
 
@@ -78,7 +75,6 @@ macro_rules! laws {
             pub fn separation(&self) -> Separation {
                 match self {
                     $(Self::$Law(law) => law.separation(),)*
-                    Self::Graded(law) => law.most().separation(),
                 }
             }
 
@@ -86,7 +82,6 @@ macro_rules! laws {
             pub fn yields(&self) -> bool {
                 match self {
                     $(Self::$Law(_) => <$module::$Law as Law>::YIELDS,)*
-                    Self::Graded(law) => law.most().yields(),
                 }
             }
 
@@ -94,7 +89,6 @@ macro_rules! laws {
             pub fn hardens(&self) -> bool {
                 match self {
                     $(Self::$Law(law) => law.hardens(),)*
-                    Self::Graded(law) => law.most().hardens(),
                 }
             }
 
@@ -103,7 +97,6 @@ macro_rules! laws {
             fn is_in_lanes(&self) -> bool {
                 match self {
                     $(Self::$Law(_) => <$module::$Law as Law>::IN_LANES,)*
-                    Self::Graded(_) => false,
                 }
             }
 
@@ -111,7 +104,6 @@ macro_rules! laws {
             pub fn softens(&self) -> bool {
                 match self {
                     $(Self::$Law(law) => law.softens(),)*
-                    Self::Graded(law) => law.most().softens(),
                 }
             }
 
@@ -119,20 +111,17 @@ macro_rules! laws {
             pub fn is_linear(&self) -> bool {
                 match self {
                     $(Self::$Law(_) => <$module::$Law as Law>::LINEAR,)*
-                    Self::Graded(law) => law.most().is_linear(),
                 }
             }
 
             /// Returns the principal elastic strains of an initial stress (Pa), and sets the initial state of the law
-            /// in `state`, which contains zeros. The strains are not finite if the law cannot have the stress. Call it
-            /// for graded laws through [`Material::at`] only.
+            /// in `state`, which contains zeros. The strains are not finite if the law cannot have the stress.
             pub fn initial_state(&self, tau: [f64; 3], state: &mut [f64]) -> [f64; 3] {
                 match self {
                     $(Self::$Law(law) => {
                         law.initial_state(tau, state);
                         law.strain(tau)
                     })*
-                    Self::Graded(law) => law.most().initial_state(tau, state),
                 }
             }
 
@@ -140,7 +129,6 @@ macro_rules! laws {
             pub fn state(&self) -> &'static [Variable] {
                 match self {
                     $(Self::$Law(_) => <$module::$Law as Law>::STATE,)*
-                    Self::Graded(law) => law.most().state(),
                 }
             }
 
@@ -148,23 +136,20 @@ macro_rules! laws {
             pub fn parameter_names(&self) -> &'static [Variable] {
                 match self {
                     $(Self::$Law(_) => <$module::$Law as Law>::PARAMETERS,)*
-                    Self::Graded(law) => law.most().parameter_names(),
                 }
             }
 
-            /// Returns the parameters in the order of their names; for a graded law the largest value of each.
+            /// Returns the parameters in the order of their names.
             pub fn parameters(&self) -> Vec<f64> {
                 match self {
                     $(Self::$Law(law) => law.parameters(),)*
-                    Self::Graded(law) => law.most().parameters(),
                 }
             }
 
-            /// Returns the law with other parameters, equal at all heights; see [`Law::with_parameters`].
+            /// Returns the law with other parameters, see [`Law::with_parameters`].
             pub fn with_parameters(&self, elastic: Elastic, parameters: &[f64]) -> Self {
                 match self {
                     $(Self::$Law(law) => Self::$Law(law.with_parameters(elastic, parameters)),)*
-                    Self::Graded(law) => law.most().with_parameters(elastic, parameters),
                 }
             }
 
@@ -172,7 +157,6 @@ macro_rules! laws {
             pub fn with_time_step(&self, dt: f64) -> Option<Self> {
                 match self {
                     $(Self::$Law(law) => law.with_time_step(dt).map(Self::$Law),)*
-                    Self::Graded(law) => law.with_time_step(dt).map(Self::Graded),
                 }
             }
 
@@ -180,7 +164,6 @@ macro_rules! laws {
             pub fn reduced(self, factor: f64) -> Self {
                 match self {
                     $(Self::$Law(law) => Self::$Law(law.reduced(factor)),)*
-                    Self::Graded(law) => Self::Graded(law.reduced(factor)),
                 }
             }
 
@@ -188,16 +171,14 @@ macro_rules! laws {
             fn energy(&self, eps: [f64; 3]) -> f64 {
                 match self {
                     $(Self::$Law(law) => law.energy(eps),)*
-                    Self::Graded(law) => law.stiffest().moduli().energy(eps),
                 }
             }
 
             /// Returns the yield function of a principal stress (Pa, descending) in a `state` (Pa), positive outside
-            /// the yield surface; for a graded law that of the largest parameters.
+            /// the yield surface.
             pub fn yield_function(&self, tau: [f64; 3], state: &[f64]) -> f64 {
                 match self {
                     $(Self::$Law(law) => law.yield_function(tau, state),)*
-                    Self::Graded(law) => law.most().yield_function(tau, state),
                 }
             }
 
@@ -232,8 +213,7 @@ macro_rules! laws {
             }
 
             /// Computes the response to a trial elastic left Cauchy-Green tensor, `b_trial = ΔF bᵉ ΔFᵀ` (Eq. 7), from
-            /// the `state` of the last step, in which the variables of the law come first. Call it for graded laws
-            /// through [`Material::at`] only; here their response is elastic.
+            /// the `state` of the last step, in which the variables of the law come first.
             ///
             /// # Errors
             /// If `b_trial` has a component that is not finite, or an eigenvalue that is not positive.
@@ -251,10 +231,6 @@ macro_rules! laws {
                         }
                         (moduli, tau, if yields || !linear { Flowed::$Law(flow) } else { Flowed::Elastic })
                     })*
-                    Self::Graded(law) => {
-                        let moduli = law.stiffest().moduli();
-                        (moduli, moduli.stress(spectrum.eps), Flowed::Elastic)
-                    }
                 };
                 Ok(Response::new(*b_trial, spectrum, moduli, tau, flowed))
             }
@@ -352,47 +328,8 @@ laws! {
 /// Largest number of state variables of a law.
 pub const MOST_STATE: usize = 8;
 
-/// Returns the number of state variables that points of these materials store.
-pub fn state_width<'a>(materials: impl IntoIterator<Item = &'a Material>) -> usize {
-    materials
-        .into_iter()
-        .map(|material| material.state().len())
-        .max()
-        .unwrap_or(0)
-}
-
 impl Material {
-    /// Returns the law of a point that was placed at `height` (m from the lower corner of the grid).
-    #[inline]
-    pub fn at(&self, height: f64) -> Cow<'_, Self> {
-        match self {
-            Self::Graded(law) => Cow::Owned(law.at(height)),
-            uniform => Cow::Borrowed(uniform),
-        }
-    }
-
-    /// Returns Young's modulus at `height`, relative to that of [`Material::elastic`].
-    #[inline]
-    pub fn relative_stiffness(&self, height: f64) -> f64 {
-        if let Self::Graded(law) = self {
-            law.relative_stiffness(height)
-        } else {
-            1.0
-        }
-    }
-
-    /// Returns Young's modulus at a height (Pa).
-    pub fn young_at(&self, height: f64) -> f64 {
-        self.elastic().young * self.relative_stiffness(height)
-    }
-
-    /// Returns whether parameters depend on the height.
-    pub fn is_graded(&self) -> bool {
-        matches!(self, Self::Graded(_))
-    }
-
-    /// Returns the elastic energy per reference volume for `b_e` (J/m3). Call it for graded laws through
-    /// [`Material::at`] only.
+    /// Returns the elastic energy per reference volume for `b_e` (J/m3).
     ///
     /// # Errors
     /// If `b_e` is not finite or not positive definite.

@@ -13,7 +13,7 @@ use crate::interactions::background::Background;
 use crate::interactions::rigid::ParticleDomains;
 use crate::kinematics::Kinematics;
 use crate::material::Moduli;
-use crate::material::{Material, MaterialError, Response};
+use crate::material::{LayeredMaterial, MaterialError, Response};
 use crate::method::{Criteria, Nonlinear};
 use crate::points::Points;
 use crate::quadrature::Quadrature;
@@ -118,7 +118,7 @@ pub struct Model<K, const D: usize> {
     /// Grid, restricted to the window of this rank.
     pub grid: Grid<D>,
     /// Materials, by the number that points store.
-    pub materials: Vec<Material>,
+    pub materials: Vec<LayeredMaterial>,
     /// Dynamic or quasi-static.
     pub regime: Regime,
     /// Time integration in dynamics.
@@ -164,8 +164,8 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
     #[inline(always)]
     pub fn respond(&self, points: &Points<D>, p: usize, b_trial: &Symmetric) -> Result<Response, MaterialError> {
         match &self.materials[usize::from(points.material[p])] {
-            Material::Graded(law) => law.respond(points.height(p), b_trial, points.state_of(p)),
-            uniform => uniform.respond(b_trial, points.state_of(p)),
+            LayeredMaterial::Uniform(law) => law.respond(b_trial, points.state_of(p)),
+            LayeredMaterial::Graded(law) => law.respond(points.height(p), b_trial, points.state_of(p)),
         }
     }
 
@@ -319,7 +319,7 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
     /// Returns whether all points have the same Young's modulus.
     pub fn is_uniformly_stiff(&self) -> bool {
         let mut materials = self.materials.iter();
-        materials.all(|m| !matches!(m, Material::Graded(_)) && m.elastic().young == self.stiffest())
+        materials.all(|m| !m.is_graded() && m.elastic().young == self.stiffest())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use bsmpm::control::Failure;
 use bsmpm::error::{SolveError, StepError};
-use bsmpm::material::Material;
+use bsmpm::material::LayeredMaterial;
 use bsmpm::method::Criteria;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
@@ -269,7 +269,7 @@ fn against_motion(rigid: &Rigid) -> String {
 }
 
 /// Pa  Cohesion of a law that has one.
-fn cohesion(material: &Material) -> Option<f64> {
+fn cohesion(material: &LayeredMaterial) -> Option<f64> {
     let material = material.at(0.0);
     let number = material
         .parameter_names()

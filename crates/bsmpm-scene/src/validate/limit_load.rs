@@ -12,7 +12,7 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces::name_of_strip;
 use crate::words::{AnalysisType, Geometry, Measurement, Purpose, Side, Support, Word};
-use bsmpm::material::Material;
+use bsmpm::material::LayeredMaterial;
 use bsmpm::stabilisation::Stabilisation;
 
 /// Part of the smallest cell by which anything moves in the whole run. N_gamma for a friction angle of 25 degrees and
@@ -160,7 +160,7 @@ fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
 }
 
 /// Whether the strength or stiffness of a material changes with strain.
-fn follows_strain(material: &Material) -> bool {
+fn follows_strain(material: &LayeredMaterial) -> bool {
     material.softens() || material.hardens() || !material.is_linear()
 }
 
@@ -271,7 +271,7 @@ fn warn_of_settings(case: &Case, report: &mut Report<'_>) {
 }
 
 /// rad  friction angle, if the law has one
-fn friction(material: &Material) -> f64 {
+fn friction(material: &LayeredMaterial) -> f64 {
     let names = material.parameter_names().iter().map(|parameter| parameter.name);
     names
         .zip(material.parameters())
@@ -304,7 +304,7 @@ fn warn_of_averages(case: &Case, report: &mut Report<'_>) {
 }
 
 /// Pa  cohesion, if the law has one
-fn cohesion(material: &Material) -> Option<f64> {
+fn cohesion(material: &LayeredMaterial) -> Option<f64> {
     let names = material.parameter_names().iter().map(|parameter| parameter.name);
     names
         .zip(material.parameters())

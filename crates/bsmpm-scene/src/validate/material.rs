@@ -11,7 +11,7 @@ use crate::record::Record;
 use crate::report::Report;
 use crate::schema::{LawName, Range};
 use crate::words::{Geometry, Side, Word};
-use bsmpm::material::{Material, Profile};
+use bsmpm::material::{LayeredMaterial, Profile};
 use bsmpm::model::Regime;
 use law::{Parameters, law};
 
@@ -254,7 +254,7 @@ pub(super) fn profile(record: &Record, key: &str) -> Option<Profile> {
 }
 
 /// Notes the reduced strength, at the lowest and the highest place if it differs there.
-fn note_reduction(record: &Record, material: &Material, layer: &Layer, factor: f64, report: &mut Report<'_>) {
+fn note_reduction(record: &Record, material: &LayeredMaterial, layer: &Layer, factor: f64, report: &mut Report<'_>) {
     let low = parameters_at(material, layer.heights.start - layer.base);
     let high = parameters_at(material, layer.heights.end - layer.base);
     if low.is_empty() {
@@ -272,7 +272,7 @@ fn note_reduction(record: &Record, material: &Material, layer: &Layer, factor: f
 }
 
 /// The parameters of a material at a height (m, above the grid's base) in words.
-fn parameters_at(material: &Material, height: f64) -> String {
+fn parameters_at(material: &LayeredMaterial, height: f64) -> String {
     let law = material.at(height);
     let named = law.parameter_names().iter().zip(law.parameters());
     let written = named.map(|(parameter, value)| match parameter.unit {

@@ -12,7 +12,7 @@ use crate::words::{AnalysisType, Measurement, Side, Word};
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::field::pore_water::flow::Given;
-use bsmpm::material::Material;
+use bsmpm::material::{LayeredMaterial, Material};
 use bsmpm::model::Regime;
 use bsmpm::model::WallVelocity;
 use bsmpm::stabilisation::Stabilisation;
@@ -367,7 +367,9 @@ fn strip_holds(case: &Case, base: Base, site: Site, component: usize) -> bool {
 /// of its run-out. With the points' own velocities and lumped mass the front runs out a third too far.
 pub(super) fn walls(case: &mut Case, record: &Record, report: &mut Report<'_>) {
     let mut named = case.materials.iter().enumerate();
-    let flows = named.any(|(number, named)| matches!(named.material, Material::MuI(_)) && case.is_followed(number));
+    let flows = named.any(|(number, named)| {
+        matches!(named.material, LayeredMaterial::Uniform(Material::MuI(_))) && case.is_followed(number)
+    });
     if !flows || case.analysis.regime != Regime::Dynamic || !case.boundary.as_flattened().contains(&Support::Fixed) {
         return;
     }

@@ -6,7 +6,7 @@ mod motion;
 
 use bsmpm::field::pore_water::flow::Motion;
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::material::{Law, Material, MohrCoulomb};
+use bsmpm::material::{Law, LayeredMaterial, Material, MohrCoulomb};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
 use bsmpm_scene::words::{Factor, Ksp, Pc};
@@ -278,16 +278,19 @@ fn the_full_case_in_si() {
     );
     let names: Vec<&str> = case.materials.iter().map(|material| material.name.as_str()).collect();
     assert_eq!(names, ["sand", "clay", "block", "till"]);
-    let Material::MohrCoulomb(sand) = &case.materials[0].material else {
+    let LayeredMaterial::Uniform(Material::MohrCoulomb(sand)) = &case.materials[0].material else {
         panic!()
     };
     let whole = MohrCoulomb::new(sand.elastic().clone(), 30_f64.to_radians(), 5_f64.to_radians(), 1e3);
     assert!(sand.elastic().young == 2e7 && *sand == whole.reduced(1.25));
-    let Material::MohrCoulomb(clay) = &case.materials[1].material else {
+    let LayeredMaterial::Uniform(Material::MohrCoulomb(clay)) = &case.materials[1].material else {
         panic!()
     };
     assert_eq!(clay.parameters(), [0.0, 0.0, 1.6e4]);
-    assert!(matches!(case.materials[2].material, Material::Hencky(_)));
+    assert!(matches!(
+        case.materials[2].material,
+        LayeredMaterial::Uniform(Material::Hencky(_))
+    ));
     assert_eq!(case.bodies[2].velocity, Some([0.0, -1.0, 0.0]));
     assert_eq!(
         case.boundary,

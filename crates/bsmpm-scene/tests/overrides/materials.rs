@@ -2,7 +2,7 @@
 
 use super::{FULL, ROUND, STATIC, set, valid};
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::material::{Law, Match, Material, Separation};
+use bsmpm::material::{Law, LayeredMaterial, Match, Material, Separation};
 use bsmpm::model::Regime;
 use bsmpm_scene::Case;
 
@@ -18,7 +18,7 @@ fn cones_and_cylinders() {
         )
     };
     let case = law("model = \"von-mises\", yield_stress = \"10 kPa\", hardening = 5e4");
-    let Material::VonMises(clay) = &case.materials[1].material else {
+    let LayeredMaterial::Uniform(Material::VonMises(clay)) = &case.materials[1].material else {
         panic!()
     };
     assert_eq!((clay.parameters(), clay.elastic().young), (vec![8e3, 4e4], 1e7));
@@ -33,7 +33,7 @@ fn cones_and_cylinders() {
         let case = law(&format!(
             "model = \"drucker-prager\", friction_angle = 30, cohesion = 1e3{given}"
         ));
-        let Material::DruckerPrager(clay) = &case.materials[1].material else {
+        let LayeredMaterial::Uniform(Material::DruckerPrager(clay)) = &case.materials[1].material else {
             panic!()
         };
         let [friction, dilation, cohesion] = clay.parameters()[..] else {
@@ -97,7 +97,7 @@ fn softening_strengths() {
                 cohesion = 1e3, residual_friction_angle = 25";
     let with = |text: &str| set(FULL, &["grid.cell=0.5", &format!("material.clay={{ {keys}, {text} }}")]);
     let case = with("residual_cohesion = 0, softening_strain = 0.2").expect("a valid case");
-    let Material::SofteningMohrCoulomb(clay) = &case.materials[1].material else {
+    let LayeredMaterial::Uniform(Material::SofteningMohrCoulomb(clay)) = &case.materials[1].material else {
         panic!()
     };
     let parameters = clay.parameters();
@@ -111,7 +111,7 @@ fn softening_strengths() {
         case.warnings
     );
     let case = with("residual_cohesion = 0, softening_strain = 0.2, band_width = \"5 cm\"").expect("a valid case");
-    let Material::SofteningMohrCoulomb(clay) = &case.materials[1].material else {
+    let LayeredMaterial::Uniform(Material::SofteningMohrCoulomb(clay)) = &case.materials[1].material else {
         panic!()
     };
     assert!((clay.parameters()[6] - 0.01).abs() < 1e-15, "{:?}", clay.parameters());
@@ -228,7 +228,7 @@ fn layers_by_height_and_reduced_strength() {
         1.3e7,
         "stiffest at the lowest place of a body, y = 1.5"
     );
-    assert!(!matches!(case.materials[0].material, Material::Graded(_)));
+    assert!(!case.materials[0].material.is_graded());
     let note = |case: &Case, name: &str| case.notes.iter().find(|note| note.key == name).unwrap().value.clone();
     assert!(note(&case, "material.clay").ends_with("dilation_angle = 0.000000 deg, cohesion = 16000.000000 Pa"));
     let till = note(&case, "material.till");
@@ -352,7 +352,7 @@ fn cam_clay_and_its_start() {
         )
     };
     let case = with("ocr = 2").expect("a valid case");
-    let Material::CamClay(clay) = &case.materials[1].material else {
+    let LayeredMaterial::Uniform(Material::CamClay(clay)) = &case.materials[1].material else {
         panic!()
     };
     assert_eq!(clay.parameters(), [0.02, 0.1, 1.2, 0.0, 2.0]);

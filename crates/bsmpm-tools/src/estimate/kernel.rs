@@ -23,7 +23,7 @@ pub(super) fn speed() -> f64 {
 /// ns of a return.
 fn nanoseconds() -> f64 {
     let case = Case::from_text("reference", CASE, &[]).expect("a shipped case is valid");
-    let law = &case.materials[0].material;
+    let law = case.materials[0].material.at(0.0);
     let states: Vec<Symmetric> = (0..RETURNS).map(state).collect();
     let mut fastest = f64::INFINITY;
     for _ in 0..ROUNDS {

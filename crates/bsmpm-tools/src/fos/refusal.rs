@@ -1,6 +1,6 @@
 //! Reasons why a case has no reliable factor of safety.
 
-use bsmpm::material::Material;
+use bsmpm::material::LayeredMaterial;
 use bsmpm::model::Regime;
 use bsmpm_scene::{Case, NamedMaterial, Rigid, Shares};
 
@@ -12,8 +12,8 @@ const LOOSEST: f64 = 1e-3;
 /// at the time `until`: texts with their codes, none if `bsmpm fos` accepts the case.
 pub fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
     let materials = followed(case, until);
-    let any = |holds: fn(&Material) -> bool| materials.iter().any(|named| holds(&named.material));
-    let has_strength = any(Material::yields) || case.has_friction_at(acting(case, until));
+    let any = |holds: fn(&LayeredMaterial) -> bool| materials.iter().any(|named| holds(&named.material));
+    let has_strength = any(LayeredMaterial::yields) || case.has_friction_at(acting(case, until));
     let has_amplitude = until.is_none() && amplitudes(case).any(|rows| !rows.is_empty());
     let never_full = until.is_none() && ramps(case).any(|ramp| ramp > case.analysis.end);
     let reasons = [
@@ -23,7 +23,7 @@ pub fn refusals(case: &Case, until: Option<f64>) -> Vec<String> {
              \"quasi-static\"`.",
         ),
         (
-            any(Material::hardens),
+            any(LayeredMaterial::hardens),
             "E0811: a material hardens (`hardening`, or residual strength above peak), so the factor of safety \
              depends on the displacement. Set `hardening = 0`, or a residual strength not above the peak.",
         ),

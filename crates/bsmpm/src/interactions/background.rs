@@ -11,7 +11,7 @@ use crate::grid::shape::Shape;
 use crate::grid::{Contributions, Grid};
 use crate::kinematics::Kinematics;
 use crate::lanes::LANES;
-use crate::material::Material;
+use crate::material::LayeredMaterial;
 use crate::nodal::Nodal;
 use crate::points::Points;
 use form::{CellForms, Forms};
@@ -55,7 +55,7 @@ impl Background {
         grid: &Grid<D>,
         shape: &Shape<D>,
         points: &Points<D>,
-        materials: &[Material],
+        materials: &[LayeredMaterial],
     ) -> Blocks {
         let mut forms = Forms::new(grid);
         let mut cells = Vec::with_capacity(shape.patches().len());

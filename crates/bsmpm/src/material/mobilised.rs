@@ -12,10 +12,9 @@ const ON_SURFACE: f64 = 1e-4;
 impl Material {
     /// Returns the mobilised strength 1/F of a principal Kirchhoff stress (Pa, descending) in a `state`. F is the
     /// factor of [`Material::reduced`] for which the stress lies on the yield surface. The result is 0 without strength
-    /// limit or shear, 1 at yield, above 1 for stresses outside the static yield surface, and at most 16. Call it for
-    /// graded laws through [`Material::at`] only.
+    /// limit or shear, 1 at yield, above 1 for stresses outside the static yield surface, and at most 16.
     pub fn mobilised(&self, tau: [f64; 3], state: &[f64]) -> f64 {
-        if !self.yields() || self.is_graded() {
+        if !self.yields() {
             return 0.0;
         }
         let outside = |share: f64| self.clone().reduced(1.0 / share).yield_function(tau, state) > 0.0;

@@ -1,6 +1,6 @@
 //! Invariants of stress and strain, density and mobilised strength of a material point.
 
-use crate::material::Material;
+use crate::material::LayeredMaterial;
 use crate::points::Points;
 use crate::tensor::Symmetric;
 
@@ -39,7 +39,7 @@ pub fn density<const D: usize>(points: &Points<D>, p: usize) -> f64 {
 
 /// Returns the mobilised strength of a point, see [`Material::mobilised`](crate::material::Material::mobilised). It is
 /// computed from the stress that the law returned: the Kirchhoff stress with the volume ratio J-bar.
-pub fn mobilised<const D: usize>(materials: &[Material], points: &Points<D>, p: usize) -> f64 {
+pub fn mobilised<const D: usize>(materials: &[LayeredMaterial], points: &Points<D>, p: usize) -> f64 {
     let law = materials[usize::from(points.material[p])].at(points.height(p));
     let dilation = points.F.at(p).determinant() * points.dilation_of(p);
     law.mobilised(principal(&points.sigma.at(p).scaled(dilation)), points.state_of(p))

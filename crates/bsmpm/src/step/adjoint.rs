@@ -2,7 +2,7 @@
 //! with the transpose of the average of the volume change, and replaces the mean stress in (T5.1).
 
 use crate::kinematics::Kinematics;
-use crate::material::Material;
+use crate::material::LayeredMaterial;
 use crate::model::Model;
 use crate::points::Points;
 use crate::step::problem::Problem;
@@ -15,7 +15,7 @@ const DILATANT: f64 = 0.105;
 
 /// Returns whether a material dilates so much that the adjoint force is used. Materials with and without this force
 /// belong to different [`Groups`](crate::stabilisation::Groups).
-pub fn is_dilatant(material: &Material) -> bool {
+pub fn is_dilatant(material: &LayeredMaterial) -> bool {
     material.dilation() > DILATANT
 }
 

@@ -7,7 +7,7 @@ use crate::error::StepError;
 use crate::field::pore_water::saved;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
-use crate::material::{Material, MaterialError, Response, Separation};
+use crate::material::{LayeredMaterial, MaterialError, Response, Separation};
 use crate::model::{Model, Regime};
 use crate::parallel::{Halo, agreed};
 use crate::points::{Points, Rows};
@@ -209,7 +209,7 @@ impl<K: Kinematics<D>, const D: usize> LawsOfPoints<'_, K, D> {
 /// materials and without flowing water, whose pressure changes the load on the soil over time.
 fn has_second_order_works<K, const D: usize>(model: &Model<K, D>) -> bool {
     let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
-    model.regime == Regime::QuasiStatic && !flows && model.materials.iter().any(Material::yields)
+    model.regime == Regime::QuasiStatic && !flows && model.materials.iter().any(LayeredMaterial::yields)
 }
 
 /// Returns the second-order works of a step over all points of all ranks (J): `Σ V0 Δε : D : Δε` for elastic soil, and

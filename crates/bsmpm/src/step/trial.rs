@@ -5,8 +5,7 @@ use crate::dynamics::damping::{Damping, Viscous};
 use crate::grid::{Shape, transfer};
 use crate::kinematics::{Gradient, Kinematics};
 use crate::lanes::{Eight, Lanes, Simd};
-use crate::material::Moduli;
-use crate::material::{MOST_STATE, MaterialError, Response};
+use crate::material::{LayeredMaterial, MOST_STATE, MaterialError, Moduli, Response};
 use crate::model::Model;
 use crate::parallel::Halo;
 use crate::points::Points;
@@ -153,8 +152,10 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         eight: Eight,
     ) -> Option<Stressed<Lanes<S>>> {
         let material = points.material[eight.points().start];
-        let law = &model.materials[usize::from(material)];
-        let is_alone = law.is_graded() || self.damping.relative(material).is_some() || points.gap.is_some();
+        let LayeredMaterial::Uniform(law) = &model.materials[usize::from(material)] else {
+            return None;
+        };
+        let is_alone = self.damping.relative(material).is_some() || points.gap.is_some();
         if is_alone || eight.points().any(|p| points.material[p] != material) {
             return None;
         }

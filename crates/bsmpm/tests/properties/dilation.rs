@@ -186,7 +186,7 @@ fn flowing(spread: f64) -> Scene<PlaneStrain, 2> {
         0.0,
         0.01,
     );
-    scene.model.materials = vec![Material::MohrCoulomb(soil)];
+    scene.model.materials = vec![Material::MohrCoulomb(soil).into()];
     for p in 0..scene.points.len() {
         let volume = spread * random.signed();
         let shear = if scene.points.x[p][0] < 4.0 { 0.05 } else { 1e-4 };
@@ -249,7 +249,7 @@ fn the_filter_smooths_the_elastic_dilation_where_the_material_flows_and_nothing_
 #[test]
 fn without_flow_the_filter_leaves_every_bit() {
     let mut scene = flowing(1e-4);
-    scene.model.materials = vec![hencky(1.0, 0.3)];
+    scene.model.materials = vec![hencky(1.0, 0.3).into()];
     let before = scene.points.clone();
     let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();

@@ -149,7 +149,7 @@ fn the_viscous_stress_is_in_the_product() {
     for clay in [None, Some(Material::CamClay(clay))] {
         let mut scene = loaded::<PlaneStrain, 2>(Stabilisation::ConsistentFBar, Regime::Dynamic);
         if let Some(clay) = clay {
-            scene.model.materials = vec![clay];
+            scene.model.materials = vec![clay.into()];
             scene.points = scene.points.with_state(1);
             scene
                 .points
@@ -207,9 +207,9 @@ fn adjoint_forces_are_in_the_product() {
         let dilatant = Material::MohrCoulomb(dilatant.clone());
         let mut plane = loaded::<PlaneStrain, 2>(Stabilisation::ConsistentFBar, regime);
         let two = plane.clone().with(dilatant.clone(), |x| x[0] > 0.4 + 0.5 * x[1]);
-        plane.model.materials = vec![dilatant.clone()];
+        plane.model.materials = vec![dilatant.clone().into()];
         let mut solid = loaded::<Solid, 3>(Stabilisation::ConsistentFBar, regime);
-        solid.model.materials = vec![dilatant];
+        solid.model.materials = vec![dilatant.into()];
         let errors = [product_error(&plane).0, product_error(&two).0, product_error(&solid).0];
         println!("{regime:?}: {errors:?}");
         assert!(errors.iter().all(|&error| error <= 1e-6), "{errors:?}"); // central differences
@@ -238,7 +238,7 @@ fn fitted_volumes_are_in_the_product() {
             .support(Support::roller(0, false))
             .support(Support::roller(1, false));
         let mut errors = vec![product_error(&plane).0, product_error(&solid).0];
-        plane.model.materials = vec![Material::MohrCoulomb(dilatant.clone())];
+        plane.model.materials = vec![Material::MohrCoulomb(dilatant.clone()).into()];
         errors.push(product_error(&plane).0);
         println!("{method:?}: {errors:?}");
         assert!(errors.iter().all(|&error| error <= 1e-6), "{method:?}: {errors:?}"); // central differences
@@ -280,7 +280,7 @@ fn what_opens_is_in_the_product() {
     );
     for method in METHODS {
         let mut scene = loaded::<PlaneStrain, 2>(method, Regime::Dynamic);
-        scene.model.materials = vec![Material::MohrCoulomb(sand.clone().separating(Separation::Closing))];
+        scene.model.materials = vec![Material::MohrCoulomb(sand.clone().separating(Separation::Closing)).into()];
         let mut random = Random::new(5);
         scene.points.gap = Some((0..scene.points.len()).map(|_| 0.02 * random.unit()).collect());
         let response = |p: usize, b_e: &Symmetric| scene.model.respond(&scene.points, p, b_e).unwrap();
@@ -318,7 +318,7 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
         0.0,
         cohesion,
     );
-    (scene.model.materials, scene.model.background) = (vec![Material::MohrCoulomb(law)], None);
+    (scene.model.materials, scene.model.background) = (vec![Material::MohrCoulomb(law).into()], None);
     let mut random = Random::new(7);
     for p in 0..scene.points.len() {
         let [xx, yy, zz, xy] = [6.0, -12.0, -3.0, 0.0].map(|mean| size * (mean + random.signed()));

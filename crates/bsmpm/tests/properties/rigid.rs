@@ -136,7 +136,7 @@ fn a_rigidly_rotating_field_turns_the_stress_of_every_point() {
         )
         .expect("no loads");
         let trial = DeformationIncrement::of(&scene.model, &shape, &nodes, points, &u, &halo);
-        let before = scene.model.materials[0].respond(&b_e, &[]).unwrap();
+        let before = scene.model.materials[0].at(0.0).respond(&b_e, &[]).unwrap();
         for p in 0..points.len() {
             let after = trial.respond(&scene.model, points, p).unwrap();
             for (x, y) in before.principal_tau().iter().zip(after.principal_tau()) {

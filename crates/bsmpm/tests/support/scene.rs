@@ -10,7 +10,7 @@ use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::interactions::background::Background;
 use bsmpm::kinematics::Kinematics;
-use bsmpm::material::{Elastic, Hencky, Material};
+use bsmpm::material::{Elastic, Hencky, LayeredMaterial, Material};
 use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;
 use bsmpm::model::WallVelocity;
@@ -57,10 +57,10 @@ pub fn hencky(young: f64, poisson: f64) -> Material {
 
 impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     /// An empty grid: no load, no support, no stabilisation, tight tolerances.
-    pub fn new(axes: [KnotVector; D], material: Material, regime: Regime) -> Self {
+    pub fn new(axes: [KnotVector; D], material: impl Into<LayeredMaterial>, regime: Regime) -> Self {
         let model = Model {
             grid: Grid::new(axes).expect("axes of one order"),
-            materials: vec![material],
+            materials: vec![material.into()],
             regime,
             newmark: Newmark::default(),
             mass: MassMatrix::default(),
@@ -147,7 +147,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     /// Gives the points that `stiff` names by their place a second material, whose dilation averages do not mix with
     /// the first.
     pub fn with(mut self, second: Material, stiff: impl Fn(&Vector<D>) -> bool) -> Self {
-        self.model.materials.push(second);
+        self.model.materials.push(second.into());
         self.model.groups = Groups::of_alike(&[false, true]);
         for (material, x) in self.points.material.iter_mut().zip(&self.points.x) {
             *material = u16::from(stiff(x));

@@ -226,7 +226,7 @@ fn a_method_that_makes_energy_exceeds_the_budget_and_no_other() {
         (Stabilisation::FBarZhao, soil(0.4, 0.4), true),
     ] {
         let mut scene = collapse(method, Separation::Forgotten);
-        scene.model.materials = vec![material];
+        scene.model.materials = vec![material.into()];
         scene.model.gravity = Some(Gravity {
             acceleration: [0.0, -10.0].into(),
             ramp: 0.0,

@@ -7,14 +7,15 @@ use bsmpm::error::StepError;
 use bsmpm::initial;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{
-    Branch, DruckerPrager, Elastic, GradedLaw, Match, Material, MohrCoulomb, Profile, Separation, VonMises,
+    Branch, DruckerPrager, Elastic, GradedLaw, LayeredMaterial, Match, Material, MohrCoulomb, Profile, Separation,
+    VonMises,
 };
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Symmetric;
 
 /// A block of 3 x 4 cells of 1 m with gravity, an empty row above.
-fn ground<K: Kinematics<D>, const D: usize>(material: Material) -> Scene<K, D> {
+fn ground<K: Kinematics<D>, const D: usize>(material: impl Into<LayeredMaterial>) -> Scene<K, D> {
     let count = |k: usize| if k + 1 == D { 5 } else { 3 };
     let filled = std::array::from_fn(|k| 0..if k + 1 == D { 4 } else { 3 });
     let mut scene = Scene::<K, D>::new(
@@ -251,7 +252,7 @@ fn a_modulus_that_grows_with_depth_settles_by_the_integral() {
         at: height,
         per_metre: k * e,
     };
-    let scene = ground::<PlaneStrain, 2>(Material::Graded(GradedLaw::new(
+    let scene = ground::<PlaneStrain, 2>(LayeredMaterial::Graded(GradedLaw::new(
         &hencky(1.0, 0.3),
         young,
         Vec::new(),
@@ -306,7 +307,7 @@ fn strength_of_any_law_follows_the_height_at_which_a_point_was_placed() {
             .map(|parameter| profile(parameter.name))
             .collect();
         let graded = GradedLaw::new(law, Profile::constant(elastic.young), parameters, 0.0..4.0, 2.0);
-        let mut scene = ground::<PlaneStrain, 2>(Material::Graded(graded));
+        let mut scene = ground::<PlaneStrain, 2>(LayeredMaterial::Graded(graded));
         scene.points = scene.points.with_state(law.state().len());
         for p in 0..scene.points.len() {
             let response = scene.model.respond(&scene.points, p, &sheared).expect("a response");
@@ -339,7 +340,7 @@ fn a_gap_is_no_stress_of_a_law_that_does_not_close() {
     let mut scene = ground::<PlaneStrain, 2>(Material::MohrCoulomb(sand));
     scene.points.gap = Some(vec![0.01; scene.points.len()]);
     let mut next = scene.model.clone();
-    (next.materials, next.gravity) = (vec![hencky(1e4, 0.3)], None);
+    (next.materials, next.gravity) = (vec![hencky(1e4, 0.3).into()], None);
     let halo = scene.halo();
     initial::exchange(&scene.model, &next, &mut scene.points, &halo).expect("a stress of every point");
     scene.model = next;

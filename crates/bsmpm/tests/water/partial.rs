@@ -287,7 +287,7 @@ fn suction_presses_the_skeleton_as_bishop_says() {
     let young = 1e6;
     let start = -0.8 * WEIGHT;
     let mut scene = column(4, 0.0, false);
-    scene.model.materials = vec![hencky(young, 0.0)];
+    scene.model.materials = vec![hencky(young, 0.0).into()];
     scene.model.gravity = None;
     scene.points.pore_pressure = Some(scene.points.x.iter().map(|_| start).collect());
     let flow = flow(&mut scene);

@@ -7,7 +7,7 @@ use crate::report::Report;
 use crate::validate::place::is_at;
 use crate::validate::site::{corners, places};
 use crate::words::Word;
-use bsmpm::material::Material;
+use bsmpm::material::{LayeredMaterial, Material};
 use bsmpm::stabilisation::Stabilisation;
 
 /// Warns of every material with a `band_width` outside of what was verified.
@@ -33,7 +33,7 @@ pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report
 }
 
 /// Whether some strength is less in the end; what hardens has no bands.
-fn falls(material: &Material) -> bool {
+fn falls(material: &LayeredMaterial) -> bool {
     let law = material.at(0.0);
     ["friction_angle", "cohesion"]
         .into_iter()

@@ -7,7 +7,7 @@ use crate::report::Report;
 use crate::schema::{Dimension, Kind, LawName, MATERIAL};
 use crate::validate::SQUARE;
 use crate::words::{Geometry, Word};
-use bsmpm::material::{CamClay, Decay, Elastic, GradedLaw, Match, Material, Profile, Separation};
+use bsmpm::material::{CamClay, Decay, Elastic, GradedLaw, LayeredMaterial, Match, Material, Profile, Separation};
 
 /// A law and its numbers, by the height in the case's coordinates and units.
 pub(super) struct Parameters {
@@ -54,7 +54,7 @@ impl Parameters {
         poisson: f64,
         layer: Option<&Layer>,
         factor: f64,
-    ) -> Option<Material> {
+    ) -> Option<LayeredMaterial> {
         let law = self.model.chosen(
             record,
             Elastic {
@@ -69,7 +69,8 @@ impl Parameters {
         let parameters: Vec<Profile> = ordered.collect();
         if young.per_metre == 0.0 && !self.is_graded() {
             let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
-            return Some(law.with_parameters(law.elastic().clone(), &values).reduced(factor));
+            let law = law.with_parameters(law.elastic().clone(), &values);
+            return Some(LayeredMaterial::Uniform(law.reduced(factor)));
         }
         let layer = layer?;
         let heights = layer.heights.start - layer.base..layer.heights.end - layer.base;
@@ -77,7 +78,7 @@ impl Parameters {
             .into_iter()
             .map(|profile| relative(profile, layer.base))
             .collect();
-        Some(Material::Graded(GradedLaw::new(
+        Some(LayeredMaterial::Graded(GradedLaw::new(
             &law,
             relative(young, layer.base),
             parameters,
@@ -464,7 +465,8 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
         model: law.model,
         values: values.collect(),
     };
-    let Some(Material::DruckerPrager(cone)) = uniform.material(record, Profile::constant(1.0), 0.0, None, 1.0) else {
+    let material = uniform.material(record, Profile::constant(1.0), 0.0, None, 1.0);
+    let Some(LayeredMaterial::Uniform(Material::DruckerPrager(cone))) = material else {
         return;
     };
     if geometry.is_some_and(|geometry| geometry != Geometry::PlaneStrain) {
