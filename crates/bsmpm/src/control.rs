@@ -3,7 +3,7 @@
 
 use crate::dynamics::newmark::Newmark;
 use crate::energy::{EnergyBound, StoredEnergy};
-use crate::error::StepError;
+use crate::error::{Severity, StepError};
 use crate::grid::extension::ExtendedSplines;
 use crate::interactions::background::ResistedDisplacement;
 use crate::kinematics::Kinematics;
@@ -169,18 +169,18 @@ impl Stepper {
                 }
                 Err(error) => error,
             };
-            let is_hopeless = is_hopeless(&error);
+            let is_final = error.meaning().severity == Severity::Final;
             rejected.push(error);
             if rejected.last() == Some(&StepError::Interrupted) {
                 // Restores the state as before this call, so that a restarted run makes the same attempts.
                 (self.at.cuts, self.at.easy, self.at.budget) = before;
                 return Some(Err(self.failure(dt, rejected, counts)));
             }
-            has_drag = resisted == ResistedDisplacement::Change && !is_hopeless;
+            has_drag = resisted == ResistedDisplacement::Change && !is_final;
             if has_drag {
                 continue;
             }
-            if is_hopeless || self.at.cuts == MOST_CUTS {
+            if is_final || self.at.cuts == MOST_CUTS {
                 // A restart with another nominal step begins as this step did.
                 (self.at.cuts, self.at.easy, _) = before;
                 return Some(Err(self.failure(dt, rejected, counts)));
@@ -286,18 +286,6 @@ impl Stepper {
             self.at.easy = 0;
         }
     }
-}
-
-/// Returns whether a smaller step cannot avoid the error.
-fn is_hopeless(error: &StepError) -> bool {
-    matches!(
-        error,
-        StepError::Outside { .. }
-            | StepError::Unloaded { .. }
-            | StepError::Undrained { .. }
-            | StepError::Material { .. }
-            | StepError::OtherRank
-    )
 }
 
 fn fraction(tick: u32) -> f64 {

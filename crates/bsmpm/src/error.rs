@@ -239,11 +239,128 @@ pub enum StepError {
     },
 }
 
+/// What may avoid an error of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// Another method or predictor at the same step size, then a shorter step.
+    AnotherMethod,
+    /// A shorter step only.
+    ShorterStep,
+    /// Nothing. The run ends.
+    Final,
+}
+
+/// What a run that ends with an error reports as its cause; each kind has an exit code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FailureKind {
+    /// The case is wrong.
+    Case,
+    /// Material is where it must not be, or is missing where it is needed.
+    LeftMaterial,
+    /// A load lost its material; in the first step the case is wrong.
+    LostLoad,
+    /// No step size gives a valid state.
+    NoConvergence,
+}
+
+/// Name of the advice that is printed with an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Advice {
+    /// Compression by more than the pore volume.
+    ClosedPores,
+    /// Energy that was created.
+    CreatedEnergy,
+    /// All material left the grid.
+    EmptyGrid,
+    /// Drain on impermeable soil.
+    ImpermeableDrain,
+    /// Initial stress without equilibrium.
+    InitialEquilibrium,
+    /// Unstable equilibrium.
+    Instability,
+    /// Material turned inside out.
+    InvertedMaterial,
+    /// Iteration that did not converge.
+    Iteration,
+    /// Material outside the grid.
+    LeavingMaterial,
+    /// Linear system with an unusable solution.
+    LinearSolver,
+    /// Rigid body that nothing supports.
+    LooseBody,
+    /// Load without material.
+    LostLoad,
+    /// No advice.
+    None,
+    /// Rigid bodies that would overlap.
+    OverlappingBodies,
+    /// Shorter steps.
+    ShorterSteps,
+    /// Linear system that the library did not solve.
+    SingularSystem,
+    /// Contact states that keep changing.
+    UnsettledContact,
+}
+
+/// What an error means for the step control and for the user.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ErrorMeaning {
+    /// What may avoid the error.
+    pub severity: Severity,
+    /// Kind of failure if nothing avoided it.
+    pub kind: FailureKind,
+    /// Advice to the user.
+    pub advice: Advice,
+}
+
+impl ErrorMeaning {
+    const fn new(severity: Severity, kind: FailureKind, advice: Advice) -> Self {
+        Self { severity, kind, advice }
+    }
+}
+
 impl StepError {
-    /// Returns whether another predictor cannot help at this step size. An unstable equilibrium, for instance, does not
-    /// depend on the path to it.
+    /// Returns severity, kind and advice of the error.
+    pub fn meaning(&self) -> ErrorMeaning {
+        use FailureKind::{Case, LeftMaterial, NoConvergence};
+        use Severity::{AnotherMethod, Final, ShorterStep};
+        match self {
+            Self::Outside { .. } => ErrorMeaning::new(Final, LeftMaterial, Advice::LeavingMaterial),
+            Self::Left { .. } => ErrorMeaning::new(ShorterStep, LeftMaterial, Advice::LeavingMaterial),
+            Self::Emptied { .. } => ErrorMeaning::new(ShorterStep, LeftMaterial, Advice::EmptyGrid),
+            Self::Unloaded { .. } => ErrorMeaning::new(Final, FailureKind::LostLoad, Advice::LostLoad),
+            Self::Closed { .. } => ErrorMeaning::new(AnotherMethod, NoConvergence, Advice::ClosedPores),
+            Self::Undrained { .. } => ErrorMeaning::new(Final, Case, Advice::ImpermeableDrain),
+            Self::Inverted { .. } => ErrorMeaning::new(AnotherMethod, NoConvergence, Advice::InvertedMaterial),
+            Self::NotConverged { .. } => ErrorMeaning::new(AnotherMethod, NoConvergence, Advice::Iteration),
+            // An unstable equilibrium does not depend on the path to it.
+            Self::Unstable { .. } => ErrorMeaning::new(ShorterStep, NoConvergence, Advice::Instability),
+            Self::Unsettled { .. } => ErrorMeaning::new(AnotherMethod, NoConvergence, Advice::UnsettledContact),
+            Self::Unbalanced { .. } => ErrorMeaning::new(AnotherMethod, NoConvergence, Advice::InitialEquilibrium),
+            Self::Loose { .. } => ErrorMeaning::new(AnotherMethod, NoConvergence, Advice::LooseBody),
+            Self::Overlapping { .. } => ErrorMeaning::new(ShorterStep, NoConvergence, Advice::OverlappingBodies),
+            Self::EnergyMade { .. } => ErrorMeaning::new(ShorterStep, NoConvergence, Advice::CreatedEnergy),
+            Self::Interrupted => ErrorMeaning::new(Final, NoConvergence, Advice::None),
+            Self::OtherRank => ErrorMeaning::new(Final, NoConvergence, Advice::ShorterSteps),
+            Self::Solve(SolveError::Failed(_)) => {
+                ErrorMeaning::new(AnotherMethod, NoConvergence, Advice::SingularSystem)
+            }
+            Self::Solve(_) => ErrorMeaning::new(AnotherMethod, NoConvergence, Advice::LinearSolver),
+            Self::Material { .. } => ErrorMeaning::new(Final, NoConvergence, Advice::ShorterSteps),
+        }
+    }
+
+    /// Returns whether no other method or predictor can help at this step size.
     pub fn is_final(&self) -> bool {
-        matches!(self, Self::Interrupted | Self::Unstable { .. })
+        self.meaning().severity != Severity::AnotherMethod
+    }
+
+    /// Returns the nodes of this rank with the largest out-of-balance forces; `None` if the error is not about nodes.
+    pub fn worst_nodes(&self) -> Option<&[WorstNode]> {
+        match self {
+            Self::NotConverged { worst, .. } | Self::Unbalanced { worst, .. } => Some(worst),
+            _ => None,
+        }
     }
 
     /// Returns id and position (m, from the lower corner of the grid) of the point of this rank that caused the error.

@@ -1,9 +1,8 @@
 //! After a failed step, finds the largest out-of-balance forces, and suggests remedies.
 
 use bsmpm::control::Failure;
-use bsmpm::error::{SolveError, StepError};
+use bsmpm::error::{Advice, StepError};
 use bsmpm::material::LayeredMaterial;
-use bsmpm::method::Criteria;
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_io::failure::{FailureMeasures, FailureReport};
@@ -40,15 +39,17 @@ pub(super) fn of(world: &SimpleCommunicator, failure: &Failure, step: u64, case:
         history,
         tolerances,
         worst: last.map_or_else(Vec::new, |error| worst(world, places_of(error, iterated), &case.grid)),
-        loose: last.and_then(|error| loose(error, case)),
+        loose: last
+            .and_then(|error| loose_body(error, case))
+            .map(|body| body.name.clone()),
         advice: last.map_or_else(Vec::new, |error| [implausible(case), advice(error, case)].concat()),
     }
 }
 
-/// The name of the rigid body that nothing holds, if that is the error.
-fn loose(error: &StepError, case: &Case) -> Option<String> {
+/// The rigid body that nothing holds, if that is the error.
+fn loose_body<'a>(error: &StepError, case: &'a Case) -> Option<&'a Rigid> {
     let StepError::Loose { body } = error else { return None };
-    case.rigid.get(*body).map(|rigid| rigid.name.clone())
+    case.rigid.get(*body)
 }
 
 /// The error whose places are reported: the last one, or where that names none the last that iterated.
@@ -67,20 +68,16 @@ type NodePlace = [f64; 6];
 fn worst(world: &SimpleCommunicator, error: &StepError, grid: &GridSpec) -> Vec<Worst> {
     let lower = grid.lower();
     let dims = grid.dims();
-    let kind = if matches!(error, StepError::NotConverged { .. } | StepError::Unbalanced { .. }) {
-        "node"
-    } else {
-        "point"
-    };
-    let mut own: Vec<NodePlace> = match error {
-        StepError::NotConverged { worst, .. } | StepError::Unbalanced { worst, .. } => worst
+    let kind = if error.worst_nodes().is_some() { "node" } else { "point" };
+    let mut own: Vec<NodePlace> = match error.worst_nodes() {
+        Some(nodes) => nodes
             .iter()
             .map(|node| {
                 let [x, y, z] = in_case(lower, &node.x);
                 [-node.force, node.number as f64, node.force, x, y, z]
             })
             .collect(),
-        other => other
+        None => error
             .point()
             .map(|(id, x)| {
                 let [x, y, z] = in_case(lower, x);
@@ -112,92 +109,94 @@ fn in_case(lower: [f64; 3], x: &[f64]) -> [f64; 3] {
     std::array::from_fn(|axis| lower[axis] + x.get(axis).copied().unwrap_or(0.0))
 }
 
+/// The remedies of an error in this case, found by the name of its advice.
 fn advice(error: &StepError, case: &Case) -> Vec<String> {
-    match error {
-        StepError::NotConverged {
-            iterations,
-            force,
-            material,
-            criteria,
-            ..
-        } => {
-            let name = material.map(|number| case.materials[number].name.as_str());
-            not_converged(*iterations, *force, name, criteria, case)
-        }
-        StepError::EnergyMade { .. } => [
-            match case.stabilisation {
-                Stabilisation::None => "Reduce `analysis.dt`.",
-                Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => "Set `stabilisation.method = \"none\"`.",
-                Stabilisation::FBar | Stabilisation::FBarZhao | Stabilisation::ModifiedFBar => {
-                    "Set `stabilisation.method = \"consistent-f-bar\"`."
-                }
-            },
-            "If bodies separate from a boundary, use shorter steps, or `analysis.newmark_gamma = 1`.",
-            "Reduce the dilation angle, or add friction. The frames and [[history]] quantity = \"energy\" show where it begins.",
-            "The saved state is wrong, too: do not continue from it.",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        StepError::Loose { body } => vec![against_motion(&case.rigid[*body])],
-        StepError::Overlapping { bodies } => {
-            let [one, other] = bodies.map(|number| case.rigid[number].name.as_str());
-            vec![format!(
-                "Keep `{one}` and `{other}` apart by other paths, or make them one body: rigid bodies do not contact each other."
-            )]
-        }
-        other => fixed_advice(other, case).iter().map(|line| (*line).to_owned()).collect(),
+    match error.meaning().advice {
+        Advice::Iteration => against_no_convergence(error, case),
+        Advice::CreatedEnergy => against_created_energy(case.stabilisation),
+        Advice::LooseBody => loose_body(error, case).map(against_motion).into_iter().collect(),
+        Advice::OverlappingBodies => against_overlap(error, case),
+        other => fixed_advice(other, case)
+            .iter()
+            .map(|line| (*line).to_owned())
+            .collect(),
     }
 }
 
+/// What keeps two rigid bodies from overlapping, if that is the error.
+fn against_overlap(error: &StepError, case: &Case) -> Vec<String> {
+    let StepError::Overlapping { bodies } = error else {
+        return Vec::new();
+    };
+    let [one, other] = bodies.map(|number| case.rigid[number].name.as_str());
+    vec![format!(
+        "Keep `{one}` and `{other}` apart by other paths, or make them one body: rigid bodies do not contact each other."
+    )]
+}
+
 /// Advice that names nothing of the case; none for an error that has advice of its own.
-fn fixed_advice(error: &StepError, case: &Case) -> &'static [&'static str] {
-    match error {
-        StepError::Closed { .. } => &[
+fn fixed_advice(advice: Advice, case: &Case) -> &'static [&'static str] {
+    match advice {
+        Advice::ClosedPores => &[
             "The skeleton is compressed into its grains. Increase `porosity` or the stiffness of the soil.",
             "Set `permeability_law = \"kozeny-carman\"`, and use shorter steps.",
         ],
-        StepError::Unstable { .. } => &[
+        Advice::Instability => &[
             "The pressure is several times the shear modulus of nearly incompressible material. Increase `body.points_per_cell`.",
             "If the body itself buckles, use a dynamic analysis.",
         ],
-        StepError::Unsettled { .. } => &[
+        Advice::UnsettledContact => &[
             "Increase `analysis.steps`, or reduce `analysis.dt`, so that the contact changes less in a step.",
             "Reduce the friction coefficient in [boundary]: from about 1 on there may be no solution, or several.",
         ],
-        StepError::Unbalanced { .. } => &[
+        Advice::InitialEquilibrium => &[
             "Set `body.points_per_cell = 3`, or blunt the body where it ends in a tip.",
             "The body may not stand at all. Use `gravity.ramp` without [initial], so that it yields as it is loaded.",
             "Increase `solver.force_tolerance`.",
         ],
-        StepError::Inverted { .. } => &[
+        Advice::InvertedMaterial => &[
             "Increase `analysis.steps` (or reduce `analysis.dt`), or increase `solver.background`.",
             "Look at the material points named: loose points at a free surface are the usual ones.",
         ],
-        StepError::Left { .. } | StepError::Outside { .. } => &[
+        Advice::LeavingMaterial => &[
             "Use a larger grid, or a support at that boundary.",
             "If material is to leave, set \"outflow\" in [boundary]. Footings, segments and loads stay.",
         ],
-        StepError::Emptied { .. } => &[
+        Advice::EmptyGrid => &[
             "Reduce `analysis.end` to before this time, as there is nothing left to compute.",
             "Use a larger grid, if the material is to be followed farther.",
         ],
-        StepError::Unloaded { .. } => &["Look at the last frame, and place the load where the material is."],
-        StepError::Undrained { .. } => &["Give that material a `permeability`, or move the drain or inflow."],
-        StepError::Solve(SolveError::Failed(_)) if starts_at_rest(case) && case.solver.background == 0.0 => &[
+        Advice::LostLoad => &["Look at the last frame, and place the load where the material is."],
+        Advice::ImpermeableDrain => &["Give that material a `permeability`, or move the drain or inflow."],
+        Advice::SingularSystem if starts_at_rest(case) && case.solver.background == 0.0 => &[
             "Set `solver.background = 1e-4`: without inertia nothing supports nearly empty cells.",
             "Set `solver.linear = \"direct\"`.",
         ],
-        StepError::Solve(SolveError::Failed(_) | SolveError::NotFinite | SolveError::Residual(_)) => &[
+        Advice::SingularSystem | Advice::LinearSolver => &[
             "Check that every body is supported, or increase `solver.background`.",
             "Set `solver.linear = { factor = \"mumps\" }`.",
         ],
-        StepError::Material { .. } | StepError::OtherRank => &["Increase `analysis.steps`, or reduce `analysis.dt`."],
-        StepError::NotConverged { .. }
-        | StepError::EnergyMade { .. }
-        | StepError::Loose { .. }
-        | StepError::Overlapping { .. }
-        | StepError::Interrupted => &[],
+        Advice::ShorterSteps => &["Increase `analysis.steps`, or reduce `analysis.dt`."],
+        Advice::Iteration | Advice::CreatedEnergy | Advice::LooseBody | Advice::OverlappingBodies | Advice::None => &[],
     }
+}
+
+/// What keeps the discretisation from creating energy.
+fn against_created_energy(stabilisation: Stabilisation) -> Vec<String> {
+    [
+        match stabilisation {
+            Stabilisation::None => "Reduce `analysis.dt`.",
+            Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => "Set `stabilisation.method = \"none\"`.",
+            Stabilisation::FBar | Stabilisation::FBarZhao | Stabilisation::ModifiedFBar => {
+                "Set `stabilisation.method = \"consistent-f-bar\"`."
+            }
+        },
+        "If bodies separate from a boundary, use shorter steps, or `analysis.newmark_gamma = 1`.",
+        "Reduce the dilation angle, or add friction. The frames and [[history]] quantity = \"energy\" show where it begins.",
+        "The saved state is wrong, too: do not continue from it.",
+    ]
+    .map(str::to_owned)
+    .to_vec()
 }
 
 /// Whether equilibrium is sought before the first step.
@@ -278,15 +277,18 @@ fn cohesion(material: &LayeredMaterial) -> Option<f64> {
     material.parameters().get(number).copied()
 }
 
-/// What to try where both measures did not fall below their tolerances; `material`: the one that the force measure is
-/// of.
-fn not_converged(
-    iterations: usize,
-    force: f64,
-    material: Option<&str>,
-    criteria: &Criteria,
-    case: &Case,
-) -> Vec<String> {
+/// What to try where both measures did not fall below their tolerances, if that is the error.
+fn against_no_convergence(error: &StepError, case: &Case) -> Vec<String> {
+    let StepError::NotConverged {
+        iterations,
+        force,
+        material,
+        criteria,
+        ..
+    } = error
+    else {
+        return Vec::new();
+    };
     let mut lines: Vec<String> = against_no_cohesion(case)
         .into_iter()
         .chain(against_local_failure(case))
@@ -295,19 +297,21 @@ fn not_converged(
         // What stops is what the state became in steps too coarse, not how far the step goes.
         lines.push("Use several times as many steps from the start, as a rough rigid body needs short steps.".into());
     }
-    if iterations >= criteria.max_iterations {
+    if *iterations >= criteria.max_iterations {
         lines.push(format!(
             "Increase `solver.max_iterations` (now {}), if the residuals still fell.",
             criteria.max_iterations
         ));
     }
-    if force < criteria.force {
+    if *force < criteria.force {
         lines.push(format!(
             "The forces balance, but much of the soil yields. Increase `analysis.steps`, or `solver.tolerance` (now {:e}).",
             criteria.energy
         ));
     }
-    if let (true, Some(name)) = (force >= criteria.force, material) {
+    // The force measure is that of this material.
+    if let (true, Some(number)) = (*force >= criteria.force, *material) {
+        let name = &case.materials[number].name;
         lines.push(format!(
             "Look at the body of `material.{name}`: its forces do not balance."
         ));

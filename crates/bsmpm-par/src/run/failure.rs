@@ -3,7 +3,7 @@
 use super::{Run, diagnosis};
 use crate::log::short;
 use bsmpm::control::Failure;
-use bsmpm::error::StepError;
+use bsmpm::error::{FailureKind, StepError};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::step::Counts;
 use bsmpm_io::exit;
@@ -88,15 +88,13 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
     }
 }
 
-/// The exit code of the error of a step. A load whose points have no material when the run starts is the case's error;
-/// later its material has left it.
+/// The exit code of a run that ended with this error of a step. A load whose points have no material when the run
+/// starts is the case's error; later its material has left it.
 fn exit_code_of(error: Option<&StepError>, step: u64) -> u8 {
-    match error {
-        Some(StepError::Unloaded { .. }) if step == 1 => exit::CASE,
-        Some(StepError::Undrained { .. }) => exit::CASE,
-        Some(
-            StepError::Unloaded { .. } | StepError::Left { .. } | StepError::Emptied { .. } | StepError::Outside { .. },
-        ) => exit::LEFT,
-        _ => exit::NO_CONVERGENCE,
+    match error.map(|error| error.meaning().kind) {
+        Some(FailureKind::LostLoad) if step == 1 => exit::CASE,
+        Some(FailureKind::Case) => exit::CASE,
+        Some(FailureKind::LostLoad | FailureKind::LeftMaterial) => exit::LEFT,
+        Some(FailureKind::NoConvergence) | None => exit::NO_CONVERGENCE,
     }
 }
