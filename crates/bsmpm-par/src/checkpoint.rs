@@ -1,12 +1,14 @@
 //! Writes and reads checkpoints. Each rank writes the array rows of its points and nodes; the other data
 //! ([`CheckpointState`]) are the same on all ranks.
 
+mod issued;
 mod read;
 mod refusal;
 mod sanity;
 mod state;
 mod write;
 
+pub use issued::{IssuedWarning, SurfaceCounts};
 pub use read::{CheckpointChoice, OpenCheckpoint, find};
 pub use refusal::Refusal;
 pub(crate) use refusal::{agree, broadcast};

@@ -10,6 +10,7 @@ mod start;
 mod step_warnings;
 mod summary;
 
+use crate::checkpoint::IssuedWarning;
 use crate::cli::Arguments;
 use crate::fault::Fault;
 use crate::launch;
@@ -23,6 +24,7 @@ use bsmpm::parallel::Halo;
 use bsmpm::step::StepReport;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::{Communication, SolverNames};
+use bsmpm_messages::code_of;
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::timers::Timers;
 use bsmpm_scene::Case;
@@ -78,8 +80,7 @@ pub struct Run<'p, K, const D: usize> {
     start: Instant,
     frame_times: Vec<f64>,
     last_frame: Option<u64>,
-    warned_strips: BTreeSet<usize>,
-    warned_rigid: BTreeSet<usize>,
+    issued: BTreeSet<IssuedWarning>,
     hdf5: &'p Hdf5<'p>,
     saving: SaveTimes,
     stop_cause: Option<StopCause>,
@@ -95,10 +96,8 @@ pub struct PriorState {
     pub is_branch: bool,
     /// step of the newest frame
     pub last_frame: Option<u64>,
-    /// strips of which it was reported that they hold nothing
-    pub warned_strips: BTreeSet<usize>,
-    /// rigid bodies of which it was reported what is doubtful of them
-    pub warned_rigid: BTreeSet<usize>,
+    /// warnings that are given once, and were given
+    pub issued: BTreeSet<IssuedWarning>,
     /// s  by phase; on rank 0
     pub timers: BTreeMap<String, f64>,
     /// what the ranks had sent each other, by kind; on rank 0
@@ -141,8 +140,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
             start,
             frame_times,
             last_frame,
-            warned_strips: std::mem::take(&mut before.warned_strips),
-            warned_rigid: std::mem::take(&mut before.warned_rigid),
+            issued: std::mem::take(&mut before.issued),
             hdf5,
             saving,
             stop_cause: None,
@@ -212,6 +210,14 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
             && !ledger.manifest().warnings.contains(&warning)
         {
             ledger.manifest().warnings.push(warning);
+        }
+    }
+
+    /// A warning about a `subject`, a name of the case, that is given once for each of its codes.
+    fn warn_once(&mut self, subject: &str, warning: String) {
+        let code = code_of(&warning).unwrap_or_default();
+        if self.issued.insert(IssuedWarning::new(code, subject)) {
+            self.warn(warning);
         }
     }
 

@@ -1,23 +1,25 @@
 //! The state in a checkpoint besides the arrays.
 
+mod flowed;
 mod free_field;
 
+pub use flowed::FlowedState;
 pub use free_field::FreeFieldState;
 
 use super::Refusal;
+use super::issued::{IssuedWarning, SurfaceCounts, numbered};
 use bsmpm::boundary::{Anchors, RigidState, Surface};
 use bsmpm::control::Progress;
 use bsmpm::energy::{EnergyAccounts, EnergyBound, Flows};
-use bsmpm::field::pore_water::crossed::{CrossedVolumes, PreviousFlow};
+use bsmpm::field::pore_water::crossed::CrossedVolumes;
 use bsmpm::grid::Grid;
 use bsmpm::tensor::Vector;
 use bsmpm_io::exit;
 use bsmpm_io::frames::Entry;
 use bsmpm_io::manifest::Manifest;
 use bsmpm_io::table::TableMark;
-use bsmpm_scene::{GridSpec, Line};
-use serde::de::Error;
-use serde::{Deserialize, Deserializer, Serialize};
+use bsmpm_scene::{Case, GridSpec, Line};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -82,56 +84,19 @@ pub struct CheckpointState {
     pub rigid_accelerations: Vec<Option<[f64; 3]>>,
     /// What the histories go on from.
     pub record: RecordState,
-    /// Strips of which a warning says that they hold nothing and, their number added, that they have let go; drains
-    /// and inflows without ground, three times that number added.
-    #[serde(rename = "told_strips")] // as it is in older checkpoints
-    pub warned_strips: BTreeSet<usize>,
-    /// Rigid bodies of which it was reported that they came too fast (twice their number) or go into the soil (and
-    /// one), and behind those pairs that have met, and bodies that went through a face.
-    #[serde(rename = "told_rigid", default, skip_serializing_if = "BTreeSet::is_empty")]
-    pub warned_rigid: BTreeSet<usize>,
+    /// Warnings that are given once, and were given.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    pub issued: BTreeSet<IssuedWarning>,
+    /// Warnings about footings and drains by number; of a run by a version that kept no names.
+    #[serde(rename = "told_strips", default, skip_serializing)]
+    pub numbered_surfaces: BTreeSet<usize>,
+    /// The same about rigid bodies.
+    #[serde(rename = "told_rigid", default, skip_serializing)]
+    pub numbered_bodies: BTreeSet<usize>,
     /// The step of the newest frame.
     pub last_frame: Option<u64>,
     /// The files.
     pub files: Files,
-}
-
-/// The last step's flow: its length in s, what crossed surfaces in it, and what it left out of balance, m3 per metre.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FlowedState {
-    #[serde(deserialize_with = "length")]
-    dt: f64,
-    crossed: CrossedState,
-    left: f64,
-}
-
-impl FlowedState {
-    pub(crate) fn of(PreviousFlow { dt, crossed, left }: &PreviousFlow) -> Self {
-        Self {
-            dt: *dt,
-            crossed: CrossedState::of(crossed),
-            left: *left,
-        }
-    }
-
-    fn flow(&self) -> PreviousFlow {
-        PreviousFlow {
-            dt: self.dt,
-            crossed: self.crossed.volumes(),
-            left: self.left,
-        }
-    }
-}
-
-/// The length of a step, s, of which there is more than none.
-fn length<'de, From: Deserializer<'de>>(from: From) -> Result<f64, From::Error> {
-    let dt = f64::deserialize(from)?;
-    if dt > 0.0 {
-        Ok(dt)
-    } else {
-        Err(From::Error::custom(format_args!("its last step of flow took {dt} s")))
-    }
 }
 
 /// Water that has gone through surfaces of the ground, m3 per metre; nothing of a run without any.
@@ -267,6 +232,13 @@ impl CheckpointState {
             );
             Refusal::new(exit::LEFT, reason)
         })
+    }
+
+    /// Warnings that are given once, and were given, of all versions.
+    pub fn issued(&self, case: &Case, counts: SurfaceCounts) -> BTreeSet<IssuedWarning> {
+        let mut issued = numbered(case, counts, &self.numbered_surfaces, &self.numbered_bodies);
+        issued.extend(self.issued.iter().cloned());
+        issued
     }
 
     /// What a checkpoint's text says.
@@ -491,23 +463,5 @@ mod tests {
         );
         let unknown = old.replace("easy", "hard");
         assert!(serde_json::from_str::<StateForm>(&unknown).is_err());
-    }
-
-    #[test]
-    fn a_step_of_flow_took_time() {
-        let kept = |dt: f64| format!(r#"{{"dt":{dt},"crossed":{{"drains":[],"faces":[],"inflows":[]}},"left":0.0}}"#);
-        let flow = serde_json::from_str::<FlowedState>(&kept(0.5)).unwrap().flow();
-        assert_eq!(
-            flow,
-            PreviousFlow {
-                dt: 0.5,
-                ..PreviousFlow::default()
-            }
-        );
-        let refused = serde_json::from_str::<FlowedState>(&kept(0.0)).unwrap_err();
-        assert!(
-            refused.to_string().contains("its last step of flow took 0 s"),
-            "{refused}"
-        );
     }
 }

@@ -1,7 +1,7 @@
 //! Begins a run from its case or a checkpoint.
 
 use super::refuse;
-use crate::checkpoint::{Refusal, agree};
+use crate::checkpoint::{Refusal, SurfaceCounts, agree};
 use crate::cli::Arguments;
 use crate::launch;
 use crate::ledger::RunWriter;
@@ -28,8 +28,8 @@ use bsmpm_ranks::simulation::PartitionedModel;
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_ranks::slab::Slabs;
 use bsmpm_ranks::timers::Timers;
-use bsmpm_scene::Geometry;
 use bsmpm_scene::model::{model_at, points, schedule, seeds};
+use bsmpm_scene::{Case, Geometry};
 use hdf5_collective::Hdf5;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use mpi::environment::Universe;
@@ -86,7 +86,11 @@ fn run_in<K: Kinematics<D>, const D: usize>(
     let warning = space::admit(&universe.world(), held.as_ref(), arguments, case, simulation).map_err(refused)?;
     start.warn(warning);
     start.warn(crowded(&universe.world(), arguments.threads));
-    let before = before(&start, &arguments.directory());
+    let counts = SurfaceCounts {
+        strips: simulation.model.boundary.strips.len(),
+        drains: simulation.model.surfaces().water.len(),
+    };
+    let before = before(&start, &arguments.directory(), case, counts);
     let ledger = ledger(universe, held, arguments, case, scene.recorder.columns(), &start).map_err(refused)?;
     if let RunStart::Resumed(resumed) = start {
         resumed.close().map_err(refused)?;
@@ -139,7 +143,7 @@ fn hold(universe: &Universe, arguments: &Arguments) -> Result<Option<OutputDirec
 fn scene<'p, K: Kinematics<D>, const D: usize>(
     libraries: Libraries<'p>,
     choice: Choice,
-    case: &bsmpm_scene::Case,
+    case: &Case,
     cut: Cut,
     start: &RunStart<'_>,
     timers: Rc<Timers>,
@@ -196,7 +200,7 @@ fn scene<'p, K: Kinematics<D>, const D: usize>(
 fn parted<K: Kinematics<D>, const D: usize>(
     world: &SimpleCommunicator,
     rank: usize,
-    case: &bsmpm_scene::Case,
+    case: &Case,
     grid: &Grid<D>,
     slabs: Slabs,
     parts: usize,
@@ -216,7 +220,7 @@ fn parted<K: Kinematics<D>, const D: usize>(
 }
 
 /// What there was before.
-fn before(start: &RunStart<'_>, directory: &Path) -> PriorState {
+fn before(start: &RunStart<'_>, directory: &Path, case: &Case, counts: SurfaceCounts) -> PriorState {
     let RunStart::Resumed(resumed) = start else {
         return PriorState::default();
     };
@@ -225,8 +229,7 @@ fn before(start: &RunStart<'_>, directory: &Path) -> PriorState {
         resumed: true,
         is_branch: !resumed.is_in(directory),
         last_frame: state.last_frame,
-        warned_strips: state.warned_strips.clone(),
-        warned_rigid: state.warned_rigid.clone(),
+        issued: state.issued(case, counts),
         timers: state.files.manifest.timers.clone(),
         communication: state.files.manifest.communication.clone(),
         linear: state.files.manifest.linear.clone(),
@@ -239,7 +242,7 @@ fn ledger(
     universe: &Universe,
     held: Option<OutputDirectory>,
     arguments: &Arguments,
-    case: &bsmpm_scene::Case,
+    case: &Case,
     columns: Vec<TableColumn>,
     start: &RunStart<'_>,
 ) -> Result<Option<RunWriter>, Refusal> {

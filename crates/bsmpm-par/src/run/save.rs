@@ -10,6 +10,7 @@ use bsmpm::kinematics::Kinematics;
 use bsmpm::parallel::Halo;
 use bsmpm_io::checkpoint::{Facts, FoundCheckpoint};
 use mpi::topology::Communicator;
+use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
@@ -223,8 +224,9 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                 Vec::new(),
             ],
             record: self.recorder.state(),
-            warned_strips: self.warned_strips.clone(),
-            warned_rigid: self.warned_rigid.clone(),
+            issued: self.issued.clone(),
+            numbered_surfaces: BTreeSet::new(),
+            numbered_bodies: BTreeSet::new(),
             last_frame: self.last_frame,
             files: ledger.files(step)?,
         };

@@ -50,30 +50,30 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let t = self.moment(accepted.t);
             let advance = report.advance;
             let depth = report.penetration;
-            if advance > FASTEST && self.warned_rigid.insert(2 * number) {
-                self.warn(format!(
+            if advance > FASTEST {
+                let warning = format!(
                     "W0702: rigid body `{name}` moves by {advance:.2} cells in one step at t = {t} (limit: \
                      {FASTEST}). Contact with the soil is detected too late. Increase `analysis.steps`, or reduce \
                      `analysis.dt`."
-                ));
+                );
+                self.warn_once(&name, warning);
             }
-            if depth > DEEPEST && self.warned_rigid.insert(2 * number + 1) {
-                self.warn(format!(
+            if depth > DEEPEST {
+                let warning = format!(
                     "W0703: rigid body `{name}` penetrates the soil by {depth:.2} cells at t = {t} (limit: \
                      {DEEPEST}). The force on the body is inaccurate. Increase `analysis.steps`, or reduce \
                      `analysis.dt`."
-                ));
+                );
+                self.warn_once(&name, warning);
             }
         }
     }
 
     /// Faces of the grid hold material, and let rigid bodies through.
     pub(super) fn tell_let_through(&mut self, accepted: &AcceptedStep) {
-        let count = self.case.rigid.len();
         for (number, report) in accepted.report.rigid.iter().enumerate() {
             let body = &self.simulation.model.boundary.rigid[number];
-            let known = 2 * count + count * count + number;
-            if !(body.acts && body.is_free()) || self.warned_rigid.contains(&known) {
+            if !(body.acts && body.is_free()) {
                 continue;
             }
             let grid = &self.case.grid;
@@ -92,11 +92,11 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let name = self.case.rigid[number].name.clone();
             let side = through.face.side(self.case.geometry);
             let t = self.moment(accepted.t);
-            self.warned_rigid.insert(known);
-            self.warn(format!(
+            let warning = format!(
                 "W0704: rigid body `{name}` passes through boundary `{side}` at t = {t}. Boundaries do not support rigid bodies. \
                  Place soil in front of the boundary, or change the motion of the body."
-            ));
+            );
+            self.warn_once(&name, warning);
         }
     }
 
@@ -111,20 +111,17 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let points = on.points.len();
             let name = bsmpm_scene::surfaces::name_of_strip(&self.case, number);
             let t = self.moment(accepted.t);
-            let mut kind = number;
             let warning = if strip.held == 0 {
                 format!(
                     "W0705: `{name}` touches no soil at t = {t}, and carries no load. Check the position and the path \
                      of `{name}`."
                 )
             } else if 2 * strip.left_behind > points {
-                kind += accepted.report.strips.len();
                 format!(
                     "W0706: `{name}` lost contact with the soil at t = {t}: most of it is more than half a cell away. \
                      The reaction is no longer valid. Use smaller cells, or reduce the uplift."
                 )
             } else if strip.moved_on > 0 {
-                kind += 2 * accepted.report.strips.len();
                 format!(
                     "W0707: `{name}` returns to the soil at t = {t}, but not where it separated. The program assumes \
                      level ground between the two places. Let `{name}` return at the same place."
@@ -132,9 +129,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             } else {
                 continue;
             };
-            if self.warned_strips.insert(kind) {
-                self.warn(warning);
-            }
+            self.warn_once(&name, warning);
         }
     }
 
@@ -152,31 +147,28 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let acts: Vec<bool> = flow.acting().collect();
         let wanted = self.simulation.model.surfaces().water;
         let points: Vec<usize> = wanted.iter().map(|points| points.len()).collect();
-        let of_strips = 3 * self.simulation.model.boundary.strips.len();
         for number in (0..points.len()).filter(|&number| acts[number] && 2 * water.held[number] < points[number]) {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
-            if self.warned_strips.insert(of_strips + number) {
-                self.warn(format!(
-                    "W0708: most of `{name}` has no soil nearby at t = {t}. No water flows there. If the surface \
-                     heaves, extend the grid by one cell above the heaved surface."
-                ));
-            }
+            let warning = format!(
+                "W0708: most of `{name}` has no soil nearby at t = {t}. No water flows there. If the surface heaves, \
+                 extend the grid by one cell above the heaved surface."
+            );
+            self.warn_once(&name, warning);
         }
         for number in (0..points.len()).filter(|&number| water.torn[number] > TORN) {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
-            if self.warned_strips.insert(of_strips + points.len() + number) {
-                self.warn(format!(
-                    "W0709: `{name}` does not drain the faces of a gap of {:.1} cells that opened in the soil at t = \
-                     {t}, so consolidation is too slow. Compare drainage = \"hydrostatic\" (no excess pore pressure).",
-                    water.torn[number]
-                ));
-            }
+            let warning = format!(
+                "W0709: `{name}` does not drain the faces of a gap of {:.1} cells that opened in the soil at t = {t}, \
+                 so consolidation is too slow. Compare drainage = \"hydrostatic\" (no excess pore pressure).",
+                water.torn[number]
+            );
+            self.warn_once(&name, warning);
         }
-        self.tell_drained_faces(accepted, of_strips + 2 * points.len());
+        self.tell_drained_faces(accepted);
     }
 
-    /// Ground that goes away from a drained face of the grid leaves its drain there. `known`: of the first.
-    fn tell_drained_faces(&mut self, accepted: &AcceptedStep, known: usize) {
+    /// Ground that goes away from a drained face of the grid leaves its drain there.
+    fn tell_drained_faces(&mut self, accepted: &AcceptedStep) {
         let Some(water) = &accepted.report.water else {
             return;
         };
@@ -191,12 +183,12 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         for (number, face) in water.faces.iter().enumerate().filter(|(number, _)| acts[*number]) {
             let sealed = face.held == 0;
             let off = face.off as f64 > LEFT * face.near as f64;
-            if !(sealed || off) || !self.warned_strips.insert(known + 2 * number + usize::from(sealed)) {
+            if !(sealed || off) {
                 continue;
             }
             let name = bsmpm_scene::surfaces::name_of_drained_face(&self.case, number);
             let share = 100.0 * face.off as f64 / face.near.max(1) as f64;
-            self.warn(match sealed {
+            let warning = match sealed {
                 true => format!(
                     "W0710: the soil has left the drained boundary of `{name}` at t = {t}. No water drains there. \
                      Define the drain by `surface`, or `from` and `to`, so that it moves with the soil."
@@ -205,7 +197,8 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                     "W0711: {share:.0} % of the soil has left the drained boundary of `{name}` at t = {t}. Too little \
                      water drains. Define the drain by `surface`, or `from` and `to`, so that it moves with the soil."
                 ),
-            });
+            };
+            self.warn_once(&name, warning);
         }
     }
 
