@@ -299,12 +299,6 @@ pub fn spatial<const D: usize>(vector: &Vector<D>) -> [f64; 3] {
     std::array::from_fn(|axis| if axis < D { vector[axis] } else { 0.0 })
 }
 
-/// The components XX YY ZZ XY YZ XZ of a stress that a geometry has: in a plane without those that couple it with its
-/// normal, the last ones.
-pub fn shown<const D: usize>(stress: &[f64]) -> Vec<f64> {
-    stress[..if D == 2 { 4 } else { 6 }].to_vec()
-}
-
 /// Numbers of a point on its way to rank 0.
 fn width<const D: usize>(sources: &[FieldSource<'_, D>]) -> usize {
     HEAD + sources.iter().map(FieldSource::components).sum::<usize>()

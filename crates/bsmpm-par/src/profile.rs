@@ -4,6 +4,7 @@ use crate::gather;
 use bsmpm::field::pore_water::observed::PoreWater;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
+use bsmpm::observe;
 use bsmpm::observe::invariants;
 use bsmpm::observe::place::{self, Configuration};
 use bsmpm::parallel::Halo;
@@ -101,7 +102,7 @@ fn extend<const D: usize>(row: &mut Vec<f64>, profile: &Profile, fields: &[f64; 
         match quantity {
             ProfileQuantity::Displacement => row.extend([dx, dy, dz].iter().take(D)),
             ProfileQuantity::Velocity => row.extend([vx, vy, vz].iter().take(D)),
-            ProfileQuantity::Stress => row.extend(gather::shown::<D>(&stress.0)),
+            ProfileQuantity::Stress => row.extend(observe::stress_components::<D>(&stress.0)),
             ProfileQuantity::P => row.push(invariants::pressure(&stress)),
             ProfileQuantity::Q => row.push(invariants::deviatoric(&stress)),
             ProfileQuantity::PlasticStrain => row.push(plastic),

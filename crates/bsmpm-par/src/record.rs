@@ -1,32 +1,20 @@
 //! Computes rows of `history.csv`.
 
-mod place;
-mod reported;
-
 use crate::checkpoint::{BooksForm, Outlet, RecordState, Row};
-use crate::gather::shown;
 use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::error::StepError;
-use bsmpm::field::pore_water::observed::PoreWater;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
-use bsmpm::observe::{self, Part, Section, noise};
+use bsmpm::observe::{self, Part};
 use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::step::StepReport;
 use bsmpm::step::outflow::Outflow;
 use bsmpm::tensor::Vector;
 use bsmpm_scene::model::vector;
+use bsmpm_scene::observables::{Aspect, FootingSample, Observable, Sample, displacement_at};
 use bsmpm_scene::surfaces::{self, DrainPlace, FootingMonitor};
-use bsmpm_scene::words::Measurement;
-use bsmpm_scene::{Case, GridSpec, History, Made, Quantity, Stage};
-use place::{
-    FollowedPoint, PoreAt, at_followed, at_surface, both, displacement, followed_place, pore, section, velocity,
-};
-use reported::{at_face, contact, rigid};
-
-/// Place of the vertical normal stress among XX YY ZZ XY YZ XZ.
-const VERTICAL: usize = 1;
+use bsmpm_scene::{Case, GridSpec, History, HistorySubject, Made, Quantity, Stage};
 
 /// The histories of a run, with the points that they follow.
 pub struct Recorder<const D: usize> {
@@ -39,6 +27,7 @@ pub struct Recorder<const D: usize> {
     gauge: Option<FootingMonitor>,
     drains: Vec<DrainPlace>,       // where the physics has each
     books: Option<EnergyAccounts>, // of energy, opened by the first row
+    energy: Vec<f64>,              // J/m, of the last row, in the order of the columns; empty if it is not balanced
     left: Outlet,
     work: Vec<f64>,  // J/m, of every strip; empty where no history wants it
     datum: Vec<Row>, // m, deg: of every history's displacement when they were last set to zero, if they ever were
@@ -78,13 +67,12 @@ impl<const D: usize> Recorder<D> {
     }
 
     fn of(case: &Case, state: RecordState) -> Self {
-        let reacting = case.histories.iter().map(|history| match history.quantity {
-            Quantity::Reaction { face } => surfaces::strip_of_face(case, face),
+        let reacting = case.histories.iter().map(|history| match history.quantity.subject {
+            HistorySubject::Face(face) => surfaces::strip_of_face(case, face),
             _ => None,
         });
-        let mut quantities = case.histories.iter().map(|history| &history.quantity);
-        let wants_work = quantities
-            .any(|quantity| matches!(quantity, Quantity::Strip { measured, .. } if *measured == Measurement::Work));
+        let mut observables = case.histories.iter().map(|history| history.quantity.observable);
+        let wants_work = observables.any(|observable| observable == Observable::Work);
         let strips = case.prescribed.len() + usize::from(case.footing.is_some());
         let mut work = state.work;
         work.resize(if wants_work { strips } else { 0 }, 0.0);
@@ -99,6 +87,7 @@ impl<const D: usize> Recorder<D> {
             gauge: FootingMonitor::of(case),
             drains: surfaces::drain_places(case),
             books: state.books.map(|BooksForm(books)| books),
+            energy: Vec::new(),
             datum: state.datum,
             moved: vec![Row::new(); case.histories.len()],
             left: state.left,
@@ -140,11 +129,12 @@ impl<const D: usize> Recorder<D> {
         if stage.resets_displacements {
             let mut datum = Vec::with_capacity(self.histories.len());
             for (number, history) in self.histories.iter().enumerate() {
-                datum.push(match (&history.quantity, self.followed[number]) {
-                    (Quantity::Displacement { at }, Some(id)) => {
-                        displacement(*at, self.lower, id, points, halo).to_vec()
+                let Quantity { observable, subject } = &history.quantity;
+                datum.push(match (subject, self.followed[number]) {
+                    (HistorySubject::Place { at, .. }, Some(id)) if *observable == Observable::Displacement => {
+                        displacement_at(*at, self.lower, id, points, halo).to_vec()
                     }
-                    (quantity, _) if is_of_rigid(quantity) => self.moved[number].clone(),
+                    _ if observable.has(Aspect::RigidMotion) => self.moved[number].clone(),
                     _ => vec![0.0; D],
                 });
             }
@@ -172,7 +162,7 @@ impl<const D: usize> Recorder<D> {
     pub fn reported(&self) -> Vec<bool> {
         let mut reported = Vec::new();
         for (number, history) in self.histories.iter().enumerate() {
-            let is_reported = is_sum(&history.quantity) || !self.empty.contains(&number);
+            let is_reported = history.quantity.observable.has(Aspect::Sum) || !self.empty.contains(&number);
             reported.extend(std::iter::repeat_n(is_reported, history.columns().len()));
         }
         reported
@@ -216,7 +206,7 @@ impl<const D: usize> Recorder<D> {
         let at = self
             .histories
             .iter()
-            .position(|history| history.quantity == Quantity::Front)?;
+            .position(|history| history.quantity.observable == Observable::Front)?;
         let column: usize = self.histories[..at].iter().map(|history| history.columns().len()).sum();
         Some(row.get(column)? / self.histories[at].factor()).filter(|front| front.is_finite())
     }
@@ -230,11 +220,9 @@ impl<const D: usize> Recorder<D> {
         report: &StepReport,
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
-        let energy = if model.balances_energy {
-            self.energy(model, points, t, report, halo)
-        } else {
-            Vec::new()
-        };
+        if model.balances_energy {
+            self.energy = self.balance_energy(model, points, t, report, halo);
+        }
         self.work
             .iter_mut()
             .zip(&report.strips)
@@ -246,11 +234,8 @@ impl<const D: usize> Recorder<D> {
         self.vacant.retain(|number| self.empty.contains(number));
         let mut row = Vec::new();
         for (number, history) in self.histories.iter().enumerate() {
-            let mut values = match &history.quantity {
-                Quantity::Energy => energy.clone(),
-                _ => self.value(number, model, points, t, report, halo)?,
-            };
-            if is_of_rigid(&history.quantity) {
+            let mut values = self.values(number, model, points, t, report, halo)?;
+            if history.quantity.observable.has(Aspect::RigidMotion) {
                 self.moved[number].clone_from(&values);
                 let datum = self.datum.get(number).into_iter().flatten();
                 values.iter_mut().zip(datum).for_each(|(value, datum)| *value -= datum);
@@ -260,8 +245,8 @@ impl<const D: usize> Recorder<D> {
         Ok(row)
     }
 
-    /// The quantity of a history other than the energy.
-    fn value<K: Kinematics<D>>(
+    /// The quantity of a history.
+    fn values<K: Kinematics<D>>(
         &self,
         number: usize,
         model: &Model<K, D>,
@@ -270,39 +255,48 @@ impl<const D: usize> Recorder<D> {
         report: &StepReport,
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
-        let quantity = &self.histories[number].quantity;
-        let water = PoreWater::of(model, points, t);
-        Ok(match quantity {
-            Quantity::Reaction { face } => self.reaction(number, model, *face, report),
-            Quantity::FootingPressure | Quantity::FootingForce | Quantity::Penetration | Quantity::Slip => {
-                vec![self.footing(quantity, t, report)]
-            }
-            Quantity::Outflow => vec![self.left.mass],
-            Quantity::Strip { number, measured } => self.strip(*number, *measured, report),
-            Quantity::Contact { face }
-            | Quantity::Gap { face }
-            | Quantity::SlipRate { face }
-            | Quantity::FrictionPower { face } => {
-                contact(quantity.measurement(), at_face(model, *face, report), report.dt)
-            }
-            Quantity::PorePressure { at, surface } | Quantity::Pore { at, surface, .. } => {
-                let place = vector::<D, _>(*at) - self.lower;
-                let read = match surface {
-                    true => PoreAt::Surface(place),
-                    false => PoreAt::Point(FollowedPoint::of(self.followed[number], place, &self.grid)),
-                };
-                pore(quantity.measurement(), water, read, model, points, halo)?
-            }
-            Quantity::PorePressures { .. } => water
-                .map_or([0.0; 3], |water| water.range(&self.parts[number], halo))
-                .to_vec(),
-            Quantity::WaterOutflow { drain } => {
-                vec![drain.map_or(points.surface.crossed.out(), |drain| self.drained(drain, points))]
-            }
-            Quantity::WaterBalance => vec![water.and_then(|water| water.balance(halo)).unwrap_or(0.0)],
-            Quantity::Rigid { what, body } => rigid(*what, *body, t, model, report),
-            quantity => self.values(number, quantity, model, points, halo)?,
+        let Quantity { observable, subject } = &self.histories[number].quantity;
+        let work = match subject {
+            HistorySubject::Strip(strip) => self.work.get(*strip).copied().unwrap_or(0.0),
+            _ => 0.0,
+        };
+        let drained = match subject {
+            HistorySubject::Drain(Some(drain)) => self.drained(*drain, points),
+            _ => points.surface.crossed.out(),
+        };
+        observable.values(&Sample {
+            model,
+            points,
+            t,
+            report,
+            halo,
+            grid: &self.grid,
+            lower: self.lower,
+            subject,
+            part: &self.parts[number],
+            followed: self.followed[number],
+            datum: self.datum.get(number).map(Vec::as_slice),
+            holding_strip: self.reacting[number],
+            footing: self.footing(t, report),
+            work,
+            drained,
+            outflow: self.left.mass,
+            energy: &self.energy,
         })
+    }
+
+    /// Values of the footing; 0 without one, and before the first step.
+    fn footing(&self, t: f64, report: &StepReport) -> FootingSample {
+        let Some(gauge) = &self.gauge else {
+            return FootingSample::default();
+        };
+        let strip = report.strips.first();
+        FootingSample {
+            pressure: strip.map_or(0.0, |strip| gauge.pressure(strip)),
+            force: strip.map_or(0.0, |strip| gauge.force(strip)),
+            penetration: gauge.penetration(t),
+            slip: strip.map_or(0.0, surfaces::relative_slip),
+        }
     }
 
     /// m3/m  out of a drain so far, by its number in the file.
@@ -316,110 +310,8 @@ impl<const D: usize> Recorder<D> {
         found.copied().unwrap_or(0.0)
     }
 
-    /// A quantity of all points.
-    fn values<K: Kinematics<D>>(
-        &self,
-        number: usize,
-        quantity: &Quantity,
-        model: &Model<K, D>,
-        points: &Points<D>,
-        halo: &dyn Halo,
-    ) -> Result<Vec<f64>, StepError> {
-        let left = self.lower[0];
-        let bottom = self.lower[D - 1];
-        let part = &self.parts[number];
-        Ok(match quantity {
-            Quantity::Runout { percentile, .. } if *percentile < 100.0 => {
-                vec![left + observe::percentile(points, part, 0, *percentile, halo)]
-            }
-            Quantity::Runout { .. } => vec![left + observe::farthest(points, part, 0, halo)],
-            Quantity::Front => vec![left + observe::front(model, points, halo)],
-            Quantity::Height { at_x: None, .. } => vec![bottom + observe::farthest(points, part, D - 1, halo)],
-            Quantity::Height { at_x: Some(x), .. } => {
-                let [x, _] = self.grid.local([*x, bottom]);
-                vec![bottom + observe::surface(&model.grid, points, part, x, halo)]
-            }
-            Quantity::MaxDisplacement { .. } => vec![observe::largest_displacement(points, part, halo)],
-            Quantity::Mass { .. } => vec![observe::mass(points, part, halo)],
-            Quantity::Momentum { .. } => observe::momentum(points, part, halo).as_slice().to_vec(),
-            Quantity::CentreOfMass { .. } => {
-                let centre = observe::centre_of_mass(points, part, halo).unwrap_or_else(Vector::zeros);
-                (self.lower + centre).as_slice().to_vec()
-            }
-            Quantity::AngularMomentum { .. } => {
-                let about = observe::angular_momentum(points, part, &-self.lower, halo);
-                about[if D == 3 { 0 } else { 2 }..].to_vec()
-            }
-            Quantity::KineticEnergy { .. } => vec![observe::kinetic_energy(points, part, halo)],
-            Quantity::MeanStress { .. } => shown::<D>(&observe::mean_stress(points, part, halo)),
-            Quantity::MeanDisplacement { .. } => observe::mean_displacement(points, part, halo).as_slice().to_vec(),
-            Quantity::MeanVelocity { .. } => observe::mean_velocity(points, part, halo).as_slice().to_vec(),
-            Quantity::PlasticStrain { .. } => observe::plastic_strain(points, part, halo).to_vec(),
-            Quantity::Heave { .. } => vec![observe::heave(points, part, halo)],
-            Quantity::StressNoise => both(noise::stress_noise(
-                &model.grid,
-                points,
-                model.weighting,
-                VERTICAL,
-                halo,
-            )?),
-            Quantity::PressureNoise { .. } => {
-                both(noise::pressure_noise(&model.grid, points, part, model.weighting, halo)?)
-            }
-            quantity => self.local_values(number, quantity, model, points, halo),
-        })
-    }
-
-    /// A quantity at a place or a section.
-    fn local_values<K: Kinematics<D>>(
-        &self,
-        number: usize,
-        quantity: &Quantity,
-        model: &Model<K, D>,
-        points: &Points<D>,
-        halo: &dyn Halo,
-    ) -> Vec<f64> {
-        let followed = self.followed[number];
-        match quantity {
-            Quantity::SectionForces { lines, round, fixed } => {
-                let local = lines.iter().map(|line| line.map(|end| vector(end) - self.lower));
-                let at_start = Section {
-                    lines: local.collect(),
-                    round: *round,
-                };
-                section::<K, D>(&model.grid, points, at_start, *fixed, halo)
-            }
-            Quantity::Velocity { at, surface: true } => {
-                let at = vector(*at) - self.lower;
-                at_surface(model, points, at, |p| velocity(points, p), halo)
-            }
-            Quantity::Stress { at, surface: true } => {
-                let at = vector(*at) - self.lower;
-                shown::<D>(&at_surface(model, points, at, |p| points.sigma.at(p).0, halo))
-            }
-            Quantity::Displacement { at } => {
-                let Some(id) = followed else { return vec![0.0; D] };
-                let total = displacement(*at, self.lower, id, points, halo);
-                let datum = self.datum.get(number);
-                (0..D)
-                    .map(|axis| total[axis] - datum.map_or(0.0, |datum| datum[axis]))
-                    .collect()
-            }
-            quantity => {
-                let at = followed_place(quantity).map_or(Vector::zeros(), |at| vector::<D, _>(at) - self.lower);
-                at_followed(
-                    quantity,
-                    FollowedPoint::of(followed, at, &self.grid),
-                    model,
-                    points,
-                    halo,
-                )
-            }
-        }
-    }
-
     /// Where the energy is and went, in the order of the quantity's columns, with the step of `report` entered.
-    fn energy<K: Kinematics<D>>(
+    fn balance_energy<K: Kinematics<D>>(
         &mut self,
         model: &Model<K, D>,
         points: &Points<D>,
@@ -451,28 +343,12 @@ impl<const D: usize> Recorder<D> {
     }
 }
 
-/// Whether it is a sum over points, which is 0 of no point.
-fn is_sum(quantity: &Quantity) -> bool {
-    matches!(
-        quantity,
-        Quantity::Mass { .. }
-            | Quantity::Momentum { .. }
-            | Quantity::AngularMomentum { .. }
-            | Quantity::KineticEnergy { .. }
-    )
-}
-
-/// Whether it reports how far the footing or a rigid body has moved.
-fn is_of_rigid(quantity: &Quantity) -> bool {
-    use Measurement::{RigidDisplacement, RigidRotation};
-    matches!(
-        quantity,
-        Quantity::Penetration
-            | Quantity::Rigid {
-                what: RigidDisplacement | RigidRotation,
-                ..
-            }
-    )
+/// The place of a history that follows the point nearest to it.
+fn followed_place(quantity: &Quantity) -> Option<[f64; 3]> {
+    match quantity.subject {
+        HistorySubject::Place { at, surface: false } => Some(at),
+        _ => None,
+    }
 }
 
 /// The points that every history counts.

@@ -10,10 +10,11 @@ mod rigid;
 mod stage;
 mod water;
 
+pub use crate::observables::{Face, HistorySubject, Made, PointSelection};
 pub use crate::words::{Base, Format, Geometry, Nonlinear, Support, Word};
 pub use element::{ElementStage, ElementTest};
 pub use flow::{Drain, DrainSite, Flow, Inflow};
-pub use history::{Check, Column, Face, History, Made, PointSelection, Quantity};
+pub use history::{Check, Column, History, Quantity};
 pub use limit_load::{LimitLoad, LoadWidth, SoughtLoad};
 pub(crate) use loads::keeps_direction;
 pub use loads::{

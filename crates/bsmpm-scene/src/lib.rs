@@ -8,6 +8,7 @@
 #[macro_use]
 pub mod words;
 pub mod model;
+pub mod observables;
 mod parting;
 pub mod schema;
 pub mod surfaces;
@@ -45,10 +46,10 @@ pub use bsmpm::points::Seed;
 pub use bsmpm::quadrature::Quadrature;
 pub use case::{
     ActiveLoads, Analysis, Base, Body, Case, Check, Checkpoint, Column, Drain, DrainSite, ElementStage, ElementTest,
-    Every, Face, FaceSupport, Flow, Footing, Format, Geometry, Gravity, History, Inflow, Initial, LimitLoad, Linear,
-    LoadWidth, LoadedLine, MASS, Made, MotionPath, NamedMaterial, NarrowestOpening, Nonlinear, Output, Plate,
-    PointLoad, PointSelection, PrescribedMotion, Profile, Push, Quantity, Rigid, RigidShape, Shares, Site, Solver,
-    SoughtLoad, Stage, Support, Traction, Triangle, Water,
+    Every, Face, FaceSupport, Flow, Footing, Format, Geometry, Gravity, History, HistorySubject, Inflow, Initial,
+    LimitLoad, Linear, LoadWidth, LoadedLine, MASS, Made, MotionPath, NamedMaterial, NarrowestOpening, Nonlinear,
+    Output, Plate, PointLoad, PointSelection, PrescribedMotion, Profile, Push, Quantity, Rigid, RigidShape, Shares,
+    Site, Solver, SoughtLoad, Stage, Support, Traction, Triangle, Water,
 };
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};

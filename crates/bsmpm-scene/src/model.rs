@@ -1,8 +1,9 @@
 //! Converts a case to the input of the crate `bsmpm`: model, material points and step sequence.
 
+use crate::observables::Observable;
 use crate::seed::seed_bodies;
 use crate::words::AnalysisType;
-use crate::{ActiveLoads, Case, Every, Face, GridAxis, NamedMaterial, Quantity, Regime, Shares, Stage, surfaces};
+use crate::{ActiveLoads, Case, Every, Face, GridAxis, NamedMaterial, Regime, Shares, Stage, surfaces};
 use bsmpm::boundary::{Boundary, Support};
 use bsmpm::error::GridError;
 use bsmpm::field::pore_water::Water;
@@ -81,7 +82,7 @@ pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result
         balances_energy: case
             .histories
             .iter()
-            .any(|history| history.quantity == Quantity::Energy),
+            .any(|history| history.quantity.observable == Observable::Energy),
         kinematics: PhantomData,
     })
 }

@@ -1,9 +1,10 @@
 //! Writes the reference of all case keys as Markdown.
 
+use crate::observables::Observable;
 use crate::preset::preset_table;
 use crate::schema::{Dimension, Group, Key, Kind, Presence, ROOT, Range, Table};
 use crate::unit;
-use crate::words::{Measurement, Word, Words};
+use crate::words::{Word, Words};
 use std::fmt::Write;
 
 /// Width of the page's lines, characters.
@@ -138,7 +139,7 @@ impl Page {
 
     /// The words of a key, or where they are.
     fn words_of(&mut self, words: Words) {
-        if words.words().eq(Measurement::WORDS.words()) {
+        if words.words().eq(Observable::WORDS.words()) {
             return self.wrapped(
                 "  - ",
                 "The words are [at the end of the page](#quantities-of-a-history).",
@@ -194,20 +195,20 @@ impl Page {
              of thickness. A quantity with several values has a column for each, whose name ends as listed here. The \
              examples are items of the list `history`; below a heading `[[history]]`, each key has its own line.",
         );
-        for (word, doc) in Measurement::WORDS.all() {
-            let Some(measured) = Measurement::of(word) else {
+        for (word, doc) in Observable::WORDS.all() {
+            let Some(measured) = Observable::of(word) else {
                 continue;
             };
             let example = measured.example();
             let text = format!("**`{word}`** ({}): {doc} Example: `{example}`.", measured.unit());
             self.wrapped("- ", &text);
-            for (suffix, part) in measured.columns().iter().filter(|(suffix, _)| !suffix.is_empty()) {
+            for (suffix, part) in measured.columns_in(2).iter().filter(|(suffix, _)| !suffix.is_empty()) {
                 self.wrapped("  - ", &format!("`{suffix}`: {part}"));
             }
             for (suffix, part) in measured
                 .columns_in(3)
                 .iter()
-                .filter(|column| !measured.columns().contains(column))
+                .filter(|column| !measured.columns_in(2).contains(column))
             {
                 self.wrapped("  - ", &format!("`{suffix}`: in 3-D, {part}"));
             }
@@ -437,9 +438,9 @@ mod tests {
 
     #[test]
     fn every_history_quantity_has_an_example_that_a_case_accepts() {
-        for (word, _) in Measurement::WORDS.all() {
-            let keys = Measurement::of(word)
-                .map_or(&[][..], Measurement::example_keys)
+        for (word, _) in Observable::WORDS.all() {
+            let keys = Observable::of(word)
+                .map_or(&[][..], |observable| observable.definition().example)
                 .join("\n");
             let history = format!("\n[[history]]\nname = \"example\"\nquantity = \"{word}\"\n{keys}\n");
             let tried = cases().map(|case| Case::from_text("case.toml", &format!("{case}{history}"), &[]));

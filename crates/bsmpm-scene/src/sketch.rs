@@ -1,11 +1,12 @@
 //! Extracts basic data from the case of an old run, even if this version refuses it.
 
 use crate::case::Support;
+use crate::observables::Observable;
 use crate::record::{self, Record};
 use crate::report::Report;
 use crate::schema::ROOT;
 use crate::source::Source;
-use crate::words::{AnalysisType, Measurement};
+use crate::words::AnalysisType;
 use crate::{document, validate};
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;
@@ -33,7 +34,7 @@ pub struct Sketch {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SketchedHistory {
     /// What is recorded.
-    pub quantity: Measurement,
+    pub quantity: Observable,
     /// Name of the column, or beginning of the columns' names.
     pub name: String,
     /// -  multiplies
@@ -72,7 +73,7 @@ impl Sketch {
 
 impl SketchedHistory {
     fn of(record: &Record) -> Option<Self> {
-        let quantity: Measurement = record.word("quantity")?;
+        let quantity: Observable = record.word("quantity")?;
         let name = record.text("name").map_or_else(|| quantity.to_string(), str::to_owned);
         Some(Self {
             quantity,
@@ -133,7 +134,7 @@ mod tests {
         };
         assert_eq!(
             (pressure.quantity, &*pressure.name, pressure.scale),
-            (Measurement::FootingPressure, "p_over_c", 5e-5)
+            (Observable::FootingPressure, "p_over_c", 5e-5)
         );
         assert_eq!((&*displacement.name, displacement.scale), ("displacement", 1.0));
         let method = |word: &str| Sketch::of(&format!("{HALF}\n[stabilisation]\nmethod = \"{word}\"")).stabilisation;

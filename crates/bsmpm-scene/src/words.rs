@@ -2,14 +2,12 @@
 
 #[macro_use]
 mod define;
-mod measurement;
 mod output;
 mod physics;
 mod retired;
 mod scene;
 mod solver;
 
-pub use measurement::Measurement;
 pub use output::{FrameField, LimitedIndicator, ProfileQuantity};
 pub(crate) use retired::{BACKGROUND_CELLS, BACKGROUND_KIND};
 pub use scene::{

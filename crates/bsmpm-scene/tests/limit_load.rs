@@ -1,7 +1,7 @@
 //! Tests cases of limit load analyses.
 
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm_scene::{Case, Error, Quantity};
+use bsmpm_scene::{Case, Error, HistorySubject};
 
 const SAND: &str = include_str!("../../../cases/limit_load/strip_on_sand.toml");
 const CLAY: &str = include_str!("../../../cases/limit_load/strip_on_clay.toml");
@@ -110,10 +110,10 @@ fn loads_are_columns_of_the_history() {
         [("punch-load-y".to_owned(), 1.0)],
         "the soil pushes it up, against its motion"
     );
-    assert!(matches!(
-        case.histories.last().expect("a history").quantity,
-        Quantity::Rigid { body: 0, .. }
-    ));
+    assert_eq!(
+        case.histories.last().expect("a history").quantity.subject,
+        HistorySubject::Rigid(0)
+    );
 }
 
 /// A footing that moves along its base has a force along its motion, and a pressure if it moves along its normal.

@@ -1,6 +1,7 @@
 //! Tests the cases in `cases/`, and their memory estimates.
 
-use bsmpm_scene::{Base, Case, GridAxis, PointSelection, Quantity, load};
+use bsmpm_scene::observables::Observable;
+use bsmpm_scene::{Base, Case, GridAxis, HistorySubject, PointSelection, Quantity, load};
 use std::path::{Path, PathBuf};
 
 fn cases() -> PathBuf {
@@ -579,12 +580,13 @@ fn the_footing_of_the_paper() {
         let within = Some([[0.0, ground - 2.5, 0.0], [2.5, ground - 0.5, 0.0]]);
         assert_eq!(
             case.histories[5].quantity,
-            Quantity::PressureNoise {
-                of: PointSelection {
+            Quantity::new(
+                Observable::PressureNoise,
+                HistorySubject::Part(PointSelection {
                     within,
                     ..PointSelection::default()
-                }
-            }
+                })
+            )
         );
     }
 }

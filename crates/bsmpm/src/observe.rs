@@ -140,6 +140,11 @@ pub fn kinetic_energy<const D: usize>(points: &Points<D>, part: &Part, halo: &dy
     energy
 }
 
+/// Returns the components XX YY ZZ XY YZ XZ of a stress that D dimensions have: in a plane without the last two.
+pub fn stress_components<const D: usize>(stress: &[f64]) -> Vec<f64> {
+    stress[..if D == 2 { 4 } else { 6 }].to_vec()
+}
+
 /// Returns the mean Cauchy stress of the points of a part, weighted with their current volumes (Pa, components XX YY ZZ
 /// XY YZ XZ); zero without points.
 pub fn mean_stress<const D: usize>(points: &Points<D>, part: &Part, halo: &dyn Halo) -> [f64; 6] {

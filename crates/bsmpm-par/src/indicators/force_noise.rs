@@ -3,8 +3,8 @@
 use bsmpm::model::Regime;
 use bsmpm_io::manifest::Indicator;
 use bsmpm_io::table::Columns;
-use bsmpm_scene::words::Measurement;
-use bsmpm_scene::{Case, History, Quantity};
+use bsmpm_scene::observables::Aspect;
+use bsmpm_scene::{Case, History};
 
 /// Fewer differences are not judged.
 const LEAST: usize = 8;
@@ -22,18 +22,13 @@ pub(super) fn of(case: &Case, history: &Columns) -> Option<Indicator> {
         return None;
     }
     let times = history.get("time")?;
-    let forces = case.histories.iter().filter(|history| is_force(&history.quantity));
+    let forces = case
+        .histories
+        .iter()
+        .filter(|history| history.quantity.observable.has(Aspect::Force));
     let noises = forces.filter_map(|force| Some((noise(force, times, history)?, force.name.as_str())));
     let (value, name) = noises.max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(Indicator::new(value, "-", &format!("`{name}`"), [0.0, USUAL]))
-}
-
-fn is_force(quantity: &Quantity) -> bool {
-    let measured = quantity.measurement();
-    matches!(
-        measured,
-        Measurement::Reaction | Measurement::FootingForce | Measurement::RigidForce
-    ) || measured == Measurement::FootingPressure
 }
 
 /// The largest of its components, each over its own magnitude; those that are next to nothing are not judged.

@@ -3,7 +3,8 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, body, key, loads, one_of};
-use crate::words::{Format, FrameField, LimitedIndicator, Measurement, ProfileQuantity, Side, Word};
+use crate::observables::Observable;
+use crate::words::{Format, FrameField, LimitedIndicator, ProfileQuantity, Side, Word};
 use std::ops::Bound::{Excluded, Included};
 
 pub(super) static OUTPUT: Table = Table {
@@ -111,7 +112,7 @@ pub(super) static HISTORY: Table = Table {
     keys: &[
         key(
             "quantity",
-            Choice(Measurement::WORDS),
+            Choice(Observable::WORDS),
             Required,
             "Quantity that is recorded at every step.",
         )

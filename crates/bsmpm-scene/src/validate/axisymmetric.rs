@@ -1,9 +1,10 @@
 //! Checks rules of axisymmetric cases.
 
-use crate::case::{Case, DrainSite, Face, Geometry, LoadedLine, Quantity, Support};
+use crate::case::{Case, DrainSite, Face, Geometry, LoadedLine, Support};
+use crate::observables::{Aspect, HistorySubject};
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{Measurement, Side, Word};
+use crate::words::{Side, Word};
 
 /// The face at the axis.
 const AXIS: Face = Face { axis: 0, upper: false };
@@ -188,20 +189,19 @@ fn rigid(case: &Case, record: &Record, report: &mut Report<'_>) {
 
 /// Quantities that have no meaning.
 fn quantities(case: &Case, record: &Record, report: &mut Report<'_>) {
-    use Measurement::{AngularMomentum, Moment, RigidMoment, RigidRotation};
     for (history, record) in case.histories.iter().zip(record.records("history")) {
-        let measured = history.quantity.measurement();
-        if matches!(measured, AngularMomentum | Moment | RigidMoment | RigidRotation) {
+        let observable = history.quantity.observable;
+        if observable.has(Aspect::ZeroByAxisymmetry) {
             record.error(
                 "quantity",
                 format!(
-                    "E0243: the quantity \"{measured}\" is zero in every axisymmetric case, because of the symmetry. \
+                    "E0243: the quantity \"{observable}\" is zero in every axisymmetric case, because of the symmetry. \
                      Choose another quantity."
                 ),
                 report,
             );
         }
-        if let Quantity::SectionForces { lines, .. } = &history.quantity {
+        if let HistorySubject::Section { lines, .. } = &history.quantity.subject {
             lines
                 .iter()
                 .for_each(|[from, to]| on_axis([[from[0], from[1]], [to[0], to[1]]], record, report));

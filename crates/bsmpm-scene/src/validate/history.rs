@@ -5,13 +5,14 @@ mod location;
 pub(super) use location::ends;
 
 use super::flow;
-use crate::case::{Body, Check, Column, Face, History, Made, NamedMaterial, PointSelection, Quantity, Support};
+use crate::case::{Body, Check, Column, History, Made, NamedMaterial, PointSelection, Quantity, Support};
 use crate::grid::GridSpec;
 use crate::nearest::{nearest, unknown_name};
+use crate::observables::{Aspect, HistorySubject, Observable, SubjectKeys, SubjectKind};
 use crate::record::Record;
 use crate::report::{Report, shortened};
 use crate::unit::Dimension;
-use crate::words::{Geometry, Measurement, Side, Word};
+use crate::words::{Geometry, Side, Word};
 use bsmpm::model::Regime;
 use location::{at, at_surface, at_x, face, section, within};
 use std::collections::HashSet;
@@ -73,26 +74,23 @@ fn read(
     made: Option<CaseBodies<'_>>,
     report: &mut Report<'_>,
 ) -> Option<History> {
-    let measured: Measurement = record.word("quantity")?;
-    let of_strip = record.gives("of") && measured.is_of_strip();
-    check_keys(record, measured, of_strip, root.word("geometry"), report);
-    check_case(root, record, measured, regime, report);
-    let quantity = match of_strip {
-        true => Quantity::Strip {
-            number: strip(root, record, measured, report)?,
-            measured,
-        },
-        false => quantity(measured, record, root, grid, made, report)?,
+    let observable: Observable = record.word("quantity")?;
+    let of_strip = record.gives("of") && observable.definition().kind.is_of_strip();
+    check_keys(record, observable, of_strip, root.word("geometry"), report);
+    check_case(root, record, observable, regime, report);
+    let subject = match of_strip {
+        true => HistorySubject::Strip(strip(root, record, observable, report)?),
+        false => subject(observable, record, root, grid, made, report)?,
     };
     let name = if record.gives("name") {
         record.text("name")?
     } else {
-        measured.word()
+        observable.word()
     };
     let scale = record.number("scale")?;
     let geometry = root.word("geometry")?;
     Some(History {
-        quantity,
+        quantity: Quantity::new(observable, subject),
         name: name.to_owned(),
         scale,
         geometry,
@@ -103,17 +101,17 @@ fn read(
 /// Refuses keys that have no effect on the quantity, and reports those that it needs and does not have.
 fn check_keys(
     record: &Record,
-    measured: Measurement,
+    observable: Observable,
     of_strip: bool,
     geometry: Option<Geometry>,
     report: &mut Report<'_>,
 ) {
-    let (own, needed) = own_keys(measured, geometry);
+    let SubjectKeys { own, needed } = observable.definition().kind.keys(geometry);
     for key in KEYS.into_iter().filter(|key| record.gives(key)) {
         if own.contains(&key) || needed.contains(&key) || (key == "of" && of_strip) {
             continue;
         }
-        let message = format!("E0642: the key `{key}` has no effect on the quantity \"{measured}\". Remove `{key}`.");
+        let message = format!("E0642: the key `{key}` has no effect on the quantity \"{observable}\". Remove `{key}`.");
         record.error(key, message, report);
     }
     if of_strip && record.gives("face") {
@@ -122,25 +120,25 @@ fn check_keys(
         record.error("of", message, report);
     }
     for key in needed.iter().filter(|key| !record.gives(key) && !of_strip) {
-        let message = format!("E0644: the quantity \"{measured}\" cannot be measured without `{key}`. Add `{key}`.");
+        let message = format!("E0644: the quantity \"{observable}\" cannot be measured without `{key}`. Add `{key}`.");
         report.error(record.origin, &record.path_of(key), message);
     }
 }
 
 /// Refuses a quantity that is zero, or has no meaning, in the case.
-fn check_case(root: &Record, record: &Record, measured: Measurement, regime: Option<Regime>, report: &mut Report<'_>) {
-    if regime == Some(Regime::QuasiStatic) && is_of_motion(measured) {
-        record.error("quantity", needs_dynamics(measured.word()), report);
+fn check_case(root: &Record, record: &Record, observable: Observable, regime: Option<Regime>, report: &mut Report<'_>) {
+    if regime == Some(Regime::QuasiStatic) && observable.has(Aspect::NeedsVelocities) {
+        record.error("quantity", needs_dynamics(observable.word()), report);
     }
-    if measured.is_of_footing() && !root.gives("footing") {
+    if observable.has(Aspect::NeedsFooting) && !root.gives("footing") {
         let message = format!(
-            "E0646: the quantity \"{measured}\" needs a footing, and the case has none. Add [footing], or use \
+            "E0646: the quantity \"{observable}\" needs a footing, and the case has none. Add [footing], or use \
                 another quantity."
         );
         record.consequence("quantity", message, &["footing"], report);
     }
-    if measured.is_of_flow() && !flow::flows(root) {
-        record.error("quantity", needs_flow(measured.word()), report);
+    if observable.has(Aspect::NeedsFlow) && !flow::flows(root) {
+        record.error("quantity", needs_flow(observable.word()), report);
     }
     if record.number("scale") == Some(0.0) {
         record.error(
@@ -149,18 +147,20 @@ fn check_case(root: &Record, record: &Record, measured: Measurement, regime: Opt
             report,
         );
     }
-    if let Some(side) = record.word::<Side>("face").filter(|_| measured.is_of_contact())
+    if let Some(side) = record
+        .word::<Side>("face")
+        .filter(|_| observable.has(Aspect::NeedsContact))
         && !supports(root, side).contains(&Support::Contact)
     {
         let message = format!(
-            "E0646: the quantity \"{measured}\" needs contact, but the boundary `{side}` is not in contact. Set \
+            "E0646: the quantity \"{observable}\" needs contact, but the boundary `{side}` is not in contact. Set \
              boundary.{side} = \"contact\"."
         );
         record.error("face", message, report);
     }
     if let Some(side) = record
         .word::<Side>("face")
-        .filter(|_| measured == Measurement::Reaction)
+        .filter(|_| observable.has(Aspect::NeedsSupport))
         && is_never_held(root, side)
     {
         let message = format!(
@@ -170,7 +170,7 @@ fn check_case(root: &Record, record: &Record, measured: Measurement, regime: Opt
         record.consequence("face", message, &["boundary", "prescribed", "stage"], report);
     }
     let mut sides = Side::ALL.into_iter().flatten();
-    if measured == Measurement::Outflow && !sides.any(|side| supports(root, side).contains(&Support::Outflow)) {
+    if observable.has(Aspect::NeedsOutflow) && !sides.any(|side| supports(root, side).contains(&Support::Outflow)) {
         let message = "E0646: no boundary has the condition \"outflow\", so no material can leave the grid. Set a \
              side in [boundary] to \"outflow\".";
         record.error("quantity", message, report);
@@ -178,7 +178,7 @@ fn check_case(root: &Record, record: &Record, measured: Measurement, regime: Opt
 }
 
 /// Number of the strip that a history is of, if the history has a meaning for it; `None` after an error.
-fn strip(root: &Record, record: &Record, measured: Measurement, report: &mut Report<'_>) -> Option<usize> {
+fn strip(root: &Record, record: &Record, observable: Observable, report: &mut Report<'_>) -> Option<usize> {
     let wanted = record.text("of")?;
     let footing = root
         .records("footing")
@@ -196,9 +196,9 @@ fn strip(root: &Record, record: &Record, measured: Measurement, report: &mut Rep
         return None;
     };
     let (strip, _, key) = strips[number];
-    if measured.is_of_contact() && strip.record(key).is_none() {
+    if observable.has(Aspect::NeedsContact) && strip.record(key).is_none() {
         let message = format!(
-            "E0646: the quantity \"{measured}\" needs frictional contact, but {0} is tied to the ground. Add `{key}` \
+            "E0646: the quantity \"{observable}\" needs frictional contact, but {0} is tied to the ground. Add `{key}` \
              to {0}.",
             strip.path
         );
@@ -258,15 +258,6 @@ pub(super) fn needs_flow(quantity: &str) -> String {
     )
 }
 
-/// Whether it is nothing where nothing has a velocity.
-fn is_of_motion(measured: Measurement) -> bool {
-    use Measurement::*;
-    matches!(
-        measured,
-        Velocity | MeanVelocity | Momentum | AngularMomentum | KineticEnergy | RigidVelocity
-    )
-}
-
 /// Keys that belong to some quantities.
 const KEYS: [&str; 16] = [
     "percentile",
@@ -287,141 +278,53 @@ const KEYS: [&str; 16] = [
     "disc",
 ];
 
-/// The keys that belong to a quantity, and those that it needs.
-fn own_keys(measured: Measurement, geometry: Option<Geometry>) -> (&'static [&'static str], &'static [&'static str]) {
-    use Measurement::*;
-    match measured {
-        Runout => (&["percentile", "material", "body", "box"], &[]),
-        Height => (&["at_x", "material", "body", "box"], &[]),
-        Reaction | Contact | Gap | SlipRate | FrictionPower => (&[], &["face"]),
-        Moment | Work => (&[], &["of"]),
-        RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity => (&[], &["rigid"]),
-        RigidSlip | RigidGap | RigidWork => (&[], &["rigid"]),
-        Displacement => (&[], &["at"]),
-        WaterOutflow => (&["drain", "face"], &[]),
-        Velocity | Stress | PorePressure | ExcessPressure | Porosity | Flux => (&["surface"], &["at"]),
-        SectionForces if geometry == Some(Geometry::Solid) => (&["fixed", "rectangle", "disc"], &[]),
-        SectionForces => (&["fixed"], &["from", "to"]),
-        _ if measured.is_of_part() => (&["material", "body", "box"], &[]),
-        _ => (&[], &[]),
-    }
-}
-
-fn quantity(
-    measured: Measurement,
+/// What an observable is of.
+fn subject(
+    observable: Observable,
     record: &Record,
     root: &Record,
     grid: Option<&GridSpec>,
     made: Option<CaseBodies<'_>>,
     report: &mut Report<'_>,
-) -> Option<Quantity> {
-    use Measurement::*;
-    Some(match measured {
-        Runout | Height | MaxDisplacement | Mass | Momentum | CentreOfMass | AngularMomentum | KineticEnergy
-        | MeanStress | MeanDisplacement | MeanVelocity | PlasticStrain | PorePressures | PressureNoise | Heave => {
-            of_part(measured, record, grid, made, report)?
-        }
-        Displacement | Velocity | Stress | PorePressure | ExcessPressure | Porosity | Flux => {
-            of_place(measured, record, grid, report)?
-        }
-        Reaction | Contact | Gap | SlipRate | FrictionPower => of_face(measured, face(record, root, report)?),
-        SectionForces => {
-            let (lines, round) = section(root, record, grid, report)?;
-            Quantity::SectionForces {
-                lines,
-                round,
-                fixed: record.gives("fixed") && record.flag("fixed")?,
+) -> Option<HistorySubject> {
+    Some(match observable.definition().kind {
+        SubjectKind::Case => HistorySubject::Case,
+        SubjectKind::Part => {
+            let of = counted(record, grid, made, report)?;
+            match observable.has(Aspect::NeedsMass) {
+                true => HistorySubject::Part(weighing(of, record, made, report)?),
+                false => HistorySubject::Part(of),
             }
         }
-        RigidForce | RigidMoment | RigidDisplacement | RigidRotation | RigidVelocity | RigidSlip | RigidGap
-        | RigidWork => Quantity::Rigid {
-            what: measured,
-            body: rigid(record, root, report)?,
-        },
-        WaterOutflow => Quantity::WaterOutflow {
-            drain: flow::drain_of(record, root, report)?,
-        },
-        Front => Quantity::Front,
-        Outflow => Quantity::Outflow,
-        WaterBalance => Quantity::WaterBalance,
-        StressNoise => Quantity::StressNoise,
-        FootingPressure => Quantity::FootingPressure,
-        FootingForce => Quantity::FootingForce,
-        Penetration => Quantity::Penetration,
-        Slip => Quantity::Slip,
-        Energy => Quantity::Energy,
-        Moment | Work => return None,
-    })
-}
-
-/// A quantity of the points that count.
-fn of_part(
-    measured: Measurement,
-    record: &Record,
-    grid: Option<&GridSpec>,
-    made: Option<CaseBodies<'_>>,
-    report: &mut Report<'_>,
-) -> Option<Quantity> {
-    use Measurement::*;
-    let of = counted(record, grid, made, report)?;
-    Some(match measured {
-        Runout => {
+        SubjectKind::Percentile => {
+            let of = counted(record, grid, made, report)?;
             let given = record.gives("percentile");
             let percentile = if given { record.number("percentile")? } else { 100.0 };
-            Quantity::Runout { percentile, of }
+            HistorySubject::Percentile { percentile, of }
         }
-        Height => Quantity::Height {
-            at_x: at_x(record, grid, report)?,
-            of,
+        SubjectKind::Near => {
+            let of = counted(record, grid, made, report)?;
+            let at_x = at_x(record, grid, report)?;
+            HistorySubject::Near { at_x, of }
+        }
+        SubjectKind::MaterialPlace => HistorySubject::Place {
+            at: at(record, grid, report)?,
+            surface: false,
         },
-        MaxDisplacement => Quantity::MaxDisplacement { of },
-        Mass => Quantity::Mass { of },
-        Momentum => Quantity::Momentum { of },
-        CentreOfMass => Quantity::CentreOfMass {
-            of: weighing(of, record, made, report)?,
+        SubjectKind::Place => HistorySubject::Place {
+            at: at(record, grid, report)?,
+            surface: at_surface(record)?,
         },
-        AngularMomentum => Quantity::AngularMomentum { of },
-        KineticEnergy => Quantity::KineticEnergy { of },
-        MeanStress => Quantity::MeanStress { of },
-        MeanDisplacement => Quantity::MeanDisplacement { of },
-        MeanVelocity => Quantity::MeanVelocity { of },
-        PlasticStrain => Quantity::PlasticStrain { of },
-        PorePressures => Quantity::PorePressures { of },
-        PressureNoise => Quantity::PressureNoise { of },
-        Heave => Quantity::Heave { of },
-        _ => return None,
+        SubjectKind::Face => HistorySubject::Face(face(record, root, report)?),
+        SubjectKind::Section => {
+            let (lines, round) = section(root, record, grid, report)?;
+            let fixed = record.gives("fixed") && record.flag("fixed")?;
+            HistorySubject::Section { lines, round, fixed }
+        }
+        SubjectKind::Rigid => HistorySubject::Rigid(rigid(record, root, report)?),
+        SubjectKind::Drain => HistorySubject::Drain(flow::drain_of(record, root, report)?),
+        SubjectKind::Strip => return None,
     })
-}
-
-/// A quantity at a place.
-fn of_place(
-    measured: Measurement,
-    record: &Record,
-    grid: Option<&GridSpec>,
-    report: &mut Report<'_>,
-) -> Option<Quantity> {
-    let at = at(record, grid, report)?;
-    if measured == Measurement::Displacement {
-        return Some(Quantity::Displacement { at });
-    }
-    let surface = at_surface(record)?;
-    Some(match measured {
-        Measurement::Velocity => Quantity::Velocity { at, surface },
-        Measurement::Stress => Quantity::Stress { at, surface },
-        Measurement::PorePressure => Quantity::PorePressure { at, surface },
-        what => Quantity::Pore { what, at, surface },
-    })
-}
-
-/// A quantity of a face of the grid.
-fn of_face(measured: Measurement, face: Face) -> Quantity {
-    match measured {
-        Measurement::Contact => Quantity::Contact { face },
-        Measurement::Gap => Quantity::Gap { face },
-        Measurement::SlipRate => Quantity::SlipRate { face },
-        Measurement::FrictionPower => Quantity::FrictionPower { face },
-        _ => Quantity::Reaction { face },
-    }
 }
 
 /// Number of the rigid body that a history is of.

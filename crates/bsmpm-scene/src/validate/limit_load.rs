@@ -8,10 +8,11 @@ use crate::case::{
     SoughtLoad,
 };
 use crate::grid::GridSpec;
+use crate::observables::{HistorySubject, Observable};
 use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces::name_of_strip;
-use crate::words::{AnalysisType, Geometry, Measurement, Purpose, Side, Support, Word};
+use crate::words::{AnalysisType, Geometry, Purpose, Side, Support, Word};
 use bsmpm::material::LayeredMaterial;
 use bsmpm::stabilisation::Stabilisation;
 
@@ -360,10 +361,7 @@ fn sought(case: &mut Case) -> Vec<SoughtLoad> {
             loads.push(of_footing(case, moved));
             continue;
         }
-        let quantity = Quantity::Strip {
-            number,
-            measured: Measurement::Reaction,
-        };
+        let quantity = Quantity::new(Observable::Reaction, HistorySubject::Strip(number));
         loads.push(recorded(case, quantity, along(&moved.path, 1.0), moved));
     }
     for body in 0..case.rigid.len() {
@@ -379,10 +377,7 @@ fn sought(case: &mut Case) -> Vec<SoughtLoad> {
             width: width_of(case, rigid),
         };
         // The soil pushes it against its motion.
-        let quantity = Quantity::Rigid {
-            what: Measurement::RigidForce,
-            body,
-        };
+        let quantity = Quantity::new(Observable::RigidForce, HistorySubject::Rigid(body));
         loads.push(recorded(case, quantity, along(&moved.path, -1.0), moved));
     }
     loads
@@ -405,19 +400,21 @@ fn of_footing(case: &mut Case, moved: MovedObject) -> SoughtLoad {
     let direction = along(&moved.path, 1.0);
     let part: f64 = direction.iter().zip(normal).map(|(along, normal)| along * normal).sum();
     if part.abs() < ALONG_NORMAL {
-        let quantity = Quantity::Strip {
-            number: 0,
-            measured: Measurement::Reaction,
-        };
+        let quantity = Quantity::new(Observable::Reaction, HistorySubject::Strip(0));
         return recorded(case, quantity, direction, moved);
     }
-    let own = case
-        .histories
-        .iter()
-        .find(|history| matches!(history.quantity, Quantity::FootingPressure | Quantity::FootingForce));
+    let own = case.histories.iter().find(|history| {
+        matches!(
+            history.quantity.observable,
+            Observable::FootingPressure | Observable::FootingForce
+        )
+    });
     match own {
         Some(own) => of_history(&own.clone(), &[1.0], moved),
-        None => recorded(case, Quantity::FootingPressure, vec![1.0], moved),
+        None => {
+            let pressure = Quantity::new(Observable::FootingPressure, HistorySubject::Case);
+            recorded(case, pressure, vec![1.0], moved)
+        }
     }
 }
 

@@ -4,11 +4,12 @@ use super::place;
 use super::rigid;
 use super::site::{normal_of, places};
 use super::strip::{moves, with_body};
-use crate::case::{ActiveLoads, Base, Body, Case, Geometry, Initial, Quantity, Site, Support};
+use crate::case::{ActiveLoads, Base, Body, Case, Geometry, Initial, Site, Support};
 use crate::constants::NEARLY_INCOMPRESSIBLE;
+use crate::observables::{HistorySubject, Observable};
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{AnalysisType, Measurement, Side, Word};
+use crate::words::{AnalysisType, Side, Word};
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::field::pore_water::flow::Given;
@@ -375,12 +376,13 @@ pub(super) fn walls(case: &mut Case, record: &Record, report: &mut Report<'_>) {
     }
     let mut quantities = case.histories.iter().map(|history| &history.quantity);
     let records_percentile =
-        quantities.any(|of| matches!(of, Quantity::Runout { percentile, .. } if *percentile < 100.0));
-    let records_front = case.histories.iter().any(|history| history.quantity == Quantity::Front);
+        quantities.any(|of| matches!(of.subject, HistorySubject::Percentile { percentile, .. } if percentile < 100.0));
+    let mut observables = case.histories.iter().map(|history| history.quantity.observable);
+    let records_front = observables.any(|observable| observable == Observable::Front);
     if records_front && !records_percentile {
         let reason = "a front thinner than a cell runs ahead by 10 to 20 % of the run-out; quantity = \"runout\" with \
                       percentile = 99 is more accurate";
-        report.note("history", Measurement::Front.word(), reason);
+        report.note("history", Observable::Front.word(), reason);
     }
     let given = record
         .record("analysis")

@@ -4,6 +4,7 @@ use crate::case::{
     ActiveLoads, Case, Gravity, NamedMaterial, PointLoad, PointSelection, Quantity, Rigid, Stage, Traction,
 };
 use crate::nearest::unknown_name;
+use crate::observables::{HistorySubject, Observable};
 use crate::record::Record;
 use crate::report::Report;
 use crate::words::Failure;
@@ -247,12 +248,11 @@ fn load_at_once(case: &mut Case, until: f64, steps: u64) {
     case.stages.clear();
     case.flow.iter_mut().for_each(|flow| flow.motion = Motion::Held);
     // Others may be of what is not there.
-    case.histories.retain(|history| {
-        history.quantity
-            == Quantity::MaxDisplacement {
-                of: PointSelection::default(),
-            }
-    });
+    let whole = Quantity::new(
+        Observable::MaxDisplacement,
+        HistorySubject::Part(PointSelection::default()),
+    );
+    case.histories.retain(|history| history.quantity == whole);
     case.analysis.end = end;
     let ramps = (case.gravity.iter_mut().map(|Gravity { ramp, .. }| ramp))
         .chain(case.tractions.iter_mut().map(|Traction { ramp, .. }| ramp))

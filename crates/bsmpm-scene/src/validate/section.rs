@@ -1,7 +1,8 @@
 //! Warns of histories of section forces that include a part of a nearby load.
 
 use super::{place, stage};
-use crate::case::{Case, Quantity, RigidShape, RigidSolid};
+use crate::case::{Case, RigidShape, RigidSolid};
+use crate::observables::HistorySubject;
 use crate::record::Record;
 use crate::report::Report;
 use bsmpm::tensor::Vector;
@@ -121,7 +122,7 @@ struct Beside {
 /// Warns of section forces that have a part of the force of a strip, a rigid body or a load.
 pub(super) fn warn_of_neighbours(case: &Case, root: &Record, report: &mut Report<'_>) {
     for (history, record) in case.histories.iter().zip(root.records("history")) {
-        let Quantity::SectionForces { lines, .. } = &history.quantity else {
+        let HistorySubject::Section { lines, .. } = &history.quantity.subject else {
             continue;
         };
         let Some(cut) = Cut::of(case, lines) else { continue };

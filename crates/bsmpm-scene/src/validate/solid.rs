@@ -1,20 +1,11 @@
 //! Refuses keys that do not apply to the geometry (2-D or 3-D) of a case.
 
 use crate::case::{Case, FaceSupport, Support};
+use crate::observables::{Aspect, Observable};
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{Geometry, Measurement, Side, Word};
+use crate::words::{Geometry, Side, Word};
 use bsmpm::stabilisation::Stabilisation;
-
-/// Quantities of histories that only a plane knows.
-const QUANTITIES: &[Measurement] = &[
-    Measurement::Front,
-    Measurement::Moment,
-    Measurement::RigidMoment,
-    Measurement::RigidRotation,
-    Measurement::StressNoise,
-    Measurement::PressureNoise,
-];
 
 /// Unknowns beyond which there is a warning of a large factor: its fronts are planes of nodes.
 const MANY: u64 = 30_000;
@@ -53,8 +44,8 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
     }
     for history in root.records("history") {
         if let Some(quantity) = history
-            .word::<Measurement>("quantity")
-            .filter(|of| QUANTITIES.contains(of))
+            .word::<Observable>("quantity")
+            .filter(|of| of.has(Aspect::PlaneOnly))
         {
             let message = format!(
                 "E0226: the quantity \"{quantity}\" is not available in 3-D. Delete this history, and evaluate \

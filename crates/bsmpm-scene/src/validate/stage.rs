@@ -4,8 +4,9 @@ mod absorbing;
 
 use super::history::NAMELESS;
 use super::{place, reduction, rigid, sheet, site, strip};
-use crate::case::{ActiveLoads, Body, Case, Face, FaceSupport, LoadedLine, Quantity, Site, Stage, Support};
+use crate::case::{ActiveLoads, Body, Case, Face, FaceSupport, LoadedLine, Site, Stage, Support};
 use crate::nearest::unknown_name;
+use crate::observables::HistorySubject;
 use crate::record::Record;
 use crate::report::{Report, shortened};
 use crate::words::{Geometry, Side, Word};
@@ -491,16 +492,9 @@ fn follow(case: &mut Case, lasting: &[Body]) {
     let first: Vec<Body> = case.bodies_at_start().cloned().collect();
     let mut places = Vec::new();
     for (number, history) in case.histories.iter_mut().enumerate() {
-        match history.quantity {
-            Quantity::Displacement { at }
-            | Quantity::PorePressure { at, .. }
-            | Quantity::Pore { at, .. }
-            | Quantity::Velocity { at, .. }
-            | Quantity::Stress { at, .. } => {
-                history.lasts = place::is_at(lasting, &case.grid, at);
-                places.extend((!place::is_at(&first, &case.grid, at)).then_some((number, at)));
-            }
-            _ => {}
+        if let HistorySubject::Place { at, .. } = history.quantity.subject {
+            history.lasts = place::is_at(lasting, &case.grid, at);
+            places.extend((!place::is_at(&first, &case.grid, at)).then_some((number, at)));
         }
     }
     for stage in &mut case.stages {

@@ -5,6 +5,7 @@ use super::place::{is_beyond, is_in, side_of_bodies};
 use super::site::{AroundStrip, corners, normal_of, places, site};
 use crate::case::{Base, Body, Case, Face, Footing, History, MotionPath, PrescribedMotion, Quantity, Site};
 use crate::grid::GridSpec;
+use crate::observables::{Aspect, HistorySubject, Observable};
 use crate::record::Record;
 use crate::report::Report;
 use crate::surfaces::{name_of_strip, strip_of_face};
@@ -277,10 +278,11 @@ pub(super) fn beside_fixed(case: &Case, report: &mut Report<'_>) {
 
 /// Whether the history is the force of that strip.
 fn is_of_force(history: &History, number: usize, case: &Case) -> bool {
-    match history.quantity {
-        Quantity::Strip { number: of, measured } => of == number && !measured.is_of_contact(),
-        Quantity::Reaction { face } => strip_of_face(case, face) == Some(number),
-        Quantity::FootingPressure | Quantity::FootingForce => case.footing.is_some() && number == 0,
+    let Quantity { observable, subject } = &history.quantity;
+    match *subject {
+        HistorySubject::Strip(of) => of == number && !observable.has(Aspect::NeedsContact),
+        HistorySubject::Face(face) if *observable == Observable::Reaction => strip_of_face(case, face) == Some(number),
+        HistorySubject::Case if observable.has(Aspect::Force) => case.footing.is_some() && number == 0,
         _ => false,
     }
 }

@@ -9,6 +9,7 @@ use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Law, LayeredMaterial, Material, MohrCoulomb};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
+use bsmpm_scene::observables::{HistorySubject, Observable};
 use bsmpm_scene::words::{Factor, Ksp, Pc};
 use bsmpm_scene::{
     Case, Error, Every, Face, GridAxis, Made, Place, PointSelection, Quadrature, Quantity, Site, Support, differences,
@@ -304,9 +305,10 @@ fn the_full_case_in_si() {
     assert_eq!(case.output.times, [0.25, 0.75]);
     assert_eq!(
         case.histories[1].quantity,
-        Quantity::Reaction {
-            face: Face { axis: 1, upper: false }
-        }
+        Quantity::new(
+            Observable::Reaction,
+            HistorySubject::Face(Face { axis: 1, upper: false })
+        )
     );
     let columns: Vec<String> = case
         .histories
@@ -340,22 +342,24 @@ fn the_full_case_in_si() {
     assert_eq!(columns, expected);
     assert_eq!(
         case.histories[6].quantity,
-        Quantity::CentreOfMass {
-            of: PointSelection {
+        Quantity::new(
+            Observable::CentreOfMass,
+            HistorySubject::Part(PointSelection {
                 made: Made::Material(0),
                 within: None
-            }
-        }
+            })
+        )
     );
     let within = Some([[0.0, 0.0, 0.0], [2.0, 1.0, 0.0]]);
     assert_eq!(
         case.histories[4].quantity,
-        Quantity::PressureNoise {
-            of: PointSelection {
+        Quantity::new(
+            Observable::PressureNoise,
+            HistorySubject::Part(PointSelection {
                 made: Made::All,
                 within
-            }
-        }
+            })
+        )
     );
     assert_eq!(
         (case.checks[0].at, case.checks[0].max, case.checks[1].at),

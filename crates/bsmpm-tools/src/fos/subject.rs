@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use bsmpm::field::pore_water::flow::Motion;
+use bsmpm_scene::observables::{HistorySubject, Observable};
 use bsmpm_scene::words::{Geometry, Side, Support, Word};
 use bsmpm_scene::{Case, NamedMaterial, PointSelection, Quantity, Rigid, RigidShape, Traction};
 use serde::Serialize;
@@ -170,9 +171,10 @@ impl Subject {
                 reasons,
             });
         }
-        let whole = Quantity::MaxDisplacement {
-            of: PointSelection::default(),
-        };
+        let whole = Quantity::new(
+            Observable::MaxDisplacement,
+            HistorySubject::Part(PointSelection::default()),
+        );
         let mut recorded: Vec<_> = case
             .histories
             .iter()

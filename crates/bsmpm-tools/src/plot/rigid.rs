@@ -4,8 +4,8 @@ use bsmpm::boundary::RigidBody;
 use bsmpm::interactions::rigid::Outline;
 use bsmpm::tensor::Vector;
 use bsmpm_io::frame::Frame;
-use bsmpm_scene::words::Measurement;
-use bsmpm_scene::{Case, Quantity, surfaces};
+use bsmpm_scene::observables::Observable;
+use bsmpm_scene::{Case, HistorySubject, Quantity, surfaces};
 use std::f64::consts::TAU;
 
 use crate::picture::axes::ChartAxes;
@@ -62,10 +62,10 @@ fn moved(record: &RunRecord, case: &Case, number: usize, body: &RigidBody, frame
             continue;
         }
         let what = match axis {
-            2 => Measurement::RigidRotation,
-            _ => Measurement::RigidDisplacement,
+            2 => Observable::RigidRotation,
+            _ => Observable::RigidDisplacement,
         };
-        let wanted = Quantity::Rigid { what, body: number };
+        let wanted = Quantity::new(what, HistorySubject::Rigid(number));
         let history = case.histories.iter().find(|history| history.quantity == wanted)?;
         let values = record.column(&format!("{}{end}", history.name))?.values;
         moved[axis] = values.get(row)? / history.scale;

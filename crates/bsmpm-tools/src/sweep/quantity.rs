@@ -137,10 +137,7 @@ fn in_words(column: &str, histories: &[History]) -> String {
         let suffix = column.strip_prefix(history.name.as_str());
         suffix.is_some_and(|suffix| suffix.is_empty() || suffix.starts_with('-'))
     });
-    let name = of_column.map_or_else(
-        || column.to_owned(),
-        |history| history.quantity.measurement().to_string(),
-    );
+    let name = of_column.map_or_else(|| column.to_owned(), |history| history.quantity.observable.to_string());
     name.replace('-', " ")
 }
 

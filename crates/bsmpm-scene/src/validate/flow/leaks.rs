@@ -1,14 +1,14 @@
 //! Warns of interfaces and thin walls if the grid cannot resolve the change of pore pressure across them.
 
 use super::is_permeable;
-use crate::case::{Body, Case, Flow, Quantity};
+use crate::case::{Body, Case, Flow};
+use crate::observables::{HistorySubject, Observable};
 use crate::region::Edge;
 use crate::report::Report;
 use crate::validate::gap::cell_at;
 use crate::validate::lines;
 use crate::validate::place::{beyond, is_beyond, is_in};
 use crate::validate::site::normal;
-use crate::words::Measurement;
 use bsmpm::field::pore_water::flow::Soil;
 use std::collections::BTreeMap;
 
@@ -66,15 +66,10 @@ pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 /// Warns of histories of the flux in the cells of a surface.
 fn at_surfaces(case: &Case, report: &mut Report<'_>) {
     for history in &case.histories {
-        let Quantity::Pore {
-            what: Measurement::Flux,
-            at,
-            ..
-        } = history.quantity
-        else {
+        let HistorySubject::Place { at, .. } = history.quantity.subject else {
             continue;
         };
-        if is_near_surface(case, at) {
+        if history.quantity.observable == Observable::Flux && is_near_surface(case, at) {
             report.warn(format!(
                 "W0532: history `{}`: the point {:.3?} m is less than a cell from a surface of the soil, where the \
                  flux is unreliable. Move the point into the soil, or record \"water-outflow\" of the drain.",
