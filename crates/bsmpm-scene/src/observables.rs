@@ -204,6 +204,11 @@ observables! { sample =>
     /// Power that friction dissipates at a face, footing or segment in contact: mean of the step.
     FrictionPower = "friction-power": Face, "W/m", SCALAR, [NeedsContact], [r#"of = "footing""#] =>
         vec![sample.rate(sample.contact().dissipated)];
+    /// Mobilised friction of a face, footing or segment in contact: the tangential part of its `reaction`, divided by
+    /// the friction coefficient times the normal part. It is 1 if all nodes slide in the same direction, and 0 without
+    /// pressure or friction.
+    MobilisedFriction = "mobilised-friction": Face, "-", SCALAR, [NeedsContact], [r#"of = "footing""#] =>
+        vec![sample.mobilised_friction()];
     /// Force of the soil on a rigid body.
     RigidForce = "rigid-force": Rigid, "N/m", VECTOR, [Force], [r#"rigid = "pipe""#] => sample.rigid().force.as_slice()[..D].to_vec();
     /// Moment of the soil on a rigid body about its reference point, positive counter-clockwise.

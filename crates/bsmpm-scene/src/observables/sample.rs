@@ -3,7 +3,7 @@
 use super::place::{FollowedPoint, at_surface, section};
 use super::subject::{Face, HistorySubject};
 use crate::grid::{GridSpec, vector};
-use bsmpm::boundary::{ContactReport, RigidReport, StripReport, Support};
+use bsmpm::boundary::{ContactReport, RigidReport, StripContact, StripReport, Support};
 use bsmpm::error::StepError;
 use bsmpm::field::pore_water::observed::PoreWater;
 use bsmpm::kinematics::Kinematics;
@@ -81,6 +81,12 @@ pub fn displacement_at<const D: usize>(
 /// Whether a support is that of a face.
 fn is_at<const D: usize>(support: &Support<D>, face: Face) -> bool {
     support.axis == face.axis && support.upper == face.upper
+}
+
+/// Unit normal of a face, towards the material.
+fn inward<const D: usize>(face: Face) -> Vector<D> {
+    let sign = if face.upper { -1.0 } else { 1.0 };
+    Vector::from_fn(|axis, _| if axis == face.axis { sign } else { 0.0 })
 }
 
 impl<K: Kinematics<D>, const D: usize> Sample<'_, K, D> {
@@ -211,6 +217,35 @@ impl<K: Kinematics<D>, const D: usize> Sample<'_, K, D> {
             _ => self.strip().and_then(|strip| strip.contact),
         };
         found.unwrap_or_default()
+    }
+
+    /// Tangential part of the reaction, divided by the friction coefficient times the normal part; 0 without pressure
+    /// or friction.
+    pub(super) fn mobilised_friction(&self) -> f64 {
+        let boundary = &self.model.boundary;
+        let contact = match *self.subject {
+            HistorySubject::Strip(number) => boundary.strips.get(number).and_then(|strip| strip.contact),
+            HistorySubject::Face(face) => {
+                let mut supports = boundary.supports.iter().filter(|support| is_at(support, face));
+                let law = supports.find_map(|support| support.contact);
+                law.map(|law| StripContact {
+                    law,
+                    inward: inward(face),
+                })
+            }
+            _ => None,
+        };
+        let Some(StripContact { law, inward }) = contact else {
+            return 0.0;
+        };
+        let force = Vector::<D>::from_column_slice(&self.reaction());
+        let pressing = force.dot(&inward);
+        let limit = law.friction * pressing;
+        if limit > 0.0 {
+            (force - inward * pressing).norm() / limit
+        } else {
+            0.0
+        }
     }
 
     /// Rate of a sum over the step; 0 at the start.

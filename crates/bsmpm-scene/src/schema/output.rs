@@ -142,8 +142,8 @@ pub(super) static HISTORY: Table = Table {
             "face",
             Choice(Side::WORDS),
             Optional,
-            "For reaction, contact, gap, slip-rate and friction-power: the face of the grid. For water-outflow: the \
-             face that is the drain.",
+            "For reaction, contact, gap, slip-rate, friction-power and mobilised-friction: the face of the grid. For \
+             water-outflow: the face that is the drain.",
         )
         .example(r#""left""#),
         key(
@@ -165,7 +165,7 @@ pub(super) static HISTORY: Table = Table {
             Name,
             Optional,
             "For moment and work: name of a [[prescribed]] displacement or of the [footing]. For reaction, contact, \
-             gap, slip-rate and friction-power: alternative to `face`.",
+             gap, slip-rate, friction-power and mobilised-friction: alternative to `face`.",
         )
         .example(r#""footing""#),
         key(

@@ -1,7 +1,7 @@
 //! Compares histories with closed forms.
 
-use crate::support::Scratch;
 use crate::support::results::{all_finite, at, differences, history, last_frame, manifest};
+use crate::support::{Scratch, shipped};
 use bsmpm_io::frame::FieldValues;
 use bsmpm_io::table::{self, Columns};
 use std::fs;
@@ -200,6 +200,29 @@ fn parts_lines_and_places_of_a_column_have_its_weight_on_any_ranks_and_after_a_r
         let name = goes_the_same_way(&scratch, &TABLES, ranks, 1e-8);
         let off = differences(&last_frame(&scratch.path(&name)), &last_frame(&one));
         assert!(off.iter().all(|(_, off)| *off < 1e-8), "{off:?}");
+    }
+}
+
+/// A block on a base whose inclination has the tangent 0.5. At rest it mobilises 0.5 divided by the friction
+/// coefficient. With a friction coefficient below 0.5 it slides, and mobilises all friction.
+#[test]
+fn a_block_on_an_incline_mobilises_its_inclination_over_the_friction_coefficient() {
+    let text = fs::read_to_string(shipped("validation/block_on_incline.toml")).unwrap();
+    let wanted = "\n[[history]]\nquantity = \"mobilised-friction\"\nface = \"bottom\"\n";
+    let scratch = Scratch::with_case(&(text + wanted));
+    for (friction, expected, bound) in [(0.8, 0.625, 1e-3), (0.3, 1.0, 1e-6)] {
+        let set = format!("boundary.bottom={{ friction_coefficient = {friction} }}");
+        let name = format!("friction-{friction}");
+        scratch
+            .mpirun(1, &["case.toml", "-q", "-o", &name, "--set", &set])
+            .expect(0);
+        let rows = history(&scratch.path(&name));
+        let mobilised = at(&rows, "mobilised-friction", 0.5);
+        println!("friction {friction}: mobilised {mobilised:.7}");
+        assert!(
+            (mobilised / expected - 1.0).abs() < bound,
+            "friction {friction}: {mobilised}"
+        );
     }
 }
 
