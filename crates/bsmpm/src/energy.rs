@@ -40,7 +40,7 @@ pub struct Flows<T = f64> {
     pub integration: T,
     /// Loss by smoothing of the elastic strain.
     pub smoothing: T,
-    /// Loss to the soft background.
+    /// Loss to the artificial stiffness.
     pub background: T,
     /// Loss in the penalty between strips and material.
     pub penalty: T,

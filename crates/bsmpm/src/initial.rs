@@ -28,7 +28,7 @@ use crate::step::residual::{Balance, Residual};
 use crate::step::stiffness;
 use crate::tensor::{Symmetric, Tensor, Vector};
 
-/// Corrections of the elastic state: the stiffness includes the soft background, which must carry nothing in the end.
+/// Corrections of the elastic state: the stiffness includes the artificial one, which must carry nothing in the end.
 const CORRECTIONS: usize = 20;
 /// Relative residual of each correction.
 const SOLVED: f64 = 1e-6;

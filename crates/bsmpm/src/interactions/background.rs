@@ -1,5 +1,5 @@
-//! Soft background: a fictitious elastic stiffness of all occupied cells, equation (T2.13) of the theory manual,
-//! because some splines contain almost no material. It resists the displacement of a step or, in steady motion, the
+//! Artificial elastic stiffness of all occupied cells, equation (T2.13) of the theory manual, because some splines
+//! contain almost no material. It resists the displacement of a step or, in steady motion, the
 //! change from the last step (T2.14).
 
 mod form;
@@ -23,7 +23,7 @@ pub struct Background {
     pub coefficient: f64,
 }
 
-/// Displacement that the soft background resists.
+/// Displacement that the artificial stiffness resists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ResistedDisplacement {
     /// The whole displacement of the step.
@@ -33,7 +33,7 @@ pub enum ResistedDisplacement {
     Change,
 }
 
-/// Stiffness blocks of the soft background in one step, one per occupied cell.
+/// Stiffness blocks of the artificial stiffness in one step, one per occupied cell.
 #[derive(Clone, Debug)]
 pub struct Blocks {
     cells: Vec<SoftCell>, // by patch

@@ -90,7 +90,7 @@ pub struct GridState<const D: usize> {
     pub unknowns: usize,
     /// Active nodes without mass, over all ranks.
     pub massless_nodes: usize,
-    /// Cells with the soft background, over all ranks.
+    /// Cells with the artificial stiffness, over all ranks.
     pub background_cells: usize,
     /// Weight at and below which a node counts as massless.
     threshold: f64,

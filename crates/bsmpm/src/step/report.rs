@@ -47,7 +47,7 @@ pub struct StepReport {
     pub unknowns: usize,
     /// Active nodes whose mass is negligible, over all ranks. Their velocity and averages are set to zero.
     pub massless_nodes: usize,
-    /// Cells with the soft background, over all ranks.
+    /// Cells with the artificial stiffness, over all ranks.
     pub background_cells: usize,
     /// Splines that are tied to those of full cells, over all ranks.
     pub tied_functions: usize,
@@ -67,8 +67,8 @@ pub struct StepReport {
     pub rigid: Vec<RigidReport>,
     /// Reports of the rigid strips.
     pub strips: Vec<StripReport>,
-    /// Two works (J), only with a background. First (u - w) . B (u - w) on the soft background, where the background
-    /// does not resist the displacement w. Then the larger of two sums of magnitudes: the works f_int u of all nodes
+    /// Two works (J), only with an artificial stiffness. First (u - w) . B (u - w) on this stiffness, which does not
+    /// resist the displacement w. Then the larger of two sums of magnitudes: the works f_int u of all nodes
     /// and components (background included), and the works of the points' stresses.
     pub background: Option<[f64; 2]>,
     /// Largest force of the background on a node divided by the RMS force of the nodes (-). Only with a background, and

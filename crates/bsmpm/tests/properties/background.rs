@@ -1,4 +1,4 @@
-//! Tests that the soft background resists strain, but neither translation nor rotation.
+//! Tests that the artificial stiffness resists strain, but neither translation nor rotation.
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};

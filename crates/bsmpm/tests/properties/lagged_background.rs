@@ -1,4 +1,4 @@
-//! Tests that in steady motion the soft background resists only changes of the displacement per step.
+//! Tests that in steady motion the artificial stiffness resists only changes of the displacement per step.
 
 use crate::support::scene::{Scene, axis};
 use bsmpm::boundary::{Boundary, Path, RigidBody, Strip, Support, surface};

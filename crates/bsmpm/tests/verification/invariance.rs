@@ -1,4 +1,5 @@
-//! Tests that results do not depend on mirroring, axes, position and units, and depend little on the soft background.
+//! Tests that results do not depend on mirroring, axes, position and units, and depend little on the artificial
+//! stiffness.
 
 use crate::support::scene::{METHODS, Scene, axis, by_id, hencky};
 use bsmpm::boundary::Support;

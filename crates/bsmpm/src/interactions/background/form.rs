@@ -1,4 +1,4 @@
-//! Stiffness matrices of single cells for the soft background (fictitious stiffness).
+//! Matrices of single cells for the artificial stiffness.
 
 use super::integrals::{FormProducts, Integrals};
 use super::tensor::TensorForms;

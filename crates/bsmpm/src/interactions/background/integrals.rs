@@ -1,4 +1,4 @@
-//! Integrals of products of one-dimensional splines, for the stiffness matrix of the soft background.
+//! Integrals of products of one-dimensional splines, for the matrix of the artificial stiffness.
 
 use crate::gauss::GAUSS;
 use crate::grid::shape::with_width;

@@ -1,4 +1,4 @@
-//! Multiplies nodal displacements by the fictitious stiffness of the soft background, in 3-D, for eight cells at a
+//! Multiplies nodal displacements by the artificial stiffness, in 3-D, for eight cells at a
 //! time.
 
 use super::integrals::{Integrals, KINDS};
