@@ -85,9 +85,9 @@ observables! { sample =>
     /// The largest displacement of all material points.
     MaxDisplacement = "max-displacement": Part, "m", SCALAR, [], [] =>
         vec![observe::largest_displacement(sample.points, sample.part, sample.halo)];
-    /// Mass.
+    /// Mass of the material points.
     Mass = "mass": Part, "kg/m", SCALAR, [Sum], [r#"body = "fill""#] => vec![observe::mass(sample.points, sample.part, sample.halo)];
-    /// Momentum.
+    /// Momentum of the material points.
     Momentum = "momentum": Part, "kg/s", VECTOR, [NeedsVelocities, Sum], [r#"body = "fill""#] =>
         observe::momentum(sample.points, sample.part, sample.halo).as_slice().to_vec();
     /// Centre of mass. If there is no material: the lower corner of the grid.
@@ -97,7 +97,7 @@ observables! { sample =>
         let about = observe::angular_momentum(sample.points, sample.part, &-sample.lower, sample.halo);
         about[if D == 3 { 0 } else { 2 }..].to_vec()
     };
-    /// Kinetic energy.
+    /// Kinetic energy of the material points.
     KineticEnergy = "kinetic-energy": Part, "J/m", SCALAR, [NeedsVelocities, Sum], [r#"body = "fill""#] =>
         vec![observe::kinetic_energy(sample.points, sample.part, sample.halo)];
     /// Mean Cauchy stress, positive in tension, weighted with the present volumes of the material points.
@@ -124,8 +124,8 @@ observables! { sample =>
     /// face and a footing or prescribed displacement the force belongs to the face. In water the force is that of
     /// the effective stress and the excess pore pressure.
     Reaction = "reaction": Face, "N/m", VECTOR, [NeedsSupport, Force], [r#"face = "bottom""#] => sample.reaction();
-    /// Moment of the reaction force of a footing or prescribed displacement about its centre, positive counter-
-    /// clockwise.
+    /// Moment of the reaction force of a footing or prescribed displacement about its centre, positive
+    /// counter-clockwise.
     Moment = "moment": Strip, "N", SCALAR, [PlaneOnly, ZeroByAxisymmetry], [r#"of = "footing""#] =>
         vec![sample.strip().map_or(0.0, |strip| strip.moment)];
     /// Work of a footing or prescribed displacement on the soil since the start, computed with the mean force of

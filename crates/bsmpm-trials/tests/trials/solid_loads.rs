@@ -388,7 +388,7 @@ fn eighth(radius: f64, parts: usize, closed: bool) -> String {
 /// Lamé (1852): u(a) = p a^3 ((1 - 2 nu) a + (1 + nu) b^3/(2 a^2))/(E (b^3 - a^3)); a plane of symmetry holds
 /// p pi a^2/4.
 #[test]
-fn a_hollow_sphere_under_pressure_inside_is_lames_by_a_sphere_and_by_triangles() {
+fn a_hollow_sphere_under_internal_pressure_has_the_displacement_of_lame() {
     let a = 0.5_f64;
     let b = 1.0_f64;
     let young = 1e7;

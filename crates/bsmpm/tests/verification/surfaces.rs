@@ -74,7 +74,7 @@ fn surface_points_share_the_length_of_their_segment_cell_by_cell() {
 
 /// Closed form: confined compression of a Hencky material, M ln(l)/l.
 #[test]
-fn a_platens_force_follows_the_exact_curve_across_cells_and_the_points_stress_less_closely() {
+fn the_force_of_a_platen_follows_the_closed_form_across_cells_and_the_stress_of_points_less_closely() {
     // sigma = M ln(l)/l at l = 0.6: the platen crosses from one row of cells to the next, which a moving face cannot.
     // F-bar averages over what little material a nearly empty row of cells holds: its force is off most where the
     // platen has just left one. Bounds of force and of a point's stress, 1.3 times what was measured.

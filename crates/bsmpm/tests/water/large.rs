@@ -81,7 +81,7 @@ fn compare(name: &str, once: f64, found: &[[f64; 2]], expected: &[[f64; 2]]) -> 
 
 /// Independent solution by the method of lines: consolidation at large strain.
 #[test]
-fn a_load_of_half_the_stiffness_settles_as_the_solution_by_lines() {
+fn a_load_of_half_the_stiffness_settles_as_the_method_of_lines_predicts() {
     let load = 0.5 * M;
     let of = |law| consolidated(settling(20, load, law), 5e-3, 135);
     let constant = [
