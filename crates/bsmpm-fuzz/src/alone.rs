@@ -1,13 +1,12 @@
 //! Runs a case on one rank, without MPI and PETSc, for the fuzz targets.
 
 use crate::solver::Skyline;
-use bsmpm::error::{SolveError, StepError};
+use bsmpm::error::StepError;
 use bsmpm::initial;
 use bsmpm::interactions::background::ResistedDisplacement;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Model;
-use bsmpm::parallel::Backend;
-use bsmpm::parallel::{Alone, Krylov, LinearSolver, SolveReport, Symmetry};
+use bsmpm::parallel::{Alone, Backend};
 use bsmpm::points::Points;
 use bsmpm::schedule::TimeInterval;
 use bsmpm::step::{Counts, StepReport, step};
@@ -22,7 +21,7 @@ pub struct SerialRun {
     /// m  nodal displacement that the next step starts from
     pub guess: Vec<f64>,
     halo: Alone,
-    solver: TrustedSolver,
+    solver: Skyline,
 }
 
 impl SerialRun {
@@ -31,7 +30,7 @@ impl SerialRun {
         points.sort_by_cell(&model.grid);
         points.surface = model.boundary.surface();
         let nodes = model.grid.nodes();
-        let solver = TrustedSolver(Skyline::new(&model.grid));
+        let solver = Skyline::new(&model.grid);
         Self {
             model,
             points,
@@ -84,48 +83,5 @@ impl SerialRun {
             },
             &mut counts,
         )
-    }
-}
-
-/// The direct solver with what the trait demands of it: solutions are finite.
-struct TrustedSolver(Skyline);
-
-impl LinearSolver for TrustedSolver {
-    fn reinit(&mut self, free: &[bool]) {
-        self.0.reinit(free);
-    }
-    fn add_block(&mut self, first_node: usize, block: &[f64]) {
-        self.0.add_block(first_node, block);
-    }
-    fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
-        self.0.add_block_among(nodes, block);
-    }
-    fn add_diagonal(&mut self, diagonal: &[f64]) {
-        self.0.add_diagonal(diagonal);
-    }
-    fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
-        self.0.factorise(symmetry)
-    }
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
-        let solved = self.0.solve(rhs, solution)?;
-        finite(solution).map(|()| solved)
-    }
-    fn solve_with(
-        &mut self,
-        product: &mut dyn FnMut(&[f64], &mut [f64]),
-        relative: f64,
-        rhs: &[f64],
-        solution: &mut [f64],
-    ) -> Result<Krylov, SolveError> {
-        let krylov = self.0.solve_with(product, relative, rhs, solution)?;
-        finite(solution).map(|()| krylov)
-    }
-}
-
-fn finite(solution: &[f64]) -> Result<(), SolveError> {
-    if solution.iter().all(|x| x.is_finite()) {
-        Ok(())
-    } else {
-        Err(SolveError::NotFinite)
     }
 }

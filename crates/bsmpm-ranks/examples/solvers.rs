@@ -2,7 +2,8 @@
 //! `mpirun -n 2 solvers direct|mumps|redundant|gamg NU CELLS [PETSc options]`
 
 use bsmpm::grid::{Grid, KnotVector};
-use bsmpm::parallel::{Halo, LinearSolver, Symmetry};
+use bsmpm::linear::{LinearSolver, Symmetry};
+use bsmpm::parallel::Halo;
 use bsmpm_ranks::halo::MpiHalo;
 use bsmpm_ranks::launch;
 use bsmpm_ranks::linear::{Choice, KspSolver};
@@ -84,9 +85,10 @@ fn measure(solver: &mut dyn LinearSolver, grid: &Grid<2>, halo: &dyn Halo, nu: f
     let mut spent = Vec::new();
     for _ in 0..2 {
         let mut start = 0.0;
-        solver.reinit(&free);
+        let matrix = solver.matrix();
+        matrix.reinit(&free);
         for (cell, block) in blocks.iter().enumerate() {
-            solver.add_block(grid.first_node(&grid.cell_at(cell)), block);
+            matrix.add_block(grid.first_node(&grid.cell_at(cell)), block);
         }
         start += cpu_seconds();
         solver.factorise(Symmetry::Definite).expect("a factorisation");

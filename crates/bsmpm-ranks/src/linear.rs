@@ -1,7 +1,6 @@
 //! Assembles linear systems, solves them by PETSc's KSP (Krylov solvers), and checks residuals.
 
 mod choice;
-mod coupled;
 mod cycles;
 mod direct;
 mod dissection;
@@ -11,16 +10,17 @@ mod system;
 mod tally;
 
 pub use choice::{Choice, SPLINE_MULTIGRID, probe};
-pub use coupled::Solvers;
-pub use tally::Tally;
+pub use tally::{Tallies, Tally};
 
 use crate::halo::MpiHalo;
 use crate::stencil::{Numbering, Stencil};
 use crate::timers::Timers;
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
+use bsmpm::linear::{Krylov, LinearSolver, MatrixAssembly, SolveReport, Symmetry};
+use bsmpm::model::Model;
 use bsmpm::nodal::Nodal;
-use bsmpm::parallel::{Halo, Krylov, LinearSolver, SolveReport, Symmetry};
+use bsmpm::parallel::Halo;
 use cycles::CycleSystem;
 use direct::StiffnessOperator;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
@@ -44,31 +44,46 @@ pub struct KspSolver<'p, const D: usize, const C: usize> {
     cycles: Option<CycleSystem<'p, D, C>>, // for spline multigrid
     is_sized: bool,                        // whether the shell system is set up for the present unknowns
     definite: Option<System<'p>>,
-    general: Option<System<'p>>, // for Newton's method
+    general: Option<System<'p>>,             // for Newton's method
+    water: Option<Box<KspSolver<'p, D, 1>>>, // of the pore pressures, if water flows
     tallies: Tallies,
     timers: Rc<Timers>,
 }
 
-/// Outcomes of the solves, by kind of linear system.
-#[derive(Clone, Debug, Default)]
-pub struct Tallies {
-    /// Stiffness that quasi-Newton secants correct.
-    pub definite: Option<Tally>,
-    /// Jacobian of Newton's method.
-    pub general: Option<Tally>,
-    /// Pore pressures.
-    pub water: Option<Tally>,
+impl<'p, const D: usize> KspSolver<'p, D, D> {
+    /// Creates the solver of a model's displacements and, with transient seepage, of its pore pressures.
+    pub fn of_model<K>(
+        petsc: &'p Petsc<'p>,
+        choice: &Choice,
+        model: &Model<K, D>,
+        halo: &Rc<MpiHalo>,
+        timers: &Rc<Timers>,
+    ) -> Self {
+        let grid = &model.grid;
+        let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
+        let water = flows.then(|| {
+            // The functions of degree q - 1 use the numbers of the nodes.
+            let stencil = Stencil::lowered(grid);
+            Box::new(KspSolver::of(
+                petsc,
+                choice.clone(),
+                stencil,
+                grid,
+                Rc::clone(halo),
+                Rc::clone(timers),
+            ))
+        });
+        Self {
+            water,
+            ..Self::new(petsc, choice.clone(), grid, Rc::clone(halo), Rc::clone(timers))
+        }
+    }
 }
 
 impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
     /// Creates a solver for a window of the grid.
     pub fn new(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
         Self::of(petsc, choice, Stencil::new(grid), grid, halo, timers)
-    }
-
-    /// Creates a solver for functions of degree q - 1, which use the numbers of the nodes.
-    fn lowered(petsc: &'p Petsc<'p>, choice: Choice, grid: &Grid<D>, halo: Rc<MpiHalo>, timers: Rc<Timers>) -> Self {
-        Self::of(petsc, choice, Stencil::lowered(grid), grid, halo, timers)
     }
 
     fn of(
@@ -87,34 +102,40 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         } else {
             stencil
         };
-        let free = Vec::new();
-        let numbers = Vec::new();
         Self {
             petsc,
             choice,
             halo,
             grid: grid.clone(),
             stencil,
-            free,
-            numbers,
+            free: Vec::new(),
+            numbers: Vec::new(),
             own: 0,
             shell: None,
             cycles: None,
             is_sized: false,
             definite: None,
             general: None,
+            water: None,
             tallies: Tallies::default(),
             timers,
         }
     }
 
     /// Returns the outcomes of the solves so far.
-    pub fn tallies(&self) -> &Tallies {
-        &self.tallies
+    pub fn tallies(&self) -> Tallies {
+        let water = self.water.as_ref().and_then(|water| water.tallies.definite.clone());
+        Tallies {
+            water,
+            ..self.tallies.clone()
+        }
     }
 
     /// Continues the counts of a former solver of the run.
     pub fn count_on(&mut self, tallies: Tallies) {
+        if let Some(water) = &mut self.water {
+            water.tallies.definite.clone_from(&tallies.water);
+        }
         self.tallies = tallies;
     }
 
@@ -189,20 +210,18 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
 
     /// Sets up nested dissection as KSP's preconditioner and factorises the stiffness. Collective.
     fn set_up_shell(&mut self) -> Result<(), SolveError> {
-        if self.shell.is_none() {
-            self.shell = Some(ShellSystem::new(self.petsc, &self.choice).map_err(failed)?);
-        }
-        let owned = self.halo.owned();
-        let free = &self.free;
-        let is_sized = self.is_sized;
-        if let (Some(shell), false) = (&mut self.shell, is_sized) {
-            let unknowns = owned.places::<C>().filter(|&component| free[component]).collect();
-            shell.resize(unknowns).map_err(failed)?;
+        let shell = match &mut self.shell {
+            Some(shell) => shell,
+            none => none.insert(ShellSystem::new(self.petsc, &self.choice).map_err(failed)?),
+        };
+        if !self.is_sized {
+            let owned = self.halo.owned().places::<C>();
+            shell
+                .resize(owned.filter(|&component| self.free[component]).collect())
+                .map_err(failed)?;
             self.is_sized = true;
         }
-        let Some((shell, matrix, tally)) = self.shell_system() else {
-            return Err(missing());
-        };
+        let (shell, matrix, tally) = self.shell_system().ok_or_else(missing)?;
         shell.set_up(matrix, tally)
     }
 
@@ -238,20 +257,18 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
 
     /// Sets up spline multigrid as KSP's preconditioner for the stiffness. Collective.
     fn set_up_cycles(&mut self) -> Result<(), SolveError> {
-        if self.cycles.is_none() {
-            self.cycles = Some(CycleSystem::new(self.petsc, &self.choice).map_err(failed)?);
-        }
-        let owned = self.halo.owned();
-        let free = &self.free;
-        let is_sized = self.is_sized;
-        if let (Some(cycles), false) = (&mut self.cycles, is_sized) {
-            let unknowns = owned.places::<C>().filter(|&component| free[component]).collect();
-            cycles.resize(unknowns).map_err(failed)?;
+        let cycles = match &mut self.cycles {
+            Some(cycles) => cycles,
+            none => none.insert(CycleSystem::new(self.petsc, &self.choice).map_err(failed)?),
+        };
+        if !self.is_sized {
+            let owned = self.halo.owned().places::<C>();
+            cycles
+                .resize(owned.filter(|&component| self.free[component]).collect())
+                .map_err(failed)?;
             self.is_sized = true;
         }
-        let Some((cycles, matrix, tally)) = self.cycle_system() else {
-            return Err(missing());
-        };
+        let (cycles, matrix, tally) = self.cycle_system().ok_or_else(missing)?;
         cycles.set_up(matrix, tally)
     }
 
@@ -357,7 +374,7 @@ fn missing() -> SolveError {
     SolveError::Failed("no matrix was assembled".into())
 }
 
-impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
+impl<const D: usize, const C: usize> MatrixAssembly for KspSolver<'_, D, C> {
     fn reinit(&mut self, free: &[bool]) {
         let mut changed = [f64::from(self.free != free)];
         self.halo.all_reduce_max(&mut changed);
@@ -385,6 +402,12 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
                     .add_diagonal(node, component, diagonal[Nodal::<C>::at(node, component)]);
             }
         }
+    }
+}
+
+impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
+    fn matrix(&mut self) -> &mut dyn MatrixAssembly {
+        self
     }
 
     fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
@@ -470,5 +493,9 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
         )?;
         spread::<C>(&self.halo, &unknowns, &x, solution);
         Ok(krylov)
+    }
+
+    fn water(&mut self) -> Option<&mut dyn LinearSolver> {
+        self.water.as_deref_mut().map(|water| water as &mut dyn LinearSolver)
     }
 }

@@ -1,7 +1,7 @@
 //! The state of a run on all ranks. Makes steps, moves points between ranks, and balances the load.
 
 use crate::halo::MpiHalo;
-use crate::linear::{Choice, Solvers, Tallies};
+use crate::linear::{Choice, KspSolver, Tallies};
 use crate::load;
 use crate::migrate;
 use crate::migrate::GridPartition;
@@ -90,7 +90,7 @@ pub struct Simulation<'p, K, const D: usize> {
     slabs: Slabs,
     schedule: Schedule,
     stepper: Stepper,
-    solver: Solvers<'p, D>,
+    solver: KspSolver<'p, D, D>,
     steps: u64,
     cost: Cost, // of the last step
     timers: Rc<Timers>,
@@ -118,7 +118,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         points.surface = model.boundary.surface();
         let halo = MpiHalo::new(universe.world(), &slabs, &model.grid, Rc::clone(&timers), requests);
         let halo = Rc::new(halo);
-        let solver = Solvers::new(petsc, &choice, &model, &halo, &timers);
+        let solver = KspSolver::of_model(petsc, &choice, &model, &halo, &timers);
         let stepper = Stepper::new(model.grid.nodes() * D);
         let steps = 0;
         let cost = Cost::default();
@@ -503,7 +503,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         self.halo = Rc::new(halo);
         let halo = Rc::clone(&self.halo);
         let tallies = self.solver.tallies();
-        self.solver = Solvers::new(self.libraries.petsc, &self.choice, &self.model, &halo, &timers);
+        self.solver = KspSolver::of_model(self.libraries.petsc, &self.choice, &self.model, &halo, &timers);
         self.solver.count_on(tallies);
     }
 }

@@ -18,6 +18,7 @@ pub mod initial;
 pub mod interactions;
 pub mod kinematics;
 pub mod lanes;
+pub mod linear;
 pub mod material;
 pub mod method;
 pub mod model;

@@ -15,10 +15,10 @@ pub mod stability;
 pub mod unknowns;
 
 use crate::error::StepError;
-use crate::field::pore_water::{matrix, split};
+use crate::field::pore_water::matrix;
 use crate::kinematics::Kinematics;
+use crate::linear::LinearSolver;
 use crate::method::{Nonlinear, QuasiNewton};
-use crate::parallel::LinearSolver;
 use crate::solve::quasi_newton::SecantMethod;
 use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
@@ -161,10 +161,10 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
         return Err(inverted(problem, &residual, convergence.iterations()).into());
     }
     if problem.nodes.unknowns > 0 && !convergence.is_balanced(&residual.balance, problem) {
-        stiffness::assemble(problem, Some(&residual.trial), solver)?;
+        stiffness::factorise(problem, Some(&residual.trial), solver)?;
         counts.factorisations += 1;
         if let Some(pores) = &problem.nodes.pores {
-            matrix::assemble(problem, pores, &u[problem.nodes.free.len()..], split::system(solver)?)?;
+            matrix::factorise(problem, pores, &u[problem.nodes.free.len()..], solver)?;
             counts.factorisations += 1;
         }
     }

@@ -10,7 +10,7 @@ pub mod extension;
 pub mod nodes;
 pub mod outflow;
 pub mod problem;
-pub mod reduced_system;
+pub mod reduced_matrix;
 pub mod report;
 pub mod residual;
 pub mod smooth;

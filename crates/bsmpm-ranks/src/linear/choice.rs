@@ -1,6 +1,6 @@
 //! Chooses the linear solver and PETSc options.
 
-use bsmpm::parallel::Symmetry;
+use bsmpm::linear::Symmetry;
 use petsc_rs::{Ksp, Matrix, PcFailure, Petsc, ShellPc, Vector};
 
 /// Default options of the factorisation, which the user's options override. MUMPS: ordering by approximate minimum
@@ -84,7 +84,7 @@ impl Choice {
         options
     }
 
-    /// Returns whether directions come from the preconditioner alone, see [`bsmpm::parallel::LinearSolver::is_rough`].
+    /// Returns whether directions come from the preconditioner alone, see [`bsmpm::linear::LinearSolver::is_rough`].
     pub fn is_rough(&self) -> bool {
         self.applications > 0
     }

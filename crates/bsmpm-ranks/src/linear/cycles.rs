@@ -7,7 +7,7 @@ use super::spread;
 use super::system::{MOST_ITERATIONS, failed, trusted};
 use super::tally::Tally;
 use bsmpm::error::SolveError;
-use bsmpm::parallel::{SolveReport, Symmetry};
+use bsmpm::linear::{SolveReport, Symmetry};
 use petsc_rs::{Ksp, NormType, PcFailure, Petsc, ShellPc, Tolerances};
 
 /// Linear system with its solver, which are kept when the unknowns change.

@@ -6,7 +6,7 @@ use super::spread;
 use super::system::{failed, trusted};
 use super::tally::Tally;
 use bsmpm::error::SolveError;
-use bsmpm::parallel::{SolveReport, Symmetry};
+use bsmpm::linear::{SolveReport, Symmetry};
 use petsc_rs::{Ksp, Petsc};
 
 /// Linear system with its solver, which are kept when the unknowns change.

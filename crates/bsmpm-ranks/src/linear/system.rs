@@ -3,7 +3,7 @@
 use super::choice::Choice;
 use super::tally::Tally;
 use bsmpm::error::SolveError;
-use bsmpm::parallel::{Krylov, Symmetry};
+use bsmpm::linear::{Krylov, Symmetry};
 use petsc_rs::{Ksp, Matrix, NormType, Petsc, Product, Tolerances, Vector};
 
 /// Largest accepted relative residual of a solution. It is recomputed, because direct solvers report success for NaN.

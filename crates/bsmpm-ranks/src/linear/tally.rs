@@ -51,3 +51,14 @@ impl Tally {
 
 /// Entry for a solve without a reason on this rank: another rank or PETSc itself failed.
 const UNKNOWN: &str = "ERROR";
+
+/// Outcomes of the solves, by kind of linear system.
+#[derive(Clone, Debug, Default)]
+pub struct Tallies {
+    /// Stiffness that quasi-Newton secants correct.
+    pub definite: Option<Tally>,
+    /// Jacobian of Newton's method.
+    pub general: Option<Tally>,
+    /// Pore pressures.
+    pub water: Option<Tally>,
+}

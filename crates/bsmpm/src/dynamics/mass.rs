@@ -3,7 +3,7 @@
 
 use crate::grid::{Shape, transfer};
 use crate::nodal::Nodal;
-use crate::parallel::{Halo, dots};
+use crate::parallel::{Halo, dot};
 
 /// Nodal mass matrix.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -67,7 +67,7 @@ impl<const D: usize> Mass<'_, D> {
     /// the lumped matrix: one exchange and two reductions per iteration.
     pub fn solve(&self, momentum: Vec<f64>, held: &[Option<f64>]) -> Vec<f64> {
         let mut x = self.by_lumped(momentum.clone());
-        let scale = dots(self.halo, D, &[(&momentum, &x)])[0];
+        let scale = dot(self.halo, D, &momentum, &x);
         x.iter_mut().zip(held).for_each(|(x, held)| *x = held.unwrap_or(*x));
         if self.matrix == MassMatrix::Lumped {
             return x;
@@ -79,20 +79,20 @@ impl<const D: usize> Mass<'_, D> {
             .collect();
         self.clear(&mut left, held);
         let mut towards = self.by_lumped(left.clone());
-        let mut error = dots(self.halo, D, &[(&left, &towards)])[0];
+        let mut error = dot(self.halo, D, &left, &towards);
         for _ in 0..MOST {
             if error <= LEFT * scale {
                 break;
             }
             let mut product = self.times(&towards);
             self.clear(&mut product, held);
-            let along = error / dots(self.halo, D, &[(&towards, &product)])[0];
+            let along = error / dot(self.halo, D, &towards, &product);
             for (c, product) in product.into_iter().enumerate() {
                 x[c] += along * towards[c];
                 left[c] -= along * product;
             }
             let smoothed = self.by_lumped(left.clone());
-            let next = dots(self.halo, D, &[(&left, &smoothed)])[0];
+            let next = dot(self.halo, D, &left, &smoothed);
             towards
                 .iter_mut()
                 .zip(smoothed)

@@ -4,9 +4,10 @@
 use super::{UndeformedState, b_e_of, set_elastic};
 use crate::error::StepError;
 use crate::kinematics::Kinematics;
+use crate::linear::LinearSolver;
 use crate::method::Criteria;
 use crate::model::Model;
-use crate::parallel::{Backend, Halo, LinearSolver};
+use crate::parallel::{Backend, Halo};
 use crate::points::Points;
 use crate::solve::convergence::worst_nodes;
 use crate::solve::found::StepSolution;

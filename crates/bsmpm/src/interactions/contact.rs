@@ -9,9 +9,10 @@ use super::coulomb::{ContactReport, Status, ratio};
 use crate::boundary::{Boundary, Support};
 use crate::exact::Exact;
 use crate::grid::Grid;
+use crate::linear::MatrixAssembly;
 use crate::model::Model;
 use crate::nodal::Nodal;
-use crate::parallel::{Halo, LinearSolver};
+use crate::parallel::Halo;
 use crate::points::MappedPoints;
 use crate::tensor::Vector;
 pub(super) use gap::face_cell;
@@ -178,11 +179,11 @@ impl<const D: usize> Contacts<D> {
     }
 
     /// Adds the stiffness of friction across the direction of slip (3-D).
-    pub fn assemble(&self, solver: &mut dyn LinearSolver, halo: &dyn Halo) {
+    pub fn assemble(&self, matrix: &mut dyn MatrixAssembly, halo: &dyn Halo) {
         let owned = halo.owned();
         for at in self.nodes.iter().filter(|at| owned.contains(at.node)) {
             if let Some(block) = at.resists() {
-                solver.add_block_among(&[at.node], &block);
+                matrix.add_block_among(&[at.node], &block);
             }
         }
     }

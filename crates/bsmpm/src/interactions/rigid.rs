@@ -22,8 +22,9 @@ pub use terrain::Terrain;
 use crate::error::StepError;
 use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
+use crate::linear::MatrixAssembly;
 use crate::nodal::Nodal;
-use crate::parallel::{Halo, LinearSolver};
+use crate::parallel::Halo;
 use crate::tensor::Vector;
 use motion::BodyInStep;
 use nalgebra::Matrix3;
@@ -241,9 +242,9 @@ impl<const D: usize> RigidContacts<D> {
     }
 
     /// Adds the symmetric part of the contact stiffness, with the bodies fixed, to the matrix.
-    pub fn assemble(&self, solver: &mut dyn LinearSolver) {
+    pub fn assemble(&self, matrix: &mut dyn MatrixAssembly) {
         for point in self.points.iter().filter(|point| point.status != ContactStatus::Open) {
-            solver.add_block(point.first_node, &point.block());
+            matrix.add_block(point.first_node, &point.block());
         }
     }
 

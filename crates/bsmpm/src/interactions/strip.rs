@@ -18,8 +18,9 @@ use crate::boundary::surface::{Attachment, Surface, SurfacePoint, on_grid};
 use crate::exact::Exact;
 use crate::field::pore_water::pore_pressure::PorePressure;
 use crate::grid::{Contributions, Grid};
+use crate::linear::MatrixAssembly;
 use crate::nodal::Nodal;
-use crate::parallel::{Halo, LinearSolver};
+use crate::parallel::Halo;
 use crate::schedule::{between, turns};
 use crate::tensor::Vector;
 use contact::ContactState;
@@ -336,9 +337,9 @@ impl<const D: usize> StripConstraints<D> {
     }
 
     /// Adds beta A N_a N_b, in the prescribed directions, to the stiffness.
-    pub fn assemble(&self, solver: &mut dyn LinearSolver) {
+    pub fn assemble(&self, matrix: &mut dyn MatrixAssembly) {
         for (first_node, block) in self.held.iter().filter_map(|held| held.block(self.offsets.len())) {
-            solver.add_block(first_node, &block);
+            matrix.add_block(first_node, &block);
         }
     }
 

@@ -2,8 +2,10 @@
 //! (T7.10).
 
 use crate::error::SolveError;
+use crate::exact::Exact;
 use crate::interactions::rigid::MOTIONS;
-use crate::parallel::{Halo, Krylov, LinearSolver, SolveReport, Symmetry, dots};
+use crate::linear::{Krylov, LinearSolver, MatrixAssembly, SolveReport, Symmetry};
+use crate::parallel::{Halo, local_dot};
 use crate::step::problem::Problem;
 use nalgebra::{DMatrix, DVector};
 
@@ -50,26 +52,14 @@ impl<'a, const D: usize> BorderedSolver<'a, D> {
 
     /// Returns C^T times a nodal array. One reduction.
     fn seen(&self, nodal: &[f64]) -> Vec<f64> {
-        let pairs: Vec<(&[f64], &[f64])> = self.columns.iter().map(|column| (&column[..], nodal)).collect();
-        dots(self.halo, D, &pairs)
+        let sums = self.columns.iter().map(|column| local_dot(self.halo, D, column, nodal));
+        self.halo.reproducible_sum(&sums.collect::<Vec<Exact>>())
     }
 }
 
 impl<const D: usize> LinearSolver for BorderedSolver<'_, D> {
-    fn reinit(&mut self, free: &[bool]) {
-        self.solver.reinit(free);
-    }
-
-    fn add_block(&mut self, first_node: usize, block: &[f64]) {
-        self.solver.add_block(first_node, block);
-    }
-
-    fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
-        self.solver.add_block_among(nodes, block);
-    }
-
-    fn add_diagonal(&mut self, diagonal: &[f64]) {
-        self.solver.add_diagonal(diagonal);
+    fn matrix(&mut self) -> &mut dyn MatrixAssembly {
+        self.solver.matrix()
     }
 
     fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {

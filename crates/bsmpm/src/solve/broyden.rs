@@ -1,6 +1,7 @@
 //! Broyden's quasi-Newton direction in product form, theory-manual equation (T5.12); for shortened corrections (T5.13).
 
-use crate::parallel::{Halo, dots};
+use crate::exact::Exact;
+use crate::parallel::{Halo, local_dot};
 
 /// Denominator 1 - a g below which the update is nearly singular and the history is discarded.
 const SINGULAR: f64 = 0.1;
@@ -77,10 +78,10 @@ impl Broyden {
     fn complete_products<const D: usize>(&mut self, w: &[f64], halo: &dyn Halo) {
         let last = self.steps.len() - 1;
         let s = self.steps[last].s.as_slice();
-        let with_w = self.steps.iter().map(|step| (step.s.as_slice(), w));
-        let with_z = self.steps[..last].iter().map(|step| (s, step.z.as_slice()));
-        let pairs: Vec<_> = with_w.chain([(s, s)]).chain(with_z).collect();
-        self.with_w = dots(halo, D, &pairs);
+        let with_w = self.steps.iter().map(|step| local_dot(halo, D, &step.s, w));
+        let with_s = self.steps[..last].iter().map(|step| local_dot(halo, D, s, &step.z));
+        let sums: Vec<Exact> = with_w.chain([local_dot(halo, D, s, s)]).chain(with_s).collect();
+        self.with_w = halo.reproducible_sum(&sums);
         let mut of_last = self.with_w.split_off(last + 1);
         self.gram.push(of_last.split_off(1));
         self.steps[last].s_squared = of_last[0];

@@ -2,7 +2,8 @@
 
 use crate::error::SolveError;
 use crate::exact::Exact;
-use crate::parallel::{Halo, Krylov};
+use crate::linear::Krylov;
+use crate::parallel::Halo;
 use crate::solve::unknowns::Unknowns;
 
 /// Largest number of products of one solution; each stores a basis vector and a direction.

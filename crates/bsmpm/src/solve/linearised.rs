@@ -6,13 +6,13 @@ use crate::error::SolveError;
 use crate::field::pore_water::linearised::WaterTangent;
 use crate::grid::transfer;
 use crate::kinematics::{Gradient, GradientModuli, Kinematics, Slope};
+use crate::linear::{LinearSolver, MatrixAssembly, Symmetry};
 use crate::material::Tangent;
-use crate::parallel::{LinearSolver, Symmetry};
 use crate::step::adjoint::{Adjoint, Pressures, transposed, works};
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, DilationForce, Dilations, Share};
 use crate::step::problem::Problem;
-use crate::step::reduced_system::ReducedSystem;
+use crate::step::reduced_matrix;
 use crate::step::residual::Residual;
 use crate::step::trial::DeformationIncrement;
 use crate::tensor::{Tensor, Vector};
@@ -274,18 +274,20 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
     /// Assembles and factorises the preconditioner of the product. It is the complete derivative except for the F-bar
     /// average where this couples nodes beyond the sparsity pattern. One exchange with the neighbours otherwise.
     pub fn factorise(&self, solver: &mut dyn LinearSolver) -> Result<(), SolveError> {
-        let Problem { model, nodes, halo, .. } = *self.problem;
-        let Some(extension) = &nodes.extension else {
-            return self.factorise_in(solver);
-        };
-        self.factorise_in(&mut ReducedSystem::new(solver, extension, &model.grid, halo))
+        self.assemble(solver.matrix());
+        solver.factorise(Symmetry::General)
     }
 
-    fn factorise_in(&self, solver: &mut dyn LinearSolver) -> Result<(), SolveError> {
+    /// Assembles the matrix of [`ForceTangent::factorise`].
+    pub fn assemble(&self, matrix: &mut dyn MatrixAssembly) {
+        reduced_matrix::assemble(self.problem, matrix, |matrix| self.assemble_into(matrix));
+    }
+
+    fn assemble_into(&self, matrix: &mut dyn MatrixAssembly) {
         let Problem {
             shape, nodes, points, ..
         } = *self.problem;
-        solver.reinit(&nodes.free);
+        matrix.reinit(&nodes.free);
         let size = shape.offsets().len();
         let mut slopes = [K::Gradient::NO_SLOPE; MOST];
         let slopes = &mut slopes[..size];
@@ -315,12 +317,12 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
                 &self.problem.points.mass,
                 &mut block,
             );
-            solver.add_block(patch.first_node, &block);
+            matrix.add_block(patch.first_node, &block);
         }
         if let Some(coupling) = coupling {
-            coupling.assemble(self.problem.halo, solver);
+            coupling.assemble(self.problem.halo, matrix);
         }
-        complete(self.problem, solver, Symmetry::General)
+        complete(self.problem, matrix);
     }
 
     /// Returns the moduli of point `p` and its flux per unit of d ln(dJ-bar/dJ) for a local force in place of the

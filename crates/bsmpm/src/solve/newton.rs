@@ -4,8 +4,9 @@
 use crate::error::{SolveError, StepError};
 use crate::field::pore_water::newton::{Exact, Scales, direction as coupled};
 use crate::kinematics::Kinematics;
+use crate::linear::{Krylov, LinearSolver};
 use crate::method::Method;
-use crate::parallel::{Krylov, LinearSolver, dots};
+use crate::parallel::dot;
 use crate::solve::convergence::{Convergence, first_energy, inverted};
 use crate::solve::evaluate;
 use crate::solve::fgmres;
@@ -134,7 +135,7 @@ fn direction<K: Kinematics<D>, const D: usize>(
     if krylov.residual >= USELESS {
         return Err(SolveError::Residual(krylov.residual));
     }
-    let energy = dots(problem.halo, D, &[(&du, &residual.balance.f_oob)])[0];
+    let energy = dot(problem.halo, D, &du, &residual.balance.f_oob);
     Ok((du, energy))
 }
 
@@ -149,7 +150,7 @@ fn around_stiffness<K: Kinematics<D>, const D: usize>(
     let halo = problem.halo;
     let f = &residual.balance.f_oob;
     let linearised = ForceTangent::at(problem, residual);
-    stiffness::assemble(problem, Some(&residual.trial), solver)?;
+    stiffness::factorise(problem, Some(&residual.trial), solver)?;
     let unknowns = Unknowns::of::<D>(&problem.nodes.free, halo);
     let mut nodal = vec![0.0; f.len()];
     let mut image = vec![0.0; f.len()];

@@ -4,8 +4,9 @@ use crate::error::{SolveError, StepError};
 use crate::field::pore_water::follow::Follow;
 use crate::field::pore_water::split::Split;
 use crate::kinematics::Kinematics;
+use crate::linear::{LinearSolver, SolveReport};
 use crate::method::{Method, QuasiNewton};
-use crate::parallel::{Halo, LinearSolver, SolveReport, dots};
+use crate::parallel::{Halo, dot};
 use crate::solve::broyden::Broyden;
 use crate::solve::convergence::{Convergence, first_energy, inverted};
 use crate::solve::evaluate;
@@ -106,7 +107,7 @@ impl Secants {
             }
             Self::Broyden(secants) => {
                 let du = secants.correct::<D>(w, halo);
-                let energy = dots(halo, D, &[(&du, f)])[0];
+                let energy = dot(halo, D, &du, f);
                 (du, energy)
             }
         };
@@ -205,7 +206,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         }
         // The direction's own energy is a sum of products with secants, which has a different round-off.
         let work = stability::is_decisive(problem, &residual.balance)
-            .then(|| dots(problem.halo, D, &[(&direction.du, &residual.balance.f_oob)])[0]);
+            .then(|| dot(problem.halo, D, &direction.du, &residual.balance.f_oob));
         let of_water = convergence.water(&residual.balance).unwrap_or(0.0);
         if let Some(pores) = &problem.nodes.pores {
             follow.tame(problem, pores, &u, &mut direction.du, of_water);

@@ -4,7 +4,7 @@
 use crate::error::StepError;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
-use crate::parallel::dots;
+use crate::parallel::local_dot;
 use crate::solve::convergence::Convergence;
 use crate::stabilisation::Stabilisation;
 use crate::step::problem::Problem;
@@ -46,7 +46,8 @@ pub fn check<K: Kinematics<D>, const D: usize>(
     let Some(before) = work.filter(|_| after.measure() < NEAR) else {
         return Ok(());
     };
-    let sums = dots(problem.halo, D, &[(du, &after.f_oob), (du, du)]);
+    let halo = problem.halo;
+    let sums = halo.reproducible_sum(&[&after.f_oob, du].map(|with| local_dot(halo, D, du, with)));
     let work = before - sums[0];
     if is_negative(work, sums[1].sqrt(), convergence.round_off() * bulkiness(problem.model)) {
         return Err(StepError::Unstable {

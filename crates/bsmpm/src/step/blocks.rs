@@ -2,12 +2,11 @@
 //! and rigid bodies.
 
 use crate::dynamics::mass::{MassMatrix, SHARE};
-use crate::error::SolveError;
 use crate::grid::Shape;
 use crate::grid::shape::Patch;
 use crate::kinematics::{Gradient, GradientModuli, Kinematics, Slope};
+use crate::linear::MatrixAssembly;
 use crate::nodal::Nodal;
-use crate::parallel::{LinearSolver, Symmetry};
 use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 
@@ -48,16 +47,12 @@ pub fn add_point<K: Kinematics<D>, const D: usize>(
     }
 }
 
-/// Adds strips, rigid bodies and inertia to a matrix with assembled patches, and factorises it.
-pub fn complete<K: Kinematics<D>, const D: usize>(
-    problem: &Problem<'_, K, D>,
-    solver: &mut dyn LinearSolver,
-    symmetry: Symmetry,
-) -> Result<(), SolveError> {
+/// Adds strips, rigid bodies and inertia to a matrix with assembled patches.
+pub fn complete<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, matrix: &mut dyn MatrixAssembly) {
     let nodes = problem.nodes;
-    problem.attachments.assemble(solver);
-    nodes.rigid.assemble(solver);
-    nodes.contacts.assemble(solver, problem.halo);
+    problem.attachments.assemble(matrix);
+    nodes.rigid.assemble(matrix);
+    nodes.contacts.assemble(matrix, problem.halo);
     if let Some(inertia) = &nodes.inertia {
         let factors = (0..nodes.free.len()).map(|c| match problem.model.mass {
             MassMatrix::Lumped => inertia.factor_of(c),
@@ -71,9 +66,8 @@ pub fn complete<K: Kinematics<D>, const D: usize>(
             .dashpots
             .stiffness(inertia)
             .for_each(|(component, stiffness)| diagonal[component] += stiffness);
-        solver.add_diagonal(&diagonal);
+        matrix.add_diagonal(&diagonal);
     }
-    solver.factorise(symmetry)
 }
 
 /// Adds the off-diagonal mass of a patch if the mass is consistent; [`complete`] adds the diagonal.

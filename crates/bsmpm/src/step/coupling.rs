@@ -1,8 +1,9 @@
 //! Stiffness of the F-bar average: the third term of theory-manual equation (T5.8), with the sums (T5.9).
 
 use crate::grid::{Contributions, Grid, Shape, digit};
+use crate::linear::MatrixAssembly;
 use crate::model::Model;
-use crate::parallel::{Halo, LinearSolver, OwnedNodes};
+use crate::parallel::{Halo, OwnedNodes};
 use crate::step::nodes::GridState;
 use crate::tensor::Vector;
 
@@ -146,7 +147,7 @@ impl<'a, const D: usize> Coupling<'a, D> {
 
     /// Adds the products g f^T of all functions to a matrix, each on the rank that owns the first of its nodes. One
     /// exchange with the neighbours for every group, and one more if functions are merged.
-    pub fn assemble(&self, halo: &dyn Halo, solver: &mut dyn LinearSolver) {
+    pub fn assemble(&self, halo: &dyn Halo, matrix: &mut dyn MatrixAssembly) {
         let grid = self.grid;
         let degree = self.grid.order() - 1;
         for sums in &self.cells.sums {
@@ -155,7 +156,7 @@ impl<'a, const D: usize> Coupling<'a, D> {
                 self.cells.side,
                 |_, number| Some(number as isize - degree as isize),
                 halo,
-                solver,
+                matrix,
             );
         }
         let Some((merged, pairs)) = self.lower.merger().zip(self.pairs.as_ref()) else {
@@ -168,7 +169,7 @@ impl<'a, const D: usize> Coupling<'a, D> {
                 pairs.side,
                 |axis, number| merged.first_cell(axis, number).map(|cell| cell as isize),
                 halo,
-                solver,
+                matrix,
             );
         }
     }
@@ -181,7 +182,7 @@ impl<'a, const D: usize> Coupling<'a, D> {
         side: usize,
         first: impl Fn(usize, usize) -> Option<isize>,
         halo: &dyn Halo,
-        solver: &mut dyn LinearSolver,
+        matrix: &mut dyn MatrixAssembly,
     ) {
         let width = sums.width();
         let grid = self.grid;
@@ -227,7 +228,7 @@ impl<'a, const D: usize> Coupling<'a, D> {
                 let scaled = factor / weight * f;
                 block.extend(g.iter().map(|g| scaled * g));
             }
-            solver.add_block_among(&nodes, &block);
+            matrix.add_block_among(&nodes, &block);
         }
     }
 }

@@ -4,7 +4,7 @@
 //!
 //! - [`Extension::extend`] sets the tied displacements.
 //! - [`Extension::reduce`] moves nodal forces of tied splines to the unknowns.
-//! - [`reduced_system`](super::reduced_system) forms the matrices E^T K E (T2.12).
+//! - [`reduced_matrix`](super::reduced_matrix) forms the matrices E^T K E (T2.12).
 //!
 //! A *published* tie is used by several ranks. All ranks know it and exchange its displacement and force.
 

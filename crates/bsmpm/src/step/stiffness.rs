@@ -6,40 +6,46 @@ use crate::error::SolveError;
 use crate::grid::shape::Patch;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::{Gradient, GradientModuli, Kinematics, Moment, Slope};
+use crate::linear::{LinearSolver, MatrixAssembly, Symmetry};
 use crate::material::Moduli;
 use crate::material::Stiffness;
 use crate::model::Model;
-use crate::parallel::{LinearSolver, Symmetry};
 use crate::points::Points;
 use crate::step::blocks::{MOST, Pairs, add_mass, add_point, complete};
 use crate::step::coupling::{Coupling, DilationForce, Dilations, Share};
 use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
-use crate::step::reduced_system::ReducedSystem;
+use crate::step::reduced_matrix;
 use crate::step::trial::DeformationIncrement;
 use crate::tensor::{Tensor, Vector};
 use nalgebra::SMatrix;
 use rayon::prelude::*;
 
-/// Assembles K_0 patch by patch into `solver` and factorises it, at the state `at`, or for `None` of elastic material
-/// without averaged dilation. One exchange with the neighbours if the average couples patches.
-pub fn assemble<K: Kinematics<D>, const D: usize>(
+/// Assembles K_0 as [`assemble`] does, and factorises it.
+pub fn factorise<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     at: Option<&DeformationIncrement<K, D>>,
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
-    let Some(extension) = &problem.nodes.extension else {
-        return assemble_into(problem, at, solver);
-    };
-    let mut reduced = ReducedSystem::new(solver, extension, &problem.model.grid, problem.halo);
-    assemble_into(problem, at, &mut reduced)
+    assemble(problem, at, solver.matrix());
+    solver.factorise(Symmetry::Definite)
+}
+
+/// Assembles K_0 patch by patch at the state `at`, or for `None` of elastic material without averaged dilation. One
+/// exchange with the neighbours if the average couples patches.
+pub fn assemble<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    at: Option<&DeformationIncrement<K, D>>,
+    matrix: &mut dyn MatrixAssembly,
+) {
+    reduced_matrix::assemble(problem, matrix, |matrix| assemble_into(problem, at, matrix));
 }
 
 fn assemble_into<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     at: Option<&DeformationIncrement<K, D>>,
-    solver: &mut dyn LinearSolver,
-) -> Result<(), SolveError> {
+    matrix: &mut dyn MatrixAssembly,
+) {
     let Problem {
         model,
         shape,
@@ -49,7 +55,7 @@ fn assemble_into<K: Kinematics<D>, const D: usize>(
         ..
     } = *problem;
     let volume = problem.volume();
-    solver.reinit(&nodes.free);
+    matrix.reinit(&nodes.free);
     let damping = Damping::of(model, nodes);
     let mut coupling = at.and_then(|_| Coupling::of(model, nodes, DilationForce::Along));
     // Each thread computes columns of patches; the results are added in the order of the patches.
@@ -71,16 +77,16 @@ fn assemble_into<K: Kinematics<D>, const D: usize>(
             .collect();
         let patches = columns.iter().flat_map(|column| column.patches.clone());
         for (patch, part) in patches.zip(parts.into_iter().flatten()) {
-            solver.add_block(shape.patches()[patch].first_node, &part.block);
+            matrix.add_block(shape.patches()[patch].first_node, &part.block);
             if let (Some(coupling), Some(dilations)) = (&mut coupling, &part.dilations) {
                 coupling.add(patch, dilations);
             }
         }
     }
     if let Some(coupling) = coupling {
-        coupling.assemble(halo, solver);
+        coupling.assemble(halo, matrix);
     }
-    complete(problem, solver, Symmetry::Definite)
+    complete(problem, matrix);
 }
 
 /// Bytes of blocks that are stored before they are added; threads synchronise once per this amount.

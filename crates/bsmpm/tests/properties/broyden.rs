@@ -2,8 +2,9 @@
 
 use crate::support::random::Random;
 use crate::support::solver::Skyline;
+use bsmpm::linear::{LinearSolver, Symmetry};
 use bsmpm::method::QuasiNewton;
-use bsmpm::parallel::{Alone, LinearSolver, Symmetry};
+use bsmpm::parallel::Alone;
 use bsmpm::solve::quasi_newton::Secants;
 use nalgebra::{DMatrix, DVector};
 
@@ -17,8 +18,8 @@ fn stiffness(random: &mut Random) -> DMatrix<f64> {
 /// The solver with `K` as its one patch.
 fn factorised(K: &DMatrix<f64>) -> Skyline {
     let mut solver = Skyline::of_patches(1, (0..N).collect());
-    solver.reinit(&[true; N]);
-    solver.add_block(0, K.transpose().as_slice());
+    solver.matrix().reinit(&[true; N]);
+    solver.matrix().add_block(0, K.transpose().as_slice());
     solver.factorise(Symmetry::Definite).unwrap();
     solver
 }

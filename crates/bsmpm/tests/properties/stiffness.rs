@@ -123,9 +123,8 @@ fn products<K: Kinematics<D>, const D: usize>(
     let mut product = vec![0.0; v.len()];
     match kind {
         Kind::Factorised => stiffness::assemble(&pieces, Some(&residual.trial), &mut matrix),
-        Kind::General => derivative.factorise(&mut matrix),
+        Kind::General => derivative.assemble(&mut matrix),
     }
-    .expect("a matrix");
     derivative.multiply(&v, &mut product);
     let image = matrix.multiply(&v);
     (matrix, image, product)

@@ -2,18 +2,103 @@
 
 use bsmpm::error::SolveError;
 use bsmpm::grid::Grid;
-use bsmpm::parallel::{Krylov, LinearSolver, SolveReport, Symmetry};
+use bsmpm::linear::{Krylov, LinearSolver, MatrixAssembly, SolveReport, Symmetry};
 use nalgebra::{DMatrix, DVector};
 
+/// Numbers of the unknowns, and which of them a block couples.
+#[derive(Clone, Debug)]
+struct Unknowns {
+    components: usize,          // per node
+    offsets: Vec<usize>,        // of a patch's nodes from its first one
+    number: Vec<Option<usize>>, // of the unknown, per nodal component
+}
+
+/// Entry of a matrix.
+struct Entry {
+    row: usize,
+    column: usize,
+    value: f64,
+}
+
+impl Unknowns {
+    fn of_patches(components: usize, offsets: Vec<usize>) -> Self {
+        Self {
+            components,
+            offsets,
+            number: Vec::new(),
+        }
+    }
+
+    /// Numbers the free components; returns their count.
+    fn renumber(&mut self, free: &[bool]) -> usize {
+        let mut count = 0;
+        let numbered = free.iter().map(|&free| {
+            count += usize::from(free);
+            free.then(|| count - 1)
+        });
+        self.number = numbered.collect();
+        count
+    }
+
+    /// Returns the nodes of the patch with this first node.
+    fn patch(&self, first_node: usize) -> Vec<usize> {
+        self.offsets.iter().map(|offset| first_node + offset).collect()
+    }
+
+    /// Returns the entries of a dense row-major block of `nodes`.
+    fn entries_among(&self, nodes: &[usize], block: &[f64]) -> Vec<Entry> {
+        let of_node = |&node: &usize| (0..self.components).map(move |c| node * self.components + c);
+        let unknowns: Vec<_> = nodes.iter().flat_map(of_node).map(|c| self.number[c]).collect();
+        let mut entries = Vec::new();
+        for (row, values) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
+            for (column, &value) in unknowns.iter().zip(values) {
+                if let (&Some(row), &Some(column)) = (row, column) {
+                    entries.push(Entry { row, column, value });
+                }
+            }
+        }
+        entries
+    }
+
+    /// Returns the entries of a diagonal.
+    fn entries_of_diagonal(&self, diagonal: &[f64]) -> Vec<Entry> {
+        let numbered = self.number.iter().zip(diagonal);
+        numbered
+            .filter_map(|(number, &value)| {
+                number.map(|row| Entry {
+                    row,
+                    column: row,
+                    value,
+                })
+            })
+            .collect()
+    }
+
+    /// Returns the values of a nodal array at the unknowns.
+    fn packed(&self, nodal: &[f64]) -> Vec<f64> {
+        let at = |(number, value): (&Option<usize>, &f64)| number.map(|_| *value);
+        self.number.iter().zip(nodal).filter_map(at).collect()
+    }
+
+    /// Fills a nodal array with the values `x` of the unknowns, and zero elsewhere. Fails if a value is not finite.
+    fn unpack(&self, x: &[f64], nodal: &mut [f64]) -> Result<(), SolveError> {
+        for (number, value) in self.number.iter().zip(nodal) {
+            *value = number.map_or(0.0, |i| x[i]);
+        }
+        x.iter()
+            .all(|x| x.is_finite())
+            .then_some(())
+            .ok_or(SolveError::NotFinite)
+    }
+}
+
 /// Direct solver: L D L^T within the profile of the lower triangle. Without square roots its rounding does not depend
-/// on the unit of stiffness. Refuses a matrix that is not positive definite.
+/// on the unit of stiffness. Refuses a matrix that is not positive definite, and a solution that is not finite.
 #[derive(Clone, Debug)]
 pub struct Skyline {
-    components: usize,
-    offsets: Vec<usize>,
-    number: Vec<Option<usize>>, // of the unknown, per nodal component
-    first: Vec<usize>,          // first column of each row's profile
-    entries: Vec<f64>,          // row-major square: the matrix, then L below the diagonal and D on it
+    unknowns: Unknowns,
+    first: Vec<usize>, // first column of each row's profile
+    entries: Vec<f64>, // row-major square: the matrix, then L below the diagonal and D on it
     water: Option<Box<Skyline>>,
 }
 
@@ -30,9 +115,7 @@ impl Skyline {
     /// For patches whose nodes stand at `offsets` from their first one, with `components` unknowns a node.
     pub fn of_patches(components: usize, offsets: Vec<usize>) -> Self {
         Self {
-            components,
-            offsets,
-            number: Vec::new(),
+            unknowns: Unknowns::of_patches(components, offsets),
             first: Vec::new(),
             entries: Vec::new(),
             water: None,
@@ -43,8 +126,9 @@ impl Skyline {
         self.first.len()
     }
 
-    fn add_entry(&mut self, row: usize, column: usize, value: f64) {
-        if column <= row {
+    /// Adds the entries of the lower triangle.
+    fn add(&mut self, entries: Vec<Entry>) {
+        for Entry { row, column, value } in entries.into_iter().filter(|entry| entry.column <= entry.row) {
             let at = row * self.size() + column;
             self.first[row] = self.first[row].min(column);
             self.entries[at] += value;
@@ -52,48 +136,29 @@ impl Skyline {
     }
 }
 
-/// Numbers the free components; their count.
-fn number(free: &[bool], numbers: &mut Vec<Option<usize>>) -> usize {
-    let mut count = 0;
-    let numbered = free.iter().map(|&free| {
-        count += usize::from(free);
-        free.then(|| count - 1)
-    });
-    *numbers = numbered.collect();
-    count
-}
-
-impl LinearSolver for Skyline {
+impl MatrixAssembly for Skyline {
     fn reinit(&mut self, free: &[bool]) {
-        let count = number(free, &mut self.number);
+        let count = self.unknowns.renumber(free);
         self.first = (0..count).collect();
         self.entries = vec![0.0; count * count];
     }
 
     fn add_block(&mut self, first_node: usize, block: &[f64]) {
-        let nodes: Vec<usize> = self.offsets.iter().map(|offset| first_node + offset).collect();
-        self.add_block_among(&nodes, block);
+        self.add_block_among(&self.unknowns.patch(first_node), block);
     }
 
     fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
-        let components = self.components;
-        let of_node = |&node: &usize| (0..components).map(move |c| node * components + c);
-        let unknowns: Vec<_> = nodes.iter().flat_map(of_node).map(|c| self.number[c]).collect();
-        for (row, values) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
-            for (column, value) in unknowns.iter().zip(values) {
-                if let (Some(row), Some(column)) = (row, column) {
-                    self.add_entry(*row, *column, *value);
-                }
-            }
-        }
+        self.add(self.unknowns.entries_among(nodes, block));
     }
 
     fn add_diagonal(&mut self, diagonal: &[f64]) {
-        for (component, value) in diagonal.iter().enumerate() {
-            if let Some(row) = self.number[component] {
-                self.add_entry(row, row, *value);
-            }
-        }
+        self.add(self.unknowns.entries_of_diagonal(diagonal));
+    }
+}
+
+impl LinearSolver for Skyline {
+    fn matrix(&mut self) -> &mut dyn MatrixAssembly {
+        self
     }
 
     fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
@@ -124,8 +189,7 @@ impl LinearSolver for Skyline {
 
     fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         let n = self.size();
-        let pick = |(number, value): (&Option<usize>, &f64)| number.map(|_| *value);
-        let mut x: Vec<f64> = self.number.iter().zip(rhs).filter_map(pick).collect();
+        let mut x = self.unknowns.packed(rhs);
         for i in 0..n {
             let row = &self.entries[i * n + self.first[i]..i * n + i];
             x[i] -= row.iter().zip(&x[self.first[i]..i]).map(|(l, x)| l * x).sum::<f64>();
@@ -141,9 +205,7 @@ impl LinearSolver for Skyline {
                 .zip(row)
                 .for_each(|(x, l)| *x -= l * value);
         }
-        for (number, value) in self.number.iter().zip(solution) {
-            *value = number.map_or(0.0, |i| x[i]);
-        }
+        self.unknowns.unpack(&x, solution)?;
         Ok(SolveReport {
             iterations: 1,
             ..SolveReport::default()
@@ -162,7 +224,7 @@ impl LinearSolver for Skyline {
         rhs: &[f64],
         solution: &mut [f64],
     ) -> Result<Krylov, SolveError> {
-        let free: Vec<usize> = (0..rhs.len()).filter(|&c| self.number[c].is_some()).collect();
+        let free: Vec<usize> = (0..rhs.len()).filter(|&c| self.unknowns.number[c].is_some()).collect();
         let mut unit = vec![0.0; rhs.len()];
         let mut image = vec![0.0; rhs.len()];
         let mut matrix = DMatrix::zeros(free.len(), free.len());
@@ -174,13 +236,12 @@ impl LinearSolver for Skyline {
                 .enumerate()
                 .for_each(|(row, &c)| matrix[(row, column)] = image[c]);
         }
-        let right = DVector::from_iterator(free.len(), free.iter().map(|&c| rhs[c]));
+        let right = DVector::from_vec(self.unknowns.packed(rhs));
         let x = matrix
             .lu()
             .solve(&right)
             .ok_or_else(|| SolveError::Failed("singular".into()))?;
-        solution.fill(0.0);
-        free.iter().zip(x.iter()).for_each(|(&c, x)| solution[c] = *x);
+        self.unknowns.unpack(x.as_slice(), solution)?;
         Ok(Krylov {
             iterations: free.len(),
             residual: 0.0,
@@ -198,17 +259,8 @@ pub struct Reluctant {
 }
 
 impl LinearSolver for Reluctant {
-    fn reinit(&mut self, free: &[bool]) {
-        self.solver.reinit(free);
-    }
-    fn add_block(&mut self, first_node: usize, block: &[f64]) {
-        self.solver.add_block(first_node, block);
-    }
-    fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
-        self.solver.add_block_among(nodes, block);
-    }
-    fn add_diagonal(&mut self, diagonal: &[f64]) {
-        self.solver.add_diagonal(diagonal);
+    fn matrix(&mut self) -> &mut dyn MatrixAssembly {
+        self.solver.matrix()
     }
     fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
         if self.refusals == 0 {
@@ -231,12 +283,10 @@ impl LinearSolver for Reluctant {
     }
 }
 
-/// The whole matrix, to look at its spectrum; it solves nothing.
+/// The whole matrix, to examine its spectrum.
 #[derive(Clone, Debug)]
 pub struct Dense {
-    components: usize,
-    offsets: Vec<usize>,
-    number: Vec<Option<usize>>, // of the unknown, per nodal component
+    unknowns: Unknowns,
     matrix: DMatrix<f64>,
 }
 
@@ -249,39 +299,34 @@ impl Dense {
     /// For patches whose nodes stand at `offsets` from their first one, with `components` unknowns a node.
     pub fn of_patches(components: usize, offsets: Vec<usize>) -> Self {
         Self {
-            components,
-            offsets,
-            number: Vec::new(),
+            unknowns: Unknowns::of_patches(components, offsets),
             matrix: DMatrix::zeros(0, 0),
         }
     }
 
     /// For the systems of pore pressures of `grid`.
     pub fn of_pressures<const D: usize>(grid: &Grid<D>) -> Self {
-        Self {
-            components: 1,
-            offsets: grid.lowered_offsets(),
-            number: Vec::new(),
-            matrix: DMatrix::zeros(0, 0),
+        Self::of_patches(1, grid.lowered_offsets())
+    }
+
+    fn add(&mut self, entries: Vec<Entry>) {
+        for Entry { row, column, value } in entries {
+            self.matrix[(row, column)] += value;
         }
     }
 
     /// Entry of two nodal components; zero where one of them is no unknown.
     pub fn entry(&self, row: usize, column: usize) -> f64 {
-        self.number[row]
-            .zip(self.number[column])
+        self.unknowns.number[row]
+            .zip(self.unknowns.number[column])
             .map_or(0.0, |at| self.matrix[at])
     }
 
     /// Product with a nodal array, zero where it is not free.
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
-        let free = |(number, x): (&Option<usize>, &f64)| number.map(|_| *x);
-        let x = DVector::from_iterator(self.matrix.nrows(), self.number.iter().zip(x).filter_map(free));
-        let image = &self.matrix * x;
-        self.number
-            .iter()
-            .map(|number| number.map_or(0.0, |row| image[row]))
-            .collect()
+        let image = &self.matrix * DVector::from_vec(self.unknowns.packed(x));
+        let numbers = self.unknowns.number.iter();
+        numbers.map(|number| number.map_or(0.0, |row| image[row])).collect()
     }
 
     /// Largest over smallest eigenvalue of the symmetric matrix: as it is, and scaled to a unit diagonal. Infinite if
@@ -302,53 +347,21 @@ impl Dense {
     }
 }
 
-impl LinearSolver for Dense {
+impl MatrixAssembly for Dense {
     fn reinit(&mut self, free: &[bool]) {
-        let count = number(free, &mut self.number);
+        let count = self.unknowns.renumber(free);
         self.matrix = DMatrix::zeros(count, count);
     }
 
     fn add_block(&mut self, first_node: usize, block: &[f64]) {
-        let nodes: Vec<usize> = self.offsets.iter().map(|offset| first_node + offset).collect();
-        self.add_block_among(&nodes, block);
+        self.add_block_among(&self.unknowns.patch(first_node), block);
     }
 
     fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
-        let components = self.components;
-        let of_node = |&node: &usize| (0..components).map(move |c| node * components + c);
-        let unknowns: Vec<_> = nodes.iter().flat_map(of_node).map(|c| self.number[c]).collect();
-        for (row, values) in unknowns.iter().zip(block.chunks_exact(unknowns.len())) {
-            for (column, value) in unknowns.iter().zip(values) {
-                if let (Some(row), Some(column)) = (row, column) {
-                    self.matrix[(*row, *column)] += value;
-                }
-            }
-        }
+        self.add(self.unknowns.entries_among(nodes, block));
     }
 
     fn add_diagonal(&mut self, diagonal: &[f64]) {
-        for (number, value) in self.number.iter().zip(diagonal) {
-            if let Some(row) = number {
-                self.matrix[(*row, *row)] += value;
-            }
-        }
-    }
-
-    fn factorise(&mut self, _symmetry: Symmetry) -> Result<(), SolveError> {
-        Ok(())
-    }
-
-    fn solve(&mut self, _: &[f64], _: &mut [f64]) -> Result<SolveReport, SolveError> {
-        Err(SolveError::Failed("it only holds the matrix".into()))
-    }
-
-    fn solve_with(
-        &mut self,
-        _: &mut dyn FnMut(&[f64], &mut [f64]),
-        _: f64,
-        _: &[f64],
-        _: &mut [f64],
-    ) -> Result<Krylov, SolveError> {
-        Err(SolveError::Failed("it only holds the matrix".into()))
+        self.add(self.unknowns.entries_of_diagonal(diagonal));
     }
 }

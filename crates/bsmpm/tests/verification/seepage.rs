@@ -10,8 +10,8 @@ use bsmpm::field::pore_water::drain::{DrainReport, Drainage};
 use bsmpm::field::pore_water::flow::{Course, Drain, Flow, Given, Inflow, Motion, Permeability, PermeabilityLaw, Soil};
 use bsmpm::grid::Contributions;
 use bsmpm::kinematics::PlaneStrain;
+use bsmpm::linear::{LinearSolver, Symmetry};
 use bsmpm::model::Regime;
-use bsmpm::parallel::{LinearSolver, Symmetry};
 use bsmpm::schedule::TimeInterval;
 use bsmpm::tensor::Vector;
 use std::f64::consts::{FRAC_PI_2, LN_2};
@@ -63,7 +63,8 @@ fn steady(scene: &Plane) -> (Vec<f64>, [Vec<DrainReport>; 2]) {
     );
     let drainage = drainage.expect("permeable");
     let mut solver = Skyline::of_patches(1, offsets.clone());
-    solver.reinit(&seen);
+    let matrix = solver.matrix();
+    matrix.reinit(&seen);
     for (p, cell) in cells.iter().enumerate() {
         let [x, y] = [0, 1].map(|axis| grid.axes()[axis].basis::<2>(scene.points.x[p][axis], cell[axis]));
         let gradients: Vec<Vector<2>> = (0..4)
@@ -74,9 +75,9 @@ fn steady(scene: &Plane) -> (Vec<f64>, [Vec<DrainReport>; 2]) {
             .iter()
             .flat_map(|a| gradients.iter().map(move |b| weight * a.dot(b)))
             .collect();
-        solver.add_block(grid.first_node(cell), &block);
+        matrix.add_block(grid.first_node(cell), &block);
     }
-    drainage.assemble(&vec![0.0; grid.nodes()], &mut solver);
+    drainage.assemble(&vec![0.0; grid.nodes()], matrix);
     solver.factorise(Symmetry::Definite).expect("definite");
     let mut out = Contributions::none(grid, 1, Vec::new());
     let mut p = vec![0.0; grid.nodes()];

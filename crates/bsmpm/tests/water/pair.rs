@@ -129,7 +129,7 @@ fn constants(mut scene: Plane) -> [f64; 2] {
             .for_each(|(row, &c)| stiffness[(row, column)] = force[c]);
     }
     let mut stand_in = Dense::of_pressures(&model.grid);
-    matrix::assemble(&problem, pores, &pores.guess, &mut stand_in).expect("assembled");
+    matrix::assemble(&problem, pores, &pores.guess, &mut stand_in);
     let mut q = DMatrix::zeros(free.len(), pressures.len());
     let mut mass = DMatrix::zeros(pressures.len(), pressures.len());
     let mut unit = vec![0.0; pores.free.len()];

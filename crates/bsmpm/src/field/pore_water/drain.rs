@@ -9,8 +9,9 @@ use crate::exact::Exact;
 use crate::field::pore_water::backward::Differences;
 use crate::field::pore_water::flow::{Drain, Flow, Given, Inflow, Motion};
 use crate::grid::{Contributions, Grid};
+use crate::linear::MatrixAssembly;
 use crate::model::Model;
-use crate::parallel::{Halo, LinearSolver};
+use crate::parallel::Halo;
 use crate::points::Points;
 use crate::schedule::TimeInterval;
 use crate::tensor::Vector;
@@ -225,7 +226,7 @@ impl Drainage {
 
     /// Adds the derivative of the outflow to the pressure matrix (m3/Pa). One-way surface points contribute only if
     /// they are open under `p`.
-    pub fn assemble(&self, p: &[f64], solver: &mut dyn LinearSolver) {
+    pub fn assemble(&self, p: &[f64], matrix: &mut dyn MatrixAssembly) {
         let conducting = self.outlets.iter().filter(|outlet| outlet.conductance > 0.0);
         for outlet in conducting.filter(|outlet| outlet.is_open(&self.offsets, p)) {
             let N = outlet.attachment.N();
@@ -233,7 +234,7 @@ impl Drainage {
                 .iter()
                 .flat_map(|row| N.iter().map(move |column| outlet.conductance * row * column))
                 .collect();
-            solver.add_block(outlet.attachment.first_node(), &block);
+            matrix.add_block(outlet.attachment.first_node(), &block);
         }
     }
 

@@ -3,9 +3,8 @@
 use crate::error::SolveError;
 use crate::field::pore_water::matrix;
 use crate::field::pore_water::nodes::PorePressureField;
-use crate::field::pore_water::split;
 use crate::kinematics::Kinematics;
-use crate::parallel::LinearSolver;
+use crate::linear::LinearSolver;
 use crate::step::problem::Problem;
 
 /// Largest number of iterations with reassembly because of changes of saturation.
@@ -99,7 +98,7 @@ impl Follow {
         self.first += usize::from(first);
         self.changes += usize::from(change);
         (self.open, self.tamed) = (open, false);
-        matrix::assemble(problem, pores, p, split::system(solver)?)?;
+        matrix::factorise(problem, pores, p, solver)?;
         Ok(true)
     }
 }

@@ -4,29 +4,42 @@ use crate::error::SolveError;
 use crate::field::pore_water::Water;
 use crate::field::pore_water::flow::Flow;
 use crate::field::pore_water::nodes::{PorePressureField, SHORTEST_WAVE};
+use crate::field::pore_water::split::system;
 use crate::grid::transfer::scalars::{self, FunctionAtPoint, MOST_FUNCTIONS};
 use crate::kinematics::Kinematics;
-use crate::parallel::{LinearSolver, Symmetry};
+use crate::linear::{LinearSolver, MatrixAssembly, Symmetry};
 use crate::step::problem::Problem;
 use crate::tensor::Vector;
 
-/// Assembles S into `solver` and factorises it. S uses the geometry at the start of the step; saturation and open
-/// seepage faces are those of the nodal excess pressures `p` (Pa).
-pub fn assemble<K: Kinematics<D>, const D: usize>(
+/// Assembles S as [`assemble`] does, and factorises it. Fails if `solver` has no system of the pressures, too.
+pub fn factorise<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     pores: &PorePressureField<D>,
     p: &[f64],
     solver: &mut dyn LinearSolver,
 ) -> Result<(), SolveError> {
+    let solver = system(solver)?;
+    assemble(problem, pores, p, solver.matrix());
+    solver.factorise(Symmetry::Definite)
+}
+
+/// Assembles S. It uses the geometry at the start of the step; saturation and open seepage faces are those of the nodal
+/// excess pressures `p` (Pa).
+pub fn assemble<K: Kinematics<D>, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    pores: &PorePressureField<D>,
+    p: &[f64],
+    matrix: &mut dyn MatrixAssembly,
+) {
     let model = problem.model;
     let Some((water, flow)) = model
         .water
         .as_ref()
         .and_then(|water| Some((water, water.flow.as_ref()?)))
     else {
-        return Ok(());
+        return;
     };
-    solver.reinit(&pores.free);
+    matrix.reinit(&pores.free);
     let pressures = if flow.retains() {
         scalars::scalars(&pores.shape, p, |_, value, _| value)
     } else {
@@ -51,11 +64,10 @@ pub fn assemble<K: Kinematics<D>, const D: usize>(
                     .for_each(|(entry, other)| *entry += A * other.value + gradient.dot(&other.gradient));
             }
         }
-        solver.add_block(patch.first_node, &block);
+        matrix.add_block(patch.first_node, &block);
     }
-    pores.drainage.assemble(p, solver);
-    pores.ties.assemble(problem.halo, solver);
-    solver.factorise(Symmetry::Definite)
+    pores.drainage.assemble(p, matrix);
+    pores.ties.assemble(problem.halo, matrix);
 }
 
 /// Contributions of a point to S.

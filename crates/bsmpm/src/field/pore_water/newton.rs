@@ -5,9 +5,10 @@ use crate::error::SolveError;
 use crate::field::pore_water::matrix;
 use crate::field::pore_water::nodes::PorePressureField;
 use crate::field::pore_water::residual::WaterBalance;
-use crate::field::pore_water::split::{Split, system};
+use crate::field::pore_water::split::Split;
 use crate::kinematics::Kinematics;
-use crate::parallel::{Krylov, LinearSolver, dots};
+use crate::linear::{Krylov, LinearSolver};
+use crate::parallel::dot;
 use crate::solve::fgmres;
 use crate::solve::linearised::ForceTangent;
 use crate::solve::unknowns::Unknowns;
@@ -71,8 +72,8 @@ pub fn direction<K: Kinematics<D>, const D: usize>(
     let halo = problem.halo;
     let balance = &residual.balance;
     let linearised = ForceTangent::at(problem, residual).with_water(x);
-    stiffness::assemble(problem, Some(&residual.trial), solver)?;
-    matrix::assemble(problem, pores, &x[components..], system(solver)?)?;
+    stiffness::factorise(problem, Some(&residual.trial), solver)?;
+    matrix::factorise(problem, pores, &x[components..], solver)?;
     let scales = Scales::of(problem, balance);
     let unknowns = Unknowns::of::<D>(&problem.nodes.free, halo).with_pressures(components, &pores.free, halo);
     let divided = [1.0 / scales.force, 1.0 / scales.water];
@@ -110,7 +111,7 @@ pub fn direction<K: Kinematics<D>, const D: usize>(
     let (du, dp) = dx.split_at(components);
     let (f_u, f_p) = first.f.split_at(components);
     // Magnitudes are added, so that works of opposite sign do not cancel.
-    let energy = dots(halo, D, &[(du, f_u)])[0].abs() + dots(halo, 1, &[(dp, f_p)])[0].abs();
+    let energy = dot(halo, D, du, f_u).abs() + dot(halo, 1, dp, f_p).abs();
     Ok(Exact { dx, energy, krylov })
 }
 

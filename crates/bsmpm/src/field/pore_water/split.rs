@@ -5,7 +5,7 @@ use crate::error::SolveError;
 use crate::field::pore_water::nodes::PorePressureField;
 use crate::field::pore_water::residual::pressing;
 use crate::kinematics::Kinematics;
-use crate::parallel::{LinearSolver, SolveReport};
+use crate::linear::{LinearSolver, SolveReport};
 use crate::step::problem::Problem;
 
 /// Direction of the fixed-stress split, the right-hand side that it balances, and the cost.

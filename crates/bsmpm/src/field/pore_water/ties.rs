@@ -2,7 +2,8 @@
 //! are discontinuous.
 
 use crate::grid::{Grid, KnotVector};
-use crate::parallel::{Halo, LinearSolver};
+use crate::linear::MatrixAssembly;
+use crate::parallel::Halo;
 
 /// Conductance of a coupling relative to storage and flow of its functions; pressure jumps are then 1e-4 of the
 /// pressure changes.
@@ -62,9 +63,9 @@ impl Ties {
     }
 
     /// Adds the derivative of the flow to the matrix. The rank that owns the first node of a pair adds it.
-    pub fn assemble(&self, halo: &dyn Halo, solver: &mut dyn LinearSolver) {
+    pub fn assemble(&self, halo: &dyn Halo, matrix: &mut dyn MatrixAssembly) {
         for Tie { nodes, flow } in self.pairs.iter().filter(|tie| halo.owned().contains(tie.nodes[0])) {
-            solver.add_block_among(nodes, &[*flow, -flow, -flow, *flow]);
+            matrix.add_block_among(nodes, &[*flow, -flow, -flow, *flow]);
         }
     }
 }

@@ -3,7 +3,8 @@
 use crate::error::SolveError;
 use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
-use crate::parallel::{Halo, Krylov, LinearSolver, OwnedNodes, SolveReport, Symmetry};
+use crate::linear::{Krylov, LinearSolver, MatrixAssembly, SolveReport, Symmetry};
+use crate::parallel::{Halo, OwnedNodes};
 
 /// Largest number of iterative refinements.
 const CORRECTIONS: usize = 100;
@@ -130,7 +131,7 @@ impl Band {
     }
 }
 
-impl LinearSolver for Band {
+impl MatrixAssembly for Band {
     fn reinit(&mut self, free: &[bool]) {
         let mut count = 0;
         let numbered = free[..self.layer].iter().map(|&free| {
@@ -169,6 +170,12 @@ impl LinearSolver for Band {
                 self.rows[at] += value;
             }
         }
+    }
+}
+
+impl LinearSolver for Band {
+    fn matrix(&mut self) -> &mut dyn MatrixAssembly {
+        self
     }
 
     fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {

@@ -8,17 +8,32 @@
 //! An entry outside the sparsity pattern is replaced by its absolute value on both diagonals, which keeps the matrix
 //! positive definite.
 
-use crate::error::SolveError;
 use crate::grid::Grid;
+use crate::linear::MatrixAssembly;
 use crate::nodal::Nodal;
-use crate::parallel::{Halo, Krylov, LinearSolver, SolveReport, Symmetry};
+use crate::parallel::Halo;
 use crate::step::extension::{Extension, InnerFunction, Tie};
+use crate::step::problem::Problem;
 use crate::tensor::{Square, Vector};
 use std::collections::BTreeMap;
 
-/// A linear system that is reduced to the inner splines before it reaches the solver.
-pub struct ReducedSystem<'a, const D: usize> {
-    solver: &'a mut dyn LinearSolver,
+/// Assembles by `fill` into `matrix`. Where outer splines are extended, the matrix is reduced to the inner ones.
+pub fn assemble<K, const D: usize>(
+    problem: &Problem<'_, K, D>,
+    matrix: &mut dyn MatrixAssembly,
+    fill: impl FnOnce(&mut dyn MatrixAssembly),
+) {
+    let Some(extension) = &problem.nodes.extension else {
+        return fill(matrix);
+    };
+    let mut reduced = ReducedMatrix::new(matrix, extension, &problem.model.grid, problem.halo);
+    fill(&mut reduced);
+    reduced.add_carried_blocks();
+}
+
+/// A matrix that is reduced to the inner splines while it is assembled.
+struct ReducedMatrix<'a, const D: usize> {
+    matrix: &'a mut dyn MatrixAssembly,
     extension: &'a Extension<D>,
     grid: &'a Grid<D>,
     halo: &'a dyn Halo,
@@ -49,16 +64,16 @@ struct BlockOrigin {
 /// Numbers of two nodes in the whole grid: row and column of a block.
 type NodePair = [usize; 2];
 
-impl<'a, const D: usize> ReducedSystem<'a, D> {
-    /// Wraps a `solver` for the window of a grid.
-    pub fn new(
-        solver: &'a mut dyn LinearSolver,
+impl<'a, const D: usize> ReducedMatrix<'a, D> {
+    /// Wraps a `matrix` for the window of a grid.
+    fn new(
+        matrix: &'a mut dyn MatrixAssembly,
         extension: &'a Extension<D>,
         grid: &'a Grid<D>,
         halo: &'a dyn Halo,
     ) -> Self {
         Self {
-            solver,
+            matrix,
             extension,
             grid,
             halo,
@@ -164,7 +179,7 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
         carried
     }
 
-    /// Adds E^T K E - K_II to the solver's matrix, every entry on one rank. Blocks of patches are square, so each pair
+    /// Adds E^T K E - K_II to the matrix, every entry on one rank. Blocks of patches are square, so each pair
     /// of nodes has both blocks.
     fn add_carried_blocks(&mut self) {
         let mut diagonal = vec![0.0; self.grid.nodes() * D];
@@ -182,12 +197,12 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
                 continue;
             };
             if row == column {
-                self.solver.add_block_among(&[row], block.transpose().as_slice());
+                self.matrix.add_block_among(&[row], block.transpose().as_slice());
             } else {
                 self.add_pair([row, column], [block, mirror]);
             }
         }
-        self.solver.add_diagonal(&diagonal);
+        self.matrix.add_diagonal(&diagonal);
     }
 
     /// Returns whether the sparsity pattern contains the block of two nodes.
@@ -215,7 +230,7 @@ impl<'a, const D: usize> ReducedSystem<'a, D> {
                 pair[(D + i) * 2 * D + j] = blocks[1][(i, j)];
             }
         }
-        self.solver.add_block_among(&nodes, &pair);
+        self.matrix.add_block_among(&nodes, &pair);
     }
 }
 
@@ -250,10 +265,10 @@ fn weights<const D: usize>(tie: &Tie<D>, inner: &InnerFunction) -> Square<D> {
     Square::from_diagonal(&Vector::from_fn(|i, _| if tie.tied[i] { inner.weight } else { 0.0 }))
 }
 
-impl<const D: usize> LinearSolver for ReducedSystem<'_, D> {
+impl<const D: usize> MatrixAssembly for ReducedMatrix<'_, D> {
     fn reinit(&mut self, free: &[bool]) {
         self.kept = vec![KeptBlocks::default(); self.extension.ties().len()];
-        self.solver.reinit(free);
+        self.matrix.reinit(free);
     }
 
     fn add_block(&mut self, first_node: usize, block: &[f64]) {
@@ -261,49 +276,18 @@ impl<const D: usize> LinearSolver for ReducedSystem<'_, D> {
         if nodes.clone().any(|node| self.extension.place_of(node).is_some()) {
             self.keep(&nodes.collect::<Vec<usize>>(), block);
         }
-        self.solver.add_block(first_node, block);
+        self.matrix.add_block(first_node, block);
     }
 
     fn add_block_among(&mut self, nodes: &[usize], block: &[f64]) {
         if nodes.iter().any(|&node| self.extension.place_of(node).is_some()) {
             self.keep(nodes, block);
         }
-        self.solver.add_block_among(nodes, block);
+        self.matrix.add_block_among(nodes, block);
     }
 
     /// Adds the diagonal of nodes that are not tied; without inertia no other nodes have any.
     fn add_diagonal(&mut self, diagonal: &[f64]) {
-        self.solver.add_diagonal(diagonal);
-    }
-
-    fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
-        self.add_carried_blocks();
-        self.solver.factorise(symmetry)
-    }
-
-    fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
-        self.solver.solve(rhs, solution)
-    }
-
-    fn is_rough(&self) -> bool {
-        self.solver.is_rough()
-    }
-
-    fn solve_to(&mut self, relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
-        self.solver.solve_to(relative, rhs, solution)
-    }
-
-    fn solve_with(
-        &mut self,
-        product: &mut dyn FnMut(&[f64], &mut [f64]),
-        relative: f64,
-        rhs: &[f64],
-        solution: &mut [f64],
-    ) -> Result<Krylov, SolveError> {
-        self.solver.solve_with(product, relative, rhs, solution)
-    }
-
-    fn water(&mut self) -> Option<&mut dyn LinearSolver> {
-        self.solver.water()
+        self.matrix.add_diagonal(diagonal);
     }
 }
