@@ -25,7 +25,7 @@ use cycles::CycleSystem;
 use direct::StiffnessOperator;
 use mpi::collective::{CommunicatorCollectives, SystemOperation};
 use petsc_rs::{Matrix, Petsc};
-use shell::ShellSystem;
+use shell::{DissectionSystem, ShellSystem};
 use std::rc::Rc;
 use system::{System, failed};
 
@@ -38,11 +38,10 @@ pub struct KspSolver<'p, const D: usize, const C: usize> {
     grid: Grid<D>,
     stencil: Stencil<D, C>,
     free: Vec<bool>,
-    numbers: Numbering,                    // empty before PETSc needs it
-    own: usize,                            // number of unknowns of this rank
-    shell: Option<ShellSystem<'p>>,        // for nested dissection
-    cycles: Option<CycleSystem<'p, D, C>>, // for spline multigrid
-    is_sized: bool,                        // whether the shell system is set up for the present unknowns
+    numbers: Numbering,                             // empty before PETSc needs it
+    own: usize,                                     // number of unknowns of this rank
+    shell: Option<Box<dyn ShellSystem<D, C> + 'p>>, // for nested dissection and spline multigrid
+    is_sized: bool,                                 // whether the shell system is set up for the present unknowns
     definite: Option<System<'p>>,
     general: Option<System<'p>>,             // for Newton's method
     water: Option<Box<KspSolver<'p, D, 1>>>, // of the pore pressures, if water flows
@@ -112,7 +111,6 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
             numbers: Vec::new(),
             own: 0,
             shell: None,
-            cycles: None,
             is_sized: false,
             definite: None,
             general: None,
@@ -208,11 +206,18 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
         outcome
     }
 
-    /// Sets up nested dissection as KSP's preconditioner and factorises the stiffness. Collective.
+    /// Sets up the preconditioner of the stiffness, which is not assembled. Collective.
     fn set_up_shell(&mut self) -> Result<(), SolveError> {
         let shell = match &mut self.shell {
             Some(shell) => shell,
-            none => none.insert(ShellSystem::new(self.petsc, &self.choice).map_err(failed)?),
+            none if self.choice.dissection => {
+                let system = DissectionSystem::new(self.petsc, &self.choice).map_err(failed)?;
+                none.insert(Box::new(system))
+            }
+            none => {
+                let system = CycleSystem::<D, C>::new(self.petsc, &self.choice).map_err(failed)?;
+                none.insert(Box::new(system))
+            }
         };
         if !self.is_sized {
             let owned = self.halo.owned().places::<C>();
@@ -221,78 +226,25 @@ impl<'p, const D: usize, const C: usize> KspSolver<'p, D, C> {
                 .map_err(failed)?;
             self.is_sized = true;
         }
-        let (shell, matrix, tally) = self.shell_system().ok_or_else(missing)?;
-        shell.set_up(matrix, tally)
+        self.with_shell(|shell, matrix, tally| shell.set_up(matrix, tally))
     }
 
-    fn solve_shell(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
-        match self.shell_system() {
-            Some((shell, matrix, tally)) if shell.is_ready() => shell.solve(matrix, rhs, solution, tally),
-            _ => Err(missing()),
-        }
-    }
-
-    /// Returns the system with nested dissection, its operator, and its tally.
-    fn shell_system(&mut self) -> Option<(&mut ShellSystem<'p>, StiffnessOperator<'_, D, C>, &mut Tally)> {
-        let Self {
-            halo,
-            grid,
-            stencil,
-            free,
-            timers,
-            ..
-        } = self;
+    /// Calls `act` with the system whose matrix is not assembled, its operator, and its tally.
+    fn with_shell<T>(
+        &mut self,
+        act: impl FnOnce(&mut dyn ShellSystem<D, C>, StiffnessOperator<'_, D, C>, &mut Tally) -> Result<T, SolveError>,
+    ) -> Result<T, SolveError> {
+        let shell = self.shell.as_mut().ok_or_else(missing)?;
         let matrix = StiffnessOperator {
-            halo,
-            grid,
-            stencil,
-            free,
+            halo: &self.halo,
+            grid: &self.grid,
+            stencil: &self.stencil,
+            free: &self.free,
             unknowns: &[],
-            timers,
+            timers: &self.timers,
         };
-        let shell = self.shell.as_mut()?;
         let tally = self.tallies.definite.get_or_insert_with(|| shell.tally());
-        Some((shell, matrix, tally))
-    }
-
-    /// Sets up spline multigrid as KSP's preconditioner for the stiffness. Collective.
-    fn set_up_cycles(&mut self) -> Result<(), SolveError> {
-        let cycles = match &mut self.cycles {
-            Some(cycles) => cycles,
-            none => none.insert(CycleSystem::new(self.petsc, &self.choice).map_err(failed)?),
-        };
-        if !self.is_sized {
-            let owned = self.halo.owned().places::<C>();
-            cycles
-                .resize(owned.filter(|&component| self.free[component]).collect())
-                .map_err(failed)?;
-            self.is_sized = true;
-        }
-        let (cycles, matrix, tally) = self.cycle_system().ok_or_else(missing)?;
-        cycles.set_up(matrix, tally)
-    }
-
-    /// Returns the system with multigrid, its operator, and its tally.
-    fn cycle_system(&mut self) -> Option<(&mut CycleSystem<'p, D, C>, StiffnessOperator<'_, D, C>, &mut Tally)> {
-        let Self {
-            halo,
-            grid,
-            stencil,
-            free,
-            timers,
-            ..
-        } = self;
-        let matrix = StiffnessOperator {
-            halo,
-            grid,
-            stencil,
-            free,
-            unknowns: &[],
-            timers,
-        };
-        let cycles = self.cycles.as_mut()?;
-        let tally = self.tallies.definite.get_or_insert_with(|| cycles.tally());
-        Some((cycles, matrix, tally))
+        act(&mut **shell, matrix, tally)
     }
 
     /// Solves the assembled system with `by` and returns the nodal solution. Collective.
@@ -383,7 +335,7 @@ impl<const D: usize, const C: usize> MatrixAssembly for KspSolver<'_, D, C> {
             (self.is_sized, self.definite, self.general) = (false, None, None);
             self.stencil.keep(|node| free[Nodal::<C>::of(node)].contains(&true));
         }
-        self.shell.iter_mut().for_each(ShellSystem::outdate);
+        self.shell.iter_mut().for_each(|shell| shell.outdate());
         self.stencil.clear();
     }
 
@@ -411,11 +363,8 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
     }
 
     fn factorise(&mut self, symmetry: Symmetry) -> Result<(), SolveError> {
-        if symmetry == Symmetry::Definite && self.choice.dissection {
+        if symmetry == Symmetry::Definite && self.choice.shell().is_some() {
             return self.set_up_shell();
-        }
-        if symmetry == Symmetry::Definite && self.choice.is_geometric() {
-            return self.set_up_cycles();
         }
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("factorisation");
@@ -423,12 +372,8 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
     }
 
     fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
-        if self.choice.dissection {
-            return self.solve_shell(rhs, solution);
-        }
-        if self.choice.is_geometric() {
-            let (cycles, matrix, tally) = self.cycle_system().ok_or_else(missing)?;
-            return cycles.solve(matrix, rhs, solution, tally);
+        if self.choice.shell().is_some() {
+            return self.with_shell(|shell, matrix, tally| shell.solve(matrix, rhs, solution, tally));
         }
         match self.choice.is_rough() {
             true => self.solve_assembled(System::approach, rhs, solution),
@@ -441,9 +386,8 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
     }
 
     fn solve_to(&mut self, relative: f64, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
-        if self.choice.is_geometric() {
-            let (cycles, matrix, tally) = self.cycle_system().ok_or_else(missing)?;
-            return cycles.solve_to(relative, matrix, rhs, solution, tally);
+        if self.choice.shell().is_some() {
+            return self.with_shell(|shell, matrix, tally| shell.solve_to(relative, matrix, rhs, solution, tally));
         }
         match self.choice.is_rough() {
             true => self.solve_assembled(

@@ -102,7 +102,7 @@ impl Choice {
     }
 
     /// Returns the name of the program's own preconditioner of definite systems, if one is used.
-    fn shell(&self) -> Option<&'static str> {
+    pub(super) fn shell(&self) -> Option<&'static str> {
         if self.dissection {
             Some("dissection")
         } else {

@@ -3,6 +3,7 @@
 use super::choice::Choice;
 use super::direct::{StiffnessOperator, gather};
 use super::multigrid::{Multigrid, Operator};
+use super::shell::ShellSystem;
 use super::spread;
 use super::system::{MOST_ITERATIONS, failed, trusted};
 use super::tally::Tally;
@@ -10,7 +11,7 @@ use bsmpm::error::SolveError;
 use bsmpm::linear::{SolveReport, Symmetry};
 use petsc_rs::{Ksp, NormType, PcFailure, Petsc, ShellPc, Tolerances};
 
-/// Linear system with its solver, which are kept when the unknowns change.
+/// System with spline multigrid as preconditioner.
 pub(super) struct CycleSystem<'p, const D: usize, const C: usize> {
     ksp: Ksp<'p>,
     ksp_type: String,
@@ -33,22 +34,21 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
             unknowns: Vec::new(),
         })
     }
+}
 
-    /// Changes the unknown components of this rank. Collective.
-    pub fn resize(&mut self, unknowns: Vec<usize>) -> petsc_rs::Result<()> {
+impl<const D: usize, const C: usize> ShellSystem<D, C> for CycleSystem<'_, D, C> {
+    fn resize(&mut self, unknowns: Vec<usize>) -> petsc_rs::Result<()> {
         self.multigrid = None;
         self.ksp.set_shell_operator(unknowns.len())?;
         self.unknowns = unknowns;
         Ok(())
     }
 
-    /// Creates a tally with the names of KSP and its preconditioner.
-    pub fn tally(&self) -> Tally {
+    fn tally(&self) -> Tally {
         Tally::of(&self.ksp, Some("multigrid of splines"))
     }
 
-    /// Creates the levels for a matrix, whose `unknowns` are set here. Collective.
-    pub fn set_up(&mut self, matrix: StiffnessOperator<'_, D, C>, tally: &mut Tally) -> Result<(), SolveError> {
+    fn set_up(&mut self, matrix: StiffnessOperator<'_, D, C>, tally: &mut Tally) -> Result<(), SolveError> {
         let Self {
             ksp,
             multigrid,
@@ -74,8 +74,8 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         })
     }
 
-    /// Solves for a nodal right-hand side, or only applies the preconditioner if the KSP type is `preonly`. Collective.
-    pub fn solve(
+    /// Only applies the preconditioner if the KSP type is `preonly`.
+    fn solve(
         &mut self,
         matrix: StiffnessOperator<'_, D, C>,
         rhs: &[f64],
@@ -118,9 +118,8 @@ impl<'p, const D: usize, const C: usize> CycleSystem<'p, D, C> {
         })
     }
 
-    /// Solves to the relative residual `relative` by conjugate gradients with the multigrid cycles as preconditioner.
-    /// Collective.
-    pub fn solve_to(
+    /// Solves by conjugate gradients with the multigrid cycles as preconditioner.
+    fn solve_to(
         &mut self,
         relative: f64,
         matrix: StiffnessOperator<'_, D, C>,

@@ -1,23 +1,60 @@
-//! Solves a linear system by PETSc's KSP, with the direct solver as preconditioner.
+//! Solves a linear system by PETSc's KSP without an assembled matrix: the preconditioner is this program's own.
 
 use super::choice::Choice;
 use super::direct::{DissectionFactor, DissectionPc, StiffnessOperator, gather};
-use super::spread;
 use super::system::{failed, trusted};
 use super::tally::Tally;
+use super::{missing, spread};
 use bsmpm::error::SolveError;
 use bsmpm::linear::{SolveReport, Symmetry};
 use petsc_rs::{Ksp, Petsc};
 
-/// Linear system with its solver, which are kept when the unknowns change.
-pub(super) struct ShellSystem<'p> {
+/// Linear system whose matrix is known by its products, with its solver. Both are kept when the unknowns change.
+pub(super) trait ShellSystem<const D: usize, const C: usize> {
+    /// Changes the unknown components of this rank. Collective.
+    fn resize(&mut self, unknowns: Vec<usize>) -> petsc_rs::Result<()>;
+
+    /// Marks the preconditioner as outdated, because the matrix will change.
+    fn outdate(&mut self) {}
+
+    /// Creates a tally with the names of KSP and its preconditioner.
+    fn tally(&self) -> Tally;
+
+    /// Sets up the preconditioner for a matrix, whose `unknowns` are set here. Collective.
+    fn set_up(&mut self, matrix: StiffnessOperator<'_, D, C>, tally: &mut Tally) -> Result<(), SolveError>;
+
+    /// Solves for a nodal right-hand side, see [`LinearSolver::solve`](bsmpm::linear::LinearSolver::solve). Fails if
+    /// KSP has not converged or the residual is too large. Collective.
+    fn solve(
+        &mut self,
+        matrix: StiffnessOperator<'_, D, C>,
+        rhs: &[f64],
+        solution: &mut [f64],
+        tally: &mut Tally,
+    ) -> Result<SolveReport, SolveError>;
+
+    /// Solves to the relative residual `_relative`. Collective.
+    fn solve_to(
+        &mut self,
+        _relative: f64,
+        matrix: StiffnessOperator<'_, D, C>,
+        rhs: &[f64],
+        solution: &mut [f64],
+        tally: &mut Tally,
+    ) -> Result<SolveReport, SolveError> {
+        self.solve(matrix, rhs, solution, tally)
+    }
+}
+
+/// System with the direct solver, nested dissection, as preconditioner.
+pub(super) struct DissectionSystem<'p> {
     ksp: Ksp<'p>,
     is_preonly: bool,
     factor: DissectionFactor,
     unknowns: Vec<usize>,
 }
 
-impl<'p> ShellSystem<'p> {
+impl<'p> DissectionSystem<'p> {
     /// Creates a system without unknowns, solved as `choice` and the PETSc options define. Collective.
     pub fn new(petsc: &'p Petsc<'p>, choice: &Choice) -> petsc_rs::Result<Self> {
         let mut ksp = Ksp::new(petsc)?;
@@ -30,36 +67,25 @@ impl<'p> ShellSystem<'p> {
             unknowns: Vec::new(),
         })
     }
+}
 
-    /// Changes the unknown components of this rank. Collective.
-    pub fn resize(&mut self, unknowns: Vec<usize>) -> petsc_rs::Result<()> {
+impl<const D: usize, const C: usize> ShellSystem<D, C> for DissectionSystem<'_> {
+    fn resize(&mut self, unknowns: Vec<usize>) -> petsc_rs::Result<()> {
         self.factor.replan();
         self.ksp.set_shell_operator(unknowns.len())?;
         self.unknowns = unknowns;
         Ok(())
     }
 
-    /// Marks the factor as outdated, because the matrix will change.
-    pub fn outdate(&mut self) {
+    fn outdate(&mut self) {
         self.factor.outdate();
     }
 
-    /// Returns whether the system is set up for the present matrix.
-    pub fn is_ready(&self) -> bool {
-        self.factor.is_there()
-    }
-
-    /// Creates a tally with the names of KSP and its preconditioner.
-    pub fn tally(&self) -> Tally {
+    fn tally(&self) -> Tally {
         Tally::of(&self.ksp, Some("dissection"))
     }
 
-    /// Factorises a matrix, whose `unknowns` are set here. Collective.
-    pub fn set_up<const D: usize, const C: usize>(
-        &mut self,
-        matrix: StiffnessOperator<'_, D, C>,
-        tally: &mut Tally,
-    ) -> Result<(), SolveError> {
+    fn set_up(&mut self, matrix: StiffnessOperator<'_, D, C>, tally: &mut Tally) -> Result<(), SolveError> {
         let Self {
             ksp, factor, unknowns, ..
         } = self;
@@ -74,8 +100,7 @@ impl<'p> ShellSystem<'p> {
         outcome.map_err(|error| pc.factor.cause.take().unwrap_or_else(|| failed(error)))
     }
 
-    /// Solves for a nodal right-hand side. Fails if KSP has not converged or the residual is too large. Collective.
-    pub fn solve<const D: usize, const C: usize>(
+    fn solve(
         &mut self,
         matrix: StiffnessOperator<'_, D, C>,
         rhs: &[f64],
@@ -85,6 +110,9 @@ impl<'p> ShellSystem<'p> {
         let Self {
             ksp, factor, unknowns, ..
         } = self;
+        if !factor.is_there() {
+            return Err(missing());
+        }
         let matrix = StiffnessOperator { unknowns, ..matrix };
         (factor.cause, factor.further, factor.residual) = (None, 0, None);
         let mut pc = DissectionPc { factor, matrix };

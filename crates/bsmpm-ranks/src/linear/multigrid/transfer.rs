@@ -91,9 +91,13 @@ impl<const D: usize> Transfer<D> {
         }
         made.keep(|node| reached[node]);
         let mut sums = Vec::new();
+        let mut blocks: Vec<(usize, &[f64])> = Vec::new();
+        let mut around: Vec<[usize; D]> = Vec::new();
         for node in 0..nodes {
-            let blocks: Vec<(usize, &[f64])> = stencil.blocks(node).collect();
-            let around: Vec<[usize; D]> = blocks.iter().map(|&(other, _)| self.split(other)).collect();
+            blocks.clear();
+            blocks.extend(stencil.blocks(node));
+            around.clear();
+            around.extend(blocks.iter().map(|&(other, _)| self.split(other)));
             if around.is_empty() {
                 continue;
             }
@@ -101,7 +105,7 @@ impl<const D: usize> Transfer<D> {
             let widths = parents.each_ref().map(Range::len);
             sums.clear();
             sums.resize(widths.iter().product::<usize>() * C * C, 0.0);
-            for ((other, block), at) in blocks.into_iter().zip(around) {
+            for (&(other, block), &at) in blocks.iter().zip(&around) {
                 let mut known = [[0.0; C]; C];
                 for (i, j) in (0..C * C).map(|k| (k / C, k % C)) {
                     known[i][j] = if free[node * C + i] && free[other * C + j] {
