@@ -28,7 +28,6 @@ pub use water::Water;
 
 use crate::error::Choice;
 use crate::grid::{GridSpec, Line};
-use crate::region::Region;
 use crate::words::{AnalysisType, Factor, FrameField, Ksp, LimitedIndicator, Pc};
 use bsmpm::boundary::Contact;
 use bsmpm::dynamics::mass::MassMatrix;
@@ -39,6 +38,7 @@ use bsmpm::model::Regime;
 use bsmpm::model::WallVelocity;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm_shapes::Region;
 
 /// The key of the mass matrix.
 pub const MASS: &str = "analysis.mass";

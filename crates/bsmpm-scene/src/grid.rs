@@ -2,6 +2,7 @@
 //! span of zero length.
 
 use bsmpm::tensor::Vector;
+use bsmpm_shapes::GridAxis;
 use std::ops::Range;
 
 /// The parametric grid.
@@ -23,22 +24,6 @@ pub struct Line {
     pub breakpoint: usize,
     /// How often it stands in the knot vector, 2 to q.
     pub multiplicity: usize,
-}
-
-/// Cells along one axis.
-#[derive(Clone, Debug, PartialEq)]
-pub enum GridAxis {
-    /// Equal cells.
-    Uniform {
-        /// m  where the first cell starts, in the case's coordinates
-        lower: f64,
-        /// m  edge of a cell
-        cell: f64,
-        /// Number of cells.
-        cells: usize,
-    },
-    /// m  increasing breakpoints, in the case's coordinates
-    Graded(Vec<f64>),
 }
 
 impl GridSpec {
@@ -108,70 +93,6 @@ impl GridSpec {
     /// miss the grid by rounding, and `(lower + n h) - lower` may be above `n h`, where there is no cell.
     pub fn local(&self, at: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|axis| (at[axis] - self.axes[axis].lower()).clamp(0.0, self.axes[axis].length()))
-    }
-}
-
-impl GridAxis {
-    /// Where the first cell starts, m.
-    pub fn lower(&self) -> f64 {
-        match self {
-            Self::Uniform { lower, .. } => *lower,
-            Self::Graded(breakpoints) => breakpoints[0],
-        }
-    }
-
-    /// Number of cells.
-    pub fn cells(&self) -> usize {
-        match self {
-            Self::Uniform { cells, .. } => *cells,
-            Self::Graded(breakpoints) => breakpoints.len() - 1,
-        }
-    }
-
-    /// Breakpoint `i` from 0 to the number of cells, in m from the first one, to the same bits as the grid's.
-    pub fn breakpoint(&self, i: usize) -> f64 {
-        match self {
-            Self::Uniform { cell, .. } => i as f64 * cell,
-            Self::Graded(breakpoints) => breakpoints[i] - breakpoints[0],
-        }
-    }
-
-    /// Length of all cells, m.
-    pub fn length(&self) -> f64 {
-        self.breakpoint(self.cells())
-    }
-
-    /// Edge of cell `i`, m.
-    pub fn cell(&self, i: usize) -> f64 {
-        self.breakpoint(i + 1) - self.breakpoint(i)
-    }
-
-    /// Longest edge of a cell, m.
-    pub fn longest(&self) -> f64 {
-        (0..self.cells()).map(|i| self.cell(i)).fold(0.0, f64::max)
-    }
-
-    /// Shortest edge of a cell, m.
-    pub fn shortest(&self) -> f64 {
-        match self {
-            Self::Uniform { cell, .. } => *cell,
-            Self::Graded(_) => (0..self.cells()).map(|i| self.cell(i)).fold(f64::INFINITY, f64::min),
-        }
-    }
-
-    /// First cell for which `past` holds, which must hold for all later ones too; the number of cells if there is none.
-    pub(crate) fn first_cell(&self, past: impl Fn(usize) -> bool) -> usize {
-        let mut lower = 0;
-        let mut upper = self.cells();
-        while lower < upper {
-            let middle = lower + (upper - lower) / 2;
-            if past(middle) {
-                upper = middle
-            } else {
-                lower = middle + 1
-            }
-        }
-        lower
     }
 }
 

@@ -31,9 +31,9 @@ mod preset;
 mod read;
 mod record;
 mod reference;
-mod region;
 mod report;
 mod seed;
+mod shape_error;
 mod sketch;
 mod slips;
 mod source;
@@ -44,6 +44,7 @@ mod waves;
 pub use bsmpm::model::Regime;
 pub use bsmpm::points::Seed;
 pub use bsmpm::quadrature::Quadrature;
+pub use bsmpm_shapes::{GridAxis, Outline, Region, Volume};
 pub use case::{
     ActiveLoads, Analysis, Base, Body, Case, Check, Checkpoint, Column, Drain, DrainSite, ElementStage, ElementTest,
     Every, Face, FaceSupport, Flow, Footing, Format, Geometry, Gravity, History, HistorySubject, Inflow, Initial,
@@ -54,9 +55,8 @@ pub use case::{
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};
 pub use estimate::Estimate;
-pub use grid::{GridAxis, GridSpec, Line};
+pub use grid::{GridSpec, Line};
 pub use reference::reference;
-pub use region::{Outline, Region, Volume};
 pub use seed::seed;
 pub use sketch::{Sketch, SketchedHistory};
 pub use source::{MAX_BYTES, load};

@@ -1,53 +1,28 @@
-//! Fills the cells of a body with a regular lattice of material points.
+//! Fills the cells of bodies with material points.
 
 use crate::case::{Body, Case};
 use crate::grid::GridSpec;
 use crate::grid::vector;
-use crate::region::{AxisExtent, CellPlace, Lattice, Outline, Region, RegionPart, Volume, of_cell};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::points::Seed;
 use bsmpm::tensor::Vector;
+use bsmpm_shapes::{CellPlace, Region};
 use std::ops::Range;
 
 impl Body {
-    /// Cells that the body reaches into, per axis, if it is a box.
-    fn extents<'a>(&self, grid: &'a GridSpec) -> Option<[AxisExtent<'a>; 2]> {
-        let Region::Box { lower, upper } = &self.region else {
-            return None;
-        };
-        Some([0, 1].map(|axis| AxisExtent::new(&grid.axes[axis], lower[axis], upper[axis])))
-    }
-
     /// Cells between the first and the last one along each axis that hold its points.
     pub(crate) fn occupied(&self, grid: &GridSpec) -> Vec<Range<usize>> {
-        match &self.region {
-            Region::Outline(outline) => outline.tally().occupied.to_vec(),
-            Region::Solid(volume) => volume.tally().occupied.to_vec(),
-            Region::Box { .. } => self
-                .extents(grid)
-                .into_iter()
-                .flatten()
-                .map(|extent| extent.cells)
-                .collect(),
-        }
+        self.region.occupied(&grid.axes)
     }
 
     /// Number of cells that hold its points.
     pub(crate) fn cells(&self, grid: &GridSpec) -> u128 {
-        match &self.region {
-            Region::Outline(outline) => outline.tally().cells.into(),
-            Region::Solid(volume) => volume.tally().cells.into(),
-            Region::Box { .. } => self.occupied(grid).iter().map(|cells| cells.len() as u128).product(),
-        }
+        self.region.cells(&grid.axes)
     }
 
     /// Number of its points; cannot overflow.
     pub(crate) fn points(&self, grid: &GridSpec) -> u128 {
-        match &self.region {
-            Region::Outline(outline) => outline.tally().before.last().copied().unwrap_or(0).into(),
-            Region::Solid(volume) => volume.tally().before.last().copied().unwrap_or(0).into(),
-            Region::Box { .. } => self.cells(grid) * (self.points_per_cell as u128).pow(2),
-        }
+        self.region.points(&grid.axes, self.points_per_cell)
     }
 }
 
@@ -77,18 +52,7 @@ impl Case {
         let mut counts = vec![0; self.grid.axes[0].cells()];
         for body in &self.bodies {
             let occupied = body.occupied(&self.grid);
-            let before = match &body.region {
-                Region::Box { .. } => {
-                    let in_column = (occupied[1].len() * body.points_per_cell * body.points_per_cell) as u64;
-                    counts[occupied[0].clone()]
-                        .iter_mut()
-                        .for_each(|count| *count += in_column);
-                    continue;
-                }
-                Region::Outline(outline) => &outline.tally().before,
-                Region::Solid(volume) => &volume.tally().before,
-            };
-            let in_columns = before.windows(2).map(|pair| pair[1] - pair[0]);
+            let in_columns = body.region.points_by_column(&self.grid.axes, body.points_per_cell);
             counts[occupied[0].clone()]
                 .iter_mut()
                 .zip(in_columns)
@@ -132,100 +96,20 @@ pub fn seed_bodies<'a, K: Kinematics<D>, const D: usize>(
         .enumerate()
         .filter(move |(number, _)| wanted(*number));
     bodies.flat_map(move |(_, (body, ids))| {
-        let first_id = ids.start;
-        let of_box = body
-            .extents(&case.grid)
-            .map(|extents| of_box::<K, D>(case, body, first_id, extents, columns.clone()));
-        let of_outline = match &body.region {
-            Region::Outline(outline) => Some(of_outline::<K, D>(case, body, first_id, outline, columns.clone())),
-            _ => None,
+        let axes = &case.grid.axes;
+        let lattice = case.geometry.lattice(body.points_per_cell);
+        let in_plane = body.region.places(axes, lattice, columns.clone());
+        let of_plane = in_plane.map(move |(number, place)| body.seed::<K, D, 2>(case, ids.start + number, place));
+        let volume = match &body.region {
+            Region::Solid(volume) => Some(volume),
+            Region::Box { .. } | Region::Outline(_) => None,
         };
-        let of_volume = match &body.region {
-            Region::Solid(volume) => Some(of_volume::<K, D>(case, body, first_id, volume, columns.clone())),
-            _ => None,
-        };
-        of_box
+        let columns = columns.clone();
+        let in_space = volume
             .into_iter()
-            .flatten()
-            .chain(of_outline.into_iter().flatten())
-            .chain(of_volume.into_iter().flatten())
-    })
-}
-
-fn of_box<'a, K: Kinematics<D>, const D: usize>(
-    case: &'a Case,
-    body: &'a Body,
-    first_id: u64,
-    [across, up]: [AxisExtent<'a>; 2],
-    columns: Range<usize>,
-) -> impl Iterator<Item = Seed<D>> + 'a {
-    let cells = across.cells.start.max(columns.start)..across.cells.end.min(columns.end);
-    cells.flat_map(move |i| {
-        let across = across.clone();
-        let up = up.clone();
-        let row = (i - across.cells.start) * up.cells.len();
-        up.cells.clone().flat_map(move |j| {
-            let cell = (row + (j - up.cells.start)) as u64;
-            let count = (body.points_per_cell * body.points_per_cell) as u64;
-            let first_id = first_id + cell * count;
-            let lattice = Lattice {
-                n: body.points_per_cell,
-                geometry: case.geometry,
-            };
-            of_cell(lattice, [across.part(i), up.part(j)])
-                .zip(first_id..)
-                .map(move |(place, id)| body.seed::<K, D, 2>(case, id, place))
-        })
-    })
-}
-
-fn of_outline<'a, K: Kinematics<D>, const D: usize>(
-    case: &'a Case,
-    body: &'a Body,
-    first_id: u64,
-    outline: &'a Outline,
-    columns: Range<usize>,
-) -> impl Iterator<Item = Seed<D>> + 'a {
-    let tally = outline.tally();
-    let occupied = &tally.occupied[0];
-    let grid = &case.grid;
-    let n = body.points_per_cell;
-    (occupied.start.max(columns.start)..occupied.end.min(columns.end)).flat_map(move |i| {
-        let first_id = first_id + tally.before[i - occupied.start];
-        let x = [grid.axes[0].breakpoint(i), grid.axes[0].breakpoint(i + 1)];
-        let places = outline.column(grid, n, i).parts.into_iter().flat_map(move |part| {
-            let (whole, cut) = match part {
-                RegionPart::Whole(rows) => (rows, Vec::new()),
-                RegionPart::Cut(_, places) => (0..0, places),
-            };
-            let of_whole = whole.flat_map(move |j| {
-                let y = [grid.axes[1].breakpoint(j), grid.axes[1].breakpoint(j + 1)];
-                of_cell(outline.lattice(n), [x, y])
-            });
-            of_whole.chain(cut)
-        });
-        places
-            .zip(first_id..)
-            .map(move |(place, id)| body.seed::<K, D, 2>(case, id, place))
-    })
-}
-
-fn of_volume<'a, K: Kinematics<D>, const D: usize>(
-    case: &'a Case,
-    body: &'a Body,
-    first_id: u64,
-    volume: &'a Volume,
-    columns: Range<usize>,
-) -> impl Iterator<Item = Seed<D>> + 'a {
-    let tally = volume.tally();
-    let occupied = &tally.occupied[0];
-    (occupied.start.max(columns.start)..occupied.end.min(columns.end)).flat_map(move |i| {
-        let first_id = first_id + tally.before[i - occupied.start];
-        let places = volume.slab(&case.grid.axes, body.points_per_cell, i);
-        places
-            .into_iter()
-            .zip(first_id..)
-            .map(move |(place, id)| body.seed::<K, D, 3>(case, id, place))
+            .flat_map(move |volume| volume.places(axes, body.points_per_cell, columns.clone()));
+        let of_space = in_space.map(move |(number, place)| body.seed::<K, D, 3>(case, ids.start + number, place));
+        of_plane.chain(of_space)
     })
 }
 

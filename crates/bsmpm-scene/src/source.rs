@@ -1,7 +1,6 @@
 //! The text of a case file: decodes it, and finds lines and columns.
 
 mod rows;
-mod stl;
 
 use crate::error::{Error, Place};
 use std::io::{self, Read};

@@ -1,10 +1,10 @@
 //! Finds time-dependent inputs of a case that cause waves.
 
 use crate::record::{ListRow, Record};
-use crate::region;
 use crate::spectrum::{InputKind, Signal};
 use crate::words::{Side, Support, Word};
 use bsmpm::dynamics::mass::MassMatrix;
+use bsmpm_shapes::polygon;
 
 /// What loads are given by, and which loads. Rigid bodies are left out: in contact material flows more than it swings.
 const FORCES: [&str; 4] = ["amplitude", "stress_path", "pressure_path", "force_path"];
@@ -142,7 +142,7 @@ fn covers(root: &Record, record: &Record, across: usize) -> bool {
     let Some((corners, ends)) = corners.filter(|corners| !corners.is_empty()).zip(ends(record)) else {
         return false;
     };
-    let bounds = region::bounds(&corners.concat());
+    let bounds = polygon::bounds(&corners.concat());
     let [lower, upper] = [
         ends[0][across].min(ends[1][across]),
         ends[0][across].max(ends[1][across]),

@@ -12,9 +12,10 @@ use proc_macro2::{TokenStream, TokenTree};
 use syn::visit::{self, Visit};
 use syn::{Attribute, Item, ItemUse, Macro, UseTree, Visibility};
 
-const CRATES: [&str; 6] = [
+const CRATES: [&str; 7] = [
     "bsmpm",
     "bsmpm-scene",
+    "bsmpm-shapes",
     "bsmpm-io",
     "bsmpm-ranks",
     "bsmpm-par",

@@ -2,8 +2,8 @@
 
 use super::{SurfaceKind, SurfacePoint};
 use crate::record::Record;
-use crate::region;
 use bsmpm::tensor::Vector;
+use bsmpm_shapes::polygon;
 
 /// Sides of the regular polygon that stands for a circle: their middles lie on it, and their ends 0.1 % outside.
 const SIDES: usize = 64;
@@ -152,7 +152,7 @@ impl PlaneBody {
 
     /// m  lower and upper corner of the rectangle around the whole shape
     pub(crate) fn bounds(&self) -> [[f64; 2]; 2] {
-        region::bounds(&self.whole.corners)
+        polygon::bounds(&self.whole.corners)
     }
 
     /// Its shapes: the outline, and what is cut out of it.

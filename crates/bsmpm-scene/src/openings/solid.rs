@@ -3,9 +3,9 @@
 use super::plane::PlaneShape;
 use super::{SurfaceKind, SurfacePoint};
 use crate::record::Record;
-use crate::region::plane;
 use crate::words::Axis;
 use bsmpm::tensor::Vector;
+use bsmpm_shapes::plane;
 
 /// Directions around the vertical in which revolved outlines are looked at.
 const AZIMUTHS: usize = 8;

@@ -1,7 +1,7 @@
 //! Computes the region that a moving rigid body passes through. A preset (key `accuracy`) chooses fine cells there.
 
 use crate::record::Record;
-use crate::region;
+use bsmpm_shapes::polygon;
 
 /// Part of a body's shorter side by which a place lies beyond its edge.
 const BEYOND: f64 = 1e-6;
@@ -38,7 +38,7 @@ impl Outline {
         if let Some(rows) = rigid.rows("polygon") {
             let corners: Vec<[f64; 2]> = rows.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();
             return (!corners.is_empty()).then(|| Self {
-                bounds: region::bounds(&corners),
+                bounds: polygon::bounds(&corners),
                 corners,
             });
         }

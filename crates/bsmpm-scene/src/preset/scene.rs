@@ -5,9 +5,9 @@ use super::Preset;
 use super::rigid::{self, RigidExtent};
 use crate::constants::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
 use crate::record::Record;
-use crate::region;
 use crate::schema::LawName;
 use crate::words::{AnalysisType, Purpose};
+use bsmpm_shapes::polygon;
 
 /// What steps follow from.
 pub(super) const STEPS: &str = "[analysis], the cells, the stiffness and density of the soil and prescribed motions";
@@ -168,7 +168,7 @@ impl<'a> PresetScene<'a> {
     pub(super) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         let corners: Option<Vec<[[f64; 2]; 2]>> = self.root.records("body").iter().map(around).collect();
         let corners = corners?.concat();
-        (!corners.is_empty()).then(|| region::bounds(&corners))
+        (!corners.is_empty()).then(|| polygon::bounds(&corners))
     }
 
     /// Strips, loaded segments, and rigid bodies that are not free.
@@ -383,7 +383,7 @@ pub(crate) fn around(body: &Record) -> Option<[[f64; 2]; 2]> {
         .iter()
         .map(|row| [row.numbers[0], row.numbers[1]])
         .collect();
-    (!corners.is_empty()).then(|| region::bounds(&corners))
+    (!corners.is_empty()).then(|| polygon::bounds(&corners))
 }
 
 /// s, m  Times and displacements of a path, from none at the start on.

@@ -1,14 +1,13 @@
 //! Reads rows of numbers from files that a case names: `{ file = "record.csv" }`.
 
-use super::{LIMIT, MAX_BYTES, bounded, invalid, stl};
+use super::{LIMIT, MAX_BYTES, bounded, invalid};
+use crate::shape_error;
 use crate::words::{Geometry, Word};
 use bsmpm_messages::with_context;
-use std::collections::BTreeMap;
+use bsmpm_shapes::{StlError, heights, stl};
 use std::io::{self, Error};
-use std::iter::Peekable;
 use std::ops::Range;
 use std::path::Path;
-use std::str::SplitWhitespace;
 use toml::de::{DeTable, DeValue};
 
 /// A table in the place of rows, as it is written.
@@ -60,9 +59,9 @@ fn rows_of(file: &str, bytes: Vec<u8>, along: Option<&str>, axes: &[&str]) -> io
     if name.ends_with(".at2") {
         Err(invalid(PEER))
     } else if stl::is_binary(&bytes) {
-        stl::triangles(&bytes)
+        triangles(stl::binary(&bytes))
     } else if name.ends_with(".stl") && bytes.contains(&0) {
-        Err(stl::broken(&bytes))
+        Err(invalid(shape_error::of_stl(&stl::broken(&bytes))))
     } else {
         text_rows(bytes, along, axes)
     }
@@ -83,7 +82,7 @@ fn text_rows(bytes: Vec<u8>, along: Option<&str>, axes: &[&str]) -> io::Result<S
     if begins(&text, "ncols") {
         grid(&text)
     } else if begins(&text, "solid") {
-        stl::facets(&text)
+        triangles(stl::text(&text))
     } else {
         rows(&text, along, axes)
     }
@@ -213,95 +212,29 @@ fn values(number: usize, cells: &[&str], units: &[Option<String>]) -> io::Result
     Ok(values)
 }
 
-/// Header of an ASCII grid: numbers by their keys in small letters.
-struct GridHeader(BTreeMap<String, f64>);
-
-impl GridHeader {
-    /// Takes the header from the beginning of a grid's words.
-    fn of(words: &mut Peekable<SplitWhitespace<'_>>) -> io::Result<Self> {
-        let mut header = BTreeMap::new();
-        while let Some(key) = words.next_if(|word| word.parse::<f64>().is_err()) {
-            let value = words.next().and_then(|word| word.parse::<f64>().ok());
-            let Some(value) = value.filter(|value| value.is_finite()) else {
-                return Err(invalid(format!(
-                    "E0030: `{key}` in the header of the ASCII grid has no number. Correct the header."
-                )));
-            };
-            header.insert(key.to_ascii_lowercase(), value);
-        }
-        Ok(Self(header))
-    }
-
-    /// The number of a key, if the header has it.
-    fn number(&self, key: &str) -> Option<f64> {
-        self.0.get(key).copied()
-    }
-
-    /// The number of a key that must be there.
-    fn needed(&self, key: &str) -> io::Result<f64> {
-        self.number(key).ok_or_else(|| {
-            invalid(format!(
-                "E0030: the header of the ASCII grid has no `{key}`. Add a line with `{key}` and its value."
-            ))
-        })
-    }
-
-    /// Middle of the first cell (m) along the axis with a name, for cells of an edge (m).
-    fn first(&self, axis: &str, cell: f64) -> io::Result<f64> {
-        match self.number(&format!("{axis}llcenter")) {
-            Some(center) => Ok(center),
-            None => self
-                .needed(&format!("{axis}llcorner"))
-                .map(|corner| corner + 0.5 * cell),
-        }
-    }
-}
-
-/// Rows [x, y, z] as TOML of an ASCII grid: a header of ncols, nrows, xllcorner or xllcenter, the same along y,
-/// cellsize and perhaps nodata_value, then heights row by row from the north. Posts are the middles of the cells.
-fn grid(text: &str) -> io::Result<String> {
-    let mut words = text.split_whitespace().peekable();
-    let header = GridHeader::of(&mut words)?;
-    let columns = header.needed("ncols")?;
-    let lines = header.needed("nrows")?;
-    let cell = header.needed("cellsize")?;
-    let x = header.first("x", cell)?;
-    let y = header.first("y", cell)?;
-    let heights: Vec<&str> = words.collect();
-    if columns < 2.0 || lines < 2.0 || columns.fract() + lines.fract() != 0.0 || cell <= 0.0 {
-        let message = "E0030: in the header of the ASCII grid, ncols and nrows must be whole numbers above 1, and \
-                       cellsize must be above 0. Correct the header.";
-        return Err(invalid(message));
-    }
-    if heights.len() as f64 != columns * lines {
-        return Err(invalid(format!(
-            "E0030: the ASCII grid has {} heights, but ncols times nrows is {}. Export the grid again.",
-            heights.len(),
-            columns * lines
-        )));
-    }
+/// Rows of numbers as TOML, each number with the digits that its precision needs.
+fn toml<T: std::fmt::Debug, const N: usize>(rows: impl IntoIterator<Item = [T; N]>) -> String {
     let mut whole = String::from("[");
-    for (number, height) in heights.iter().enumerate() {
-        let row = number / columns as usize;
-        let column = number % columns as usize;
-        let value = height.parse::<f64>().ok().filter(|value| value.is_finite());
-        let place = format!("row {}, column {}", row + 1, column + 1);
-        let value = value.ok_or_else(|| {
-            invalid(format!(
-                "E0030: `{height}` in {place} of the ASCII grid is not a number. Correct the height."
-            ))
-        })?;
-        if header.number("nodata_value") == Some(value) {
-            return Err(invalid(format!(
-                "E0030: {place} of the ASCII grid has no data. Fill in a height, or cut the grid to the part that has \
-                 data."
-            )));
-        }
-        let at = [x + column as f64 * cell, y + (lines - 1.0 - row as f64) * cell];
-        whole.push_str(&format!("[{:?},{:?},{value:?}],", at[0], at[1]));
+    for row in rows {
+        let numbers = row.map(|number| format!("{number:?}"));
+        whole.push_str(&format!("[{}],", numbers.join(",")));
     }
     whole.push(']');
-    Ok(whole)
+    whole
+}
+
+/// Rows [x, y, z] as TOML of an ASCII grid.
+fn grid(text: &str) -> io::Result<String> {
+    let points = heights::ascii_grid(text).map_err(|error| invalid(shape_error::of_heights(&error)))?;
+    Ok(toml(points))
+}
+
+/// Rows of the corners of a triangle as TOML.
+fn triangles<T: std::fmt::Debug + Copy>(found: Result<Vec<[[T; 3]; 3]>, StlError>) -> io::Result<String> {
+    let triangles = found.map_err(|error| invalid(shape_error::of_stl(&error)))?;
+    Ok(toml(triangles.into_iter().map(|[a, b, c]| {
+        [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]]
+    })))
 }
 
 /// A comment before the first row that has a unit, where no plain heading has any: its units would be lost.
@@ -339,7 +272,7 @@ fn unit(heading: &str) -> Option<&str> {
 
 #[cfg(test)]
 mod tests {
-    use super::{grid, rows, rows_of};
+    use super::{grid, rows, rows_of, stl, triangles};
 
     const PLANE: &[&str] = &["x", "y"];
 
@@ -370,6 +303,45 @@ mod tests {
             message(&format!("{header}1 2\n3 nan\n")),
             "E0030: `nan` in row 2, column 2 of the ASCII grid is not a number. Correct the height."
         );
+    }
+
+    #[test]
+    fn triangles_are_rows_of_three_corners() {
+        let text = "solid a\n facet normal 0 0 1\n outer loop\n vertex 0 0 0\nvertex 50.125 0 0\n vertex 0 1e-1 0\n\
+                    endloop\nendfacet\nendsolid a\n";
+        let row = "[[0.0,0.0,0.0,50.125,0.0,0.0,0.0,0.1,0.0],]";
+        assert_eq!(triangles(stl::text(text)).unwrap(), row);
+        assert_eq!(
+            triangles(Ok(vec![[[0.0_f32; 3], [50.125, 0.0, 0.0], [0.0, 0.1, 0.0]]])).unwrap(),
+            row
+        );
+        let refuses = |name: &str, bytes: Vec<u8>, says: &str| {
+            let message = rows_of(name, bytes, None, &["x", "y", "z"]).unwrap_err().to_string();
+            assert!(message.starts_with("E0031: ") && message.contains(says), "{message}");
+        };
+        refuses(
+            "a.stl",
+            text.replace("vertex 0 0 0", "vertex 0 x 0").into(),
+            "the vertex in line 4 ",
+        );
+        refuses(
+            "a.stl",
+            text.replace("vertex 0 0 0", "").into(),
+            "the facet that ends in line 8 ",
+        );
+        let incomplete = text.replace("endfacet\n", "");
+        refuses("a.stl", incomplete.into(), "its last triangle is incomplete");
+        let mut bytes = vec![b' '; 80];
+        refuses(
+            "a.stl",
+            [&bytes[..], &[0; 3]].concat(),
+            "has 83 bytes, but its header needs 84",
+        );
+        bytes.extend(1_u32.to_le_bytes());
+        refuses("a.stl", bytes.clone(), "has 84 bytes, but its 1 triangles need 134");
+        bytes.extend([f32::NAN.to_le_bytes(); 12].concat());
+        bytes.extend([0, 0]);
+        refuses("a.stl", bytes, "a corner of triangle 1 ");
     }
 
     #[test]

@@ -7,10 +7,10 @@ use crate::estimate::MOST_POINTS;
 use crate::grid::GridSpec;
 use crate::nearest::nearest;
 use crate::record::Record;
-use crate::region::{self, AxisExtent, Region, Volume, Window};
 use crate::report::{Report, listed, shortened};
 use crate::words::Geometry;
 use bsmpm::model::Regime;
+use bsmpm_shapes::{AxisExtent, Region, Volume, Window, is_filled, sweep};
 
 /// Part of a body in cells of one point each above which there is a warning: a face just beyond a grid line has a
 /// fifth, a tube with a wall of four fifths of the points' distance too, of a fifth all.
@@ -286,8 +286,8 @@ fn overlap(a: &Body, b: &Body, grid: &GridSpec, work: &mut usize) -> bool {
     if matches!((&a.region, &b.region), (Region::Box { .. }, Region::Box { .. })) {
         return true;
     }
-    let (mut edges, of_a) = a.region.edges(grid);
-    let (others, of_b) = b.region.edges(grid);
+    let (mut edges, of_a) = a.region.edges(&grid.axes);
+    let (others, of_b) = b.region.edges(&grid.axes);
     edges.extend(others.into_iter().map(|edge| edge.of(edge.shape + of_a)));
     *work += edges.len() * edges.len();
     if *work > MOST_WORK {
@@ -296,11 +296,11 @@ fn overlap(a: &Body, b: &Body, grid: &GridSpec, work: &mut usize) -> bool {
     let origin = grid.lower();
     let [x, y] = [0, 1].map(|axis| common(&a_bounds, &b_bounds, axis).map(|end| end - origin[axis]));
     let mut area = 0.0;
-    region::sweep(
+    sweep(
         &edges,
         of_a + of_b,
         &Window { x, y },
-        &|inside| region::solid(&inside[..of_a]) && region::solid(&inside[of_a..]),
+        &|inside| is_filled(&inside[..of_a]) && is_filled(&inside[of_a..]),
         &mut |slice| area += slice.area(),
     );
     area > 1e-9 * a.area().min(b.area())

@@ -19,12 +19,12 @@ use crate::constants::STANDARD_GRAVITY;
 use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
-use crate::region::{Region, skin};
 use crate::report::Report;
 use crate::words::{AnalysisType, Drainage, Geometry, Side};
 use bsmpm::field::pore_water::flow::{Course, Given, Motion, Soil};
 use bsmpm::field::pore_water::retention::{Curve, MeasuredCurve, Retention};
 use bsmpm::model::Regime;
+use bsmpm_shapes::{Region, skin};
 
 /// N/m3  of water, unless a case gives it.
 const WATER: f64 = 9810.0;
@@ -489,7 +489,7 @@ fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Opti
     let pieces = bodies
         .iter()
         .filter(|body| is_permeable(ground.soils, body.material))
-        .flat_map(|body| skin(&body.region, &all, grid));
+        .flat_map(|body| skin(&body.region, &all, &grid.axes));
     let free = pieces.filter(|piece| !is_held(piece, grid, &boundary));
     let pieces: Vec<[[f64; 2]; 2]> = free
         .map(|piece| piece.map(|at| [0, 1].map(|axis| lower[axis] + at[axis])))

@@ -3,8 +3,8 @@
 use crate::case::{Body, Case};
 use crate::connected::{near_pairs, pieces_of_pairs};
 use crate::grid::GridSpec;
-use crate::region::{Edge, Region};
 use crate::report::{Report, brief};
+use bsmpm_shapes::{Edge, Region};
 
 /// Parts of the shortest cell by which bodies that share a boundary may miss each other: rounding.
 const ROUNDING: f64 = 1e-6;
@@ -82,7 +82,7 @@ fn gap(case: &Case, bodies: [usize; 2], work: &mut usize) -> Option<Gap> {
     if let (Some(a_bounds), Some(b_bounds)) = (cuboid(a), cuboid(b)) {
         return Some(of_boxes(&case.grid, bodies, &a_bounds, &b_bounds));
     }
-    let [a_edges, b_edges] = [a, b].map(|body| body.region.edges(&case.grid).0);
+    let [a_edges, b_edges] = [a, b].map(|body| body.region.edges(&case.grid.axes).0);
     let lower = case.grid.lower();
     *work += SAMPLES * a_edges.len() * b_edges.len();
     if a_edges.is_empty() || b_edges.is_empty() || *work > MOST_WORK {

@@ -2,11 +2,12 @@
 
 use crate::case::Support;
 use crate::estimate::{self, MOST_UNKNOWNS};
-use crate::grid::{GridAxis, GridSpec, Line};
+use crate::grid::{GridSpec, Line};
 use crate::record::Record;
 use crate::report::Report;
 use crate::unit::Dimension;
 use crate::words::{Geometry, Order};
+use bsmpm_shapes::GridAxis;
 
 /// Parts of a cell by which a length may miss a whole number of cells.
 const WHOLE: f64 = 1e-9;

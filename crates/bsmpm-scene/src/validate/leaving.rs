@@ -3,9 +3,9 @@
 use super::physics;
 use crate::case::{Body, Case, Face, Geometry, RigidShape, RigidSolid, Support};
 use crate::record::Record;
-use crate::region::Region;
 use crate::report::Report;
 use bsmpm::model::Regime;
+use bsmpm_shapes::Region;
 
 /// Times between start and end at which the place of a body is tried.
 const SAMPLES: usize = 100;
@@ -79,7 +79,7 @@ impl<'a> FreeMotion<'a> {
             // Of a solid the bounds move without turning.
             Region::Solid(_) => bounds.to_vec(),
             region => {
-                let (edges, _) = region.edges(&case.grid);
+                let (edges, _) = region.edges(&case.grid.axes);
                 let ends = edges
                     .iter()
                     .filter(|edge| edge.shape == 0)

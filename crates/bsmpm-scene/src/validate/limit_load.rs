@@ -499,7 +499,7 @@ fn width_of_strip(case: &Case, site: Site) -> Option<LoadWidth> {
 fn width_of(case: &Case, rigid: &Rigid) -> Option<LoadWidth> {
     let [lower, upper] = match &rigid.shape {
         RigidShape::Circle { center, radius } => [-radius, *radius].map(|by| flat(center.map(|at| at + by))),
-        RigidShape::Polygon(corners) => crate::region::bounds(corners).map(flat),
+        RigidShape::Polygon(corners) => bsmpm_shapes::polygon::bounds(corners).map(flat),
         RigidShape::InSpace(solid) => solid.corners(),
     };
     let direction: Vec<f64> = along(&rigid.path, 1.0).into_iter().map(f64::abs).collect();

@@ -7,9 +7,9 @@ mod faces;
 use crate::case::{Case, NamedMaterial};
 use crate::grid::Line;
 use crate::record::Record;
-use crate::region::Edge;
 use crate::report::{Report, brief};
 use crate::words::C0Lines;
+use bsmpm_shapes::Edge;
 use std::collections::BTreeMap;
 
 /// Parts of a cell by which a place may miss a grid line: rounding.
@@ -207,7 +207,7 @@ fn interfaces(case: &Case, found: &mut FoundLine) {
         return;
     }
     for body in &case.bodies {
-        for edge in body.region.edges(&case.grid).0 {
+        for edge in body.region.edges(&case.grid.axes).0 {
             let line = line_of(case, &edge);
             if line.is_some_and(|(axis, line)| line == 0 || line == case.grid.axes[axis].cells()) {
                 continue;

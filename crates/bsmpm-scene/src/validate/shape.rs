@@ -9,10 +9,12 @@ use crate::case::{Face, RigidShape, Support};
 use crate::error::Origin;
 use crate::grid::GridSpec;
 use crate::record::Record;
-use crate::region::{self, Edge, Outline, PolygonFault, Region};
 use crate::report::Report;
+use crate::shape_error;
 use crate::words::Geometry;
 use bsmpm::interactions::rigid;
+use bsmpm_shapes::polygon::{self, PolygonFault};
+use bsmpm_shapes::{Edge, MOST_EDGES, Outline, Region, left_of_box};
 
 /// A shape as it is written, m in the case's coordinates.
 #[derive(Clone, Debug)]
@@ -26,7 +28,7 @@ impl BodyShape {
     fn bounds(&self) -> [[f64; 2]; 2] {
         match self {
             Self::Box { lower, upper } => [*lower, *upper],
-            Self::Polygon(corners) => region::bounds(corners),
+            Self::Polygon(corners) => polygon::bounds(corners),
             Self::Circle { center, radius } => [-radius, *radius].map(|reach| center.map(|x| x + reach)),
         }
     }
@@ -34,15 +36,15 @@ impl BodyShape {
     fn area(&self) -> f64 {
         match self {
             Self::Box { lower, upper } => (upper[0] - lower[0]) * (upper[1] - lower[1]),
-            Self::Polygon(corners) => region::area(corners),
+            Self::Polygon(corners) => polygon::area(corners),
             Self::Circle { radius, .. } => std::f64::consts::PI * radius * radius,
         }
     }
 
     fn edges(&self, origin: [f64; 2], number: usize) -> Vec<Edge> {
         match self {
-            Self::Box { lower, upper } => region::rectangle(*lower, *upper, origin, number),
-            Self::Polygon(corners) => region::polygon(corners, origin, number),
+            Self::Box { lower, upper } => polygon::rectangle(*lower, *upper, origin, number),
+            Self::Polygon(corners) => polygon::edges(corners, origin, number),
             Self::Circle { center, radius } => {
                 Edge::circle([0, 1].map(|axis| center[axis] - origin[axis]), *radius, number).to_vec()
             }
@@ -109,7 +111,7 @@ impl BeyondSymmetry<2> {
     /// Makes a box smaller; of another shape the boxes become further cut-outs.
     fn cut_off(&self, whole: &mut BodyShape, cut: &mut Vec<BodyShape>) {
         match whole {
-            BodyShape::Box { lower, upper } => [*lower, *upper] = region::left_of_box([*lower, *upper], &self.boxes),
+            BodyShape::Box { lower, upper } => [*lower, *upper] = left_of_box([*lower, *upper], &self.boxes),
             _ => cut.extend(self.boxes.iter().map(|&[lower, upper]| BodyShape::Box { lower, upper })),
         }
     }
@@ -139,13 +141,13 @@ pub(super) fn region(
         return None;
     }
     let grid = grid?;
-    let left = region::left_of_box(whole.bounds(), &boxes_of(&cut));
+    let left = left_of_box(whole.bounds(), &boxes_of(&cut));
     let beyond = BeyondSymmetry::of(whole.bounds(), left, boundary?, grid);
     if !beyond.boxes.is_empty() {
         beyond.cut_off(&mut whole, &mut cut);
         beyond.note(body, geometry, report);
     }
-    let bounds = region::left_of_box(whole.bounds(), &boxes_of(&cut));
+    let bounds = left_of_box(whole.bounds(), &boxes_of(&cut));
     inside(&whole, bounds, body, grid, report)?;
     if let (BodyShape::Box { lower, upper }, true) = (&whole, cut.is_empty()) {
         return Some(Region::Box {
@@ -162,13 +164,12 @@ pub(super) fn region(
         1 + cut.len(),
         bounds,
         whole.area(),
-        grid,
-        geometry,
-        points_per_cell?,
+        &grid.axes,
+        geometry.lattice(points_per_cell?),
     ) {
         Ok(outline) => Some(Region::Outline(outline)),
-        Err(message) => {
-            body.error(key(body), message, report);
+        Err(error) => {
+            body.error(key(body), shape_error::of_shape(&error), report);
             None
         }
     }
@@ -240,16 +241,16 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
     if corners.len() > 3 && corners.first() == corners.last() {
         corners.pop();
     }
-    if corners.len() > region::MOST_EDGES {
+    if corners.len() > MOST_EDGES {
         let message = format!(
             "E0216: the polygon has {} corners (at most {}). Use fewer corners.",
             corners.len(),
-            region::MOST_EDGES
+            MOST_EDGES
         );
         record.error("polygon", message, report);
         return None;
     }
-    let Some(fault) = region::fault(&corners) else {
+    let Some(fault) = polygon::fault(&corners) else {
         return Some(BodyShape::Polygon(corners));
     };
     let (origin, message): (Origin, String) = match fault {

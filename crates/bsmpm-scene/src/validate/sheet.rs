@@ -5,10 +5,10 @@ use super::site::AroundStrip;
 use crate::case::{Body, Triangle};
 use crate::grid::GridSpec;
 use crate::record::Record;
-use crate::region::edges_of;
 use crate::report::Report;
 use crate::surfaces::{area_of, normal_of};
 use bsmpm::tensor::Vector;
+use bsmpm_shapes::edges_of;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -262,7 +262,7 @@ mod tests {
     /// In a quarter of the room, which cuts it beside its middle: what it presses with is the area of its rim.
     #[test]
     fn a_sphere_that_the_grid_cuts_has_the_area_of_its_rim() {
-        let axes = [0; 3].map(|_| crate::grid::GridAxis::Uniform {
+        let axes = [0; 3].map(|_| bsmpm_shapes::GridAxis::Uniform {
             lower: 0.0,
             cell: 0.1,
             cells: 20,

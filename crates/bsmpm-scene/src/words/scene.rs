@@ -2,6 +2,7 @@
 
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
+use bsmpm_shapes::Lattice;
 
 choice! {
     /// Kind of the geometry.
@@ -35,14 +36,14 @@ impl Geometry {
         }
     }
 
-    /// By what factor `n` points of a part of a cell, m from the grid's lower corner along axis 0, are farther from its
-    /// middle than the middles of equal shares.
-    pub(crate) fn spread(self, part: [f64; 2], n: usize) -> f64 {
-        match self {
-            Self::PlaneStrain => PlaneStrain::spread(0, part, n),
-            Self::Axisymmetric => Axisymmetric::spread(0, part, n),
-            Self::Solid => Solid::spread(0, part, n),
-        }
+    /// Returns the lattice of `n` material points along each axis of a cell.
+    pub(crate) fn lattice(self, n: usize) -> Lattice {
+        let spread = match self {
+            Self::PlaneStrain => |part, n| PlaneStrain::spread(0, part, n),
+            Self::Axisymmetric => |part, n| Axisymmetric::spread(0, part, n),
+            Self::Solid => |part, n| Solid::spread(0, part, n),
+        };
+        Lattice { n, spread }
     }
 
     /// What a number in this unit, of a metre of thickness in plane strain, is in; `None` if it is the same in all.

@@ -3,13 +3,13 @@
 use super::is_permeable;
 use crate::case::{Body, Case, Flow};
 use crate::observables::{HistorySubject, Observable};
-use crate::region::Edge;
 use crate::report::Report;
 use crate::validate::gap::cell_at;
 use crate::validate::lines;
 use crate::validate::place::{beyond, is_beyond, is_in};
 use crate::validate::site::normal;
 use bsmpm::field::pore_water::flow::Soil;
+use bsmpm_shapes::Edge;
 use std::collections::BTreeMap;
 
 /// Ratio of two permeabilities from which an interface inside cells is warned of. A layer of one cell, half a cell off
@@ -33,7 +33,7 @@ pub(super) fn check(case: &Case, flow: &Flow, report: &mut Report<'_>) {
     }
     let mut leaks = BTreeMap::new();
     for body in &case.bodies {
-        for edge in body.region.edges(&case.grid).0 {
+        for edge in body.region.edges(&case.grid.axes).0 {
             let is_on_line = lines::line_of(case, &edge).is_some();
             for (at, (a, b)) in lines::beside(case, &edge) {
                 let Some((one, other)) = flow.soils[a].as_ref().zip(flow.soils[b].as_ref()) else {
@@ -106,7 +106,7 @@ fn thin(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         for edge in there
             .iter()
             .filter(|body| is_permeable(&flow.soils, body.material))
-            .flat_map(|body| body.region.edges(&case.grid).0)
+            .flat_map(|body| body.region.edges(&case.grid.axes).0)
         {
             let start = places_along(case, &edge);
             let across = normal(edge.a, edge.b);

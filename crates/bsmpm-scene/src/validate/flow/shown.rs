@@ -2,7 +2,6 @@
 
 use super::is_permeable;
 use crate::case::{ActiveLoads, Case, DrainSite, Flow, Initial, Stage, Support, Water};
-use crate::grid::GridAxis;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::LawName;
@@ -14,6 +13,7 @@ use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm_shapes::GridAxis;
 
 /// Points along each axis of a cell with cubic splines: with fewer the pressure oscillates at surfaces that cut cells.
 const POINTS_OF_CUBIC: usize = 4;
@@ -553,7 +553,7 @@ fn hanging(case: &Case, flow: &Flow, report: &mut Report<'_>) {
         }
         let made = case.bodies.iter().filter(|body| body.material == number);
         let corners = made
-            .flat_map(|body| body.region.edges(&case.grid).0)
+            .flat_map(|body| body.region.edges(&case.grid.axes).0)
             .flat_map(|edge| [edge.a, edge.b]);
         let above = corners.flat_map(|[x, y]| {
             let heights = times.iter().filter_map(move |t| water.table.table(lower[0] + x, *t));

@@ -1,13 +1,14 @@
 //! Makes the constitutive law of a material.
 
 use super::{Layer, profile};
-use crate::grid::{GridAxis, GridSpec};
+use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::{Dimension, Kind, LawName, MATERIAL};
 use crate::validate::SQUARE;
 use crate::words::{Geometry, Word};
 use bsmpm::material::{CamClay, Decay, Elastic, GradedLaw, LayeredMaterial, Match, Material, Profile, Separation};
+use bsmpm_shapes::GridAxis;
 
 /// A law and its numbers, by the height in the case's coordinates and units.
 pub(super) struct Parameters {

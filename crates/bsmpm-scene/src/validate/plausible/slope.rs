@@ -42,7 +42,7 @@ pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
 fn slopes(case: &Case, body: &Body) -> Vec<f64> {
     let lower = case.grid.lower();
     let mut slopes = Vec::new();
-    for edge in body.region.edges(&case.grid).0 {
+    for edge in body.region.edges(&case.grid.axes).0 {
         let [across, up] = [edge.b[0] - edge.a[0], edge.b[1] - edge.a[1]];
         let middle = [lower[0] + edge.a[0] + across / 2.0, lower[1] + edge.a[1] + up / 2.0];
         let off = OFF * across.hypot(up);

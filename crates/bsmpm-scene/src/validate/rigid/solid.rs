@@ -6,8 +6,9 @@ use super::{OVERLAP, Solidity, friction, way};
 use crate::case::{Case, Rigid, RigidShape, RigidSolid};
 use crate::record::Record;
 use crate::report::Report;
+use crate::shape_error;
 use bsmpm::boundary::RigidBody;
-use bsmpm::interactions::rigid::Outline;
+use bsmpm::interactions::rigid::{Outline, Terrain};
 use bsmpm::tensor::Vector;
 
 /// Shapes that only a plane knows.
@@ -81,9 +82,14 @@ fn shape(record: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
     }
     if let Some(shape) = record.record("terrain").filter(|_| record.gives("terrain")) {
         return match raster(shape, "top", f64::NEG_INFINITY)? {
-            Ok(raster) => Some(RigidSolid::Terrain(raster.surface())),
-            Err(message) => {
-                shape.error("top", message, report);
+            Ok(raster) => Some(RigidSolid::Terrain(Terrain {
+                lower: raster.lower(),
+                spacing: raster.spacing(),
+                count: raster.count(),
+                heights: raster.top().to_vec(),
+            })),
+            Err(error) => {
+                shape.error("top", shape_error::of_raster(&error), report);
                 None
             }
         };

@@ -5,9 +5,12 @@ use super::{BeyondSymmetry, BodyShape};
 use crate::case::Support;
 use crate::grid::GridSpec;
 use crate::record::{ListRow, Record};
-use crate::region::{Raster, Region, Section, SolidShape, Surface, Volume, left_of_box, solid_bounds};
 use crate::report::Report;
+use crate::shape_error;
 use crate::words::{Axis, Geometry};
+use bsmpm_shapes::{
+    Raster, RasterError, Region, Section, SolidShape, Surface, Volume, bounds_of_difference, left_of_box,
+};
 
 /// Factor of the volumes in cells that are cut, less 1, above which there is a warning. At 2 or 3 points along an axis
 /// walls of a fifth of a cell have 0.04 at most, of a hundredth 0.5 to 0.9; spheres of any size 0.06.
@@ -34,7 +37,7 @@ pub(super) fn region(
     if body.gives("subtract") && cut.len() != body.records("subtract").len() {
         return None;
     }
-    let beyond = BeyondSymmetry::of(whole.bounds(), solid_bounds(&whole, &cut), boundary?, grid);
+    let beyond = BeyondSymmetry::of(whole.bounds(), bounds_of_difference(&whole, &cut), boundary?, grid);
     if !beyond.boxes.is_empty() {
         match &mut whole {
             SolidShape::Box { corners } => *corners = left_of_box(*corners, &beyond.boxes),
@@ -42,7 +45,7 @@ pub(super) fn region(
         }
         beyond.note(body, Geometry::Solid, report);
     }
-    let outside = solid_bounds(&whole, &cut)
+    let outside = bounds_of_difference(&whole, &cut)
         .into_iter()
         .find_map(|corner| place::beyond(grid, corner));
     if let Some(outside) = outside {
@@ -63,8 +66,8 @@ pub(super) fn region(
             }
             Some(Region::Solid(Box::new(volume)))
         }
-        Err(message) => {
-            body.error(key, message, report);
+        Err(error) => {
+            body.error(key, shape_error::of_shape(&error), report);
             None
         }
     }
@@ -192,8 +195,8 @@ fn enclosed(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
             }
             Some(SolidShape::Surface(Box::new(surface)))
         }
-        Err(message) => {
-            shape.error("triangles", message, report);
+        Err(error) => {
+            shape.error("triangles", shape_error::of_surface(&error), report);
             None
         }
     }
@@ -212,7 +215,7 @@ pub(in super::super) fn cuboid(record: &Record, report: &mut Report<'_>) -> Opti
 }
 
 /// Heights that a key of terrain gives, on a level.
-pub(in super::super) fn raster(shape: &Record, key: &str, level: f64) -> Option<Result<Raster, String>> {
+pub(in super::super) fn raster(shape: &Record, key: &str, level: f64) -> Option<Result<Raster, RasterError>> {
     let rows = shape.rows(key)?.iter();
     let heights: Vec<[f64; 3]> = rows
         .map(|row| [row.numbers[0], row.numbers[1], row.numbers[2]])
@@ -234,15 +237,15 @@ fn terrain(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
     };
     let top = raster(shape, "top", level)?;
     let whole = match (top, base) {
-        (Err(message), _) => Err(("top", message)),
-        (_, Some(Err(message))) => Err(("base", message)),
-        (Ok(top), Some(Ok(base))) => top.on(base).map_err(|message| ("base", message)),
+        (Err(error), _) => Err(("top", error)),
+        (_, Some(Err(error))) => Err(("base", error)),
+        (Ok(top), Some(Ok(base))) => top.on(base).map_err(|error| ("base", error)),
         (Ok(top), None) => Ok(top),
     };
     match whole {
         Ok(raster) => Some(SolidShape::Terrain(Box::new(raster))),
-        Err((key, message)) => {
-            shape.error(key, message, report);
+        Err((key, error)) => {
+            shape.error(key, shape_error::of_raster(&error), report);
             None
         }
     }

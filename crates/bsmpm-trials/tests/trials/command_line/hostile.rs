@@ -288,6 +288,7 @@ fn s2_the_solver_starts_no_process() {
     let names = [
         "bsmpm",
         "bsmpm-scene",
+        "bsmpm-shapes",
         "bsmpm-io",
         "bsmpm-ranks",
         "bsmpm-par",

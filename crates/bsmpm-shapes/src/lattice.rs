@@ -1,8 +1,7 @@
 //! Places the material points of a 3-D body, and integrates their volumes along vertical lines.
 
-use super::cells::{CellPlace, SLIVER, part, place};
-use super::reached;
-use crate::grid::GridAxis;
+use crate::axis::{GridAxis, reached};
+use crate::cells::{CellPlace, SLIVER, part, place};
 use std::ops::Range;
 
 /// Vertical lines along each axis of the part of a cell that belongs to a point; each carries its share of that part,

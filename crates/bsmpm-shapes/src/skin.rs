@@ -1,7 +1,8 @@
 //! Finds the surface of a 2-D body: edges that no other body covers.
 
-use super::{Edge, Region};
-use crate::grid::GridSpec;
+use crate::axis::{GridAxis, corner};
+use crate::edge::Edge;
+use crate::region::Region;
 
 /// Parts of a cell within which a place is on an edge, and beside an edge that a body is looked for.
 const BESIDE: f64 = 1e-6;
@@ -10,23 +11,23 @@ const PIECES: usize = 32;
 
 /// Straight pieces of the surface of `of` beside which none of `all` lies, m from the grid's lower corner; arcs as
 /// chords of part of a cell. Where a corner of a body touches another's edge a piece ends.
-pub(crate) fn skin(of: &Region, all: &[&Region], grid: &GridSpec) -> Vec<[[f64; 2]; 2]> {
-    let cell = grid.shortest();
+pub fn skin(of: &Region, all: &[&Region], axes: &[GridAxis]) -> Vec<[[f64; 2]; 2]> {
+    let cell = axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
     let off = BESIDE * cell;
-    let lower = grid.lower();
+    let lower = corner(axes);
     let corners: Vec<[f64; 2]> = all
         .iter()
-        .flat_map(|region| region.edges(grid).0)
+        .flat_map(|region| region.edges(axes).0)
         .flat_map(|edge| [edge.a, edge.b])
         .collect();
-    let edges = of.edges(grid).0;
+    let edges = of.edges(axes).0;
     let pieces = edges.iter().flat_map(|edge| pieces(edge, &corners, cell, off));
     pieces.filter(|piece| is_bare(piece, all, lower, off)).collect()
 }
 
 /// Whether a piece is longer than `off`, m, and so far beside its middle a region lies on one side only; `lower` is the
 /// grid's lower corner, m.
-fn is_bare([p, q]: &[[f64; 2]; 2], all: &[&Region], lower: [f64; 3], off: f64) -> bool {
+fn is_bare([p, q]: &[[f64; 2]; 2], all: &[&Region], lower: [f64; 2], off: f64) -> bool {
     let along = [q[0] - p[0], q[1] - p[1]];
     let length = along[0].hypot(along[1]);
     let middle = [0, 1].map(|axis| 0.5 * (p[axis] + q[axis]));

@@ -1,20 +1,22 @@
-//! Checks that a polygon of a case has an area and no crossing edges.
+//! Polygons: their area, their edges, and what makes them unusable.
 
-/// What is wrong with a polygon.
+use crate::edge::Edge;
+
+/// What is wrong with a polygon; corners are given by their numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum PolygonFault {
-    /// fewer than three corners
+pub enum PolygonFault {
+    /// It has fewer than three corners.
     TooFew,
-    /// a corner and the next one are the same place
+    /// A corner and the next one are at the same position.
     Repeated(usize, usize),
-    /// all corners lie on a line
+    /// All corners are on one line.
     Flat,
-    /// two edges, by their first corners, cross or touch
+    /// Two edges, given by their first corners, cross or touch.
     Crossing(usize, usize),
 }
 
-/// The first fault of a polygon, none if it is simple.
-pub(crate) fn fault(corners: &[[f64; 2]]) -> Option<PolygonFault> {
+/// Returns the first fault of a polygon; `None` if it is simple, that is, has an area and edges that do not cross.
+pub fn fault(corners: &[[f64; 2]]) -> Option<PolygonFault> {
     let n = corners.len();
     if n < 3 {
         return Some(PolygonFault::TooFew);
@@ -49,8 +51,8 @@ fn cross(corners: &[[f64; 2]], i: usize, j: usize) -> bool {
     }
 }
 
-/// Lower and upper corner of the rectangle around places.
-pub(crate) fn bounds(corners: &[[f64; 2]]) -> [[f64; 2]; 2] {
+/// Returns the lower and upper corner of the rectangle around positions.
+pub fn bounds(corners: &[[f64; 2]]) -> [[f64; 2]; 2] {
     let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for corner in corners {
         for axis in 0..2 {
@@ -61,10 +63,29 @@ pub(crate) fn bounds(corners: &[[f64; 2]]) -> [[f64; 2]; 2] {
     bounds
 }
 
-/// Area, whatever the orientation: `½ |Σ (x_k - x_0)(y_(k+1) - y_0) - (x_(k+1) - x_0)(y_k - y_0)|`.
-pub(crate) fn area(corners: &[[f64; 2]]) -> f64 {
+/// Returns the area of a polygon, positive for both orientations:
+/// `½ |Σ (x_k - x_0)(y_(k+1) - y_0) - (x_(k+1) - x_0)(y_k - y_0)|`.
+pub fn area(corners: &[[f64; 2]]) -> f64 {
     let twice: f64 = corners.windows(2).map(|pair| turn(corners[0], pair[0], pair[1])).sum();
     0.5 * twice.abs()
+}
+
+/// Returns the edges of a rectangle, as those of shape `shape` (m from `origin`).
+pub fn rectangle(lower: [f64; 2], upper: [f64; 2], origin: [f64; 2], shape: usize) -> Vec<Edge> {
+    edges(
+        &[lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]],
+        origin,
+        shape,
+    )
+}
+
+/// Returns the edges of a polygon, as those of shape `shape` (m from `origin`).
+pub fn edges(corners: &[[f64; 2]], origin: [f64; 2], shape: usize) -> Vec<Edge> {
+    let places = corners
+        .iter()
+        .map(|corner| [0, 1].map(|axis| corner[axis] - origin[axis]));
+    let next = places.clone().cycle().skip(1);
+    places.zip(next).map(|(a, b)| Edge::line(a, b, shape)).collect()
 }
 
 fn far(p: [f64; 2], q: &[f64; 2]) -> f64 {

@@ -1,10 +1,8 @@
 //! Places the material points of a 2-D body in one column of cells.
 
-use super::edge::Edge;
-use super::reached;
-use super::sweep::{Slice, Window, intervals, solid, sweep};
-use crate::Geometry;
-use crate::grid::GridSpec;
+use crate::axis::{GridAxis, reached};
+use crate::edge::Edge;
+use crate::sweep::{Slice, Window, intervals, is_filled, sweep};
 use std::ops::Range;
 
 /// Parts of a cell: less area makes no point, and a lattice point is not so near to an edge.
@@ -30,11 +28,13 @@ pub(crate) enum RegionPart {
     Cut(usize, Vec<CellPlace>),
 }
 
-/// A point's place (m, from the grid's lower corner) and area (m²), or volume (m³).
+/// The position of a material point, with its share of the body.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct CellPlace<const D: usize = 2> {
-    pub(crate) x: [f64; D],
-    pub(crate) area: f64,
+pub struct CellPlace<const D: usize = 2> {
+    /// Position (m from the lower corner of the grid).
+    pub x: [f64; D],
+    /// Area (m²), or in space volume (m³).
+    pub area: f64,
 }
 
 impl CellColumn {
@@ -63,18 +63,26 @@ impl RegionPart {
     }
 }
 
-/// The points of a cell: how many along each axis, in which geometry.
+/// The regular lattice of the material points of a cell.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lattice {
-    pub(crate) n: usize,
-    pub(crate) geometry: Geometry,
+pub struct Lattice {
+    /// Number of points along each axis of a cell.
+    pub n: usize,
+    /// Returns the factor by which the points lie farther from the middle along axis 0 than at (i + 1/2)/n of the cell:
+    /// of the ends of the cell (m from the lower end of the grid) and `n`.
+    pub spread: fn([f64; 2], usize) -> f64,
 }
 
 impl Lattice {
+    /// Returns the lattice of `n` points at (i + 1/2)/n of the cell along each axis.
+    pub fn even(n: usize) -> Self {
+        Self { n, spread: |_, _| 1.0 }
+    }
+
     /// Place of point `k` between two ends along axis 0.
     fn across(self, [lower, upper]: [f64; 2], k: usize) -> f64 {
         let middle = (k as f64 + 0.5) / self.n as f64;
-        let off = (middle - 0.5) * (self.geometry.spread([lower, upper], self.n) - 1.0);
+        let off = (middle - 0.5) * ((self.spread)([lower, upper], self.n) - 1.0);
         lower + (upper - lower) * (middle + off)
     }
 }
@@ -96,9 +104,9 @@ pub(crate) fn place([lower, upper]: [f64; 2], k: usize, n: usize) -> f64 {
 }
 
 /// What shape 0 less the others has in column `i` of the grid.
-pub(crate) fn column(edges: &[Edge], shapes: usize, grid: &GridSpec, lattice: Lattice, i: usize) -> CellColumn {
-    let across = &grid.axes[0];
-    let up = &grid.axes[1];
+pub(crate) fn column(edges: &[Edge], shapes: usize, axes: &[GridAxis], lattice: Lattice, i: usize) -> CellColumn {
+    let across = &axes[0];
+    let up = &axes[1];
     let x = [across.breakpoint(i), across.breakpoint(i + 1)];
     let near: Vec<Near> = edges
         .iter()
@@ -274,7 +282,7 @@ impl CellStrip {
         }
         let edges: Vec<Edge> = near.iter().map(|near| near.edge).collect();
         let before = sum.area;
-        sweep(&edges, self.shapes, window, &solid, &mut |slice| sum.add(&slice));
+        sweep(&edges, self.shapes, window, &is_filled, &mut |slice| sum.add(&slice));
         Some((sum.area - before).min(window.area()))
     }
 
@@ -302,7 +310,7 @@ pub(super) fn part([lower, upper]: [f64; 2], k: usize, n: usize) -> [f64; 2] {
 }
 
 /// Gives the area of a place to the nearest of others, the first of several: planes keep the points that they had, for
-/// the equal shares of a [solid](super::lattice) would move those of every slope.
+/// the equal shares of a [solid](crate::lattice) would move those of every slope.
 fn give(places: &mut [CellPlace], left: &CellPlace) {
     let distance = |place: &CellPlace| (0..2).fold(0.0_f64, |sum, k| sum.hypot(place.x[k] - left.x[k]));
     if let Some(nearest) = places.iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b))) {

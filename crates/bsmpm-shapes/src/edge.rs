@@ -1,14 +1,15 @@
 //! One edge of the outline of a body: a straight line or a semicircle.
 
-/// An edge, from left to right; lengths in m from the grid's lower corner.
+/// An edge, from left to right: a straight line, or half of a circle. Coordinates are in m from the lower corner of the
+/// grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Edge {
-    /// left end
-    pub(crate) a: [f64; 2],
-    /// right end; a vertical edge has both at the same x
-    pub(crate) b: [f64; 2],
-    /// number of the shape that it belongs to
-    pub(crate) shape: usize,
+pub struct Edge {
+    /// Left end.
+    pub a: [f64; 2],
+    /// Right end; a vertical edge has both ends at the same x.
+    pub b: [f64; 2],
+    /// Number of the shape to which the edge belongs.
+    pub shape: usize,
     arc: Option<Arc>,
 }
 
@@ -42,14 +43,14 @@ impl std::ops::Sub for Bulge {
 }
 
 impl Edge {
-    /// A straight edge between two places.
-    pub(crate) fn line(p: [f64; 2], q: [f64; 2], shape: usize) -> Self {
+    /// Returns the straight edge between two positions.
+    pub fn line(p: [f64; 2], q: [f64; 2], shape: usize) -> Self {
         let (a, b) = if p[0] <= q[0] { (p, q) } else { (q, p) };
         Self { a, b, shape, arc: None }
     }
 
-    /// Both halves of a circle.
-    pub(crate) fn circle(center: [f64; 2], radius: f64, shape: usize) -> [Self; 2] {
+    /// Returns the lower and the upper half of a circle.
+    pub fn circle(center: [f64; 2], radius: f64, shape: usize) -> [Self; 2] {
         let [a, b] = [-radius, radius].map(|reach| [center[0] + reach, center[1]]);
         [false, true].map(|upper| Self {
             a,
@@ -59,18 +60,18 @@ impl Edge {
         })
     }
 
-    /// Whether it is straight.
-    pub(crate) fn is_straight(&self) -> bool {
+    /// Returns whether the edge is straight.
+    pub fn is_straight(&self) -> bool {
         self.arc.is_none()
     }
 
-    /// Whether it is straight along an axis: 0, or 1 of a vertical one.
-    pub(crate) fn is_along(&self, axis: usize) -> bool {
+    /// Returns whether the edge is straight and parallel to an axis: 0 is horizontal, 1 is vertical.
+    pub fn is_along(&self, axis: usize) -> bool {
         self.arc.is_none() && self.a[1 - axis] == self.b[1 - axis]
     }
 
-    /// The same edge of another shape.
-    pub(crate) fn of(self, shape: usize) -> Self {
+    /// Returns the same edge as one of another shape.
+    pub fn of(self, shape: usize) -> Self {
         Self { shape, ..self }
     }
 
@@ -89,8 +90,8 @@ impl Edge {
         }
     }
 
-    /// Its height at `x` between its ends; beyond them that of the nearer end.
-    pub(crate) fn y(&self, x: f64) -> f64 {
+    /// Returns the y of the edge at `x`; beyond its ends that of the nearer end.
+    pub fn y(&self, x: f64) -> f64 {
         match self.arc {
             Some(Arc { center, radius, upper }) => {
                 let dx = (x - center[0]).clamp(-radius, radius);
@@ -170,8 +171,8 @@ impl Edge {
         }
     }
 
-    /// Distance of a place from the edge (from the whole circle, if it is half of one), m.
-    pub(crate) fn distance(&self, at: [f64; 2]) -> f64 {
+    /// Returns the distance of a position from the edge (m), for half of a circle that from the whole circle.
+    pub fn distance(&self, at: [f64; 2]) -> f64 {
         if let Some(Arc { center, radius, .. }) = self.arc {
             return ((at[0] - center[0]).hypot(at[1] - center[1]) - radius).abs();
         }

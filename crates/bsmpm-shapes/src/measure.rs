@@ -1,6 +1,6 @@
 //! Integrates the volume of a 3-D body along vertical lines.
 
-use super::solid::{Section, SolidShape};
+use crate::solid::{Section, SolidShape};
 
 /// Part of the volume around by which that of a piece may change as it is halved.
 const ROUGH: f64 = 1e-5;

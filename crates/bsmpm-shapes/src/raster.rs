@@ -1,17 +1,14 @@
 //! Terrain between two rasters of heights (top and base), with bilinear interpolation.
 
-use crate::report::brief;
-use bsmpm::interactions::rigid::Terrain;
+use crate::error::RasterError;
 
 /// Parts of the spacing by which posts may miss their places: rounding of what wrote them.
 const ROUNDING: f64 = 1e-3;
 
-/// Of too few rows for a raster.
-const TOO_FEW: &str = "E0032: the heights of a terrain need at least two points along x and two along y. Add rows.";
-
-/// Heights at the posts of a regular raster, and a base under them.
+/// A body between heights at the points of a regular grid, the top, and a base below them. Heights are interpolated
+/// bilinearly between the points.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Raster {
+pub struct Raster {
     /// m  the first post
     lower: [f64; 2],
     /// m  between posts, along x and y
@@ -32,10 +29,13 @@ impl Raster {
             .collect()
     }
 
-    /// Of rows [x, y, z] in any order, on a level. Says what is wrong with them.
-    pub(crate) fn new(rows: &[[f64; 3]], level: f64) -> Result<Self, String> {
+    /// Returns the body below the points `[x, y, z]` (m), in any order, and above a level (m).
+    ///
+    /// # Errors
+    /// If the points are not those of a regular grid, or are below the level.
+    pub fn new(rows: &[[f64; 3]], level: f64) -> Result<Self, RasterError> {
         if rows.len() < 4 {
-            return Err(TOO_FEW.into());
+            return Err(RasterError::TooFew);
         }
         let places = [0, 1].map(|axis| {
             let mut along: Vec<f64> = rows.iter().map(|row| row[axis]).collect();
@@ -49,18 +49,15 @@ impl Raster {
             steps.filter(|step| *step > 1e-6 * far).fold(f64::INFINITY, f64::min)
         });
         if spacing.iter().any(|step| !step.is_finite()) {
-            return Err(TOO_FEW.into());
+            return Err(RasterError::TooFew);
         }
         let count = [0, 1].map(|axis| ((ends[axis][1] - ends[axis][0]) / spacing[axis]).round() as usize + 1);
         if count[0].saturating_mul(count[1]) != rows.len() {
-            let [x, y] = count;
-            return Err(format!(
-                "E0032: the {} rows do not form a regular grid of points. Spacings of {} m along x and {} m along y \
-                 need {x} x {y} rows. Interpolate the heights to a regular grid.",
-                rows.len(),
-                brief(spacing[0]),
-                brief(spacing[1])
-            ));
+            return Err(RasterError::Irregular {
+                rows: rows.len(),
+                spacing,
+                count,
+            });
         }
         let spacing = [0, 1].map(|axis| (ends[axis][1] - ends[axis][0]) / (count[axis] - 1) as f64);
         let mut top = vec![f64::NAN; rows.len()];
@@ -69,17 +66,12 @@ impl Raster {
             let post = part.map(|part| part.round() as usize);
             let is_off = (0..2).any(|axis| (part[axis] - part[axis].round()).abs() > ROUNDING);
             let place = post[1] * count[0] + post[0];
-            if is_off || !top[place].is_nan() {
-                let what = if is_off {
-                    "is not on the regular grid of the other points"
-                } else {
-                    "is given twice"
-                };
-                let [x, y, _] = row;
-                return Err(format!(
-                    "E0032: the point x = {x} m, y = {y} m {what}. Correct this row, or interpolate all heights to a \
-                     regular grid of points."
-                ));
+            let at = [row[0], row[1]];
+            if is_off {
+                return Err(RasterError::OffGrid { at });
+            }
+            if !top[place].is_nan() {
+                return Err(RasterError::Repeated { at });
             }
             top[place] = row[2];
         }
@@ -94,49 +86,55 @@ impl Raster {
         .checked()
     }
 
-    /// On the heights of another one with the same posts.
-    pub(crate) fn on(self, base: Self) -> Result<Self, String> {
+    /// Returns the body between the top of this one and the top of another one at the same points.
+    ///
+    /// # Errors
+    /// If the points are not the same, or the top is below the base.
+    pub fn on(self, base: Self) -> Result<Self, RasterError> {
         let has_same_posts = (0..2).all(|axis| {
             let off = (self.lower[axis] - base.lower[axis]).abs() + (self.spacing[axis] - base.spacing[axis]).abs();
             off <= ROUNDING * self.spacing[axis]
         });
         if self.count != base.count || !has_same_posts {
-            return Err(
-                "E0032: `base` and `top` give heights at different points. Interpolate both to the same regular grid \
-                 of points."
-                    .into(),
-            );
+            return Err(RasterError::DifferentPoints);
         }
         Self { base: base.top, ..self }.checked()
     }
 
-    fn checked(self) -> Result<Self, String> {
+    /// Returns the first point (m) in x and y.
+    pub fn lower(&self) -> [f64; 2] {
+        self.lower
+    }
+
+    /// Returns the distance of the points along x and y (m).
+    pub fn spacing(&self) -> [f64; 2] {
+        self.spacing
+    }
+
+    /// Returns the number of points along x and y, at least two each.
+    pub fn count(&self) -> [usize; 2] {
+        self.count
+    }
+
+    /// Returns the height of the top at each point (m), x running fastest.
+    pub fn top(&self) -> &[f64] {
+        &self.top
+    }
+
+    fn checked(self) -> Result<Self, RasterError> {
         let mut posts = self.top.iter().zip(&self.base).enumerate();
         if let Some((post, (top, base))) = posts.find(|(_, (top, base))| top < base) {
             let at = [post % self.count[0], post / self.count[0]];
-            let [x, y] = [0, 1].map(|axis| self.lower[axis] + at[axis] as f64 * self.spacing[axis]);
-            return Err(format!(
-                "E0033: at x = {x} m, y = {y} m the top ({top} m) is below the base ({base} m). Correct the heights."
-            ));
+            return Err(RasterError::TopBelowBase {
+                at: [0, 1].map(|axis| self.lower[axis] + at[axis] as f64 * self.spacing[axis]),
+                top: *top,
+                base: *base,
+            });
         }
         if self.top == self.base {
-            return Err(
-                "E0033: `top` and `base` have the same heights everywhere, so the body has no volume. Correct the \
-                 heights."
-                    .into(),
-            );
+            return Err(RasterError::NoVolume);
         }
         Ok(self)
-    }
-
-    /// Its top as a rigid surface.
-    pub(crate) fn surface(self) -> Terrain {
-        Terrain {
-            lower: self.lower,
-            spacing: self.spacing,
-            count: self.count,
-            heights: self.top,
-        }
     }
 
     pub(crate) fn moved(mut self, by: [f64; 3]) -> Self {
@@ -222,22 +220,25 @@ mod tests {
 
     #[test]
     fn what_is_no_raster_is_refused() {
-        let says = |rows: &[[f64; 3]], level: f64, what: &str| {
-            let message = Raster::new(rows, level).unwrap_err();
-            assert!(message.contains(what), "{message}");
-        };
+        let error = |rows: &[[f64; 3]], level: f64| Raster::new(rows, level).unwrap_err();
         let mut posts = rows(|_, _| 1.0);
-        says(&posts, 2.0, "is below the base (2 m)");
-        says(&posts, 1.0, "the body has no volume");
+        let below = RasterError::TopBelowBase {
+            at: [10.0, -1.0],
+            top: 1.0,
+            base: 2.0,
+        };
+        assert_eq!(error(&posts, 2.0), below);
+        assert_eq!(error(&posts, 1.0), RasterError::NoVolume);
         posts[7][0] += 0.1;
-        says(&posts, 0.0, "do not form a regular grid of points");
+        let irregular = error(&posts, 0.0);
+        assert!(
+            matches!(irregular, RasterError::Irregular { rows: 20, .. }),
+            "{irregular:?}"
+        );
         let mut twice = rows(|_, _| 1.0);
         twice[3] = twice[2];
-        says(&twice, 0.0, "is given twice");
-        says(
-            &[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]],
-            0.0,
-            "two points along x and two along y",
-        );
+        assert_eq!(error(&twice, 0.0), RasterError::Repeated { at: [10.0, 1.0] });
+        let line = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0]];
+        assert_eq!(error(&line, 0.0), RasterError::TooFew);
     }
 }

@@ -1,5 +1,6 @@
 //! A 3-D body bounded by triangles. Computes which intervals of vertical lines are inside the body.
 
+use crate::error::SurfaceError;
 use std::collections::{BTreeMap, HashMap};
 
 /// Parts of its size by which a surface may overlap itself: rounding of where its lines are cut.
@@ -8,9 +9,10 @@ const ROUNDING: f64 = 1e-9;
 /// in which files often are, makes touching parts overlap by is less.
 const BESIDE: f64 = 1e-5;
 
-/// Triangles, counter-clockwise seen from outside, and the bins of the plane by which a vertical line finds its own.
+/// A closed surface of triangles. Corners of a triangle are counter-clockwise seen from outside. Bins of the horizontal
+/// plane show which triangles a vertical line can meet.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Surface {
+pub struct Surface {
     triangles: Vec<[[f64; 3]; 3]>,
     /// lower and upper corner of the cuboid around it
     bounds: [[f64; 3]; 2],
@@ -26,27 +28,26 @@ impl Surface {
         self.triangles.iter().flatten().map(move |corner| corner[axis])
     }
 
-    /// Of rows of nine numbers, the corners of a triangle each; which way all of them turn does not matter. Says what
-    /// is wrong with them.
-    pub(crate) fn new(rows: impl Iterator<Item = [f64; 9]>) -> Result<Self, String> {
+    /// Returns the surface of triangles, each given by the nine coordinates of its corners (m). All triangles may be
+    /// oriented inwards.
+    ///
+    /// # Errors
+    /// If the surface is not closed, intersects itself or encloses no volume.
+    pub fn new(rows: impl Iterator<Item = [f64; 9]>) -> Result<Self, SurfaceError> {
         // -0 and 0 are one place.
         let mut triangles: Vec<[[f64; 3]; 3]> = rows
             .map(|row| [0, 1, 2].map(|k| [0, 1, 2].map(|axis| row[3 * k + axis] + 0.0)))
             .filter(|[a, b, c]| a != b && b != c && c != a)
             .collect();
         if triangles.is_empty() {
-            return Err(
-                "E0034: no triangle of the surface has three different corners, so the surface has no area. Correct \
-                 the triangles or their file."
-                    .into(),
-            );
+            return Err(SurfaceError::NoTriangle);
         }
         closed(&triangles)?;
         let bounds = bounds(&triangles);
         let volume = volume(&triangles, bounds[0]);
         let size: f64 = (0..3).map(|axis| bounds[1][axis] - bounds[0][axis]).product();
         if volume.abs() <= ROUNDING * size {
-            return Err("E0034: the surface encloses no volume. Export a closed surface.".into());
+            return Err(SurfaceError::NoVolume);
         }
         if volume < 0.0 {
             triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
@@ -98,13 +99,13 @@ impl Surface {
         Self::binned(self.triangles)
     }
 
-    /// Lower and upper corner of the cuboid around it.
-    pub(crate) fn bounds(&self) -> [[f64; 3]; 2] {
+    /// Returns the lower and upper corner of the cuboid around the surface (m).
+    pub fn bounds(&self) -> [[f64; 3]; 2] {
         self.bounds
     }
 
-    /// m³  that it encloses
-    pub(crate) fn volume(&self) -> f64 {
+    /// Returns the volume inside the surface (m³).
+    pub fn volume(&self) -> f64 {
         volume(&self.triangles, self.bounds[0])
     }
 
@@ -153,7 +154,7 @@ impl Surface {
     /// unless two of them cross there. Wherever the order is wrong it is so beside a corner or beside a place where
     /// two edges cross, which are the places that are tried, `BESIDE` from the edges that meet there; what is thinner
     /// may stay.
-    fn simple(&self) -> Result<(), String> {
+    fn simple(&self) -> Result<(), SurfaceError> {
         let width = (0..2)
             .map(|axis| self.bounds[1][axis] - self.bounds[0][axis])
             .fold(0.0, f64::max);
@@ -167,7 +168,7 @@ impl Surface {
         for bin in &self.bins {
             let edges = bin.iter().flat_map(|&k| edges(&self.triangles[k as usize])).collect();
             for (one, other) in near(edges) {
-                let Some((at, [u, v])) = crossing(one, other) else {
+                let Some(EdgeCrossing { at, to_ends: [u, v] }) = crossing(one, other) else {
                     continue;
                 };
                 for ways in [[u[0], v[0]], [u[0], v[1]], [u[1], v[0]], [u[1], v[1]]] {
@@ -179,17 +180,13 @@ impl Surface {
     }
 
     /// Whether the line at a place enters and leaves in turns.
-    fn is_simple(&self, at: [f64; 2]) -> Result<(), String> {
+    fn is_simple(&self, at: [f64; 2]) -> Result<(), SurfaceError> {
         let height = self.bounds[1][2] - self.bounds[0][2];
         let mut depth = 0;
         let mut last = f64::NEG_INFINITY;
         for (z, crossing) in self.crossings(at) {
             if !(0..=1).contains(&depth) && z - last > ROUNDING * height {
-                let [x, y] = at;
-                return Err(format!(
-                    "E0035: the surface intersects itself, or has normals that point inwards, near [{x:.6}, {y:.6}, \
-                     {z:.6}] m. Repair the surface with a mesh tool."
-                ));
+                return Err(SurfaceError::SelfIntersection { at: [at[0], at[1], z] });
             }
             (depth, last) = (depth - crossing, z);
         }
@@ -243,9 +240,14 @@ fn between(at: [f64; 2], ways: [[f64; 2]; 2], far: f64) -> Option<[f64; 2]> {
     (2.0 * along < lengths[0].min(lengths[1])).then(|| [0, 1].map(|axis| at[axis] + by * middle[axis]))
 }
 
-/// Where two edges cross between their ends, and the ways from there to the ends of both.
-#[allow(clippy::type_complexity)]
-fn crossing(one: [[f64; 2]; 2], other: [[f64; 2]; 2]) -> Option<([f64; 2], [[[f64; 2]; 2]; 2])> {
+/// A position where two edges cross, and the vectors from there to the ends of both.
+struct EdgeCrossing {
+    at: [f64; 2],
+    to_ends: [[[f64; 2]; 2]; 2],
+}
+
+/// Where two edges cross between their ends.
+fn crossing(one: [[f64; 2]; 2], other: [[f64; 2]; 2]) -> Option<EdgeCrossing> {
     let u = way(one[0], one[1]);
     let v = way(other[0], other[1]);
     let apart = way(one[0], other[0]);
@@ -253,7 +255,10 @@ fn crossing(one: [[f64; 2]; 2], other: [[f64; 2]; 2]) -> Option<([f64; 2], [[[f6
     let parts = [cross(apart, v) / sine, cross(apart, u) / sine];
     let at = [0, 1].map(|axis| one[0][axis] + parts[0] * u[axis]);
     let are_inside = parts.iter().all(|part| ROUNDING < *part && *part < 1.0 - ROUNDING);
-    are_inside.then(|| (at, [one, other].map(|edge| edge.map(|end| way(at, end)))))
+    are_inside.then(|| EdgeCrossing {
+        at,
+        to_ends: [one, other].map(|edge| edge.map(|end| way(at, end))),
+    })
 }
 
 /// The vector from a place to another one.
@@ -266,7 +271,7 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// Whether every edge has as many triangles on one side as on the other.
-fn closed(triangles: &[[[f64; 3]; 3]]) -> Result<(), String> {
+fn closed(triangles: &[[[f64; 3]; 3]]) -> Result<(), SurfaceError> {
     let edges = edges_of(triangles);
     let open = edges.values().filter(|sides| {
         let signs = sides.iter().map(|side| if side.upwards { 1 } else { -1 });
@@ -274,26 +279,25 @@ fn closed(triangles: &[[[f64; 3]; 3]]) -> Result<(), String> {
     });
     let open: Vec<&Vec<EdgeSide>> = open.collect();
     let Some(sides) = open.first() else { return Ok(()) };
-    let open = open.len();
-    Err(format!(
-        "E0034: the surface is not closed at {open} edges, first at the edge from {:?} to {:?} m. Weld vertices, \
-         fill holes and make normals consistent with a mesh tool.",
-        sides[0].ends[0], sides[0].ends[1]
-    ))
+    Err(SurfaceError::Open {
+        edges: open.len(),
+        first: sides[0].ends,
+    })
 }
 
 /// A triangle at an edge.
-pub(crate) struct EdgeSide {
-    /// its number
-    pub(crate) triangle: usize,
-    /// whether it turns from the edge's first corner to its second, in the order of corners in the file
-    pub(crate) upwards: bool,
-    /// m  the edge's ends, as the triangle turns
-    pub(crate) ends: [[f64; 3]; 2],
+pub struct EdgeSide {
+    /// Number of the triangle.
+    pub triangle: usize,
+    /// Whether the triangle goes from the first corner of the edge to the second one. Corners are numbered in the order
+    /// in which the triangles name them.
+    pub upwards: bool,
+    /// Ends of the edge (m), in the order of the triangle.
+    pub ends: [[f64; 3]; 2],
 }
 
-/// Edges by the numbers of their corners, with the triangles at them.
-pub(crate) fn edges_of(triangles: &[[[f64; 3]; 3]]) -> BTreeMap<[usize; 2], Vec<EdgeSide>> {
+/// Returns the edges of triangles by the numbers of their corners, with the triangles at each edge.
+pub fn edges_of(triangles: &[[[f64; 3]; 3]]) -> BTreeMap<[usize; 2], Vec<EdgeSide>> {
     let mut numbers = HashMap::new();
     let mut edges: BTreeMap<[usize; 2], Vec<EdgeSide>> = BTreeMap::new();
     for (triangle, corners) in triangles.iter().enumerate() {
@@ -382,168 +386,4 @@ fn height([a, b, c]: &[[f64; 3]; 3], at: [f64; 2]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A cuboid's twelve triangles, outwards.
-    fn cuboid(lower: [f64; 3], upper: [f64; 3]) -> Vec<[f64; 9]> {
-        let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { lower[axis] } else { upper[axis] });
-        let faces = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
-        let halves = faces.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
-        halves
-            .map(|half| half.map(corner).concat().try_into().unwrap())
-            .collect()
-    }
-
-    fn turned(rows: Vec<[f64; 9]>) -> Vec<[f64; 9]> {
-        rows.into_iter()
-            .map(|[a, b, c, d, e, f, g, h, i]| [a, b, c, g, h, i, d, e, f])
-            .collect()
-    }
-
-    fn surface(rows: Vec<[f64; 9]>) -> Result<Surface, String> {
-        Surface::new(rows.into_iter())
-    }
-
-    #[test]
-    fn what_a_cuboid_with_a_cavity_encloses_is_exact() {
-        let shell = cuboid([1.0, 2.0, 3.0], [4.0, 4.0, 7.0]);
-        let cavity = turned(cuboid([2.0, 2.5, 4.0], [3.0, 3.5, 5.0]));
-        for rows in [
-            [shell.clone(), cavity.clone()].concat(),
-            turned([shell, cavity].concat()),
-        ] {
-            let found = surface(rows).unwrap();
-            assert!((found.volume() - 23.0).abs() < 1e-12);
-            assert_eq!(found.bounds(), [[1.0, 2.0, 3.0], [4.0, 4.0, 7.0]]);
-            // On the diagonals of the faces, on edges below (inside) and above (outside), and beside.
-            assert_eq!(found.vertical([2.5, 3.0]), [[3.0, 4.0], [5.0, 7.0]]);
-            assert_eq!(found.vertical([1.5, 3.9]), [[3.0, 7.0]]);
-            assert_eq!(found.vertical([1.0, 2.0]), [[3.0, 7.0]]);
-            assert!(found.vertical([4.0, 3.0]).is_empty() && found.vertical([0.9, 3.0]).is_empty());
-            let moved = found.moved([1.0, -1.0, 0.5]);
-            assert_eq!(moved.vertical([3.5, 2.0]), [[3.5, 4.5], [5.5, 7.5]]);
-        }
-    }
-
-    #[test]
-    fn lines_through_corners_and_edges_of_any_surface_enter_as_often_as_they_leave() {
-        // A bumpy sphere whose corners have no round numbers.
-        let around_it = 24;
-        let up = 12;
-        let at = |i: usize, j: usize| {
-            let phi = std::f64::consts::TAU * (i % around_it) as f64 / around_it as f64;
-            let theta = std::f64::consts::PI * j as f64 / up as f64;
-            let r = if j.is_multiple_of(up) {
-                1.3
-            } else {
-                1.0 + 0.3 * (3.0 * phi).sin() * theta.sin().powi(2)
-            };
-            let flat = if j.is_multiple_of(up) { 0.0 } else { r * theta.sin() };
-            [flat * phi.cos(), flat * phi.sin(), r * theta.cos()]
-        };
-        let quads = (0..around_it).flat_map(|i| (0..up).map(move |j| [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)]));
-        let halves = quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
-        let rows = halves
-            .map(|half| half.map(|(i, j)| at(i, j)).concat().try_into().unwrap())
-            .collect();
-        let found = surface(rows).unwrap();
-        let corners: Vec<[f64; 3]> = found.triangles.iter().flatten().copied().collect();
-        let middles = found.triangles.iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
-        let middles = middles.map(|[a, b]| [0, 1].map(|axis| 0.5 * (a[axis] + b[axis])));
-        for place in corners.iter().map(|at| [at[0], at[1]]).chain(middles) {
-            let crossings = found.crossings(place);
-            assert_eq!(crossings.iter().map(|(_, turns)| turns).sum::<i32>(), 0, "{place:?}");
-            assert!(crossings.len().is_multiple_of(2));
-        }
-    }
-
-    /// Two cuboids, turned about a vertical, of which one stands at a part of the other's wall, in single precision.
-    #[test]
-    fn shells_that_touch_but_for_rounding_are_one_body_and_those_that_overlap_are_none() {
-        for (k, overlap) in (0..400).flat_map(|k| [0.0, 1e-3].map(|overlap| (k, overlap))) {
-            let angle = 0.0157 * f64::from(k) + 0.01;
-            let thick = if k % 2 == 0 { 0.05 } else { 0.5 };
-            let (sin, cos) = angle.sin_cos();
-            let placed = |row: [f64; 9]| {
-                let corner = |k: usize| {
-                    let [x, y, z] = [row[3 * k], row[3 * k + 1], row[3 * k + 2]];
-                    [10.3 + cos * x - sin * y, 7.7 + sin * x + cos * y, z].map(|at| f64::from(at as f32))
-                };
-                [0, 1, 2].map(corner).concat().try_into().unwrap()
-            };
-            let wall = cuboid([0.0; 3], [3.0, thick, 1.0]);
-            let beside = cuboid([0.7, thick - overlap, 0.0], [1.9, thick + 0.3, 1.0]);
-            let found = surface([wall, beside].concat().into_iter().map(placed).collect());
-            assert_eq!(found.is_ok(), overlap == 0.0, "{k}: {:?}", found.err());
-        }
-    }
-
-    #[test]
-    fn two_cuboids_that_share_lines_are_reported_apart_from_two_that_overlap() {
-        let spans =
-            [[0.0, 1.0], [0.0, 2.0], [0.0, 3.0], [1.0, 2.0], [1.0, 3.0], [2.0, 3.0]].map(|ends| ends.map(|x| x / 3.0));
-        let one = [[1.0, 2.0], [0.0, 2.0], [1.0, 3.0]].map(|ends: [f64; 2]| ends.map(|x| x / 3.0));
-        for number in 0..216 {
-            let other = [number % 6, number / 6 % 6, number / 36].map(|k| spans[k]);
-            let overlap = (0..3).all(|axis| one[axis][0] < other[axis][1] && other[axis][0] < one[axis][1]);
-            let rows = [one, other]
-                .map(|spans| cuboid(spans.map(|ends| ends[0]), spans.map(|ends| ends[1])))
-                .concat();
-            assert_eq!(surface(rows).is_err(), overlap, "{other:?}");
-        }
-    }
-
-    #[test]
-    fn what_is_no_closed_surface_is_refused() {
-        let says = |rows: Vec<[f64; 9]>, what: &str| {
-            let message = surface(rows).unwrap_err();
-            assert!(message.contains(what), "{message}");
-        };
-        let block = cuboid([0.0; 3], [1.0; 3]);
-        says(Vec::new(), "no triangle");
-        says(block[1..].to_vec(), "not closed at 3 edges");
-        let mut one_turned = block.clone();
-        one_turned[..1].clone_from_slice(&turned(block[..1].to_vec()));
-        says(one_turned, "not closed at 3 edges");
-        says([block.clone(), turned(block.clone())].concat(), "encloses no volume");
-        says(
-            [block.clone(), cuboid([0.5; 3], [1.5; 3])].concat(),
-            "intersects itself",
-        );
-        says(
-            [block.clone(), turned(cuboid([2.0; 3], [2.5; 3]))].concat(),
-            "normals that point inwards",
-        );
-        // Blocks with sides in common that overlap by little, and bars across each other, with sides in common and not.
-        says(
-            [block.clone(), cuboid([0.99, 0.0, 0.0], [1.99, 1.0, 1.0])].concat(),
-            "intersects itself",
-        );
-        says(
-            [block.clone(), cuboid([0.3, 0.2, 0.99], [0.4, 0.5, 2.0])].concat(),
-            "intersects itself",
-        );
-        let bar = cuboid([0.0, 1.45, 0.0], [30.0, 1.5, 1.0]);
-        for top in [1.0, 2.0] {
-            says(
-                [bar.clone(), cuboid([14.9, 0.0, 0.0], [15.1, 3.0, top])].concat(),
-                "intersects itself",
-            );
-        }
-        says(
-            [bar, cuboid([14.9, 0.0, 0.4], [15.1, 3.0, 0.6])].concat(),
-            "intersects itself",
-        );
-        // Blocks that only touch are fine.
-        let both = surface([block, cuboid([0.0, 0.0, 1.0], [1.0, 1.0, 2.0])].concat()).unwrap();
-        assert!((both.volume() - 2.0).abs() < 1e-12);
-    }
-}
+mod tests;

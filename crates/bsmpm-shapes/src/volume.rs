@@ -1,16 +1,17 @@
 //! The region of a 3-D body: a cuboid, an extruded outline or another shape.
 
-use super::cells::{CellPlace, of_cell, place};
-use super::extent::AxisExtent;
-use super::lattice::{self, LINES};
-use super::measure;
-use super::solid::{SolidShape, less, plane};
-use super::{Edge, MOST_WORK, Outline, RegionPart, reached};
-use crate::Geometry;
-use crate::grid::{GridAxis, GridSpec};
+use crate::axis::{GridAxis, corner, reached};
+use crate::cells::{CellPlace, Lattice, place};
+use crate::edge::Edge;
+use crate::error::ShapeError;
+use crate::extent::{AxisExtent, left_of_box};
+use crate::lattice::{self, LINES};
+use crate::measure;
+use crate::outline::{MOST_WORK, Outline};
+use crate::solid::{SolidShape, less, plane};
 use std::ops::Range;
 
-/// A shape in space, less others.
+/// A shape in 3-D with cut-outs, and the material points in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Volume {
     origin: [f64; 3], // m  the grid's lower corner, from which shapes are measured
@@ -31,7 +32,7 @@ enum FillPattern {
     /// are exact.
     Prism {
         outline: Box<Outline>,
-        plane: GridSpec,
+        plane: Vec<GridAxis>,
         along: usize,
         ends: [f64; 2],
     },
@@ -54,11 +55,14 @@ pub(crate) struct SlabTally {
 }
 
 impl Volume {
-    /// The shape less others, m from the lower corner of the grid with these `axes`, with `n` points along each axis of
-    /// a cell. Says in words what makes it too costly.
-    pub(crate) fn new(whole: SolidShape, cut: Vec<SolidShape>, axes: &[GridAxis], n: usize) -> Result<Self, String> {
+    /// Returns a shape with others cut out of it (m from the lower corner of the grid with three `axes`), with `n`
+    /// points along each axis of a cell.
+    ///
+    /// # Errors
+    /// If the points would take too long to make, or the shape is too thin for the cells.
+    pub fn new(whole: SolidShape, cut: Vec<SolidShape>, axes: &[GridAxis], n: usize) -> Result<Self, ShapeError> {
         let origin = [0, 1, 2].map(|axis| axes[axis].lower());
-        let bounds = bounds(&whole, &cut);
+        let bounds = bounds_of_difference(&whole, &cut);
         let filling = FillPattern::of(&whole, &cut, bounds, axes, n)?;
         let volume = whole.volume();
         let mut made = Self {
@@ -74,34 +78,31 @@ impl Volume {
         let unseen = made.tally.cells == 0 && made.volume > 0.0;
         // A factor below zero: cells that seem whole hold more than the body.
         if matches!(made.filling, FillPattern::Lattice { .. }) && (unseen || made.scale() <= 0.0) {
-            return Err(
-                "E0037: the shape is too thin for the size of the cells, so its volume cannot be calculated. Use \
-                 smaller cells, or make the shape thicker."
-                    .into(),
-            );
+            return Err(ShapeError::TooThin);
         }
         Ok(made)
     }
 
-    /// Lower and upper corner of a cuboid around it, m, in the case's coordinates: around the whole shape but for what
-    /// cuboids cut off.
+    /// Returns the lower and upper corner of a cuboid around the shape (m), in the coordinates of the breakpoints.
+    /// Cut-outs reduce it only if they are cuboids that cut off a whole side.
     pub fn bounds(&self) -> [[f64; 3]; 2] {
         self.bounds
             .map(|corner| [0, 1, 2].map(|axis| corner[axis] + self.origin[axis]))
     }
 
-    /// Its volume, m³: that of its points.
+    /// Returns the volume (m³), which is the sum of the volumes of its points.
     pub fn volume(&self) -> f64 {
         self.volume
     }
 
-    /// Whether it is a cuboid with nothing cut out.
+    /// Returns whether the shape is a cuboid without cut-outs.
     pub fn is_box(&self) -> bool {
         self.filling == FillPattern::Box
     }
 
-    /// By what the volumes of points in cells that are cut were multiplied: far from 1 the lines do not see the shape.
-    pub(crate) fn scale(&self) -> f64 {
+    /// Returns the factor by which the volumes of points in cells at the surface were multiplied to make the sum exact.
+    /// Far from 1 the shape is too thin for the vertical lines that sample it.
+    pub fn scale(&self) -> f64 {
         if let FillPattern::Lattice { scale } = self.filling {
             scale
         } else {
@@ -109,11 +110,27 @@ impl Volume {
         }
     }
 
+    /// Returns the material points in the cells `columns` along axis 0, each with its number within the shape, with the
+    /// `axes` and `n` of [`Self::new`]. Numbers do not depend on `columns`.
+    pub fn places<'a>(
+        &'a self,
+        axes: &'a [GridAxis],
+        n: usize,
+        columns: Range<usize>,
+    ) -> impl Iterator<Item = (u64, CellPlace<3>)> + 'a {
+        let occupied = &self.tally.occupied[0];
+        let columns = occupied.start.max(columns.start)..occupied.end.min(columns.end);
+        columns.flat_map(move |i| {
+            let first = self.tally.before[i - occupied.start];
+            (first..).zip(self.slab(axes, n, i))
+        })
+    }
+
     pub(crate) fn tally(&self) -> &SlabTally {
         &self.tally
     }
 
-    /// Length of the vertical ray above `at` (m, in the case's coordinates) inside it, m.
+    /// Length of the part of the vertical ray above a position (m) inside the shape (m).
     pub(crate) fn above(&self, at: [f64; 3]) -> f64 {
         let at = self.local(at);
         self.vertical([at[0], at[1]])
@@ -122,8 +139,8 @@ impl Volume {
             .sum()
     }
 
-    /// Whether a place lies inside, m in the case's coordinates.
-    pub(crate) fn contains(&self, at: [f64; 3]) -> bool {
+    /// Returns whether a position (m), in the coordinates of the breakpoints, is inside the shape.
+    pub fn contains(&self, at: [f64; 3]) -> bool {
         let at = self.local(at);
         self.vertical([at[0], at[1]])
             .iter()
@@ -226,7 +243,7 @@ impl Volume {
                 outline, along, ends, ..
             } => {
                 self.tally = prism_tally(outline, *along, extent(*along), ends[1] - ends[0], n);
-                self.volume = outline.area * (ends[1] - ends[0]);
+                self.volume = outline.area() * (ends[1] - ends[0]);
             }
             FillPattern::Lattice { .. } => self.count_lattice(axes, n),
         }
@@ -301,22 +318,18 @@ impl FillPattern {
         bounds: [[f64; 3]; 2],
         axes: &[GridAxis],
         n: usize,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, ShapeError> {
         if cut.is_empty() && matches!(whole, SolidShape::Box { .. }) {
             return Ok(Self::Box);
         }
         let prism = (0..3).find_map(|along| Some((along, through(whole, cut, along)?, whole.along(along)?.0)));
         if let Some((along, (edges, _), section)) = prism {
             let [across, up] = plane(along);
-            let plane = GridSpec {
-                axes: vec![axes[across].clone(), axes[up].clone()],
-                order: 1,
-                lines: Default::default(),
-            };
-            let lower = plane.lower();
+            let plane = vec![axes[across].clone(), axes[up].clone()];
+            let lower = corner(&plane);
             let ends = bounds.map(|corner| corner[along]);
             let bounds = bounds.map(|corner| [corner[across] + lower[0], corner[up] + lower[1]]);
-            let outline = Outline::new(edges, 1 + cut.len(), bounds, section.area, &plane, Geometry::Solid, n)?;
+            let outline = Outline::new(edges, 1 + cut.len(), bounds, section.area, &plane, Lattice::even(n))?;
             return Ok(Self::Prism {
                 outline: Box::new(outline),
                 plane,
@@ -329,45 +342,20 @@ impl FillPattern {
         let lines = columns.product::<u128>() * (n * n * (1 + LINES * LINES)) as u128;
         let rows = reached(&axes[2], [lower[2], upper[2]]).len() * n;
         if lines * (edges(whole) + cut.iter().map(edges).sum::<usize>() + rows) as u128 > MOST_WORK {
-            return Err(
-                "E0036: the shape covers so many cells that generating its material points would take too long. Use \
-                 larger cells."
-                    .into(),
-            );
+            return Err(ShapeError::TooManyCells);
         }
         Ok(Self::Lattice { scale: 1.0 })
     }
 }
 
-/// Lower and upper corner of the cuboid around a shape of which cuboids may cut off sides as a whole: a quarter of a
-/// cylinder between planes of symmetry.
-pub(crate) fn bounds(whole: &SolidShape, cut: &[SolidShape]) -> [[f64; 3]; 2] {
+/// Returns the lower and upper corner of a cuboid around a shape with cut-outs. Only cuboids that cut off a whole side
+/// reduce it, as planes of symmetry cut off three quarters of a cylinder.
+pub fn bounds_of_difference(whole: &SolidShape, cut: &[SolidShape]) -> [[f64; 3]; 2] {
     let boxes = cut.iter().filter_map(|shape| match shape {
         SolidShape::Box { corners } => Some(*corners),
         _ => None,
     });
-    left(whole.bounds(), &boxes.collect::<Vec<_>>())
-}
-
-/// What is left of a box by its lower and upper corner where others cut off sides as a whole.
-pub(crate) fn left<const D: usize>([mut lower, mut upper]: [[f64; D]; 2], cut: &[[[f64; D]; 2]]) -> [[f64; D]; 2] {
-    for _ in cut {
-        for [from, to] in cut {
-            for axis in 0..D {
-                let mut others = (0..D).filter(|other| *other != axis);
-                if !others.all(|other| from[other] <= lower[other] && upper[other] <= to[other]) {
-                    continue;
-                }
-                if from[axis] <= lower[axis] && lower[axis] < to[axis] {
-                    lower[axis] = to[axis].min(upper[axis]);
-                }
-                if to[axis] >= upper[axis] && upper[axis] > from[axis] {
-                    upper[axis] = from[axis].max(lower[axis]);
-                }
-            }
-        }
-    }
-    [lower, upper]
+    left_of_box(whole.bounds(), &boxes.collect::<Vec<_>>())
 }
 
 /// Edges that a vertical line is held against.
@@ -396,7 +384,7 @@ fn through(whole: &SolidShape, cut: &[SolidShape], along: usize) -> Option<(Vec<
 /// Points of slab `i` along axis 0 of a prism.
 fn prism_slab(
     outline: &Outline,
-    plane: &GridSpec,
+    plane: &[GridAxis],
     along: usize,
     extent: &AxisExtent<'_>,
     n: usize,
@@ -410,7 +398,7 @@ fn prism_slab(
     };
     let mut places = Vec::new();
     for column in columns {
-        let section = section(outline, plane, n, column);
+        let section: Vec<CellPlace> = outline.points_of_column(plane, Lattice::even(n), column).collect();
         for cell in cells.clone() {
             let part = extent.part(cell);
             let thickness = (part[1] - part[0]) / n as f64;
@@ -424,19 +412,6 @@ fn prism_slab(
         }
     }
     places
-}
-
-/// Points of a column of an outline.
-fn section(outline: &Outline, plane: &GridSpec, n: usize, column: usize) -> Vec<CellPlace> {
-    let x = sides(&plane.axes[0], column);
-    let parts = outline.column(plane, n, column).parts.into_iter();
-    let places = parts.flat_map(|part| match part {
-        RegionPart::Whole(rows) => rows
-            .flat_map(|row| of_cell(outline.lattice(n), [x, sides(&plane.axes[1], row)]))
-            .collect(),
-        RegionPart::Cut(_, places) => places,
-    });
-    places.collect()
 }
 
 /// Lower and upper side of a cell along an axis, m from the grid's lower corner.

@@ -1,60 +1,68 @@
 //! Shapes of 3-D bodies. Each shape returns the intervals of a vertical line that are inside it.
 
-use super::Edge;
-use super::raster::Raster;
-use super::simple::{area, bounds};
-use super::surface::Surface;
-use super::sweep::intervals;
+use crate::edge::Edge;
+use crate::polygon::{self, area, bounds};
+use crate::raster::Raster;
+use crate::surface::Surface;
+use crate::sweep::intervals;
 use std::f64::consts::PI;
 
 /// Shape 0 of the outlines here, which have no other.
 const OUTLINE: usize = 1;
 
-/// A shape in space, m from the grid's lower corner; axis 2 is the vertical.
+/// A shape in 3-D; axis 2 is the vertical. Lengths and coordinates are in m.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum SolidShape {
+pub enum SolidShape {
     /// A cuboid along the axes.
     Box {
-        /// lower and upper corner
+        /// Lower and upper corner.
         corners: [[f64; 3]; 2],
     },
-    /// An outline, of the other two axes in their order, between two places of an axis.
+    /// An outline, extruded along an axis.
     Prism {
+        /// The outline in the plane of the other two axes, in their order.
         outline: Section,
-        /// the axis
+        /// The axis.
         along: usize,
+        /// Lower and upper end along the axis.
         ends: [f64; 2],
     },
+    /// A sphere.
     Sphere {
+        /// Its centre.
         center: [f64; 3],
+        /// Its radius.
         radius: f64,
     },
-    /// An outline of the radius and the height, turned about a vertical.
+    /// A body of revolution about a vertical.
     Revolved {
+        /// The outline in the plane of radius and height; no radius is negative.
         outline: Section,
-        /// the vertical's place
+        /// Position of the vertical.
         about: [f64; 2],
     },
+    /// A body between a top and a base.
     Terrain(Box<Raster>),
+    /// A body inside a surface of triangles.
     Surface(Box<Surface>),
 }
 
-/// An outline in a plane.
+/// An outline in a plane: a polygon or a circle.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Section {
-    /// of shape 0
-    pub(crate) edges: Vec<Edge>,
-    /// lower and upper corner of the rectangle around it
-    pub(crate) bounds: [[f64; 2]; 2],
-    /// m²
-    pub(crate) area: f64,
+pub struct Section {
+    /// Its edges, as those of shape 0.
+    pub edges: Vec<Edge>,
+    /// Lower and upper corner of the rectangle around it (m).
+    pub bounds: [[f64; 2]; 2],
+    /// Its area (m²).
+    pub area: f64,
     /// m³  of a turn about the line at 0 of its first axis
     turned: f64,
 }
 
 impl Section {
-    /// A polygon.
-    pub(crate) fn polygon(corners: &[[f64; 2]]) -> Self {
+    /// Returns the outline of a polygon.
+    pub fn polygon(corners: &[[f64; 2]]) -> Self {
         // Pappus: 2 pi times the first moment, a sum of trapezoids beside the axis.
         let beside = (0..corners.len()).map(|k| {
             let [r, z] = corners[k];
@@ -63,15 +71,15 @@ impl Section {
         });
         let turned = PI / 3.0 * beside.sum::<f64>().abs();
         Self {
-            edges: super::polygon(corners, [0.0; 2], 0),
+            edges: polygon::edges(corners, [0.0; 2], 0),
             bounds: bounds(corners),
             area: area(corners),
             turned,
         }
     }
 
-    /// A circle.
-    pub(crate) fn circle(center: [f64; 2], radius: f64) -> Self {
+    /// Returns the outline of a circle.
+    pub fn circle(center: [f64; 2], radius: f64) -> Self {
         let area = PI * radius * radius;
         Self {
             edges: Edge::circle(center, radius, 0).to_vec(),
@@ -97,8 +105,8 @@ impl Section {
 }
 
 impl SolidShape {
-    /// The shape, moved by some way.
-    pub(crate) fn moved(self, by: [f64; 3]) -> Self {
+    /// Returns the shape, translated by a vector (m).
+    pub fn moved(self, by: [f64; 3]) -> Self {
         let moved = |at: [f64; 3]| [0, 1, 2].map(|axis| at[axis] + by[axis]);
         match self {
             Self::Box { corners } => Self::Box {
@@ -126,8 +134,8 @@ impl SolidShape {
         }
     }
 
-    /// Lower and upper corner of the smallest cuboid around it.
-    pub(crate) fn bounds(&self) -> [[f64; 3]; 2] {
+    /// Returns the lower and upper corner of the smallest cuboid around the shape (m).
+    pub fn bounds(&self) -> [[f64; 3]; 2] {
         match self {
             Self::Box { corners } => *corners,
             Self::Prism { outline, along, ends } => [0, 1].map(|side| {
@@ -147,8 +155,8 @@ impl SolidShape {
         }
     }
 
-    /// Its volume, m³.
-    pub(crate) fn volume(&self) -> f64 {
+    /// Returns the volume (m³).
+    pub fn volume(&self) -> f64 {
         match self {
             Self::Box {
                 corners: [lower, upper],
@@ -161,8 +169,9 @@ impl SolidShape {
         }
     }
 
-    /// What it covers of the vertical line at a place, upwards. Lower sides belong to it, upper ones do not.
-    pub(crate) fn vertical(&self, [x, y]: [f64; 2]) -> Vec<[f64; 2]> {
+    /// Returns the intervals of the vertical line at a position that are inside the shape, upwards. Lower sides belong
+    /// to the shape and upper sides do not.
+    pub fn vertical(&self, [x, y]: [f64; 2]) -> Vec<[f64; 2]> {
         let within = |[lower, upper]: [f64; 2], at: f64| lower <= at && at < upper;
         match self {
             Self::Box {
@@ -222,8 +231,8 @@ impl SolidShape {
     }
 }
 
-/// The axes beside one, in their order.
-pub(crate) const fn plane(along: usize) -> [usize; 2] {
+/// Returns the two axes other than `along`, in their order.
+pub const fn plane(along: usize) -> [usize; 2] {
     [[1, 2], [0, 2], [0, 1]][along]
 }
 

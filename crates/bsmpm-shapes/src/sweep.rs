@@ -1,12 +1,14 @@
 //! Computes exact areas of body outlines with cut-outs, by division into vertical slices.
 
-use super::edge::{Bulge, Edge};
+use crate::edge::{Bulge, Edge};
 
-/// A rectangle, m from the grid's lower corner.
+/// A rectangle (m from the lower corner of the grid).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Window {
-    pub(crate) x: [f64; 2],
-    pub(crate) y: [f64; 2],
+pub struct Window {
+    /// Lower and upper end along x.
+    pub x: [f64; 2],
+    /// Lower and upper end along y.
+    pub y: [f64; 2],
 }
 
 impl Window {
@@ -15,9 +17,9 @@ impl Window {
     }
 }
 
-/// A part of a shape between two edges.
+/// A part of a shape between two edges and two vertical lines.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Slice {
+pub struct Slice {
     x: [f64; 2],
     bottom: [f64; 2],
     top: [f64; 2],
@@ -27,7 +29,8 @@ pub(crate) struct Slice {
 }
 
 impl Slice {
-    pub(crate) fn area(&self) -> f64 {
+    /// Returns the area (m²).
+    pub fn area(&self) -> f64 {
         let heights = (self.top[0] - self.bottom[0]) + (self.top[1] - self.bottom[1]);
         (0.5 * heights * (self.x[1] - self.x[0]) + self.bulge.area).max(0.0)
     }
@@ -44,8 +47,8 @@ impl Slice {
     }
 }
 
-/// Whether a place is filled: inside shape 0, and inside none of the others.
-pub(crate) fn solid(inside: &[bool]) -> bool {
+/// Returns whether a position is filled: inside shape 0 and outside the other shapes.
+pub fn is_filled(inside: &[bool]) -> bool {
     inside
         .split_first()
         .is_some_and(|(filled, cut)| *filled && !cut.contains(&true))
@@ -61,7 +64,7 @@ pub(crate) fn intervals<'a>(edges: impl IntoIterator<Item = &'a Edge>, shapes: u
     let mut start = None;
     for (y, shape) in crossings {
         inside[shape] = !inside[shape];
-        match (start, solid(&inside)) {
+        match (start, is_filled(&inside)) {
             (None, true) => start = Some(y),
             (Some(lower), false) => {
                 start = None;
@@ -73,9 +76,9 @@ pub(crate) fn intervals<'a>(edges: impl IntoIterator<Item = &'a Edge>, shapes: u
     found
 }
 
-/// Gives `visit` every slice of the window that is filled, as `filled` says from inside which shapes it is. Edges
-/// above the window may be missing; those below may not.
-pub(crate) fn sweep(
+/// Calls `visit` for every slice of the window that is filled, which `filled` decides by the shapes that contain it.
+/// `edges` may lack those above the window, but not those below it.
+pub fn sweep(
     edges: &[Edge],
     shapes: usize,
     window: &Window,
