@@ -1,18 +1,15 @@
 //! Gathers the material points of all ranks on rank 0, sorted by id, for a frame.
 
-use bsmpm::field::pore_water::observed::PoreWater;
-use bsmpm::material::{LayeredMaterial, Material, Variable};
-use bsmpm::observe::invariants;
+use bsmpm::material::{LayeredMaterial, Variable};
+use bsmpm::observe::{self, invariants};
 use bsmpm::points::{Column, ColumnInfo, Number, Points};
-use bsmpm::tensor::Vector;
 use bsmpm_io::frame::{Field, FieldValues, Frame};
 use bsmpm_io::vtu;
-use bsmpm_scene::words::FrameField;
+use bsmpm_scene::observables::{FrameField, PointSample};
 use mpi::collective::{CommunicatorCollectives, Root, SystemOperation};
 use mpi::datatype::PartitionMut;
 use mpi::topology::{Communicator, SimpleCommunicator};
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 /// Ids of a block: 2 MB of numbers on their way.
 const BLOCK: u64 = 1 << 14;
@@ -40,29 +37,14 @@ enum FieldSource<'a, const D: usize> {
     State(Variable, &'a [LayeredMaterial]),
     Volume,
     /// what the case asks for
-    Asked(FrameField, PointContext<'a, D>),
-}
-
-/// What points belong to.
-#[derive(Clone, Copy)]
-pub struct PointContext<'a, const D: usize> {
-    /// laws by number
-    pub materials: &'a [LayeredMaterial],
-    /// ids of every body's points; empty if no frame reports bodies
-    pub bodies: &'a [Range<u64>],
-    /// water at the time of the frame
-    pub water: Option<PoreWater<'a, D>>,
-    /// m/s  of every point, if frames show it; empty where no water flows
-    pub fluxes: &'a [Vector<D>],
-    /// what frames show on request
-    pub fields: &'a [FrameField],
+    Asked(FrameField, PointSample<'a, D>),
 }
 
 impl<'a, const D: usize> FieldSource<'a, D> {
     /// All of a scene, in the order of the files; the same on all ranks: vectors and tensors, then numbers, then who a
     /// point is.
-    fn all(points: &'a Points<D>, projected: Option<&'a [f64]>, around: PointContext<'a, D>) -> Vec<Self> {
-        let materials = around.materials;
+    fn all(sample: PointSample<'a, D>, projected: Option<&'a [f64]>, fields: &'a [FrameField]) -> Vec<Self> {
+        let PointSample { points, materials, .. } = sample;
         let shown = Points::<D>::COLUMNS.iter().filter(|info| info.frame.is_some());
         let shown = shown.filter_map(|info| points.column(info.name).map(|column| (info, column)));
         let (real, whole): (Vec<_>, Vec<_>) = shown.partition(|(_, column)| column.number() == Number::F64);
@@ -80,7 +62,7 @@ impl<'a, const D: usize> FieldSource<'a, D> {
         }
         let state = variables.into_iter().map(|variable| Self::State(variable, materials));
         let first = shaped.chain([Self::Pressure]).chain(projected.map(Self::Projected));
-        let asked = around.fields.iter().map(|&field| Self::Asked(field, around));
+        let asked = fields.iter().map(|&field| Self::Asked(field, sample));
         let numbers = first.chain(numbers).chain(state).chain([Self::Volume]).chain(asked);
         numbers.chain(whole.rev()).collect()
     }
@@ -101,8 +83,7 @@ impl<'a, const D: usize> FieldSource<'a, D> {
         match self {
             Self::Column(_, column) if column.width() == D => 3,
             Self::Column(_, column) => column.width(),
-            Self::Asked(FrameField::PrincipalStresses | FrameField::Flux, _) => 3,
-            Self::Asked(FrameField::TotalStress, _) => 6,
+            Self::Asked(field, _) => field.components(),
             _ => 1,
         }
     }
@@ -111,7 +92,7 @@ impl<'a, const D: usize> FieldSource<'a, D> {
     fn put(&self, points: &Points<D>, p: usize, row: &mut Vec<f64>) {
         match self {
             Self::Column(info, _) if info.name == "u" => {
-                row.extend(spatial(&points.displacement(p)));
+                row.extend(observe::in_space(&points.displacement(p)));
             }
             Self::Column(_, column) => {
                 column.show(p, row);
@@ -125,7 +106,7 @@ impl<'a, const D: usize> FieldSource<'a, D> {
                 row.push(place.map_or(0.0, |place| points.state_of(p)[place]));
             }
             Self::Volume => row.push(points.volume[p] * points.F.at(p).determinant()),
-            Self::Asked(field, around) => around.put(*field, points, p, row),
+            Self::Asked(field, sample) => field.put(sample, p, row),
         }
     }
 
@@ -154,34 +135,6 @@ impl<'a, const D: usize> FieldSource<'a, D> {
     }
 }
 
-impl<const D: usize> PointContext<'_, D> {
-    fn put(&self, field: FrameField, points: &Points<D>, p: usize, row: &mut Vec<f64>) {
-        row.push(match field {
-            FrameField::Q => invariants::deviatoric(&points.sigma.at(p)),
-            FrameField::PrincipalStresses => return row.extend(invariants::principal(&points.sigma.at(p))),
-            FrameField::MobilisedStrength => invariants::mobilised(self.materials, points, p),
-            FrameField::DeviatoricStrain => invariants::deviatoric_strain(points, p),
-            FrameField::Yielding => {
-                let mobilised = invariants::mobilised(self.materials, points, p);
-                f64::from(u8::from(Material::is_yielding(mobilised)))
-            }
-            FrameField::Density => invariants::density(points, p),
-            FrameField::PorePressure => self.water.map_or(0.0, |water| water.pressure(p)),
-            FrameField::ExcessPressure => self.water.map_or(0.0, |water| water.excess(p)),
-            FrameField::Porosity => self.water.map_or(0.0, |water| water.porosity(p)),
-            FrameField::Saturation => self.water.map_or(0.0, |water| water.saturation(p)),
-            FrameField::Flux => {
-                return row.extend(spatial(self.fluxes.get(p).unwrap_or(&Vector::zeros())));
-            }
-            FrameField::TotalStress => {
-                let total = self.water.map(|water| water.total_stress(p));
-                return row.extend(total.unwrap_or_else(|| points.sigma.at(p)).0);
-            }
-            FrameField::Body => self.bodies.partition_point(|ids| ids.end <= points.id[p]) as f64,
-        });
-    }
-}
-
 /// The frame of the present state, on its way to rank 0.
 pub struct GatheredFrame<'a, const D: usize> {
     world: &'a SimpleCommunicator,
@@ -195,15 +148,17 @@ pub struct GatheredFrame<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> GatheredFrame<'a, D> {
-    /// The points of all ranks with what they belong to, and with their projected pressures (Pa) if these are wanted.
+    /// The points of all ranks with the fields that the case asks for, and with their projected pressures (Pa) if these
+    /// are wanted.
     /// Collective.
     pub fn new(
         world: &'a SimpleCommunicator,
-        points: &'a Points<D>,
-        around: PointContext<'a, D>,
+        sample: PointSample<'a, D>,
+        fields: &'a [FrameField],
         projected: Option<&'a [f64]>,
         moment: FrameMoment,
     ) -> Self {
+        let points = sample.points;
         let mut by_id: Vec<u32> = (0..points.len() as u32).collect();
         by_id.sort_unstable_by_key(|&p| points.id[p as usize]);
         let own = by_id.last().map_or(0, |&p| points.id[p as usize] + 1);
@@ -211,7 +166,7 @@ impl<'a, const D: usize> GatheredFrame<'a, D> {
         let mut total = 0_u64;
         world.all_reduce_into(&own, &mut end, SystemOperation::max());
         world.all_reduce_into(&(points.len() as u64), &mut total, SystemOperation::sum());
-        let sources = FieldSource::all(points, projected, around);
+        let sources = FieldSource::all(sample, projected, fields);
         Self {
             world,
             points,
@@ -279,7 +234,7 @@ impl<'a, const D: usize> GatheredFrame<'a, D> {
         let mut rows = Vec::with_capacity(count * width(&self.sources));
         for p in rest[..count].iter().map(|&p| p as usize) {
             rows.push(points.id[p] as f64);
-            rows.extend(spatial(&points.x[p]));
+            rows.extend(observe::in_space(&points.x[p]));
             self.sources.iter().for_each(|source| source.put(points, p, &mut rows));
         }
         self.gone += count;
@@ -294,11 +249,6 @@ impl<'a, const D: usize> GatheredFrame<'a, D> {
 /// Numbers of a point before its fields: id, x, y, z.
 const HEAD: usize = 4;
 
-/// The components of a vector in space.
-pub fn spatial<const D: usize>(vector: &Vector<D>) -> [f64; 3] {
-    std::array::from_fn(|axis| if axis < D { vector[axis] } else { 0.0 })
-}
-
 /// Numbers of a point on its way to rank 0.
 fn width<const D: usize>(sources: &[FieldSource<'_, D>]) -> usize {
     HEAD + sources.iter().map(FieldSource::components).sum::<usize>()
@@ -310,9 +260,21 @@ fn no_points<const D: usize>(dynamic: bool) -> Points<D> {
 }
 
 /// Bytes that a point takes in a frame's file.
-pub fn point_bytes<const D: usize>(dynamic: bool, projected: bool, around: PointContext<'_, D>) -> u64 {
-    let points = no_points(dynamic);
-    let sources = FieldSource::all(&points, projected.then_some(&[]), around);
+pub fn point_bytes<const D: usize>(
+    dynamic: bool,
+    projected: bool,
+    materials: &[LayeredMaterial],
+    fields: &[FrameField],
+) -> u64 {
+    let points = no_points::<D>(dynamic);
+    let sample = PointSample {
+        points: &points,
+        materials,
+        bodies: &[],
+        water: None,
+        fluxes: &[],
+    };
+    let sources = FieldSource::all(sample, projected.then_some(&[]), fields);
     vtu::point_bytes(&unpack(
         &[],
         FrameMoment {

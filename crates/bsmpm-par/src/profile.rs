@@ -1,18 +1,16 @@
 //! Computes profiles: fields along a line.
 
-use crate::gather;
 use bsmpm::field::pore_water::observed::PoreWater;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::observe;
-use bsmpm::observe::invariants;
 use bsmpm::observe::place::{self, Configuration};
 use bsmpm::parallel::Halo;
 use bsmpm::points::Points;
 use bsmpm::tensor::{Symmetric, Vector};
 use bsmpm_scene::Profile;
 use bsmpm_scene::model::vector;
-use bsmpm_scene::words::ProfileQuantity;
+use bsmpm_scene::observables::PlaceSample;
 
 /// Numbers that a row is made of: displacement since the start and since displacements count, velocity, stress, plastic
 /// strain, pore pressure and the excess in it.
@@ -61,7 +59,7 @@ pub fn rows<K: Kinematics<D>, const D: usize>(
 /// The numbers of a point that a row is made of.
 fn fields<const D: usize>(points: &Points<D>, water: Option<PoreWater<'_, D>>, p: usize) -> [f64; FIELDS] {
     let velocity = points.motion.as_ref().map_or(Vector::zeros(), |motion| motion.v[p]);
-    let vectors = [points.u[p], points.displacement(p), velocity].map(|vector| gather::spatial(&vector));
+    let vectors = [points.u[p], points.displacement(p), velocity].map(|vector| observe::in_space(&vector));
     let pores = water.map_or([0.0; 2], |water| [water.pressure(p), water.excess(p)]);
     let numbers = vectors
         .into_iter()
@@ -93,21 +91,19 @@ fn extend<const D: usize>(row: &mut Vec<f64>, profile: &Profile, fields: &[f64; 
         xy,
         yz,
         xz,
-        plastic,
-        pore,
-        excess,
+        plastic_strain,
+        pore_pressure,
+        excess_pressure,
     ] = *fields;
-    let stress = Symmetric([xx, yy, zz, xy, yz, xz]);
+    let sample = PlaceSample {
+        displacement: [dx, dy, dz],
+        velocity: [vx, vy, vz],
+        stress: Symmetric([xx, yy, zz, xy, yz, xz]),
+        plastic_strain,
+        pore_pressure,
+        excess_pressure,
+    };
     for quantity in &profile.quantities {
-        match quantity {
-            ProfileQuantity::Displacement => row.extend([dx, dy, dz].iter().take(D)),
-            ProfileQuantity::Velocity => row.extend([vx, vy, vz].iter().take(D)),
-            ProfileQuantity::Stress => row.extend(observe::stress_components::<D>(&stress.0)),
-            ProfileQuantity::P => row.push(invariants::pressure(&stress)),
-            ProfileQuantity::Q => row.push(invariants::deviatoric(&stress)),
-            ProfileQuantity::PlasticStrain => row.push(plastic),
-            ProfileQuantity::PorePressure => row.push(pore),
-            ProfileQuantity::ExcessPressure => row.push(excess),
-        }
+        quantity.put::<D>(&sample, row);
     }
 }

@@ -94,13 +94,8 @@ impl Need {
                     * gather::point_bytes::<D>(
                         case.analysis.regime == Regime::Dynamic,
                         case.output.projected_pressure,
-                        gather::PointContext {
-                            materials: &simulation.model.materials,
-                            bodies: &[],
-                            water: None,
-                            fluxes: &[],
-                            fields: &case.output.fields,
-                        },
+                        &simulation.model.materials,
+                        &case.output.fields,
                     ),
             // A new one is whole before the oldest goes.
             checkpoints: (case.output.checkpoint.keep.max(1) + 1).saturating_sub(there),

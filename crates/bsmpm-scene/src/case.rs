@@ -28,7 +28,8 @@ pub use water::Water;
 
 use crate::error::Choice;
 use crate::grid::{GridSpec, Line};
-use crate::words::{AnalysisType, Factor, FrameField, Ksp, LimitedIndicator, Pc};
+use crate::observables::FrameField;
+use crate::words::{AnalysisType, Factor, Ksp, LimitedIndicator, Pc};
 use bsmpm::boundary::Contact;
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;

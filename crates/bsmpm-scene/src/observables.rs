@@ -1,4 +1,5 @@
-//! List of the quantities that histories record. A new quantity is an entry here.
+//! List of the quantities that histories record. A new quantity is an entry here; fields of frames and profiles are in
+//! `fields.rs`.
 //!
 //! An entry has the word that cases use, its documentation, the kind of subject that it is of, unit, columns, aspects
 //! (what it needs, and how it is treated), and its value for a [`Sample`] of the state. Units are those of plane
@@ -7,11 +8,13 @@
 #[macro_use]
 mod define;
 mod columns;
+mod fields;
 mod place;
 mod sample;
 mod subject;
 
 pub use columns::Columns;
+pub use fields::{FrameField, PlaceSample, PointSample, ProfileQuantity};
 pub use sample::{FootingSample, Sample, displacement_at};
 pub use subject::{Face, HistorySubject, Made, PointSelection, SubjectKeys, SubjectKind};
 
@@ -266,8 +269,7 @@ impl Observable {
 
     /// What the names of its columns get appended along so many axes, in the order of the numbers, and what each is.
     pub fn columns_in(self, dims: usize) -> &'static [(&'static str, &'static str)] {
-        let Columns { plane, space } = self.definition().columns;
-        if dims == 3 { space } else { plane }
+        self.definition().columns.in_dimensions(dims)
     }
 
     /// Unit of the numbers of a column, of those along so many axes.

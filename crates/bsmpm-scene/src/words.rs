@@ -8,7 +8,7 @@ mod retired;
 mod scene;
 mod solver;
 
-pub use output::{FrameField, LimitedIndicator, ProfileQuantity};
+pub use output::LimitedIndicator;
 pub(crate) use retired::{BACKGROUND_CELLS, BACKGROUND_KIND};
 pub use scene::{
     Accuracy, AnalysisType, Axis, Base, C0Lines, Components, Drainage, Failure, Format, Geometry, Order, Path, Purpose,

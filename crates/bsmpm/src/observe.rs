@@ -140,6 +140,11 @@ pub fn kinetic_energy<const D: usize>(points: &Points<D>, part: &Part, halo: &dy
     energy
 }
 
+/// Returns the components of a vector in 3-D.
+pub fn in_space<const D: usize>(vector: &Vector<D>) -> [f64; 3] {
+    std::array::from_fn(|axis| if axis < D { vector[axis] } else { 0.0 })
+}
+
 /// Returns the components XX YY ZZ XY YZ XZ of a stress that D dimensions have: in a plane without the last two.
 pub fn stress_components<const D: usize>(stress: &[f64]) -> Vec<f64> {
     stress[..if D == 2 { 4 } else { 6 }].to_vec()

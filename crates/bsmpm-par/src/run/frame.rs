@@ -1,17 +1,18 @@
 //! Times and content of frames and profiles.
 
 use super::Run;
-use crate::gather::{self, FrameMoment, GatheredFrame, PointContext};
+use crate::gather::{FrameMoment, GatheredFrame};
 use crate::{launch, profile};
 use bsmpm::field::pore_water::observed::PoreWater;
 use bsmpm::kinematics::Kinematics;
+use bsmpm::observe;
 use bsmpm::observe::projection::projected_pressure;
 use bsmpm::tensor::Vector;
 use bsmpm_io::exit;
 use bsmpm_io::frame::Parts;
 use bsmpm_ranks::simulation::Simulation;
 use bsmpm_scene::model::vector;
-use bsmpm_scene::words::FrameField;
+use bsmpm_scene::observables::{FrameField, PointSample};
 use bsmpm_scene::{Every, Profile};
 use std::rc::Rc;
 use std::time::Instant;
@@ -99,7 +100,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let moment = FrameMoment {
             step,
             time,
-            lower: gather::spatial(&vector::<D, _>(self.case.grid.lower())),
+            lower: observe::in_space(&vector::<D, _>(self.case.grid.lower())),
         };
         let names = self.names();
         let fields = &self.case.output.fields;
@@ -110,14 +111,14 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         };
         let water = PoreWater::of(model, points, time);
         let fluxes = self.fluxes(water);
-        let around = PointContext {
+        let sample = PointSample {
+            points,
             materials: &model.materials,
             bodies: &bodies,
             water,
             fluxes: &fluxes,
-            fields,
         };
-        let mut frame = GatheredFrame::new(&world, points, around, projected.as_deref(), moment);
+        let mut frame = GatheredFrame::new(&world, sample, fields, projected.as_deref(), moment);
         let written = match &mut self.ledger {
             Some(ledger) => {
                 let head = frame.head();

@@ -1,7 +1,7 @@
 //! Data of profiles: fields along a line.
 
 use super::Column;
-use crate::words::ProfileQuantity;
+use crate::observables::ProfileQuantity;
 
 /// Fields at equally spaced places of a line.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,13 +32,13 @@ impl Profile {
     /// Columns of the file after step and time.
     pub fn columns(&self) -> Vec<Column> {
         let quantities = self.quantities.iter().flat_map(|quantity| {
-            let (names, unit) = quantity.columns_in(self.dims);
-            names.iter().map(move |name| (*name, unit))
+            let names = quantity.column_names(self.dims).into_iter();
+            names.map(|name| (name, quantity.unit()))
         });
         let places = ["distance", "x", "y", "z"].into_iter().take(1 + self.dims);
-        let all = places.map(|name| (name, "m")).chain(quantities);
+        let all = places.map(|name| (name.to_owned(), "m")).chain(quantities);
         let columns = all.map(|(name, unit)| Column {
-            name: name.to_owned(),
+            name,
             unit: unit.to_owned(),
         });
         columns.collect()

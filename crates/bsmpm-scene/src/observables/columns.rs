@@ -10,6 +10,11 @@ pub struct Columns {
 }
 
 impl Columns {
+    /// Columns along so many axes.
+    pub(super) fn in_dimensions(self, dims: usize) -> &'static [(&'static str, &'static str)] {
+        if dims == 3 { self.space } else { self.plane }
+    }
+
     /// Columns that are the same in 2-D and in 3-D.
     const fn equal(columns: &'static [(&'static str, &'static str)]) -> Self {
         Self {

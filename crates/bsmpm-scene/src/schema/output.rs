@@ -3,8 +3,8 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Kind, Range, Table, body, key, loads, one_of};
-use crate::observables::Observable;
-use crate::words::{Format, FrameField, LimitedIndicator, ProfileQuantity, Side, Word};
+use crate::observables::{FrameField, Observable, ProfileQuantity};
+use crate::words::{Format, LimitedIndicator, Side, Word};
 use std::ops::Bound::{Excluded, Included};
 
 pub(super) static OUTPUT: Table = Table {

@@ -3,9 +3,10 @@
 use super::history;
 use crate::case::Profile;
 use crate::grid::GridSpec;
+use crate::observables::ProfileQuantity;
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{Geometry, ProfileQuantity};
+use crate::words::Geometry;
 use bsmpm::model::Regime;
 
 /// Profiles at most, each a file.
