@@ -8,12 +8,12 @@ use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::smooth;
 use bsmpm::tensor::Vector;
 use bsmpm_io::manifest;
-use bsmpm_ranks::linear::Choice;
+use bsmpm_ranks::linear::{Choice, SPLINE_MULTIGRID};
 use bsmpm_ranks::load;
 use bsmpm_ranks::simulation::{Simulation, StartStress};
 use bsmpm_ranks::slab::Slabs;
 use bsmpm_scene::model::{at_rest, penalty, weighting};
-use bsmpm_scene::words::{Factor, Word};
+use bsmpm_scene::words::LinearSolver;
 use bsmpm_scene::{Case, Geometry, GridAxis, Initial};
 use std::ops::Range;
 
@@ -72,25 +72,33 @@ fn parts(case: &Case, ranks: usize) -> Option<usize> {
     case.parts(ranks, [room[0].len(), room[1].len()])
 }
 
-/// The linear solver of a run on so many ranks with further `options` of PETSc.
+/// The linear solver of a run on so many ranks with further `options` of PETSc. MUMPS does instead of nested dissection
+/// what this does not: general matrices, and what the options are about.
 pub fn linear(case: &Case, ranks: usize, options: &[String]) -> Choice {
-    let linear = &case.solver.linear_on(ranks);
-    let dissection = linear.factor == Some(DISSECTION);
+    let solver = case.solver.linear_on(ranks);
+    let [ksp, pc] = match solver {
+        LinearSolver::Direct => ["preonly", "cholesky"],
+        LinearSolver::Multigrid => ["cg", "gamg"],
+        LinearSolver::IncompleteCholesky => ["preonly", "bjacobi"],
+        LinearSolver::MultigridCycles => ["preonly", "gamg"],
+        LinearSolver::SplineMultigrid => ["preonly", SPLINE_MULTIGRID],
+    };
+    let is_direct = solver == LinearSolver::Direct;
+    let dissection = is_direct && !options.iter().any(|option| decides(option));
     Choice {
-        dissection: dissection && !options.iter().any(|option| decides(option)),
-        ksp: linear.ksp.word().into(),
-        pc: linear.pc.word().into(),
-        factor: linear
-            .factor
-            .map(|package| if dissection { Factor::Mumps } else { package }.word().into()),
+        dissection,
+        ksp: ksp.into(),
+        pc: pc.into(),
+        factor: is_direct.then(|| "mumps".into()),
+        applications: match solver {
+            LinearSolver::Direct | LinearSolver::Multigrid => 0,
+            LinearSolver::IncompleteCholesky => 1,
+            LinearSolver::MultigridCycles | LinearSolver::SplineMultigrid => 2,
+        },
         // On one rank, too, where the matrix goes to PETSc: the same factorisation, bit by bit, on any number of ranks.
-        applications: linear.applications,
-        redundant: case.solver.reproducible && linear.pc.factorises() && (ranks > 1 || !dissection),
+        redundant: case.solver.reproducible && is_direct && (ranks > 1 || !dissection),
     }
 }
-
-/// The factorisation that is this program's own; PETSc and MUMPS do instead of it what it does not: general matrices.
-const DISSECTION: Factor = Factor::Dissection;
 
 /// Whether an option of PETSc is about a preconditioner or a matrix of PETSc's, which need the matrix assembled; those
 /// of KSP, and of reports, are for any.
@@ -128,7 +136,7 @@ pub fn choices(case: &Case, ranks: usize, options: &[String]) -> Vec<manifest::M
             reason,
         ));
     }
-    choices.extend(linear_choices(case, &linear(case, ranks, options), ranks));
+    choices.extend(linear_choices(case, &linear(case, ranks, options), ranks, options));
     if weighting(case) == AverageWeight::Volume {
         choices.push(choice(
             "weights of averages",
@@ -163,25 +171,22 @@ fn choice(key: &str, value: &str, reason: &str) -> manifest::ManifestChoice {
 }
 
 /// What the linear solver is chosen for.
-fn linear_choices(case: &Case, linear: &Choice, ranks: usize) -> Vec<manifest::ManifestChoice> {
+fn linear_choices(case: &Case, linear: &Choice, ranks: usize, options: &[String]) -> Vec<manifest::ManifestChoice> {
+    let is_open = |name: &str| !options.iter().any(|option| option == name);
     let newton = case.solver.nonlinear != bsmpm_scene::Nonlinear::Broyden;
     let mut rows = Vec::new();
-    if case.solver.linear.factor == Some(DISSECTION) && !linear.dissection {
+    if linear.factor.is_some() && !linear.dissection && is_open("-pc_factor_mat_solver_type") {
         rows.push(choice(
-            "solver.linear.factor",
+            "pc_factor_mat_solver_type",
             "mumps",
             "options after -- select the solver of PETSc",
         ));
     }
-    if linear.redundant && (newton || !linear.dissection) {
+    if linear.redundant && if linear.dissection { newton } else { is_open("-pc_type") } {
         let reason = "solver.reproducible: every rank factorises the whole system, because a parallel factorisation may not be \
                       reproducible to the bit";
         rows.push(choice(
-            if linear.dissection {
-                "newton_pc_type"
-            } else {
-                "solver.linear.pc"
-            },
+            if linear.dissection { "newton_pc_type" } else { "pc_type" },
             "redundant",
             reason,
         ));

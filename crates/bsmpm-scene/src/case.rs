@@ -29,7 +29,7 @@ pub use water::Water;
 use crate::error::Choice;
 use crate::grid::{GridSpec, Line};
 use crate::observables::FrameField;
-use crate::words::{AnalysisType, Factor, Ksp, LimitedIndicator, Pc};
+use crate::words::{AnalysisType, LimitedIndicator, LinearSolver};
 use bsmpm::boundary::Contact;
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;
@@ -325,45 +325,24 @@ pub struct Solver {
     /// -  coefficient of the artificial stiffness; 0: none
     pub background: f64,
     /// The linear solver.
-    pub linear: Linear,
+    pub linear: LinearSolver,
+    /// Whether the case leaves it to the program, which has taken what suits so many unknowns of a solid.
+    pub by_size: bool,
     /// The same bits in every run on as many ranks.
     pub reproducible: bool,
 }
 
 impl Solver {
     /// The linear solver on so many ranks: of what the program takes by size, what repeats to the bit there if it must.
-    pub fn linear_on(&self, ranks: usize) -> Linear {
+    pub fn linear_on(&self, ranks: usize) -> LinearSolver {
         match self.linear {
-            taken if taken.pc == Pc::SplineMultigrid && ranks > 1 => Linear {
-                ksp: Ksp::Preonly,
-                pc: Pc::Cholesky,
-                factor: Some(Factor::Dissection),
-                applications: 0,
-                ..taken
-            },
-            taken if taken.by_size && taken.pc == Pc::Gamg && self.reproducible && ranks > 1 => Linear {
-                pc: Pc::Bjacobi,
-                applications: 1,
-                ..taken
-            },
+            LinearSolver::SplineMultigrid if ranks > 1 => LinearSolver::Direct,
+            LinearSolver::MultigridCycles if self.by_size && self.reproducible && ranks > 1 => {
+                LinearSolver::IncompleteCholesky
+            }
             linear => linear,
         }
     }
-}
-
-/// The linear solver.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Linear {
-    /// Krylov method, or `preonly`.
-    pub ksp: Ksp,
-    /// Preconditioner, or direct solver.
-    pub pc: Pc,
-    /// Package of a direct solver, or `dissection`, which is this program's own; `None` for other preconditioners.
-    pub factor: Option<Factor>,
-    /// So many times the preconditioner is applied in place of a solution; 0: there is a solution.
-    pub applications: usize,
-    /// Whether the case leaves it to the program, which has taken what suits so many unknowns of a solid.
-    pub by_size: bool,
 }
 
 /// What is written besides tables with a row a step; without `every` and `times` there are no frames.

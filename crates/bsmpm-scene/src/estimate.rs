@@ -1,8 +1,8 @@
 //! Estimates unknowns and memory of a case before its run, with coefficients fitted to measurements.
 
-use crate::case::{Body, Case, Linear, Nonlinear};
+use crate::case::{Body, Case, Nonlinear};
 use crate::grid::GridSpec;
-use crate::words::{Factor, Geometry, Pc};
+use crate::words::{Geometry, LinearSolver};
 use bsmpm::grid::room;
 use bsmpm::model::Regime;
 use bsmpm::step::adjoint::is_dilatant;
@@ -112,8 +112,8 @@ struct Systems {
 
 /// Settings that the memory of linear systems depends on.
 #[derive(Clone, Copy)]
-struct SolverSettings<'a> {
-    linear: &'a Linear,
+struct SolverSettings {
+    linear: LinearSolver,
     reproducible: bool,
     nonlinear: Nonlinear,
 }
@@ -124,13 +124,13 @@ impl Systems {
     ///
     /// Where water `flows` Newton's directions are preconditioned by those of the secants, and have one unknown a node
     /// more.
-    fn of(settings: SolverSettings<'_>, dims: usize, unknowns: u128, entries: u128, reach: u128, flows: bool) -> Self {
+    fn of(settings: SolverSettings, dims: usize, unknowns: u128, entries: u128, reach: u128, flows: bool) -> Self {
         let SolverSettings {
             linear,
             reproducible,
             nonlinear,
         } = settings;
-        let direct = linear.factor.is_some();
+        let direct = linear == LinearSolver::Direct;
         let levels = u128::from(unknowns.max(2).ilog2());
         let flat = unknowns * levels;
         let [factor, fronts] = match dims {
@@ -139,23 +139,19 @@ impl Systems {
         };
         let factor = if direct { factor } else { 0 };
         let again = u128::from(direct && reproducible);
-        let elastic = if linear.factor == Some(Factor::Dissection) {
+        let elastic = if direct {
             [fronts, 0, 0]
-        } else if linear.pc == Pc::SplineMultigrid {
+        } else if linear == LinearSolver::SplineMultigrid {
             [entries * COARSER + unknowns * PATCHES, 0, 0]
-        } else if linear.applications > 0 {
+        } else if linear.is_rough() {
             [entries * ROUGH_ENTRY, 0, 0]
         } else {
-            [
-                entries * ENTRY + factor,
-                again * (entries * REPEATED + factor),
-                entries * BUILT,
-            ]
+            [entries * ENTRY, 0, entries * BUILT]
         };
         // Of water one number of every node more.
         let wet = (unknowns + unknowns / dims as u128) * KRYLOV_OF_WATER;
         // In space, and around a preconditioner that is applied in place of solutions, there is no general matrix.
-        let around = linear.applications > 0 || dims > 2;
+        let around = linear.is_rough() || dims > 2;
         let krylov = unknowns * if around { KRYLOV_OF_WATER } else { KRYLOV };
         let repeated = again * (entries * REPEATED + 2 * factor);
         let general = match flows {
@@ -289,7 +285,7 @@ impl Case {
         let linear = self.solver.linear_on(ranks);
         let ranks = ranks as u128;
         let settings = SolverSettings {
-            linear: &linear,
+            linear,
             reproducible: self.solver.reproducible,
             nonlinear: self.solver.nonlinear,
         };
@@ -297,13 +293,13 @@ impl Case {
         let systems = Systems::of(settings, self.grid.dims(), dims * occupied, entries, reach, flows);
         let vectors = if dims == 3 { VECTORS * 3 / 2 } else { VECTORS };
         let (pressures, wet, wet_repeated) = self.water_system(settings).unwrap_or_default();
-        let dissects = linear.factor == Some(Factor::Dissection);
+        let dissects = linear == LinearSolver::Direct;
         let ghosts = match dims {
             3 => self.ghosts(occupied, reach, stencil + every + vectors, dissects),
             _ => 0,
         };
         // Coordinates of entries, as rows are summed by several.
-        let sums = ranks > 1 && linear.applications > 0 && linear.pc != Pc::SplineMultigrid;
+        let sums = ranks > 1 && linear.is_rough() && linear != LinearSolver::SplineMultigrid;
         let bytes = points * self.point_bytes()
             + occupied * stencil
             + room_nodes(self) * (every + vectors)
@@ -350,7 +346,7 @@ impl Case {
 
     /// Number of the pore pressures, bytes of water that flows, and those that each further rank repeats; `None` where
     /// none flows.
-    fn water_system(&self, settings: SolverSettings<'_>) -> Option<(u128, u128, u128)> {
+    fn water_system(&self, settings: SolverSettings) -> Option<(u128, u128, u128)> {
         let (pressures, entries) = self.pressures()?;
         // Solved by itself, as a part of the directions.
         let settings = SolverSettings {

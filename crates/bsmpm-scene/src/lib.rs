@@ -48,9 +48,9 @@ pub use bsmpm_shapes::{GridAxis, Outline, Region, Volume};
 pub use case::{
     ActiveLoads, Analysis, Base, Body, Case, Check, Checkpoint, Column, Drain, DrainSite, ElementStage, ElementTest,
     Every, Face, FaceSupport, Flow, Footing, Format, Geometry, Gravity, History, HistorySubject, Inflow, Initial,
-    LimitLoad, Linear, LoadWidth, LoadedLine, MASS, Made, MotionPath, NamedMaterial, NarrowestOpening, Nonlinear,
-    Output, Plate, PointLoad, PointSelection, PrescribedMotion, Profile, Push, Quantity, Rigid, RigidShape, Shares,
-    Site, Solver, SoughtLoad, Stage, Support, Traction, Triangle, Water,
+    LimitLoad, LoadWidth, LoadedLine, MASS, Made, MotionPath, NamedMaterial, NarrowestOpening, Nonlinear, Output,
+    Plate, PointLoad, PointSelection, PrescribedMotion, Profile, Push, Quantity, Rigid, RigidShape, Shares, Site,
+    Solver, SoughtLoad, Stage, Support, Traction, Triangle, Water,
 };
 pub use difference::{Difference, differences};
 pub use error::{Choice, Error, Place};

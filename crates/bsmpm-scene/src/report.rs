@@ -128,14 +128,10 @@ impl<'a> Report<'a> {
 
     /// Records that the value of `key` is a word that this version does not have any more.
     pub(crate) fn removed(&mut self, origin: Origin, key: &str, word: &'static RemovedWord) {
-        let RemovedWord {
-            word: text,
-            last,
-            remedy,
-        } = word;
+        let RemovedWord { last, remedy, .. } = word;
         let message = format!(
-            "E0018: the value \"{text}\" does not exist any more; the last version with this value was {last}. \
-             {remedy}"
+            "E0018: the value {} does not exist any more; the last version with this value was {last}. {remedy}",
+            word.value()
         );
         let error = self.placed(origin, key, message, Some(word));
         self.errors.push(ReportedError {

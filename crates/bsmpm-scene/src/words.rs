@@ -14,7 +14,7 @@ pub use scene::{
     Accuracy, AnalysisType, Axis, Base, C0Lines, Components, Drainage, Failure, Format, Geometry, Order, Path, Purpose,
     RigidMotion, Settled, Side, Start, Support,
 };
-pub use solver::{Factor, Ksp, LinearSolver, Nonlinear, Pc};
+pub use solver::{LinearSolver, Nonlinear};
 
 /// What one of several words stands for.
 pub trait Word: Copy + 'static {
@@ -48,12 +48,22 @@ pub struct Words {
 /// A word that earlier versions read and this one does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RemovedWord {
-    /// The word.
+    /// The word, or the header of a table, `{ .. }`, that stood in its place.
     pub word: &'static str,
     /// The last version that reads it.
     pub last: &'static str,
     /// What a case says instead, an imperative sentence.
     pub remedy: &'static str,
+}
+
+impl RemovedWord {
+    /// The value as a case writes it.
+    pub fn value(&self) -> String {
+        match self.word.starts_with('{') {
+            true => self.word.to_owned(),
+            false => format!("\"{}\"", self.word),
+        }
+    }
 }
 
 impl Words {
@@ -108,11 +118,11 @@ mod tests {
 
     #[test]
     fn words_lead_to_their_choice_and_back() {
-        for (word, doc) in Option::<Pc>::WORDS.all() {
+        for (word, doc) in Option::<LinearSolver>::WORDS.all() {
             assert!(!doc.is_empty());
-            assert_eq!(Option::<Pc>::of(word).map(Word::word), Some(word));
+            assert_eq!(Option::<LinearSolver>::of(word).map(Word::word), Some(word));
         }
-        assert_eq!(Pc::of(AUTO), None);
+        assert_eq!(LinearSolver::of(AUTO), None);
         assert_eq!(LawName::of("cam-clay"), None);
     }
 }

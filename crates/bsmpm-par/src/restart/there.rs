@@ -11,7 +11,7 @@ use bsmpm_io::directory::ExistingRunPolicy;
 use bsmpm_io::exit;
 use bsmpm_io::manifest::{Manifest, ManifestRestart, Status};
 use bsmpm_messages::without_code;
-use bsmpm_scene::words::{RemovedWord, Word};
+use bsmpm_scene::words::Word;
 use bsmpm_scene::{Case, Difference, Error, MASS};
 
 /// Restarts in a row from one step after which no more is tried: the loop of a batch system would have no end.
@@ -144,9 +144,13 @@ fn unreadable(what: &str, errors: &[Error]) -> String {
             "E0727: this version of the program cannot read the case of {what}. The run cannot be continued. Use the \
              version that began the run, or start again with `--force`."
         ),
-        Some((key, RemovedWord { word, last, .. })) => format!(
-            "E0728: the case of {what} uses `{key} = \"{word}\"`, which was removed after {last}. The run cannot be \
-             continued. Use {last}, or start again with `--force`."
+        Some((key, removed)) => format!(
+            "E0728: the case of {what} uses `{key} = {}`, which was removed after {}. The run cannot be \
+             continued. Use {}, or start again with `--force`. {}",
+            removed.value(),
+            removed.last,
+            removed.last,
+            removed.remedy
         ),
     }
 }

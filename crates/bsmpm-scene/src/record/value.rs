@@ -7,7 +7,7 @@ use crate::nearest::hint;
 use crate::report::{Report, shortened};
 use crate::schema::{Kind, Range, Words};
 use crate::unit::{self, Dimension};
-use crate::words::Geometry;
+use crate::words::{Geometry, RemovedWord};
 use bsmpm_messages::{code_of, with_context};
 
 /// Rows of a list that are wrong one after the other, behind which the rest is not looked at.
@@ -414,15 +414,20 @@ impl ValueReader<'_, '_> {
     }
 
     fn choice(&mut self, node: &Node, words: &Words) -> Option<Datum> {
+        let is_meant = |removed: &&RemovedWord| match &node.value {
+            Value::Text(text) => removed.word == text,
+            Value::Table(_) => removed.word.starts_with('{'),
+            _ => false,
+        };
+        if let Some(removed) = words.removed.iter().find(is_meant) {
+            self.report.removed(node.origin, self.path, removed);
+            return None;
+        }
         let Value::Text(text) = &node.value else {
             return self.unexpected(node);
         };
         if let Some(word) = words.words().find(|word| word == text) {
             return Some(Datum::Word(word));
-        }
-        if let Some(removed) = words.removed.iter().find(|removed| removed.word == text) {
-            self.report.removed(node.origin, self.path, removed);
-            return None;
         }
         if words.later.contains(&text.as_str()) {
             return self.fail(

@@ -7,8 +7,8 @@ use super::{
     rigid, stage, water,
 };
 use crate::words::{
-    Accuracy, AnalysisType, BACKGROUND_CELLS, BACKGROUND_KIND, C0Lines, Factor, Geometry, Ksp, LinearSolver, Nonlinear,
-    Order, Pc, Purpose, Word,
+    Accuracy, AnalysisType, BACKGROUND_CELLS, BACKGROUND_KIND, C0Lines, Geometry, LinearSolver, Nonlinear, Order,
+    Purpose, Word,
 };
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::grid::extension::ExtendedSplines;
@@ -560,10 +560,10 @@ static SOLVER: Table = Table {
         ),
         key(
             "linear",
-            ChoiceOr(LinearSolver::WORDS, &LINEAR),
-            Default("{}"),
-            "Linear solver: a word, or a table with PETSc's names. Without this key the program chooses by the number \
-             of unknowns. PETSc options after `--` on the command line take precedence.",
+            Choice(LinearSolver::WORDS),
+            Optional,
+            "Linear solver. Without this key the program chooses by the number of unknowns. PETSc options after `--` on \
+             the command line take precedence, for instance `-- -ksp_type cg -pc_type hypre`.",
         )
         .example(r#""direct""#),
         key(
@@ -579,34 +579,3 @@ static SOLVER: Table = Table {
 
 const FRACTION: Range = Range::of(Excluded(0.0), Excluded(1.0));
 const UP_TO_1: Range = Range::of(Included(0.0), Included(1.0));
-
-static LINEAR: Table = Table {
-    header: "linear = { ksp, pc, factor }",
-    doc: "Linear solver by PETSc's names.",
-    keys: &[
-        key(
-            "ksp",
-            Choice(Option::<Ksp>::WORDS),
-            Optional,
-            "Iterative method. Default, also for \"auto\": the method that the preconditioner needs.",
-        )
-        .example(r#""cg""#),
-        key(
-            "pc",
-            Choice(Option::<Pc>::WORDS),
-            Optional,
-            "Preconditioner or direct solver. Default, also for \"auto\": \"cholesky\", or \"gamg\" where multigrid is \
-             faster.",
-        )
-        .example(r#""gamg""#),
-        key(
-            "factor",
-            Choice(Factor::WORDS),
-            Optional,
-            "Software package of a direct solver. Default: \"dissection\" for \"cholesky\", \"mumps\" for other direct \
-             solvers.",
-        )
-        .example(r#""mumps""#),
-    ],
-    exclusive: &[],
-};

@@ -4,7 +4,7 @@ use crate::case::{Case, FaceSupport, Support};
 use crate::observables::{Aspect, Observable};
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{Geometry, Side, Word};
+use crate::words::{Geometry, LinearSolver, Side, Word};
 use bsmpm::stabilisation::Stabilisation;
 
 /// Unknowns beyond which there is a warning of a large factor: its fronts are planes of nodes.
@@ -166,7 +166,7 @@ impl Case {
     /// Warnings of the case as so many ranks run it: what a factor in space takes on them among them.
     pub fn warnings_on(&self, ranks: usize) -> Vec<String> {
         let estimate = self.estimate(ranks);
-        let is_factored = self.geometry == Geometry::Solid && self.solver.linear_on(ranks).factor.is_some();
+        let is_factored = self.geometry == Geometry::Solid && self.solver.linear_on(ranks) == LinearSolver::Direct;
         let mut warnings = self.warnings.clone();
         if is_factored && estimate.active > MANY {
             warnings.push(format!(

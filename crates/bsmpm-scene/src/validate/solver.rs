@@ -1,12 +1,12 @@
 //! Validates solver settings, and chooses their defaults.
 
-use crate::case::{Case, Linear, NamedMaterial, Solver};
+use crate::case::{Case, NamedMaterial, Solver};
 use crate::estimate;
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::validate::lines;
-use crate::words::{Factor, Ksp, LinearSolver, Pc, Word};
+use crate::words::{LinearSolver, Word};
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
@@ -33,10 +33,7 @@ pub(super) fn read(
         poisson: poisson.fold(0.0, f64::max),
         reproducible: solver.flag("reproducible")?,
     };
-    let linear = match solver.record("linear") {
-        Some(linear) => read_linear(linear, size, report),
-        None => solver.word("linear").map(in_a_word),
-    };
+    let linear = solver.word_if_given("linear")?;
     Some(Solver {
         nonlinear: solver.word("nonlinear")?,
         tolerance: solver.number("tolerance")?,
@@ -45,7 +42,8 @@ pub(super) fn read(
         quadrature: quadrature?,
         extended_splines: extended_splines?,
         background: background?,
-        linear: linear?,
+        linear: linear.unwrap_or_else(|| by_size(size, solver.path_of("linear"), report)),
+        by_size: false,
         reproducible: size.reproducible,
     })
 }
@@ -188,29 +186,20 @@ impl Size {
     }
 }
 
-/// What a word for the linear solver stands for.
-fn in_a_word(solver: LinearSolver) -> Linear {
-    match solver {
-        LinearSolver::Direct => Linear {
-            factor: Some(Factor::Dissection),
-            ..iterative(Ksp::Preonly, Pc::Cholesky, 0)
-        },
-        LinearSolver::Multigrid => iterative(Ksp::Cg, Pc::Gamg, 0),
-        LinearSolver::IncompleteCholesky => iterative(Ksp::Preonly, Pc::Bjacobi, 1),
-        LinearSolver::MultigridCycles => iterative(Ksp::Preonly, Pc::Gamg, 2),
-        LinearSolver::SplineMultigrid => iterative(Ksp::Preonly, Pc::SplineMultigrid, 2),
-    }
-}
-
-/// A solver without a factor, whose preconditioner is applied so many times on its own (0: within `ksp`).
-fn iterative(ksp: Ksp, pc: Pc, applications: usize) -> Linear {
-    Linear {
-        ksp,
-        pc,
-        factor: None,
-        applications,
-        by_size: false,
-    }
+/// Chooses the linear solver by size, and notes why.
+fn by_size(size: Size, path: String, report: &mut Report<'_>) -> LinearSolver {
+    let (solver, reason) = match size.against_multigrid() {
+        Some(reason) => (LinearSolver::Direct, reason),
+        None => (
+            LinearSolver::Multigrid,
+            format!(
+                "up to {} unknowns: above {MANY} multigrid is faster than a direct solver",
+                size.unknowns
+            ),
+        ),
+    };
+    report.note(path, solver.word(), reason);
+    solver
 }
 
 /// Unknowns of a solid from which a factor takes longer than the iterations that it saves (measured
@@ -245,13 +234,13 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         () => None,
     };
     if let Some(reason) = by_factor {
-        if case.solver.linear.factor.is_some() {
+        if case.solver.linear == LinearSolver::Direct {
             chosen(LinearSolver::Direct, so_many + &reason, report);
         }
         return;
     }
     let (word, reason) = match case.is_nearly_incompressible() {
-        true if case.solver.linear.factor.is_none() => return,
+        true if case.solver.linear != LinearSolver::Direct => return,
         true => of_incompressible(active, &so_many),
         false if active > MANY_IN_SPACE => (
             LinearSolver::MultigridCycles,
@@ -266,18 +255,15 @@ pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         ),
     };
     if word != LinearSolver::Direct {
-        case.solver.linear = Linear {
-            by_size: true,
-            ..in_a_word(word)
-        };
+        (case.solver.linear, case.solver.by_size) = (word, true);
     }
     chosen(word, reason, report);
 }
 
 /// Says why the iterative solver of a case is not available for it, if it is not.
 fn against_iterations(case: &Case, condenses: bool) -> Option<String> {
-    let is_own = case.solver.linear.pc == Pc::SplineMultigrid;
-    if (is_own || case.solver.linear.applications > 0) && (case.flow.is_some() || condenses) {
+    let linear = case.solver.linear;
+    if linear.is_rough() && (case.flow.is_some() || condenses) {
         let what = if condenses {
             "freely moving rigid bodies"
         } else {
@@ -289,7 +275,7 @@ fn against_iterations(case: &Case, condenses: bool) -> Option<String> {
         ));
     }
     let message = "E0604: the linear solver \"spline-multigrid\" is available in 3-D only. Use linear = \"direct\".";
-    (case.grid.dims() < 3 && is_own).then(|| message.to_owned())
+    (case.grid.dims() < 3 && linear == LinearSolver::SplineMultigrid).then(|| message.to_owned())
 }
 
 /// The solver of a 3-D case with so many unknowns and nearly incompressible material, and why it is chosen.
@@ -310,85 +296,4 @@ fn of_incompressible(active: u64, so_many: &str) -> (LinearSolver, String) {
 fn chosen(word: LinearSolver, reason: String, report: &mut Report<'_>) {
     report.notes.retain(|note| !note.key.starts_with("solver.linear"));
     report.note("solver.linear", word.word(), reason);
-}
-
-/// What the case says of the linear solver by PETSc's names.
-struct PetscNames {
-    ksp: Option<Ksp>,
-    pc: Option<Pc>,
-    factor: Option<Factor>,
-}
-
-fn read_linear(linear: &Record, size: Size, report: &mut Report<'_>) -> Option<Linear> {
-    let asked = PetscNames {
-        ksp: linear.word_if_given("ksp")?.flatten(),
-        pc: linear.word_if_given("pc")?.flatten(),
-        factor: linear.word_if_given("factor")?,
-    };
-    // Nothing else asks for a factorisation.
-    let open = size.against_multigrid().is_none() && asked.ksp != Some(Ksp::Preonly) && asked.factor.is_none();
-    let pc = asked.pc.unwrap_or(if open { Pc::Gamg } else { Pc::Cholesky });
-    let ksp = asked.ksp.unwrap_or(if pc.solves() { Ksp::Preonly } else { Ksp::Cg });
-    if ksp == Ksp::Preonly && !pc.solves() {
-        let message = format!(
-            "E0605: ksp = \"{ksp}\" needs a direct solver, but pc = \"{pc}\" is an iterative method. Use pc = \
-             \"cholesky\", \"lu\" or \"redundant\"."
-        );
-        linear.error("ksp", message, report);
-        return None;
-    }
-    let dissects = ksp == Ksp::Preonly && pc == Pc::Cholesky;
-    if asked.factor == Some(Factor::Dissection) && !dissects {
-        let message = format!(
-            "E0605: factor = \"dissection\" is not available with ksp = \"{ksp}\" and pc = \"{pc}\". Use ksp = \
-             \"preonly\" and pc = \"cholesky\"."
-        );
-        linear.error("factor", message, report);
-        return None;
-    }
-    let factor = match (pc.factorises(), asked.factor) {
-        (true, Some(factor)) => Some(factor),
-        (true, None) => Some(if dissects { Factor::Dissection } else { Factor::Mumps }),
-        (false, Some(factor)) => {
-            let path = linear.path_of("factor");
-            report.warn(format!(
-                "W0603: {path}: the factorisation \"{factor}\" is not used, because pc = \"{pc}\" is an iterative \
-                 method. Remove `factor`."
-            ));
-            None
-        }
-        (false, None) => None,
-    };
-    let found = Linear {
-        ksp,
-        pc,
-        factor,
-        applications: 0,
-        by_size: false,
-    };
-    explain(linear, &asked, &found, size, report);
-    Some(found)
-}
-
-/// Notes what the case has left open, and why it is what it is.
-fn explain(linear: &Record, asked: &PetscNames, found: &Linear, size: Size, report: &mut Report<'_>) {
-    if asked.pc.is_none() {
-        let reason = match (found.pc, size.against_multigrid()) {
-            (Pc::Gamg, _) => format!(
-                "up to {} unknowns: above {MANY} multigrid is faster than a direct solver",
-                size.unknowns
-            ),
-            (_, Some(reason)) => reason,
-            (_, None) => "`ksp` or `factor` asks for a direct solver".to_owned(),
-        };
-        report.note(linear.path_of("pc"), found.pc.word(), reason);
-    }
-    if let (Some(factor), None) = (found.factor, asked.factor) {
-        let reason = if factor == Factor::Dissection {
-            "nested dissection of the grid is parallel and bitwise reproducible"
-        } else {
-            "the default of PETSc's direct solvers"
-        };
-        report.note(linear.path_of("factor"), factor.word(), reason);
-    }
 }

@@ -25,6 +25,13 @@ pub(crate) const BACKGROUND_CELLS: Words = Words {
     removed: &[replaced_by_extension("partly-filled")],
 };
 
+/// The table of `[solver] linear`, which gave the linear solver by PETSc's names.
+pub(super) const PETSC_NAMES: RemovedWord = RemovedWord {
+    word: "{ ksp, pc, factor }",
+    last: "bsmpm 0.1.0, commit 7816fb16",
+    remedy: "Use a word, such as linear = \"direct\", or pass PETSc options after `--`, such as `-- -pc_type redundant`.",
+};
+
 /// A form of the background that extended B-splines replace.
 const fn replaced_by_extension(word: &'static str) -> RemovedWord {
     RemovedWord {

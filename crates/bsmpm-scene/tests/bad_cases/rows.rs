@@ -169,12 +169,6 @@ pub const LANGUAGE: &[Row] = &[
         "did you mean `percentile`?",
     ),
     row(
-        "ksp = \"preonly\",",
-        "kps = \"preonly\",",
-        "solver.linear.kps",
-        "did you mean `ksp`?",
-    ),
-    row(
         "poisson  = 0.3",
         "poisson  = \"0.3\"",
         "material.sand.poisson",
@@ -767,12 +761,17 @@ pub const RULES: &[Row] = &[
         "none of the keys box",
     )
     .up(2),
-    row("pc = \"cholesky\"", "pc = \"jacobi\"", "solver.linear.ksp", "E0605"),
     row(
-        "pc = \"cholesky\"",
-        "pc = \"choleski\"",
-        "solver.linear.pc",
-        "did you mean `cholesky`?",
+        "linear           = \"direct\"",
+        "linear           = \"multigird\"",
+        "solver.linear",
+        "did you mean `multigrid`?",
+    ),
+    row(
+        "linear           = \"direct\"",
+        "linear           = { ksp = \"cg\" }",
+        "solver.linear",
+        "E0018",
     ),
     row("times  = [\"0.25 s\", 0.75]", "times = [2]", "output.times", "E0663"),
     row("times  = [\"0.25 s\", 0.75]", "times = [-2]", "output.times", "E0010"),

@@ -10,7 +10,7 @@ use bsmpm::material::{Law, LayeredMaterial, Material, MohrCoulomb};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::tensor::Vector;
 use bsmpm_scene::observables::{HistorySubject, Observable};
-use bsmpm_scene::words::{Factor, Ksp, Pc};
+use bsmpm_scene::words::LinearSolver;
 use bsmpm_scene::{
     Case, Error, Every, Face, GridAxis, Made, Place, PointSelection, Quadrature, Quantity, Site, Support, differences,
     seed,
@@ -92,10 +92,6 @@ fn lists_are_reached_by_index_and_absent_tables_are_made() {
     assert_eq!(
         valid(STATIC, &["material.clay={model=\"elastic\", young=1e6, poisson=0}"]).materials[1].name,
         "clay"
-    );
-    assert_eq!(
-        valid(STATIC, &["solver.linear.pc=lu"]).solver.linear.factor,
-        Some(Factor::Mumps)
     );
 }
 
@@ -507,35 +503,18 @@ fn the_linear_solver_that_is_left_open_is_chosen_by_size_and_explained() {
                 .find(|note| note.key == key)
                 .map(|note| note.reason.clone())
         };
-        let linear = &case.solver.linear;
-        ((linear.ksp, linear.pc, linear.factor), reason("solver.linear.pc"))
+        (case.solver.linear, reason("solver.linear"))
     };
-    let direct = (Ksp::Preonly, Pc::Cholesky, Some(Factor::Dissection));
-    assert_eq!(
-        chosen(&["solver.linear.factor=mumps"]).0,
-        (Ksp::Preonly, Pc::Cholesky, Some(Factor::Mumps))
-    );
-    assert_eq!(chosen(&["solver.linear.ksp=preonly"]).0, direct);
-    assert_eq!(chosen(&["solver.linear={ksp=\"auto\", pc=\"auto\"}"]).0, direct);
-    assert_eq!(chosen(&["solver.linear.pc=hypre"]), ((Ksp::Cg, Pc::Hypre, None), None));
-    assert_eq!(
-        chosen(&["solver.linear.ksp=cg"]).0,
-        (Ksp::Cg, Pc::Cholesky, Some(Factor::Mumps))
-    );
-    let multigrid = (Ksp::Cg, Pc::Gamg, None);
+    let direct = LinearSolver::Direct;
+    let multigrid = LinearSolver::Multigrid;
     assert_eq!(chosen(&["solver.linear=direct"]), (direct, None));
     assert_eq!(chosen(&["solver.linear=multigrid"]), (multigrid, None));
-    assert_eq!(
-        chosen(&["solver.linear={factor=\"mumps\"}", "solver.linear=multigrid"]),
-        (multigrid, None)
-    );
     assert_eq!(
         chosen(&[LARGE, "solver.reproducible=false", "solver.linear=direct"]).0,
         direct
     );
     for (wrong, why) in [
         (&["solver.linear=multigird"][..], "did you mean `multigrid`?"),
-        (&["solver.linear=multigrid", "solver.linear.ksp=preonly"], "not a table"),
         (&["solver.linear=7"], "\"direct\""),
     ] {
         let errors = set(STATIC, wrong).unwrap_err();
@@ -547,19 +526,28 @@ fn the_linear_solver_that_is_left_open_is_chosen_by_size_and_explained() {
     assert!(found == direct && reason.is_some_and(|reason| reason.contains("bitwise reproducible")));
     let any = "solver.reproducible=false";
     let (found, reason) = chosen(&[LARGE, any]);
-    assert!(found == (Ksp::Cg, Pc::Gamg, None) && reason.is_some_and(|reason| reason.contains("above 10000000")));
+    assert!(found == multigrid && reason.is_some_and(|reason| reason.contains("above 10000000")));
     let (found, reason) = chosen(&[LARGE, any, "material.soil.poisson=0.46"]);
     assert!(found == direct && reason.is_some_and(|reason| reason.contains("Poisson")));
-    assert_eq!(chosen(&[LARGE, any, "solver.linear.ksp=preonly"]).0, direct);
-    for wrong in [
-        "solver.linear={pc=\"lu\", factor=\"dissection\"}",
-        "solver.linear={ksp=\"cg\", factor=\"dissection\"}",
+}
+
+#[test]
+fn a_linear_solver_by_petscs_names_is_refused_with_what_replaces_it() {
+    for (text, table) in [
+        (STATIC, "solver.linear={ ksp = \"cg\", pc = \"jacobi\" }"),
+        (FULL, "solver.linear={ ksp = \"cg\", pc = \"jacobi\" }"),
+        (STATIC, "solver.linear.factor=mumps"),
     ] {
-        let errors = set(STATIC, &[wrong]).unwrap_err();
-        assert!(
-            errors.len() == 1 && errors[0].key == "solver.linear.factor",
-            "{errors:?}"
+        let errors = set(text, &[table]).unwrap_err();
+        let [error] = &errors[..] else { panic!("{errors:?}") };
+        let reported = "the value { ksp, pc, factor } does not exist any more; the last version with this value was \
+                        bsmpm 0.1.0, commit 7816fb16. Use a word, such as linear = \"direct\", or pass PETSc options \
+                        after `--`, such as `-- -pc_type redundant`.";
+        assert_eq!(
+            (error.key.as_str(), error.message.as_str()),
+            ("solver.linear", reported)
         );
+        assert!(error.removed.is_some());
     }
 }
 
@@ -577,8 +565,8 @@ fn what_the_program_chooses_is_noted() {
         (Some("0.0001"), Some("1e-8"))
     );
     assert_eq!(
-        (case.solver.background, case.solver.linear.factor),
-        (1e-4, Some(Factor::Dissection))
+        (case.solver.background, case.solver.linear),
+        (1e-4, LinearSolver::Direct)
     );
     let case = valid(&STATIC.replace("end   = 1.0\n", ""), &[]);
     assert_eq!(case.analysis.end, 1.0);
@@ -637,11 +625,6 @@ fn doubtful_cases_are_warned_of() {
         (STATIC, "material.soil.poisson=0.46", "W0315"),
         (STATIC, "gravity.acceleration=[0, -9.81]", "W0314"),
         (STATIC, "title=x", "W0674"),
-        (
-            STATIC,
-            "solver.linear={ksp=\"cg\", pc=\"jacobi\", factor=\"mumps\"}",
-            "W0603",
-        ),
     ];
     for (text, change, says) in rows {
         let warnings = valid(text, &[change]).warnings;

@@ -1,6 +1,6 @@
 //! Cost coefficients of a reference machine, fitted to runs.
 
-use bsmpm_scene::words::Pc;
+use bsmpm_scene::words::LinearSolver;
 use bsmpm_scene::{Case, Regime};
 
 use super::sizes::{self, Bytes};
@@ -85,11 +85,10 @@ pub(super) fn guess(case: &Case, ranks: usize, speed: f64) -> StoredEstimate {
 
 /// How the linear systems of a solid are solved, as the second index of the coefficients; none in a plane.
 fn in_space(case: &Case, ranks: usize) -> Option<usize> {
-    let linear = case.solver.linear_on(ranks);
-    let solver = match linear.pc {
-        _ if linear.factor.is_some() => 0,
-        Pc::Gamg | Pc::SplineMultigrid => 2,
-        _ => 1,
+    let solver = match case.solver.linear_on(ranks) {
+        LinearSolver::Direct => 0,
+        LinearSolver::IncompleteCholesky => 1,
+        LinearSolver::Multigrid | LinearSolver::MultigridCycles | LinearSolver::SplineMultigrid => 2,
     };
     (case.grid.dims() == 3).then_some(solver)
 }

@@ -1,7 +1,7 @@
 //! Tests bodies whose surface cuts cells. Results must not depend on the position of the surface, steps or ranks.
 
 use crate::support::Scratch;
-use crate::support::cases::{changed, slope};
+use crate::support::cases::{EXACT, changed, slope};
 use crate::support::results::{agree, at, history, last_frame, manifest};
 
 /// m  largest displacement at the end.
@@ -127,26 +127,23 @@ method = "consistent-f-bar"
 quantity = "max-displacement"
 "#;
 
-/// One factorisation of the whole on every rank, so that nothing depends on the cut.
-const EXACT: &str = r#"
-[solver]
-linear = { ksp = "preonly", pc = "cholesky", factor = "mumps" }
-reproducible = true
-"#;
-
 #[test]
 fn ties_are_the_same_on_any_number_of_ranks_and_over_restarts() {
     for case in [slope(0.3), WEDGE.to_owned()] {
-        let scratch = Scratch::with_case(&(case + EXACT));
+        let scratch = Scratch::with_case(&case);
         let text = |name: &str| std::fs::read_to_string(scratch.path(name).join("history.csv")).unwrap();
         for ranks in 1..=4 {
             let whole = format!("whole{ranks}");
-            scratch.mpirun(ranks, &["case.toml", "-q", "-o", &whole]).expect(0);
+            scratch
+                .mpirun(ranks, &[&["case.toml", "-q", "-o", &whole], &EXACT[..]].concat())
+                .expect(0);
             assert!(text("whole1") == text(&whole), "{ranks} ranks");
         }
         let on = ["case.toml", "-q", "-o", "part", "--restart", "auto"];
-        scratch.mpirun(2, &[&on[..], &["--max-steps", "3"]].concat()).expect(75);
-        scratch.mpirun(3, &on).expect(0);
+        scratch
+            .mpirun(2, &[&on[..], &["--max-steps", "3"], &EXACT].concat())
+            .expect(75);
+        scratch.mpirun(3, &[&on[..], &EXACT].concat()).expect(0);
         assert!(text("whole1") == text("part"), "from two ranks to three");
         agree(&scratch.path("part"), &scratch.path("whole1"));
     }

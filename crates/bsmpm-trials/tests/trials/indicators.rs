@@ -1,6 +1,6 @@
 //! Tests indicators on several ranks and with inaccurate methods.
 
-use crate::support::cases::{SLIDING_BLOCK, slope};
+use crate::support::cases::{EXACT, SLIDING_BLOCK, slope};
 use crate::support::results::manifest;
 use crate::support::{Scratch, shipped};
 use bsmpm_io::manifest::Indicator;
@@ -18,12 +18,7 @@ fn of(scratch: &Scratch, ranks: usize, arguments: &[&str], code: i32) -> Indicat
 }
 
 /// Every rank factorises the whole system, so that the runs themselves have the same bits on any number of ranks.
-const WHOLE: [&str; 4] = [
-    "--set",
-    "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}",
-    "--set",
-    "solver.nonlinear=broyden",
-];
+const WHOLE: [&str; 5] = ["--set", "solver.nonlinear=broyden", EXACT[0], EXACT[1], EXACT[2]];
 
 /// Asserts that all are the same on 1 to 4 ranks to round-off, and returns their names.
 #[track_caller]
@@ -273,17 +268,17 @@ fn ground_that_comes_to_rest_has_not_failed() {
 fn failure_is_reported_alike_on_any_number_of_ranks_and_after_restarts() {
     let scratch = Scratch::with_case(&format!("{}[strength_reduction]\nfactor = 1.6\n", slope(0.0)));
     // Broyden's method finds no equilibrium so far beyond failure.
-    let linear = &[&WHOLE[..2], &["--set", ACCEPTING]].concat()[..];
+    let linear = &[&["--set", ACCEPTING], &EXACT[..]].concat()[..];
     let whole = of(&scratch, 1, linear, 0)["stiffness-loss"].clone();
     assert!(
         whole.unusual && whole.meaning.contains("the ground failed at t = 0.7"),
         "{whole:?}"
     );
-    let parts = [&["case.toml", "-q", "-o", "parts.out", "--restart", "auto"][..], linear].concat();
+    let parts = ["case.toml", "-q", "-o", "parts.out", "--restart", "auto"];
     scratch
-        .mpirun(2, &[&parts[..], &["--max-steps", "7"]].concat())
+        .mpirun(2, &[&parts[..], &["--max-steps", "7"], linear].concat())
         .expect(75);
-    scratch.mpirun(3, &parts).expect(0);
+    scratch.mpirun(3, &[&parts[..], linear].concat()).expect(0);
     let found = manifest(&scratch.path("parts.out")).indicators["stiffness-loss"].clone();
     assert!(
         (found.value / whole.value - 1.0).abs() < 1e-6 && found.meaning == whole.meaning,

@@ -1,6 +1,6 @@
 //! Tests that the number of ranks does not change results.
 
-use crate::support::cases::{SLIDING_BLOCK, changed, frictional_block, pressed_block};
+use crate::support::cases::{EXACT, SLIDING_BLOCK, changed, frictional_block, pressed_block};
 use crate::support::results::{all_frames, differences, history, ids, last_frame, manifest, steps};
 use crate::support::{Scratch, example, processes, shipped};
 use std::collections::BTreeSet;
@@ -238,8 +238,7 @@ fn left(scratch: &Scratch, ranks: usize, arguments: &[&str], step: usize) -> (Ve
 #[test]
 fn where_all_ranks_factorise_the_whole_the_collapse_has_the_same_bits_on_1_2_3_and_4_ranks() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/column_collapse.toml")).unwrap());
-    let mumps = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
-    let arguments = ["case.toml", "-q", "--force", "--max-steps", "120", "--set", mumps];
+    let arguments = [&["case.toml", "-q", "--force", "--max-steps", "120"], &EXACT[..]].concat();
     let runs = [1, 2, 3, 4].map(|ranks| left(&scratch, ranks, &arguments, 120));
     assert_eq!(
         manifest(&scratch.path("case.out")).summary.products,
@@ -254,14 +253,13 @@ fn where_all_ranks_factorise_the_whole_the_collapse_has_the_same_bits_on_1_2_3_a
 #[test]
 fn where_all_ranks_factorise_the_whole_the_footing_has_the_same_bits_on_1_2_3_and_4_ranks() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
-    let mumps = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
     for further in [
         "grid.degree=cubic",
         "solver.quadrature=fitted",
         "stabilisation.method=subgrid-f-bar",
     ] {
-        let set = ["--set", mumps, "--set", "solver.nonlinear=broyden", "--set", further];
-        let arguments = [&["case.toml", "-q", "--force", "--max-steps", "3"], &set[..]].concat();
+        let set = ["--set", "solver.nonlinear=broyden", "--set", further];
+        let arguments = [&["case.toml", "-q", "--force", "--max-steps", "3"], &set[..], &EXACT].concat();
         let runs = [1, 2, 3, 4].map(|ranks| left(&scratch, ranks, &arguments, 3));
         assert!(runs[1..].iter().all(|run| *run == runs[0]), "{further}");
     }
@@ -297,20 +295,23 @@ fn a_factor_of_single_precision_that_is_too_coarse_is_made_again_on_1_2_and_3_ra
 #[test]
 fn the_stiffness_is_the_same_on_1_3_10_and_12_ranks_of_one_column_at_most() {
     let scratch = Scratch::with_case(&std::fs::read_to_string(shipped("short/strip_footing.toml")).unwrap());
-    let shared = "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}";
-    let quadratic = ["grid.degree=quadratic"];
-    let cubic = ["grid.degree=cubic"];
-    let shared = [shared, "solver.reproducible=false"];
+    let shared = [
+        "--set",
+        "solver.reproducible=false",
+        "--",
+        "-pc_factor_mat_solver_type",
+        "mumps",
+    ];
+    let [quadratic, cubic] = ["grid.degree=quadratic", "grid.degree=cubic"];
     let cases = [
-        (&quadratic, &[][..], 5e-2),
-        (&cubic, &[], 5e-2),
-        (&quadratic, &shared, 1e-5),
-        (&cubic, &shared, 1e-5),
+        (quadratic, &[][..], 5e-2),
+        (cubic, &[], 5e-2),
+        (quadratic, &shared, 1e-5),
+        (cubic, &shared, 1e-5),
     ];
     for (order, solver, most) in cases {
-        let further = [&order[..], solver].concat();
-        let set: Vec<&str> = further.iter().flat_map(|key| ["--set", key]).collect();
-        let arguments = [&["case.toml", "-q", "--force", "--max-steps", "3"], &set[..]].concat();
+        let further = [&["--set", order], solver].concat();
+        let arguments = [&["case.toml", "-q", "--force", "--max-steps", "3"], &further[..]].concat();
         let found = [1, 3, 10, 12].map(|ranks| {
             scratch.mpirun(ranks, &arguments).expect(75);
             let steps = steps(&scratch.path("case.out"));
@@ -378,10 +379,15 @@ fn the_number_of_threads_changes_no_bit() {
 #[test]
 fn petscs_factorisations_whole_on_every_rank_and_shared_give_the_same() {
     let case = shipped("short/self_weight_column.toml");
-    for reproducible in ["true", "false"] {
-        let repeats = format!("solver.reproducible={reproducible}");
-        let set = ["--set", "solver.linear.factor=mumps", "--set", &repeats];
-        agree(&Scratch::new(), case.to_str().unwrap(), &set, &[1, 2, 4, 8], 1e-9);
+    let shared = [
+        "--set",
+        "solver.reproducible=false",
+        "--",
+        "-pc_factor_mat_solver_type",
+        "mumps",
+    ];
+    for options in [&EXACT[..], &shared] {
+        agree(&Scratch::new(), case.to_str().unwrap(), options, &[1, 2, 4, 8], 1e-9);
     }
 }
 
@@ -389,7 +395,7 @@ fn petscs_factorisations_whole_on_every_rank_and_shared_give_the_same() {
 #[test]
 fn multigrid_gives_the_same_on_1_2_4_and_8_ranks() {
     let case = shipped("short/self_weight_column.toml");
-    let set = ["--set", "solver.linear.pc=gamg"];
+    let set = ["--set", "solver.linear=multigrid"];
     agree(&Scratch::new(), case.to_str().unwrap(), &set, &[1, 2, 4, 8], 1e-7);
     let scratch = Scratch::with_case(&changed(SLIDING_BLOCK, "upper = [0.5, 0.2]", "upper = [0.2, 0.2]"));
     agree(

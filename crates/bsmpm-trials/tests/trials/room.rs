@@ -1,15 +1,9 @@
 //! Tests that empty cells around the material change neither results nor cost.
 
-use crate::support::cases::{SLIDING_BLOCK, changed};
+use crate::support::cases::{EXACT, SLIDING_BLOCK, changed};
 use crate::support::results::manifest;
 use crate::support::{Scratch, shipped};
 use std::path::Path;
-
-/// One factorisation of the whole on every rank: then nothing depends on the cut.
-const WHOLE: [&str; 2] = [
-    "--set",
-    "solver.linear={ksp=\"preonly\",pc=\"cholesky\",factor=\"mumps\"}",
-];
 
 /// The histories and the frame of a step, as bytes.
 fn left(directory: &Path, step: usize) -> (Vec<u8>, Vec<u8>) {
@@ -46,7 +40,7 @@ fn the_sliding_block_has_the_same_bits_in_a_grid_ten_times_as_long_and_as_high_o
         &scratch,
         &[1, 2, 4],
         &["[1.0,0.3]", "[10.0,0.3]", "[10.0,3.0]"],
-        &WHOLE,
+        &EXACT,
         40,
     );
 }
@@ -57,7 +51,7 @@ fn the_sliding_block_has_the_same_bits_in_a_grid_ten_times_as_long_and_as_high_o
 #[test]
 fn a_room_that_is_made_again_has_the_bits_of_a_grid_that_is_held_whole() {
     let scratch = Scratch::with_case(SLIDING_BLOCK);
-    agree(&scratch, &[1, 3], &["[0.7,0.3]", "[1.0,0.3]", "[3.0,0.9]"], &WHOLE, 24);
+    agree(&scratch, &[1, 3], &["[0.7,0.3]", "[1.0,0.3]", "[3.0,0.9]"], &EXACT, 24);
 }
 
 /// Sums over cells and functions beyond those of a cell reach further than the points do.
@@ -67,8 +61,8 @@ fn what_couples_further_than_a_cell_has_the_same_bits_in_larger_grids() {
     for order in ["linear", "quadratic", "cubic"] {
         let order = format!("grid.degree={order}");
         let set = [
-            &WHOLE[..],
             &["--set", "stabilisation.method=consistent-f-bar", "--set", &order],
+            &EXACT[..],
         ]
         .concat();
         agree(&scratch, &[1, 3], &["[1.0,0.3]", "[6.0,1.8]"], &set, 30);

@@ -124,8 +124,8 @@ fn iterative_methods_work_by_their_names_alone() {
     let options: [&[&str]; 4] = [
         &["--", "-ksp_type", "cg", "-pc_type", "gamg"],
         &["--", "-ksp_type", "gmres", "-pc_type", "bjacobi"],
-        &["--set", "solver.linear={ ksp = \"cg\", pc = \"jacobi\" }"],
-        &["--set", "solver.linear={ ksp = \"minres\", pc = \"none\" }"],
+        &["--", "-ksp_type", "cg", "-pc_type", "jacobi"],
+        &["--", "-ksp_type", "minres", "-pc_type", "none"],
     ];
     for options in options {
         let scratch = Scratch::with_case(COLUMN);
