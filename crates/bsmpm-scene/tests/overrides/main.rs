@@ -398,18 +398,18 @@ fn words_of_retired_keys_that_change_nothing_are_read_with_a_warning() {
     for (set, reported) in [
         (
             "solver.background_kind=strain",
-            "W0001: solver.background_kind: this key has no effect any more, because the background always resists \
-             strain. Delete the key.",
+            "W0001: solver.background_kind: this key has no effect any more, because the artificial stiffness \
+             always resists strain. Delete the key.",
         ),
         (
             "solver.background_kind=laplacian",
-            "W0001: solver.background_kind: this key has no effect any more, because the background always resists \
-             strain. Delete the key.",
+            "W0001: solver.background_kind: this key has no effect any more, because the artificial stiffness \
+             always resists strain. Delete the key.",
         ),
         (
             "solver.background_cells=occupied",
             "W0001: solver.background_cells: this key has no effect any more, because all occupied cells always have \
-             the background. Delete the key.",
+             the artificial stiffness. Delete the key.",
         ),
     ] {
         let case = valid(STATIC, &[set]);
