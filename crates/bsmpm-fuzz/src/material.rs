@@ -5,8 +5,8 @@ use arbitrary::{Result, Unstructured};
 use bsmpm::material::Moduli;
 use bsmpm::material::Strength;
 use bsmpm::material::{
-    CamClay, Decay, DruckerPrager, Elastic, GradedLaw, Hencky, Law, Match, Material, MohrCoulomb, MuI, Profile,
-    Response, Separation, SofteningMohrCoulomb, VonMises,
+    CamClay, CutOff, Decay, DruckerPrager, Elastic, GradedLaw, Hencky, Law, Match, Material, MohrCoulomb, MuI, Profile,
+    Response, Separation, SofteningMohrCoulomb, TensileStrength, VonMises,
 };
 use bsmpm::tensor::{Symmetric, Tensor};
 use nalgebra::{Rotation3, Vector3};
@@ -88,6 +88,25 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
             Material::CamClay(CamClay::new(elastic, [kappa, lambda, ratio, given, ocr]))
         }
         7 => mu_i(u, elastic, friction)?,
+        8 | 9 => {
+            let fit = *u.choose(&[Match::PlaneStrain, Match::Inner, Match::Outer])?;
+            let kind = u.int_in_range(0..=2)?;
+            let tension = tension(u)?;
+            match kind {
+                0 => {
+                    let cone = DruckerPrager::new(elastic, friction, dilation, cohesion, fit);
+                    Material::DruckerPragerCutOff(CutOff::new(cone, tension))
+                }
+                1 => {
+                    let cylinder = VonMises::new(elastic, cohesion.max(1e-12), friction * cohesion);
+                    Material::VonMisesCutOff(CutOff::new(cylinder, tension))
+                }
+                _ => {
+                    let pyramid = MohrCoulomb::new(elastic, friction, dilation, cohesion);
+                    Material::MohrCoulombCutOff(CutOff::new(pyramid, tension))
+                }
+            }
+        }
         _ => Material::MohrCoulomb(MohrCoulomb::new(elastic, friction, dilation, cohesion).separating(separation)),
     };
     if u.ratio(7, 8)? {
@@ -96,6 +115,17 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
     let young = Profile::constant(law.elastic().young);
     let parameters = law.parameters().into_iter().map(Profile::constant).collect();
     Ok(GradedLaw::new(&law, young, parameters, 0.0..1.0, reduction).at(draw::fraction(u)?))
+}
+
+/// A tensile strength, that may decrease faster than the stress of elastic soil.
+fn tension(u: &mut Unstructured<'_>) -> Result<TensileStrength> {
+    let [strength, energy] = [draw::size(u, -12.0, 20.0)?, draw::size(u, -20.0, 20.0)?];
+    Ok(TensileStrength {
+        strength: if u.ratio(1, 3)? { 0.0 } else { strength },
+        energy: if u.arbitrary()? { 0.0 } else { energy },
+        decay: *u.choose(&[Decay::Linear, Decay::Exponential])?,
+        is_reduced: u.arbitrary()?,
+    })
 }
 
 /// A strength that falls from its peak, or rises to it.

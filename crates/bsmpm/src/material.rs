@@ -5,6 +5,7 @@
 //! Stresses are in Pa, tension positive, in descending order.
 
 mod cam_clay;
+mod cut_off;
 mod drucker_prager;
 mod elastic;
 mod graded;
@@ -22,6 +23,7 @@ mod tangent;
 mod von_mises;
 
 pub use cam_clay::CamClay;
+pub use cut_off::{CutOff, DruckerPragerCutOff, MohrCoulombCutOff, TensileStrength, VonMisesCutOff};
 pub use drucker_prager::{DruckerPrager, Match};
 pub use elastic::{Elastic, Moduli};
 pub use graded::{GradedLaw, Profile};
@@ -39,6 +41,7 @@ pub use von_mises::VonMises;
 use crate::real::Real;
 use crate::tensor::{Symmetric, Tensor};
 use spectral::Spectrum;
+use std::borrow::Cow;
 
 /// Defines the enum of all laws with its dispatch, and the enum of their return data.
 macro_rules! laws {
@@ -323,12 +326,28 @@ laws! {
     cam_clay::CamClay,
     /// Dense granular flow with friction that increases with the shear rate.
     mu_i::MuI,
+    /// Mohr-Coulomb with a tension cut-off.
+    cut_off::MohrCoulombCutOff,
+    /// Drucker-Prager with a tension cut-off.
+    cut_off::DruckerPragerCutOff,
+    /// Von Mises with a tension cut-off.
+    cut_off::VonMisesCutOff,
 }
 
 /// Largest number of state variables of a law.
 pub const MOST_STATE: usize = 8;
 
 impl Material {
+    /// Returns the law without its tension cut-off, if it has one.
+    pub fn without_cut_off(&self) -> Cow<'_, Self> {
+        match self {
+            Self::MohrCoulombCutOff(law) => Cow::Owned(Self::MohrCoulomb(law.law().clone())),
+            Self::DruckerPragerCutOff(law) => Cow::Owned(Self::DruckerPrager(law.law().clone())),
+            Self::VonMisesCutOff(law) => Cow::Owned(Self::VonMises(law.law().clone())),
+            whole => Cow::Borrowed(whole),
+        }
+    }
+
     /// Returns the elastic energy per reference volume for `b_e` (J/m3).
     ///
     /// # Errors

@@ -12,12 +12,14 @@ const ON_SURFACE: f64 = 1e-4;
 impl Material {
     /// Returns the mobilised strength 1/F of a principal Kirchhoff stress (Pa, descending) in a `state`. F is the
     /// factor of [`Material::reduced`] for which the stress lies on the yield surface. The result is 0 without strength
-    /// limit or shear, 1 at yield, above 1 for stresses outside the static yield surface, and at most 16.
+    /// limit or shear, 1 at yield, above 1 for stresses outside the static yield surface, and at most 16. A tension
+    /// cut-off does not count.
     pub fn mobilised(&self, tau: [f64; 3], state: &[f64]) -> f64 {
         if !self.yields() {
             return 0.0;
         }
-        let outside = |share: f64| self.clone().reduced(1.0 / share).yield_function(tau, state) > 0.0;
+        let law = self.without_cut_off();
+        let outside = |share: f64| law.clone().into_owned().reduced(1.0 / share).yield_function(tau, state) > 0.0;
         let mut upper = 1.0;
         while outside(upper) && upper < MOST {
             upper *= 2.0;

@@ -2,6 +2,7 @@
 
 mod cam_clay;
 mod continuity;
+mod cut_off;
 mod driver;
 mod drucker_prager;
 mod eigen;

@@ -6,32 +6,46 @@ use crate::random::Random;
 use bsmpm::material::Moduli;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-/// The closest admissible point among the projections onto all sets of one, two and three of the six planes.
-fn closest(trial: Vector3<f64>, stiffness: Matrix3<f64>, sin: f64, strength: f64) -> Vector3<f64> {
-    let planes: Vec<Vector3<f64>> = [(0, 1), (1, 0), (1, 2), (2, 1), (0, 2), (2, 0)]
+/// Half space `normal · τ ≤ strength`.
+pub struct HalfSpace {
+    pub normal: Vector3<f64>,
+    pub strength: f64, // Pa
+}
+
+/// The six planes of Mohr-Coulomb, with the strength 2 c cos φ (Pa).
+pub fn pyramid(sin: f64, strength: f64) -> Vec<HalfSpace> {
+    [(0, 1), (1, 0), (1, 2), (2, 1), (0, 2), (2, 0)]
         .into_iter()
         .map(|(i, j)| {
             let mut normal = Vector3::zeros();
             normal[i] = 1.0 + sin;
             normal[j] = sin - 1.0;
-            normal
+            HalfSpace { normal, strength }
         })
-        .collect();
+        .collect()
+}
+
+/// The closest admissible point among the projections onto all sets of one, two and three planes.
+pub fn closest(trial: Vector3<f64>, stiffness: Matrix3<f64>, planes: &[HalfSpace]) -> Vector3<f64> {
     let compliance = stiffness.try_inverse().unwrap();
     let admissible = |tau: &Vector3<f64>| {
-        planes
-            .iter()
-            .all(|n| n.dot(tau) - strength <= 1e-9 * (strength + tau.amax() + 1e-3 * trial.amax()))
+        planes.iter().all(|plane| {
+            let size = plane.strength + tau.amax() + 1e-3 * trial.amax();
+            plane.normal.dot(tau) - plane.strength <= 1e-9 * size
+        })
     };
     let mut best = (f64::INFINITY, trial);
-    for set in 1_u32..64 {
-        let active: Vec<_> = (0..6).filter(|i| set >> i & 1 == 1).map(|i| planes[i]).collect();
-        if active.len() > 3 {
+    for set in 1_u32..1 << planes.len() {
+        if set.count_ones() > 3 {
             continue;
         }
-        let rows = DMatrix::from_fn(active.len(), 3, |i, j| active[i][j]);
+        let active: Vec<_> = (0..planes.len())
+            .filter(|i| set >> i & 1 == 1)
+            .map(|i| &planes[i])
+            .collect();
+        let rows = DMatrix::from_fn(active.len(), 3, |i, j| active[i].normal[j]);
         let flow = DMatrix::from_fn(3, 3, |i, j| stiffness[(i, j)]) * rows.transpose();
-        let excess = DVector::from_fn(active.len(), |i, _| active[i].dot(&trial) - strength);
+        let excess = DVector::from_fn(active.len(), |i, _| active[i].normal.dot(&trial) - active[i].strength);
         let normal = &rows * &flow;
         let size = normal.amax();
         if (&normal / size).determinant().abs() < 1e-10 {
@@ -76,7 +90,7 @@ fn associated_return_is_the_closest_point() {
         let stiffness = Matrix3::from_element(lambda) + Matrix3::identity() * (2.0 * mu);
         let trial = stiffness * Vector3::from(found.principal_eps_trial());
         let (sin, cos) = friction.to_radians().sin_cos();
-        let exact = closest(trial, stiffness, sin, 2.0 * cos);
+        let exact = closest(trial, stiffness, &pyramid(sin, 2.0 * cos));
         let tau = found.principal_tau();
         let size = trial.amax();
         worst = worst.max(largest(&[tau[0] - exact[0], tau[1] - exact[1], tau[2] - exact[2]]) / size);
