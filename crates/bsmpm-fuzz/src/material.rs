@@ -119,10 +119,10 @@ fn material(u: &mut Unstructured<'_>) -> Result<Material> {
 
 /// A tensile strength, that may decrease faster than the stress of elastic soil.
 fn tension(u: &mut Unstructured<'_>) -> Result<TensileStrength> {
-    let [strength, energy] = [draw::size(u, -12.0, 20.0)?, draw::size(u, -20.0, 20.0)?];
+    let [strength, strain] = [draw::size(u, -12.0, 20.0)?, draw::size(u, -6.0, 3.0)?];
     Ok(TensileStrength {
         strength: if u.ratio(1, 3)? { 0.0 } else { strength },
-        energy: if u.arbitrary()? { 0.0 } else { energy },
+        strain: if u.arbitrary()? { 0.0 } else { strain },
         decay: *u.choose(&[Decay::Linear, Decay::Exponential])?,
         is_reduced: u.arbitrary()?,
     })

@@ -81,7 +81,7 @@ impl PresetScene<'_> {
         let (size, why) = self.wave_cell(size).unwrap_or((size, why));
         let mut zones = self.zones(preset, size)?;
         zones.extend(self.at_openings(preset, size));
-        if self.materials().any(|material| material.gives("band_width")) {
+        if self.width_of_band().is_some() {
             let all = zones.iter();
             let smallest = all.min_by(|a, b| a.ranges[0].cell.total_cmp(&b.ranges[0].cell));
             let (size, why) = smallest.map_or((size, &why), |zone| (zone.ranges[0].cell, &zone.why));
@@ -127,8 +127,8 @@ impl PresetScene<'_> {
     }
 
     /// Equal squares of about `size` (m) or smaller ones, which come out whole between faces that stay: the softening
-    /// of a material with a band_width goes by their edge. Of those down to a quarter as long the first whose lines are
-    /// where strips, loads and materials end, or if none are the first.
+    /// of a material with a [`Self::width_of_band`] goes by their edge. Of those down to a quarter as long the first
+    /// whose lines are where strips, loads and materials end, or if none are the first.
     fn squares(&self, size: f64, why: &str) -> Option<Cells> {
         let ends = self.ends()?;
         let stays = [self.stays(0)?, self.stays(1)?];
@@ -149,10 +149,18 @@ impl PresetScene<'_> {
             .iter()
             .find(|edges| self.on_lines(**edges) == Some(true))
             .or(all.first())?;
+        let key = self.width_of_band().unwrap_or("band_width");
         Some(of_edges(
             *edges,
-            format!("{why}; equal squares, as a material has a band_width"),
+            format!("{why}; equal squares, as a material has a {key}"),
         ))
+    }
+
+    /// The key of a material whose softening depends on the cell size.
+    fn width_of_band(&self) -> Option<&'static str> {
+        ["band_width", "crack_opening"]
+            .into_iter()
+            .find(|key| self.materials().any(|material| material.gives(key)))
     }
 
     /// Whether both faces across an axis stay where they are.

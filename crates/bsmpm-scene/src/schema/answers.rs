@@ -97,9 +97,12 @@ const ANSWERS: &[Answer] = &[
         "The sensitivity is the key `sensitivity`, of model = \"sensitive-clay\".",
     ),
     symbol(
-        &["tension_cutoff", "tension_cut_off", "tensile_strength"],
-        "E0012: a tension cut-off is not available. Delete this line. The soil then carries a mean tension of up to c / tan(phi). \
-         For less tension reduce `cohesion`, which also reduces the shear strength.",
+        &["tension_cutoff", "tension_cut_off", "sigma_t", "ft", "f_t"],
+        "The tension cut-off is the key `tensile_strength`, the largest tensile stress; 0 for soil without tension.",
+    ),
+    symbol(
+        &["fracture_energy", "Gf", "G_f"],
+        "The softening of a crack with the fracture energy G_f is the key `crack_opening` = 2 G_f / tensile_strength.",
     ),
     symbol(
         &["adhesion"],

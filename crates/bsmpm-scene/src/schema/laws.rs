@@ -3,8 +3,8 @@
 use crate::record::Record;
 use bsmpm::material::Strength;
 use bsmpm::material::{
-    CamClay, Decay, DruckerPrager, Elastic, Hencky, Match, Material, MohrCoulomb, MuI, Rate, Separation,
-    SofteningMohrCoulomb, VonMises,
+    CamClay, CutOff, Decay, DruckerPrager, Elastic, Hencky, Match, Material, MohrCoulomb, MuI, Rate, Separation,
+    SofteningMohrCoulomb, TensileStrength, VonMises,
 };
 
 choice! {
@@ -58,13 +58,49 @@ impl LawName {
     pub(crate) fn keys(self) -> (&'static [&'static str], &'static [&'static str]) {
         match self {
             Self::Hencky => (&[], &[]),
-            Self::Tresca => (&["cohesion"], &[]),
+            Self::Tresca => (
+                &["cohesion"],
+                &[
+                    "tensile_strength",
+                    "crack_opening",
+                    "softening",
+                    "reduce_tensile_strength",
+                ],
+            ),
             Self::MohrCoulomb => (
                 &["friction_angle", "cohesion"],
-                &["dilation_angle", "separation", "ocr"],
+                &[
+                    "dilation_angle",
+                    "separation",
+                    "ocr",
+                    "tensile_strength",
+                    "crack_opening",
+                    "softening",
+                    "reduce_tensile_strength",
+                ],
             ),
-            Self::DruckerPrager => (&["friction_angle", "cohesion"], &["dilation_angle", "fit", "ocr"]),
-            Self::VonMises => (&["yield_stress"], &["hardening"]),
+            Self::DruckerPrager => (
+                &["friction_angle", "cohesion"],
+                &[
+                    "dilation_angle",
+                    "fit",
+                    "ocr",
+                    "tensile_strength",
+                    "crack_opening",
+                    "softening",
+                    "reduce_tensile_strength",
+                ],
+            ),
+            Self::VonMises => (
+                &["yield_stress"],
+                &[
+                    "hardening",
+                    "tensile_strength",
+                    "crack_opening",
+                    "softening",
+                    "reduce_tensile_strength",
+                ],
+            ),
             Self::SensitiveClay => (
                 &["cohesion", "sensitivity", "softening_strain"],
                 &["band_width", "rate_parameter", "reference_rate"],
@@ -110,11 +146,19 @@ impl LawName {
             Self::Hencky => Material::Hencky(Hencky { elastic }),
             Self::MohrCoulomb | Self::Tresca => {
                 let separation = record.word("separation").unwrap_or_default();
-                Material::MohrCoulomb(MohrCoulomb::new(elastic, 0.0, 0.0, 0.0).separating(separation))
+                let law = MohrCoulomb::new(elastic, 0.0, 0.0, 0.0).separating(separation);
+                match tension(record) {
+                    Some(tension) => Material::MohrCoulombCutOff(CutOff::new(law, tension)),
+                    None => Material::MohrCoulomb(law),
+                }
             }
             Self::DruckerPrager => {
                 let fit = record.word("fit").unwrap_or_default();
-                Material::DruckerPrager(DruckerPrager::new(elastic, 0.0, 0.0, 0.0, fit))
+                let law = DruckerPrager::new(elastic, 0.0, 0.0, 0.0, fit);
+                match tension(record) {
+                    Some(tension) => Material::DruckerPragerCutOff(CutOff::new(law, tension)),
+                    None => Material::DruckerPrager(law),
+                }
             }
             Self::SensitiveClay => {
                 let none = Strength::default();
@@ -128,7 +172,13 @@ impl LawName {
             }
             Self::CamClay => Material::CamClay(CamClay::new(elastic, [0.0; 5])),
             Self::MuI => Material::MuI(MuI::new(elastic, [0.0; 5])),
-            Self::VonMises => Material::VonMises(VonMises::new(elastic, 0.0, 0.0)),
+            Self::VonMises => {
+                let law = VonMises::new(elastic, 0.0, 0.0);
+                match tension(record) {
+                    Some(tension) => Material::VonMisesCutOff(CutOff::new(law, tension)),
+                    None => Material::VonMises(law),
+                }
+            }
             Self::Softening => {
                 let decay = record.word("softening").unwrap_or_default();
                 let none = Strength::default();
@@ -136,6 +186,16 @@ impl LawName {
             }
         }
     }
+}
+
+/// The choices of the tension cut-off of a record, without its numbers; `None` without a cut-off.
+fn tension(record: &Record) -> Option<TensileStrength> {
+    record.gives("tensile_strength").then(|| TensileStrength {
+        strength: 0.0,
+        strain: 0.0,
+        decay: record.word("softening").unwrap_or_default(),
+        is_reduced: record.flag("reduce_tensile_strength").unwrap_or(false),
+    })
 }
 
 words! { Separation {

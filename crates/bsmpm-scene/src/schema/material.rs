@@ -119,8 +119,9 @@ pub(crate) static MATERIAL: Table = Table {
             "softening",
             Choice(Decay::WORDS),
             Optional,
-            "Decrease of the strength of mohr-coulomb-softening with the plastic strain. Default: \"linear\". The \
-             strength of sensitive-clay always decreases exponentially.",
+            "Decrease of the strength of mohr-coulomb-softening with the plastic strain, or of tensile_strength with \
+             the opening of a crack. Default: \"linear\". The strength of sensitive-clay always decreases \
+             exponentially.",
         )
         .example(r#""exponential""#),
         key(
@@ -274,6 +275,34 @@ pub(crate) static MATERIAL: Table = Table {
         )
         .symbol("H")
         .example(r#""1 MPa""#),
+        key(
+            "tensile_strength",
+            Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
+            Optional,
+            "Tension cut-off: largest principal stress of mohr-coulomb, tresca, drucker-prager and von-mises. With 0 \
+             the soil carries no tension. Without this key, laws with a friction angle carry a mean tension of up to \
+             c'/tan(φ'); a larger tensile strength has no effect.",
+        )
+        .symbol("f_t")
+        .example(r#""5 kPa""#),
+        key(
+            "crack_opening",
+            Quantity(In::Length, Range::POSITIVE),
+            Optional,
+            "Opening of a crack at which tensile_strength has decreased to 0; with exponential softening by 95 %. In \
+             cells of size h it is a plastic strain of crack_opening / (2 h), so that the dissipated energy does not \
+             depend on the cell size (crack-band model). All cells must have the same size. Without this key the \
+             tensile strength is constant.",
+        )
+        .symbol("w_c")
+        .example(r#""2 mm""#),
+        key(
+            "reduce_tensile_strength",
+            Flag,
+            Optional,
+            "Whether strength reduction divides tensile_strength, too. Default: false.",
+        )
+        .example("true"),
         key(
             "separation",
             Choice(Separation::WORDS),

@@ -1,6 +1,7 @@
 //! Validates materials, and warns of doubtful parameters.
 
 pub(super) mod band;
+mod cut_off;
 mod law;
 
 use super::{limit_load, reduction};

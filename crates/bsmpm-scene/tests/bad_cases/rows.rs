@@ -101,7 +101,7 @@ pub const LANGUAGE: &[Row] = &[
         "cohesion    = 2e4",
         "cohesion = 2e4\ntension_cutoff = 1",
         "material.clay.tension_cutoff",
-        "a tension cut-off is not available",
+        "The tension cut-off is the key `tensile_strength`",
     )
     .down(1),
     row(
@@ -724,6 +724,34 @@ pub const RULES: &[Row] = &[
         "material.till.separation",
         "E0317",
     ),
+    row(
+        "cohesion    = 2e4",
+        "cohesion = 2e4\ntensile_strength = \"-1 kPa\"",
+        "material.clay.tensile_strength",
+        "(tensile_strength >= 0",
+    )
+    .down(1),
+    row(
+        "poisson     = 0.2",
+        "poisson = 0.2\ntensile_strength = 0",
+        "material.block.tensile_strength",
+        "E0304",
+    )
+    .down(1),
+    row(
+        "cohesion    = 2e4",
+        "cohesion = 2e4\ncrack_opening = \"2 mm\"",
+        "material.clay.crack_opening",
+        "E0323",
+    )
+    .down(1),
+    row(
+        "cohesion    = 2e4",
+        "cohesion = 2e4\ntensile_strength = 1e3\nsoftening = \"linear\"",
+        "material.clay.softening",
+        "E0323",
+    )
+    .down(2),
     row(
         "material = \"sand\"",
         "material = \"snad\"",

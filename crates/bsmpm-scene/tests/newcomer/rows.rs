@@ -187,7 +187,7 @@ pub const ROWS: &[Row] = &[
             "cohesion       = \"10 kPa\"",
             "cohesion       = \"10 kPa\"\ntension_cutoff = 0",
         )],
-        says: Says::Errors(1, &["not available"]),
+        says: Says::Errors(1, &["tensile_strength"]),
     },
     Row {
         number: "24",

@@ -2,7 +2,7 @@
 
 use super::{FULL, ROUND, STATIC, set, valid};
 use bsmpm::kinematics::PlaneStrain;
-use bsmpm::material::{Law, LayeredMaterial, Match, Material, Separation};
+use bsmpm::material::{Decay, Law, LayeredMaterial, Match, Material, Separation};
 use bsmpm::model::Regime;
 use bsmpm_scene::Case;
 
@@ -143,6 +143,66 @@ fn softening_strengths() {
         "{:?}",
         case.warnings
     );
+}
+
+/// A tensile strength may depend on depth, is reduced on request only, and softens by the cell size.
+#[test]
+fn a_tensile_strength_is_a_cut_off_of_the_law() {
+    let with = |tension: &str, set: &[&str]| {
+        let soil = format!(
+            "material.soil={{ model = \"mohr-coulomb\", young = 1e7, poisson = 0.3, cohesion = 1e4, friction_angle = 45, \
+             density = 2e3{tension} }}"
+        );
+        valid(STATIC, &[&[soil.as_str()], set].concat())
+    };
+    let law = |case: &Case, y: f64| case.materials[0].material.at(y).into_owned();
+    assert!(matches!(law(&with("", &[]), 0.0), Material::MohrCoulomb(_)));
+    let graded = with(
+        ", tensile_strength = { value = 2e3, at_y = 0.0, per_metre = -1e3 }",
+        &["strength_reduction.factor=2"],
+    );
+    let Material::MohrCoulombCutOff(cut) = law(&graded, 1.0) else {
+        panic!("{:?}", graded.materials[0])
+    };
+    assert!((cut.tension().strength - 3e3).abs() < 1e-9 && cut.tension().strain == 0.0);
+    assert!((cut.law().parameters()[2] - 5e3).abs() < 1e-9);
+    let reduced = with(
+        ", tensile_strength = 2e3, reduce_tensile_strength = true, crack_opening = 0.01, softening = \"exponential\"",
+        &["strength_reduction.factor=2", "grid.cell=0.5"],
+    );
+    let Material::MohrCoulombCutOff(cut) = law(&reduced, 0.0) else {
+        panic!("{:?}", reduced.materials[0])
+    };
+    let tension = cut.tension();
+    assert_eq!(
+        (tension.strength, tension.strain, tension.decay),
+        (1e3, 0.01, Decay::Exponential)
+    );
+    for (tension, code) in [
+        (", tensile_strength = 1.1e4", "W0318: material.soil.tensile_strength: "),
+        (
+            ", tensile_strength = 9e3, crack_opening = 1e-5",
+            "W0319: material.soil: ",
+        ),
+    ] {
+        let warnings = with(tension, &["grid.cell=0.5"]).warnings;
+        assert!(
+            warnings.iter().any(|warning| warning.starts_with(code)),
+            "{code} {warnings:?}"
+        );
+    }
+    for none in ["", ", tensile_strength = 9e3, crack_opening = 0.01"] {
+        let warnings = with(none, &["grid.cell=0.5"]).warnings;
+        assert!(
+            !warnings
+                .iter()
+                .any(|warning| warning.starts_with("W0318") || warning.starts_with("W0319"))
+        );
+    }
+    let soil = "material.soil={ model = \"tresca\", young = 1e7, poisson = 0.3, cohesion = 1e4, density = 2e3, \
+                tensile_strength = 1e3, crack_opening = 0.01 }";
+    let errors = set(STATIC, &[soil, "grid.cell=[0.5, 0.25]"]).expect_err("cells of two sizes");
+    assert!(format!("{errors:?}").contains("E0316"), "{errors:?}");
 }
 
 /// The width of a band was measured in plane strain, with some methods and splines, and not under what pushes.

@@ -34,46 +34,30 @@ const PIVOT: f64 = 1e-12;
 pub struct TensileStrength {
     /// Strength f_t without cracks (Pa), at least 0.
     pub strength: f64,
-    /// Energy per volume until the strength is 0 (J/m3); 0 for a constant strength.
-    pub energy: f64,
-    /// Form of the decrease.
+    /// Crack strain κ_r at the end of the decrease, or with exponential decay at 95 % of it (-); 0 for a constant
+    /// strength.
+    pub strain: f64,
+    /// Form of the decrease to 0.
     pub decay: Decay,
-    /// Whether strength reduction divides strength and energy, too.
+    /// Whether strength reduction divides the tensile strength, too.
     pub is_reduced: bool,
 }
 
 impl TensileStrength {
     /// Returns whether the strength decreases with the crack strain.
     fn softens(&self) -> bool {
-        self.energy > 0.0 && self.strength > 0.0
+        self.strain > 0.0 && self.strength > 0.0
     }
 
-    /// Returns the strength after the crack strain κ (Pa), and its derivative: `f_t (1 - κ f_t/(2 g))` or
-    /// `f_t exp(-κ f_t/g)`, with the energy g per volume under either curve.
+    /// Returns the strength after the crack strain κ (Pa), and its derivative.
     #[inline(always)]
     fn after<R: Real>(&self, kappa: R) -> (R, R) {
-        let none = kappa.like(0.0);
-        let Self { strength, energy, .. } = *self;
+        let whole = kappa.like(self.strength);
         if !self.softens() {
-            return (none + strength, none);
+            return (whole, kappa.like(0.0));
         }
-        let along = kappa * (strength / energy);
-        match self.decay {
-            Decay::Linear => {
-                let left = along.like(1.0) - along * 0.5;
-                let is_left = none.below(left);
-                let slope = none.like(-0.5 * strength * strength / energy);
-                (
-                    R::choose(is_left, left * strength, none),
-                    R::choose(is_left, slope, none),
-                )
-            }
-            Decay::Exponential => {
-                let every = none.at_most(none);
-                let left = none.unless(every, [along, none], |[along, _]| (-along).exp());
-                (left * strength, left * (-strength * strength / energy))
-            }
-        }
+        let (progress, rate) = self.decay.progress(kappa, self.strain);
+        (whole - progress * self.strength, -(rate * self.strength))
     }
 
     /// Returns the strength after strength reduction.
@@ -81,7 +65,6 @@ impl TensileStrength {
         let divisor = if self.is_reduced { factor } else { 1.0 };
         Self {
             strength: self.strength / divisor,
-            energy: self.energy / divisor,
             ..self
         }
     }
@@ -179,7 +162,7 @@ impl<L: Law> CutOff<L> {
             k += 1;
         }
         all[k] = Variable::new("tensile_strength", "Pa");
-        all[k + 1] = Variable::new("fracture_energy", "J/m3");
+        all[k + 1] = Variable::new("crack_opening", "-");
         all
     };
     const ALL_STATE: [Variable; MOST_STATE] = {
@@ -259,7 +242,7 @@ impl<L: Law> Law for CutOff<L> {
     }
 
     fn parameters(&self) -> Vec<f64> {
-        let own = [self.tension.strength, self.tension.energy];
+        let own = [self.tension.strength, self.tension.strain];
         [&self.law.parameters()[..], &own].concat()
     }
 
@@ -269,7 +252,7 @@ impl<L: Law> Law for CutOff<L> {
             law: self.law.with_parameters(elastic, inner),
             tension: TensileStrength {
                 strength: own[0],
-                energy: own[1],
+                strain: own[1],
                 ..self.tension
             },
         }

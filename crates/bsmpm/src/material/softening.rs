@@ -18,6 +18,28 @@ pub enum Decay {
     Exponential,
 }
 
+impl Decay {
+    /// Returns the fraction of the change after the plastic strain κ, 0 to 1, and its derivative; `residual` is the
+    /// plastic strain κ_r of the residual strength.
+    #[inline(always)]
+    pub(super) fn progress<R: Real>(self, kappa: R, residual: f64) -> (R, R) {
+        let along = kappa / residual;
+        let none = kappa.like(0.0);
+        match self {
+            Self::Linear => {
+                let done = along.like(1.0).at_most(along); // a NaN is kept
+                let progress = R::choose(done, along.like(1.0), along);
+                (progress, R::choose(done, none, along.like(1.0 / residual)))
+            }
+            Self::Exponential => {
+                let every = !along.below(none);
+                let left = none.unless(every, [along, none], |[along, _]| (-RATE * along).exp());
+                (left.like(1.0) - left, left * (RATE / residual))
+            }
+        }
+    }
+}
+
 /// Dependence of the cohesion on the rate of plastic shear γ̇ᵖ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
@@ -126,30 +148,10 @@ impl SofteningMohrCoulomb {
         (decades * per_decade + 1.0, R::choose(quick, slope, growth.like(0.0)))
     }
 
-    /// Returns the fraction of the change from peak to residual strength after the plastic strain κ, 0 to 1, and its
-    /// derivative.
-    #[inline(always)]
-    fn progress<R: Real>(&self, kappa: R) -> (R, R) {
-        let along = kappa / self.strain;
-        let none = kappa.like(0.0);
-        match self.decay {
-            Decay::Linear => {
-                let done = along.like(1.0).at_most(along); // a NaN is kept
-                let progress = R::choose(done, along.like(1.0), along);
-                (progress, R::choose(done, none, along.like(1.0 / self.strain)))
-            }
-            Decay::Exponential => {
-                let every = !along.below(none);
-                let left = none.unless(every, [along, none], |[along, _]| (-RATE * along).exp());
-                (left.like(1.0) - left, left * (RATE / self.strain))
-            }
-        }
-    }
-
     /// Returns the pyramid after the plastic strain κ, which has grown by `growth` in the step.
     #[inline(always)]
     fn pyramid<R: Real>(&self, kappa: R, growth: R) -> Pyramid<R> {
-        let (progress, _) = self.progress(kappa);
+        let (progress, _) = self.decay.progress(kappa, self.strain);
         let [sin_phi, sin_psi, strength] = three(|k| progress * self.change[k] + self.first[k]);
         let strength = if self.rate.is_some() {
             strength * self.quickened(growth).0
@@ -283,7 +285,7 @@ impl Law for SofteningMohrCoulomb {
         };
         let growth = R::choose(yields, growth, kappa.like(0.0));
         let pyramid = self.pyramid(kappa + growth, growth);
-        let (_, rate) = self.progress(kappa + growth);
+        let (_, rate) = self.decay.progress(kappa + growth, self.strain);
         let (projected, _, corners) = pyramid.return_map(trial);
         let tau = three(|k| R::choose(yields, projected[k], trial[k]));
         let mut rates = three(|k| rate * self.change[k]);

@@ -1,14 +1,43 @@
-//! Warns of settings for which `band_width` is not verified.
+//! Width of the bands of cells in which strain localises. Warns of settings for which `band_width` is not verified.
 
-use super::law::CELLS_OF_BAND;
 use crate::case::{Case, Geometry, Site};
+use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
+use crate::validate::SQUARE;
 use crate::validate::place::is_at;
 use crate::validate::site::{corners, places};
 use crate::words::Word;
 use bsmpm::material::{LayeredMaterial, Material};
 use bsmpm::stabilisation::Stabilisation;
+use bsmpm_shapes::GridAxis;
+
+/// Cells across which a band of shear does the work of its softening. Splines of order 2 make no narrower slip than a
+/// hat of strain over two cells, all of which softens sooner or later; measured with one free band
+/// (`scripts/validate`).
+pub(super) const CELLS_OF_BAND: f64 = 2.0;
+
+/// Width of a band of cells in which strain localises, m; `None` after the error that cells have different sizes, which
+/// belongs to the `key`.
+pub(super) fn band_of_cells(
+    record: &Record,
+    key: &str,
+    grid: Option<&GridSpec>,
+    report: &mut Report<'_>,
+) -> Option<f64> {
+    let axes = &grid?.axes;
+    let shortest = axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
+    let longest = axes.iter().map(GridAxis::longest).fold(0.0, f64::max);
+    if longest > SQUARE * shortest {
+        let message = format!(
+            "E0316: `{key}` needs cells of equal size, but the cells of the grid are {shortest} to {longest} m \
+             long. Set `grid.cell` to one number, or remove `{key}`."
+        );
+        record.error(key, message, report);
+        return None;
+    }
+    Some(CELLS_OF_BAND * longest)
+}
 
 /// Warns of every material with a `band_width` outside of what was verified.
 pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {

@@ -1,14 +1,13 @@
 //! Makes the constitutive law of a material.
 
-use super::{Layer, profile};
+use super::band::{CELLS_OF_BAND, band_of_cells};
+use super::{Layer, cut_off, profile};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::{Dimension, Kind, LawName, MATERIAL};
-use crate::validate::SQUARE;
 use crate::words::{Geometry, Word};
 use bsmpm::material::{CamClay, Decay, Elastic, GradedLaw, LayeredMaterial, Match, Material, Profile, Separation};
-use bsmpm_shapes::GridAxis;
 
 /// A law and its numbers, by the height in the case's coordinates and units.
 pub(super) struct Parameters {
@@ -35,8 +34,14 @@ impl Parameters {
         self.values.iter().any(|own| own.profile.per_metre != 0.0)
     }
 
+    /// Replaces the values of a key by one constant.
+    pub(super) fn set(&mut self, key: &str, value: f64) {
+        let own = self.values.iter_mut().filter(|own| own.key == key);
+        own.for_each(|own| own.profile = Profile::constant(value));
+    }
+
     /// Its profile of a key, 0 of one that it has not.
-    fn of(&self, key: &str) -> Profile {
+    pub(super) fn of(&self, key: &str) -> Profile {
         let found = self.values.iter().find(|own| own.key == key);
         found.map_or(Profile::constant(0.0), |own| own.profile)
     }
@@ -155,7 +160,9 @@ pub(super) fn law(
     if model == LawName::CamClay {
         check_cam_clay(record, &parameters, report)?;
     }
-    if matches!(model, LawName::Softening | LawName::SensitiveClay) {
+    if !matches!(model, LawName::Softening | LawName::SensitiveClay) {
+        cut_off::check(record, &mut parameters, layer, grid, report)?;
+    } else {
         regularise(record, &mut parameters, grid, report)?;
         warn_of_collapse(record, &parameters, layer, report);
     }
@@ -329,11 +336,6 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
     Some(())
 }
 
-/// Cells across which a band of shear does the work of its softening. Splines of order 2 make no narrower slip than a
-/// hat of strain over two cells, all of which softens sooner or later; measured with one free band
-/// (`scripts/validate`).
-pub(super) const CELLS_OF_BAND: f64 = 2.0;
-
 /// The plastic strain of cells for that of a shear band, so that a band does the same work in any (crack band: Bažant
 /// and Oh, 1983). `None` after an error.
 fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<()> {
@@ -357,19 +359,7 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
         ));
         return Some(());
     };
-    let axes = &grid?.axes;
-    let shortest = axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
-    let longest = axes.iter().map(GridAxis::longest).fold(0.0, f64::max);
-    if longest > SQUARE * shortest {
-        let message = format!(
-            "E0316: `band_width` needs cells of equal size, but the cells of the grid are {shortest} to {longest} m \
-             long. Set `grid.cell` to one number, or remove `band_width`."
-        );
-        record.error("band_width", message, report);
-        return None;
-    }
-    // What happens in a band is smeared over two cells: its strain, and how fast it grows.
-    let smeared = CELLS_OF_BAND * longest;
+    let smeared = band_of_cells(record, "band_width", grid, report)?;
     for KeyProfile { key, profile } in &mut law.values {
         if !["softening_strain", "reference_rate"].contains(key) {
             continue;
@@ -380,7 +370,10 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
             report.note(
                 record.path_of(key),
                 profile.value.to_string(),
-                format!("{of_band} in a band of {width} m, which is {smeared} m wide in cells of {longest} m"),
+                format!(
+                    "{of_band} in a band of {width} m, which is {smeared} m wide in cells of {} m",
+                    smeared / CELLS_OF_BAND
+                ),
             );
         }
     }
@@ -466,8 +459,10 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
         model: law.model,
         values: values.collect(),
     };
-    let material = uniform.material(record, Profile::constant(1.0), 0.0, None, 1.0);
-    let Some(LayeredMaterial::Uniform(Material::DruckerPrager(cone))) = material else {
+    let Some(LayeredMaterial::Uniform(law)) = uniform.material(record, Profile::constant(1.0), 0.0, None, 1.0) else {
+        return;
+    };
+    let Material::DruckerPrager(cone) = law.without_cut_off().into_owned() else {
         return;
     };
     if geometry.is_some_and(|geometry| geometry != Geometry::PlaneStrain) {
