@@ -123,7 +123,7 @@ fn values(text: &str) -> Result<BTreeMap<String, DifferenceValue>, Vec<Error>> {
     earlier::replace(&mut document, &mut report);
     earlier::star_slopes(&mut document);
     preset::fill(&mut document, &source, &[], &mut report);
-    let record = record::read(&ROOT, &document, &mut report);
+    let record = record::read(ROOT, &document, &mut report);
     if report.failed() {
         return Err(report.into_errors());
     }

@@ -8,7 +8,7 @@ use crate::words::Words;
 
 /// Replaces earlier names of keys and words in the whole document.
 pub(crate) fn replace(document: &mut DocumentTable, report: &mut Report<'_>) {
-    in_table(document, &ROOT, "", report);
+    in_table(document, ROOT, "", report);
 }
 
 /// Reads `lambda` and `kappa` of a run that was made before these were the slopes of the specific volume: they were

@@ -42,7 +42,7 @@ pub(crate) fn apply(document: &mut DocumentTable, overrides: &[String], report: 
                     origin,
                     renamed: Vec::new(),
                 };
-                let set = setting.in_table(document, Some(&ROOT), 0);
+                let set = setting.in_table(document, Some(ROOT), 0);
                 for (earlier, now) in setting.renamed {
                     report.renamed(earlier, now, key.trim());
                 }

@@ -12,9 +12,8 @@ mod waves;
 
 use crate::document::{self, DocumentEntry, DocumentTable, Node, Value};
 use crate::error::Origin;
-use crate::record;
 use crate::report::{Report, brief};
-use crate::schema::ROOT;
+use crate::schema::Draft;
 use crate::source::Source;
 use crate::words::{Accuracy, Geometry, Order, Word};
 use bsmpm::stabilisation::Stabilisation;
@@ -136,13 +135,7 @@ pub(crate) fn fill(
     report: &mut Report<'_>,
 ) -> bool {
     let accuracy = chosen(document);
-    let is_filled = limit_load::fill(
-        document,
-        accuracy.map(|(accuracy, _)| accuracy),
-        source,
-        overrides,
-        report,
-    );
+    let is_filled = limit_load::fill(document, source, overrides, report);
     let Some((accuracy, origin)) = accuracy else {
         return is_filled;
     };
@@ -165,14 +158,14 @@ fn fill_accuracy(
 ) -> bool {
     let preset = &Preset::of(accuracy);
     // Its errors are reported when the filled document is read.
-    let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
-    if record.word("geometry") == Some(Geometry::Solid) {
+    let draft = Draft::read(document, &mut Report::new(source, overrides));
+    if draft.geometry.get() == Some(Geometry::Solid) {
         let message = "E0226: the presets of `accuracy` are not available in 3-D. Delete `accuracy`, and give \
              grid.cell, points_per_cell, analysis.steps and the tolerances of [solver].";
         report.error(choice.origin, ACCURACY, message);
         return false;
     }
-    let scene = PresetScene::of(&record);
+    let scene = PresetScene::of(&draft);
     let mut filling = Completion {
         document,
         choice,
@@ -190,7 +183,7 @@ fn fill_accuracy(
     filling.put("solver", &["tolerance"], energy, "");
     filling.put("solver", &["force_tolerance"], force, "");
     let filled = filling.filled;
-    if filled && record.records("rigid").iter().any(|rigid| rigid.gives("free")) {
+    if filled && draft.rigid.items().iter().any(|rigid| rigid.gives("free")) {
         report.warn(format!(
             "W0201: {ACCURACY}: the preset does not know the speed of free rigid bodies, so its steps may be too \
              long. Set analysis.steps so that these bodies move less than a cell in a step."

@@ -3,10 +3,10 @@
 use crate::case::Case;
 use crate::error::{Error, Origin};
 use crate::report::Report;
-use crate::schema::ROOT;
+use crate::schema::{Draft, ROOT};
 use crate::source::{Source, decode};
 use crate::validate::CaseUse;
-use crate::{document, earlier, overrides, preset, record, slips, validate};
+use crate::{document, earlier, overrides, preset, slips, validate};
 
 impl Case {
     /// The case in `text`, the content of the file `name`, with overrides `KEY=VALUE` merged in their order.
@@ -53,16 +53,16 @@ impl Case {
             );
             return Err(report.into_errors());
         }
-        slips::mend(&ROOT, &mut document, &mut report);
+        slips::mend(ROOT, &mut document, &mut report);
         let filled = preset::fill(&mut document, &source, overrides, &mut report);
-        let record = record::read(&ROOT, &document, &mut report);
+        let draft = Draft::read(&document, &mut report);
         let as_written = overrides.is_empty() && !filled && !report.has_renamings();
         let effective = if as_written {
             text.to_owned()
         } else {
             document.to_toml()
         };
-        match validate::case(&record, effective, case_use, &mut report) {
+        match validate::case(&draft, effective, case_use, &mut report) {
             Some(case) if !report.failed() => Ok(case),
             _ => Err(report.into_errors()),
         }

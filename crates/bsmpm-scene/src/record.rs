@@ -1,6 +1,7 @@
 //! Compares a case file with the schema. The result is a record: typed values in SI units, with angles in degrees.
 
 mod access;
+mod field;
 mod value;
 
 use crate::document::{self, DocumentTable, Node, Value};
@@ -11,6 +12,7 @@ use crate::schema::{Group, Key, Kind, Presence, Table};
 use crate::slips;
 use crate::unit::Dimension;
 use crate::words::{AnalysisType, Geometry, Word};
+pub(crate) use field::{CaseTable, Field, KeyPlace, Location, OrTable};
 pub(crate) use value::UNREAD;
 
 /// Of a key of the language that this version does not have.

@@ -1,5 +1,8 @@
 //! The schema of case files: all keys with type, unit, range, default and description.
 
+#[macro_use]
+pub(crate) mod define;
+
 mod answers;
 mod body;
 mod element;
@@ -18,8 +21,12 @@ pub(crate) use answers::answer;
 pub use crate::unit::Dimension;
 pub use crate::words::Words;
 pub(crate) use laws::LawName;
+pub(crate) use loads::{InitialTable, ReductionTable};
 pub(crate) use material::MATERIAL;
+pub(crate) use output::{CheckpointTable, OutputTable};
 pub use tables::ROOT;
+pub(crate) use tables::{AnalysisTable, Draft, GridTable, KnotsTable, SolverTable};
+pub(crate) use water::WaterTable;
 
 use std::fmt;
 use std::ops::Bound;
@@ -53,14 +60,6 @@ const fn one_of(keys: &'static [&'static str], required: bool) -> Group {
         keys,
         required,
         has_preset: false,
-    }
-}
-
-const fn one_of_or_preset(keys: &'static [&'static str]) -> Group {
-    Group {
-        keys,
-        required: true,
-        has_preset: true,
     }
 }
 

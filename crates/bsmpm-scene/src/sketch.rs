@@ -2,9 +2,9 @@
 
 use crate::case::Support;
 use crate::observables::Observable;
-use crate::record::{self, Record};
+use crate::record::Record;
 use crate::report::Report;
-use crate::schema::ROOT;
+use crate::schema::Draft;
 use crate::source::Source;
 use crate::words::AnalysisType;
 use crate::{document, validate};
@@ -50,23 +50,22 @@ impl Sketch {
         if report.failed() {
             return Self::default();
         }
-        let root = record::read(&ROOT, &document, &mut report);
-        let kind = root
-            .record("analysis")
-            .and_then(|analysis| analysis.word::<AnalysisType>("type"));
+        let draft = Draft::read(&document, &mut report);
+        let kind = draft.analysis.value().and_then(|analysis| analysis.r#type.get());
         let regime = kind.map(AnalysisType::regime);
         let is_timeless = kind.map(AnalysisType::is_timeless);
-        let footing = root.record("footing");
+        let footing = draft.footing.value();
         Self {
             regime,
             is_timeless,
-            stabilisation: regime.and_then(|_| validate::stabilisation(&root)),
-            boundary: validate::boundary(&root),
+            stabilisation: regime.and_then(|_| validate::stabilisation(&draft)),
+            boundary: validate::boundary(&draft),
             footing: footing.and_then(|strip| Some([strip.pair("from")?, strip.pair("to")?])),
-            strength_reduction: root
-                .record("strength_reduction")
-                .and_then(|reduction| reduction.number("factor")),
-            histories: root.records("history").iter().filter_map(SketchedHistory::of).collect(),
+            strength_reduction: draft
+                .strength_reduction
+                .value()
+                .and_then(|reduction| reduction.factor.get()),
+            histories: draft.history.items().iter().filter_map(SketchedHistory::of).collect(),
         }
     }
 }

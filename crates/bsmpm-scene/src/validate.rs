@@ -44,8 +44,9 @@ pub use flow::HELD_WATER;
 
 use crate::case::{Analysis, Case, Gravity, Support};
 use crate::constants::STANDARD_GRAVITY;
-use crate::record::Record;
+use crate::record::{CaseTable, Record};
 use crate::report::Report;
+use crate::schema::{AnalysisTable, Draft};
 use crate::words::{AnalysisType, Geometry, Side, Word};
 use bsmpm::boundary::Contact;
 use bsmpm::dynamics::mass::MassMatrix;
@@ -79,16 +80,16 @@ pub(crate) enum CaseUse {
 }
 
 /// The case that `record` describes; `text` is what was read. `None` after an error.
-pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mut Report<'_>) -> Option<Case> {
-    solid::refuse(record, report);
-    let (mut case, stiffness) = read(record, text, report)?;
+pub(crate) fn case(draft: &Draft, text: String, case_use: CaseUse, report: &mut Report<'_>) -> Option<Case> {
+    solid::refuse(draft, report);
+    let (mut case, stiffness) = read(draft, text, report)?;
     if report.failed() {
         return None;
     }
     if case_use == CaseUse::ElementTests {
         return Some(case);
     }
-    check(&mut case, record, stiffness, report);
+    check(&mut case, draft, stiffness, report);
     Some(Case {
         renamings: report.take_renamings(),
         warnings: report.take_warnings(),
@@ -98,30 +99,30 @@ pub(crate) fn case(record: &Record, text: String, case_use: CaseUse, report: &mu
 }
 
 /// The case as its tables describe it, and by which Young's moduli were multiplied.
-fn read(record: &Record, text: String, report: &mut Report<'_>) -> Option<(Case, f64)> {
-    let domain = Domain::read(record, report);
+fn read(draft: &Draft, text: String, report: &mut Report<'_>) -> Option<(Case, f64)> {
+    let domain = Domain::read(draft, report);
     let grid = domain.grid.as_ref();
     let regime = domain.regime;
     let end = domain.end();
-    let gravity = gravity(record, regime, end, report);
-    let water = water::read(record, grid, gravity.as_ref(), regime, end, report);
+    let gravity = gravity(draft, regime, end, report);
+    let water = water::read(draft, grid, gravity.as_ref(), regime, end, report);
     let times = domain.analysis.as_ref().map(|analysis| (analysis.end, analysis.dt));
-    let shaking = load::shaking(record, regime, times, report);
-    let mut structures = Structures::read(record, &domain, report);
-    let materials = domain.materials(record, structures.stiffness, report);
+    let shaking = load::shaking(draft, regime, times, report);
+    let mut structures = Structures::read(draft, &domain, report);
+    let materials = domain.materials(draft, structures.stiffness, report);
     let made = materials.as_deref();
-    let flow = flow::read(record, made, domain.around(), domain.stages.as_deref(), report);
-    let loads = Loads::read(record, &domain, made, gravity, &mut structures.rigid, report);
-    let stabilisation = stabilisation(record);
-    let solver = solver::read(record, regime, grid, made, report);
-    let output = output::read(record, end, report);
-    let histories = history::read_all(record, regime, grid, domain.bodies_of(made), report);
-    let profiles = profile::read_all(record, regime, grid, end, report);
-    let checks = history::checks(record, &histories, end, report);
-    let elements = element::read_all(record, made, grid, report);
+    let flow = flow::read(draft, made, domain.around(), domain.stages.as_deref(), report);
+    let loads = Loads::read(draft, &domain, made, gravity, &mut structures.rigid, report);
+    let stabilisation = stabilisation(draft);
+    let solver = solver::read(draft, regime, grid, made, report);
+    let output = output::read(draft, end, report);
+    let histories = history::read_all(draft, regime, grid, domain.bodies_of(made), report);
+    let profiles = profile::read_all(draft, regime, grid, end, report);
+    let checks = history::checks(draft, &histories, end, report);
+    let elements = element::read_all(draft, made, grid, report);
     let case = Case {
-        title: record.text("title").unwrap_or_default().to_owned(),
-        geometry: record.word("geometry")?,
+        title: draft.title.value().cloned().unwrap_or_default(),
+        geometry: draft.geometry.get()?,
         analysis: domain.analysis?,
         grid: domain.grid?,
         materials: materials?,
@@ -139,7 +140,7 @@ fn read(record: &Record, text: String, report: &mut Report<'_>) -> Option<(Case,
         tractions: loads.tractions,
         point_loads: loads.point_loads,
         strength_reduction: domain.factor,
-        settles: loads.initial.is_some() && load::settles(record),
+        settles: loads.initial.is_some() && load::settles(draft),
         initial: loads.initial,
         stabilisation: stabilisation?,
         solver: solver?,
@@ -159,56 +160,56 @@ fn read(record: &Record, text: String, report: &mut Report<'_>) -> Option<(Case,
 }
 
 /// Checks the rules between the parts of a case, and completes those that depend on others.
-fn check(case: &mut Case, record: &Record, stiffness: f64, report: &mut Report<'_>) {
-    waves::choose_mass(case, record, report);
-    side::of_pressures(case, record, report);
+fn check(case: &mut Case, draft: &Draft, stiffness: f64, report: &mut Report<'_>) {
+    waves::choose_mass(case, draft, report);
+    side::of_pressures(case, draft, report);
     body::warn_of_overlap(case, report);
     gap::check(case, report);
     approach::check(case, report);
-    plausible::check(case, record, report);
-    solver::of_case(case, record, report);
-    physics::walls(case, record, report);
+    plausible::check(case, draft, report);
+    solver::of_case(case, draft, report);
+    physics::walls(case, draft, report);
     solver::warn_of_background(case, report);
-    solid::check(case, record, report);
-    rigid::check(case, record, report);
-    stage::check(case, record, report);
+    solid::check(case, draft, report);
+    rigid::check(case, draft, report);
+    stage::check(case, draft, report);
     load::sudden(case, report);
-    physics::rest(case, record, report);
+    physics::rest(case, draft, report);
     strip::beside_fixed(case, report);
-    section::warn_of_neighbours(case, record, report);
-    let inside_cells = lines::place(case, record, report);
-    solver::fit_weights(case, record, report);
+    section::warn_of_neighbours(case, draft, report);
+    let inside_cells = lines::place(case, draft, report);
+    solver::fit_weights(case, draft, report);
     limit_load::complete(
         case,
-        record,
+        draft,
         limit_load::Preparation {
             stiffness,
             inside_cells,
         },
         report,
     );
-    meeting::check(case, record, report);
-    opening::check(case, record, report);
-    touching::check(case, record, report);
-    material::band::check(case, record, report);
-    physics::check(case, record, report);
-    lasting::check(case, record, report);
-    leaving::check(case, record, report);
-    reduction::at_stage(case, record, report);
-    free_field::check(case, record, report);
-    water::check(case, record, report);
-    ratio::check(case, record, report);
-    flow::check(case, record, report);
-    axisymmetric::check(case, record, report);
-    waves::check(case, record, report);
+    meeting::check(case, draft, report);
+    opening::check(case, draft, report);
+    touching::check(case, draft, report);
+    material::band::check(case, draft, report);
+    physics::check(case, draft, report);
+    lasting::check(case, draft, report);
+    leaving::check(case, draft, report);
+    reduction::at_stage(case, draft, report);
+    free_field::check(case, draft, report);
+    water::check(case, draft, report);
+    ratio::check(case, draft, report);
+    flow::check(case, draft, report);
+    axisymmetric::check(case, draft, report);
+    waves::check(case, draft, report);
 }
 
-fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>) -> Option<Analysis> {
-    let analysis = record.record("analysis")?;
+fn analysis(draft: &Draft, kind: Option<AnalysisType>, report: &mut Report<'_>) -> Option<Analysis> {
+    let analysis = draft.analysis.value()?;
     let kind = kind?;
     let regime = kind.regime();
-    let end = match (analysis.gives("end"), kind) {
-        (true, _) => analysis.number("end")?,
+    let end = match (analysis.end.is_given(), kind) {
+        (true, _) => analysis.end.get()?,
         (false, AnalysisType::QuasiStatic) => {
             report.note(
                 "analysis.end",
@@ -219,20 +220,20 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
         }
         (false, AnalysisType::Dynamic | AnalysisType::InTime | AnalysisType::Consolidation) => {
             let message = format!("E0255: a {kind} analysis needs the time at which it ends. Add `end` to [analysis].");
-            report.error(analysis.origin, &analysis.path_of("end"), message);
+            report.error(analysis.location().origin, analysis.end.path(), message);
             return None;
         }
     };
-    let dt = match analysis.count("steps") {
+    let dt = match analysis.steps.get() {
         Some(steps) => end / steps as f64,
-        None => analysis.number("dt")?,
+        None => analysis.dt.get()?,
     };
     if dt > end {
         let message = format!(
             "E0256: the first step, dt = {dt}, is longer than the whole analysis, end = {end}. Reduce `dt`, or give \
              `steps` in place of `dt`."
         );
-        analysis.error("dt", message, report);
+        analysis.dt.error(message, report);
         return None;
     }
     let growth = growth(analysis, kind, dt, report)?;
@@ -242,7 +243,7 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
              `dt`.",
             end / dt
         );
-        analysis.error("dt", message, report);
+        analysis.dt.error(message, report);
         return None;
     }
     Some(Analysis {
@@ -258,20 +259,24 @@ fn analysis(record: &Record, kind: Option<AnalysisType>, report: &mut Report<'_>
 }
 
 /// By which steps grow, and to which length, if they do; the outer option is `None` after an error.
-fn growth(analysis: &Record, kind: AnalysisType, dt: f64, report: &mut Report<'_>) -> Option<Option<(f64, f64)>> {
-    let mut keys = ["growth", "dt_max"].into_iter().filter(|key| analysis.gives(key));
-    if let Some(key) = keys.next() {
+fn growth(
+    analysis: &AnalysisTable,
+    kind: AnalysisType,
+    dt: f64,
+    report: &mut Report<'_>,
+) -> Option<Option<(f64, f64)>> {
+    let mut keys = [&analysis.growth, &analysis.dt_max].into_iter();
+    if let Some(key) = keys.find(|key| key.is_given()) {
         if kind != AnalysisType::Consolidation {
             let message = format!(
                 "E0258: the time steps of a {kind} analysis cannot become longer during the analysis. Delete this \
                  key, or use type = \"consolidation\"."
             );
-            analysis.error(key, message, report);
+            key.error(message, report);
             return None;
         }
-        if analysis.gives("steps") {
-            analysis.error(
-                key,
+        if analysis.steps.is_given() {
+            key.error(
                 "E0259: `steps` divides the analysis into equal steps, but this key is for steps that become longer. \
                  Delete this key, or give `dt` (the first step) in place of `steps`.",
                 report,
@@ -279,67 +284,56 @@ fn growth(analysis: &Record, kind: AnalysisType, dt: f64, report: &mut Report<'_
             return None;
         }
     }
-    let most = if analysis.gives("dt_max") {
-        analysis.number("dt_max")?
-    } else {
-        f64::INFINITY
-    };
+    let most = analysis.dt_max.if_given()?.unwrap_or(f64::INFINITY);
     if most < dt {
-        analysis.error(
-            "dt_max",
+        analysis.dt_max.error(
             format!("E0260: dt_max = {most} is less than dt = {dt}. Increase dt_max."),
             report,
         );
         return None;
     }
-    let factor = if analysis.gives("growth") {
-        analysis.number("growth")?
-    } else {
-        1.0
-    };
+    let factor = analysis.growth.if_given()?.unwrap_or(1.0);
     Some((factor > 1.0 && most > dt).then_some((factor, most)))
 }
 
 /// Numerical damping, of which only a dynamic analysis can have any.
-fn newmark(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> Option<Newmark> {
-    let Some(key) = ["spectral_radius", "newmark_gamma"]
-        .into_iter()
-        .find(|key| analysis.gives(key))
-    else {
+fn newmark(analysis: &AnalysisTable, regime: Regime, report: &mut Report<'_>) -> Option<Newmark> {
+    let mut keys = [&analysis.spectral_radius, &analysis.newmark_gamma].into_iter();
+    let Some(key) = keys.find(|key| key.is_given()) else {
         return Some(Newmark::default());
     };
     if regime == Regime::QuasiStatic {
-        analysis.error(key, NO_INERTIA, report);
+        key.error(NO_INERTIA, report);
     }
-    if analysis.gives("spectral_radius") {
-        return analysis.number("spectral_radius").map(Newmark::of_spectral_radius);
+    if analysis.spectral_radius.is_given() {
+        return analysis.spectral_radius.get().map(Newmark::of_spectral_radius);
     }
-    analysis.number("newmark_gamma").map(Newmark::of_gamma)
+    analysis.newmark_gamma.get().map(Newmark::of_gamma)
 }
 
 /// The mass matrix, of which only a dynamic analysis has any.
-fn mass(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> MassMatrix {
-    if regime == Regime::QuasiStatic && analysis.gives("mass") {
-        analysis.error("mass", NO_INERTIA, report);
+fn mass(analysis: &AnalysisTable, regime: Regime, report: &mut Report<'_>) -> MassMatrix {
+    if regime == Regime::QuasiStatic && analysis.mass.is_given() {
+        analysis.mass.error(NO_INERTIA, report);
     }
-    analysis.word("mass").unwrap_or_default()
+    analysis.mass.get().unwrap_or_default()
 }
 
 /// The velocities near fixed faces, as given, of which only a dynamic analysis has any; see [`physics::walls`].
-fn wall_velocity(analysis: &Record, regime: Regime, report: &mut Report<'_>) -> WallVelocity {
-    if regime == Regime::QuasiStatic && analysis.gives("wall_velocity") {
-        analysis.error("wall_velocity", NO_INERTIA, report);
+fn wall_velocity(analysis: &AnalysisTable, regime: Regime, report: &mut Report<'_>) -> WallVelocity {
+    if regime == Regime::QuasiStatic && analysis.wall_velocity.is_given() {
+        analysis.wall_velocity.error(NO_INERTIA, report);
     }
-    analysis.word("wall_velocity").unwrap_or_default()
+    analysis.wall_velocity.get().unwrap_or_default()
 }
 
 /// Supports of the grid's faces; none after an error.
-pub(crate) fn boundary(record: &Record) -> Option<[[Support; 2]; 3]> {
-    let boundary = record.record("boundary")?;
+pub(crate) fn boundary(draft: &Draft) -> Option<[[Support; 2]; 3]> {
+    let boundary = draft.boundary.value()?;
     let mut supports = [[Support::Free; 2]; 3];
     for (own, sides) in supports
         .iter_mut()
-        .zip(Side::of(record.word("geometry").unwrap_or(Geometry::PlaneStrain)))
+        .zip(Side::of(draft.geometry.get().unwrap_or(Geometry::PlaneStrain)))
     {
         *own = [support(boundary, sides[0])?, support(boundary, sides[1])?];
     }
@@ -355,12 +349,12 @@ fn support(boundary: &Record, side: Side) -> Option<Support> {
 }
 
 /// What faces in contact do; none after an error.
-fn contacts(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<[[Option<Contact>; 2]; 3]> {
-    let boundary = record.record("boundary")?;
+fn contacts(draft: &Draft, factor: Option<f64>, report: &mut Report<'_>) -> Option<[[Option<Contact>; 2]; 3]> {
+    let boundary = draft.boundary.value()?;
     let mut contacts = [[None; 2]; 3];
     for (own, sides) in contacts
         .iter_mut()
-        .zip(Side::of(record.word("geometry").unwrap_or(Geometry::PlaneStrain)))
+        .zip(Side::of(draft.geometry.get().unwrap_or(Geometry::PlaneStrain)))
     {
         *own = [
             contact(boundary, sides[0], factor, report)?,
@@ -401,14 +395,14 @@ fn law(face: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<Co
     Some(Contact { friction, lifts })
 }
 
-fn gravity(record: &Record, regime: Option<Regime>, end: Option<f64>, report: &mut Report<'_>) -> Option<Gravity> {
-    let table = record.record("gravity")?;
+fn gravity(draft: &Draft, regime: Option<Regime>, end: Option<f64>, report: &mut Report<'_>) -> Option<Gravity> {
+    let table = draft.gravity.value()?;
     let gravity = Gravity {
-        acceleration: table.vector("acceleration")?,
-        ramp: table.number("ramp")?,
+        acceleration: table.acceleration.vector()?,
+        ramp: table.ramp.get()?,
     };
     let Gravity { acceleration, ramp } = gravity;
-    let dims = record.word::<Geometry>("geometry")?.dims();
+    let dims = draft.geometry.get()?.dims();
     let is_pseudo_static =
         regime == Some(Regime::QuasiStatic) && !gravity.is_straight(dims) && acceleration[dims - 1] < 0.0;
     if is_pseudo_static {
@@ -452,9 +446,9 @@ fn gravity(record: &Record, regime: Option<Regime>, end: Option<f64>, report: &m
 }
 
 /// The method of stabilisation; none after an error.
-pub(crate) fn stabilisation(record: &Record) -> Option<Stabilisation> {
-    if !record.gives("stabilisation") {
+pub(crate) fn stabilisation(draft: &Draft) -> Option<Stabilisation> {
+    if !draft.stabilisation.is_given() {
         return Some(Stabilisation::None);
     }
-    record.record("stabilisation")?.word("method")
+    draft.stabilisation.value()?.method.get()
 }

@@ -1,6 +1,7 @@
 //! Finds time-dependent inputs of a case that cause waves.
 
-use crate::record::{ListRow, Record};
+use crate::record::{CaseTable, ListRow, Record};
+use crate::schema::Draft;
 use crate::spectrum::{InputKind, Signal};
 use crate::words::{Side, Support, Word};
 use bsmpm::dynamics::mass::MassMatrix;
@@ -36,30 +37,30 @@ pub(crate) struct WaveInput {
 }
 
 impl WaveInput {
-    /// The input of a record's rows in a run until `end` (s); `None` of what makes no wave.
-    fn of(record: &Record, kind: InputKind, rows: &[ListRow], axis: Option<usize>, end: f64) -> Option<Self> {
+    /// The input of the rows of a table in a run until `end` (s); `None` of what makes no wave.
+    fn of(path: &str, kind: InputKind, rows: &[ListRow], axis: Option<usize>, end: f64) -> Option<Self> {
         let rows = rows.iter().map(|row| (row.numbers[0], row.numbers[1..].to_vec()));
         let rows = rows.collect();
         let frequency = Signal { kind, rows }.frequency(end)?;
-        let name = record.path.clone();
+        let name = path.to_owned();
         Some(Self { name, frequency, axis })
     }
 }
 
 /// The inputs of a case that a record or a table gives, but for those that make no wave.
-pub(crate) fn inputs(root: &Record) -> Vec<WaveInput> {
-    let Some(end) = root.record("analysis").and_then(|analysis| analysis.number("end")) else {
+pub(crate) fn inputs(draft: &Draft) -> Vec<WaveInput> {
+    let Some(end) = draft.analysis.value().and_then(|analysis| analysis.end.get()) else {
         return Vec::new();
     };
     let mut found = Vec::new();
-    if let Some((record, rows)) = root
-        .record("shaking")
-        .and_then(|of| Some((of, of.rows("acceleration")?)))
+    if let Some(shaking) = draft.shaking.value()
+        && let Some(rows) = shaking.acceleration.value()
     {
-        let axis = guided(root, record, columns(rows));
-        found.extend(WaveInput::of(record, InputKind::Acceleration, rows, axis, end));
+        let axis = guided(draft, LoadedPart::Everything, columns(rows));
+        let path = &shaking.location().path;
+        found.extend(WaveInput::of(path, InputKind::Acceleration, rows, axis, end));
     }
-    for (table, record) in LOADED.into_iter().flat_map(|table| listed(root, table)) {
+    for (table, record) in LOADED.into_iter().flat_map(|table| listed(draft, table)) {
         for (key, rows) in FORCES.into_iter().filter_map(|key| Some((key, record.rows(key)?))) {
             let along = if key == "amplitude" {
                 stress(record)
@@ -67,30 +68,35 @@ pub(crate) fn inputs(root: &Record) -> Vec<WaveInput> {
                 columns(rows)
             };
             let axis = if table == "traction" {
-                guided(root, record, pressure(record).or(along))
+                guided(draft, LoadedPart::of(record), pressure(record).or(along))
             } else {
                 None
             };
-            found.extend(WaveInput::of(record, InputKind::Force, rows, axis, end));
+            found.extend(WaveInput::of(&record.path, InputKind::Force, rows, axis, end));
         }
     }
-    let footing = root.record("footing").map(|record| ("footing", record));
-    for (table, record) in listed(root, "prescribed").chain(footing) {
+    let footing = draft.footing.value().map(|record| ("footing", record));
+    for (table, record) in listed(draft, "prescribed").chain(footing) {
         if let Some(rows) = record.rows("path") {
             let axis = if table == "prescribed" {
-                guided(root, record, columns(rows))
+                guided(draft, LoadedPart::of(record), columns(rows))
             } else {
                 None
             };
-            found.extend(WaveInput::of(record, InputKind::Motion, rows, axis, end));
+            found.extend(WaveInput::of(&record.path, InputKind::Motion, rows, axis, end));
         }
     }
     found
 }
 
 /// The tables of a list, each with the list's name.
-fn listed<'a>(root: &'a Record, table: &'static str) -> impl Iterator<Item = (&'static str, &'a Record)> {
-    root.records(table).iter().map(move |record| (table, record))
+fn listed<'a>(draft: &'a Draft, table: &'static str) -> impl Iterator<Item = (&'static str, &'a Record)> {
+    let records = match table {
+        "traction" => &draft.traction,
+        "prescribed" => &draft.prescribed,
+        _ => &draft.point_load,
+    };
+    records.items().iter().map(move |record| (table, record))
 }
 
 /// The only axis along which numbers are not zero.
@@ -126,20 +132,40 @@ fn ends(record: &Record) -> Option<[[f64; 2]; 2]> {
 
 /// The axis along which an input acts if its waves are of compression alone: rollers hold all faces along it, and it
 /// acts on a whole section of the bodies, in whose plane, or everywhere.
-fn guided(root: &Record, record: &Record, along: Option<usize>) -> Option<usize> {
+fn guided(draft: &Draft, part: LoadedPart, along: Option<usize>) -> Option<usize> {
     let axis = along?;
-    let boundary = root.record("boundary")?;
-    let sides = Side::of(root.word("geometry")?).iter().enumerate();
+    let boundary = draft.boundary.value()?;
+    let sides = Side::of(draft.geometry.get()?).iter().enumerate();
     let mut others = sides.filter(|(of, _)| *of != axis).flat_map(|(_, sides)| sides);
     let is_guided = others.all(|side| boundary.word(side.word()) == Some(Support::Roller));
-    let is_whole = record.gives("face") || record.path == "shaking" || axis < 2 && covers(root, record, 1 - axis);
+    let is_whole = match part {
+        LoadedPart::Everything => true,
+        LoadedPart::Segment(ends) => axis < 2 && covers(draft, ends, 1 - axis),
+        LoadedPart::Unknown => false,
+    };
     (is_guided && is_whole).then_some(axis)
 }
 
-/// Whether the segment of a table reaches across all bodies along an axis, in a plane.
-fn covers(root: &Record, record: &Record, across: usize) -> bool {
-    let corners: Option<Vec<[[f64; 2]; 2]>> = root.records("body").iter().map(crate::preset::around).collect();
-    let Some((corners, ends)) = corners.filter(|corners| !corners.is_empty()).zip(ends(record)) else {
+/// What an input acts on.
+enum LoadedPart {
+    Everything, // a face of the grid, or the ground
+    Segment([[f64; 2]; 2]),
+    Unknown,
+}
+
+impl LoadedPart {
+    fn of(record: &Record) -> Self {
+        if record.gives("face") {
+            return Self::Everything;
+        }
+        ends(record).map_or(Self::Unknown, Self::Segment)
+    }
+}
+
+/// Whether a segment reaches across all bodies along an axis, in a plane.
+fn covers(draft: &Draft, ends: [[f64; 2]; 2], across: usize) -> bool {
+    let corners: Option<Vec<[[f64; 2]; 2]>> = draft.body.items().iter().map(crate::preset::around).collect();
+    let Some(corners) = corners.filter(|corners| !corners.is_empty()) else {
         return false;
     };
     let bounds = polygon::bounds(&corners.concat());

@@ -5,6 +5,7 @@ use super::solid::surface_points;
 use super::{MirrorPlane, OpeningGeometry, Surroundings};
 use crate::case::{Case, RigidShape};
 use crate::record::Record;
+use crate::schema::Draft;
 use crate::words::Support;
 
 /// Parts of the grid's size by which a body may miss a face that it reaches.
@@ -55,11 +56,11 @@ pub(crate) struct BodyOpening {
 }
 
 /// Those of the bodies of a plane.
-pub(crate) fn in_plane(root: &Record, faces: &GridFaces) -> Vec<BodyOpening> {
-    let bodies: Vec<Option<PlaneBody>> = root.records("body").iter().map(PlaneBody::of).collect();
-    let rigid: Vec<PlaneShape> = root.records("rigid").iter().filter_map(PlaneShape::of).collect();
+pub(crate) fn in_plane(draft: &Draft, faces: &GridFaces) -> Vec<BodyOpening> {
+    let bodies: Vec<Option<PlaneBody>> = draft.body.items().iter().map(PlaneBody::of).collect();
+    let rigid: Vec<PlaneShape> = draft.rigid.items().iter().filter_map(PlaneShape::of).collect();
     let mut found: Vec<BodyOpening> = Vec::new();
-    for there in phases(root) {
+    for there in phases(draft) {
         for (number, body) in bodies.iter().enumerate().filter(|(number, _)| there[*number]) {
             let Some(body) = body else { continue };
             let bounds = body.bounds().map(|[x, y]| [x, y, 0.0]);
@@ -89,16 +90,17 @@ pub(crate) fn in_plane(root: &Record, faces: &GridFaces) -> Vec<BodyOpening> {
 }
 
 /// Those of the bodies of a case in space: of what is cut out of them.
-pub(crate) fn in_space(case: &Case, root: &Record, faces: &GridFaces) -> Vec<BodyOpening> {
+pub(crate) fn in_space(case: &Case, draft: &Draft, faces: &GridFaces) -> Vec<BodyOpening> {
     let boxes: Vec<[[f64; 3]; 2]> = case
         .rigid
         .iter()
         .filter_map(|rigid| solid_corners(&rigid.shape))
         .collect();
     let mut found: Vec<BodyOpening> = Vec::new();
-    for there in phases(root) {
-        for (number, record) in root
-            .records("body")
+    for there in phases(draft) {
+        for (number, record) in draft
+            .body
+            .items()
             .iter()
             .enumerate()
             .filter(|(number, _)| there[*number])
@@ -150,10 +152,10 @@ fn is_in([lower, upper]: &[[f64; 3]; 2], at: [f64; 3]) -> bool {
 }
 
 /// Which bodies are there at the start and after each stage, each state once.
-pub(crate) fn phases(root: &Record) -> Vec<Vec<bool>> {
-    let bodies = root.records("body");
+pub(crate) fn phases(draft: &Draft) -> Vec<Vec<bool>> {
+    let bodies = draft.body.items();
     let time = |stage: &Record| stage.number("at").unwrap_or(0.0);
-    let mut stages: Vec<&Record> = root.records("stage").iter().collect();
+    let mut stages: Vec<&Record> = draft.stage.items().iter().collect();
     stages.sort_by(|a, b| time(a).total_cmp(&time(b)));
     let mut there: Vec<bool> = bodies
         .iter()

@@ -47,7 +47,7 @@ impl Cells {
 
     /// m  the shorter side of the first body across which there are fewer than so many cells, and the edge of these
     pub(super) fn too_thin(&self, scene: &PresetScene<'_>, fewest: f64) -> Option<(f64, f64)> {
-        let bodies = scene.root.records("body").iter().filter_map(around);
+        let bodies = scene.draft.body.items().iter().filter_map(around);
         let sides = bodies.map(|[lower, upper]| {
             let [x, y] = [0, 1].map(|axis| upper[axis] - lower[axis]);
             let axis = usize::from(y < x);
@@ -165,10 +165,11 @@ impl PresetScene<'_> {
 
     /// Whether both faces across an axis stay where they are.
     fn stays(&self, axis: usize) -> Option<bool> {
-        let boundary = self.root.record("boundary")?;
+        let boundary = self.draft.boundary.value()?;
         let moved: Vec<Side> = self
-            .root
-            .records("prescribed")
+            .draft
+            .prescribed
+            .items()
             .iter()
             .filter_map(|motion| motion.word("face"))
             .collect();
@@ -329,7 +330,7 @@ impl PresetScene<'_> {
     fn width(&self, segment: &GradedSegment<'_>, ends: [[f64; 2]; 2]) -> (f64, bool) {
         let [from, to] = segment.ends;
         let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-        let boundary = self.root.record("boundary");
+        let boundary = self.draft.boundary.value();
         let cut = segment.along().is_some_and(|axis| {
             let [lower, upper] = [0, 1].map(|side| {
                 let support = boundary.and_then(|boundary| boundary.word(Side::ALL[axis][side].word()));
@@ -342,9 +343,9 @@ impl PresetScene<'_> {
 
     /// m  lower and upper end of the grid per axis
     pub(super) fn ends(&self) -> Option<[[f64; 2]; 2]> {
-        let grid = self.root.record("grid")?;
-        let lower = grid.pair("lower")?;
-        let upper = grid.pair("upper")?;
+        let grid = self.draft.grid.value()?;
+        let lower = grid.lower.vector()?;
+        let upper = grid.upper.vector()?;
         Some([0, 1].map(|axis| [lower[axis], upper[axis]]))
     }
 

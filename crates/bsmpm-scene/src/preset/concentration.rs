@@ -29,7 +29,7 @@ impl PresetScene<'_> {
     pub(super) fn openings(&self) -> Vec<PresetOpening> {
         let Some(faces) = self.faces() else { return Vec::new() };
         let mut found = Vec::new();
-        for openings::BodyOpening { body, cut, opening } in openings::in_plane(self.root, &faces) {
+        for openings::BodyOpening { body, cut, opening } in openings::in_plane(self.draft, &faces) {
             found.push(PresetOpening {
                 name: match cut {
                     Some(cut) => format!("body.{body}.subtract.{cut}"),
@@ -45,11 +45,11 @@ impl PresetScene<'_> {
     /// m  Steep re-entrant corners of the material at the start and after every stage; none if there are too many.
     pub(super) fn re_entrant_corners(&self) -> Vec<[f64; 2]> {
         let Some(faces) = self.faces() else { return Vec::new() };
-        let bodies: Vec<Option<PlaneBody>> = self.root.records("body").iter().map(PlaneBody::of).collect();
+        let bodies: Vec<Option<PlaneBody>> = self.draft.body.items().iter().map(PlaneBody::of).collect();
         // What a rigid body touches is no free corner.
-        let rigid: Vec<PlaneShape> = self.root.records("rigid").iter().filter_map(PlaneShape::of).collect();
+        let rigid: Vec<PlaneShape> = self.draft.rigid.items().iter().filter_map(PlaneShape::of).collect();
         let mut found: Vec<[f64; 2]> = Vec::new();
-        for there in openings::phases(self.root) {
+        for there in openings::phases(self.draft) {
             let there: Vec<&PlaneBody> = bodies
                 .iter()
                 .zip(&there)
@@ -83,7 +83,7 @@ impl PresetScene<'_> {
         let corners = [0, 1].map(|side| [x[side], y[side], 0.0]);
         Some(GridFaces {
             corners,
-            supports: validate::boundary(self.root)?,
+            supports: validate::boundary(self.draft)?,
             dims: 2,
         })
     }

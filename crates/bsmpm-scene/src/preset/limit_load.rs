@@ -4,9 +4,8 @@ use super::scene::PresetScene;
 use super::{Choice, Completion, ORDER, Preset, quoted};
 use crate::document::{DocumentTable, Value};
 use crate::error::Origin;
-use crate::record;
 use crate::report::Report;
-use crate::schema::ROOT;
+use crate::schema::Draft;
 use crate::source::Source;
 use crate::words::{Accuracy, Purpose, Word};
 use bsmpm::stabilisation::Stabilisation;
@@ -26,7 +25,6 @@ const BACKGROUND: &str = "2e-5";
 /// Fills in what the purpose stands for, if the case has one; whether anything was.
 pub(super) fn fill(
     document: &mut DocumentTable,
-    accuracy: Option<Accuracy>,
     source: &Source<'_>,
     overrides: &[String],
     report: &mut Report<'_>,
@@ -35,8 +33,8 @@ pub(super) fn fill(
         return false;
     };
     // Its errors are reported when the filled document is read.
-    let record = record::read(&ROOT, document, &mut Report::new(source, overrides));
-    let scene = PresetScene::of(&record);
+    let draft = Draft::read(document, &mut Report::new(source, overrides));
+    let scene = PresetScene::of(&draft);
     let choice = Choice {
         key: KEY,
         word: purpose.word(),
@@ -67,7 +65,7 @@ pub(super) fn fill(
         ),
     };
     filling.put("stabilisation", &["method"], &quoted(method), why);
-    let [energy, force] = match accuracy {
+    let [energy, force] = match draft.accuracy.get() {
         Some(Accuracy::Reference) => Preset::of(Accuracy::Reference).tolerances,
         _ => TOLERANCES,
     };

@@ -4,8 +4,8 @@
 use super::Preset;
 use super::rigid::{self, RigidExtent};
 use crate::constants::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
-use crate::record::Record;
-use crate::schema::LawName;
+use crate::record::{Field, Record};
+use crate::schema::{Draft, LawName};
 use crate::words::{AnalysisType, Purpose};
 use bsmpm_shapes::polygon;
 
@@ -39,7 +39,7 @@ const STRIP_ADVANCE: f64 = 0.1;
 
 /// A case as far as it is written.
 pub(super) struct PresetScene<'a> {
-    pub root: &'a Record,
+    pub draft: &'a Draft,
 }
 
 /// A strip, a loaded segment or a rigid body.
@@ -79,18 +79,18 @@ impl GradedSegment<'_> {
 }
 
 impl<'a> PresetScene<'a> {
-    pub(super) fn of(root: &'a Record) -> Self {
-        Self { root }
+    pub(super) fn of(draft: &'a Draft) -> Self {
+        Self { draft }
     }
 
     /// Number of steps for cells whose shorter edge is `chosen` (m), unless the case gives its own, and why.
     pub(super) fn steps(&self, preset: &Preset, chosen: Option<f64>) -> Option<(u64, String)> {
-        let analysis = self.root.record("analysis")?;
+        let analysis = self.draft.analysis.value()?;
         let cell = self.shortest().or(chosen)?;
-        let (steps, why) = match analysis.word("type")? {
+        let (steps, why) = match analysis.r#type.get()? {
             AnalysisType::Dynamic => {
                 let crossed = preset.crossed;
-                let way = analysis.number("end")? * self.shear_wave()?;
+                let way = analysis.end.get()? * self.shear_wave()?;
                 (
                     way / (crossed * cell),
                     format!("a shear wave travels {crossed} cells in a step"),
@@ -153,43 +153,37 @@ impl<'a> PresetScene<'a> {
     }
 
     pub(super) fn is_consolidation(&self) -> bool {
-        self.root.record("analysis").and_then(|analysis| analysis.word("type")) == Some(AnalysisType::Consolidation)
+        self.draft.analysis.value().and_then(|analysis| analysis.r#type.get()) == Some(AnalysisType::Consolidation)
     }
 
     /// Whether displacements are divided until they are small against cells.
     pub(super) fn seeks_limit_load(&self) -> bool {
-        self.root
-            .record("analysis")
-            .and_then(|analysis| analysis.word("purpose"))
-            == Some(Purpose::LimitLoad)
+        self.draft.analysis.value().and_then(|analysis| analysis.purpose.get()) == Some(Purpose::LimitLoad)
     }
 
     /// m  corners of the rectangle around all bodies, whatever is cut out of them
     pub(super) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
-        let corners: Option<Vec<[[f64; 2]; 2]>> = self.root.records("body").iter().map(around).collect();
+        let corners: Option<Vec<[[f64; 2]; 2]>> = self.draft.body.items().iter().map(around).collect();
         let corners = corners?.concat();
         (!corners.is_empty()).then(|| polygon::bounds(&corners))
     }
 
     /// Strips, loaded segments, and rigid bodies that are not free.
     pub(super) fn segments(&self) -> impl Iterator<Item = GradedSegment<'a>> + '_ {
-        let root = self.root;
-        let listed = ["prescribed", "traction"].into_iter().flat_map(move |table| {
-            let records = root.records(table).iter().enumerate();
-            records.map(move |(number, record)| (format!("{table}.{number}"), record))
-        });
-        let footing = root.record("footing").map(|record| ("footing".to_owned(), record));
-        let strips = footing.into_iter().chain(listed).filter_map(|(name, record)| {
+        let draft = self.draft;
+        let listed = draft.prescribed.items().iter().chain(draft.traction.items());
+        let strips = draft.footing.value().into_iter().chain(listed).filter_map(|record| {
             Some(GradedSegment {
-                name,
+                name: record.path.clone(),
                 record,
                 ends: [record.pair("from")?, record.pair("to")?],
                 rigid: None,
             })
         });
-        let bodies: Vec<[[f64; 2]; 2]> = root.records("body").iter().filter_map(around).collect();
-        let rigid = root
-            .records("rigid")
+        let bodies: Vec<[[f64; 2]; 2]> = draft.body.items().iter().filter_map(around).collect();
+        let rigid = draft
+            .rigid
+            .items()
             .iter()
             .enumerate()
             .filter(|(_, record)| !record.gives("free"));
@@ -207,12 +201,12 @@ impl<'a> PresetScene<'a> {
 
     /// m  shortest edge of the cells that the case gives, if it does
     pub(super) fn shortest(&self) -> Option<f64> {
-        let grid = self.root.record("grid")?;
-        if let Some(cell) = grid.numbers("cell") {
+        let grid = self.draft.grid.value()?;
+        if let Some(cell) = grid.cell.value() {
             return cell.iter().copied().reduce(f64::min);
         }
-        let knots = grid.record("knots")?;
-        let axes = ["x", "y"].into_iter().filter_map(|axis| knots.numbers(axis));
+        let knots = grid.knots.value()?;
+        let axes = [&knots.x, &knots.y].into_iter().filter_map(Field::value);
         axes.flat_map(|axis| axis.windows(2).map(|pair| pair[1] - pair[0]))
             .reduce(f64::min)
             .filter(|edge| *edge > 0.0)
@@ -225,11 +219,12 @@ impl<'a> PresetScene<'a> {
         let of_strips = STRIP_ADVANCE;
         let of_faces = preset.advance;
         let moved = self
-            .root
-            .record("footing")
+            .draft
+            .footing
+            .value()
             .into_iter()
-            .chain(self.root.records("prescribed"));
-        moved.chain(self.root.records("rigid")).map(move |record| {
+            .chain(self.draft.prescribed.items());
+        moved.chain(self.draft.rigid.items()).map(move |record| {
             let path = path_speed(record, end) * end;
             let steady = record.pair("velocity").map_or(0.0, norm) * end;
             let way = path + steady + record.pair("displacement").map_or(0.0, norm) + turned(record, end);
@@ -272,17 +267,14 @@ impl<'a> PresetScene<'a> {
 
     /// s  the shortest time between two rows of the ground's acceleration or of a load
     fn interval(&self) -> Option<f64> {
-        let loads = self
-            .root
-            .records("traction")
-            .iter()
-            .chain(self.root.records("point_load"));
+        let loads = self.draft.traction.items().iter().chain(self.draft.point_load.items());
         let keys = ["amplitude", "stress_path", "pressure_path", "force_path"];
         let amplitudes = loads.flat_map(|load| keys.into_iter().filter_map(|key| load.rows(key)));
         let shaking = self
-            .root
-            .record("shaking")
-            .and_then(|shaking| shaking.rows("acceleration"));
+            .draft
+            .shaking
+            .value()
+            .and_then(|shaking| shaking.acceleration.value().map(Vec::as_slice));
         let pairs = amplitudes.chain(shaking).flat_map(|rows| rows.windows(2));
         let intervals = pairs.map(|pair| pair[1].numbers[0] - pair[0].numbers[0]);
         intervals.filter(|interval| *interval > 0.0).reduce(f64::min)
@@ -290,22 +282,24 @@ impl<'a> PresetScene<'a> {
 
     /// m  ends of the straight sides of all bodies
     pub(super) fn sides(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
-        self.root.records("body").iter().flat_map(sides)
+        self.draft.body.items().iter().flat_map(sides)
     }
 
     /// s  the end, or what it is of pseudo-time
     fn end(&self) -> f64 {
-        self.root
-            .record("analysis")
-            .and_then(|analysis| analysis.number("end"))
+        self.draft
+            .analysis
+            .value()
+            .and_then(|analysis| analysis.end.get())
             .unwrap_or(1.0)
     }
 
     /// Materials that bodies are made of.
     pub(super) fn materials(&self) -> impl Iterator<Item = &Record> {
-        let bodies = self.root.records("body");
-        self.root
-            .named("material")
+        let bodies = self.draft.body.items();
+        self.draft
+            .material
+            .items()
             .iter()
             .filter(move |(name, _)| bodies.iter().any(|body| body.text("material") == Some(name.as_str())))
             .map(|(_, material)| material)

@@ -14,17 +14,18 @@ impl PresetScene<'_> {
     /// m  cells smaller than `size` (m) that the waves of an input need for 2 % of error in their speed, and why;
     /// `None` where no waves need any.
     pub(super) fn wave_cell(&self, size: f64) -> Option<(f64, String)> {
-        if self.root.record("analysis")?.word("type") != Some(AnalysisType::Dynamic) {
+        if self.draft.analysis.value()?.r#type.get() != Some(AnalysisType::Dynamic) {
             return None;
         }
         let order = super::ORDER;
         let order = self
-            .root
-            .record("grid")
-            .and_then(|grid| grid.word("degree"))
+            .draft
+            .grid
+            .value()
+            .and_then(|grid| grid.degree.get())
             .unwrap_or(order);
         let fewest = fewest_cells(self.mass(), order.degree());
-        let inputs = inputs(self.root);
+        let inputs = inputs(self.draft);
         let cells = inputs
             .iter()
             .filter_map(|input| Some((input, self.slowest(input)? / (input.frequency * fewest))));
@@ -51,11 +52,11 @@ impl PresetScene<'_> {
 
     /// The mass matrix that the case gives or that is chosen for it.
     fn mass(&self) -> MassMatrix {
-        if let Some(given) = self.root.record("analysis").and_then(|analysis| analysis.word("mass")) {
+        if let Some(given) = self.draft.analysis.value().and_then(|analysis| analysis.mass.get()) {
             return given;
         }
         let mut laws = self.materials().map(|material| material.word("model"));
-        let waves = self.root.record("shaking").is_some() || laws.all(|law| law == Some(LawName::Hencky));
+        let waves = self.draft.shaking.value().is_some() || laws.all(|law| law == Some(LawName::Hencky));
         if waves && !self.touches() {
             MassMatrix::Consistent
         } else {
@@ -65,18 +66,19 @@ impl PresetScene<'_> {
 
     /// Whether a face of the grid, a strip or a rigid body is in contact with material.
     fn touches(&self) -> bool {
-        let mut boundaries = self.root.record("boundary").into_iter();
+        let mut boundaries = self.draft.boundary.value().into_iter();
         let strips = self
-            .root
-            .record("footing")
+            .draft
+            .footing
+            .value()
             .into_iter()
-            .chain(self.root.records("prescribed"));
+            .chain(self.draft.prescribed.items());
         let has_contact = boundaries.any(|boundary| {
             let mut keys = Side::ALL.as_flattened().iter().map(|side| side.word());
             keys.any(|key| boundary.record(key).is_some() || boundary.word(key) == Some(Support::Contact))
         });
         has_contact
-            || !self.root.records("rigid").is_empty()
+            || !self.draft.rigid.items().is_empty()
             || strips.into_iter().any(|strip| {
                 ["interface", "components"]
                     .into_iter()

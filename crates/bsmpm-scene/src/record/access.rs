@@ -76,15 +76,6 @@ impl Record {
         }
     }
 
-    pub(crate) fn named(&self, key: &str) -> &[(String, Record)] {
-        let named = self.datum(key, |kind| matches!(kind, Kind::Named(_)));
-        if let Some(Datum::Named(named)) = named {
-            named
-        } else {
-            &[]
-        }
-    }
-
     /// All tables of a key that may stand several times, or once.
     pub(crate) fn records(&self, key: &str) -> &[Record] {
         match self.datum(key, |kind| matches!(kind, Kind::Tables(_) | Kind::Table(_))) {

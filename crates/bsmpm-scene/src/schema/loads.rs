@@ -223,21 +223,17 @@ pub(super) static TRACTION: Table = Table {
     ],
 };
 
-pub(super) static SHAKING: Table = Table {
-    header: "[shaking]",
-    doc: "Acceleration of the ground in a dynamic analysis. The frame of reference moves with the ground: supports are \
-          at rest, and displacements and velocities are relative to the ground.",
-    keys: &[key(
-        "acceleration",
-        Course(In::Acceleration),
-        Required,
-        "Rows [t, ax, ay], in 3-D [t, ax, ay, az], with increasing t. The acceleration is linear between the rows, and \
-         zero after the last row. It is zero at t = 0, unless a row gives another value.",
-    )
-    .symbol("a")
-    .example("[[0.0, 0.0, 0.0], [0.5, 2.0, 0.0], [1.0, 0.0, 0.0]]")],
-    exclusive: &[],
-};
+table! {
+    /// Acceleration of the ground in a dynamic analysis. The frame of reference moves with the ground: supports are
+    /// at rest, and displacements and velocities are relative to the ground.
+    struct ShakingTable = "[shaking]" {
+        /// Rows [t, ax, ay], in 3-D [t, ax, ay, az], with increasing t. The acceleration is linear between the rows,
+        /// and zero after the last row. It is zero at t = 0, unless a row gives another value.
+        acceleration: Course(In::Acceleration), Required,
+            symbol("a"),
+            example("[[0.0, 0.0, 0.0], [0.5, 2.0, 0.0], [1.0, 0.0, 0.0]]");
+    }
+}
 
 pub(super) static POINT_LOAD: Table = Table {
     header: "[[point_load]]",
@@ -278,100 +274,47 @@ pub(super) static POINT_LOAD: Table = Table {
     ],
 };
 
-pub(super) static REDUCTION: Table = Table {
-    header: "[strength_reduction]",
-    doc: "Division of the strength of all materials by a factor F. The cohesion becomes c/F, the friction angle \
-          atan(tan(φ)/F), and the dilation angle is limited to this friction angle.",
-    keys: &[
-        key(
-            "factor",
-            Quantity(In::Number, FACTOR),
-            Required,
-            "Factor by which the strength is divided.",
-        )
-        .symbol("F")
-        .example("1.3"),
-        key(
-            "elastic",
-            Flag,
-            Default("false"),
-            "With true, all materials are elastic and cannot yield.",
-        ),
-        key(
-            "stiffness",
-            Quantity(In::Number, Range::POSITIVE),
-            Default("1.0"),
-            "Factor that multiplies Young's modulus of all materials.",
-        )
-        .example("10.0"),
-        key(
-            "unloaded",
-            Flag,
-            Default("false"),
-            "With true, the run starts without stress and ignores [initial]. Loads without a ramp then grow over the \
-             whole run.",
-        ),
-        key(
-            "stage",
-            Text(64),
-            Optional,
-            "Name of a stage. The strength is reduced at the end of this stage, from the state that is reached there. \
-             \"start\" is the state before the first stage, \"end\" the state at the end of the run. Later stages do \
-             not begin. With unloaded = true, the bodies and loads of that time act from the start. Pore water does \
-             not flow during the reduction; see `drainage`.",
-        )
-        .example(r#""end""#),
-        key(
-            "drainage",
-            Choice(Failure::WORDS),
-            Optional,
-            "Behaviour of the pore water during the reduction, if a material has pore-water flow. Default: \
-             \"drained\", or \"undrained\" if no soil is permeable.",
-        )
-        .example(r#""drained""#),
-        key(
-            "steps",
-            Count(0, 1000),
-            Default("10"),
-            "Number of steps of the nominal size in which the strength is reduced after the end of the stage. With 0 \
-             the run ends there, with full strength.",
-        )
-        .example("10"),
-    ],
-    exclusive: &[],
-};
+table! {
+    /// Division of the strength of all materials by a factor F. The cohesion becomes c/F, the friction angle
+    /// atan(tan(φ)/F), and the dilation angle is limited to this friction angle.
+    struct ReductionTable = "[strength_reduction]" {
+        /// Factor by which the strength is divided.
+        factor: Quantity(In::Number, FACTOR), Required, symbol("F"), example("1.3");
+        /// With true, all materials are elastic and cannot yield.
+        elastic: Flag, Default("false");
+        /// Factor that multiplies Young's modulus of all materials.
+        stiffness: Quantity(In::Number, Range::POSITIVE), Default("1.0"), example("10.0");
+        /// With true, the run starts without stress and ignores [initial]. Loads without a ramp then grow over the
+        /// whole run.
+        unloaded: Flag, Default("false");
+        /// Name of a stage. The strength is reduced at the end of this stage, from the state that is reached there.
+        /// "start" is the state before the first stage, "end" the state at the end of the run. Later stages do not
+        /// begin. With unloaded = true, the bodies and loads of that time act from the start. Pore water does not
+        /// flow during the reduction; see `drainage`.
+        stage: Text(64), Optional, example(r#""end""#);
+        /// Behaviour of the pore water during the reduction, if a material has pore-water flow. Default: "drained",
+        /// or "undrained" if no soil is permeable.
+        drainage: Choice(Failure), Optional, example(r#""drained""#);
+        /// Number of steps of the nominal size in which the strength is reduced after the end of the stage. With 0
+        /// the run ends there, with full strength.
+        steps: Count(0, 1000), Default("10"), example("10");
+    }
+}
 
-pub(super) static INITIAL: Table = Table {
-    header: "[initial]",
-    doc: "Initial stress under full gravity. Displacements are measured from this state.",
-    keys: &[
-        key(
-            "k0",
-            Quantity(In::Number, COEFFICIENT),
-            Optional,
-            "K0 procedure: the vertical stress is the weight of the material above, and the horizontal stress is k0 \
-             times the vertical one. A `k0` of a material takes precedence.",
-        )
-        .symbol("K0")
-        .example("0.5"),
-        key(
-            "gravity",
-            Choice(Start::WORDS),
-            Optional,
-            "Alternative to `k0`: stress of an elastic equilibrium under the loads at time 0.",
-        )
-        .example(r#""elastic""#),
-        key(
-            "equilibrium",
-            Choice(Settled::WORDS),
-            Optional,
-            "With this key the initial stress is brought into equilibrium with the loads at time 0, before the first \
-             step. Without this key the stress is not changed.",
-        )
-        .example(r#""plastic""#),
-    ],
-    exclusive: &[one_of(&["k0", "gravity"], false)],
-};
+table! {
+    /// Initial stress under full gravity. Displacements are measured from this state.
+    struct InitialTable = "[initial]" {
+        /// K0 procedure: the vertical stress is the weight of the material above, and the horizontal stress is k0
+        /// times the vertical one. A `k0` of a material takes precedence.
+        k0: Quantity(In::Number, COEFFICIENT), Optional, symbol("K0"), example("0.5");
+        /// Alternative to `k0`: stress of an elastic equilibrium under the loads at time 0.
+        gravity: Choice(Start), Optional, example(r#""elastic""#);
+        /// With this key the initial stress is brought into equilibrium with the loads at time 0, before the first
+        /// step. Without this key the stress is not changed.
+        equilibrium: Choice(Settled), Optional, example(r#""plastic""#);
+    }
+    one_of optional [k0, gravity];
+}
 
 pub(super) static STRESS_PROFILE: Table = Table {
     header: "{ value, at_y, per_metre } of a stress",

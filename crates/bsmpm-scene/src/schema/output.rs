@@ -7,104 +7,43 @@ use crate::observables::{FrameField, Observable, ProfileQuantity};
 use crate::words::{Format, LimitedIndicator, Side, Word};
 use std::ops::Bound::{Excluded, Included};
 
-pub(super) static OUTPUT: Table = Table {
-    header: "[output]",
-    doc: "Frames for ParaView, residuals of the iterations, and restart files.",
-    keys: &[
-        key(
-            "every",
-            Quantity(In::Time, Range::POSITIVE),
-            Optional,
-            "Time between two frames. A step ends at each frame.",
-        )
-        .example(r#""0.1 s""#),
-        key(
-            "every_steps",
-            Count(1, 1_000_000_000),
-            Optional,
-            "Alternative to `every`: number of accepted steps between two frames.",
-        )
-        .example("10"),
-        key(
-            "times",
-            List(In::Time, Range::POSITIVE),
-            Optional,
-            "Additional times of frames. A step ends at each of these times.",
-        )
-        .example("[0.25, 0.5]"),
-        key(
-            "format",
-            Choice(Format::WORDS),
-            Default("\"vtu\""),
-            "Format of the frames.",
-        )
-        .example(r#""vtu""#),
-        key(
-            "residuals",
-            Flag,
-            Default("false"),
-            "With true, the run writes residuals.csv with a row for every iteration.",
-        ),
-        key(
-            "projected_pressure",
-            Flag,
-            Default("false"),
-            "With true, frames also contain the pressure projected onto B-splines of the next lower degree.",
-        ),
-        key(
-            "fields",
-            Choices(FrameField::WORDS),
-            Optional,
-            "Additional fields in the frames.",
-        )
-        .example(r#"["q", "yielding"]"#),
-        key(
-            "accept",
-            Choices(LimitedIndicator::WORDS),
-            Optional,
-            "Indicators that may exceed their limits. If any other indicator exceeds its limit, the run ends with \
-             exit code 82.",
-        )
-        .example(r#"["background-work"]"#),
-        key(
-            "checkpoint",
-            Kind::Table(&CHECKPOINT),
-            Optional,
-            "Times at which the run writes restart files. A run that stops early always writes one.",
-        )
-        .example(r#"{ wall = "10 min", keep = 3 }"#),
-    ],
-    exclusive: &[one_of(&["every", "every_steps"], false)],
-};
+table! {
+    /// Frames for ParaView, residuals of the iterations, and restart files.
+    struct OutputTable = "[output]" {
+        /// Time between two frames. A step ends at each frame.
+        every: Quantity(In::Time, Range::POSITIVE), Optional, example(r#""0.1 s""#);
+        /// Alternative to `every`: number of accepted steps between two frames.
+        every_steps: Count(1, 1_000_000_000), Optional, example("10");
+        /// Additional times of frames. A step ends at each of these times.
+        times: List(In::Time, Range::POSITIVE), Optional, example("[0.25, 0.5]");
+        /// Format of the frames.
+        format: Choice(Format), Default("\"vtu\""), example(r#""vtu""#);
+        /// With true, the run writes residuals.csv with a row for every iteration.
+        residuals: Flag, Default("false");
+        /// With true, frames also contain the pressure projected onto B-splines of the next lower degree.
+        projected_pressure: Flag, Default("false");
+        /// Additional fields in the frames.
+        fields: Choices(FrameField), Optional, example(r#"["q", "yielding"]"#);
+        /// Indicators that may exceed their limits. If any other indicator exceeds its limit, the run ends with exit
+        /// code 82.
+        accept: Choices(LimitedIndicator), Optional, example(r#"["background-work"]"#);
+        /// Times at which the run writes restart files. A run that stops early always writes one.
+        checkpoint: Table(CheckpointTable), Optional, example(r#"{ wall = "10 min", keep = 3 }"#);
+    }
+    one_of optional [every, every_steps];
+}
 
-static CHECKPOINT: Table = Table {
-    header: "checkpoint = { wall, every_steps, keep }",
-    doc: "Restart files. A case with this table also writes a restart file at the end of the run.",
-    keys: &[
-        key(
-            "wall",
-            Quantity(In::Duration, Range::POSITIVE),
-            Default("\"15 min\""),
-            "Wall-clock time between two restart files. The default also applies without this table.",
-        )
-        .example(r#""15 min""#),
-        key(
-            "every_steps",
-            Count(1, 1_000_000_000),
-            Optional,
-            "Number of accepted steps between two restart files. `wall` remains active.",
-        )
-        .example("100"),
-        key(
-            "keep",
-            Count(1, 1000),
-            Default("2"),
-            "Number of restart files that are kept. Older restart files are deleted.",
-        )
-        .example("2"),
-    ],
-    exclusive: &[],
-};
+table! {
+    /// Restart files. A case with this table also writes a restart file at the end of the run.
+    struct CheckpointTable = "checkpoint = { wall, every_steps, keep }" {
+        /// Wall-clock time between two restart files. The default also applies without this table.
+        wall: Quantity(In::Duration, Range::POSITIVE), Default("\"15 min\""), example(r#""15 min""#);
+        /// Number of accepted steps between two restart files. `wall` remains active.
+        every_steps: Count(1, 1_000_000_000), Optional, example("100");
+        /// Number of restart files that are kept. Older restart files are deleted.
+        keep: Count(1, 1000), Default("2"), example("2");
+    }
+}
 
 pub(super) static HISTORY: Table = Table {
     header: "[[history]]",

@@ -2,8 +2,9 @@
 
 use crate::case::{Case, DrainSite, Face, Geometry, LoadedLine, Support};
 use crate::observables::{Aspect, HistorySubject};
-use crate::record::Record;
+use crate::record::{KeyPlace, Record};
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::words::{Side, Word};
 
 /// The face at the axis.
@@ -13,15 +14,15 @@ const SIDEWAYS: &str = "E0242: in an axisymmetric case x is the radius, so this 
 const ROTATION: &str = "E0242: in an axisymmetric case a body cannot rotate in the plane. Delete this key.";
 
 /// Errors of a case that is valid in its parts.
-pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
+pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     if case.geometry != Geometry::Axisymmetric {
         return;
     }
-    axis(case, record, report);
-    water_on_axis(case, record, report);
-    sideways(case, record, report);
-    rigid(case, record, report);
-    quantities(case, record, report);
+    axis(case, draft, report);
+    water_on_axis(case, draft, report);
+    sideways(case, draft, report);
+    rigid(case, draft, report);
+    quantities(case, draft, report);
     cubic(case, report);
 }
 
@@ -37,18 +38,21 @@ fn cubic(case: &Case, report: &mut Report<'_>) {
 }
 
 /// The grid begins at r = 0, where no displacement leads away from the axis.
-fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
-    if let Some(grid) = record.record("grid")
+fn axis(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    if let Some(grid) = draft.grid.value()
         && case.grid.lower()[0] != 0.0
     {
-        let key = if grid.gives("knots") { "knots" } else { "lower" };
+        let key: &KeyPlace = if grid.knots.is_given() {
+            &grid.knots
+        } else {
+            &grid.lower
+        };
         let message = "E0238: the grid of an axisymmetric case must begin at x = 0, because x is the radius. Set the \
              lower end of the grid along x to 0. The body may begin at x > 0.";
-        grid.error(key, message, report);
+        key.error(message, report);
     }
-    let tables = std::iter::once(record)
-        .chain(record.records("stage"))
-        .filter_map(|table| table.record("boundary"));
+    let of_stages = draft.stage.items().iter().filter_map(|stage| stage.record("boundary"));
+    let tables = draft.boundary.value().into_iter().chain(of_stages);
     for boundary in tables {
         for side in Side::ALL.into_iter().flatten() {
             let found = super::support(boundary, side);
@@ -71,12 +75,8 @@ fn axis(case: &Case, record: &Record, report: &mut Report<'_>) {
 }
 
 /// Drains and inflows, none of which lies on the axis alone.
-fn water_on_axis(case: &Case, record: &Record, report: &mut Report<'_>) {
-    let drains = case
-        .flow
-        .iter()
-        .flat_map(|flow| &flow.drains)
-        .zip(record.records("drain"));
+fn water_on_axis(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    let drains = case.flow.iter().flat_map(|flow| &flow.drains).zip(draft.drain.items());
     for (drain, record) in drains {
         match &drain.site {
             DrainSite::Face(AXIS) => {
@@ -96,7 +96,7 @@ fn water_on_axis(case: &Case, record: &Record, report: &mut Report<'_>) {
         .flow
         .iter()
         .flat_map(|flow| &flow.inflows)
-        .zip(record.records("inflow"));
+        .zip(draft.inflow.items());
     for (inflow, record) in inflows {
         inflow
             .site
@@ -107,19 +107,19 @@ fn water_on_axis(case: &Case, record: &Record, report: &mut Report<'_>) {
 }
 
 /// Vectors that are the same all around the axis have nothing along x.
-fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
-    if let Some(gravity) = record.record("gravity")
+fn sideways(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    if let Some(gravity) = draft.gravity.value()
         && case
             .gravity
             .as_ref()
             .is_some_and(|gravity| gravity.acceleration[0] != 0.0)
     {
-        gravity.error("acceleration", SIDEWAYS, report);
+        gravity.acceleration.error(SIDEWAYS, report);
     }
     if case.shaking.iter().any(|(_, ground)| ground[0] != 0.0) {
-        record.error("shaking", SIDEWAYS, report);
+        draft.shaking.error(SIDEWAYS, report);
     }
-    for (body, record) in case.bodies.iter().zip(record.records("body")) {
+    for (body, record) in case.bodies.iter().zip(draft.body.items()) {
         if body.velocity.is_some_and(|v| v[0] != 0.0) {
             record.error("velocity", SIDEWAYS, report);
         }
@@ -129,26 +129,26 @@ fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
     }
     if let Some(footing) = &case.footing
         && footing.path.rows.iter().any(|(_, moved)| moved[0] != 0.0)
-        && let Some(record) = record.record("footing")
+        && let Some(record) = draft.footing.value()
     {
         let moves = ["displacement", "velocity", "path"]
             .into_iter()
             .find(|key| record.gives(key));
         record.error(moves.unwrap_or("path"), SIDEWAYS, report);
     }
-    for (prescribed, record) in case.prescribed.iter().zip(record.records("prescribed")) {
+    for (prescribed, record) in case.prescribed.iter().zip(draft.prescribed.items()) {
         prescribed
             .site
             .ends()
             .into_iter()
             .for_each(|ends| on_axis(ends, record, report));
     }
-    for (traction, record) in case.tractions.iter().zip(record.records("traction")) {
+    for (traction, record) in case.tractions.iter().zip(draft.traction.items()) {
         if let LoadedLine::Segment { from, to } = traction.line {
             on_axis([from, to], record, report);
         }
     }
-    for (load, record) in case.point_loads.iter().zip(record.records("point_load")) {
+    for (load, record) in case.point_loads.iter().zip(draft.point_load.items()) {
         if load.at[0] == 0.0 && load.force[0] != 0.0 {
             let key = if record.gives("force_path") {
                 "force_path"
@@ -166,8 +166,8 @@ fn sideways(case: &Case, record: &Record, report: &mut Report<'_>) {
 }
 
 /// Rigid bodies are bodies of revolution that move along the axis.
-fn rigid(case: &Case, record: &Record, report: &mut Report<'_>) {
-    for (rigid, record) in case.rigid.iter().zip(record.records("rigid")) {
+fn rigid(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    for (rigid, record) in case.rigid.iter().zip(draft.rigid.items()) {
         if rigid.path.rows.iter().any(|(_, moved)| moved[0] != 0.0) {
             let moves = ["displacement", "velocity", "path"]
                 .into_iter()
@@ -188,8 +188,8 @@ fn rigid(case: &Case, record: &Record, report: &mut Report<'_>) {
 }
 
 /// Quantities that have no meaning.
-fn quantities(case: &Case, record: &Record, report: &mut Report<'_>) {
-    for (history, record) in case.histories.iter().zip(record.records("history")) {
+fn quantities(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    for (history, record) in case.histories.iter().zip(draft.history.items()) {
         let observable = history.quantity.observable;
         if observable.has(Aspect::ZeroByAxisymmetry) {
             record.error(

@@ -8,6 +8,7 @@ use crate::grid::GridSpec;
 use crate::nearest::nearest;
 use crate::record::Record;
 use crate::report::{Report, listed, shortened};
+use crate::schema::Draft;
 use crate::words::Geometry;
 use bsmpm::model::Regime;
 use bsmpm_shapes::{AxisExtent, Region, Volume, Window, is_filled, sweep};
@@ -24,15 +25,14 @@ const MOST_WORK: usize = 10_000_000;
 
 /// All bodies in the order of the file; place and points are checked only if the grid is valid.
 pub(super) fn read_all(
-    root: &Record,
+    draft: &Draft,
     grid: Option<&GridSpec>,
     regime: Option<Regime>,
     report: &mut Report<'_>,
 ) -> Option<Vec<Body>> {
-    let records = root.records("body");
-    if root.gives("body") && records.is_empty() {
-        root.consequence(
-            "body",
+    let records = draft.body.items();
+    if draft.body.is_given() && records.is_empty() {
+        draft.body.consequence(
             "E0213: the case has no body. Add a [[body]] with a material and a shape.",
             &["body"],
             report,
@@ -43,12 +43,12 @@ pub(super) fn read_all(
             "E0214: the case has {} bodies (at most {MOST}). Merge some of them.",
             records.len()
         );
-        root.error("body", message, report);
+        draft.body.error(message, report);
         return None;
     }
     let read: Vec<_> = records
         .iter()
-        .map(|record| read(record, root, grid, regime, report))
+        .map(|record| read(record, draft, grid, regime, report))
         .collect();
     let bodies: Vec<Body> = read.into_iter().collect::<Option<_>>()?;
     let points: u128 = grid.map_or(0, |grid| bodies.iter().map(|body| body.points(grid)).sum());
@@ -57,7 +57,7 @@ pub(super) fn read_all(
             "E0215: the bodies have {points} material points (at most {MOST_POINTS}). Use larger cells, or reduce \
              points_per_cell."
         );
-        root.error("body", message, report);
+        draft.body.error(message, report);
         return None;
     }
     if let Some(grid) = grid {
@@ -95,12 +95,12 @@ fn turning(spin: &Record, geometry: Geometry, report: &mut Report<'_>) -> Option
 
 fn read(
     record: &Record,
-    root: &Record,
+    draft: &Draft,
     grid: Option<&GridSpec>,
     regime: Option<Regime>,
     report: &mut Report<'_>,
 ) -> Option<Body> {
-    let material = material(record, root, report);
+    let material = material(record, draft, report);
     for key in ["velocity", "spin"].into_iter().filter(|key| record.gives(key)) {
         if regime == Some(Regime::QuasiStatic) {
             record.error(key, super::NO_INERTIA, report);
@@ -114,11 +114,11 @@ fn read(
             record.path
         ));
     }
-    let boundary = super::boundary(root);
-    let region = shape::region(record, root.word("geometry")?, grid, points_per_cell, boundary, report);
+    let boundary = super::boundary(draft);
+    let region = shape::region(record, draft.geometry.get()?, grid, points_per_cell, boundary, report);
     let velocity = record.vector("velocity");
     let spin = match record.record("spin") {
-        Some(spin) => Some(turning(spin, root.word("geometry")?, report)?),
+        Some(spin) => Some(turning(spin, draft.geometry.get()?, report)?),
         None => None,
     };
     let name = record.text("name").map(str::to_owned);
@@ -221,9 +221,9 @@ fn thinnest(body: &Body, grid: &GridSpec) -> Option<(usize, f64)> {
     (least.1 < (1.0 - ROUNDING) / body.points_per_cell as f64).then_some(least)
 }
 
-fn material(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<usize> {
+fn material(record: &Record, draft: &Draft, report: &mut Report<'_>) -> Option<usize> {
     let name = record.text("material")?;
-    let named = root.named("material");
+    let named = draft.material.items();
     let found = named.iter().position(|(known, _)| known == name);
     if found.is_none() {
         let name_as_given = shortened(name);

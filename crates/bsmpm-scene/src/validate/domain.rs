@@ -10,8 +10,8 @@ use crate::case::{
     Traction,
 };
 use crate::grid::GridSpec;
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::words::AnalysisType;
 use bsmpm::boundary::Contact;
 use bsmpm::model::Regime;
@@ -31,17 +31,17 @@ pub(super) struct Domain {
 
 impl Domain {
     /// Reads the tables in the order in which their errors are reported.
-    pub(super) fn read(record: &Record, report: &mut Report<'_>) -> Self {
-        let kind: Option<AnalysisType> = record.record("analysis").and_then(|analysis| analysis.word("type"));
+    pub(super) fn read(draft: &Draft, report: &mut Report<'_>) -> Self {
+        let kind: Option<AnalysisType> = draft.analysis.value().and_then(|analysis| analysis.r#type.get());
         let regime = kind.map(AnalysisType::regime);
-        let analysis = analysis(record, kind, report);
-        let boundary = boundary(record);
-        let grid = grid::read(record, boundary, report);
-        let bodies = body::read_all(record, grid.as_ref(), regime, report);
+        let analysis = analysis(draft, kind, report);
+        let boundary = boundary(draft);
+        let grid = grid::read(draft, boundary, report);
+        let bodies = body::read_all(draft, grid.as_ref(), regime, report);
         let time = analysis.as_ref().map(|analysis| (analysis.end, analysis.dt));
-        let factor = reduction::at_start(record).and_then(|reduction| reduction.number("factor"));
-        let stages = stage::read_all(record, factor, bodies.as_deref(), time, report);
-        let contacts = contacts(record, factor, report);
+        let factor = reduction::at_start(draft).and_then(|reduction| reduction.factor.get());
+        let stages = stage::read_all(draft, factor, bodies.as_deref(), time, report);
+        let contacts = contacts(draft, factor, report);
         Self {
             regime,
             analysis,
@@ -78,19 +78,19 @@ impl Domain {
     /// Materials of the case, with Young's moduli multiplied by a `stiffness`; `None` after an error.
     pub(super) fn materials(
         &self,
-        record: &Record,
+        draft: &Draft,
         stiffness: f64,
         report: &mut Report<'_>,
     ) -> Option<Vec<NamedMaterial>> {
         let facts = CaseFacts {
             regime: self.regime,
-            geometry: record.word("geometry"),
+            geometry: draft.geometry.get(),
             grid: self.grid.as_ref(),
             bodies: self.bodies.as_deref(),
             stages: self.stages.as_deref(),
-            reduction: Reduction::of(record, stiffness),
+            reduction: Reduction::of(draft, stiffness),
         };
-        material::read_all(record, facts, report)
+        material::read_all(draft, facts, report)
     }
 
     /// The bodies with their materials, if neither have an error.
@@ -113,17 +113,17 @@ pub(super) struct Structures {
 
 impl Structures {
     /// Reads footing, prescribed motions and rigid bodies.
-    pub(super) fn read(record: &Record, domain: &Domain, report: &mut Report<'_>) -> Self {
+    pub(super) fn read(draft: &Draft, domain: &Domain, report: &mut Report<'_>) -> Self {
         let around = domain.around();
-        let mut footing = strip::footing(record, around, report);
-        let mut prescribed = strip::prescribed(record, around, report);
-        let mut rigid = rigid::read_all(record, around, domain.regime, domain.factor, report);
+        let mut footing = strip::footing(draft, around, report);
+        let mut prescribed = strip::prescribed(draft, around, report);
+        let mut rigid = rigid::read_all(draft, around, domain.regime, domain.factor, report);
         let moved = MovedBodies {
             footing: footing.as_mut(),
             prescribed: &mut prescribed,
             rigid: &mut rigid,
         };
-        let stiffness = shrink(record, around.grid, moved, report);
+        let stiffness = shrink(draft, around.grid, moved, report);
         Self {
             footing,
             prescribed,
@@ -144,7 +144,7 @@ pub(super) struct Loads {
 impl Loads {
     /// Reads the loads; in ground that begins without load all of them, and those of `rigid`, grow until the end.
     pub(super) fn read(
-        record: &Record,
+        draft: &Draft,
         domain: &Domain,
         materials: Option<&[NamedMaterial]>,
         gravity: Option<Gravity>,
@@ -152,23 +152,16 @@ impl Loads {
         report: &mut Report<'_>,
     ) -> Self {
         let around = domain.around();
-        let tractions = load::tractions(record, around, report);
-        let point_loads = load::point_loads(record, around, report);
-        let initial = load::initial(
-            record,
-            materials,
-            around.bodies,
-            gravity.as_ref(),
-            domain.regime,
-            report,
-        );
+        let tractions = load::tractions(draft, around, report);
+        let point_loads = load::point_loads(draft, around, report);
+        let initial = load::initial(draft, materials, around.bodies, gravity.as_ref(), domain.regime, report);
         let mut loads = Self {
             gravity,
             tractions,
             point_loads,
             initial,
         };
-        if let Some(end) = around.end.filter(|_| load::is_unloaded(record)) {
+        if let Some(end) = around.end.filter(|_| load::is_unloaded(draft)) {
             loads.initial = None;
             let gravity = loads.gravity.as_mut();
             load::grow(

@@ -5,6 +5,7 @@ use crate::grid::GridSpec;
 use crate::nearest::unknown_name;
 use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::words::Path;
 use bsmpm::element::Target;
 
@@ -30,12 +31,12 @@ const MIXED: [[&str; 2]; 3] = [
 
 /// All tests in the order of the file, without those that have an error.
 pub(super) fn read_all(
-    root: &Record,
+    draft: &Draft,
     materials: Option<&[NamedMaterial]>,
     grid: Option<&GridSpec>,
     report: &mut Report<'_>,
 ) -> Vec<ElementTest> {
-    let named = root.named("element").iter();
+    let named = draft.element.items().iter();
     named
         .filter_map(|(name, record)| read(name, record, materials?, grid?, report))
         .collect()

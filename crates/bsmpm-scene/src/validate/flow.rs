@@ -20,7 +20,8 @@ use crate::grid::GridSpec;
 use crate::nearest::hint;
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::{AnalysisType, Drainage, Geometry, Side};
+use crate::schema::Draft;
+use crate::words::{AnalysisType, Drainage, Side};
 use bsmpm::field::pore_water::flow::{Course, Given, Motion, Soil};
 use bsmpm::field::pore_water::retention::{Curve, MeasuredCurve, Retention};
 use bsmpm::model::Regime;
@@ -38,27 +39,32 @@ const WITHOUT_FLOW: &str = "E0501: no material has pore-water flow, so this entr
                             `drainage = \"coupled\"`, `porosity` and `permeability`, or remove this entry.";
 
 /// Drainage that the case gives a material.
-fn drainage(root: &Record, material: &Record) -> Option<Drainage> {
-    let tables = [Some(material), root.record("water")];
-    let record = tables.into_iter().flatten().find(|record| record.gives("drainage"));
-    record.map_or(Some(Drainage::Given), |record| record.word("drainage"))
+fn drainage(draft: &Draft, material: &Record) -> Option<Drainage> {
+    if material.gives("drainage") {
+        return material.word("drainage");
+    }
+    match draft.water.value() {
+        Some(water) if water.drainage.is_given() => water.drainage.get(),
+        _ => Some(Drainage::Given),
+    }
 }
 
 /// The flow of water, if any material has it; the outer option is `None` after an error.
 pub(super) fn read(
-    root: &Record,
+    draft: &Draft,
     materials: Option<&[NamedMaterial]>,
     around: AroundStrip<'_>,
     stages: Option<&[Stage]>,
     report: &mut Report<'_>,
 ) -> Option<Option<Flow>> {
-    let soils: Vec<Option<Option<Soil<3>>>> = root
-        .named("material")
+    let soils: Vec<Option<Option<Soil<3>>>> = draft
+        .material
+        .items()
         .iter()
-        .map(|(_, record)| soil(root, record, report))
+        .map(|(_, record)| soil(draft, record, report))
         .collect();
     if soils.iter().all(|soil| matches!(soil, Some(None))) {
-        refuse_without_flow(root, report);
+        refuse_without_flow(draft, report);
         return Some(None);
     }
     let soils: Vec<Option<Soil<3>>> = soils.into_iter().collect::<Option<_>>()?;
@@ -71,24 +77,24 @@ pub(super) fn read(
         there: &[],
     };
     let mut drains = Vec::new();
-    for (number, record) in root.records("drain").iter().enumerate() {
+    for (number, record) in draft.drain.items().iter().enumerate() {
         let there = &there(ActiveLoads::Drain(number), stages, bodies);
         drains.push(drain(record, Ground { there, ..ground }, report));
     }
-    named(root, report);
+    named(draft, report);
     let mut inflows = Vec::new();
-    for (number, record) in root.records("inflow").iter().enumerate() {
+    for (number, record) in draft.inflow.items().iter().enumerate() {
         let there = &there(ActiveLoads::Inflow(number), stages, bodies);
         inflows.push(inflow(record, Ground { there, ..ground }, report));
     }
     let drains = drains.into_iter().collect::<Option<_>>()?;
     let inflows = inflows.into_iter().collect::<Option<_>>()?;
-    let bulk = root.record("water").filter(|water| water.gives("bulk"));
-    let bulk = bulk.map_or(Some(f64::INFINITY), |water| water.number("bulk"))?;
+    let bulk = draft.water.value().filter(|water| water.bulk.is_given());
+    let bulk = bulk.map_or(Some(f64::INFINITY), |water| water.bulk.get())?;
     let retains = soils.iter().flatten().any(|soil| soil.retention.is_some());
-    let suction = suction(root, retains, report)?;
+    let suction = suction(draft, retains, report)?;
     Some(Some(Flow {
-        unit_weight: unit_weight(root)?,
+        unit_weight: unit_weight(draft)?,
         bulk,
         soils,
         drains,
@@ -100,14 +106,14 @@ pub(super) fn read(
 }
 
 /// Refuses what only pore-water flow uses, in a case without it.
-fn refuse_without_flow(root: &Record, report: &mut Report<'_>) {
-    for key in ["drain", "inflow"] {
-        if let Some(record) = root.records(key).first() {
+fn refuse_without_flow(draft: &Draft, report: &mut Report<'_>) {
+    for list in [&draft.drain, &draft.inflow] {
+        if let Some(record) = list.items().first() {
             report.error(record.origin, &record.path, WITHOUT_FLOW);
         }
     }
-    if let Some(water) = root.record("water").filter(|water| water.gives("bulk")) {
-        water.error("bulk", WITHOUT_FLOW, report);
+    if let Some(water) = draft.water.value().filter(|water| water.bulk.is_given()) {
+        water.bulk.error(WITHOUT_FLOW, report);
     }
 }
 
@@ -117,38 +123,35 @@ fn is_permeable(soils: &[Option<Soil<3>>], material: usize) -> bool {
 }
 
 /// Pa  the largest suction at the start.
-fn suction(root: &Record, retains: bool, report: &mut Report<'_>) -> Option<f64> {
-    const KEY: &str = "suction";
-    let Some(water) = root.record("water").filter(|water| water.gives(KEY)) else {
+fn suction(draft: &Draft, retains: bool, report: &mut Report<'_>) -> Option<f64> {
+    let Some(water) = draft.water.value().filter(|water| water.suction.is_given()) else {
         return Some(f64::INFINITY);
     };
     if !retains {
         let message = "E0503: no material has a `retention` curve, so `suction` has no effect. Give the soil above \
                        the water table a `retention` curve, or remove `suction`.";
-        water.consequence(KEY, message, &["material"], report);
+        water.suction.consequence(message, &["material"], report);
     }
-    if ["level", "level_path", "line", "line_path"]
-        .iter()
-        .all(|key| !water.gives(key))
-    {
+    if water.gives_no_table() {
         let message = "E0504: `suction` applies above the water table, but the case has no water table. Give \
                        `water.level`, `level_path`, `line` or `line_path`, or remove `suction`.";
-        water.error(KEY, message, report);
+        water.suction.error(message, report);
     }
-    water.number(KEY)
+    water.suction.get()
 }
 
 /// N/m3  of water under the case's gravity; under the standard one without any.
-fn unit_weight(root: &Record) -> Option<f64> {
-    let given = root
-        .record("water")
-        .map_or(Some(WATER), |water| water.number("unit_weight"))?;
-    let Some(gravity) = root.record("gravity") else {
+fn unit_weight(draft: &Draft) -> Option<f64> {
+    let given = draft
+        .water
+        .value()
+        .map_or(Some(WATER), |water| water.unit_weight.get())?;
+    let Some(gravity) = draft.gravity.value() else {
         return Some(given);
     };
-    let [x, y, z] = gravity.vector("acceleration")?;
-    let is_static = root.record("analysis")?.word("type").map(AnalysisType::regime) == Some(Regime::QuasiStatic);
-    let up = root.word::<Geometry>("geometry")?.dims() - 1;
+    let [x, y, z] = gravity.acceleration.vector()?;
+    let is_static = draft.analysis.value()?.r#type.get().map(AnalysisType::regime) == Some(Regime::QuasiStatic);
+    let up = draft.geometry.get()?.dims() - 1;
     let pull = if is_static {
         [x, y, z][up].abs()
     } else {
@@ -158,9 +161,9 @@ fn unit_weight(root: &Record) -> Option<f64> {
 }
 
 /// What a material is to water; the outer option is `None` after an error.
-fn soil(root: &Record, record: &Record, report: &mut Report<'_>) -> Option<Option<Soil<3>>> {
+fn soil(draft: &Draft, record: &Record, report: &mut Report<'_>) -> Option<Option<Soil<3>>> {
     const FLOWING: [&str; 4] = ["porosity", "permeability", "permeability_law", "retention"];
-    let drainage = drainage(root, record)?;
+    let drainage = drainage(draft, record)?;
     let needs: &[&str] = match drainage {
         Drainage::Given => &[],
         Drainage::Undrained => &FLOWING[..1],
@@ -234,7 +237,7 @@ fn retention(of: &Record, report: &mut Report<'_>) -> Option<Retention> {
 /// Rows of a measured curve: suction head, effective saturation, relative permeability.
 fn measured(of: &Record, residual: f64, report: &mut Report<'_>) -> Option<Vec<[f64; 3]>> {
     const KEY: &str = "curve";
-    let rows: Vec<[f64; 3]> = increasing(of, KEY, report)?
+    let rows: Vec<[f64; 3]> = increasing(&of.rows_field(KEY), report)?
         .map(|row| [row[0], row[1], row[2]])
         .collect();
     let mut pairs = rows.windows(2);
@@ -368,8 +371,8 @@ impl Ground<'_> {
 }
 
 /// Names of drains, which are unique.
-fn named(root: &Record, report: &mut Report<'_>) {
-    let drains = root.records("drain");
+fn named(draft: &Draft, report: &mut Report<'_>) {
+    let drains = draft.drain.items();
     for (number, record) in drains.iter().enumerate() {
         let Some(name) = record.text("name") else { continue };
         if drains[..number].iter().any(|other| other.text("name") == Some(name)) {
@@ -447,7 +450,9 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Given> {
 /// Rows of a number that follows time.
 fn course(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Course> {
     Some(Course(
-        increasing(record, key, report)?.map(|row| (row[0], row[1])).collect(),
+        increasing(&record.rows_field(key), report)?
+            .map(|row| (row[0], row[1]))
+            .collect(),
     ))
 }
 
@@ -572,16 +577,18 @@ fn along_face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> O
 }
 
 /// Whether water flows, or is kept from flowing, in any material.
-pub(super) fn flows(root: &Record) -> bool {
-    root.named("material")
+pub(super) fn flows(draft: &Draft) -> bool {
+    draft
+        .material
+        .items()
         .iter()
-        .any(|(_, record)| drainage(root, record) != Some(Drainage::Given))
+        .any(|(_, record)| drainage(draft, record) != Some(Drainage::Given))
 }
 
 /// The number of the drain that a history names, in the order of the file, by its name or its face; the outer option is
 /// `None` after an error.
-pub(super) fn drain_of(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<Option<usize>> {
-    let drains = root.records("drain");
+pub(super) fn drain_of(record: &Record, draft: &Draft, report: &mut Report<'_>) -> Option<Option<usize>> {
+    let drains = draft.drain.items();
     let (key, found) = if record.gives("drain") {
         let name = record.text("drain")?;
         (

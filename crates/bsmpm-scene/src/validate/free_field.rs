@@ -2,14 +2,14 @@
 
 use super::physics::reached;
 use crate::case::{Case, Geometry, LoadedLine, Rigid, RigidShape, Site, Support};
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::surfaces::outline;
 use crate::words::{Side, Word};
 
 /// The free field is columns of what lies at them, on the base, which nothing else holds or loads.
-pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
-    let Some(boundary) = record.record("boundary") else {
+pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    let Some(boundary) = draft.boundary.value() else {
         return;
     };
     for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {

@@ -3,10 +3,11 @@
 use crate::case::Support;
 use crate::estimate::{self, MOST_UNKNOWNS};
 use crate::grid::{GridSpec, Line};
-use crate::record::Record;
+use crate::record::KeyPlace;
 use crate::report::Report;
+use crate::schema::{Draft, GridTable, KnotsTable};
 use crate::unit::Dimension;
-use crate::words::{Geometry, Order};
+use crate::words::Order;
 use bsmpm_shapes::GridAxis;
 
 /// Parts of a cell by which a length may miss a whole number of cells.
@@ -14,13 +15,13 @@ const WHOLE: f64 = 1e-9;
 const NAMES: [&str; 3] = ["x", "y", "z"];
 
 /// The grid, once the supports of its faces are known.
-pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 3]>, report: &mut Report<'_>) -> Option<GridSpec> {
-    let grid = root.record("grid")?;
+pub(super) fn read(draft: &Draft, boundary: Option<[[Support; 2]; 3]>, report: &mut Report<'_>) -> Option<GridSpec> {
+    let grid = draft.grid.value()?;
     // The rest is checked without it, too.
-    let order = grid.word("degree").unwrap_or(Order::Quadratic).degree();
-    let dims = root.word::<Geometry>("geometry")?.dims();
+    let order = grid.degree.get().unwrap_or(Order::Quadratic).degree();
+    let dims = draft.geometry.get()?.dims();
     corners(grid, dims, report)?;
-    let (axes, lines) = if grid.gives("knots") {
+    let (axes, lines) = if grid.knots.is_given() {
         graded(grid, order, dims, report)?
     } else {
         (uniform(grid, boundary?, dims, report)?, <[Vec<Line>; 3]>::default())
@@ -33,7 +34,7 @@ pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 3]>, report: &
             "E0204: the grid has {cells} cells and {unknowns} unknowns (at most {MOST_UNKNOWNS} of each). Use larger \
              cells."
         );
-        report.error(grid.place("cell"), &grid.path_of("cell"), message);
+        report.error(grid.cell.origin(), grid.cell.path(), message);
         return None;
     }
     bounded(&spec, grid, report)?;
@@ -42,8 +43,8 @@ pub(super) fn read(root: &Record, boundary: Option<[[Support; 2]; 3]>, report: &
 }
 
 /// An error for corners in the wrong order, whatever the cells are.
-fn corners(grid: &Record, dims: usize, report: &mut Report<'_>) -> Option<()> {
-    let Some((lower, upper)) = grid.vector("lower").zip(grid.vector("upper")) else {
+fn corners(grid: &GridTable, dims: usize, report: &mut Report<'_>) -> Option<()> {
+    let Some((lower, upper)) = grid.lower.vector().zip(grid.upper.vector()) else {
         return Some(());
     };
     let wrong: Vec<&str> = (0..dims)
@@ -59,22 +60,22 @@ fn corners(grid: &Record, dims: usize, report: &mut Report<'_>) -> Option<()> {
         &lower[..dims],
         wrong.join(" and ")
     );
-    grid.error("upper", message, report);
+    grid.upper.error(message, report);
     None
 }
 
 /// An error for breakpoints that are next to one when counted from the first.
-fn bounded(spec: &GridSpec, grid: &Record, report: &mut Report<'_>) -> Option<()> {
+fn bounded(spec: &GridSpec, grid: &GridTable, report: &mut Report<'_>) -> Option<()> {
     let least = Dimension::Length.least();
     for (axis, name) in spec.axes.iter().zip(NAMES) {
         let cell = axis.shortest();
         if cell < least {
-            let key = if grid.gives("knots") { "knots" } else { "cell" };
+            let key: &KeyPlace = if grid.knots.is_given() { &grid.knots } else { &grid.cell };
             let message = format!(
                 "E0205: the shortest cell along {name} is {cell:e} m long, but must be at least {least:e} m. Correct \
                  `grid.cell`, or the ends of the cells in [grid.knots]."
             );
-            grid.error(key, message, report);
+            key.error(message, report);
             return None;
         }
     }
@@ -83,18 +84,18 @@ fn bounded(spec: &GridSpec, grid: &Record, report: &mut Report<'_>) -> Option<()
 
 /// Breakpoints as written; equal ones are copies of one.
 fn graded(
-    grid: &Record,
+    grid: &GridTable,
     order: usize,
     dims: usize,
     report: &mut Report<'_>,
 ) -> Option<(Vec<GridAxis>, [Vec<Line>; 3])> {
-    let knots = grid.record("knots")?;
-    if knots.gives("z") != (dims == 3) {
+    let knots = grid.knots.value()?;
+    if knots.z.is_given() != (dims == 3) {
         let message = match dims {
             3 => "E0206: a 3-D grid needs the ends of its cells along z in [grid.knots], too. Add knots.z.",
             _ => "E0207: a 2-D grid has no z axis. Delete knots.z, or use geometry = \"3d\".",
         };
-        knots.error("z", message, report);
+        knots.z.error(message, report);
         return None;
     }
     let read: Vec<_> = (0..dims)
@@ -109,19 +110,20 @@ fn graded(
 
 /// Breakpoints of one axis, and those of them that are repeated; `None` after an error.
 fn graded_axis(
-    grid: &Record,
-    knots: &Record,
+    grid: &GridTable,
+    knots: &KnotsTable,
     order: usize,
     number: usize,
     report: &mut Report<'_>,
 ) -> Option<(GridAxis, Vec<Line>)> {
     let name = NAMES[number];
-    let copies: Vec<&[f64]> = knots.numbers(name)?.chunk_by(|a, b| a == b).collect();
+    let knots = [&knots.x, &knots.y, &knots.z][number];
+    let copies: Vec<&[f64]> = knots.value()?.chunk_by(|a, b| a == b).collect();
     let breakpoints: Vec<f64> = copies.iter().map(|copies| copies[0]).collect();
     if breakpoints.len() < 2 || breakpoints.windows(2).any(|pair| pair[1] <= pair[0]) {
         let message = "E0208: the ends of the cells in [grid.knots] are not in increasing order, or fewer than \
              two of them differ. Sort the numbers, and add missing ones.";
-        knots.error(name, message, report);
+        knots.error(message, report);
         return None;
     }
     for (i, copies_of_one) in copies.iter().enumerate() {
@@ -134,7 +136,7 @@ fn graded_axis(
                 copies_of_one.len(),
                 most
             );
-            knots.error(name, message, report);
+            knots.error(message, report);
             return None;
         }
     }
@@ -145,30 +147,37 @@ fn graded_axis(
             multiplicity: copies.len(),
         })
         .collect();
-    for (key, end) in [("lower", breakpoints[0]), ("upper", breakpoints[breakpoints.len() - 1])] {
-        if let Some(corner) = grid.vector(key).filter(|corner| corner[number] != end) {
+    let ends = [breakpoints[0], breakpoints[breakpoints.len() - 1]];
+    for (key, end) in [&grid.lower, &grid.upper].into_iter().zip(ends) {
+        if let Some(corner) = key.vector().filter(|corner| corner[number] != end) {
             let message = format!(
                 "E0210: the grid has a corner at {name} = {} m, but the first or last value in [grid.knots] is \
-                 {name} = {end} m. Delete `{key}`, or make both equal.",
-                corner[number]
+                 {name} = {end} m. Delete `{}`, or make both equal.",
+                corner[number],
+                key.name()
             );
-            grid.error(key, message, report);
+            key.error(message, report);
         }
     }
     Some((GridAxis::Graded(breakpoints), lines))
 }
 
-fn uniform(grid: &Record, boundary: [[Support; 2]; 3], dims: usize, report: &mut Report<'_>) -> Option<Vec<GridAxis>> {
-    for key in ["lower", "upper"] {
-        if !grid.gives(key) {
+fn uniform(
+    grid: &GridTable,
+    boundary: [[Support; 2]; 3],
+    dims: usize,
+    report: &mut Report<'_>,
+) -> Option<Vec<GridAxis>> {
+    for corner in [&grid.lower, &grid.upper] {
+        if !corner.is_given() {
             let message = "E0211: this corner of the grid is missing: a grid with `cell` needs both `lower` and \
                            `upper`. Add the corner, or give `knots` in place of `cell`.";
-            report.error(grid.origin, &grid.path_of(key), message);
+            corner.error(message, report);
         }
     }
-    let lower = grid.vector("lower")?;
-    let upper = grid.vector("upper")?;
-    let cell = match *grid.numbers("cell")? {
+    let lower = grid.lower.vector()?;
+    let upper = grid.upper.vector()?;
+    let cell = match grid.cell.value()?[..] {
         [all] => [all; 3],
         [x, y] => [x, y, y],
         [x, y, z] => [x, y, z],
@@ -186,7 +195,7 @@ fn uniform(grid: &Record, boundary: [[Support; 2]; 3], dims: usize, report: &mut
 
 /// The two faces of an axis.
 struct Faces<'a> {
-    grid: &'a Record,
+    grid: &'a GridTable,
     number: usize,
     supports: [Support; 2],
 }
@@ -199,7 +208,7 @@ impl Faces<'_> {
             let message = format!(
                 "E0204: the grid has {exact:.3e} cells along {name} (at most {MOST_UNKNOWNS}). Use larger cells."
             );
-            self.grid.error("cell", message, report);
+            self.grid.cell.error(message, report);
             return None;
         }
         let rounding = 4.0 * f64::EPSILON * lower.abs().max(upper.abs()) / cell;
@@ -217,7 +226,7 @@ impl Faces<'_> {
         match self.supports {
             [_, Support::Free] => {
                 report.note(
-                    self.grid.path_of(&format!("upper.{}", self.number)),
+                    format!("{}.{}", self.grid.upper.path(), self.number),
                     format!("{}", lower + length),
                     reason,
                 );
@@ -230,7 +239,7 @@ impl Faces<'_> {
             [Support::Free, _] => {
                 let lower = upper - length;
                 report.note(
-                    self.grid.path_of(&format!("lower.{}", self.number)),
+                    format!("{}.{}", self.grid.lower.path(), self.number),
                     format!("{lower}"),
                     reason,
                 );
@@ -246,7 +255,7 @@ impl Faces<'_> {
                      \"free\" face only, and no face along {name} is \"free\". Use for example cell = {}.",
                     (upper - lower) / exact.round().max(1.0)
                 );
-                self.grid.error("cell", message, report);
+                self.grid.cell.error(message, report);
                 None
             }
         }

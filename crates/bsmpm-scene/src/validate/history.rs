@@ -11,6 +11,7 @@ use crate::nearest::{nearest, unknown_name};
 use crate::observables::{Aspect, HistorySubject, Observable, SubjectKeys, SubjectKind};
 use crate::record::Record;
 use crate::report::{Report, shortened};
+use crate::schema::Draft;
 use crate::unit::Dimension;
 use crate::words::{Geometry, Side, Word};
 use bsmpm::model::Regime;
@@ -32,21 +33,21 @@ pub(super) struct CaseBodies<'a> {
 
 /// All histories in the order of the file, without those that have an error.
 pub(super) fn read_all(
-    root: &Record,
+    draft: &Draft,
     regime: Option<Regime>,
     grid: Option<&GridSpec>,
     made: Option<CaseBodies<'_>>,
     report: &mut Report<'_>,
 ) -> Vec<History> {
-    let records = root.records("history");
+    let records = draft.history.items();
     if records.len() > MOST {
-        root.error("history", too_many(records.len(), MOST), report);
+        draft.history.error(too_many(records.len(), MOST), report);
         return Vec::new();
     }
     let mut taken = HashSet::from(["step".to_owned(), "time".to_owned()]);
     let mut histories = Vec::new();
     for record in records {
-        let Some(history) = read(root, record, regime, grid, made, report) else {
+        let Some(history) = read(draft, record, regime, grid, made, report) else {
             continue;
         };
         if let Some(column) = history
@@ -67,7 +68,7 @@ pub(super) fn read_all(
 }
 
 fn read(
-    root: &Record,
+    draft: &Draft,
     record: &Record,
     regime: Option<Regime>,
     grid: Option<&GridSpec>,
@@ -76,11 +77,11 @@ fn read(
 ) -> Option<History> {
     let observable: Observable = record.word("quantity")?;
     let of_strip = record.gives("of") && observable.definition().kind.is_of_strip();
-    check_keys(record, observable, of_strip, root.word("geometry"), report);
-    check_case(root, record, observable, regime, report);
+    check_keys(record, observable, of_strip, draft.geometry.get(), report);
+    check_case(draft, record, observable, regime, report);
     let subject = match of_strip {
-        true => HistorySubject::Strip(strip(root, record, observable, report)?),
-        false => subject(observable, record, root, grid, made, report)?,
+        true => HistorySubject::Strip(strip(draft, record, observable, report)?),
+        false => subject(observable, record, draft, grid, made, report)?,
     };
     let name = if record.gives("name") {
         record.text("name")?
@@ -88,7 +89,7 @@ fn read(
         observable.word()
     };
     let scale = record.number("scale")?;
-    let geometry = root.word("geometry")?;
+    let geometry = draft.geometry.get()?;
     Some(History {
         quantity: Quantity::new(observable, subject),
         name: name.to_owned(),
@@ -126,18 +127,18 @@ fn check_keys(
 }
 
 /// Refuses a quantity that is zero, or has no meaning, in the case.
-fn check_case(root: &Record, record: &Record, observable: Observable, regime: Option<Regime>, report: &mut Report<'_>) {
+fn check_case(draft: &Draft, record: &Record, observable: Observable, regime: Option<Regime>, report: &mut Report<'_>) {
     if regime == Some(Regime::QuasiStatic) && observable.has(Aspect::NeedsVelocities) {
         record.error("quantity", needs_dynamics(observable.word()), report);
     }
-    if observable.has(Aspect::NeedsFooting) && !root.gives("footing") {
+    if observable.has(Aspect::NeedsFooting) && !draft.footing.is_given() {
         let message = format!(
             "E0646: the quantity \"{observable}\" needs a footing, and the case has none. Add [footing], or use \
                 another quantity."
         );
         record.consequence("quantity", message, &["footing"], report);
     }
-    if observable.has(Aspect::NeedsFlow) && !flow::flows(root) {
+    if observable.has(Aspect::NeedsFlow) && !flow::flows(draft) {
         record.error("quantity", needs_flow(observable.word()), report);
     }
     if record.number("scale") == Some(0.0) {
@@ -150,7 +151,7 @@ fn check_case(root: &Record, record: &Record, observable: Observable, regime: Op
     if let Some(side) = record
         .word::<Side>("face")
         .filter(|_| observable.has(Aspect::NeedsContact))
-        && !supports(root, side).contains(&Support::Contact)
+        && !supports(draft, side).contains(&Support::Contact)
     {
         let message = format!(
             "E0646: the quantity \"{observable}\" needs contact, but the boundary `{side}` is not in contact. Set \
@@ -161,7 +162,7 @@ fn check_case(root: &Record, record: &Record, observable: Observable, regime: Op
     if let Some(side) = record
         .word::<Side>("face")
         .filter(|_| observable.has(Aspect::NeedsSupport))
-        && is_never_held(root, side)
+        && is_never_held(draft, side)
     {
         let message = format!(
             "E0646: boundary `{side}` does not restrain the soil, so its reaction is always 0. Name another `face`, \
@@ -170,7 +171,7 @@ fn check_case(root: &Record, record: &Record, observable: Observable, regime: Op
         record.consequence("face", message, &["boundary", "prescribed", "stage"], report);
     }
     let mut sides = Side::ALL.into_iter().flatten();
-    if observable.has(Aspect::NeedsOutflow) && !sides.any(|side| supports(root, side).contains(&Support::Outflow)) {
+    if observable.has(Aspect::NeedsOutflow) && !sides.any(|side| supports(draft, side).contains(&Support::Outflow)) {
         let message = "E0646: no boundary has the condition \"outflow\", so no material can leave the grid. Set a \
              side in [boundary] to \"outflow\".";
         record.error("quantity", message, report);
@@ -178,14 +179,16 @@ fn check_case(root: &Record, record: &Record, observable: Observable, regime: Op
 }
 
 /// Number of the strip that a history is of, if the history has a meaning for it; `None` after an error.
-fn strip(root: &Record, record: &Record, observable: Observable, report: &mut Report<'_>) -> Option<usize> {
+fn strip(draft: &Draft, record: &Record, observable: Observable, report: &mut Report<'_>) -> Option<usize> {
     let wanted = record.text("of")?;
-    let footing = root
-        .records("footing")
-        .iter()
+    let footing = draft
+        .footing
+        .value()
+        .into_iter()
         .map(|strip| (strip, strip.text("name").unwrap_or(NAMELESS), "interface"));
-    let motions = root
-        .records("prescribed")
+    let motions = draft
+        .prescribed
+        .items()
         .iter()
         .map(|strip| (strip, strip.text("name").unwrap_or(""), "components"));
     let strips: Vec<_> = footing.chain(motions).collect();
@@ -209,12 +212,11 @@ fn strip(root: &Record, record: &Record, observable: Observable, report: &mut Re
 }
 
 /// What a face is at the start, and what stages make of it.
-fn supports(root: &Record, side: Side) -> Vec<Support> {
-    let later = root
-        .records("stage")
-        .iter()
-        .filter_map(|stage| stage.record("boundary"));
-    root.record("boundary")
+fn supports(draft: &Draft, side: Side) -> Vec<Support> {
+    let later = draft.stage.items().iter().filter_map(|stage| stage.record("boundary"));
+    draft
+        .boundary
+        .value()
         .into_iter()
         .chain(later)
         .filter_map(|boundary| super::support(boundary, side))
@@ -222,11 +224,11 @@ fn supports(root: &Record, side: Side) -> Vec<Support> {
 }
 
 /// Whether nothing ever holds material at a face.
-fn is_never_held(root: &Record, side: Side) -> bool {
-    let is_axis = root.word("geometry") == Some(Geometry::Axisymmetric) && side == Side::Left;
-    let mut motions = root.records("prescribed").iter();
+fn is_never_held(draft: &Draft, side: Side) -> bool {
+    let is_axis = draft.geometry.get() == Some(Geometry::Axisymmetric) && side == Side::Left;
+    let mut motions = draft.prescribed.items().iter();
     !is_axis
-        && supports(root, side)
+        && supports(draft, side)
             .iter()
             .all(|support| matches!(support, Support::Free | Support::Outflow))
         && !motions.any(|motion| motion.gives("face") && motion.word::<Side>("face") == Some(side))
@@ -282,7 +284,7 @@ const KEYS: [&str; 16] = [
 fn subject(
     observable: Observable,
     record: &Record,
-    root: &Record,
+    draft: &Draft,
     grid: Option<&GridSpec>,
     made: Option<CaseBodies<'_>>,
     report: &mut Report<'_>,
@@ -315,23 +317,24 @@ fn subject(
             at: at(record, grid, report)?,
             surface: at_surface(record)?,
         },
-        SubjectKind::Face => HistorySubject::Face(face(record, root, report)?),
+        SubjectKind::Face => HistorySubject::Face(face(record, draft, report)?),
         SubjectKind::Section => {
-            let (lines, round) = section(root, record, grid, report)?;
+            let (lines, round) = section(draft, record, grid, report)?;
             let fixed = record.gives("fixed") && record.flag("fixed")?;
             HistorySubject::Section { lines, round, fixed }
         }
-        SubjectKind::Rigid => HistorySubject::Rigid(rigid(record, root, report)?),
-        SubjectKind::Drain => HistorySubject::Drain(flow::drain_of(record, root, report)?),
+        SubjectKind::Rigid => HistorySubject::Rigid(rigid(record, draft, report)?),
+        SubjectKind::Drain => HistorySubject::Drain(flow::drain_of(record, draft, report)?),
         SubjectKind::Strip => return None,
     })
 }
 
 /// Number of the rigid body that a history is of.
-fn rigid(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<usize> {
+fn rigid(record: &Record, draft: &Draft, report: &mut Report<'_>) -> Option<usize> {
     let name = record.text("rigid")?;
-    let names: Vec<&str> = root
-        .records("rigid")
+    let names: Vec<&str> = draft
+        .rigid
+        .items()
         .iter()
         .filter_map(|rigid| rigid.text("name"))
         .collect();
@@ -416,8 +419,10 @@ fn weighing(
 }
 
 /// All checks in the order of the file, without those that have an error.
-pub(super) fn checks(root: &Record, histories: &[History], end: Option<f64>, report: &mut Report<'_>) -> Vec<Check> {
-    root.records("check")
+pub(super) fn checks(draft: &Draft, histories: &[History], end: Option<f64>, report: &mut Report<'_>) -> Vec<Check> {
+    draft
+        .check
+        .items()
         .iter()
         .filter_map(|record| check(record, histories, end, report))
         .collect()

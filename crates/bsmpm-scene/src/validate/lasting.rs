@@ -5,21 +5,21 @@ use super::physics::{ALONG, holds_at_rest};
 use super::place::{along, ring};
 use super::site::{normal, normal_of};
 use crate::case::{ActiveLoads, Case, Initial, LoadedLine, MotionPath, Push, Rigid, Shares, Site, Support, Traction};
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::surfaces::name_of_strip;
 
 /// Part of the largest share or way that the last one may be and count as none: a record of samples ends on no zero.
 const NOTHING: f64 = 0.01;
 
 /// Warns of every load and motion that does not end as it began along an axis that nothing else holds.
-pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     if !case.is_ever(Support::Absorbing) && !case.is_ever(Support::FreeField) {
         return;
     }
     for (axis, name) in ["x", "y"].into_iter().enumerate() {
         let held = holds_at_rest(case, axis, None);
-        for what in loads(case, axis).filter(|_| !held).chain(rigid(case, root, axis)) {
+        for what in loads(case, axis).filter(|_| !held).chain(rigid(case, draft, axis)) {
             report.warn(format!(
                 "W0231: {what}: the load remains at the end, so the ground drifts along {name}, where only absorbing \
                  boundaries (without stiffness) support it. Fix a distant face, or end the load at 0."
@@ -92,13 +92,13 @@ fn net(case: &Case, traction: &Traction, axis: usize) -> f64 {
 }
 
 /// Rigid bodies that push along an axis, or stay away from where they began.
-fn rigid(case: &Case, root: &Record, axis: usize) -> impl Iterator<Item = String> {
+fn rigid(case: &Case, draft: &Draft, axis: usize) -> impl Iterator<Item = String> {
     // With gravity all of them are warned of.
     let all = case
         .rigid
         .iter()
         .enumerate()
-        .zip(root.records("rigid"))
+        .zip(draft.rigid.items())
         .filter(|_| case.gravity.is_none());
     all.filter(move |((number, of), _)| pushes(case, *number, of, axis))
         .map(|(_, record)| record.path.clone())

@@ -2,8 +2,8 @@
 
 use super::physics;
 use crate::case::{Body, Case, Face, Geometry, RigidShape, RigidSolid, Support};
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use bsmpm::model::Regime;
 use bsmpm_shapes::Region;
 
@@ -28,13 +28,13 @@ struct Exit {
 
 /// Warns of bodies in dynamic analysis that lie within a cell of a free face, are held by nothing along its normal, and
 /// leave the grid there before the end of the run unless something stops them.
-pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     if case.analysis.regime != Regime::Dynamic {
         return;
     }
     let faces = (0..case.grid.dims()).flat_map(|axis| [false, true].map(|upper| Face { axis, upper }));
     let open: Vec<Face> = faces.filter(|face| is_open(case, *face)).collect();
-    for (body, record) in case.bodies.iter().zip(root.records("body")) {
+    for (body, record) in case.bodies.iter().zip(draft.body.items()) {
         let motion = FreeMotion::of(case, body);
         for &face in &open {
             let Face { axis, upper } = face;

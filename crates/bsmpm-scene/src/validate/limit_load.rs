@@ -9,8 +9,8 @@ use crate::case::{
 };
 use crate::grid::GridSpec;
 use crate::observables::{HistorySubject, Observable};
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::{AnalysisTable, Draft};
 use crate::surfaces::name_of_strip;
 use crate::words::{AnalysisType, Geometry, Purpose, Side, Support, Word};
 use bsmpm::material::LayeredMaterial;
@@ -32,8 +32,6 @@ const DILATES: f64 = 10.0 * std::f64::consts::PI / 180.0;
 const SMALL_COHESION: f64 = 0.05;
 /// Component of a unit vector from which on a motion counts as normal to a footing.
 const ALONG_NORMAL: f64 = 1.0 - 1e-6;
-/// The key and its table.
-const KEY: &str = "purpose";
 
 /// Everything that a case moves, or may move.
 pub(super) struct MovedBodies<'a> {
@@ -53,27 +51,27 @@ impl MovedBodies<'_> {
 }
 
 /// Whether the case seeks a limit load.
-pub(super) fn is_sought(root: &Record) -> bool {
-    root.record("analysis").and_then(|analysis| analysis.word("purpose")) == Some(Purpose::LimitLoad)
+pub(super) fn is_sought(draft: &Draft) -> bool {
+    draft.analysis.value().and_then(|analysis| analysis.purpose.get()) == Some(Purpose::LimitLoad)
 }
 
 /// Divides the prescribed displacements of a case that seeks a limit load; returns the factor, by which Young's moduli
 /// are to be multiplied. 1 for other cases.
 pub(super) fn shrink(
-    root: &Record,
+    draft: &Draft,
     grid: Option<&GridSpec>,
     mut moved: MovedBodies<'_>,
     report: &mut Report<'_>,
 ) -> f64 {
     // What could not be read does not move.
-    let Some(analysis) = root.record("analysis").filter(|_| is_sought(root) && !report.failed()) else {
+    let Some(analysis) = draft.analysis.value().filter(|_| is_sought(draft) && !report.failed()) else {
         return 1.0;
     };
     let farthest = moved.paths().map(|path| path.farthest()).fold(0.0, f64::max);
     if farthest == 0.0 {
         let message = "E0442: a limit load needs a prescribed displacement, and the case has none. Give [footing], \
                        [[prescribed]] or [[rigid]] a displacement, or find a factor of safety with `bsmpm fos`.";
-        analysis.error(KEY, message, report);
+        analysis.purpose.error(message, report);
         return 1.0;
     }
     let Some(grid) = grid else { return 1.0 };
@@ -100,9 +98,9 @@ pub(super) struct Preparation {
 
 /// What the case looks for, with columns of its history for each load; refuses what has no limit load, and warns of
 /// what makes it wrong.
-pub(super) fn complete(case: &mut Case, root: &Record, prepared: Preparation, report: &mut Report<'_>) {
+pub(super) fn complete(case: &mut Case, draft: &Draft, prepared: Preparation, report: &mut Report<'_>) {
     warn_of_averages(case, report);
-    let Some(analysis) = root.record("analysis").filter(|_| is_sought(root)) else {
+    let Some(analysis) = draft.analysis.value().filter(|_| is_sought(draft)) else {
         return;
     };
     refuse(case, analysis, report);
@@ -112,9 +110,11 @@ pub(super) fn complete(case: &mut Case, root: &Record, prepared: Preparation, re
             "E0451: `force_tolerance` is above {FORCE_TOLERANCE:e}, so limit loads would be several per cent too \
              high. Delete `force_tolerance`."
         );
-        root.record("solver")
+        draft
+            .solver
+            .value()
             .into_iter()
-            .for_each(|solver| solver.error("force_tolerance", &message, report));
+            .for_each(|solver| solver.force_tolerance.error(&message, report));
     }
     warn_of_settings(case, report);
     let loads = sought(case);
@@ -130,25 +130,25 @@ pub(super) fn complete(case: &mut Case, root: &Record, prepared: Preparation, re
 }
 
 /// Refuses ground whose load depends on how far it is strained, and motions without a direction.
-fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
+fn refuse(case: &Case, analysis: &AnalysisTable, report: &mut Report<'_>) {
     if case.analysis.kind != AnalysisType::QuasiStatic {
         let message = format!(
             "E0443: a limit load needs a quasi-static analysis, but the type of this analysis is \"{}\". Use \
              analysis.type = \"quasi-static\".",
             case.analysis.kind
         );
-        analysis.error(KEY, message, report);
+        analysis.purpose.error(message, report);
     }
     if case.flow.is_some() {
         let message = "E0444: purpose = \"limit-load\" raises Young's moduli, so the pore pressures of soil with \
              pore-water flow would be wrong. Delete `purpose`, or delete `drainage` of all materials.";
-        analysis.error(KEY, message, report);
+        analysis.purpose.error(message, report);
     }
     let is_divided = case.stages.iter().any(|stage| stage.strength_reduction.is_some());
     if case.strength_reduction.is_some() || is_divided {
         let message = "E0445: a limit load and strength reduction cannot be combined, because both change the \
                        stiffness. Delete analysis.purpose, or the strength reduction.";
-        analysis.error(KEY, message, report);
+        analysis.purpose.error(message, report);
     }
     if let Some(named) = case.materials.iter().find(|named| follows_strain(&named.material)) {
         let message = format!(
@@ -156,7 +156,7 @@ fn refuse(case: &Case, analysis: &Record, report: &mut Report<'_>) {
              Use a model with constant parameters, or delete `purpose` (then no limit load is computed).",
             named.name
         );
-        analysis.error(KEY, message, report);
+        analysis.purpose.error(message, report);
     }
 }
 
@@ -166,7 +166,7 @@ fn follows_strain(material: &LayeredMaterial) -> bool {
 }
 
 /// Refuses motions along which no limit load is found.
-fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], report: &mut Report<'_>) {
+fn refuse_motions(case: &Case, analysis: &AnalysisTable, inside_cells: &[String], report: &mut Report<'_>) {
     if let Some(rigid) = case
         .rigid
         .iter()
@@ -177,14 +177,14 @@ fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], repor
              `rotation` and `free` of this rigid body.",
             rigid.name
         );
-        analysis.error(KEY, message, report);
+        analysis.purpose.error(message, report);
     }
     if let Some(name) = inside_cells.first() {
         let message = format!(
             "E0448: an end of `{name}` lies inside a cell, so limit loads cannot be extrapolated to finer grids. Put \
              a grid line at this end with grid.cell or [grid.knots]."
         );
-        analysis.error(KEY, message, report);
+        analysis.purpose.error(message, report);
     }
     let strips = case.footing.iter().map(|of| (of.site, &of.path));
     let strips = strips.chain(case.prescribed.iter().map(|of| (of.site, &of.path)));
@@ -193,7 +193,7 @@ fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], repor
     if paths.any(|path| path.moves() && !goes_on(path, case.analysis.end)) {
         let message = "E0449: a prescribed displacement starts late, stops or turns back, but a limit load needs \
                        one that grows from time 0 to analysis.end. Correct its path.";
-        analysis.error(KEY, message, report);
+        analysis.purpose.error(message, report);
     }
     if let Some(side) = strips
         .filter(|(_, path)| path.moves())
@@ -203,7 +203,7 @@ fn refuse_motions(case: &Case, analysis: &Record, inside_cells: &[String], repor
             "E0450: boundary `{side}` restrains the soil where a displacement is prescribed. The boundary would carry \
              the whole load, and the recorded load would be zero. Use boundary.{side} = \"free\"."
         );
-        analysis.error(KEY, message, report);
+        analysis.purpose.error(message, report);
     }
 }
 

@@ -6,8 +6,8 @@ mod faces;
 
 use crate::case::{Case, NamedMaterial};
 use crate::grid::Line;
-use crate::record::Record;
 use crate::report::{Report, brief};
+use crate::schema::Draft;
 use crate::words::C0Lines;
 use bsmpm_shapes::Edge;
 use std::collections::BTreeMap;
@@ -33,7 +33,7 @@ const NAMES: [&str; 3] = ["x", "y", "z"];
 
 /// Adds the lines to a case's grid, notes where and why, and warns of places where none can be. Returns the names of
 /// what ends inside a cell.
-pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -> Vec<String> {
+pub(super) fn place(case: &mut Case, draft: &Draft, report: &mut Report<'_>) -> Vec<String> {
     if case.grid.order == 1 {
         return Vec::new(); // Every grid line is one.
     }
@@ -44,14 +44,19 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     ends::corners(case, &mut found);
     ends::plates(case, &mut found);
     for (table, number, message) in std::mem::take(&mut found.narrow) {
-        let of = record.records(table).get(number);
+        let of = match table {
+            "footing" => draft.footing.value(),
+            "prescribed" => draft.prescribed.items().get(number),
+            _ => draft.traction.items().get(number),
+        };
         let key = if case.grid.dims() == 2 { "to" } else { "rectangle" };
         of.into_iter().for_each(|record| record.error(key, &message, report));
     }
     let lines = std::mem::take(&mut found.lines);
-    let chosen = record
-        .record("grid")
-        .and_then(|grid| grid.word("c0_lines"))
+    let chosen = draft
+        .grid
+        .value()
+        .and_then(|grid| grid.c0_lines.get())
         .unwrap_or(C0Lines::Automatic);
     // Where water flows, ground loses volume as it moves through them: they are at the ends of strips only.
     let (placed, left): (Vec<_>, Vec<_>) = lines.into_iter().partition(|(place, _)| {
@@ -62,7 +67,7 @@ pub(super) fn place(case: &mut Case, record: &Record, report: &mut Report<'_>) -
     }
     let mut crossed = own(case);
     let jumps = crossed.or(placed.first().map(|(place, _)| *place));
-    if let Some(((axis, line), name)) = jumps.zip(undrained_with_friction(case, record)) {
+    if let Some(((axis, line), name)) = jumps.zip(undrained_with_friction(case, draft)) {
         report.warn(format!(
             "W0218: the undrained strength of material.{name} depends on the mean stress, which is inaccurate at {} \
              (end of a load or interface). Limit loads can be off by 4 %. Compare model = \"tresca\".",
@@ -106,9 +111,9 @@ fn warn_of_smoothing(place: &str, reason: &str, chosen: C0Lines, report: &mut Re
 }
 
 /// Soil whose strength friction makes, and in which no water flows although it fills it.
-fn undrained_with_friction<'a>(case: &Case, record: &'a Record) -> Option<&'a str> {
+fn undrained_with_friction<'a>(case: &Case, draft: &'a Draft) -> Option<&'a str> {
     let soils = &case.flow.as_ref()?.soils;
-    for (number, ((name, of), soil)) in record.named("material").iter().zip(soils).enumerate() {
+    for (number, ((name, of), soil)) in draft.material.items().iter().zip(soils).enumerate() {
         let is_made = case.bodies.iter().any(|body| body.material == number);
         let is_undrained = soil.as_ref().is_some_and(|soil| soil.permeability.is_none());
         let has_friction = of.number("friction_angle").is_some_and(|friction| friction > 0.0);

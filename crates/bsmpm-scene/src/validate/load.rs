@@ -7,17 +7,17 @@ use super::site::{AroundStrip, places, plate, segment};
 use crate::case::{
     Body, Case, Gravity, Initial, LoadedLine, NamedMaterial, PointLoad, Push, Rigid, Shares, Site, Traction,
 };
-use crate::record::Record;
+use crate::record::{CaseTable, Field, ListRow, Record};
 use crate::report::Report;
-use crate::schema::LawName;
+use crate::schema::{Draft, InitialTable, LawName};
 use crate::words::{Geometry, Settled, Start};
 use bsmpm::material::Profile;
 use bsmpm::model::Regime;
 use bsmpm::tensor::Vector;
 
 /// All tractions in the order of the file, without those that have an error.
-pub(super) fn tractions(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<Traction> {
-    let records = root.records("traction").iter();
+pub(super) fn tractions(draft: &Draft, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<Traction> {
+    let records = draft.traction.items().iter();
     records.filter_map(|record| traction(record, around, report)).collect()
 }
 
@@ -127,8 +127,8 @@ fn push(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Op
 }
 
 /// All point loads in the order of the file, without those that have an error.
-pub(super) fn point_loads(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<PointLoad> {
-    let records = root.records("point_load").iter();
+pub(super) fn point_loads(draft: &Draft, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<PointLoad> {
+    let records = draft.point_load.items().iter();
     records
         .filter_map(|record| point_load(record, around, report))
         .collect()
@@ -234,13 +234,10 @@ fn course(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> 
 }
 
 /// Rows of what acts in time; warned of what of them the steps do not meet.
-fn in_time<'a>(
-    record: &'a Record,
-    key: &str,
-    around: AroundStrip<'_>,
-    report: &mut Report<'_>,
-) -> Option<Vec<&'a [f64]>> {
-    let rows: Vec<&[f64]> = increasing(record, key, report)?.collect();
+fn in_time(record: &Record, key: &str, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Vec<Vec<f64>>> {
+    let rows: Vec<Vec<f64>> = increasing(&record.rows_field(key), report)?
+        .map(<[f64]>::to_vec)
+        .collect();
     let path = record.path_of(key);
     warn_of_late(&path, rows.iter().map(|row| row[0]), around.end, report);
     coarse(&path, rows.iter().map(|row| row[0]), around.dt, report);
@@ -312,27 +309,22 @@ pub(super) fn not_increasing(name: &str, value: f64, before: f64) -> String {
 
 /// Rows whose first number, a time, increases; at least one.
 pub(super) fn increasing<'a>(
-    record: &'a Record,
-    key: &str,
+    key: &'a Field<Vec<ListRow>>,
     report: &mut Report<'_>,
 ) -> Option<impl Iterator<Item = &'a [f64]> + use<'a>> {
-    let rows = record.rows(key)?;
+    let rows = key.value()?;
     if rows.is_empty() {
-        record.error(key, "E0435: this list of rows is empty. Give at least one row.", report);
+        key.error("E0435: this list of rows is empty. Give at least one row.", report);
         return None;
     }
     if let Some(late) = (1..rows.len()).find(|&k| rows[k].numbers[0] <= rows[k - 1].numbers[0]) {
-        let name = match key {
+        let name = match key.name() {
             "line" => "x",
             "curve" => "the suction",
             _ => "t",
         };
         let [value, before] = [late, late - 1].map(|row| rows[row].numbers[0]);
-        report.error(
-            rows[late].origin,
-            &record.path_of(key),
-            not_increasing(name, value, before),
-        );
+        report.error(rows[late].origin, key.path(), not_increasing(name, value, before));
         return None;
     }
     Some(rows.iter().map(|row| &row.numbers[..]))
@@ -340,15 +332,15 @@ pub(super) fn increasing<'a>(
 
 /// The stress at the start, if any: the whole gravity acts from time 0 then.
 pub(super) fn initial(
-    root: &Record,
+    draft: &Draft,
     materials: Option<&[NamedMaterial]>,
     bodies: Option<&[Body]>,
     gravity: Option<&Gravity>,
     regime: Option<Regime>,
     report: &mut Report<'_>,
 ) -> Option<Initial> {
-    let record = root.record("initial");
-    let elastic = record.is_some_and(|record| record.gives("gravity"));
+    let record = draft.initial.value();
+    let elastic = record.is_some_and(|record| record.gravity.is_given());
     if record.is_none() || elastic {
         let (what, instead) = match elastic {
             true => (
@@ -357,7 +349,7 @@ pub(super) fn initial(
             ),
             false => ("the case has no [initial]", "add a table [initial]"),
         };
-        for (_, material) in root.named("material") {
+        for (_, material) in draft.material.items() {
             let key = ["k0", "ocr"]
                 .into_iter()
                 .find(|key| material.gives(key) && (*key == "k0" || is_of_k0(material)));
@@ -368,65 +360,66 @@ pub(super) fn initial(
         }
     }
     let record = record?;
-    loaded(root, record, materials, bodies, gravity, report);
+    loaded(draft, record, materials, bodies, gravity, report);
     if elastic {
-        return record.word("gravity").map(|start| match start {
+        return record.gravity.get().map(|start| match start {
             Start::Elastic => Initial::Elastic,
         });
     }
-    let dims = root.word::<Geometry>("geometry")?.dims();
+    let dims = draft.geometry.get()?.dims();
     if let Some(gravity) = gravity.filter(|of| !of.acts_down(dims, regime)) {
         let message = format!(
             "E0406: gravity.acceleration = {:?} m/s2 is not vertical, but initial stresses from k0 are in equilibrium \
              with vertical gravity only. Correct this vector, or use initial.gravity = \"elastic\".",
             &gravity.acceleration[..dims]
         );
-        root.record("gravity")?.error("acceleration", message, report);
+        draft.gravity.value()?.acceleration.error(message, report);
     }
-    at_rest(root, record, bodies?, report).map(Initial::AtRest)
+    at_rest(draft, record, bodies?, report).map(Initial::AtRest)
 }
 
 /// Rows of the ground's acceleration; none without it, or after an error. The run ends and steps by the second numbers.
 pub(super) fn shaking(
-    root: &Record,
+    draft: &Draft,
     regime: Option<Regime>,
     times: Option<(f64, f64)>,
     report: &mut Report<'_>,
 ) -> Vec<(f64, [f64; 3])> {
-    const KEY: &str = "acceleration";
-    let Some(record) = root.record("shaking") else {
+    let Some(shaking) = draft.shaking.value() else {
         return Vec::new();
     };
     if regime == Some(Regime::QuasiStatic) {
         let message = "E0414: a quasi-static analysis has no inertia, so [shaking] has no effect. Use analysis.type \
                        = \"dynamic\", or give gravity.acceleration a horizontal component (pseudo-static).";
-        report.error(record.origin, &record.path, message);
+        shaking.location().error(message, report);
     }
-    let Some(rows) = increasing(record, KEY, report) else {
+    let acceleration = &shaking.acceleration;
+    let Some(rows) = increasing(acceleration, report) else {
         return Vec::new();
     };
     let rows: Vec<(f64, [f64; 3])> = rows
         .map(|row| (row[0], [0, 1, 2].map(|axis| component(row, axis))))
         .collect();
     if rows.iter().all(|(_, ground)| *ground == [0.0; 3]) {
-        record.error(
-            KEY,
+        acceleration.error(
             "E0415: all accelerations are zero, so the ground does not shake. Delete [shaking].",
             report,
         );
         return Vec::new();
     }
     let Some((end, dt)) = times else { return rows };
-    let path = record.path_of(KEY);
-    warn_of_late(&path, rows.iter().map(|row| row.0), Some(end), report);
-    coarse(&path, rows.iter().map(|row| row.0), Some(dt), report);
+    let path = acceleration.path();
+    warn_of_late(path, rows.iter().map(|row| row.0), Some(end), report);
+    coarse(path, rows.iter().map(|row| row.0), Some(dt), report);
     rows
 }
 
 /// Whether the case starts without stress, whatever its [initial] says.
-pub(super) fn is_unloaded(root: &Record) -> bool {
-    root.record("strength_reduction")
-        .and_then(|reduction| reduction.flag("unloaded"))
+pub(super) fn is_unloaded(draft: &Draft) -> bool {
+    draft
+        .strength_reduction
+        .value()
+        .and_then(|reduction| reduction.unloaded.get())
         .unwrap_or(false)
 }
 
@@ -478,22 +471,21 @@ pub(super) fn sudden(case: &Case, report: &mut Report<'_>) {
 
 /// Gravity must act from the start, on something.
 fn loaded(
-    root: &Record,
-    record: &Record,
+    draft: &Draft,
+    record: &InitialTable,
     materials: Option<&[NamedMaterial]>,
     bodies: Option<&[Body]>,
     gravity: Option<&Gravity>,
     report: &mut Report<'_>,
 ) {
-    if !root.gives("gravity") {
-        report.error(
-            record.origin,
-            &record.path,
+    if !draft.gravity.is_given() {
+        record.location().error(
             "E0407: initial stresses follow from the weight of the soil, but the case has no gravity. Add [gravity].",
+            report,
         );
     }
-    let dims = root.word::<Geometry>("geometry").map_or(3, Geometry::dims);
-    if let (Some(gravity), Some(written)) = (gravity, root.record("gravity"))
+    let dims = draft.geometry.get().map_or(3, Geometry::dims);
+    if let (Some(gravity), Some(written)) = (gravity, draft.gravity.value())
         && gravity.ramp > 0.0
         && gravity.is_straight(dims)
     {
@@ -502,22 +494,20 @@ fn loaded(
              zero until t = {}. Delete gravity.ramp, or delete [initial].",
             gravity.ramp
         );
-        written.error("ramp", message, report);
+        written.ramp.error(message, report);
     }
     if let (Some(materials), Some(bodies)) = (materials, bodies)
         && bodies.iter().all(|body| materials[body.material].density.is_none())
     {
         let message = "E0408: initial stresses follow from the weight of the soil, but no body has weight. Give \
                        `density` or `unit_weight` in [material].";
-        report.error(record.origin, &record.path, message);
+        record.location().error(message, report);
     }
 }
 
 /// Whether the stress at the start is led to equilibrium.
-pub(super) fn settles(root: &Record) -> bool {
-    root.record("initial")
-        .and_then(|initial| initial.word::<Settled>("equilibrium"))
-        == Some(Settled::Plastic)
+pub(super) fn settles(draft: &Draft) -> bool {
+    draft.initial.value().and_then(|initial| initial.equilibrium.get()) == Some(Settled::Plastic)
 }
 
 /// Whether a material's ocr stands for its k0: not that of Cam-clay, which is of its yield surface.
@@ -553,17 +543,17 @@ fn overconsolidated(material: &Record, report: &mut Report<'_>) -> Option<f64> {
 }
 
 /// The coefficient of every material; 0 for those without that no body is made of.
-fn at_rest(root: &Record, record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<Vec<f64>> {
-    if record.gives("k0") && record.number("k0").is_none() {
+fn at_rest(draft: &Draft, record: &InitialTable, bodies: &[Body], report: &mut Report<'_>) -> Option<Vec<f64>> {
+    if record.k0.is_given() && record.k0.get().is_none() {
         return None;
     }
-    let named = root.named("material");
+    let named = draft.material.items();
     let mut found = Vec::with_capacity(named.len());
     for (number, (name, material)) in named.iter().enumerate() {
         let own = match material.gives("k0") {
             true => Some(material.number("k0")?),
             false if is_of_k0(material) => Some(overconsolidated(material, report)?),
-            false => record.number("k0"),
+            false => record.k0.get(),
         };
         if material.gives("k0") && is_of_k0(material) {
             material.error(
@@ -577,7 +567,7 @@ fn at_rest(root: &Record, record: &Record, bodies: &[Body], report: &mut Report<
                 "E0413: material `{name}` has no k0, so its initial horizontal stress is unknown. Give initial.k0, \
                  material.{name}.k0, or initial.gravity = \"elastic\"."
             );
-            report.error(record.origin, &record.path, message);
+            record.location().error(message, report);
             return None;
         }
         found.push(own.unwrap_or(0.0));

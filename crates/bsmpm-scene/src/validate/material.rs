@@ -10,7 +10,7 @@ use crate::constants::STANDARD_GRAVITY;
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
-use crate::schema::{LawName, Range};
+use crate::schema::{Draft, LawName, Range};
 use crate::words::{Geometry, Side, Word};
 use bsmpm::material::{LayeredMaterial, Profile};
 use bsmpm::model::Regime;
@@ -45,12 +45,12 @@ pub(super) struct Reduction {
 
 impl Reduction {
     /// That of the case; without the table none. Young's moduli are multiplied by a further `stiffness`.
-    pub(super) fn of(root: &Record, stiffness: f64) -> Self {
-        let table = root.record("strength_reduction");
-        let elastic = table.and_then(|table| table.flag("elastic")).unwrap_or(false);
-        let factor = reduction::at_start(root).and_then(|table| table.number("factor"));
-        let own_stiffness = table.and_then(|table| table.number("stiffness"));
-        let is_for_limit_load = limit_load::is_sought(root);
+    pub(super) fn of(draft: &Draft, stiffness: f64) -> Self {
+        let table = draft.strength_reduction.value();
+        let elastic = table.and_then(|table| table.elastic.get()).unwrap_or(false);
+        let factor = reduction::at_start(draft).and_then(|table| table.factor.get());
+        let own_stiffness = table.and_then(|table| table.stiffness.get());
+        let is_for_limit_load = limit_load::is_sought(draft);
         Self {
             factor: factor.unwrap_or(1.0),
             elastic,
@@ -61,11 +61,11 @@ impl Reduction {
 }
 
 /// All materials in the order of the file.
-pub(super) fn read_all(root: &Record, around: CaseFacts<'_>, report: &mut Report<'_>) -> Option<Vec<NamedMaterial>> {
-    let named = root.named("material");
-    if root.gives("material") && named.is_empty() {
+pub(super) fn read_all(draft: &Draft, around: CaseFacts<'_>, report: &mut Report<'_>) -> Option<Vec<NamedMaterial>> {
+    let named = draft.material.items();
+    if draft.material.is_given() && named.is_empty() {
         let message = "E0301: the case has no material. Add a table [material.NAME] for each soil.";
-        root.consequence("material", message, &["material"], report);
+        draft.material.consequence(message, &["material"], report);
     }
     if named.len() > MOST {
         let message = format!(
@@ -73,7 +73,7 @@ pub(super) fn read_all(root: &Record, around: CaseFacts<'_>, report: &mut Report
              parameters.",
             named.len()
         );
-        root.error("material", message, report);
+        draft.material.error(message, report);
         return None;
     }
     let read = named
@@ -82,22 +82,23 @@ pub(super) fn read_all(root: &Record, around: CaseFacts<'_>, report: &mut Report
         .map(|(number, (name, record))| read(number, name, record, around, report));
     let read: Vec<_> = read.collect();
     let materials = read.into_iter().collect::<Option<Vec<_>>>()?;
-    let is_limited = has_friction(root) || materials.iter().any(|named| named.material.yields());
-    if root.gives("strength_reduction") && !around.reduction.elastic && !is_limited {
+    let is_limited = has_friction(draft) || materials.iter().any(|named| named.material.yields());
+    if draft.strength_reduction.is_given() && !around.reduction.elastic && !is_limited {
         report.warn(reduction::without_strength("strength_reduction"));
     }
     Some(materials)
 }
 
 /// Whether a face of the grid, a rigid body or a strip has friction, by what is written of it.
-fn has_friction(root: &Record) -> bool {
-    let faces = root.record("boundary");
+fn has_friction(draft: &Draft) -> bool {
+    let faces = draft.boundary.value();
     let mut sides = Side::ALL.as_flattened().iter();
-    let mut bodies = root
-        .records("rigid")
+    let mut bodies = draft
+        .rigid
+        .items()
         .iter()
-        .chain(root.records("prescribed"))
-        .chain(root.record("footing"));
+        .chain(draft.prescribed.items())
+        .chain(draft.footing.value());
     sides.any(|side| faces.is_some_and(|faces| faces.record(side.word()).is_some())) || bodies.any(is_frictional)
 }
 

@@ -3,8 +3,8 @@
 
 use super::place::is_in;
 use crate::case::{ActiveLoads, Case};
-use crate::record::Record;
 use crate::report::{Report, brief};
+use crate::schema::Draft;
 use crate::surfaces::transition::{ROUNDING, apart_at_corner, holds_all, meet};
 use crate::surfaces::{self, name_of_strip};
 use crate::words::Geometry;
@@ -55,7 +55,7 @@ enum Other {
 
 /// Refuses motions that contradict each other where the rule for strips that meet does not cover them; notes those that
 /// it covers.
-pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     let mut known = Vec::new();
     for t in std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at)) {
         let meetings = match case.geometry {
@@ -71,7 +71,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
                 Other::Rigid(number) => (meeting.strip, format!("rigid.{number}")),
             };
             if !known.contains(&pair) {
-                judge(case, root, &meeting, &pair.1, report);
+                judge(case, draft, &meeting, &pair.1, report);
                 known.push(pair);
             }
         }
@@ -79,11 +79,11 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
 }
 
 /// Refuses a meeting, or notes it and warns of it.
-fn judge(case: &Case, root: &Record, meeting: &StripMeeting, other: &str, report: &mut Report<'_>) {
+fn judge(case: &Case, draft: &Draft, meeting: &StripMeeting, other: &str, report: &mut Report<'_>) {
     let name = name_of_strip(case, meeting.strip);
     let record = match meeting.strip.checked_sub(usize::from(case.footing.is_some())) {
-        None => root.record("footing"),
-        Some(number) => root.records("prescribed").get(number),
+        None => draft.footing.value(),
+        Some(number) => draft.prescribed.items().get(number),
     };
     let Some(record) = record else { return };
     match meeting.other {

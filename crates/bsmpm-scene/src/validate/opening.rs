@@ -2,15 +2,15 @@
 
 use crate::case::{Case, NarrowestOpening};
 use crate::openings::{self, BodyOpening, GridFaces};
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::words::Geometry;
 
 /// Part of the shortest cell by which the cell at a wall is looked for within the body.
 const WITHIN: f64 = 1e-3;
 
 /// Finds the opening of the bodies that has the fewest cells across, and warns of every one that has too few.
-pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
+pub(super) fn check(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
     let corners = [case.grid.lower(), case.grid.upper()];
     let faces = GridFaces {
         corners,
@@ -18,13 +18,13 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         dims: case.grid.dims(),
     };
     let all = match case.geometry {
-        Geometry::Solid => openings::in_space(case, root, &faces),
-        Geometry::PlaneStrain | Geometry::Axisymmetric => openings::in_plane(root, &faces),
+        Geometry::Solid => openings::in_space(case, draft, &faces),
+        Geometry::PlaneStrain | Geometry::Axisymmetric => openings::in_plane(draft, &faces),
     };
     let mut narrowest: Option<NarrowestOpening> = None;
     for opening in &all {
         let found = NarrowestOpening {
-            path: path(root, opening),
+            path: path(draft, opening),
             width: opening.opening.width,
             cells: cells(case, &faces, opening),
             least: NarrowestOpening::enough(case.bodies[opening.body].points_per_cell),
@@ -50,8 +50,8 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
 }
 
 /// The keys of what an opening is of.
-fn path(root: &Record, opening: &BodyOpening) -> String {
-    let body = &root.records("body")[opening.body];
+fn path(draft: &Draft, opening: &BodyOpening) -> String {
+    let body = &draft.body.items()[opening.body];
     match opening.cut {
         Some(cut) => body.records("subtract")[cut].path.clone(),
         None => body.path_of(super::shape::key(body)),

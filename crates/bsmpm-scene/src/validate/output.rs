@@ -1,61 +1,49 @@
 //! Validates the output of frames, residuals and checkpoints.
 
 use crate::case::{Checkpoint, Every, Format, Output};
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::{CheckpointTable, Draft, OutputTable};
 
 /// What is wanted; nothing without the table.
-pub(super) fn read(root: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Output> {
-    if !root.gives("output") {
+pub(super) fn read(draft: &Draft, end: Option<f64>, report: &mut Report<'_>) -> Option<Output> {
+    if !draft.output.is_given() {
         return Some(nothing());
     }
-    let output = root.record("output")?;
-    let every = match (output.gives("every"), output.gives("every_steps")) {
-        (true, _) => Some(Every::Time(output.number("every")?)),
-        (_, true) => Some(Every::Steps(output.count("every_steps")?)),
+    let output = draft.output.value()?;
+    let every = match (output.every.is_given(), output.every_steps.is_given()) {
+        (true, _) => Some(Every::Time(output.every.get()?)),
+        (_, true) => Some(Every::Steps(output.every_steps.get()?)),
         _ => None,
     };
     if let (Some(Every::Time(every)), Some(end)) = (every, end) {
         check_interval(output, every, end, report);
     }
-    let mut times = if output.gives("times") {
-        output.numbers("times")?.to_vec()
-    } else {
-        Vec::new()
-    };
+    let mut times = output.times.list()?.to_vec();
     if let Some(late) = times.iter().find(|time| end.is_some_and(|end| **time > end)) {
-        output.error("times", super::history::after_the_end(*late), report);
+        output.times.error(super::history::after_the_end(*late), report);
         return None;
     }
     times.sort_by(f64::total_cmp);
     times.dedup();
-    let checkpoint = if output.gives("checkpoint") {
-        checkpoint(output.record("checkpoint")?)?
+    let checkpoint = if output.checkpoint.is_given() {
+        checkpoint(output.checkpoint.value()?)?
     } else {
         Checkpoint::default()
     };
     Some(Output {
         every,
         times,
-        format: output.word("format")?,
-        residuals: output.flag("residuals")?,
-        projected_pressure: output.flag("projected_pressure")?,
-        fields: if output.gives("fields") {
-            output.choices("fields")?
-        } else {
-            Vec::new()
-        },
-        accept: if output.gives("accept") {
-            output.choices("accept")?
-        } else {
-            Vec::new()
-        },
+        format: output.format.get()?,
+        residuals: output.residuals.get()?,
+        projected_pressure: output.projected_pressure.get()?,
+        fields: output.fields.list()?.to_vec(),
+        accept: output.accept.list()?.to_vec(),
         checkpoint,
     })
 }
 
 /// Warns of an interval of frames that is longer than the run until `end`, and refuses one that is far too short.
-fn check_interval(output: &Record, every: f64, end: f64, report: &mut Report<'_>) {
+fn check_interval(output: &OutputTable, every: f64, end: f64, report: &mut Report<'_>) {
     if every > end {
         report.warn(format!(
             "W0661: output.every: the interval of {every} is longer than the run of {end}, so only the first and \
@@ -68,7 +56,7 @@ fn check_interval(output: &Record, every: f64, end: f64, report: &mut Report<'_>
             end / every,
             super::MOST_STEPS
         );
-        output.error("every", message, report);
+        output.every.error(message, report);
     }
 }
 
@@ -85,16 +73,11 @@ fn nothing() -> Output {
     }
 }
 
-fn checkpoint(table: &Record) -> Option<Checkpoint> {
-    let every_steps = if table.gives("every_steps") {
-        Some(table.count("every_steps")?)
-    } else {
-        None
-    };
+fn checkpoint(table: &CheckpointTable) -> Option<Checkpoint> {
     Some(Checkpoint {
-        wall: table.number("wall")?,
-        every_steps,
-        keep: table.count("keep")?,
+        wall: table.wall.get()?,
+        every_steps: table.every_steps.if_given()?,
+        keep: table.keep.get()?,
         at_end: true,
     })
 }

@@ -7,8 +7,8 @@ use super::strip::{moves, with_body};
 use crate::case::{ActiveLoads, Base, Body, Case, Geometry, Initial, Site, Support};
 use crate::constants::NEARLY_INCOMPRESSIBLE;
 use crate::observables::{HistorySubject, Observable};
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::words::{AnalysisType, Side, Word};
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;
@@ -25,31 +25,31 @@ pub(super) const ALONG: f64 = 1e-9;
 const LEVEL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Errors and warnings about a case that is valid in its parts.
-pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
+pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     if case.analysis.regime == Regime::QuasiStatic {
-        held(case, record, report);
+        held(case, draft, report);
     }
-    absorbed(case, record, report);
+    absorbed(case, draft, report);
     shaken(case, report);
     thrown_back(case, report);
-    too_soon(case, record, report);
-    stressed(case, record, report);
-    timed(case, record, report);
+    too_soon(case, draft, report);
+    stressed(case, draft, report);
+    timed(case, draft, report);
     warn_of_materials(case, report);
-    if case.stabilisation == Stabilisation::None && !record.gives("stabilisation") {
+    if case.stabilisation == Stabilisation::None && !draft.stabilisation.is_given() {
         warn_of_locking(case, report);
     }
 }
 
 /// Times that lie so near to the start that no step ends there.
-fn too_soon(case: &Case, record: &Record, report: &mut Report<'_>) {
+fn too_soon(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     let least = 1e-6 * case.analysis.dt;
-    if let (Some(time), Some(output)) = (case.output.times.first(), record.record("output"))
+    if let (Some(time), Some(output)) = (case.output.times.first(), draft.output.value())
         && *time <= least
     {
-        output.error("times", too_close_to_start(*time, least), report);
+        output.times.error(too_close_to_start(*time, least), report);
     }
-    for (check, record) in case.checks.iter().zip(record.records("check")) {
+    for (check, record) in case.checks.iter().zip(draft.check.items()) {
         if check.at <= least {
             record.error("at", too_close_to_start(check.at, least), report);
         }
@@ -65,8 +65,8 @@ fn too_close_to_start(time: f64, least: f64) -> String {
 }
 
 /// Material that has no state without stress begins with one, and the weight above it gives that.
-fn stressed(case: &Case, record: &Record, report: &mut Report<'_>) {
-    for (number, (name, written)) in record.named("material").iter().enumerate() {
+fn stressed(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    for (number, (name, written)) in draft.material.items().iter().enumerate() {
         let named = &case.materials[number];
         let is_made = case.bodies.iter().any(|body| body.material == number);
         if named.material.is_linear() || !is_made {
@@ -90,8 +90,8 @@ fn stressed(case: &Case, record: &Record, report: &mut Report<'_>) {
 const DIGITS: f64 = 5e-14;
 
 /// A rate needs real time, which a quasi-static analysis does not have.
-fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
-    let named = case.materials.iter().zip(record.named("material")).enumerate();
+fn timed(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    let named = case.materials.iter().zip(draft.material.items()).enumerate();
     for (_, (named, (_, written))) in named.filter(|(number, _)| case.is_followed(*number)) {
         let kind = case.analysis.kind;
         let is_of_clay = written.gives("rate_parameter");
@@ -130,7 +130,7 @@ fn timed(case: &Case, record: &Record, report: &mut Report<'_>) {
 }
 
 /// A quasi-static body that nothing holds against a translation has no equilibrium: the stiffness is singular.
-fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
+fn held(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     let free: Vec<&str> = (0..case.grid.dims())
         .filter(|&axis| !holds(case, axis))
         .map(|axis| ["x", "y", "z"][axis])
@@ -156,12 +156,12 @@ fn held(case: &Case, record: &Record, report: &mut Report<'_>) {
         "E0270: no support restrains the bodies along {}, so a quasi-static analysis has no solution. {remedy}",
         free.join(" and ")
     );
-    report.error(record.place("boundary"), "boundary", message);
+    report.error(draft.boundary.origin(), "boundary", message);
 }
 
 /// Faces that absorb hold nothing but what `[initial]` has found there; beside ground that shakes they would hold back.
-fn absorbed(case: &Case, record: &Record, report: &mut Report<'_>) {
-    let Some(boundary) = record.record("boundary") else {
+fn absorbed(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    let Some(boundary) = draft.boundary.value() else {
         return;
     };
     for (axis, upper) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
@@ -267,7 +267,7 @@ fn absorbs(case: &Case, axis: usize, upper: bool) -> bool {
 
 /// Finds what lies on the ground at the start: the footing, and what material comes off, have no part in an equilibrium
 /// without motion, in which the ground would hang from them. What else is prescribed may be what a body hangs from.
-pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
+pub(super) fn rest(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
     let Some(down) = case.gravity.as_ref().map(|gravity| Vector::from(gravity.acceleration)) else {
         return;
     };
@@ -291,7 +291,7 @@ pub(super) fn rest(case: &mut Case, root: &Record, report: &mut Report<'_>) {
              else supports the ground. Fix a side, or activate the footing in a [[stage]].",
         );
     }
-    for (number, (record, lies)) in root.records("prescribed").iter().zip(prescribed).enumerate() {
+    for (number, (record, lies)) in draft.prescribed.items().iter().zip(prescribed).enumerate() {
         let lifts = case.prescribed[number].contact.is_some_and(|contact| contact.law.lifts);
         case.prescribed[number].rests = lies && lifts;
         let strip = ActiveLoads::Strip(number + usize::from(case.footing.is_some()));
@@ -366,7 +366,7 @@ fn strip_holds(case: &Case, base: Base, site: Site, component: usize) -> bool {
 
 /// Chooses the velocities near fixed faces of material that flows, where they are not given, and recommends a measure
 /// of its run-out. With the points' own velocities and lumped mass the front runs out a third too far.
-pub(super) fn walls(case: &mut Case, record: &Record, report: &mut Report<'_>) {
+pub(super) fn walls(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
     let mut named = case.materials.iter().enumerate();
     let flows = named.any(|(number, named)| {
         matches!(named.material, LayeredMaterial::Uniform(Material::MuI(_))) && case.is_followed(number)
@@ -384,9 +384,10 @@ pub(super) fn walls(case: &mut Case, record: &Record, report: &mut Report<'_>) {
                       percentile = 99 is more accurate";
         report.note("history", Observable::Front.word(), reason);
     }
-    let given = record
-        .record("analysis")
-        .is_some_and(|analysis| analysis.gives("wall_velocity"));
+    let given = draft
+        .analysis
+        .value()
+        .is_some_and(|analysis| analysis.wall_velocity.is_given());
     if given || case.analysis.mass != MassMatrix::Lumped {
         return;
     }

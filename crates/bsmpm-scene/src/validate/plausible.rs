@@ -7,23 +7,23 @@ mod support;
 mod value;
 
 use crate::case::Case;
-use crate::record::Record;
 use crate::report::{Report, brief};
+use crate::schema::Draft;
 
 /// Warns of what is possible, but probably not meant.
-pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     let scale = Scale::of(case);
-    for (number, (_, material)) in root.named("material").iter().enumerate() {
+    for (number, (_, material)) in draft.material.items().iter().enumerate() {
         if case.is_followed(number) {
             value::material(material, &scale, report);
         }
     }
-    value::loads(root, &scale, report);
+    value::loads(draft, &scale, report);
     direction::gravity(case, report);
-    place::bodies(case, root, report);
-    place::histories(case, root, report);
-    support::bodies(case, root, report);
-    slope::bodies(case, root, report);
+    place::bodies(case, draft, report);
+    place::histories(case, draft, report);
+    support::bodies(case, draft, report);
+    slope::bodies(case, draft, report);
 }
 
 /// What the stresses of a case are like.

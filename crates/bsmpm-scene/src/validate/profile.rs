@@ -6,7 +6,7 @@ use crate::grid::GridSpec;
 use crate::observables::ProfileQuantity;
 use crate::record::Record;
 use crate::report::Report;
-use crate::words::Geometry;
+use crate::schema::Draft;
 use bsmpm::model::Regime;
 
 /// Profiles at most, each a file.
@@ -14,20 +14,20 @@ const MOST: usize = 100;
 
 /// All profiles in the order of the file, without those that have an error.
 pub(super) fn read_all(
-    root: &Record,
+    draft: &Draft,
     regime: Option<Regime>,
     grid: Option<&GridSpec>,
     end: Option<f64>,
     report: &mut Report<'_>,
 ) -> Vec<Profile> {
-    let records = root.records("profile");
+    let records = draft.profile.items();
     if records.len() > MOST {
-        root.error("profile", history::too_many(records.len(), MOST), report);
+        draft.profile.error(history::too_many(records.len(), MOST), report);
         return Vec::new();
     }
     let mut profiles: Vec<Profile> = Vec::new();
     for record in records {
-        let Some(profile) = read(root, record, regime, grid, end, report) else {
+        let Some(profile) = read(draft, record, regime, grid, end, report) else {
             continue;
         };
         // Some file systems do not distinguish upper and lower case.
@@ -48,7 +48,7 @@ pub(super) fn read_all(
 }
 
 fn read(
-    root: &Record,
+    draft: &Draft,
     record: &Record,
     regime: Option<Regime>,
     grid: Option<&GridSpec>,
@@ -67,7 +67,7 @@ fn read(
     if regime == Some(Regime::QuasiStatic) && quantities.contains(&ProfileQuantity::Velocity) {
         record.error("quantities", history::needs_dynamics("velocity"), report);
     }
-    if quantities.contains(&ProfileQuantity::ExcessPressure) && !super::flow::flows(root) {
+    if quantities.contains(&ProfileQuantity::ExcessPressure) && !super::flow::flows(draft) {
         record.error("quantities", history::needs_flow("excess-pressure"), report);
     }
     let mut times = if record.gives("times") {
@@ -88,7 +88,7 @@ fn read(
     times.dedup();
     Some(Profile {
         name: record.text("name")?.to_owned(),
-        dims: root.word::<Geometry>("geometry")?.dims(),
+        dims: draft.geometry.get()?.dims(),
         ends: ends?,
         count: record.count("count")? as usize,
         quantities,

@@ -3,13 +3,14 @@
 use crate::case::{Case, Support};
 use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::words::{Side, Word};
 
 const KEY: &str = "ru";
 
 /// What only the whole case shows.
-pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
-    let mut named = root.named("material").iter().zip(&case.materials);
+pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    let mut named = draft.material.items().iter().zip(&case.materials);
     let Some(((_, material), _)) = named.find(|(_, of)| of.ratio > 0.0) else {
         return;
     };
@@ -21,7 +22,7 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         ));
         return;
     }
-    if root.gives("water") || case.flow.is_some() {
+    if draft.water.is_given() || case.flow.is_some() {
         let message = if case.flow.is_some() {
             "E0320: this case computes the pore pressure from the flow of water, so `ru` would define the pore \
              pressure twice. Remove `ru`, or remove `drainage` from all materials."

@@ -5,8 +5,9 @@ use crate::case::{
 };
 use crate::nearest::unknown_name;
 use crate::observables::{HistorySubject, Observable};
-use crate::record::Record;
+use crate::record::KeyPlace;
 use crate::report::Report;
+use crate::schema::{Draft, ReductionTable};
 use crate::words::Failure;
 use bsmpm::field::pore_water::flow::Motion;
 use bsmpm::model::Regime;
@@ -17,17 +18,12 @@ use bsmpm::tensor::Vector;
 const APART: f64 = 1e-6;
 
 /// The table, if strength is divided from the start on.
-pub(super) fn at_start(root: &Record) -> Option<&Record> {
-    root.record("strength_reduction").filter(|table| !table.gives("stage"))
+pub(super) fn at_start(draft: &Draft) -> Option<&ReductionTable> {
+    draft.strength_reduction.value().filter(|table| !table.stage.is_given())
 }
 
 /// What is there at one of the `times` has strength that can be divided under the stress that it has.
-pub(super) fn divisible(case: &Case, times: &[f64], record: &Record, report: &mut Report<'_>) {
-    let key = if record.gives("strength_reduction") {
-        "strength_reduction"
-    } else {
-        "stage"
-    };
+pub(super) fn divisible(case: &Case, times: &[f64], key: &KeyPlace, report: &mut Report<'_>) {
     let followed: Vec<NamedMaterial> = times.iter().flat_map(|t| case.followed_at(*t)).collect();
     if let Some(named) = followed.iter().find(|named| !named.material.is_linear()) {
         let message = format!(
@@ -35,10 +31,10 @@ pub(super) fn divisible(case: &Case, times: &[f64], record: &Record, report: &mu
              Use [strength_reduction] without `stage`.",
             named.name
         );
-        record.error(key, message, report);
+        key.error(message, report);
     }
     if !times.iter().any(|t| case.has_friction_at(*t)) && !followed.iter().any(|named| named.material.yields()) {
-        report.warn(without_strength(&record.path_of(key)));
+        report.warn(without_strength(key.path()));
     }
 }
 
@@ -51,43 +47,47 @@ pub(super) fn without_strength(path: &str) -> String {
 }
 
 /// Ends the case with the reduction at the end of the stage that `[strength_reduction]` names, if it does.
-pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) {
-    let Some(table) = root.record("strength_reduction") else {
+pub(super) fn at_stage(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
+    let Some(table) = draft.strength_reduction.value() else {
         return;
     };
-    if !table.gives("stage") {
-        let of_stage = ["steps", "drainage"].into_iter().filter(|key| table.gives(key));
+    if !table.stage.is_given() {
         let message = "E0631: this key applies to a strength reduction at the end of a stage, but `stage` is not \
              given. Remove this key, or add `stage`.";
-        of_stage.for_each(|key| table.error(key, message, report));
+        if table.steps.is_given() {
+            table.steps.error(message, report);
+        }
+        if table.drainage.is_given() {
+            table.drainage.error(message, report);
+        }
         return;
     }
-    let Some(name) = table.text("stage") else { return };
-    let Some(factor) = table.number("factor") else { return };
-    let Some(steps) = table.count("steps") else { return };
-    let Some(unloaded) = table.flag("unloaded") else { return };
+    let Some(name) = table.stage.text() else { return };
+    let Some(factor) = table.factor.get() else { return };
+    let Some(steps) = table.steps.get() else { return };
+    let Some(unloaded) = table.unloaded.get() else { return };
     if case.analysis.regime == Regime::Dynamic {
         let message = "E0632: [strength_reduction] with `stage` needs a quasi-static analysis, but this analysis is \
                        dynamic. Set `strength_reduction` in a [[stage]] instead.";
-        table.error("stage", message, report);
+        table.stage.error(message, report);
     }
     let Some(until) = case.end_of_stage(name) else {
         let names = case.stages.iter().filter_map(|stage| stage.name.as_deref());
-        table.error("stage", unknown_name("[[stage]]", name, names), report);
+        table.stage.error(unknown_name("[[stage]]", name, names), report);
         return;
     };
     if until == 0.0 && case.initial.is_none() && !unloaded {
         let message = "E0634: the strength is to be reduced at the start, but the ground has no stress then, so it \
              cannot fail at any strength. Add [initial], or use stage = \"end\".";
-        table.error("stage", message, report);
+        table.stage.error(message, report);
         return;
     }
     if let Some(number) = case.stages.iter().position(|stage| stage.strength_reduction.is_some()) {
         let message =
             format!("E0635: the strength is already reduced by stage.{number}. Remove one of the two reductions.");
-        table.error("stage", message, report);
+        table.stage.error(message, report);
     }
-    divisible(case, &[case.just_before(until)], table, report);
+    divisible(case, &[case.just_before(until)], &table.stage, report);
     rest(case, table, unloaded, report);
     if !case.checks.is_empty() {
         report.note(
@@ -110,30 +110,30 @@ pub(super) fn at_stage(case: &mut Case, root: &Record, report: &mut Report<'_>) 
 }
 
 /// Refuses loads and motions that still change at the time `until`.
-fn refuse_changes(case: &Case, until: f64, table: &Record, report: &mut Report<'_>) {
+fn refuse_changes(case: &Case, until: f64, table: &ReductionTable, report: &mut Report<'_>) {
     if case.still_grows(until) {
         let message = "E0636: a load still changes when this stage ends, and would go on changing during the \
                        strength reduction. End its `ramp` or `amplitude` before the stage ends.";
-        table.error("stage", message, report);
+        table.stage.error(message, report);
     }
     if case.still_moves(until) {
         let message = "E0636: a footing or prescribed motion still moves when this stage ends, and would go on \
                        moving during the strength reduction. End its `path` before the stage ends.";
-        table.error("stage", message, report);
+        table.stage.error(message, report);
     }
 }
 
 /// What water that flows until then does; and what only ground in which none flows can have.
-fn rest(case: &mut Case, table: &Record, unloaded: bool, report: &mut Report<'_>) {
+fn rest(case: &mut Case, table: &ReductionTable, unloaded: bool, report: &mut Report<'_>) {
     let made: Vec<bool> = (0..case.materials.len())
         .map(|number| case.is_followed(number))
         .collect();
     let Some(flow) = &mut case.flow else {
-        if table.word("drainage") == Some(Failure::Undrained) {
+        if table.drainage.get() == Some(Failure::Undrained) {
             let message = "E0637: drainage = \"undrained\" acts on pore water during failure, but no material has \
                  drainage = \"coupled\" or \"undrained\". Remove this key, or set drainage = \"undrained\" in a \
                  material.";
-            table.error("drainage", message, report);
+            table.drainage.error(message, report);
         }
         return;
     };
@@ -145,19 +145,20 @@ fn rest(case: &mut Case, table: &Record, unloaded: bool, report: &mut Report<'_>
         .filter_map(|(soil, _)| soil.as_ref());
     let stays = soils.all(|soil| soil.permeability.is_none());
     let failure = table
-        .word("drainage")
+        .drainage
+        .get()
         .unwrap_or(if stays { Failure::Undrained } else { Failure::Drained });
     if failure == Failure::Undrained {
         flow.at_rest = Motion::Undrained;
     }
-    let changed = [
-        ("elastic", table.flag("elastic") == Some(true)),
-        ("stiffness", table.number("stiffness") != Some(1.0)),
+    let changed: [(&KeyPlace, bool); 2] = [
+        (&table.elastic, table.elastic.get() == Some(true)),
+        (&table.stiffness, table.stiffness.get() != Some(1.0)),
     ];
     for (key, _) in changed.into_iter().filter(|(_, changed)| *changed && !unloaded) {
         let message = "E0638: this key changes the stiffness in all steps, also in the consolidation before the \
              strength reduction, which would be wrong. Remove it, or set unloaded = true (start without stress).";
-        table.error(key, message, report);
+        key.error(message, report);
     }
 }
 

@@ -11,6 +11,7 @@ use super::{MOST_SHOWN_FRICTION, NO_INERTIA, load, place, shape};
 use crate::case::{ActiveLoads, Body, Case, Initial, MotionPath, Rigid, RigidShape, Stage, Support};
 use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::surfaces;
 use crate::words::{Geometry, RigidMotion, Word};
 use bsmpm::interactions::rigid::{Outline, Sizes};
@@ -27,15 +28,15 @@ const ADVANCE: f64 = 0.5;
 /// All rigid bodies in the order of the file, without those that have an error; their friction divided by the `factor`
 /// of the strength.
 pub(super) fn read_all(
-    root: &Record,
+    draft: &Draft,
     around: AroundStrip<'_>,
     regime: Option<Regime>,
     factor: Option<f64>,
     report: &mut Report<'_>,
 ) -> Vec<Rigid> {
     let mut found: Vec<Rigid> = Vec::new();
-    let geometry = root.word::<Geometry>("geometry").unwrap_or(Geometry::PlaneStrain);
-    for record in root.records("rigid") {
+    let geometry = draft.geometry.get().unwrap_or(Geometry::PlaneStrain);
+    for record in draft.rigid.items() {
         let Some(rigid) = read(record, geometry, around, regime, factor, report) else {
             continue;
         };
@@ -167,7 +168,7 @@ fn rotation(record: &Record, report: &mut Report<'_>) -> Option<Vec<(f64, f64)>>
     if !record.gives("rotation") {
         return Some(Vec::new());
     }
-    let rows: Vec<(f64, f64)> = load::increasing(record, "rotation", report)?
+    let rows: Vec<(f64, f64)> = load::increasing(&record.rows_field("rotation"), report)?
         .map(|row| (row[0], row[1].to_radians()))
         .collect();
     if rows[0].0 == 0.0 && rows[0].1 != 0.0 {
@@ -396,8 +397,8 @@ pub(super) fn has_moved(rigid: &Rigid, t: f64) -> bool {
 }
 
 /// What the rest of the case says to rigid bodies.
-pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
-    for (number, (rigid, record)) in case.rigid.iter().zip(root.records("rigid")).enumerate() {
+pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    for (number, (rigid, record)) in case.rigid.iter().zip(draft.rigid.items()).enumerate() {
         if rigid.velocity != [0.0; 3] && case.acts_since(ActiveLoads::Rigid(number), 0.0).is_none() {
             let key = if record.gives("start_velocity") {
                 "start_velocity"

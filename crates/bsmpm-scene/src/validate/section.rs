@@ -3,8 +3,8 @@
 use super::{place, stage};
 use crate::case::{Case, RigidShape, RigidSolid};
 use crate::observables::HistorySubject;
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use bsmpm::tensor::Vector;
 
 /// Places along a section at which material is looked for, from one end of its lines to the other.
@@ -120,13 +120,13 @@ struct Beside {
 }
 
 /// Warns of section forces that have a part of the force of a strip, a rigid body or a load.
-pub(super) fn warn_of_neighbours(case: &Case, root: &Record, report: &mut Report<'_>) {
-    for (history, record) in case.histories.iter().zip(root.records("history")) {
+pub(super) fn warn_of_neighbours(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    for (history, record) in case.histories.iter().zip(draft.history.items()) {
         let HistorySubject::Section { lines, .. } = &history.quantity.subject else {
             continue;
         };
         let Some(cut) = Cut::of(case, lines) else { continue };
-        let acting = stage::surfaces(case, root)
+        let acting = stage::surfaces(case, draft)
             .into_iter()
             .map(|(_, of, _, places)| (of.path.clone(), places));
         let acting = acting.chain((0..case.rigid.len()).map(|k| (format!("rigid.{k}"), outline(case, k))));

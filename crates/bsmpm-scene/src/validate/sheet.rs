@@ -168,7 +168,7 @@ fn inside(grid: &GridSpec, triangle: Triangle) -> Vec<Triangle> {
 /// Whether triangles hang together by their edges and turn alike.
 fn in_one_piece(all: &[Triangle]) -> Result<(), String> {
     let mut piece: Vec<usize> = (0..all.len()).collect();
-    fn root(piece: &mut [usize], mut of: usize) -> usize {
+    fn draft(piece: &mut [usize], mut of: usize) -> usize {
         while piece[of] != of {
             piece[of] = piece[piece[of]];
             of = piece[of];
@@ -191,7 +191,7 @@ fn in_one_piece(all: &[Triangle]) -> Result<(), String> {
                      sides of the surface. Make the normals consistent with a mesh tool."
                 ));
             }
-            let [one, other] = [one.triangle, other.triangle].map(|of| root(&mut piece, of));
+            let [one, other] = [one.triangle, other.triangle].map(|of| draft(&mut piece, of));
             piece[one] = other;
         }
     }

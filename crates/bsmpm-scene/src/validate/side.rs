@@ -5,8 +5,8 @@ use super::sheet::middle;
 use super::site::places;
 use crate::case::{ActiveLoads, Body, Case, LoadedLine, Push, Site};
 use crate::grid::GridSpec;
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::surfaces::normal_of;
 
 /// One in so many pieces of a curved surface may have a body on the wrong side: in a corner, or over its edge.
@@ -67,8 +67,8 @@ fn is_in_space(bodies: &[&Body], at: [f64; 3]) -> bool {
 }
 
 /// Finds on which side of every pressure bodies lie: the same of all that are there at any time at which it acts.
-pub(super) fn of_pressures(case: &mut Case, root: &Record, report: &mut Report<'_>) {
-    for (number, record) in root.records("traction").iter().enumerate() {
+pub(super) fn of_pressures(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
+    for (number, record) in draft.traction.items().iter().enumerate() {
         let traction = &case.tractions[number];
         let Push::Pressure { profile, .. } = traction.push else {
             continue;

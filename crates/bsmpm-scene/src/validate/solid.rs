@@ -4,6 +4,7 @@ use crate::case::{Case, FaceSupport, Support};
 use crate::observables::{Aspect, Observable};
 use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::words::{Geometry, LinearSolver, Side, Word};
 use bsmpm::stabilisation::Stabilisation;
 
@@ -11,14 +12,14 @@ use bsmpm::stabilisation::Stabilisation;
 const MANY: u64 = 30_000;
 
 /// Errors about keys that the case's geometry has not.
-pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
-    let Some(geometry) = root.word::<Geometry>("geometry") else {
+pub(super) fn refuse(draft: &Draft, report: &mut Report<'_>) {
+    let Some(geometry) = draft.geometry.get() else {
         return;
     };
     if geometry != Geometry::Solid {
-        return in_space(root, report);
+        return in_space(draft, report);
     }
-    for drain in root.records("drain").iter().chain(root.records("inflow")) {
+    for drain in draft.drain.items().iter().chain(draft.inflow.items()) {
         for key in ["from", "to", "circle", "surface"]
             .into_iter()
             .filter(|key| drain.gives(key))
@@ -28,21 +29,21 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
             drain.error(key, message, report);
         }
     }
-    for traction in root.records("traction") {
+    for traction in draft.traction.items() {
         for key in ["from", "to", "circle"].into_iter().filter(|key| traction.gives(key)) {
             let message = "E0225: this key is available in 2-D only, and the case is 3-D. Use rectangle = { lower, \
                            upper }, `disc`, `sphere` or `surface`.";
             traction.error(key, message, report);
         }
     }
-    for strip in root.records("footing").iter().chain(root.records("prescribed")) {
+    for strip in draft.footing.value().into_iter().chain(draft.prescribed.items()) {
         for key in ["from", "to"].into_iter().filter(|key| strip.gives(key)) {
             let message = "E0225: this key is available in 2-D only, and the case is 3-D. Use rectangle = { lower, \
                            upper } or `disc`.";
             strip.error(key, message, report);
         }
     }
-    for history in root.records("history") {
+    for history in draft.history.items() {
         if let Some(quantity) = history
             .word::<Observable>("quantity")
             .filter(|of| of.has(Aspect::PlaneOnly))
@@ -60,10 +61,10 @@ pub(super) fn refuse(root: &Record, report: &mut Report<'_>) {
 }
 
 /// Of a plane what only a solid has.
-fn in_space(root: &Record, report: &mut Report<'_>) {
-    let strips = root.records("footing").iter().chain(root.records("prescribed"));
-    let strips = strips.chain(root.records("drain")).chain(root.records("inflow"));
-    for flat in root.records("traction").iter().chain(strips) {
+fn in_space(draft: &Draft, report: &mut Report<'_>) {
+    let strips = draft.footing.value().into_iter().chain(draft.prescribed.items());
+    let strips = strips.chain(draft.drain.items()).chain(draft.inflow.items());
+    for flat in draft.traction.items().iter().chain(strips) {
         for key in ["rectangle", "disc"].into_iter().filter(|key| flat.gives(key)) {
             flat.error(
                 key,
@@ -72,7 +73,7 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
             );
         }
     }
-    for traction in root.records("traction") {
+    for traction in draft.traction.items() {
         for key in ["sphere", "surface"].into_iter().filter(|key| traction.gives(key)) {
             traction.error(
                 key,
@@ -81,11 +82,8 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
             );
         }
     }
-    let stages = root
-        .records("stage")
-        .iter()
-        .filter_map(|stage| stage.record("boundary"));
-    for boundary in root.record("boundary").into_iter().chain(stages) {
+    let stages = draft.stage.items().iter().filter_map(|stage| stage.record("boundary"));
+    for boundary in draft.boundary.value().into_iter().chain(stages) {
         for side in [Side::Front, Side::Back]
             .into_iter()
             .filter(|side| boundary.gives(side.word()))
@@ -94,11 +92,12 @@ fn in_space(root: &Record, report: &mut Report<'_>) {
             boundary.error(side.word(), message, report);
         }
     }
-    let shapes = root
-        .records("body")
+    let shapes = draft
+        .body
+        .items()
         .iter()
         .flat_map(|body| std::iter::once(body).chain(body.records("subtract")));
-    for shape in shapes.chain(root.records("rigid")) {
+    for shape in shapes.chain(draft.rigid.items()) {
         for key in ["extrude", "sphere", "revolve", "terrain", "surface"]
             .into_iter()
             .filter(|key| shape.gives(key))
@@ -140,13 +139,13 @@ fn side(of: &FaceSupport) -> &'static str {
 }
 
 /// Errors and warnings about a whole case in three dimensions.
-pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     if case.geometry != Geometry::Solid {
         return;
     }
-    let stages = root.records("stage").iter().map(|stage| stage.record("boundary"));
+    let stages = draft.stage.items().iter().map(|stage| stage.record("boundary"));
     let times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
-    let tables = std::iter::once(root.record("boundary")).chain(stages);
+    let tables = std::iter::once(draft.boundary.value()).chain(stages);
     for (t, boundary) in times.zip(tables).filter_map(|(t, table)| Some((t, table?))) {
         faces(&case.faces_at(t), boundary, report);
     }
@@ -154,10 +153,10 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
         case.stabilisation,
         Stabilisation::SubgridFBar | Stabilisation::ModifiedFBar
     ) {
-        let key = root.record("stabilisation");
+        let key = draft.stabilisation.value();
         key.into_iter().for_each(|of| {
             let message = "E0226: this method is not available in 3-D. Use \"consistent-f-bar\" or \"f-bar\".";
-            of.error("method", message, report);
+            of.method.error(message, report);
         });
     }
 }

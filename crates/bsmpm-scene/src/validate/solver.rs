@@ -3,8 +3,8 @@
 use crate::case::{Case, NamedMaterial, Solver};
 use crate::estimate;
 use crate::grid::GridSpec;
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::{Draft, SolverTable};
 use crate::validate::lines;
 use crate::words::{LinearSolver, Word};
 use bsmpm::grid::extension::ExtendedSplines;
@@ -13,13 +13,13 @@ use bsmpm::quadrature::Quadrature;
 
 /// The solver, for a grid and its materials.
 pub(super) fn read(
-    root: &Record,
+    draft: &Draft,
     regime: Option<Regime>,
     grid: Option<&GridSpec>,
     materials: Option<&[NamedMaterial]>,
     report: &mut Report<'_>,
 ) -> Option<Solver> {
-    let solver = root.record("solver")?;
+    let solver = draft.solver.value()?;
     let quadrature = weights(solver, regime, grid.map(|grid| grid.order), report);
     let extended_splines = extended_splines(solver, regime, grid.map(|grid| grid.order), report);
     let background = background(solver, regime, report);
@@ -31,18 +31,18 @@ pub(super) fn read(
     let size = Size {
         unknowns,
         poisson: poisson.fold(0.0, f64::max),
-        reproducible: solver.flag("reproducible")?,
+        reproducible: solver.reproducible.get()?,
     };
-    let linear = solver.word_if_given("linear")?;
+    let linear = solver.linear.if_given()?;
     Some(Solver {
-        nonlinear: solver.word("nonlinear")?,
-        tolerance: solver.number("tolerance")?,
-        force_tolerance: solver.number("force_tolerance")?,
-        max_iterations: usize::try_from(solver.count("max_iterations")?).ok()?,
+        nonlinear: solver.nonlinear.get()?,
+        tolerance: solver.tolerance.get()?,
+        force_tolerance: solver.force_tolerance.get()?,
+        max_iterations: usize::try_from(solver.max_iterations.get()?).ok()?,
         quadrature: quadrature?,
         extended_splines: extended_splines?,
         background: background?,
-        linear: linear.unwrap_or_else(|| by_size(size, solver.path_of("linear"), report)),
+        linear: linear.unwrap_or_else(|| by_size(size, solver.linear.path().to_owned(), report)),
         by_size: false,
         reproducible: size.reproducible,
     })
@@ -50,25 +50,25 @@ pub(super) fn read(
 
 /// What points weigh as the case gives it: their own volume in dynamics and on cubic grids.
 fn weights(
-    solver: &Record,
+    solver: &SolverTable,
     regime: Option<Regime>,
     order: Option<usize>,
     report: &mut Report<'_>,
 ) -> Option<Quadrature> {
-    match solver.word_if_given("quadrature")? {
+    match solver.quadrature.if_given()? {
         None | Some(Quadrature::Points) => return Some(Quadrature::Points),
         Some(Quadrature::Fitted) => {}
     }
     if order? == 3 {
         let message = "E0602: the solver does not converge with quadrature = \"fitted\" and cubic splines. Use quadrature = \
              \"points\".";
-        solver.error("quadrature", message, report);
+        solver.quadrature.error(message, report);
         return None;
     }
     if regime? == Regime::Dynamic {
         let message = "E0602: quadrature = \"fitted\" changes the energy of moving soil, and is not available in a \
                        dynamic analysis. Use quadrature = \"points\".";
-        solver.error("quadrature", message, report);
+        solver.quadrature.error(message, report);
         return None;
     }
     Some(Quadrature::Fitted)
@@ -77,8 +77,8 @@ fn weights(
 /// Fits the points' weights where materials of unlike stiffness meet on a C0 line, unless the case says otherwise:
 /// material that crosses the line has wrong stresses without. Not in dynamics, on cubic grids and where water flows. At
 /// C0 lines at the ends of strips it gains nothing, and limit loads are 0.6 % higher.
-pub(super) fn fit_weights(case: &mut Case, root: &Record, report: &mut Report<'_>) {
-    let is_given = root.record("solver").is_none_or(|solver| solver.gives("quadrature"));
+pub(super) fn fit_weights(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
+    let is_given = draft.solver.value().is_none_or(|solver| solver.quadrature.is_given());
     let may_fit = case.analysis.regime == Regime::QuasiStatic && case.grid.order < 3 && case.flow.is_none();
     if is_given || !may_fit || !lines::has_interface(case) {
         return;
@@ -88,17 +88,15 @@ pub(super) fn fit_weights(case: &mut Case, root: &Record, report: &mut Report<'_
     report.note("solver.quadrature", Quadrature::Fitted.word(), reason);
 }
 
-const EXTENSION: &str = "extension";
-
 /// Whether functions of nearly empty cells are tied: in quasi-static analysis with linear and quadratic splines, unless
 /// the case says otherwise.
 fn extended_splines(
-    solver: &Record,
+    solver: &SolverTable,
     regime: Option<Regime>,
     order: Option<usize>,
     report: &mut Report<'_>,
 ) -> Option<ExtendedSplines> {
-    let given = solver.word_if_given(EXTENSION)?;
+    let given = solver.extension.if_given()?;
     let refusal = match (regime?, order?) {
         (Regime::Dynamic, _) => {
             "E0603: in a dynamic analysis extension = \"linear\" would make soil layers thinner than a cell move too \
@@ -118,16 +116,16 @@ fn extended_splines(
         }
     };
     if given == Some(ExtendedSplines::Linear) {
-        solver.error(EXTENSION, refusal, report);
+        solver.extension.error(refusal, report);
         return None;
     }
     Some(ExtendedSplines::Off)
 }
 
 /// The coefficient of the artificial stiffness.
-fn background(solver: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<f64> {
-    if solver.gives("background") {
-        return solver.number("background");
+fn background(solver: &SolverTable, regime: Option<Regime>, report: &mut Report<'_>) -> Option<f64> {
+    if solver.background.is_given() {
+        return solver.background.get();
     }
     let (background, reason) = match regime? {
         Regime::Dynamic => (0.0, "nearly empty cells have inertia in a dynamic analysis"),
@@ -213,14 +211,14 @@ const FEW_INCOMPRESSIBLE: u64 = 100_000;
 
 /// Chooses the linear solver of a 3-D case with many unknowns unless the case gives it, and refuses iterative ones
 /// where they are not available.
-pub(super) fn of_case(case: &mut Case, root: &Record, report: &mut Report<'_>) {
-    let Some(solver) = root.record("solver") else { return };
+pub(super) fn of_case(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
+    let Some(solver) = draft.solver.value() else { return };
     let condenses = case.rigid.iter().any(|rigid| rigid.free.contains(&true));
     if let Some(message) = against_iterations(case, condenses) {
-        solver.error("linear", message, report);
+        solver.linear.error(message, report);
         return;
     }
-    if case.grid.dims() < 3 || solver.gives("linear") {
+    if case.grid.dims() < 3 || solver.linear.is_given() {
         return;
     }
     let active = case.estimate(1).active;

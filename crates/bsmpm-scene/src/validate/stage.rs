@@ -9,6 +9,7 @@ use crate::nearest::unknown_name;
 use crate::observables::HistorySubject;
 use crate::record::Record;
 use crate::report::{Report, shortened};
+use crate::schema::Draft;
 use crate::words::{Geometry, Side, Word};
 
 /// Parts of a step by which stages must lie apart: a step ends at each.
@@ -26,7 +27,7 @@ const MAY_ACT: &[&str] = &[
 
 /// All stages in the order of the file, which must be that of time; `time` is the end of the run and the nominal step.
 pub(super) fn read_all(
-    root: &Record,
+    draft: &Draft,
     factor: Option<f64>,
     bodies: Option<&[Body]>,
     time: Option<(f64, f64)>,
@@ -34,8 +35,8 @@ pub(super) fn read_all(
 ) -> Option<Vec<Stage>> {
     let bodies = bodies?;
     let (end, dt) = time?;
-    let acting = acting(root, report);
-    for (number, record) in root.records("body").iter().enumerate() {
+    let acting = acting(draft, report);
+    for (number, record) in draft.body.items().iter().enumerate() {
         let name = &bodies[number].name;
         if let Some(first) = bodies[..number]
             .iter()
@@ -47,8 +48,8 @@ pub(super) fn read_all(
     }
     let mut before = 0.0;
     let mut read = Vec::new();
-    for record in root.records("stage") {
-        let stage = stage(record, factor, root, bodies, &acting, report);
+    for record in draft.stage.items() {
+        let stage = stage(record, factor, draft, bodies, &acting, report);
         if let Some(stage) = &stage {
             timed(stage.at, before, end, dt, record, report);
             before = stage.at;
@@ -56,8 +57,8 @@ pub(super) fn read_all(
         read.push(stage);
     }
     let stages: Vec<Stage> = read.into_iter().collect::<Option<_>>()?;
-    (0..bodies.len()).for_each(|body| once(body, &stages, root, report));
-    acting.iter().for_each(|acting| in_turn(acting, &stages, root, report));
+    (0..bodies.len()).for_each(|body| once(body, &stages, draft, report));
+    acting.iter().for_each(|acting| in_turn(acting, &stages, draft, report));
     Some(stages)
 }
 
@@ -68,16 +69,18 @@ struct NamedItem<'a, T> {
 }
 
 /// Strips and loads with names, which are unique, rigid bodies, and what water crosses.
-fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<NamedItem<'a, ActiveLoads>> {
-    let strips = root
-        .records("footing")
-        .iter()
-        .chain(root.records("prescribed"))
+fn acting<'a>(draft: &'a Draft, report: &mut Report<'_>) -> Vec<NamedItem<'a, ActiveLoads>> {
+    let strips = draft
+        .footing
+        .value()
+        .into_iter()
+        .chain(draft.prescribed.items())
         .enumerate();
-    let loads = root
-        .records("traction")
+    let loads = draft
+        .traction
+        .items()
         .iter()
-        .chain(root.records("point_load"))
+        .chain(draft.point_load.items())
         .enumerate();
     let strips = strips.map(|(number, record)| (record, ActiveLoads::Strip(number)));
     let all = strips.chain(loads.map(|(number, record)| (record, ActiveLoads::Load(number))));
@@ -97,15 +100,17 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<NamedItem<'a, Ac
         }
         found.push((name, acting, record));
     }
-    let rigid = root.records("rigid").iter().enumerate();
+    let rigid = draft.rigid.items().iter().enumerate();
     let rigid = rigid.map(|(number, record)| (record, ActiveLoads::Rigid(number)));
-    let drains = root
-        .records("drain")
+    let drains = draft
+        .drain
+        .items()
         .iter()
         .zip(0..)
         .map(|(record, number)| (record, ActiveLoads::Drain(number)));
-    let inflows = root
-        .records("inflow")
+    let inflows = draft
+        .inflow
+        .items()
         .iter()
         .zip(0..)
         .map(|(record, number)| (record, ActiveLoads::Inflow(number)));
@@ -116,8 +121,9 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<NamedItem<'a, Ac
     let unique = found.into_iter().map(|(name, what, _)| NamedItem { name, what });
     let mut all: Vec<NamedItem<'_, ActiveLoads>> = unique.chain(others).collect();
     // As histories call one without a name.
-    let is_nameless = root
-        .record("footing")
+    let is_nameless = draft
+        .footing
+        .value()
         .is_some_and(|footing| footing.text("name").is_none());
     if is_nameless && all.iter().all(|named| named.name != NAMELESS) {
         all.push(NamedItem {
@@ -131,7 +137,7 @@ fn acting<'a>(root: &'a Record, report: &mut Report<'_>) -> Vec<NamedItem<'a, Ac
 fn stage(
     record: &Record,
     factor: Option<f64>,
-    root: &Record,
+    draft: &Draft,
     bodies: &[Body],
     acting: &[NamedItem<'_, ActiveLoads>],
     report: &mut Report<'_>,
@@ -145,8 +151,8 @@ fn stage(
     let add = named("add", record, &bodies, report);
     let apply = named("activate", record, acting, report);
     let release = named("deactivate", record, acting, report);
-    let materials = exchanges(record, root, report);
-    let faces = faces(record, factor, root, report);
+    let materials = exchanges(record, draft, report);
+    let faces = faces(record, factor, draft, report);
     let at = record.number("at")?;
     let resets_displacements = record.flag("reset_displacements")?;
     let remove: Vec<usize> = remove?.into_iter().map(|(_, body)| body).collect();
@@ -218,12 +224,12 @@ fn named<T: Copy>(
 }
 
 /// The faces of the grid that a stage changes.
-fn faces(record: &Record, factor: Option<f64>, root: &Record, report: &mut Report<'_>) -> Option<Vec<FaceSupport>> {
+fn faces(record: &Record, factor: Option<f64>, draft: &Draft, report: &mut Report<'_>) -> Option<Vec<FaceSupport>> {
     let Some(boundary) = record.record("boundary") else {
         return Some(Vec::new());
     };
     let mut found = Vec::new();
-    let axes = Side::of(root.word("geometry")?).iter().enumerate();
+    let axes = Side::of(draft.geometry.get()?).iter().enumerate();
     let sides = axes.flat_map(|(axis, sides)| [(sides[0], axis, false), (sides[1], axis, true)]);
     for (side, axis, upper) in sides.filter(|(side, ..)| boundary.gives(side.word())) {
         let support = super::support(boundary, side)?;
@@ -233,14 +239,14 @@ fn faces(record: &Record, factor: Option<f64>, root: &Record, report: &mut Repor
                            this side from the stage to [boundary].";
             boundary.error(side.word(), message, report);
         }
-        let is_wet = root.gives("water") || root.named("material").iter().any(|(_, of)| of.gives("drainage"));
-        let is_solid = root.word("geometry") == Some(Geometry::Solid);
+        let is_wet = draft.water.is_given() || draft.material.items().iter().any(|(_, of)| of.gives("drainage"));
+        let is_solid = draft.geometry.get() == Some(Geometry::Solid);
         if support == Support::Absorbing && (side != Side::Bottom || is_wet || is_solid) {
             let message = "E0614: a stage can make a boundary absorbing only at the bottom of a 2-D case without \
                  water. Move this side from the stage to [boundary], and add [initial].";
             boundary.error(side.word(), message, report);
         }
-        let mut motions = root.records("prescribed").iter();
+        let mut motions = draft.prescribed.items().iter();
         let moving = motions.find(|motion| motion.word::<Side>("face") == Some(side));
         if let Some(motion) = moving.filter(|_| support != Support::Free) {
             let message = format!(
@@ -260,11 +266,11 @@ fn faces(record: &Record, factor: Option<f64>, root: &Record, report: &mut Repor
 }
 
 /// Numbers of the materials that a stage exchanges.
-fn exchanges(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<Vec<(usize, usize)>> {
+fn exchanges(record: &Record, draft: &Draft, report: &mut Report<'_>) -> Option<Vec<(usize, usize)>> {
     let mut found: Vec<(usize, usize)> = Vec::new();
     for pair in record.records("materials") {
-        let from = number_of_material(pair, "from", root, report);
-        let to = number_of_material(pair, "to", root, report);
+        let from = number_of_material(pair, "from", draft, report);
+        let to = number_of_material(pair, "to", draft, report);
         let from = from?;
         let to = to?;
         if found.iter().any(|(other, _)| *other == from) {
@@ -278,9 +284,9 @@ fn exchanges(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<
 }
 
 /// Number of the material that a key names; `None` after an error.
-fn number_of_material(pair: &Record, key: &str, root: &Record, report: &mut Report<'_>) -> Option<usize> {
+fn number_of_material(pair: &Record, key: &str, draft: &Draft, report: &mut Report<'_>) -> Option<usize> {
     let name = pair.text(key)?;
-    let materials = root.named("material");
+    let materials = draft.material.items();
     let found = materials.iter().position(|(other, _)| other == name);
     if found.is_none() {
         let names = materials.iter().map(|(name, _)| name.as_str());
@@ -290,10 +296,10 @@ fn number_of_material(pair: &Record, key: &str, root: &Record, report: &mut Repo
 }
 
 /// Only what is active is deactivated, and only what is inactive is activated.
-fn in_turn(named: &NamedItem<'_, ActiveLoads>, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
+fn in_turn(named: &NamedItem<'_, ActiveLoads>, stages: &[Stage], draft: &Draft, report: &mut Report<'_>) {
     let name = named.name;
     let mut acts: Option<bool> = None;
-    for (stage, record) in stages.iter().zip(root.records("stage")) {
+    for (stage, record) in stages.iter().zip(draft.stage.items()) {
         let [releases, applies] = stage.switches(named.what);
         if releases && applies {
             let message = format!(
@@ -334,8 +340,8 @@ fn timed(at: f64, before: f64, end: f64, dt: f64, record: &Record, report: &mut 
 }
 
 /// A body is placed once at most, and removed once at most, after that.
-fn once(body: usize, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
-    let records = root.records("stage");
+fn once(body: usize, stages: &[Stage], draft: &Draft, report: &mut Report<'_>) {
+    let records = draft.stage.items();
     let mut added = Vec::new();
     let mut removed = Vec::new();
     for (number, stage) in stages.iter().enumerate() {
@@ -371,15 +377,15 @@ fn once(body: usize, stages: &[Stage], root: &Record, report: &mut Report<'_>) {
 
 /// What only the whole case shows: something is always left, it can be there without stress, strips have a body under
 /// them from the start to the end, and loads as long as they act.
-pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
+pub(super) fn check(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
     if case.stages.is_empty() {
         return;
     }
-    let records = root.records("stage");
+    let records = draft.stage.items();
     if case.bodies_at_start().next().is_none() {
         let message = "E0623: no body exists at the start, because stages add all bodies. Take at least one body out of the \
              `add` lists of the stages.";
-        root.error("body", message, report);
+        draft.body.error(message, report);
     }
     for (stage, record) in case.stages.iter().zip(records) {
         if !(0..case.bodies.len()).any(|body| case.is_there(body, stage.at)) {
@@ -407,7 +413,12 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         }
         if stage.strength_reduction.is_some() {
             let later = case.stages.iter().map(|later| later.at).filter(|at| *at >= stage.at);
-            reduction::divisible(case, &later.collect::<Vec<f64>>(), record, report);
+            reduction::divisible(
+                case,
+                &later.collect::<Vec<f64>>(),
+                &record.key("strength_reduction"),
+                report,
+            );
         }
         absorbing::check(case, stage, record, report);
         for &body in &stage.add {
@@ -427,14 +438,14 @@ pub(super) fn check(case: &mut Case, root: &Record, report: &mut Report<'_>) {
         .map(|body| case.bodies[body].clone())
         .collect();
     follow(case, &lasting);
-    check_surfaces(case, &lasting, root, report);
+    check_surfaces(case, &lasting, draft, report);
 }
 
 /// Refuses strips, loads and drains that lose the body at one of their places; strips need one of those that are
 /// `lasting`.
-fn check_surfaces(case: &Case, lasting: &[Body], root: &Record, report: &mut Report<'_>) {
+fn check_surfaces(case: &Case, lasting: &[Body], draft: &Draft, report: &mut Report<'_>) {
     let grid = &case.grid;
-    for (what, record, key, places) in surfaces(case, root) {
+    for (what, record, key, places) in surfaces(case, draft) {
         let mut at_bodies = places.into_iter().filter(|at| place::is_at(&case.bodies, grid, *at));
         let (lost, duration) = match what {
             ActiveLoads::Strip(_) => (
@@ -510,12 +521,12 @@ fn follow(case: &mut Case, lasting: &[Body]) {
 /// What acts: strips and loads with their records, the key of their place, and places along them.
 pub(super) fn surfaces<'a>(
     case: &Case,
-    root: &'a Record,
+    draft: &'a Draft,
 ) -> Vec<(ActiveLoads, &'a Record, &'static str, Vec<[f64; 3]>)> {
     let mut found = Vec::new();
     let held = case.footing.iter().map(|footing| footing.site);
     let held = held.chain(case.prescribed.iter().map(|prescribed| prescribed.site));
-    let strips = root.records("footing").iter().chain(root.records("prescribed"));
+    let strips = draft.footing.value().into_iter().chain(draft.prescribed.items());
     for (number, (site, record)) in held.zip(strips).enumerate() {
         if !matches!(site, Site::Face(_)) {
             found.push((
@@ -526,7 +537,7 @@ pub(super) fn surfaces<'a>(
             ));
         }
     }
-    for (number, (traction, record)) in case.tractions.iter().zip(root.records("traction")).enumerate() {
+    for (number, (traction, record)) in case.tractions.iter().zip(draft.traction.items()).enumerate() {
         let places = match &traction.line {
             &LoadedLine::Segment { from, to } => site::places(Site::Segment { from, to }, &case.grid),
             &LoadedLine::Circle { center, radius } => place::ring(center, radius).map(place::flat).collect(),
@@ -535,7 +546,7 @@ pub(super) fn surfaces<'a>(
         };
         found.push((ActiveLoads::Load(number), record, key(record), places));
     }
-    for (number, (of, record)) in case.point_loads.iter().zip(root.records("point_load")).enumerate() {
+    for (number, (of, record)) in case.point_loads.iter().zip(draft.point_load.items()).enumerate() {
         found.push((
             ActiveLoads::Load(case.tractions.len() + number),
             record,

@@ -8,6 +8,7 @@ use crate::grid::GridSpec;
 use crate::observables::{Aspect, HistorySubject, Observable};
 use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::surfaces::{name_of_strip, strip_of_face};
 use crate::words::{AnalysisType, Components, Side, Support, Word};
 use bsmpm::boundary::StripContact;
@@ -18,14 +19,14 @@ const NOTHING: f64 = 1e-12;
 const ON: f64 = 1e-9;
 
 /// The footing, if there is one and it is right.
-pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Footing> {
-    let record = root.record("footing")?;
+pub(super) fn footing(draft: &Draft, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Footing> {
+    let record = draft.footing.value()?;
     let path = path(record, around.end, report);
     let site = site(record, around, report);
     let path = path?;
     let site = site?;
     stays_inside(record, site, &path, around, report);
-    let (base, contact) = match contact_of(root, record, "interface", site, around, report) {
+    let (base, contact) = match contact_of(draft, record, "interface", site, around, report) {
         Some(found) => found?,
         None => (record.word("interface")?, None),
     };
@@ -44,9 +45,9 @@ pub(super) fn footing(root: &Record, around: AroundStrip<'_>, report: &mut Repor
 }
 
 /// All prescribed motions in the order of the file, without those that have an error.
-pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<PrescribedMotion> {
+pub(super) fn prescribed(draft: &Draft, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<PrescribedMotion> {
     let mut found: Vec<PrescribedMotion> = Vec::new();
-    for record in root.records("prescribed") {
+    for record in draft.prescribed.items() {
         let path = path(record, around.end, report);
         let site = site(record, around, report);
         let Some(path) = path else { continue };
@@ -63,7 +64,7 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
             Site::Segment { .. } | Site::Plate(_) => stays_inside(record, site, &path, around, report),
         }
         let given = match site {
-            Site::Segment { .. } | Site::Plate(_) => contact_of(root, record, "components", site, around, report),
+            Site::Segment { .. } | Site::Plate(_) => contact_of(draft, record, "components", site, around, report),
             Site::Face(_) => {
                 if record.record("components").is_some() {
                     let message = "E0418: contact is not available on a moving face of the grid. Replace `face` by a \
@@ -92,7 +93,7 @@ pub(super) fn prescribed(root: &Record, around: AroundStrip<'_>, report: &mut Re
 /// The frictional contact of a strip, and the components that it may prescribe so; `None` where the key is a word,
 /// `Some(None)` after an error.
 fn contact_of(
-    root: &Record,
+    draft: &Draft,
     record: &Record,
     key: &str,
     site: Site,
@@ -112,7 +113,7 @@ fn contact_of(
         record.error(key, message, report);
         return Some(None);
     };
-    let regime = root.record("analysis").and_then(|analysis| analysis.word("type"));
+    let regime = draft.analysis.value().and_then(|analysis| analysis.r#type.get());
     if regime == Some(AnalysisType::Dynamic) {
         report.warn(format!(
             "W0406: {}: this contact is verified in quasi-static analysis only. In dynamic analysis impacts may \

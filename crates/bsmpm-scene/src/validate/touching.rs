@@ -2,8 +2,8 @@
 
 use super::place::is_in;
 use crate::case::Case;
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::surfaces;
 use crate::words::Geometry;
 use bsmpm::boundary::RigidBody;
@@ -20,7 +20,7 @@ const FEWEST_CELLS: f64 = 10.0;
 const BESIDE: f64 = 0.1;
 
 /// Refuses overlaps that prescribed paths make certain, and warns of surfaces that meet and move differently.
-pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     let overlaps = match case.geometry {
         Geometry::PlaneStrain | Geometry::Axisymmetric => overlaps::<2>(case),
         Geometry::Solid => overlaps::<3>(case),
@@ -31,12 +31,12 @@ pub(super) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
             "E0249: rigid bodies `{name}` and `{of}` overlap at t = {t:.4} on their prescribed paths. Contact between \
              the two is not available. Change one of the paths, or reduce analysis.end."
         );
-        if let Some(record) = root.records("rigid").get(*other) {
+        if let Some(record) = draft.rigid.items().get(*other) {
             record.error("name", message, report);
         }
     }
     if case.geometry != Geometry::Solid && overlaps.is_empty() {
-        check_meetings(case, root, report);
+        check_meetings(case, draft, report);
     }
 }
 
@@ -90,7 +90,7 @@ fn first_overlap<const D: usize>(pair: [&RigidBody<D>; 2], begin: f64, end: f64)
 
 /// Refuses bodies whose surfaces lie in one plane, meet, and move differently along its normal where the error of their
 /// forces is 10 % and more, and warns of them otherwise.
-fn check_meetings(case: &Case, root: &Record, report: &mut Report<'_>) {
+fn check_meetings(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     let bodies = surfaces::rigid::<2>(case, 0.0);
     for other in 0..bodies.len() {
         for one in 0..other {
@@ -111,7 +111,7 @@ fn check_meetings(case: &Case, root: &Record, report: &mut Report<'_>) {
                 "E0250: rigid bodies `{name}` and `{of}` touch and move differently. Forces are {excess:.0} % too \
                  large ({cells:.0} cells across; needed: {FEWEST_CELLS:.0}). Use smaller cells, or [[prescribed]] for both."
             );
-            match root.records("rigid").get(other) {
+            match draft.rigid.items().get(other) {
                 Some(record) if cells < FEWEST_CELLS => record.error("name", error, report),
                 _ => report.warn(warning),
             }

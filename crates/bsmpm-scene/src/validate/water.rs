@@ -5,8 +5,9 @@ use super::uplift;
 use crate::case::{Case, Gravity, Support, Water};
 use crate::constants::STANDARD_GRAVITY;
 use crate::grid::GridSpec;
-use crate::record::Record;
+use crate::record::{CaseTable, Field, KeyPlace, ListRow};
 use crate::report::Report;
+use crate::schema::{Draft, WaterTable};
 use crate::words::{Side, Word};
 use bsmpm::field::pore_water::ambient::{Ambient, LevelAt};
 use bsmpm::model::Regime;
@@ -17,34 +18,31 @@ const GENTLE: f64 = 0.25;
 
 /// Water, if any; none after an error.
 pub(super) fn read(
-    root: &Record,
+    draft: &Draft,
     grid: Option<&GridSpec>,
     gravity: Option<&Gravity>,
     regime: Option<Regime>,
     end: Option<f64>,
     report: &mut Report<'_>,
 ) -> Option<Water> {
-    let Some(record) = root.record("water") else {
-        refuse_saturated_weights(root, report);
+    let Some(record) = draft.water.value() else {
+        refuse_saturated_weights(draft, report);
         return None;
     };
-    if ["level", "level_path", "line", "line_path"]
-        .iter()
-        .all(|key| !record.gives(key))
-    {
-        if !super::flow::flows(root) {
+    if record.gives_no_table() {
+        if !super::flow::flows(draft) {
             let message = "E0521: [water] gives no water table, and no material has pore-water flow, so [water] has \
                            no effect. Give one of `level`, `level_path`, `line` and `line_path`, or remove [water].";
-            report.error(record.origin, &record.path, message);
+            record.location().error(message, report);
         }
         return None;
     }
     let table = table(record, grid?, end, report)?;
-    let given = record.number("unit_weight")?;
-    if !root.gives("gravity") {
+    let given = record.unit_weight.get()?;
+    if !draft.gravity.is_given() {
         let message = "E0522: hydrostatic pressure requires gravity, and the case has none. Add [gravity], or \
                        remove the water table.";
-        report.error(record.origin, &record.path, message);
+        record.location().error(message, report);
     }
     let acceleration = gravity?.acceleration;
     let axes = grid?.dims();
@@ -55,26 +53,26 @@ pub(super) fn read(
             &acceleration[..axes],
             ["x", "y", "z"][axes - 1]
         );
-        root.record("gravity")?.error("acceleration", message, report);
+        draft.gravity.value()?.acceleration.error(message, report);
     }
     if !(8_000.0..=12_000.0).contains(&given) {
         report.warn(format!(
             "W0520: {}: {given} N/m3 is an unusual unit weight of water (8000 to 12000 N/m3), and scales all pore \
              pressures. Check the unit.",
-            record.path_of("unit_weight")
+            record.unit_weight.path()
         ));
     }
     let unit_weight = given / STANDARD_GRAVITY * acceleration[axes - 1].abs();
     if unit_weight != given {
         let reason = format!("{given} N/m3 applies to 9.81 m/s2, and is scaled to the gravity of this case");
-        report.note(record.path_of("unit_weight"), format!("{unit_weight}"), reason);
+        report.note(record.unit_weight.path(), format!("{unit_weight}"), reason);
     }
     Some(Water { unit_weight, table })
 }
 
 /// Refuses unit weights of soil below the water table in a case without one.
-fn refuse_saturated_weights(root: &Record, report: &mut Report<'_>) {
-    for (_, material) in root.named("material") {
+fn refuse_saturated_weights(draft: &Draft, report: &mut Report<'_>) {
+    for (_, material) in draft.material.items() {
         if material.gives("saturated_unit_weight") {
             let message = "E0520: `saturated_unit_weight` has no effect, because the case has no water table. \
                            Give `water.level`, or remove `saturated_unit_weight`.";
@@ -84,51 +82,50 @@ fn refuse_saturated_weights(root: &Record, report: &mut Report<'_>) {
 }
 
 /// The water table, somewhere above the grid's base.
-fn table(record: &Record, grid: &GridSpec, end: Option<f64>, report: &mut Report<'_>) -> Option<Ambient> {
-    let key = ["level", "level_path", "line", "line_path"]
-        .into_iter()
-        .find(|key| record.gives(key))?;
-    let table = match key {
-        "level" => Ambient::Level(vec![(0.0, record.number("level")?)]),
-        "level_path" => {
-            let rows = increasing(record, key, report)?;
-            Ambient::Level(rows.map(|row| (row[0], row[1])).collect())
-        }
-        "line" => {
-            let places = increasing(record, key, report)?.map(|row| LevelAt {
-                x: row[0],
-                rows: vec![(0.0, row[1])],
-            });
-            Ambient::Line(places.collect())
-        }
-        _ => Ambient::Line(lines(record, key, report)?),
+fn table(record: &WaterTable, grid: &GridSpec, end: Option<f64>, report: &mut Report<'_>) -> Option<Ambient> {
+    let (table, key): (_, &KeyPlace) = if record.level.is_given() {
+        let level = vec![(0.0, record.level.get()?)];
+        (Ambient::Level(level), &record.level)
+    } else if record.level_path.is_given() {
+        let rows = increasing(&record.level_path, report)?;
+        let levels = rows.map(|row| (row[0], row[1])).collect();
+        (Ambient::Level(levels), &record.level_path)
+    } else if record.line.is_given() {
+        let places = increasing(&record.line, report)?.map(|row| LevelAt {
+            x: row[0],
+            rows: vec![(0.0, row[1])],
+        });
+        (Ambient::Line(places.collect()), &record.line)
+    } else {
+        let places = lines(&record.line_path, report)?;
+        (Ambient::Line(places), &record.line_path)
     };
     // Ground may have suction above a table that is below it.
     let base = grid.lower()[grid.dims() - 1];
     let axis = ["x", "y", "z"][grid.dims() - 1];
     let heights: Vec<(f64, f64)> = table.levels().concat();
-    if !record.gives("suction") && heights.iter().all(|row| row.1 <= base) {
+    if !record.suction.is_given() && heights.iter().all(|row| row.1 <= base) {
         let message = format!(
             "E0524: the water table never rises above the bottom of the grid ({axis} = {base} m), so it has no \
              effect. Raise the water table, remove [water], or give `suction` for unsaturated soil."
         );
-        record.error(key, message, report);
+        key.error(message, report);
         return None;
     }
     if let Some((t, _)) = heights.iter().find(|(t, _)| end.is_some_and(|end| *t > end)) {
         report.warn(format!(
             "W0521: {}: the row at t = {t} s is after the end of the analysis, so its water level is never reached. \
              Increase `analysis.end`, or remove the row.",
-            record.path_of(key)
+            key.path()
         ));
     }
-    steep(&table, grid, record, key, report);
+    steep(&table, grid, key.path(), report);
     Some(table)
 }
 
 /// Lines of the same places at times.
-fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<LevelAt>> {
-    let rows = record.rows(key)?;
+fn lines(line_path: &Field<Vec<ListRow>>, report: &mut Report<'_>) -> Option<Vec<LevelAt>> {
+    let rows = line_path.value()?;
     let mut places: Vec<LevelAt> = Vec::new();
     let count = rows
         .iter()
@@ -160,7 +157,7 @@ fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<Leve
             None
         };
         if let Some(message) = wrong {
-            report.error(row.origin, &record.path_of(key), message);
+            report.error(row.origin, line_path.path(), message);
             return None;
         }
         if number < count {
@@ -171,7 +168,7 @@ fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<Leve
     if places.is_empty() || places.iter().any(|place| place.rows.len() != places[0].rows.len()) {
         let message = "E0525: a phreatic line has fewer points than the line at the first time. Give the same values \
                        of x, in the same order, at each time.";
-        record.error(key, message, report);
+        line_path.error(message, report);
         return None;
     }
     Some(places)
@@ -179,9 +176,8 @@ fn lines(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Vec<Leve
 
 /// A line so steep that the depth below it is not the pressure, where water flows along it, or that points do not see
 /// its step.
-fn steep(table: &Ambient, grid: &GridSpec, record: &Record, key: &str, report: &mut Report<'_>) {
+fn steep(table: &Ambient, grid: &GridSpec, key: &str, report: &mut Report<'_>) {
     let Ambient::Line(places) = table else { return };
-    let key = record.path_of(key);
     let cell = grid.axes[0].shortest();
     let (steps, slopes): (Vec<_>, Vec<_>) = places
         .windows(2)
@@ -210,13 +206,13 @@ fn slope(pair: &[LevelAt]) -> f64 {
 }
 
 /// What only the whole case shows.
-pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
+pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     let Some(water) = &case.water else { return };
-    let Some(written) = record.record("water") else { return };
+    let Some(written) = draft.water.value() else { return };
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
         let message = "E0526: [water] and [shaking] cannot be combined, because the pore pressures of [water] stay \
              hydrostatic during an earthquake. Remove [water], and use undrained strengths.";
-        report.error(written.origin, &written.path, message);
+        written.location().error(message, report);
     }
     for (side, support) in Side::of(case.geometry)
         .iter()
@@ -229,10 +225,10 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
                  dashpots would neglect the pore water. Use \"roller\"."
             );
             let side = side.word();
-            report.error(record.place("boundary"), &format!("boundary.{side}"), message);
+            report.error(draft.boundary.origin(), &format!("boundary.{side}"), message);
         }
     }
-    floating(case, water, record, report);
+    floating(case, water, draft, report);
     uplift::warn(case, water, report);
     let levels = water.table.levels();
     let highest = levels
@@ -246,7 +242,7 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
         .iter()
         .map(|body| body.region.corners()[0][up])
         .fold(f64::INFINITY, f64::min);
-    if highest <= low && !written.gives("suction") {
+    if highest <= low && !written.suction.is_given() {
         report.warn(format!(
             "W0524: water: the water table (at most at {highest} m) is below all bodies (lowest point at {low} m), \
              so it has no effect. Raise the water table, or remove [water]."
@@ -267,7 +263,7 @@ pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
 }
 
 /// Ground that the water lifts.
-fn floating(case: &Case, water: &Water, record: &Record, report: &mut Report<'_>) {
+fn floating(case: &Case, water: &Water, draft: &Draft, report: &mut Report<'_>) {
     let Some(gravity) = &case.gravity else { return };
     let up = case.grid.dims() - 1;
     let highest = water
@@ -277,7 +273,7 @@ fn floating(case: &Case, water: &Water, record: &Record, report: &mut Report<'_>
         .flatten()
         .map(|row| row.1)
         .fold(f64::NEG_INFINITY, f64::max);
-    for (number, (_, written)) in record.named("material").iter().enumerate() {
+    for (number, (_, written)) in draft.material.items().iter().enumerate() {
         let named = &case.materials[number];
         let weight = named.saturated.or(named.density).unwrap_or(0.0) * gravity.acceleration[up].abs();
         let mut bodies = case.bodies.iter().filter(|body| body.material == number);

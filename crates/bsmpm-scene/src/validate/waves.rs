@@ -1,8 +1,8 @@
 //! Chooses the mass matrix (lumped or consistent), and warns if cells are too large to resolve waves.
 
 use crate::case::{Body, Case, MASS, Support};
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::waves::{WaveInput, fewest_cells, inputs};
 use crate::words::Word;
 use bsmpm::dynamics::mass::MassMatrix;
@@ -14,8 +14,8 @@ const WHOLE: f64 = 0.98;
 
 /// Chooses the mass matrix of a dynamic case that gives none: the consistent one where waves matter. Flows and contact
 /// keep the lumped one: with the other the run-out of a column changes, and bodies bounce on faces in contact.
-pub(super) fn choose_mass(case: &mut Case, record: &Record, report: &mut Report<'_>) {
-    let is_given = record.record("analysis").is_none_or(|analysis| analysis.gives("mass"));
+pub(super) fn choose_mass(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
+    let is_given = draft.analysis.value().is_none_or(|analysis| analysis.mass.is_given());
     if is_given || case.analysis.regime != Regime::Dynamic || touches(case) {
         return;
     }
@@ -40,12 +40,12 @@ fn touches(case: &Case) -> bool {
 }
 
 /// Warns of the input whose waves have the fewest cells, where their speed is wrong by more than 2 %.
-pub(super) fn check(case: &Case, record: &Record, report: &mut Report<'_>) {
+pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     if case.analysis.regime != Regime::Dynamic {
         return;
     }
     let fewest = fewest_cells(case.analysis.mass, case.grid.order);
-    let inputs = inputs(record);
+    let inputs = inputs(draft);
     let cells = inputs.iter().filter_map(|input| Some((input, cells(case, input)?)));
     let Some((input, cells)) = cells
         .min_by(|a, b| a.1.total_cmp(&b.1))

@@ -219,7 +219,7 @@ fn overrides_of_every_key_of_the_schema() {
         }
     }
     let mut found = Vec::new();
-    paths(&ROOT, "", &mut found);
+    paths(ROOT, "", &mut found);
     assert!(found.len() > 80, "{found:?}");
     for path in &found {
         for value in VALUES.iter().chain(&["5 mm", "free", "a.b=c", "", "[", "\"", "'x"]) {

@@ -35,7 +35,7 @@ pub enum Fits {
 pub fn all(text: &str) -> Vec<Written> {
     let document = DeTable::parse(text).unwrap();
     let mut found = Vec::new();
-    table(&ROOT, document.get_ref(), "", text, &mut found);
+    table(ROOT, document.get_ref(), "", text, &mut found);
     found
 }
 

@@ -18,7 +18,7 @@ pub(super) fn text(original: &str, set: &[String]) -> Result<String, String> {
         let (key, value) = set.split_once('=').ok_or_else(|| format!("{set} has no `=`"))?;
         let parts: Vec<&str> = key.split('.').map(str::trim).collect();
         let value = parsed(value.trim());
-        in_table(document.as_table_mut(), Some(&ROOT), &parts, &value).map_err(|why| format!("{set}: {why}"))?;
+        in_table(document.as_table_mut(), Some(ROOT), &parts, &value).map_err(|why| format!("{set}: {why}"))?;
     }
     Ok(document.to_string())
 }

@@ -4,6 +4,7 @@ use super::is_permeable;
 use crate::case::{ActiveLoads, Case, Drain, DrainSite, Face, Flow, LoadedLine, Plate, Site};
 use crate::record::Record;
 use crate::report::{Report, listed};
+use crate::schema::Draft;
 use crate::validate::side::side;
 use crate::validate::site::normal_of;
 use crate::validate::{place, site};
@@ -35,8 +36,8 @@ enum SurfacePart {
 
 /// Refuses surfaces that contradict each other, and warns of inflows that the ground cannot take, and of ground that
 /// nothing leaves.
-pub(super) fn check(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
-    let crossings = all(case, flow, root);
+pub(super) fn check(case: &Case, flow: &Flow, draft: &Draft, report: &mut Report<'_>) {
+    let crossings = all(case, flow, draft);
     for (number, one) in crossings.iter().enumerate() {
         for other in &crossings[..number] {
             if let Some(message) = contradiction(one, other).filter(|_| meet(case, one, other)) {
@@ -80,8 +81,8 @@ fn touch(case: &Case, one: usize, other: usize, near: f64) -> bool {
     (0..case.grid.dims()).all(|axis| a[0][axis] <= b[1][axis] + near && b[0][axis] <= a[1][axis] + near)
 }
 
-fn all<'a>(case: &Case, flow: &'a Flow, root: &'a Record) -> Vec<CrossedSurface<'a>> {
-    let drains = flow.drains.iter().zip(root.records("drain")).enumerate();
+fn all<'a>(case: &Case, flow: &'a Flow, draft: &'a Draft) -> Vec<CrossedSurface<'a>> {
+    let drains = flow.drains.iter().zip(draft.drain.items()).enumerate();
     let drains = drains.map(|(number, (drain, record))| CrossedSurface {
         record,
         called: drain.name.clone().unwrap_or_else(|| format!("drain.{number}")),
@@ -89,7 +90,7 @@ fn all<'a>(case: &Case, flow: &'a Flow, root: &'a Record) -> Vec<CrossedSurface<
         parts: parts(&drain.site, case),
         given: Some(&drain.given),
     });
-    let inflows = flow.inflows.iter().zip(root.records("inflow")).enumerate();
+    let inflows = flow.inflows.iter().zip(draft.inflow.items()).enumerate();
     let inflows = inflows.map(|(number, (inflow, record))| CrossedSurface {
         record,
         called: format!("inflow.{number}"),

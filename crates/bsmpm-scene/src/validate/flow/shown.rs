@@ -2,9 +2,9 @@
 
 use super::is_permeable;
 use crate::case::{ActiveLoads, Case, DrainSite, Flow, Initial, Stage, Support, Water};
-use crate::record::Record;
+use crate::record::{CaseTable, Record};
 use crate::report::Report;
-use crate::schema::LawName;
+use crate::schema::{Draft, LawName};
 use crate::validate::flow::crossing::{is_beside, places};
 use crate::validate::side::side;
 use crate::words::{AnalysisType, Side, Word};
@@ -38,45 +38,45 @@ pub const HELD_WATER: &str = "W0548: the strength reduction keeps pore pressures
 const SHOWN_NARROW: f64 = 0.2;
 
 /// What the whole case says of a flow: refusals of what is not shown to be right with it.
-pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
+pub(in crate::validate) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     let consolidates = case.analysis.kind == AnalysisType::Consolidation;
     let Some(flow) = &case.flow else {
         let of_flow = case.output.fields.iter().find(|field| field.is_of_flow());
-        if let (Some(field), Some(output)) = (of_flow, root.record("output")) {
+        if let (Some(field), Some(output)) = (of_flow, draft.output.value()) {
             let message = format!(
                 "E0501: no material has pore-water flow, so the field \"{field}\" does not exist. Remove the field, \
                  or give a material `drainage = \"coupled\"`, `porosity` and `permeability`."
             );
-            output.error("fields", message, report);
+            output.fields.error(message, report);
         }
-        if let Some(analysis) = root.record("analysis").filter(|_| consolidates) {
+        if let Some(analysis) = draft.analysis.value().filter(|_| consolidates) {
             let message = "E0501: no material has pore-water flow, so nothing consolidates. Give a material \
                            `drainage = \"coupled\"`, `porosity` and `permeability`, or use analysis.type = \
                            \"quasi-static\".";
-            analysis.error("type", message, report);
+            analysis.r#type.error(message, report);
         }
         return;
     };
     let flows = matches!(case.analysis.kind, AnalysisType::Consolidation | AnalysisType::Dynamic);
-    if let Some(analysis) = root.record("analysis").filter(|_| !flows) {
+    if let Some(analysis) = draft.analysis.value().filter(|_| !flows) {
         let message = format!(
             "E0502: type = \"{}\" does not compute excess pore pressures, but a material has drainage = \"coupled\" \
              or \"undrained\". Use \"consolidation\" or \"dynamic\", or change `drainage`.",
             case.analysis.kind.word()
         );
-        analysis.error("type", message, report);
+        analysis.r#type.error(message, report);
     }
-    discretised(case, root, report);
-    of_soils(case, flow, root, report);
-    acting(case, root, report);
-    divided(flow, root, report);
-    timed(case, root, report);
+    discretised(case, draft, report);
+    of_soils(case, flow, draft, report);
+    acting(case, draft, report);
+    divided(flow, draft, report);
+    timed(case, draft, report);
     weighed(case, report);
     ponds(case, flow, report);
     weightless(case, flow, report);
     pressed(case, flow, report);
     super::leaks::check(case, flow, report);
-    super::crossing::check(case, flow, root, report);
+    super::crossing::check(case, flow, draft, report);
     narrow(case, flow, report);
     hanging(case, flow, report);
 }
@@ -142,13 +142,13 @@ fn pressed(case: &Case, flow: &Flow, report: &mut Report<'_>) {
 }
 
 /// Splines, points, averages and iterations that carry the pressure.
-fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
-    if let Some(grid) = root.record("grid").filter(|_| case.grid.order == 1) {
+fn discretised(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    if let Some(grid) = draft.grid.value().filter(|_| case.grid.order == 1) {
         let message = "E0541: with \"linear\" splines the gradient of the pore pressure, which drives the flow, is \
                        too inaccurate. Use \"quadratic\".";
-        grid.error("degree", message, report);
+        grid.degree.error(message, report);
     }
-    for (body, record) in case.bodies.iter().zip(root.records("body")) {
+    for (body, record) in case.bodies.iter().zip(draft.body.items()) {
         if case.grid.order == 3 && body.points_per_cell < POINTS_OF_CUBIC {
             let message = format!(
                 "E0542: {} material points along each axis of a cell are too few for cubic splines, so the pore \
@@ -159,31 +159,30 @@ fn discretised(case: &Case, root: &Record, report: &mut Report<'_>) {
         }
     }
     let shown = matches!(case.stabilisation, Stabilisation::None | Stabilisation::ConsistentFBar);
-    if let Some(record) = root.record("stabilisation").filter(|_| !shown) {
+    if let Some(record) = draft.stabilisation.value().filter(|_| !shown) {
         let method = format!("method = \"{}\"", case.stabilisation.word());
-        record.error("method", not_available(&method, "Use \"consistent-f-bar\"."), report);
+        record
+            .method
+            .error(not_available(&method, "Use \"consistent-f-bar\"."), report);
     }
-    let Some(solver) = root.record("solver") else { return };
+    let Some(solver) = draft.solver.value() else { return };
     if case.solver.nonlinear == crate::Nonlinear::Broyden {
-        solver.error(
-            "nonlinear",
-            not_available("nonlinear = \"broyden\"", "Use \"auto\"."),
-            report,
-        );
+        solver
+            .nonlinear
+            .error(not_available("nonlinear = \"broyden\"", "Use \"auto\"."), report);
     }
     if case.solver.quadrature == Quadrature::Fitted {
-        solver.error(
-            "quadrature",
-            not_available("quadrature = \"fitted\"", "Use \"points\"."),
-            report,
-        );
+        solver
+            .quadrature
+            .error(not_available("quadrature = \"fitted\"", "Use \"points\"."), report);
     }
 }
 
 /// Laws of effective stress, and soils side by side.
-fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
-    let named = root
-        .named("material")
+fn of_soils(case: &Case, flow: &Flow, draft: &Draft, report: &mut Report<'_>) {
+    let named = draft
+        .material
+        .items()
         .iter()
         .enumerate()
         .filter(|(number, _)| case.bodies.iter().any(|body| body.material == *number));
@@ -203,7 +202,7 @@ fn of_soils(case: &Case, flow: &Flow, root: &Record, report: &mut Report<'_>) {
             record.error("model", not_available(&format!("the model \"{law}\""), instead), report);
         }
     }
-    for (_, record) in root.named("material") {
+    for (_, record) in draft.material.items() {
         if record.word::<bsmpm::material::Separation>("separation") == Some(bsmpm::material::Separation::Closing) {
             record.error(
                 "separation",
@@ -362,18 +361,18 @@ fn drains_where_they_meet(case: &Case, flow: &Flow, material: usize) -> bool {
 }
 
 /// What acts on the bodies.
-fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
-    if let Some(rigid) = root.records("rigid").first() {
+fn acting(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    if let Some(rigid) = draft.rigid.items().first() {
         let message = not_available("a rigid body", "Use a [footing] or a [[prescribed]] displacement.");
         report.error(rigid.origin, &rigid.path, message);
     }
-    refuse_supports(case, root, report);
+    refuse_supports(case, draft, report);
     let have_contact = case
         .footing
         .iter()
         .map(|of| of.contact.is_some())
         .chain(case.prescribed.iter().map(|of| of.contact.is_some()));
-    let strips = root.records("footing").iter().chain(root.records("prescribed"));
+    let strips = draft.footing.value().into_iter().chain(draft.prescribed.items());
     for (_, record) in have_contact.zip(strips).filter(|(has_contact, _)| *has_contact) {
         let message = not_available(
             "frictional contact of a footing",
@@ -381,16 +380,19 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
         );
         report.error(record.origin, &record.path, message);
     }
-    root.records("stage")
+    draft
+        .stage
+        .items()
         .iter()
         .enumerate()
         .for_each(|(number, stage)| of_stage(case, number, stage, report));
-    if let Some(record) = root
-        .record("gravity")
-        .filter(|record| record.number("ramp").is_some_and(|ramp| ramp > 0.0))
+    if let Some(gravity) = draft
+        .gravity
+        .value()
+        .filter(|gravity| gravity.ramp.get().is_some_and(|ramp| ramp > 0.0))
     {
         let message = not_available("gravity that increases over a ramp", "Remove `ramp`.");
-        record.error("ramp", message, report);
+        gravity.ramp.error(message, report);
     }
     if case.settles || case.initial == Some(Initial::Elastic) {
         for load in case.sudden_loads() {
@@ -400,24 +402,24 @@ fn acting(case: &Case, root: &Record, report: &mut Report<'_>) {
             ));
         }
     }
-    if let Some(shaking) = root.record("shaking") {
+    if let Some(shaking) = draft.shaking.value() {
         let message = not_available(
             "[shaking]",
             "Remove it, or use drainage = \"hydrostatic\" with undrained strengths.",
         );
-        report.error(shaking.origin, &shaking.path, message);
+        shaking.location().error(message, report);
     }
 }
 
 /// Refuses supports of the grid's faces other than a roller, a fixed or a free face.
-fn refuse_supports(case: &Case, root: &Record, report: &mut Report<'_>) {
+fn refuse_supports(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     for (side, support) in Side::of(case.geometry)
         .iter()
         .flatten()
         .zip(case.boundary.into_iter().flatten())
     {
         let side = side.word();
-        if let Some(boundary) = root.record("boundary") {
+        if let Some(boundary) = draft.boundary.value() {
             match support {
                 Support::Fixed | Support::Roller | Support::Free => {}
                 Support::Contact | Support::Absorbing | Support::FreeField | Support::Outflow => {
@@ -433,29 +435,33 @@ fn refuse_supports(case: &Case, root: &Record, report: &mut Report<'_>) {
 }
 
 /// Strength that is divided.
-fn divided(flow: &Flow, root: &Record, report: &mut Report<'_>) {
-    let Some(reduction) = root.record("strength_reduction") else {
+fn divided(flow: &Flow, draft: &Draft, report: &mut Report<'_>) {
+    let Some(reduction) = draft.strength_reduction.value() else {
         return;
     };
-    let unloaded = reduction.flag("unloaded") == Some(true);
-    if reduction.gives("stage") && flow.at_rest == Motion::Held && !unloaded {
+    let unloaded = reduction.unloaded.get() == Some(true);
+    if reduction.stage.is_given() && flow.at_rest == Motion::Held && !unloaded {
         report.warn(HELD_WATER);
-    } else if !reduction.gives("stage") {
+    } else if !reduction.stage.is_given() {
         let message = "E0543: a strength reduction from the start would mix consolidation and failure. Set `stage = \
              \"end\"` (`bsmpm fos --stage end`), which reduces the strength after the consolidation.";
-        report.error(reduction.origin, &reduction.path, message);
+        reduction.location().error(message, report);
     }
 }
 
 /// How steps follow each other.
-fn timed(case: &Case, root: &Record, report: &mut Report<'_>) {
+fn timed(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     if let Some((growth, _)) = case.analysis.growth.filter(|(growth, _)| *growth > MOST_GROWTH) {
         report.warn(format!(
             "W0549: analysis.growth: steps that grow by a factor of {growth} (limit {MOST_GROWTH}) become inaccurate, \
              and settlements exceed their final value. Set `growth` to {MOST_GROWTH} or less."
         ));
     }
-    let alike = case.analysis.growth.is_none() && root.record("analysis").is_some_and(|record| record.gives("dt_max"));
+    let alike = case.analysis.growth.is_none()
+        && draft
+            .analysis
+            .value()
+            .is_some_and(|analysis| analysis.dt_max.is_given());
     if alike {
         report.warn(
             "W0550: analysis.dt_max: `dt_max` has no effect without `growth`, because all steps are equal. Add \

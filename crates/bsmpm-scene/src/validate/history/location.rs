@@ -4,17 +4,18 @@ use crate::case::Face;
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::validate::{place, site};
 use crate::words::{Geometry, Side};
 
 /// Lines of a section, and whether it is a disc: in a plane itself, of a solid the middle lines of a plate.
 pub(super) fn section(
-    root: &Record,
+    draft: &Draft,
     record: &Record,
     grid: Option<&GridSpec>,
     report: &mut Report<'_>,
 ) -> Option<(Vec<[[f64; 3]; 2]>, bool)> {
-    if root.word::<Geometry>("geometry")? != Geometry::Solid {
+    if draft.geometry.get()? != Geometry::Solid {
         return Some((vec![ends(record, grid, report)?], false));
     }
     if !record.gives("rectangle") && !record.gives("disc") {
@@ -51,9 +52,9 @@ pub(in crate::validate) fn ends(
 }
 
 /// The face of a history.
-pub(super) fn face(record: &Record, root: &Record, report: &mut Report<'_>) -> Option<Face> {
+pub(super) fn face(record: &Record, draft: &Draft, report: &mut Report<'_>) -> Option<Face> {
     let side = record.word::<Side>("face")?;
-    let geometry = root.word::<Geometry>("geometry")?;
+    let geometry = draft.geometry.get()?;
     let face = Face::of(side, geometry);
     if face.is_none() {
         let message = format!(

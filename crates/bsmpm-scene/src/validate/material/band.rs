@@ -4,6 +4,7 @@ use crate::case::{Case, Geometry, Site};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use crate::validate::SQUARE;
 use crate::validate::place::is_at;
 use crate::validate::site::{corners, places};
@@ -40,8 +41,8 @@ pub(super) fn band_of_cells(
 }
 
 /// Warns of every material with a `band_width` outside of what was verified.
-pub(in crate::validate) fn check(case: &Case, root: &Record, report: &mut Report<'_>) {
-    for (number, (_, record)) in root.named("material").iter().enumerate() {
+pub(in crate::validate) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    for (number, (_, record)) in draft.material.items().iter().enumerate() {
         let is_used = record.gives("band_width") && case.is_followed(number);
         if !is_used || !falls(&case.materials[number].material) {
             continue;

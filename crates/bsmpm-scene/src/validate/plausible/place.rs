@@ -3,6 +3,7 @@
 use crate::case::{Body, Case};
 use crate::record::Record;
 use crate::report::{Report, brief, listed};
+use crate::schema::Draft;
 use crate::validate::place::is_in;
 
 /// Size of a body over that of the grid, along each axis, below which a unit is probably wrong.
@@ -11,9 +12,9 @@ const TINY: f64 = 1.0 / 300.0;
 const DISTANCES: [f64; 6] = [0.0, 0.05, 0.25, 0.5, 0.75, 1.0];
 
 /// Warns of bodies that are tiny in their grid.
-pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
+pub(super) fn bodies(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     let dims = case.grid.dims();
-    let all = case.bodies.iter().zip(root.records("body"));
+    let all = case.bodies.iter().zip(draft.body.items());
     let tiny: Vec<(&Body, &Record)> = all.filter(|(body, _)| is_tiny(body, case)).collect();
     let Some((first, _)) = tiny.first() else { return };
     let paths: Vec<String> = tiny.iter().map(|(_, record)| record.path.clone()).collect();
@@ -41,8 +42,8 @@ fn is_tiny(body: &Body, case: &Case) -> bool {
 }
 
 /// Warns of histories at places from which all bodies are more than a cell away.
-pub(super) fn histories(case: &Case, root: &Record, report: &mut Report<'_>) {
-    for record in root.records("history").iter().filter(|record| record.gives("at")) {
+pub(super) fn histories(case: &Case, draft: &Draft, report: &mut Report<'_>) {
+    for record in draft.history.items().iter().filter(|record| record.gives("at")) {
         let Some(at) = record.vector("at") else { continue };
         let reach = case.grid.axes.iter().map(|axis| axis.longest()).fold(0.0, f64::max);
         if case.bodies.iter().any(|body| is_near(body, case, at, reach)) {

@@ -1,8 +1,8 @@
 //! Warns of cohesionless slopes steeper than the friction angle.
 
 use crate::case::{Body, Case, Geometry};
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 use bsmpm::model::Regime;
 
 /// Degrees  Excess of a slope over the friction angle from which on it is reported.
@@ -11,14 +11,14 @@ const EXCESS: f64 = 0.5;
 const OFF: f64 = 1e-3;
 
 /// Warns of the first body at the start that has such a slope, where equilibrium is sought and no water acts.
-pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
+pub(super) fn bodies(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     let is_plane = case.geometry == Geometry::PlaneStrain;
     let is_at_rest = case.analysis.regime == Regime::QuasiStatic && case.gravity.is_some();
     if !is_plane || !is_at_rest || case.flow.is_some() {
         return;
     }
-    let materials = root.named("material");
-    for (body, record) in case.bodies.iter().zip(root.records("body")) {
+    let materials = draft.material.items();
+    for (body, record) in case.bodies.iter().zip(draft.body.items()) {
         let (name, material) = &materials[body.material];
         let Some(friction) = material
             .number("friction_angle")

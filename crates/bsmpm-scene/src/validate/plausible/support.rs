@@ -2,8 +2,8 @@
 
 use crate::case::{Case, Stage};
 use crate::connected::{near_pairs, pieces_of_pairs};
-use crate::record::Record;
 use crate::report::{Report, listed};
+use crate::schema::Draft;
 use crate::validate::gap::are_apart;
 use crate::validate::physics::holds_at_rest;
 use bsmpm::model::Regime;
@@ -12,7 +12,7 @@ use bsmpm::model::Regime;
 const MOST: usize = 200;
 
 /// Warns of bodies that no support holds along an axis, from the start or from a stage on.
-pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
+pub(super) fn bodies(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     if case.analysis.regime != Regime::QuasiStatic {
         return;
     }
@@ -40,13 +40,13 @@ pub(super) fn bodies(case: &Case, root: &Record, report: &mut Report<'_>) {
                 continue;
             }
             known.extend(&piece);
-            warn(root, &piece, &free, stage, report);
+            warn(draft, &piece, &free, stage, report);
         }
     }
 }
 
-fn warn(root: &Record, piece: &[usize], free: &[&str], stage: Option<&Stage>, report: &mut Report<'_>) {
-    let records = piece.iter().map(|body| &root.records("body")[*body]);
+fn warn(draft: &Draft, piece: &[usize], free: &[&str], stage: Option<&Stage>, report: &mut Report<'_>) {
+    let records = piece.iter().map(|body| &draft.body.items()[*body]);
     let names = records.map(|record| match record.text("name") {
         Some(name) => format!("{} `{name}`", record.path),
         None => record.path.clone(),

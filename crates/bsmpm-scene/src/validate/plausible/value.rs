@@ -3,6 +3,7 @@
 use super::Scale;
 use crate::record::Record;
 use crate::report::Report;
+use crate::schema::Draft;
 
 /// Young's modulus (Pa) above which it is that of some soil.
 const STIFF: f64 = 1e5;
@@ -93,9 +94,9 @@ fn is_weak(strength: f64, record: &Record, scale: &Scale) -> bool {
 }
 
 /// Tractions and point loads.
-pub(super) fn loads(root: &Record, scale: &Scale, report: &mut Report<'_>) {
+pub(super) fn loads(draft: &Draft, scale: &Scale, report: &mut Report<'_>) {
     let Some(stress) = scale.stress else { return };
-    for record in root.records("traction") {
+    for record in draft.traction.items() {
         let pressure = bare(record, "pressure")
             .map(f64::abs)
             .or_else(|| bare_list(record, "stress"));
@@ -110,7 +111,7 @@ pub(super) fn loads(root: &Record, scale: &Scale, report: &mut Report<'_>) {
             ));
         }
     }
-    for record in root.records("point_load") {
+    for record in draft.point_load.items() {
         let weight = stress * scale.height;
         if let Some(force) = bare_list(record, "force").filter(|force| *force < NO_FORCE * weight) {
             report.warn(format!(
