@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use bsmpm_messages::headed;
 use clap::{Parser, Subcommand};
 
-use crate::{Error, compare, element, estimate, explain, fos, limit_load, plot, slurm, sweep, validate, verify_case};
+use crate::{
+    Error, compare, element, estimate, explain, fos, keys, limit_load, plot, slurm, sweep, validate, verify_case,
+};
 
 /// Starts runs of bsmpm-par, and evaluates their results.
 #[derive(Debug, Parser)]
@@ -43,7 +45,7 @@ pub enum Command {
     /// Explain messages by their codes: what each means, why it matters, what to do
     Explain(explain::ExplainArguments),
     /// Print every key of a case file with its unit, range and default, and every quantity of a history
-    Keys,
+    Keys(keys::KeysArguments),
 }
 
 /// Carries out a command and prints what it made: tables, and pictures with one path a line.
@@ -99,7 +101,7 @@ pub fn run(cli: &Cli) -> Result<(), Error> {
             print(&table, &files);
         }
         Command::Explain(arguments) => print(&explain::run(arguments)?, &[]),
-        Command::Keys => print(&bsmpm_scene::reference(), &[]),
+        Command::Keys(arguments) => print(&keys::run(arguments), &[]),
         Command::Slurm(arguments) => {
             let script = slurm::run(arguments, |line| say(&headed(line, "warning")))?;
             // Half a script must not pass for one.

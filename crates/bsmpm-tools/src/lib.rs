@@ -11,6 +11,7 @@ pub mod estimate;
 pub mod explain;
 pub mod fos;
 mod grid_convergence;
+pub mod keys;
 mod launch;
 pub mod limit_load;
 mod line;

@@ -1,0 +1,219 @@
+//! Tests the JSON Schema of the case file with the shipped cases, and with cases that it refuses.
+
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use toml::de::{DeTable, DeValue};
+
+/// A case of TOML as JSON.
+fn to_json(table: &DeTable<'_>) -> Value {
+    let entries = table.iter();
+    entries
+        .map(|(key, value)| (key.get_ref().to_string(), value_to_json(value.get_ref())))
+        .collect::<serde_json::Map<_, _>>()
+        .into()
+}
+
+fn value_to_json(value: &DeValue<'_>) -> Value {
+    match value {
+        DeValue::String(text) => json!(text),
+        DeValue::Integer(number) => json!(number.as_str().parse::<i64>().unwrap()),
+        DeValue::Float(number) => json!(number.as_str().parse::<f64>().unwrap()),
+        DeValue::Boolean(flag) => json!(flag),
+        DeValue::Datetime(date) => json!(date.to_string()),
+        DeValue::Array(items) => items.iter().map(|item| value_to_json(item.get_ref())).collect(),
+        DeValue::Table(table) => to_json(table),
+    }
+}
+
+/// The schema, of which this reads the keywords that it uses.
+struct Validator {
+    schema: Value,
+}
+
+impl Validator {
+    fn new() -> Self {
+        let schema = serde_json::from_str(&bsmpm_tools::keys::json_schema()).unwrap();
+        Self { schema }
+    }
+
+    /// What is wrong with a case.
+    fn fault(&self, text: &str) -> Option<String> {
+        let table = DeTable::parse(text).unwrap();
+        self.refusal(&self.schema, &to_json(table.get_ref()), "")
+    }
+
+    /// Why a schema refuses the value at a path.
+    fn refusal(&self, schema: &Value, value: &Value, path: &str) -> Option<String> {
+        let keywords = schema.as_object().unwrap().iter();
+        keywords
+            .filter_map(|(keyword, of)| self.refusal_by(keyword, of, schema, value, path))
+            .next()
+    }
+
+    fn refusal_by(&self, keyword: &str, of: &Value, schema: &Value, value: &Value, path: &str) -> Option<String> {
+        let number = value.as_f64();
+        let length = value.as_array().map(Vec::len);
+        let keys = value.as_object();
+        let accepts = |schema: &Value| self.refusal(schema, value, path).is_none();
+        let bound = of.as_f64().unwrap_or(0.0);
+        let is_valid = match keyword {
+            "$ref" => {
+                let definition = self
+                    .schema
+                    .pointer(of.as_str().unwrap().trim_start_matches('#'))
+                    .unwrap();
+                return self.refusal(definition, value, path);
+            }
+            "allOf" => {
+                let mut all = of.as_array().unwrap().iter();
+                return all.find_map(|one| self.refusal(one, value, path));
+            }
+            "properties" => {
+                let properties = of.as_object().unwrap();
+                let mut found = keys?
+                    .iter()
+                    .filter_map(|(key, value)| Some((key, properties.get(key)?, value)));
+                return found.find_map(|(key, schema, value)| self.refusal(schema, value, &format!("{path}.{key}")));
+            }
+            "additionalProperties" => {
+                let known = schema.get("properties").and_then(Value::as_object);
+                let mut others = keys?
+                    .iter()
+                    .filter(|(key, _)| !known.is_some_and(|known| known.contains_key(*key)));
+                return others.find_map(|(key, value)| match of {
+                    Value::Bool(false) => Some(format!("{path}.{key}: additionalProperties")),
+                    of => self.refusal(of, value, &format!("{path}.{key}")),
+                });
+            }
+            "items" => {
+                let mut items = value.as_array()?.iter().enumerate();
+                return items.find_map(|(k, item)| {
+                    let schema = of.as_array().map_or(of, |of| &of[k.min(of.len() - 1)]);
+                    self.refusal(schema, item, &format!("{path}.{k}"))
+                });
+            }
+            "dependencies" => {
+                let dependencies = of.as_object().unwrap().iter();
+                let mut of_given = dependencies.filter(|(key, _)| keys.is_some_and(|keys| keys.contains_key(*key)));
+                return of_given.find_map(|(_, schema)| self.refusal(schema, value, path));
+            }
+            "anyOf" => of.as_array().unwrap().iter().any(accepts),
+            "not" => !accepts(of),
+            "required" => {
+                let mut required = of.as_array().unwrap().iter();
+                required.all(|key| keys.is_none_or(|keys| keys.contains_key(key.as_str().unwrap())))
+            }
+            "enum" => of.as_array().unwrap().contains(value),
+            "type" => match of.as_str().unwrap() {
+                "object" => value.is_object(),
+                "array" => value.is_array(),
+                "string" => value.is_string(),
+                "boolean" => value.is_boolean(),
+                "integer" => value.is_i64(),
+                "number" => value.is_number(),
+                other => panic!("{other}"),
+            },
+            "minimum" => number.is_none_or(|number| number >= bound),
+            "maximum" => number.is_none_or(|number| number <= bound),
+            "exclusiveMinimum" => number.is_none_or(|number| number > bound),
+            "exclusiveMaximum" => number.is_none_or(|number| number < bound),
+            "minItems" => length.is_none_or(|length| length as f64 >= bound),
+            "maxItems" => length.is_none_or(|length| length as f64 <= bound),
+            "uniqueItems" => value
+                .as_array()
+                .is_none_or(|items| (1..items.len()).all(|k| !items[..k].contains(&items[k]))),
+            "maxLength" => value.as_str().is_none_or(|text| text.chars().count() as f64 <= bound),
+            "pattern" => value.as_str().is_none_or(|text| matches(of.as_str().unwrap(), text)),
+            "$schema" | "title" | "description" | "definitions" | "default" | "examples" | "deprecated" | "x-taplo" => {
+                true
+            }
+            other => panic!("the test does not read the keyword {other}"),
+        };
+        (!is_valid).then(|| format!("{path}: {keyword} {of}"))
+    }
+}
+
+/// Whether a text has the form that one of the two patterns of the schema describes.
+fn matches(pattern: &str, text: &str) -> bool {
+    if pattern.contains("{1,64}") {
+        let is_of_name = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+        return (1..=64).contains(&text.len()) && text.chars().all(is_of_name);
+    }
+    assert!(pattern.starts_with("^\\s*[+-]?"), "{pattern}");
+    let text = text.trim_start();
+    let number = text.trim_start_matches(['+', '-']);
+    let is_of_number = |c: char| c.is_ascii_digit() || ".+-eE ".contains(c);
+    number.starts_with(|c: char| c.is_ascii_digit() || c == '.') && !number.chars().all(is_of_number)
+}
+
+fn shipped() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut folders = vec![root.join("../../cases")];
+    let mut found = vec![root.join("../bsmpm-scene/tests/full.toml")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "toml") && !path.ends_with("matrix.toml") {
+                found.push(path);
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn the_schema_accepts_every_shipped_case() {
+    let validator = Validator::new();
+    let cases = shipped();
+    assert!(cases.len() > 20, "{}", cases.len());
+    for path in cases {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let fault = validator.fault(&text);
+        assert!(fault.is_none(), "{}: {}", path.display(), fault.unwrap_or_default());
+    }
+}
+
+const CASE: &str = r#"
+    geometry = "plane-strain"
+    analysis = { type = "quasi-static", steps = 10 }
+    grid = { lower = [0.0, 0.0], upper = [4.0, 4.0], cell = "0.5 m" }
+    material.soil = { model = "elastic", young = "10 MPa", poisson = 0.3 }
+    body = [{ material = "soil", box = { lower = [0.0, 0.0], upper = [4.0, 2.0] }, points_per_cell = 2 }]
+"#;
+
+#[test]
+fn the_schema_refuses_what_the_declarations_exclude() {
+    let validator = Validator::new();
+    assert_eq!(validator.fault(CASE), None);
+    let changes = [
+        ("steps = 10", "step = 10", ".analysis.step: additionalProperties"),
+        ("steps = 10", "steps = 0", ".analysis.steps: minimum"),
+        ("steps = 10", "steps = 10, dt = 0.1", ".analysis: not"),
+        (
+            "poisson = 0.3",
+            "poisson = 0.5",
+            ".material.soil.poisson: exclusiveMaximum",
+        ),
+        ("poisson = 0.3", "young_ = 0.3", ".material.soil"),
+        ("\"elastic\"", "\"elastik\"", ".material.soil.model: anyOf"),
+        ("\"0.5 m\"", "\"half a metre\"", ".grid.cell: anyOf"),
+        ("material = \"soil\", ", "", ".body.0: required"),
+        ("box = ", "circle = ", ".body.0.circle"),
+        ("[4.0, 2.0]", "[4.0]", ".body.0.box.upper: minItems"),
+    ];
+    for (from, to, expected) in changes {
+        assert!(CASE.contains(from), "{from}");
+        let fault = validator.fault(&CASE.replacen(from, to, 1)).unwrap_or_default();
+        assert!(fault.starts_with(expected), "{from} -> {to}: {fault}");
+    }
+}
+
+#[test]
+fn the_schema_accepts_earlier_names() {
+    let earlier = CASE
+        .replace("\"elastic\"", "\"mohr-coulomb\", cohesion = 1e4, friction = 20.0")
+        .replace("cell = \"0.5 m\"", "cell = \"0.5 m\", order = \"linear\"");
+    assert_eq!(Validator::new().fault(&earlier), None);
+}
