@@ -44,10 +44,10 @@ pub use flow::HELD_WATER;
 
 use crate::case::{Analysis, Case, Gravity, Support};
 use crate::constants::STANDARD_GRAVITY;
-use crate::record::{CaseTable, Record};
+use crate::record::{CaseTable, Field, OrTable};
 use crate::report::Report;
-use crate::schema::{AnalysisTable, Draft};
-use crate::words::{AnalysisType, Geometry, Side, Word};
+use crate::schema::{AnalysisTable, Draft, SupportTable};
+use crate::words::{AnalysisType, Geometry, Side};
 use bsmpm::boundary::Contact;
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;
@@ -340,11 +340,13 @@ pub(crate) fn boundary(draft: &Draft) -> Option<[[Support; 2]; 3]> {
     Some(supports)
 }
 
-fn support(boundary: &Record, side: Side) -> Option<Support> {
-    match boundary.record(side.word()) {
-        Some(_) => Some(Support::Contact),
-        None if matches!(side, Side::Front | Side::Back) && !boundary.gives(side.word()) => Some(Support::Free),
-        None => boundary.word(side.word()),
+fn support(boundary: &dyn SupportTable, side: Side) -> Option<Support> {
+    let face = boundary.face(side);
+    match face.value() {
+        Some(OrTable::Table(_)) => Some(Support::Contact),
+        Some(OrTable::Value(support)) => Some(*support),
+        None if matches!(side, Side::Front | Side::Back) && !face.is_given() => Some(Support::Free),
+        None => None,
     }
 }
 
@@ -365,31 +367,41 @@ fn contacts(draft: &Draft, factor: Option<f64>, report: &mut Report<'_>) -> Opti
 }
 
 /// What a face does if it is in contact, its friction divided by the `factor` of the strength; none after an error.
-fn contact(boundary: &Record, side: Side, factor: Option<f64>, report: &mut Report<'_>) -> Option<Option<Contact>> {
-    let Some(face) = boundary.record(side.word()) else {
+fn contact(
+    boundary: &dyn SupportTable,
+    side: Side,
+    factor: Option<f64>,
+    report: &mut Report<'_>,
+) -> Option<Option<Contact>> {
+    let Some(face) = boundary.face(side).table() else {
         let smooth = Contact {
             friction: 0.0,
             lifts: true,
         };
         return Some((support(boundary, side)? == Support::Contact).then_some(smooth));
     };
-    Some(Some(law(face, factor, report)?))
+    Some(Some(law(&face.friction_coefficient, &face.separates, factor, report)?))
 }
 
 /// Friction, divided by the `factor` of the strength, and whether material comes off; none after an error.
-fn law(face: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<Contact> {
-    let given = face.number("friction_coefficient")?;
-    let lifts = face.flag("separates")?;
+fn law(
+    coefficient: &Field<f64>,
+    separates: &Field<bool>,
+    factor: Option<f64>,
+    report: &mut Report<'_>,
+) -> Option<Contact> {
+    let given = coefficient.get()?;
+    let lifts = separates.get()?;
     let friction = factor.map_or(given, |factor| given / factor);
     if friction != given {
         let reason = format!("divided by strength_reduction.factor = {}", factor.unwrap_or(1.0));
-        report.note(face.path_of("friction_coefficient"), format!("{friction}"), reason);
+        report.note(coefficient.path(), format!("{friction}"), reason);
     }
     if friction > MOST_SHOWN_FRICTION {
         report.warn(format!(
             "W0204: {}: a friction coefficient of {friction} is above {MOST_SHOWN_FRICTION}, the largest value that \
              was verified. Steps may not converge. Use a smaller coefficient, or the support \"fixed\".",
-            face.path_of("friction_coefficient")
+            coefficient.path()
         ));
     }
     Some(Contact { friction, lifts })

@@ -1,9 +1,9 @@
 //! Finds time-dependent inputs of a case that cause waves.
 
 use crate::record::{CaseTable, ListRow, Record};
-use crate::schema::Draft;
+use crate::schema::{Draft, SupportTable};
 use crate::spectrum::{InputKind, Signal};
-use crate::words::{Side, Support, Word};
+use crate::words::{Side, Support};
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm_shapes::polygon;
 
@@ -137,7 +137,7 @@ fn guided(draft: &Draft, part: LoadedPart, along: Option<usize>) -> Option<usize
     let boundary = draft.boundary.value()?;
     let sides = Side::of(draft.geometry.get()?).iter().enumerate();
     let mut others = sides.filter(|(of, _)| *of != axis).flat_map(|(_, sides)| sides);
-    let is_guided = others.all(|side| boundary.word(side.word()) == Some(Support::Roller));
+    let is_guided = others.all(|side| boundary.face(*side).plain() == Some(Support::Roller));
     let is_whole = match part {
         LoadedPart::Everything => true,
         LoadedPart::Segment(ends) => axis < 2 && covers(draft, ends, 1 - axis),

@@ -4,8 +4,8 @@ use super::plane::{PlaneBody, PlaneShape};
 use super::solid::surface_points;
 use super::{MirrorPlane, OpeningGeometry, Surroundings};
 use crate::case::{Case, RigidShape};
-use crate::record::Record;
-use crate::schema::Draft;
+use crate::record::{Field, Record};
+use crate::schema::{Draft, StageTable};
 use crate::words::Support;
 
 /// Parts of the grid's size by which a body may miss a face that it reaches.
@@ -154,17 +154,17 @@ fn is_in([lower, upper]: &[[f64; 3]; 2], at: [f64; 3]) -> bool {
 /// Which bodies are there at the start and after each stage, each state once.
 pub(crate) fn phases(draft: &Draft) -> Vec<Vec<bool>> {
     let bodies = draft.body.items();
-    let time = |stage: &Record| stage.number("at").unwrap_or(0.0);
-    let mut stages: Vec<&Record> = draft.stage.items().iter().collect();
+    let time = |stage: &StageTable| stage.at.get().unwrap_or(0.0);
+    let mut stages: Vec<&StageTable> = draft.stage.items().iter().collect();
     stages.sort_by(|a, b| time(a).total_cmp(&time(b)));
     let mut there: Vec<bool> = bodies
         .iter()
-        .map(|body| !stages.iter().any(|stage| names(stage, "add", body)))
+        .map(|body| !stages.iter().any(|stage| names(&stage.add, body)))
         .collect();
     let mut phases = vec![there.clone()];
     for stage in &stages {
         for (there, body) in there.iter_mut().zip(bodies) {
-            *there = (*there || names(stage, "add", body)) && !names(stage, "remove", body);
+            *there = (*there || names(&stage.add, body)) && !names(&stage.remove, body);
         }
         if !phases.contains(&there) {
             phases.push(there.clone());
@@ -174,11 +174,7 @@ pub(crate) fn phases(draft: &Draft) -> Vec<Vec<bool>> {
 }
 
 /// Whether a key of a stage names a body.
-fn names(stage: &Record, key: &str, body: &Record) -> bool {
+fn names(key: &Field<Vec<String>>, body: &Record) -> bool {
     let name = body.text("name");
-    stage
-        .names(key)
-        .unwrap_or_default()
-        .iter()
-        .any(|listed| Some(listed.as_str()) == name)
+    key.items().iter().any(|listed| Some(listed.as_str()) == name)
 }

@@ -5,8 +5,9 @@ use super::Preset;
 use super::axis::{Fine, MOST, ON_LINE, Spacing};
 use super::scene::{GradedSegment, PresetScene, around};
 use crate::report::brief;
+use crate::schema::SupportTable;
 use crate::validate::SQUARE;
-use crate::words::{Side, Support, Word};
+use crate::words::{Side, Support};
 
 /// What cells follow from.
 pub(super) const CELLS: &str = "the bodies, footings and loads, the corners of the grid and [boundary]";
@@ -174,7 +175,7 @@ impl PresetScene<'_> {
             .filter_map(|motion| motion.word("face"))
             .collect();
         let mut sides = Side::ALL[axis].into_iter();
-        Some(sides.all(|side| boundary.word(side.word()) != Some(Support::Free) || moved.contains(&side)))
+        Some(sides.all(|side| boundary.face(side).plain() != Some(Support::Free) || moved.contains(&side)))
     }
 
     /// Whether lines of equal cells with these edges (m) are at all places at which one is wanted.
@@ -333,7 +334,7 @@ impl PresetScene<'_> {
         let boundary = self.draft.boundary.value();
         let cut = segment.along().is_some_and(|axis| {
             let [lower, upper] = [0, 1].map(|side| {
-                let support = boundary.and_then(|boundary| boundary.word(Side::ALL[axis][side].word()));
+                let support = boundary.and_then(|boundary| boundary.face(Side::ALL[axis][side]).plain());
                 support == Some(Support::Roller) && segment.ends.iter().any(|end| end[axis] == ends[axis][side])
             });
             lower != upper

@@ -1,10 +1,10 @@
 //! Limits the cell size of a preset (key `accuracy`), so that cells resolve waves.
 
 use super::scene::PresetScene;
-use crate::schema::LawName;
+use crate::schema::{LawName, SupportTable};
 use crate::spectrum::SHARE;
 use crate::waves::{WaveInput, fewest_cells, inputs};
-use crate::words::{AnalysisType, Side, Support, Word};
+use crate::words::{AnalysisType, Side, Support};
 use bsmpm::dynamics::mass::MassMatrix;
 
 /// Part of the cells of a preset to which waves make them smaller at most: each half costs eight times as much.
@@ -74,8 +74,8 @@ impl PresetScene<'_> {
             .into_iter()
             .chain(self.draft.prescribed.items());
         let has_contact = boundaries.any(|boundary| {
-            let mut keys = Side::ALL.as_flattened().iter().map(|side| side.word());
-            keys.any(|key| boundary.record(key).is_some() || boundary.word(key) == Some(Support::Contact))
+            let mut faces = Side::ALL.as_flattened().iter().map(|side| boundary.face(*side));
+            faces.any(|face| face.table().is_some() || face.plain() == Some(Support::Contact))
         });
         has_contact
             || !self.draft.rigid.items().is_empty()

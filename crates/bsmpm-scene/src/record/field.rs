@@ -113,6 +113,26 @@ impl<T: Copy> Field<T> {
     }
 }
 
+impl<V, T> Field<OrTable<V, T>> {
+    /// The table, if the case gives one in place of a value.
+    pub(crate) fn table(&self) -> Option<&T> {
+        match self.value()? {
+            OrTable::Table(table) => Some(table),
+            OrTable::Value(_) => None,
+        }
+    }
+}
+
+impl<V: Copy, T> Field<OrTable<V, T>> {
+    /// A copy of the value, if the case does not give a table in its place.
+    pub(crate) fn plain(&self) -> Option<V> {
+        match self.value()? {
+            OrTable::Value(value) => Some(*value),
+            OrTable::Table(_) => None,
+        }
+    }
+}
+
 impl Field<String> {
     /// The text; `None` if the key is absent or an error has been reported.
     pub(crate) fn text(&self) -> Option<&str> {
@@ -161,11 +181,6 @@ impl Record {
             place,
             value: field.datum.take().and_then(read),
         }
-    }
-
-    /// Place of a key.
-    pub(crate) fn key(&self, key: &str) -> KeyPlace {
-        self.clone().take(key, Some).place
     }
 
     /// A copy of the rows of a key.
@@ -225,6 +240,11 @@ impl Datum {
 
     pub(crate) fn table<T: CaseTable>(self) -> Option<T> {
         self.record().map(T::from_record)
+    }
+
+    pub(crate) fn tables<T: CaseTable>(self) -> Option<Vec<T>> {
+        let records = self.records()?.into_iter();
+        Some(records.map(T::from_record).collect())
     }
 
     pub(crate) fn word_or_table<V: Word, T: CaseTable>(self) -> Option<OrTable<V, T>> {

@@ -203,6 +203,24 @@ macro_rules! exclusive_group {
     };
 }
 
+/// Finds the key of a face by its side.
+macro_rules! support_table {
+    ($Table:ident) => {
+        impl $crate::schema::SupportTable for $Table {
+            fn face(&self, side: $crate::words::Side) -> &$crate::schema::SupportField {
+                match side {
+                    $crate::words::Side::Left => &self.left,
+                    $crate::words::Side::Right => &self.right,
+                    $crate::words::Side::Front => &self.front,
+                    $crate::words::Side::Back => &self.back,
+                    $crate::words::Side::Bottom => &self.bottom,
+                    $crate::words::Side::Top => &self.top,
+                }
+            }
+        }
+    };
+}
+
 /// A key as written in the case file: a field's name without the mark of a word that Rust reserves.
 pub(crate) const fn name(field: &'static str) -> &'static str {
     match field.as_bytes() {

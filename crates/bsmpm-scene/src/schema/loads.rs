@@ -3,6 +3,7 @@
 use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
 use super::{Dimension as In, Key, Kind, Range, Table, body, key, one_of};
+use crate::record::{Field, OrTable};
 use crate::words::{Axis, Base, Components, Failure, Settled, Side, Start, Support, Word};
 use std::ops::Bound::Included;
 
@@ -19,25 +20,24 @@ pub(super) const FACTOR: Range = Range::of(Included(0.1), Included(100.0));
 /// Horizontal over vertical stress: from nothing to far beyond passive pressure.
 pub(super) const COEFFICIENT: Range = Range::of(Included(0.0), Included(100.0));
 
-/// What a face of the grid is.
-pub(super) const SUPPORT: Kind = ChoiceOr(Support::WORDS, &CONTACT);
+table! {
+    /// Contact with Coulomb friction between the soil and a face of the grid.
+    struct ContactTable = "left = { friction_coefficient, separates }" {
+        friction_coefficient: Shared(FRICTION_KEY, Quantity);
+        /// With true, the soil may separate from the face. With false the normal displacement is zero, and under
+        /// tension there is no friction.
+        separates: Flag, Default("true"), renamed_from(&["lifts"]);
+    }
+}
 
-static CONTACT: Table = Table {
-    header: "left = { friction_coefficient, separates }",
-    doc: "Contact with Coulomb friction between the soil and a face of the grid.",
-    keys: &[
-        FRICTION_KEY,
-        key(
-            "separates",
-            Flag,
-            Default("true"),
-            "With true, the soil may separate from the face. With false the normal displacement is zero, and under \
-             tension there is no friction.",
-        )
-        .renamed_from(&["lifts"]),
-    ],
-    exclusive: &[],
-};
+/// The support of a face of the grid, or the contact at it.
+pub(crate) type SupportField = Field<OrTable<Support, ContactTable>>;
+
+/// A table with the supports of the faces of the grid.
+pub(crate) trait SupportTable {
+    /// The key of a face.
+    fn face(&self, side: Side) -> &SupportField;
+}
 
 pub(super) static FOOTING: Table = Table {
     header: "[footing]",

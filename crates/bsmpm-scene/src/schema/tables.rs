@@ -1,16 +1,16 @@
 //! Schema of the case file's main tables: analysis, grid, boundaries and solver.
 
-use super::Presence::{Default, Optional};
-use super::loads::{self, InitialTable, ReductionTable, ShakingTable};
+use super::loads::{self, ContactTable, InitialTable, ReductionTable, ShakingTable};
 use super::output::{self, OutputTable};
+use super::stage::StageTable;
 use super::water::WaterTable;
-use super::{Dimension as In, Kind, Range, Table, body, element, flow, key, material, rigid, stage};
+use super::{Dimension as In, Kind, Range, Table, body, element, flow, material, rigid};
 use crate::document::DocumentTable;
 use crate::record::{self, CaseTable};
 use crate::report::Report;
 use crate::words::{
     Accuracy, AnalysisType, BACKGROUND_CELLS, BACKGROUND_KIND, C0Lines, Geometry, LinearSolver, Nonlinear, Order,
-    Purpose,
+    Purpose, Support,
 };
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::grid::extension::ExtendedSplines;
@@ -52,7 +52,7 @@ table! {
         shaking: Table(ShakingTable), Optional,
             example(r#"{ acceleration = [[0.0, 0.0, 0.0], [0.5, "0.1 g", 0.0], [1.0, 0.0, 0.0]] }"#);
         /// Supports at the faces of the grid.
-        boundary: UntypedTable(BOUNDARY), Default("{}"),
+        boundary: Table(BoundaryTable), Default("{}"),
             example(r#"{ bottom = "fixed", left = "roller", right = "roller" }"#);
         /// Method that prevents volumetric locking and oscillating stresses. Without this table no such method is
         /// used.
@@ -88,7 +88,7 @@ table! {
         element: UntypedNamed(element::ELEMENT), Optional,
             example(r#"{ test = { material = "clay", pressure = 1e5, stage = [{ test = "triaxial", compression = 0.1 }] } }"#);
         /// A change at a given time, for instance an excavation or a layer of fill.
-        stage: UntypedTables(stage::STAGE), Optional,
+        stage: Tables(StageTable), Optional,
             example(r#"[{ name = "excavated", at = "0.5 s", remove = ["upper_layer"] }]"#);
         /// Values along a line, written to a file.
         profile: UntypedTables(output::PROFILE), Optional,
@@ -203,55 +203,25 @@ table! {
     }
 }
 
-static BOUNDARY: Table = Table {
-    header: "[boundary]",
-    doc: "Supports at the faces of the grid.",
-    keys: &[
-        key(
-            "left",
-            loads::SUPPORT,
-            Default("\"free\""),
-            "Support at the face with the lowest x.",
-        )
-        .example(r#""roller""#),
-        key(
-            "right",
-            loads::SUPPORT,
-            Default("\"free\""),
-            "Support at the face with the highest x.",
-        )
-        .example(r#""roller""#),
-        key(
-            "bottom",
-            loads::SUPPORT,
-            Default("\"free\""),
-            "Support at the face with the lowest y (in 3-D: the lowest z).",
-        )
-        .example(r#""fixed""#),
-        key(
-            "top",
-            loads::SUPPORT,
-            Default("\"free\""),
-            "Support at the face with the highest y (in 3-D: the highest z).",
-        )
-        .example(r#""free""#),
-        key(
-            "front",
-            loads::SUPPORT,
-            Optional,
-            "Support at the face with the lowest y. Only in 3-D. Default: \"free\".",
-        )
-        .example(r#""roller""#),
-        key(
-            "back",
-            loads::SUPPORT,
-            Optional,
-            "Support at the face with the highest y. Only in 3-D. Default: \"free\".",
-        )
-        .example(r#""roller""#),
-    ],
-    exclusive: &[],
-};
+table! {
+    /// Supports at the faces of the grid.
+    struct BoundaryTable = "[boundary]" {
+        /// Support at the face with the lowest x.
+        left: ChoiceOr(Support, ContactTable), Default("\"free\""), example(r#""roller""#);
+        /// Support at the face with the highest x.
+        right: ChoiceOr(Support, ContactTable), Default("\"free\""), example(r#""roller""#);
+        /// Support at the face with the lowest y (in 3-D: the lowest z).
+        bottom: ChoiceOr(Support, ContactTable), Default("\"free\""), example(r#""fixed""#);
+        /// Support at the face with the highest y (in 3-D: the highest z).
+        top: ChoiceOr(Support, ContactTable), Default("\"free\""), example(r#""free""#);
+        /// Support at the face with the lowest y. Only in 3-D. Default: "free".
+        front: ChoiceOr(Support, ContactTable), Optional, example(r#""roller""#);
+        /// Support at the face with the highest y. Only in 3-D. Default: "free".
+        back: ChoiceOr(Support, ContactTable), Optional, example(r#""roller""#);
+    }
+}
+
+support_table!(BoundaryTable);
 
 table! {
     /// Method that prevents volumetric locking and oscillating stresses. The theory manual compares the methods.

@@ -4,8 +4,8 @@ use crate::case::{Case, DrainSite, Face, Geometry, LoadedLine, Support};
 use crate::observables::{Aspect, HistorySubject};
 use crate::record::{KeyPlace, Record};
 use crate::report::Report;
-use crate::schema::Draft;
-use crate::words::{Side, Word};
+use crate::schema::{Draft, SupportTable};
+use crate::words::Side;
 
 /// The face at the axis.
 const AXIS: Face = Face { axis: 0, upper: false };
@@ -51,16 +51,16 @@ fn axis(case: &Case, draft: &Draft, report: &mut Report<'_>) {
              lower end of the grid along x to 0. The body may begin at x > 0.";
         key.error(message, report);
     }
-    let of_stages = draft.stage.items().iter().filter_map(|stage| stage.record("boundary"));
-    let tables = draft.boundary.value().into_iter().chain(of_stages);
+    let stages = draft.stage.items().iter().filter_map(|stage| stage.boundary.value());
+    let stages = stages.map(|boundary| boundary as &dyn SupportTable);
+    let start = draft.boundary.value().map(|boundary| boundary as &dyn SupportTable);
+    let tables = start.into_iter().chain(stages);
     for boundary in tables {
         for side in Side::ALL.into_iter().flatten() {
             let found = super::support(boundary, side);
-            let word = side.word();
             if Face::of(side, Geometry::Axisymmetric) == Some(AXIS) {
                 if found.is_some_and(|found| found != Support::Roller) {
-                    boundary.error(
-                        word,
+                    boundary.face(side).error(
                         "E0239: this face is the axis of symmetry. Set it to \"roller\".",
                         report,
                     );
@@ -68,7 +68,7 @@ fn axis(case: &Case, draft: &Draft, report: &mut Report<'_>) {
             } else if found == Some(Support::FreeField) {
                 let message = "E0240: a free field follows horizontal shaking in one direction, which is not \
                      axisymmetric. Use \"absorbing\", or \"roller\" at a larger distance from the axis.";
-                boundary.error(word, message, report);
+                boundary.face(side).error(message, report);
             }
         }
     }

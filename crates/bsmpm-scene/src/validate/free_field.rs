@@ -3,9 +3,9 @@
 use super::physics::reached;
 use crate::case::{Case, Geometry, LoadedLine, Rigid, RigidShape, Site, Support};
 use crate::report::Report;
-use crate::schema::Draft;
+use crate::schema::{Draft, SupportTable};
 use crate::surfaces::outline;
-use crate::words::{Side, Word};
+use crate::words::Side;
 
 /// The free field is columns of what lies at them, on the base, which nothing else holds or loads.
 pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
@@ -17,26 +17,26 @@ pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
         if case.boundary[axis][upper] != Support::FreeField || case.geometry == Geometry::Axisymmetric {
             continue;
         }
-        let face = Side::ALL[axis][upper].word();
+        let face = boundary.face(Side::ALL[axis][upper]);
         if axis == 1 {
             let message = "E0244: a free field is available at the left and right face only. Use \"absorbing\" here.";
-            boundary.error(face, message, report);
+            face.error(message, report);
             continue;
         }
         if case.shaking.iter().all(|(_, ground)| *ground == [0.0; 3]) {
             let message = "E0245: the case has no [shaking], or its acceleration is zero, so the free field does not \
                  move. Add [shaking] with an acceleration, or use \"absorbing\".";
-            boundary.error(face, message, report);
+            face.error(message, report);
         }
         if !matches!(case.boundary[1][0], Support::Fixed | Support::Absorbing) || case.boundary[1][1] != Support::Free {
             let message = "E0246: a free field needs a supported bottom and a free top. Set boundary.bottom = \
                  \"fixed\" or \"absorbing\", and boundary.top = \"free\".";
-            boundary.error(face, message, report);
+            face.error(message, report);
         }
         if !reached(case, axis, upper == 1) {
             let message = "E0247: no body reaches this face, so the free field has no soil. Extend a body to this \
                  face.";
-            boundary.error(face, message, report);
+            face.error(message, report);
         }
         let (lower, higher) = column(case, upper == 1);
         let column = Column { lower, higher };
@@ -47,14 +47,14 @@ pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
         if bodies.any(|body| body.velocity.is_some_and(|v| v != [0.0; 3]) || body.spin.is_some()) {
             let message = "E0248: a body at this face has an initial velocity or spin, but the outermost cells here \
                  represent the free field, which moves with [shaking] alone. Delete the velocity or spin.";
-            boundary.error(face, message, report);
+            face.error(message, report);
         }
         if let Some(what) = acts_in(case, &column) {
             let message = format!(
                 "E0248: {what} acts on the outermost cells at this face. They represent the free field, so only \
                  [shaking] may act on them. Keep {what} more than a cell away from this face at all times."
             );
-            boundary.error(face, message, report);
+            face.error(message, report);
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::nearest::{nearest, unknown_name};
 use crate::observables::{Aspect, HistorySubject, Observable, SubjectKeys, SubjectKind};
 use crate::record::Record;
 use crate::report::{Report, shortened};
-use crate::schema::Draft;
+use crate::schema::{Draft, SupportTable};
 use crate::unit::Dimension;
 use crate::words::{Geometry, Side, Word};
 use bsmpm::model::Regime;
@@ -213,10 +213,10 @@ fn strip(draft: &Draft, record: &Record, observable: Observable, report: &mut Re
 
 /// What a face is at the start, and what stages make of it.
 fn supports(draft: &Draft, side: Side) -> Vec<Support> {
-    let later = draft.stage.items().iter().filter_map(|stage| stage.record("boundary"));
-    draft
-        .boundary
-        .value()
+    let stages = draft.stage.items().iter().filter_map(|stage| stage.boundary.value());
+    let later = stages.map(|boundary| boundary as &dyn SupportTable);
+    let start = draft.boundary.value().map(|boundary| boundary as &dyn SupportTable);
+    start
         .into_iter()
         .chain(later)
         .filter_map(|boundary| super::support(boundary, side))

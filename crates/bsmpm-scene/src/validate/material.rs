@@ -10,8 +10,8 @@ use crate::constants::STANDARD_GRAVITY;
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
-use crate::schema::{Draft, LawName, Range};
-use crate::words::{Geometry, Side, Word};
+use crate::schema::{Draft, LawName, Range, SupportTable};
+use crate::words::{Geometry, Side};
 use bsmpm::material::{LayeredMaterial, Profile};
 use bsmpm::model::Regime;
 use law::{Parameters, law};
@@ -99,7 +99,7 @@ fn has_friction(draft: &Draft) -> bool {
         .iter()
         .chain(draft.prescribed.items())
         .chain(draft.footing.value());
-    sides.any(|side| faces.is_some_and(|faces| faces.record(side.word()).is_some())) || bodies.any(is_frictional)
+    sides.any(|side| faces.is_some_and(|faces| faces.face(*side).table().is_some())) || bodies.any(is_frictional)
 }
 
 /// Whether a rigid body or strip has friction, by what is written of it.

@@ -8,7 +8,7 @@ use crate::case::{ActiveLoads, Base, Body, Case, Geometry, Initial, Site, Suppor
 use crate::constants::NEARLY_INCOMPRESSIBLE;
 use crate::observables::{HistorySubject, Observable};
 use crate::report::Report;
-use crate::schema::Draft;
+use crate::schema::{Draft, SupportTable};
 use crate::words::{AnalysisType, Side, Word};
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;
@@ -168,8 +168,8 @@ fn absorbed(case: &Case, draft: &Draft, report: &mut Report<'_>) {
         if !matches!(case.boundary[axis][upper], Support::Absorbing | Support::FreeField) {
             continue;
         }
-        let side = Side::ALL[axis][upper].word();
-        let mut refuse = |message: &str| boundary.error(side, message, report);
+        let face = boundary.face(Side::ALL[axis][upper]);
+        let mut refuse = |message: &str| face.error(message, report);
         if case.analysis.regime == Regime::QuasiStatic {
             refuse(
                 "E0671: an absorbing boundary reacts to velocities, but a quasi-static analysis has none, so the \

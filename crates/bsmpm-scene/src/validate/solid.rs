@@ -2,9 +2,8 @@
 
 use crate::case::{Case, FaceSupport, Support};
 use crate::observables::{Aspect, Observable};
-use crate::record::Record;
 use crate::report::Report;
-use crate::schema::Draft;
+use crate::schema::{Draft, SupportTable};
 use crate::words::{Geometry, LinearSolver, Side, Word};
 use bsmpm::stabilisation::Stabilisation;
 
@@ -82,14 +81,14 @@ fn in_space(draft: &Draft, report: &mut Report<'_>) {
             );
         }
     }
-    let stages = draft.stage.items().iter().filter_map(|stage| stage.record("boundary"));
-    for boundary in draft.boundary.value().into_iter().chain(stages) {
-        for side in [Side::Front, Side::Back]
-            .into_iter()
-            .filter(|side| boundary.gives(side.word()))
-        {
+    let stages = draft.stage.items().iter().filter_map(|stage| stage.boundary.value());
+    let stages = stages.map(|boundary| boundary as &dyn SupportTable);
+    let start = draft.boundary.value().map(|boundary| boundary as &dyn SupportTable);
+    for boundary in start.into_iter().chain(stages) {
+        let faces = [Side::Front, Side::Back].map(|side| boundary.face(side));
+        for face in faces.into_iter().filter(|face| face.is_given()) {
             let message = "E0207: a 2-D grid has no front and no back face. Delete this key, or use geometry = \"3d\".";
-            boundary.error(side.word(), message, report);
+            face.error(message, report);
         }
     }
     let shapes = draft
@@ -110,32 +109,32 @@ fn in_space(draft: &Draft, report: &mut Report<'_>) {
 }
 
 /// Errors about what the faces of a solid do, of which a table says some.
-fn faces(all: &[FaceSupport], boundary: &Record, report: &mut Report<'_>) {
-    for of in all.iter().filter(|of| boundary.gives(side(of))) {
+fn faces(all: &[FaceSupport], boundary: &dyn SupportTable, report: &mut Report<'_>) {
+    for of in all.iter().filter(|of| boundary.face(side(of)).is_given()) {
         if !matches!(
             of.support,
             Support::Fixed | Support::Roller | Support::Free | Support::Contact | Support::Outflow
         ) {
             let message = "E0226: this support is not available in 3-D. Use one of: \"fixed\", \"roller\", \"free\", \
                  \"outflow\", \"contact\", { friction_coefficient = ... }.";
-            boundary.error(side(of), message, report);
+            boundary.face(side(of)).error(message, report);
         }
     }
     let with_friction: Vec<&FaceSupport> = all
         .iter()
         .filter(|of| of.contact.is_some_and(|contact| contact.friction > 0.0))
         .collect();
-    let mut given = with_friction.iter().filter(|of| boundary.gives(side(of)));
+    let mut given = with_friction.iter().filter(|of| boundary.face(side(of)).is_given());
     if let Some(of) = given.rfind(|of| with_friction.iter().any(|other| other.face.axis != of.face.axis)) {
         let message = "E0226: friction on two faces that share an edge is not available in 3-D. Set one of the two \
                        faces to \"contact\" or \"roller\".";
-        boundary.error(side(of), message, report);
+        boundary.face(side(of)).error(message, report);
     }
 }
 
 /// The key of a face of a solid.
-fn side(of: &FaceSupport) -> &'static str {
-    of.face.side(Geometry::Solid).word()
+fn side(of: &FaceSupport) -> Side {
+    of.face.side(Geometry::Solid)
 }
 
 /// Errors and warnings about a whole case in three dimensions.
@@ -143,9 +142,11 @@ pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     if case.geometry != Geometry::Solid {
         return;
     }
-    let stages = draft.stage.items().iter().map(|stage| stage.record("boundary"));
+    let start = draft.boundary.value().map(|boundary| boundary as &dyn SupportTable);
+    let stages = draft.stage.items().iter().map(|stage| stage.boundary.value());
+    let stages = stages.map(|boundary| boundary.map(|boundary| boundary as &dyn SupportTable));
     let times = std::iter::once(0.0).chain(case.stages.iter().map(|stage| stage.at));
-    let tables = std::iter::once(draft.boundary.value()).chain(stages);
+    let tables = std::iter::once(start).chain(stages);
     for (t, boundary) in times.zip(tables).filter_map(|(t, table)| Some((t, table?))) {
         faces(&case.faces_at(t), boundary, report);
     }

@@ -7,10 +7,10 @@ use super::{place, reduction, rigid, sheet, site, strip};
 use crate::case::{ActiveLoads, Body, Case, Face, FaceSupport, LoadedLine, Site, Stage, Support};
 use crate::nearest::unknown_name;
 use crate::observables::HistorySubject;
-use crate::record::Record;
+use crate::record::{CaseTable, Field, Record};
 use crate::report::{Report, shortened};
-use crate::schema::Draft;
-use crate::words::{Geometry, Side, Word};
+use crate::schema::{Draft, ExchangeTable, StageTable, SupportTable};
+use crate::words::{Geometry, Side};
 
 /// Parts of a step by which stages must lie apart: a step ends at each.
 const APART: f64 = 1e-6;
@@ -135,7 +135,7 @@ fn acting<'a>(draft: &'a Draft, report: &mut Report<'_>) -> Vec<NamedItem<'a, Ac
 }
 
 fn stage(
-    record: &Record,
+    record: &StageTable,
     factor: Option<f64>,
     draft: &Draft,
     bodies: &[Body],
@@ -147,14 +147,14 @@ fn stage(
         Some(NamedItem { name, what })
     });
     let bodies: Vec<NamedItem<'_, usize>> = bodies.collect();
-    let remove = named("remove", record, &bodies, report);
-    let add = named("add", record, &bodies, report);
-    let apply = named("activate", record, acting, report);
-    let release = named("deactivate", record, acting, report);
+    let remove = named(&record.remove, &bodies, report);
+    let add = named(&record.add, &bodies, report);
+    let apply = named(&record.activate, acting, report);
+    let release = named(&record.deactivate, acting, report);
     let materials = exchanges(record, draft, report);
     let faces = faces(record, factor, draft, report);
-    let at = record.number("at")?;
-    let resets_displacements = record.flag("reset_displacements")?;
+    let at = record.at.get()?;
+    let resets_displacements = record.reset_displacements.get()?;
     let remove: Vec<usize> = remove?.into_iter().map(|(_, body)| body).collect();
     let add: Vec<usize> = add?.into_iter().map(|(_, body)| body).collect();
     let apply = apply?;
@@ -162,14 +162,14 @@ fn stage(
     let faces = faces?;
     let materials = materials?;
     let is_still = remove.is_empty() && add.is_empty() && apply.is_empty() && release.is_empty();
-    let strength_reduction = record.number("strength_reduction");
-    let is_still = is_still && strength_reduction.is_none() && !record.gives("strength_reduction");
+    let strength_reduction = record.strength_reduction.get();
+    let is_still = is_still && strength_reduction.is_none() && !record.strength_reduction.is_given();
     if is_still && faces.is_empty() && materials.is_empty() && !resets_displacements {
         let message = "E0611: the stage changes nothing. Give it one of `add`, `remove`, `activate`, `deactivate`, \
                        `boundary`, `materials`, `strength_reduction` or `reset_displacements`.";
-        report.error(record.origin, &record.path, message);
+        record.location().error(message, report);
     }
-    let name = record.text("name").map(str::to_owned);
+    let name = record.name.text().map(str::to_owned);
     Some(Stage {
         name,
         at,
@@ -188,22 +188,18 @@ fn stage(
 
 /// The names of a key, and what they name.
 fn named<T: Copy>(
-    key: &str,
-    record: &Record,
+    names: &Field<Vec<String>>,
     known: &[NamedItem<'_, T>],
     report: &mut Report<'_>,
 ) -> Option<Vec<(String, T)>> {
-    if !record.gives(key) {
-        return Some(Vec::new());
-    }
-    let bodies = ["remove", "add"].contains(&key);
+    let bodies = ["remove", "add"].contains(&names.name());
     let kind = if bodies {
         "[[body]]"
     } else {
         "load, motion, footing, rigid body, drain or inflow"
     };
     let mut found = Vec::new();
-    for name in record.names(key)? {
+    for name in names.list()? {
         let mut all = known.iter().filter(|known| known.name == name);
         let first = all.next().map(|known| (name.clone(), known.what));
         if !bodies && all.next().is_some() {
@@ -212,11 +208,11 @@ fn named<T: Copy>(
                  is meant. Rename all but one.",
                 shortened(name)
             );
-            record.error(key, message, report);
+            names.error(message, report);
         }
         if first.is_none() {
             let message = unknown_name(kind, name, known.iter().map(|known| known.name));
-            record.consequence(key, message, if bodies { &["body"] } else { MAY_ACT }, report);
+            names.consequence(message, if bodies { &["body"] } else { MAY_ACT }, report);
         }
         found.push(first);
     }
@@ -224,27 +220,27 @@ fn named<T: Copy>(
 }
 
 /// The faces of the grid that a stage changes.
-fn faces(record: &Record, factor: Option<f64>, draft: &Draft, report: &mut Report<'_>) -> Option<Vec<FaceSupport>> {
-    let Some(boundary) = record.record("boundary") else {
+fn faces(record: &StageTable, factor: Option<f64>, draft: &Draft, report: &mut Report<'_>) -> Option<Vec<FaceSupport>> {
+    let Some(boundary) = record.boundary.value() else {
         return Some(Vec::new());
     };
     let mut found = Vec::new();
     let axes = Side::of(draft.geometry.get()?).iter().enumerate();
     let sides = axes.flat_map(|(axis, sides)| [(sides[0], axis, false), (sides[1], axis, true)]);
-    for (side, axis, upper) in sides.filter(|(side, ..)| boundary.gives(side.word())) {
+    for (side, axis, upper) in sides.filter(|(side, ..)| boundary.face(*side).is_given()) {
         let support = super::support(boundary, side)?;
         let contact = super::contact(boundary, side, factor, report)?;
         if support == Support::FreeField {
             let message = "E0614: a stage cannot create a free-field boundary, which must exist from the start. Move \
                            this side from the stage to [boundary].";
-            boundary.error(side.word(), message, report);
+            boundary.face(side).error(message, report);
         }
         let is_wet = draft.water.is_given() || draft.material.items().iter().any(|(_, of)| of.gives("drainage"));
         let is_solid = draft.geometry.get() == Some(Geometry::Solid);
         if support == Support::Absorbing && (side != Side::Bottom || is_wet || is_solid) {
             let message = "E0614: a stage can make a boundary absorbing only at the bottom of a 2-D case without \
                  water. Move this side from the stage to [boundary], and add [initial].";
-            boundary.error(side.word(), message, report);
+            boundary.face(side).error(message, report);
         }
         let mut motions = draft.prescribed.items().iter();
         let moving = motions.find(|motion| motion.word::<Side>("face") == Some(side));
@@ -254,7 +250,7 @@ fn faces(record: &Record, factor: Option<f64>, draft: &Draft, report: &mut Repor
                  boundary. Remove this side from the stage.",
                 motion.path
             );
-            boundary.error(side.word(), message, report);
+            boundary.face(side).error(message, report);
         }
         found.push(FaceSupport {
             face: Face { axis, upper },
@@ -266,17 +262,17 @@ fn faces(record: &Record, factor: Option<f64>, draft: &Draft, report: &mut Repor
 }
 
 /// Numbers of the materials that a stage exchanges.
-fn exchanges(record: &Record, draft: &Draft, report: &mut Report<'_>) -> Option<Vec<(usize, usize)>> {
+fn exchanges(record: &StageTable, draft: &Draft, report: &mut Report<'_>) -> Option<Vec<(usize, usize)>> {
     let mut found: Vec<(usize, usize)> = Vec::new();
-    for pair in record.records("materials") {
-        let from = number_of_material(pair, "from", draft, report);
-        let to = number_of_material(pair, "to", draft, report);
+    for pair in record.materials.items() {
+        let from = number_of_material(&pair.from, draft, report);
+        let to = number_of_material(&pair.to, draft, report);
         let from = from?;
         let to = to?;
         if found.iter().any(|(other, _)| *other == from) {
             let message = "E0617: the stage already replaces this material by another one. Remove one of the two \
                 entries of `materials`.";
-            pair.error("from", message, report);
+            pair.from.error(message, report);
         }
         found.push((from, to));
     }
@@ -284,13 +280,13 @@ fn exchanges(record: &Record, draft: &Draft, report: &mut Report<'_>) -> Option<
 }
 
 /// Number of the material that a key names; `None` after an error.
-fn number_of_material(pair: &Record, key: &str, draft: &Draft, report: &mut Report<'_>) -> Option<usize> {
-    let name = pair.text(key)?;
+fn number_of_material(key: &Field<String>, draft: &Draft, report: &mut Report<'_>) -> Option<usize> {
+    let name = key.text()?;
     let materials = draft.material.items();
     let found = materials.iter().position(|(other, _)| other == name);
     if found.is_none() {
         let names = materials.iter().map(|(name, _)| name.as_str());
-        pair.consequence(key, unknown_name("material", name, names), &["material"], report);
+        key.consequence(unknown_name("material", name, names), &["material"], report);
     }
     found
 }
@@ -306,36 +302,37 @@ fn in_turn(named: &NamedItem<'_, ActiveLoads>, stages: &[Stage], draft: &Draft, 
                 "E0618: the stage both activates and deactivates `{name}`. Remove `{name}` from one of the \
                     two lists."
             );
-            record.error("activate", message, report);
+            record.activate.error(message, report);
         } else if (releases && acts == Some(false)) || (applies && acts == Some(true)) {
             let (key, state) = if releases {
-                ("deactivate", "inactive")
+                (&record.deactivate, "inactive")
             } else {
-                ("activate", "active")
+                (&record.activate, "active")
             };
             let message = format!(
-                "E0619: `{name}` is already {state} when this stage begins. Remove `{name}` from `{key}` of \
-                    this stage."
+                "E0619: `{name}` is already {state} when this stage begins. Remove `{name}` from `{}` of \
+                    this stage.",
+                key.name()
             );
-            record.error(key, message, report);
+            key.error(message, report);
         }
         acts = if releases || applies { Some(applies) } else { acts };
     }
 }
 
-fn timed(at: f64, before: f64, end: f64, dt: f64, record: &Record, report: &mut Report<'_>) {
+fn timed(at: f64, before: f64, end: f64, dt: f64, record: &StageTable, report: &mut Report<'_>) {
     if at >= end {
         let message = format!(
             "E0620: the stage begins at t = {at}, but the run ends at t = {end}. Use an earlier time, or increase \
              `analysis.end`."
         );
-        record.error("at", message, report);
+        record.at.error(message, report);
     } else if at - before <= APART * dt {
         let message = format!(
             "E0621: the stage must begin after t = {before} (start of the run or of the previous stage), but begins \
              at t = {at}. Increase `at`, or sort the stages by time."
         );
-        record.error("at", message, report);
+        record.at.error(message, report);
     }
 }
 
@@ -354,7 +351,7 @@ fn once(body: usize, stages: &[Stage], draft: &Draft, report: &mut Report<'_>) {
              two entries.",
             added[0]
         );
-        records[again].error("add", message, report);
+        records[again].add.error(message, report);
     }
     if let Some(&again) = removed.get(1) {
         let message = format!(
@@ -362,7 +359,7 @@ fn once(body: usize, stages: &[Stage], draft: &Draft, report: &mut Report<'_>) {
              the two entries.",
             removed[0]
         );
-        records[again].error("remove", message, report);
+        records[again].remove.error(message, report);
     }
     if let (Some(&added), Some(&removed)) = (added.first(), removed.first())
         && removed <= added
@@ -371,7 +368,7 @@ fn once(body: usize, stages: &[Stage], draft: &Draft, report: &mut Report<'_>) {
             "E0622: body.{body} does not exist yet, because stage.{added} adds it. Remove body.{body} in a stage \
              after stage.{added}."
         );
-        records[removed].error("remove", message, report);
+        records[removed].remove.error(message, report);
     }
 }
 
@@ -391,7 +388,7 @@ pub(super) fn check(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
         if !(0..case.bodies.len()).any(|body| case.is_there(body, stage.at)) {
             let message = "E0623: no body is left after this stage, so there is nothing to compute. Take at least one \
                 body out of `remove`.";
-            record.error("remove", message, report);
+            record.remove.error(message, report);
         }
         for (name, what) in &stage.apply {
             let has_moved = match *what {
@@ -405,20 +402,15 @@ pub(super) fn check(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
                      jump at this stage. Begin the path of `{name}` at t = {}.",
                     stage.at
                 );
-                record.error("activate", message, report);
+                record.activate.error(message, report);
             }
         }
-        for (&(from, to), pair) in stage.materials.iter().zip(record.records("materials")) {
+        for (&(from, to), pair) in stage.materials.iter().zip(record.materials.items()) {
             exchanged(case, from, to, pair, report);
         }
         if stage.strength_reduction.is_some() {
             let later = case.stages.iter().map(|later| later.at).filter(|at| *at >= stage.at);
-            reduction::divisible(
-                case,
-                &later.collect::<Vec<f64>>(),
-                &record.key("strength_reduction"),
-                report,
-            );
+            reduction::divisible(case, &later.collect::<Vec<f64>>(), &record.strength_reduction, report);
         }
         absorbing::check(case, stage, record, report);
         for &body in &stage.add {
@@ -429,7 +421,7 @@ pub(super) fn check(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
                      the stress. Use a material with constant stiffness.",
                     named.name
                 );
-                record.error("add", message, report);
+                record.add.error(message, report);
             }
         }
     }
@@ -469,7 +461,7 @@ fn check_surfaces(case: &Case, lasting: &[Body], draft: &Draft, report: &mut Rep
 }
 
 /// A law can go on from the stress that another one has left, with the mass that is there.
-fn exchanged(case: &Case, from: usize, to: usize, pair: &Record, report: &mut Report<'_>) {
+fn exchanged(case: &Case, from: usize, to: usize, pair: &ExchangeTable, report: &mut Report<'_>) {
     let [from, to] = [from, to].map(|number| (number, &case.materials[number]));
     if !case.bodies.iter().any(|body| body.material == from.0) {
         let message = format!(
@@ -477,7 +469,7 @@ fn exchanged(case: &Case, from: usize, to: usize, pair: &Record, report: &mut Re
             material of a body.",
             from.1.name
         );
-        pair.error("from", message, report);
+        pair.from.error(message, report);
     }
     if from.1.density != to.1.density {
         let message = format!(
@@ -485,7 +477,7 @@ fn exchanged(case: &Case, from: usize, to: usize, pair: &Record, report: &mut Re
              the soil. Give both the same `unit_weight`.",
             from.1.name, to.1.name
         );
-        pair.error("to", message, report);
+        pair.to.error(message, report);
     }
     if !to.1.material.is_linear() {
         let message = format!(
@@ -493,7 +485,7 @@ fn exchanged(case: &Case, from: usize, to: usize, pair: &Record, report: &mut Re
              recorded. In a stage, change to a material with constant stiffness.",
             to.1.name
         );
-        pair.error("to", message, report);
+        pair.to.error(message, report);
     }
 }
 

@@ -6,7 +6,7 @@ use super::site::{AroundStrip, corners, normal_of, places, site};
 use crate::case::{Base, Body, Case, Face, Footing, History, MotionPath, PrescribedMotion, Quantity, Site};
 use crate::grid::GridSpec;
 use crate::observables::{Aspect, HistorySubject, Observable};
-use crate::record::Record;
+use crate::record::{Datum, Record};
 use crate::report::Report;
 use crate::schema::Draft;
 use crate::surfaces::{name_of_strip, strip_of_face};
@@ -100,8 +100,10 @@ fn contact_of(
     around: AroundStrip<'_>,
     report: &mut Report<'_>,
 ) -> Option<Option<(Base, Option<StripContact<3>>)>> {
-    let table = record.record(key)?;
-    let Some(law) = super::law(table, around.factor, report) else {
+    let mut table = record.record(key)?.clone();
+    let coefficient = table.take("friction_coefficient", Datum::number);
+    let separates = table.take("separates", Datum::flag);
+    let Some(law) = super::law(&coefficient, &separates, around.factor, report) else {
         return Some(None);
     };
     let Some(grid) = around.grid else { return Some(None) };

@@ -2,9 +2,9 @@
 
 use super::is_permeable;
 use crate::case::{ActiveLoads, Case, DrainSite, Flow, Initial, Stage, Support, Water};
-use crate::record::{CaseTable, Record};
+use crate::record::{CaseTable, KeyPlace};
 use crate::report::Report;
-use crate::schema::{Draft, LawName};
+use crate::schema::{Draft, LawName, StageTable, SupportTable};
 use crate::validate::flow::crossing::{is_beside, places};
 use crate::validate::side::side;
 use crate::words::{AnalysisType, Side, Word};
@@ -219,13 +219,13 @@ fn not_available(what: &str, instead: &str) -> String {
 }
 
 /// What a stage changes.
-fn of_stage(case: &Case, number: usize, record: &Record, report: &mut Report<'_>) {
-    if record.gives("remove") && case.analysis.regime != Regime::QuasiStatic {
+fn of_stage(case: &Case, number: usize, record: &StageTable, report: &mut Report<'_>) {
+    if record.remove.is_given() && case.analysis.regime != Regime::QuasiStatic {
         let message = not_available(
             "removal of bodies in a dynamic analysis",
             "Use analysis.type = \"consolidation\".",
         );
-        record.error("remove", message, report);
+        record.remove.error(message, report);
     } else if case
         .stages
         .get(number)
@@ -240,34 +240,34 @@ fn of_stage(case: &Case, number: usize, record: &Record, report: &mut Report<'_>
         .get(number)
         .into_iter()
         .for_each(|stage| goes(case, number, stage, report));
-    if record.gives("add") && case.analysis.regime != Regime::QuasiStatic {
+    if record.add.is_given() && case.analysis.regime != Regime::QuasiStatic {
         let message = not_available(
             "placement of bodies in a dynamic analysis",
             "Use analysis.type = \"consolidation\".",
         );
-        record.error("add", message, report);
+        record.add.error(message, report);
     } else if let Some(stage) = case.stages.get(number) {
         placed(case, number, stage, report);
     }
-    let changes = [
+    let changes: [(&KeyPlace, &str, &str); 3] = [
         (
-            "boundary",
+            &record.boundary,
             "a change of the boundary",
             "Remove `boundary` of this stage, and give one boundary for all stages in [boundary].",
         ),
         (
-            "strength_reduction",
+            &record.strength_reduction,
             "a strength reduction in a stage",
             "Remove it, and find the factor of safety with `bsmpm fos --stage end`.",
         ),
         (
-            "materials",
+            &record.materials,
             "a change of material",
             "Remove `materials`: fast loading of \"coupled\" soil is undrained anyway.",
         ),
     ];
-    for (key, what, instead) in changes.into_iter().filter(|(key, ..)| record.gives(key)) {
-        record.error(key, not_available(what, instead), report);
+    for (key, what, instead) in changes.into_iter().filter(|(key, ..)| key.is_given()) {
+        key.error(not_available(what, instead), report);
     }
 }
 
@@ -418,7 +418,6 @@ fn refuse_supports(case: &Case, draft: &Draft, report: &mut Report<'_>) {
         .flatten()
         .zip(case.boundary.into_iter().flatten())
     {
-        let side = side.word();
         if let Some(boundary) = draft.boundary.value() {
             match support {
                 Support::Fixed | Support::Roller | Support::Free => {}
@@ -427,7 +426,7 @@ fn refuse_supports(case: &Case, draft: &Draft, report: &mut Report<'_>) {
                         &format!("the boundary condition \"{support}\""),
                         "Use \"roller\" or \"fixed\".",
                     );
-                    boundary.error(side, message, report);
+                    boundary.face(*side).error(message, report);
                 }
             }
         }
