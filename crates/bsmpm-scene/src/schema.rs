@@ -20,6 +20,7 @@ pub(crate) use answers::answer;
 
 pub use crate::unit::Dimension;
 pub use crate::words::Words;
+pub(crate) use element::{ElementStageTable, ElementTable};
 pub(crate) use laws::LawName;
 pub(crate) use loads::{InitialTable, ReductionTable, SupportField, SupportTable};
 pub(crate) use material::MATERIAL;

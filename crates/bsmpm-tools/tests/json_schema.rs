@@ -50,69 +50,59 @@ impl Validator {
             .next()
     }
 
+    /// Why a keyword of a schema refuses the value: because of a part of it, or of the whole.
     fn refusal_by(&self, keyword: &str, of: &Value, schema: &Value, value: &Value, path: &str) -> Option<String> {
-        let number = value.as_f64();
-        let length = value.as_array().map(Vec::len);
         let keys = value.as_object();
-        let accepts = |schema: &Value| self.refusal(schema, value, path).is_none();
-        let bound = of.as_f64().unwrap_or(0.0);
-        let is_valid = match keyword {
+        let below = |key: &str| format!("{path}.{key}");
+        match keyword {
             "$ref" => {
-                let definition = self
-                    .schema
-                    .pointer(of.as_str().unwrap().trim_start_matches('#'))
-                    .unwrap();
-                return self.refusal(definition, value, path);
+                let place = of.as_str().unwrap().trim_start_matches('#');
+                self.refusal(self.schema.pointer(place).unwrap(), value, path)
             }
             "allOf" => {
                 let mut all = of.as_array().unwrap().iter();
-                return all.find_map(|one| self.refusal(one, value, path));
+                all.find_map(|one| self.refusal(one, value, path))
             }
-            "properties" => {
-                let properties = of.as_object().unwrap();
-                let mut found = keys?
-                    .iter()
-                    .filter_map(|(key, value)| Some((key, properties.get(key)?, value)));
-                return found.find_map(|(key, schema, value)| self.refusal(schema, value, &format!("{path}.{key}")));
-            }
-            "additionalProperties" => {
-                let known = schema.get("properties").and_then(Value::as_object);
-                let mut others = keys?
-                    .iter()
-                    .filter(|(key, _)| !known.is_some_and(|known| known.contains_key(*key)));
-                return others.find_map(|(key, value)| match of {
-                    Value::Bool(false) => Some(format!("{path}.{key}: additionalProperties")),
-                    of => self.refusal(of, value, &format!("{path}.{key}")),
-                });
-            }
-            "items" => {
-                let mut items = value.as_array()?.iter().enumerate();
-                return items.find_map(|(k, item)| {
-                    let schema = of.as_array().map_or(of, |of| &of[k.min(of.len() - 1)]);
-                    self.refusal(schema, item, &format!("{path}.{k}"))
-                });
-            }
-            "dependencies" => {
-                let dependencies = of.as_object().unwrap().iter();
-                let mut of_given = dependencies.filter(|(key, _)| keys.is_some_and(|keys| keys.contains_key(*key)));
-                return of_given.find_map(|(_, schema)| self.refusal(schema, value, path));
-            }
-            "anyOf" => of.as_array().unwrap().iter().any(accepts),
-            "not" => !accepts(of),
+            "properties" => keys?.iter().find_map(|(key, value)| {
+                let schema = of.get(key)?;
+                self.refusal(schema, value, &below(key))
+            }),
+            "additionalProperties" => keys?.iter().find_map(|(key, value)| {
+                let is_known = schema.get("properties").is_some_and(|known| known.get(key).is_some());
+                match of {
+                    _ if is_known => None,
+                    Value::Bool(false) => Some(format!("{}: additionalProperties", below(key))),
+                    of => self.refusal(of, value, &below(key)),
+                }
+            }),
+            "items" => value.as_array()?.iter().enumerate().find_map(|(k, item)| {
+                let schema = of.as_array().map_or(of, |of| &of[k.min(of.len() - 1)]);
+                self.refusal(schema, item, &below(&k.to_string()))
+            }),
+            "dependencies" => of.as_object().unwrap().iter().find_map(|(key, schema)| {
+                keys?.get(key)?;
+                self.refusal(schema, value, path)
+            }),
+            _ => (!self.accepts(keyword, of, value, path)).then(|| format!("{path}: {keyword} {of}")),
+        }
+    }
+
+    /// Whether a keyword accepts the whole value.
+    fn accepts(&self, keyword: &str, of: &Value, value: &Value, path: &str) -> bool {
+        let number = value.as_f64();
+        let length = value.as_array().map(Vec::len);
+        let keys = value.as_object();
+        let bound = of.as_f64().unwrap_or(0.0);
+        let is_valid = |schema: &Value| self.refusal(schema, value, path).is_none();
+        match keyword {
+            "anyOf" => of.as_array().unwrap().iter().any(is_valid),
+            "not" => !is_valid(of),
             "required" => {
                 let mut required = of.as_array().unwrap().iter();
                 required.all(|key| keys.is_none_or(|keys| keys.contains_key(key.as_str().unwrap())))
             }
             "enum" => of.as_array().unwrap().contains(value),
-            "type" => match of.as_str().unwrap() {
-                "object" => value.is_object(),
-                "array" => value.is_array(),
-                "string" => value.is_string(),
-                "boolean" => value.is_boolean(),
-                "integer" => value.is_i64(),
-                "number" => value.is_number(),
-                other => panic!("{other}"),
-            },
+            "type" => is_of_type(value, of.as_str().unwrap()),
             "minimum" => number.is_none_or(|number| number >= bound),
             "maximum" => number.is_none_or(|number| number <= bound),
             "exclusiveMinimum" => number.is_none_or(|number| number > bound),
@@ -128,8 +118,20 @@ impl Validator {
                 true
             }
             other => panic!("the test does not read the keyword {other}"),
-        };
-        (!is_valid).then(|| format!("{path}: {keyword} {of}"))
+        }
+    }
+}
+
+/// Whether a value has a type of JSON Schema.
+fn is_of_type(value: &Value, name: &str) -> bool {
+    match name {
+        "object" => value.is_object(),
+        "array" => value.is_array(),
+        "string" => value.is_string(),
+        "boolean" => value.is_boolean(),
+        "integer" => value.is_i64(),
+        "number" => value.is_number(),
+        other => panic!("JSON Schema has no type {other}"),
     }
 }
 

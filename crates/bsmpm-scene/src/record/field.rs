@@ -247,6 +247,11 @@ impl Datum {
         Some(records.map(T::from_record).collect())
     }
 
+    pub(crate) fn named<T: CaseTable>(self) -> Option<Vec<(String, T)>> {
+        let records = self.named_records()?.into_iter();
+        Some(records.map(|(name, record)| (name, T::from_record(record))).collect())
+    }
+
     pub(crate) fn word_or_table<V: Word, T: CaseTable>(self) -> Option<OrTable<V, T>> {
         match self {
             Self::Word(word) => V::of(word).map(OrTable::Value),

@@ -1,10 +1,11 @@
 //! Schema of the case file's main tables: analysis, grid, boundaries and solver.
 
+use super::element::ElementTable;
 use super::loads::{self, ContactTable, InitialTable, ReductionTable, ShakingTable};
 use super::output::{self, OutputTable};
 use super::stage::StageTable;
 use super::water::WaterTable;
-use super::{Dimension as In, Kind, Range, Table, body, element, flow, material, rigid};
+use super::{Dimension as In, Kind, Range, Table, body, flow, material, rigid};
 use crate::document::DocumentTable;
 use crate::record::{self, CaseTable};
 use crate::report::Report;
@@ -85,7 +86,7 @@ table! {
         /// Initial stress. Without this table the bodies start without stress.
         initial: Table(InitialTable), Optional, example(r#"{ k0 = 0.5 }"#);
         /// Laboratory tests of one material point, which `bsmpm element` computes.
-        element: UntypedNamed(element::ELEMENT), Optional,
+        element: Named(ElementTable), Optional,
             example(r#"{ test = { material = "clay", pressure = 1e5, stage = [{ test = "triaxial", compression = 0.1 }] } }"#);
         /// A change at a given time, for instance an excavation or a layer of fill.
         stage: Tables(StageTable), Optional,

@@ -3,31 +3,11 @@
 use crate::case::{ElementStage, ElementTest, NamedMaterial};
 use crate::grid::GridSpec;
 use crate::nearest::unknown_name;
-use crate::record::Record;
+use crate::record::{CaseTable, Field};
 use crate::report::Report;
-use crate::schema::Draft;
+use crate::schema::{Draft, ElementStageTable, ElementTable};
 use crate::words::Path;
 use bsmpm::element::Target;
-
-/// Keys of a stage that say what is driven.
-const DRIVES: [&str; 10] = [
-    "compression",
-    "pressure",
-    "shear",
-    "shear_stress",
-    "strain_xx",
-    "strain_yy",
-    "strain_zz",
-    "stress_xx",
-    "stress_yy",
-    "stress_zz",
-];
-/// Those of a mixed stage, by components.
-const MIXED: [[&str; 2]; 3] = [
-    ["strain_xx", "stress_xx"],
-    ["strain_yy", "stress_yy"],
-    ["strain_zz", "stress_zz"],
-];
 
 /// All tests in the order of the file, without those that have an error.
 pub(super) fn read_all(
@@ -44,34 +24,34 @@ pub(super) fn read_all(
 
 fn read(
     name: &str,
-    record: &Record,
+    record: &ElementTable,
     materials: &[NamedMaterial],
     grid: &GridSpec,
     report: &mut Report<'_>,
 ) -> Option<ElementTest> {
     let material = material(record, materials, report);
-    let stages = record.records("stage");
-    if record.gives("stage") && stages.is_empty() {
+    let stages = record.stage.items();
+    if record.stage.is_given() && stages.is_empty() {
         let message = "E0690: the test has no stage, so nothing is applied to the soil. Add for example stage = [{ test = \
              \"triaxial\", compression = 0.05 }].";
-        record.consequence("stage", message, &[&record.path_of("stage")], report);
+        record.stage.consequence(message, &[record.stage.path()], report);
     }
     let mut undrained = false;
     let mut read = Vec::with_capacity(stages.len());
     for stage in stages {
         read.push(self::stage(stage, report));
-        let now = stage.flag("undrained").unwrap_or(false);
+        let now = stage.undrained.get().unwrap_or(false);
         if undrained && !now {
             let message = "E0691: a drained stage cannot follow an undrained one, because the dissipation of the pore \
                            pressure is not modelled. Use two tests.";
-            report.error(stage.origin, &stage.path, message);
+            stage.location().error(message, report);
         }
         undrained = now;
     }
     let material = material?;
     let height = height(record, &materials[material], grid, report)?;
-    let pressure = record.number("pressure")?;
-    let k0 = record.number("k0")?;
+    let pressure = record.pressure.get()?;
+    let k0 = record.k0.get()?;
     let stages: Option<Vec<_>> = read.into_iter().collect();
     Some(ElementTest {
         name: name.to_owned(),
@@ -85,65 +65,74 @@ fn read(
 
 /// Height (m) of the material point above the lower end of the grid, if parameters of the material vary with height;
 /// the outer option is `None` after an error.
-fn height(record: &Record, named: &NamedMaterial, grid: &GridSpec, report: &mut Report<'_>) -> Option<Option<f64>> {
+fn height(
+    record: &ElementTable,
+    named: &NamedMaterial,
+    grid: &GridSpec,
+    report: &mut Report<'_>,
+) -> Option<Option<f64>> {
     if !named.material.is_graded() {
-        if record.gives("height") {
+        if record.height.is_given() {
             let message = format!(
                 "E0692: the parameters of material.{} do not vary with height, so `height` has no effect. Remove \
                  `height`.",
                 named.name
             );
-            record.error("height", message, report);
+            record.height.error(message, report);
         }
         return Some(None);
     }
-    if !record.gives("height") {
+    if !record.height.is_given() {
         let message = format!(
             "E0692: the parameters of material.{} vary with height, but the test does not give the height of its \
              material point. Add `height`.",
             named.name
         );
-        report.error(record.origin, &record.path_of("height"), message);
+        record.height.error(message, report);
         return None;
     }
-    Some(Some(record.number("height")? - grid.lower()[grid.dims() - 1]))
+    Some(Some(record.height.get()? - grid.lower()[grid.dims() - 1]))
 }
 
 /// The number of its material.
-fn material(record: &Record, materials: &[NamedMaterial], report: &mut Report<'_>) -> Option<usize> {
-    if !record.gives("material") {
+fn material(record: &ElementTable, materials: &[NamedMaterial], report: &mut Report<'_>) -> Option<usize> {
+    if !record.material.is_given() {
         if materials.len() > 1 {
             let message = format!(
                 "E0693: the case has {} materials, and the test does not say which one it uses. Add `material`.",
                 materials.len()
             );
-            report.error(record.origin, &record.path_of("material"), message);
+            record.material.error(message, report);
             return None;
         }
         return Some(0);
     }
-    let wanted = record.text("material")?;
+    let wanted = record.material.text()?;
     let found = materials.iter().position(|named| named.name == wanted);
     if found.is_none() {
         let names = materials.iter().map(|named| named.name.as_str());
-        record.error("material", unknown_name("material", wanted, names), report);
+        record.material.error(unknown_name("material", wanted, names), report);
     }
     found
 }
 
-fn stage(record: &Record, report: &mut Report<'_>) -> Option<ElementStage> {
-    let path: Path = record.word("test")?;
-    let known: &[&'static str] = match path {
-        Path::Triaxial | Path::Biaxial | Path::Oedometer | Path::Isotropic => &DRIVES[..2],
-        Path::SimpleShear => &DRIVES[2..4],
-        Path::Mixed => &DRIVES[2..],
+fn stage(record: &ElementStageTable, report: &mut Report<'_>) -> Option<ElementStage> {
+    let path: Path = record.test.get()?;
+    let drives = record.drives();
+    let known = match path {
+        Path::Triaxial | Path::Biaxial | Path::Oedometer | Path::Isotropic => 0..2,
+        Path::SimpleShear => 2..4,
+        Path::Mixed => 2..drives.len(),
     };
-    for key in DRIVES.iter().filter(|key| !known.contains(key) && record.gives(key)) {
-        let message = format!("E0694: the key `{key}` has no effect in the test \"{path}\". Remove `{key}`.");
-        record.error(key, message, report);
+    for (number, key) in drives.iter().enumerate() {
+        if key.is_given() && !known.contains(&number) {
+            let name = key.name();
+            let message = format!("E0694: the key `{name}` has no effect in the test \"{path}\". Remove `{name}`.");
+            key.error(message, report);
+        }
     }
-    let targets = targets(record, path, known, report)?;
-    let undrained = record.flag("undrained")?;
+    let targets = targets(record, path, &drives[known], report)?;
+    let undrained = record.undrained.get()?;
     let is_held = targets[..3]
         .iter()
         .all(|target| matches!(target, Some(Target::Strain(_))));
@@ -152,37 +141,33 @@ fn stage(record: &Record, report: &mut Report<'_>) -> Option<ElementStage> {
             "E0695: the test \"{path}\" prescribes the volume change, so it cannot be undrained. Remove `undrained`, \
              or use another test."
         );
-        record.error("undrained", message, report);
+        record.undrained.error(message, report);
         return None;
     }
-    let duration = if record.gives("duration") {
-        record.number("duration")?
-    } else {
-        f64::INFINITY
-    };
+    let duration = record.duration.if_given()?.unwrap_or(f64::INFINITY);
     Some(ElementStage {
         targets,
         undrained,
-        steps: record.count("steps")?,
+        steps: record.steps.get()?,
         duration,
     })
 }
 
 /// Targets of the components xx, yy, zz and xy of a stage that knows the `known` keys; `None` after an error.
 fn targets(
-    record: &Record,
+    record: &ElementStageTable,
     path: Path,
-    known: &[&'static str],
+    known: &[&Field<f64>],
     report: &mut Report<'_>,
 ) -> Option<[Option<Target>; 4]> {
     let driven = match path {
         Path::Mixed => None,
-        _ => match given(record, known) {
+        _ => match given(known) {
             None => {
                 refuse_missing(record, path, known, report);
                 return None;
             }
-            Some(key) => Some(target(record, key)?),
+            Some(key) => Some(target(key)?),
         },
     };
     let held = Some(Target::Strain(0.0));
@@ -198,14 +183,19 @@ fn targets(
         (Path::SimpleShear, xy) => [held, None, held, xy],
         (Path::Mixed, _) => {
             let mut targets = [None, None, None, held];
-            for (axis, keys) in MIXED.iter().enumerate() {
-                match given(record, keys) {
-                    Some(key) => targets[axis] = Some(target(record, key)?),
+            let normal = [
+                [&record.strain_xx, &record.stress_xx],
+                [&record.strain_yy, &record.stress_yy],
+                [&record.strain_zz, &record.stress_zz],
+            ];
+            for (axis, keys) in normal.iter().enumerate() {
+                match given(keys) {
+                    Some(key) => targets[axis] = Some(target(key)?),
                     None => refuse_missing(record, path, keys, report),
                 }
             }
-            if let Some(key) = given(record, &DRIVES[2..4]) {
-                targets[3] = Some(target(record, key)?);
+            if let Some(key) = given(&[&record.shear, &record.shear_stress]) {
+                targets[3] = Some(target(key)?);
             }
             targets
         }
@@ -213,23 +203,24 @@ fn targets(
 }
 
 /// The first of the keys that a stage gives.
-fn given(record: &Record, keys: &[&'static str]) -> Option<&'static str> {
-    keys.iter().copied().find(|key| record.gives(key))
+fn given<'a>(keys: &[&'a Field<f64>]) -> Option<&'a Field<f64>> {
+    keys.iter().copied().find(|key| key.is_given())
 }
 
 /// Refuses a stage that gives none of the keys, one of which it needs.
-fn refuse_missing(record: &Record, path: Path, keys: &[&str], report: &mut Report<'_>) {
+fn refuse_missing(record: &ElementStageTable, path: Path, keys: &[&Field<f64>], report: &mut Report<'_>) {
+    let names: Vec<&str> = keys.iter().map(|key| key.name()).collect();
     let message = format!(
         "E0694: the test \"{path}\" does not say which strain or stress is applied. Add `{}`.",
-        keys.join("` or `")
+        names.join("` or `")
     );
-    report.error(record.origin, &record.path, message);
+    record.location().error(message, report);
 }
 
 /// What a key drives its component to, positive in tension.
-fn target(record: &Record, key: &str) -> Option<Target> {
-    let value = record.number(key)?;
-    Some(match key {
+fn target(key: &Field<f64>) -> Option<Target> {
+    let value = key.get()?;
+    Some(match key.name() {
         "compression" => Target::Strain(-value),
         "pressure" => Target::Stress(-value),
         "shear" | "strain_xx" | "strain_yy" | "strain_zz" => Target::Strain(value),

@@ -4,7 +4,7 @@ use crate::case::{Case, FaceSupport, Support};
 use crate::observables::{Aspect, Observable};
 use crate::report::Report;
 use crate::schema::{Draft, SupportTable};
-use crate::words::{Geometry, LinearSolver, Side, Word};
+use crate::words::{Geometry, LinearSolver, Side};
 use bsmpm::stabilisation::Stabilisation;
 
 /// Unknowns beyond which there is a warning of a large factor: its fronts are planes of nodes.
