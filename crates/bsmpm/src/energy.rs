@@ -7,11 +7,10 @@ mod budget;
 use crate::schedule::TimeInterval;
 pub use budget::{EnergyBound, Turnover};
 
-use crate::boundary::Surface;
 use crate::exact::Exact;
 use crate::field::pore_water::{carried, work};
-use crate::grid::{Contributions, transfer};
-use crate::interactions::load;
+use crate::grid::transfer;
+use crate::interactions::InteractionWork;
 use crate::kinematics::{Gradient, Kinematics};
 use crate::model::Model;
 use crate::parallel::{Halo, over_layers};
@@ -169,10 +168,9 @@ impl StepEnergy {
             external: over_layers(problem.halo, D, |c| found.reaction[c] * u[c]),
             ..Flows::<Exact>::default()
         };
-        let friction_work = add_contact(&mut flows, problem, found);
+        let friction_work = add_interactions(&mut flows, problem, found);
         add_gravity(&mut flows, problem, u, interval);
         add_water(&mut flows, problem, u, interval);
-        add_strips(&mut flows, problem, u);
         let [plastic, mut elastic] = threads::sums(points.len(), |p| {
             [answers[p].dissipation, answers[p].elastic_energy].map(|dense| points.volume[p] * dense)
         });
@@ -217,11 +215,7 @@ impl StepEnergy {
         answers: &[PointUpdate],
     ) {
         let Problem {
-            model,
-            shape,
-            nodes,
-            points,
-            ..
+            model, shape, points, ..
         } = *problem;
         let flows = &mut self.flows;
         let u = &found.u[..];
@@ -238,21 +232,16 @@ impl StepEnergy {
         flows.smoothing += &self.elastic;
         flows.transfer += &kinetic(points);
         add_inertia(flows, problem, u);
-        if let Some(blocks) = &nodes.background {
-            let mut force = Contributions::none(&model.grid, D, Vec::new());
-            blocks.multiply::<D>(shape, &nodes.resisted(u), &mut force);
-            flows.background = force.dot(u);
-        }
     }
 
-    /// Completes the flows of the step over all ranks. Returns them, if the model balances its energy, and the terms of
-    /// the energy bound. The points are updated, but still have the surface of the start of the step; `surface` is that
-    /// of its end. One reduction.
+    /// Completes the flows of the step over all ranks, with the work of the loads (J) by the mean of their tractions
+    /// and of half their increase. Returns the flows, if the model balances its energy, and the terms of the energy
+    /// bound. The points are updated. One reduction.
     pub fn close<K: Kinematics<D>, const D: usize>(
         self,
         model: &Model<K, D>,
         points: &Points<D>,
-        surface: &Surface<D>,
+        load_work: [f64; 2],
         halo: &dyn Halo,
     ) -> (Option<Flows>, Turnover) {
         let Self {
@@ -287,8 +276,8 @@ impl StepEnergy {
             sums.extend(own.each().map(|flow| flow.clone()));
         }
         let sums = halo.reproducible_sum(&sums);
-        // The anchor points of loads are the same on every rank.
-        let (loads, loads_grown) = load::work(&model.boundary.loads, &points.surface, surface, interval);
+        // The points of loads are the same on every rank.
+        let [loads, loads_grown] = load_work;
         let turnover = Turnover {
             external: sums[0] + loads,
             plastic: sums[1],
@@ -345,45 +334,29 @@ fn elastic<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, points: &Point
     energy
 }
 
-/// Adds the work of contact at faces, of rigid bodies and of impacts at nodes. Returns half the work of friction and
-/// dashpots.
-fn add_contact<K: Kinematics<D>, const D: usize>(
+/// Adds the work of the interactions, and of impacts at nodes. Returns half the work of friction and dashpots.
+fn add_interactions<K: Kinematics<D>, const D: usize>(
     flows: &mut Flows<Exact>,
     problem: &Problem<'_, K, D>,
     found: &StepSolution<K, D>,
 ) -> Exact {
     let Problem { nodes, halo, .. } = *problem;
-    let u = &found.u[..];
-    let [closing, mut friction_work] = nodes.contacts.work(u, &found.reaction, halo);
-    flows.external -= &closing;
-    flows.integration -= &closing;
+    let mut work = InteractionWork::default();
+    let on = problem.context();
+    let dF = |p: usize| found.trial.dF(p);
+    for interaction in nodes.interactions.iter() {
+        interaction.add_work(&on, &found.state(&dF), &mut work);
+    }
+    flows.external += &work.external;
+    flows.integration += &work.integration;
+    flows.penalty = work.penalty;
+    flows.background = work.background;
     if let Some(inertia) = nodes.inertia.as_ref().filter(|inertia| !inertia.struck.is_empty()) {
         let blow = over_layers(halo, D, |c| inertia.struck[c]);
         flows.external += &blow;
         flows.transfer = blow;
     }
-    if !nodes.rigid.is_empty() {
-        let [given, grown, friction] = nodes.rigid.work(u, halo);
-        flows.external += &given;
-        flows.integration -= &grown;
-        friction_work += &friction;
-    }
-    if let Some(inertia) = &nodes.inertia {
-        let works = nodes.dashpots.work::<D>(inertia, u, halo).into_iter();
-        friction_work.extend(works.map(|work| 0.5 * work));
-    }
-    friction_work
-}
-
-/// Adds the work of strips.
-fn add_strips<K, const D: usize>(flows: &mut Flows<Exact>, problem: &Problem<'_, K, D>, u: &[f64]) {
-    let strips = problem.attachments.work(u);
-    flows.external += &strips.given;
-    flows.external -= &strips.friction_work;
-    flows.integration -= &strips.grown;
-    flows.penalty = strips.given;
-    flows.penalty -= &strips.taken;
-    flows.penalty -= &strips.friction_work;
+    work.friction
 }
 
 /// Adds the work of gravity by its mean over the step; half its increment times u is a loss by integration.

@@ -12,7 +12,7 @@ pub use settle::{EquilibriumSearchReport, set_spread, settle};
 use crate::boundary::StripReport;
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
-use crate::interactions::strip::StripConstraints;
+use crate::interactions::{EquilibriumState, InteractionReports};
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
 use crate::material::{Branch, Elastic, Material, Separation};
@@ -159,14 +159,13 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
         }
         solver.solve_to(SOLVED, &residual.f_oob, &mut du)?;
         u.iter_mut().zip(&du).for_each(|(u, du)| *u += du);
-        start.nodes.extend(&model.grid, &mut u, halo);
+        start.nodes.constraints.extend(&model.grid, &mut u, halo);
         strains = transfer::gradients::<K, D, _>(&start.shape, &points.x, &u, |_, grad| {
             Symmetric::of(&K::gradient::<f64>(&grad))
         });
     }
-    let (_, traction) = start
-        .attachments
-        .finish_step(&model.boundary.strips, &model.grid, &points.surface, &u, halo);
+    let reaction = vec![0.0; u.len()];
+    let (_, traction) = start.finish_footings(model, points, &u, &reaction, halo)?;
     points.surface.traction = traction;
     for (p, strain) in strains.iter().enumerate() {
         points.b_e.set(p, exponential(strain));
@@ -224,10 +223,7 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
     let balance = Residual::of(&start.problem(model, points, halo), &at_rest).balance;
     halo.all_reduce_sum(&mut yielding);
     let reactions = model.boundary.reactions(&model.grid, &balance.reaction, halo);
-    let (strips, _) =
-        start
-            .attachments
-            .finish_step(&model.boundary.strips, &model.grid, &points.surface, &at_rest, halo);
+    let (strips, _) = start.finish_footings(model, points, &at_rest, &balance.reaction, halo)?;
     Ok(Equilibrium {
         force: balance.measure(),
         yielding: yielding[0] as u64,
@@ -267,11 +263,13 @@ pub fn is_pushed<K: Kinematics<D>, const D: usize>(
     Ok(balance.measure() > model.criteria.force && !RoundOff::of(&problem).covers(&balance, &problem))
 }
 
+/// Results of the footings, and their tractions (Pa).
+type FootingState<const D: usize> = (Vec<StripReport>, Vec<Vec<Vector<D>>>);
+
 /// Steps (1) and (2) at a given time, without motion.
 struct UndeformedState<const D: usize> {
     shape: Shape<D>,
     nodes: GridState<D>,
-    attachments: StripConstraints<D>,
 }
 
 impl<const D: usize> UndeformedState<D> {
@@ -287,26 +285,34 @@ impl<const D: usize> UndeformedState<D> {
     ) -> Result<Self, StepError> {
         let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?;
         let instant = TimeInterval { start: t, dt: 0.0 };
-        let mut nodes = GridState::from_points(model, &shape, points, instant, halo)?;
-        // The displacements are zero: only the initial stress is sought.
-        let followers = std::mem::take(&mut nodes.followers);
-        if !followers.is_empty() {
-            let loads = &model.boundary.loads[..];
-            let still = vec![0.0; model.grid.nodes() * D];
-            let traction = followers.tractions::<K>(loads, &model.grid, points, &still, &|_| Tensor::identity(), halo);
-            let mut force = followers.forces(&traction, &model.grid, halo);
-            nodes.reduce(&mut [&mut force], halo);
-            nodes.f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
+        let nodes = GridState::from_points(model, &shape, points, instant, halo)?;
+        Ok(Self { shape, nodes })
+    }
+
+    /// Returns the results of the footings under the displacement `u` (m), and the tractions with which the next step
+    /// starts (Pa). The other interactions keep their state, because nothing has moved.
+    fn finish_footings<K: Kinematics<D>>(
+        &self,
+        model: &Model<K, D>,
+        points: &Points<D>,
+        u: &[f64],
+        reaction: &[f64],
+        halo: &dyn Halo,
+    ) -> Result<FootingState<D>, StepError> {
+        let on = self.nodes.context(model, &self.shape, points, halo);
+        let mut after = points.surface.clone();
+        let mut reports = InteractionReports::default();
+        let at = EquilibriumState {
+            u,
+            reaction,
+            dF: &|_| Tensor::identity(),
+            scale: 0.0,
+            internal_work: 0.0,
+        };
+        for interaction in self.nodes.interactions.iter() {
+            interaction.finish(&on, &at, &mut after, &mut reports)?;
         }
-        let movable = nodes.movable();
-        let mut attachments =
-            StripConstraints::at(&model.boundary.strips, &points.surface, &model.grid, &movable, instant);
-        attachments.wet(nodes.pore_pressure.as_ref());
-        Ok(Self {
-            shape,
-            nodes,
-            attachments,
-        })
+        Ok((reports.strips, after.traction))
     }
 
     /// Finds the equilibrium of the points from zero displacement.
@@ -320,15 +326,7 @@ impl<const D: usize> UndeformedState<D> {
         let shape = &self.shape;
         let mapped = MappedPoints { shape, points };
         let guess = vec![0.0; model.grid.nodes() * D];
-        contact::find(
-            model,
-            mapped,
-            &mut self.nodes,
-            &mut self.attachments,
-            &guess,
-            backend,
-            counts,
-        )
+        contact::find(model, mapped, &mut self.nodes, &guess, backend, counts)
     }
 
     fn problem<'a, K>(
@@ -341,7 +339,6 @@ impl<const D: usize> UndeformedState<D> {
             model,
             shape: &self.shape,
             nodes: &self.nodes,
-            attachments: &self.attachments,
             points,
             halo,
         }

@@ -66,7 +66,10 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         });
     }
     if let Ok(found) = &mut found {
-        problem.nodes.extend(&problem.model.grid, &mut found.u, problem.halo);
+        problem
+            .nodes
+            .constraints
+            .extend(&problem.model.grid, &mut found.u, problem.halo);
     }
     found
 }
@@ -160,11 +163,11 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
     if !residual.balance.is_sound() {
         return Err(inverted(problem, &residual, convergence.iterations()).into());
     }
-    if problem.nodes.unknowns > 0 && !convergence.is_balanced(&residual.balance, problem) {
+    if problem.nodes.constraints.unknowns > 0 && !convergence.is_balanced(&residual.balance, problem) {
         stiffness::factorise(problem, Some(&residual.trial), solver)?;
         counts.factorisations += 1;
         if let Some(pores) = &problem.nodes.pores {
-            matrix::factorise(problem, pores, &u[problem.nodes.free.len()..], solver)?;
+            matrix::factorise(problem, pores, &u[problem.nodes.constraints.free.len()..], solver)?;
             counts.factorisations += 1;
         }
     }
@@ -174,11 +177,14 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
 /// Combines `guess` at free components, prescribed values, and zero elsewhere. Where water flows, the pressures of the
 /// points follow.
 fn admissible<const D: usize>(nodes: &GridState<D>, guess: &[f64]) -> Vec<f64> {
-    let displacements = guess.iter().enumerate().map(|(c, &value)| match nodes.prescribed[c] {
-        Some(prescribed) => prescribed,
-        None if nodes.free[c] => value,
-        None => 0.0,
-    });
+    let displacements = guess
+        .iter()
+        .enumerate()
+        .map(|(c, &value)| match nodes.constraints.prescribed[c] {
+            Some(prescribed) => prescribed,
+            None if nodes.constraints.free[c] => value,
+            None => 0.0,
+        });
     let pressures = nodes.pores.iter().flat_map(|pores| pores.guess.iter().copied());
     displacements.chain(pressures).collect()
 }

@@ -2,8 +2,8 @@
 
 use bsmpm::error::StepError;
 use bsmpm::grid::{Shape, transfer};
+use bsmpm::interactions::StepInput;
 use bsmpm::interactions::free_field::FreeField;
-use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::{Gradient, Kinematics};
 use bsmpm::linear::{LinearSolver, MatrixAssembly};
 use bsmpm::model::Model;
@@ -55,27 +55,22 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
             ..
         } = *self;
         let shape = Shape::at(&model.grid, points)?;
-        let mut nodes = GridState::from_points(model, &shape, points, interval, halo)?;
         let field = FreeField::after(model, points, interval, halo)?;
-        field.drive(&mut nodes);
-        let attachments = StripConstraints::at(
-            &model.boundary.strips,
-            &points.surface,
-            &model.grid,
-            &nodes.free,
-            interval,
-        );
+        let input = StepInput {
+            columns: &field.actions,
+            ..StepInput::over(interval)
+        };
+        let nodes = GridState::from_points_after(model, &shape, points, input, halo)?;
         let problem = Problem {
             model,
             shape: &shape,
             nodes: &nodes,
-            attachments: &attachments,
             points,
             halo,
         };
-        let along = |(c, &guess): (usize, &f64)| match nodes.prescribed[c] {
+        let along = |(c, &guess): (usize, &f64)| match nodes.constraints.prescribed[c] {
             Some(prescribed) => prescribed,
-            None if nodes.free[c] => guess,
+            None if nodes.constraints.free[c] => guess,
             None => 0.0,
         };
         let u: Vec<f64> = guess.iter().enumerate().map(along).collect();

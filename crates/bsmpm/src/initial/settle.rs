@@ -147,10 +147,7 @@ fn take<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Result<(), StepError> {
     let ConstitutiveUpdate { answers, state } = commit::constitutive_update(model, &found.trial, points, halo)?;
-    let (_, traction) =
-        start
-            .attachments
-            .finish_step(&model.boundary.strips, &model.grid, &points.surface, &found.u, halo);
+    let (_, traction) = start.finish_footings(model, points, &found.u, &found.reaction, halo)?;
     points.surface.traction = traction;
     for (p, answer) in answers.iter().enumerate() {
         points.b_e.set(p, answer.b_e);

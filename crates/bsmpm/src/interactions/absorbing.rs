@@ -2,13 +2,15 @@
 //! forces that carry static loads, in residual and stiffness.
 
 use super::contact::face_cell;
-use crate::boundary::{Boundary, Support};
+use super::{EquilibriumState, Interaction, InteractionReports, InteractionWork, NodalForces, StepContext, StepStart};
+use crate::boundary::{Boundary, Support, Surface};
 use crate::dynamics::inertia::Inertia;
-use crate::grid::{Grid, Shape, transfer};
+use crate::error::StepError;
+use crate::grid::{Grid, transfer};
 use crate::kinematics::Kinematics;
+use crate::model::Regime;
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
-use crate::points::Points;
 use crate::tensor::Vector;
 
 /// Dashpot and constant force of an absorbing face at one nodal component.
@@ -28,28 +30,33 @@ struct Dashpot {
 
 /// The dashpots of one step. Ranks that share a node have the same ones.
 #[derive(Clone, Debug, Default)]
-pub struct Dashpots(Vec<Dashpot>);
+struct Dashpots(Vec<Dashpot>);
 
 impl Dashpots {
-    /// Computes the dashpots of all absorbing faces at components that are `free`. `impedance` returns, for a material
-    /// point, its mass times the speeds of compression and shear waves (kg m/s). One ghost exchange per face.
-    pub fn of<K: Kinematics<D>, const D: usize>(
-        boundary: &Boundary<D>,
-        grid: &Grid<D>,
-        shape: &Shape<D>,
-        points: &Points<D>,
-        impedance: impl Fn(usize) -> [f64; 2] + Sync,
-        free: &[bool],
-        halo: &dyn Halo,
-    ) -> Self {
+    /// Computes the dashpots of all absorbing faces at components that no support prescribes; none without inertia. One
+    /// ghost exchange per face.
+    fn of<K: Kinematics<D>, const D: usize>(start: &StepStart<'_, K, D>) -> Self {
         let mut dashpots = Vec::new();
+        let StepStart {
+            model,
+            shape,
+            points,
+            halo,
+            ..
+        } = *start;
+        if model.regime != Regime::Dynamic {
+            return Self::default();
+        }
+        let boundary = &model.boundary;
+        let grid = &model.grid;
+        let free = &start.constraints.free;
         for (number, face) in boundary.absorbing().enumerate() {
             let edge = face_cell(grid, face.axis, face.upper);
             let last = face.last_cell(grid);
             let nodal = halo.assemble_ghosts(&transfer::to_nodes(shape, |p| match grid.locate(&points.x[p]) {
                 Some(cell) if cell[face.axis] == last => {
                     let weight = weight_on::<K, D>(grid, face, &points.x[p]);
-                    impedance(p).map(|of| of / edge * weight)
+                    model.impedance(points, p).map(|of| of / edge * weight)
                 }
                 _ => [0.0; 2],
             }));
@@ -76,7 +83,7 @@ impl Dashpots {
 
     /// Applies the free field to the absorbing face with index `face`: nodal forces (N) and velocities (m/s), one per
     /// node of the face.
-    pub fn drive<const D: usize>(&mut self, face: usize, force: &[Vector<D>], velocity: &[Vector<D>]) {
+    fn drive<const D: usize>(&mut self, face: usize, force: &[Vector<D>], velocity: &[Vector<D>]) {
         for at in self.0.iter_mut().filter(|at| at.place[0] == face) {
             let component = at.component % D;
             at.held += force[at.place[1]][component];
@@ -85,7 +92,7 @@ impl Dashpots {
     }
 
     /// Adds the forces of the dashpots at the end of the step (N) to the out-of-balance force and the `reaction`.
-    pub fn add_forces(&self, inertia: &Inertia, u: &[f64], f_oob: &mut [f64], reaction: &mut [f64]) {
+    fn add_forces(&self, inertia: &Inertia, u: &[f64], forces: NodalForces<'_>) {
         for &Dashpot {
             component,
             impedance,
@@ -95,14 +102,14 @@ impl Dashpots {
         } in &self.0
         {
             let force = held - impedance * (inertia.velocity(component, u[component]) - beside);
-            f_oob[component] += force;
-            reaction[component] += force;
+            forces.f_oob[component] += force;
+            forces.reaction[component] += force;
         }
     }
 
     /// Returns the nodal components and their dashpot stiffness (N/m): the derivative of the force with respect to the
     /// displacement.
-    pub fn stiffness<'a>(&'a self, inertia: &'a Inertia) -> impl Iterator<Item = (usize, f64)> + 'a {
+    fn stiffness<'a>(&'a self, inertia: &'a Inertia) -> impl Iterator<Item = (usize, f64)> + 'a {
         self.0
             .iter()
             .map(|at| (at.component, at.impedance * inertia.velocity_factor(at.component)))
@@ -110,7 +117,7 @@ impl Dashpots {
 
     /// Returns the work of the dashpots at this rank's owned nodes (J), relative to the motion of the free field. The
     /// work of the constant forces is not included.
-    pub fn work<const D: usize>(&self, inertia: &Inertia, u: &[f64], halo: &dyn Halo) -> Vec<f64> {
+    fn work<const D: usize>(&self, inertia: &Inertia, u: &[f64], halo: &dyn Halo) -> Vec<f64> {
         let owned = halo.owned();
         let mut works = Vec::new();
         for at in self
@@ -122,6 +129,95 @@ impl Dashpots {
             works.push(-at.impedance * faster * (u[at.component] - at.beside * inertia.dt));
         }
         works
+    }
+}
+
+/// Action of a free-field column on the nodes of the face that it drives.
+#[derive(Clone, Debug)]
+pub struct ColumnAction<const D: usize> {
+    /// Index of the face among the absorbing faces.
+    pub face: usize,
+    /// Force of the column's stress on every node of the face (N).
+    pub force: Vec<Vector<D>>,
+    /// This force at the start of the column's first step (N), with initial stress. It is part of the forces that carry
+    /// the initial stress; the column carries it from now on.
+    pub start: Option<Vec<Vector<D>>>,
+    /// Velocity at every node of the face (m/s).
+    pub velocity: Vec<Vector<D>>,
+}
+
+/// Absorbing faces in one step, with the free-field columns that drive some of them.
+#[derive(Debug)]
+struct AbsorbingFaces<const D: usize> {
+    dashpots: Dashpots,
+    columns: Vec<ColumnAction<D>>,
+}
+
+/// Begins the absorbing faces of a step, if there are any.
+pub fn begin<K: Kinematics<D>, const D: usize>(start: &StepStart<'_, K, D>) -> Option<Box<dyn Interaction<D>>> {
+    start.model.boundary.absorbing().next()?;
+    let mut dashpots = Dashpots::of(start);
+    for column in start.input.columns {
+        let force = less(&column.force, column.start.as_deref());
+        dashpots.drive(column.face, &force, &column.velocity);
+    }
+    Some(Box::new(AbsorbingFaces {
+        dashpots,
+        columns: start.input.columns.to_vec(),
+    }))
+}
+
+/// Returns the nodal forces (N) less those at the start.
+pub(super) fn less<const D: usize>(forces: &[Vector<D>], start: Option<&[Vector<D>]>) -> Vec<Vector<D>> {
+    match start {
+        Some(start) => forces.iter().zip(start).map(|(force, start)| force - start).collect(),
+        None => forces.to_vec(),
+    }
+}
+
+impl<const D: usize> Interaction<D> for AbsorbingFaces<D> {
+    fn constrain(&mut self, on: &StepContext<'_, D>, _last: &[f64]) {
+        self.dashpots.0.retain(|at| on.constraints.free[at.component]);
+    }
+
+    fn add_reaction(&self, on: &StepContext<'_, D>, u: &[f64], forces: NodalForces<'_>) {
+        if let Some(inertia) = on.inertia {
+            self.dashpots.add_forces(inertia, u, forces);
+        }
+    }
+
+    fn add_nodal_product(&self, on: &StepContext<'_, D>, _reaction: &[f64], v: &[f64], out: &mut [f64]) {
+        if let Some(inertia) = on.inertia {
+            let stiffness = self.dashpots.stiffness(inertia);
+            stiffness.for_each(|(component, stiffness)| out[component] += stiffness * v[component]);
+        }
+    }
+
+    fn add_damping(&self, inertia: &Inertia, diagonal: &mut [f64]) {
+        let stiffness = self.dashpots.stiffness(inertia);
+        stiffness.for_each(|(component, stiffness)| diagonal[component] += stiffness);
+    }
+
+    fn add_work(&self, on: &StepContext<'_, D>, at: &EquilibriumState<'_>, work: &mut InteractionWork) {
+        if let Some(inertia) = on.inertia {
+            let works = self.dashpots.work::<D>(inertia, at.u, on.halo).into_iter();
+            work.friction.extend(works.map(|work| 0.5 * work));
+        }
+    }
+
+    fn finish(
+        &self,
+        _on: &StepContext<'_, D>,
+        _at: &EquilibriumState<'_>,
+        after: &mut Surface<D>,
+        _reports: &mut InteractionReports,
+    ) -> Result<(), StepError> {
+        for ColumnAction { face, start, .. } in &self.columns {
+            if let Some(held) = after.held.get_mut(*face) {
+                *held = less(held, start.as_deref());
+            }
+        }
+        Ok(())
     }
 }
 

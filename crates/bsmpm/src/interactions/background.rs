@@ -6,6 +6,9 @@ mod form;
 mod integrals;
 mod tensor;
 
+use super::{EquilibriumState, Interaction, InteractionReports, InteractionWork, StepContext, StepStart};
+use crate::boundary::Surface;
+use crate::error::StepError;
 use crate::exact::Exact;
 use crate::grid::shape::Shape;
 use crate::grid::{Contributions, Grid};
@@ -15,6 +18,7 @@ use crate::material::LayeredMaterial;
 use crate::nodal::Nodal;
 use crate::points::Points;
 use form::{CellForms, Forms};
+use std::borrow::Cow;
 
 /// Soft background of all occupied cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -146,5 +150,121 @@ impl Blocks {
     pub fn add_to(&self, patch: usize, block: &mut [f64]) {
         let soft = self.cells[patch];
         self.forms.add_to(soft.form, soft.factor, block);
+    }
+}
+
+/// Artificial stiffness of one step.
+#[derive(Debug)]
+struct ArtificialStiffness {
+    blocks: Blocks,
+    resisted: ResistedDisplacement,
+    /// Part of the step's displacement that the stiffness does not resist (m), D numbers per node; `None`: it resists
+    /// all.
+    unresisted: Option<Vec<f64>>,
+    /// Whether the step has prescribed motion.
+    is_driven: bool,
+}
+
+/// Begins the artificial stiffness of a step, if the model has one.
+pub fn begin<K: Kinematics<D>, const D: usize>(start: &StepStart<'_, K, D>) -> Option<Box<dyn Interaction<D>>> {
+    let model = start.model;
+    let soft = model.background?;
+    Some(Box::new(ArtificialStiffness {
+        blocks: soft.blocks::<K, D>(&model.grid, start.shape, start.points, &model.materials),
+        resisted: start.input.resisted,
+        unresisted: None,
+        is_driven: model
+            .boundary
+            .moves(start.input.interval.start, start.input.interval.dt),
+    }))
+}
+
+impl ArtificialStiffness {
+    /// Returns the part of a nodal displacement that the stiffness resists (m).
+    fn resisted<'a>(&self, u: &'a [f64]) -> Cow<'a, [f64]> {
+        match &self.unresisted {
+            Some(unresisted) => u.iter().zip(unresisted).map(|(u, unresisted)| u - unresisted).collect(),
+            None => Cow::Borrowed(u),
+        }
+    }
+
+    /// Returns the force on the nodes under the displacement `u` (N), this rank's contributions only.
+    fn force<const D: usize>(&self, on: &StepContext<'_, D>, u: &[f64]) -> Contributions {
+        let mut force = Contributions::none(on.grid, D, Vec::new());
+        self.blocks.multiply::<D>(on.shape, &self.resisted(u), &mut force);
+        force
+    }
+
+    /// Returns the largest force of the stiffness on a free node of all ranks, divided by the RMS force of the active
+    /// nodes (-). A spline without other stiffness creeps under this force. `None` without forces.
+    ///
+    /// One exchange with the neighbours, one reduction, and one gather if ties are published.
+    fn share<const D: usize>(&self, on: &StepContext<'_, D>, at: &EquilibriumState<'_>) -> Option<f64> {
+        let mut force = on.halo.assemble_ghosts(&self.force(on, at.u));
+        on.constraints.reduce(&mut [&mut force], on.halo);
+        let sizes = on.halo.owned().nodes().map(|node| {
+            let free = Nodal::<D>::of(node).filter(|&at| on.constraints.free[at]);
+            free.map(|at| force[at].powi(2)).sum::<f64>().sqrt()
+        });
+        let mut largest = [sizes.fold(0.0, f64::max)];
+        on.halo.all_reduce_max(&mut largest);
+        let mean = at.scale / (on.constraints.active_nodes.max(1) as f64).sqrt();
+        (mean > 0.0).then(|| largest[0] / mean)
+    }
+}
+
+impl<const D: usize> Interaction<D> for ArtificialStiffness {
+    /// Limits the resistance to the difference from the displacement `last`, if only changes are resisted. In `last`,
+    /// outer splines take the values that their homes imply, because their own have next to no stiffness.
+    fn constrain(&mut self, on: &StepContext<'_, D>, last: &[f64]) {
+        if self.resisted == ResistedDisplacement::Whole {
+            return;
+        }
+        let mut unresisted = last.to_vec();
+        let inactive = on.constraints.active.iter().enumerate().filter(|(_, active)| !**active);
+        inactive.for_each(|(node, _)| unresisted[Nodal::<D>::of(node)].fill(0.0));
+        if let Some(extension) = &on.constraints.extension {
+            extension.drop_loose(&mut unresisted);
+            extension.extend(on.grid, &mut unresisted, on.halo);
+        }
+        self.unresisted = Some(unresisted);
+    }
+
+    fn is_artificial(&self) -> bool {
+        true
+    }
+
+    fn add_internal_force(&self, on: &StepContext<'_, D>, u: &[f64], out: &mut Contributions) {
+        self.blocks.multiply::<D>(on.shape, &self.resisted(u), out);
+    }
+
+    fn add_product(&self, on: &StepContext<'_, D>, v: &[f64], out: &mut Contributions) {
+        self.blocks.multiply::<D>(on.shape, v, out);
+    }
+
+    fn add_to_cell(&self, number: usize, block: &mut [f64]) {
+        self.blocks.add_to(number, block);
+    }
+
+    fn add_work(&self, on: &StepContext<'_, D>, at: &EquilibriumState<'_>, work: &mut InteractionWork) {
+        work.background += &self.force(on, at.u).dot(at.u);
+    }
+
+    fn finish(
+        &self,
+        on: &StepContext<'_, D>,
+        at: &EquilibriumState<'_>,
+        _after: &mut Surface<D>,
+        reports: &mut InteractionReports,
+    ) -> Result<(), StepError> {
+        let work = self.blocks.work::<D>(on.shape, &self.resisted(at.u));
+        let mut cells = [self.blocks.count() as f64];
+        on.halo.all_reduce_sum(&mut cells);
+        reports.background = Some([on.halo.reproducible_sum(&[work])[0], at.internal_work]);
+        reports.background_cells = cells[0] as usize;
+        if !self.is_driven {
+            reports.background_share = self.share(on, at);
+        }
+        Ok(())
     }
 }

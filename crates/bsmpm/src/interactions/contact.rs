@@ -2,6 +2,7 @@
 //! [`solve::contact`](crate::solve::contact) corrects the contact statuses (open, stick, slip).
 
 mod gap;
+mod interaction;
 mod neutral;
 mod node;
 
@@ -17,6 +18,7 @@ use crate::points::MappedPoints;
 use crate::tensor::Vector;
 pub(super) use gap::face_cell;
 use gap::{ROUNDING, gaps};
+pub use interaction::begin;
 use node::ContactNode;
 
 /// Material counts as near a face if it could reach it within this number of steps at its present velocity, which may
@@ -28,21 +30,16 @@ const MEETING: f64 = 2.0;
 pub struct Contacts<const D: usize> {
     nodes: Vec<ContactNode<D>>,
     released: Vec<bool>, // per node: changed from stick in the last correction
-    /// Energy |du_0 . f_0| of the step's first iteration (N m): reference of the convergence criterion after statuses
-    /// change.
-    pub first_energy: Option<f64>,
 }
 
 impl<const D: usize> Contacts<D> {
-    /// Creates the contact nodes for a step from time `t`: nodes of contact faces whose normal component is `free`.
-    /// Statuses are predicted from `guess`, the displacement of the last step (m; may be empty). `water_force` is the
-    /// part of the normal forces that pore water carries (N). One ghost exchange per face that allows separation.
+    /// Creates the contact nodes of a step: nodes of contact faces whose normal component is `free`. All are open until
+    /// [`Self::predict_statuses`]. `water_force` is the part of the normal forces that pore water carries (N). One
+    /// ghost exchange per face that allows separation.
     pub fn of<K>(
         model: &Model<K, D>,
         mapped: MappedPoints<'_, D>,
         free: &[bool],
-        t: f64,
-        guess: &[f64],
         water_force: Option<&[f64]>,
         halo: &dyn Halo,
     ) -> Self {
@@ -64,7 +61,7 @@ impl<const D: usize> Contacts<D> {
                 });
                 let inward = if face.upper { -1.0 } else { 1.0 };
                 let gap = gaps.as_ref().map_or(0.0, |gaps| gaps[node]);
-                let mut at = ContactNode {
+                nodes.push(ContactNode {
                     node,
                     support,
                     axis: face.axis,
@@ -78,38 +75,30 @@ impl<const D: usize> Contacts<D> {
                     rested: [false; D],
                     transverse_stiffness: 0.0,
                     slip_length: 0.0,
-                };
-                let had_material = had_material(grid, face, node, guess);
-                at.predict_status(t, guess, face_cell(grid, face.axis, face.upper), had_material);
-                nodes.push(at);
+                });
             }
         }
         let released = vec![false; nodes.len()];
-        Self {
-            nodes,
-            released,
-            first_energy: None,
-        }
+        Self { nodes, released }
     }
 
-    /// Returns whether this rank has no contact node.
-    pub fn is_empty(&self) -> bool {
-        self.nodes.is_empty()
-    }
-
-    /// Returns the `free` components and those that contact decides.
-    pub fn movable(&self, free: &[bool]) -> Vec<bool> {
-        let mut movable = free.to_vec();
-        for at in &self.nodes {
-            for component in (0..D).filter(|&component| at.decides(component)) {
-                movable[Nodal::<D>::at(at.node, component)] = true;
+    /// Drops nodes and components that are no longer `free`, and predicts the statuses in a step from time `t`, from
+    /// `guess`, the displacement of the last step (m; may be empty).
+    pub fn predict_statuses(&mut self, boundary: &Boundary<D>, grid: &Grid<D>, free: &[bool], t: f64, guess: &[f64]) {
+        self.nodes.retain(|at| free[Nodal::<D>::at(at.node, at.axis)]);
+        self.released = vec![false; self.nodes.len()];
+        for at in &mut self.nodes {
+            for (component, along) in at.along.iter_mut().enumerate() {
+                *along &= free[Nodal::<D>::at(at.node, component)];
             }
+            let face = &boundary.supports[at.support];
+            let had_material = had_material(grid, face, at.node, guess);
+            at.predict_status(t, guess, face_cell(grid, face.axis, face.upper), had_material);
         }
-        movable
     }
 
     /// Applies the statuses: marks components as free or prescribed, and sets prescribed displacements (m).
-    pub fn apply(&self, free: &mut [bool], prescribed: &mut [Option<f64>]) {
+    pub fn apply_statuses(&self, free: &mut [bool], prescribed: &mut [Option<f64>]) {
         for at in &self.nodes {
             for (component, held) in at.holds().into_iter().enumerate().filter(|(c, _)| at.decides(*c)) {
                 let place = Nodal::<D>::at(at.node, component);
@@ -120,7 +109,7 @@ impl<const D: usize> Contacts<D> {
 
     /// Sets the prescribed velocity (m/s) to zero for components that were at rest in contact and are predicted to
     /// remain so, as for fixed supports.
-    pub fn rest(&self, velocities: &mut [Option<f64>]) {
+    pub fn set_at_rest(&self, velocities: &mut [Option<f64>]) {
         for at in &self.nodes {
             for component in (0..D).filter(|&component| at.rested[component]) {
                 velocities[Nodal::<D>::at(at.node, component)] = Some(0.0);
@@ -130,19 +119,16 @@ impl<const D: usize> Contacts<D> {
 
     /// Marks the components that contact may stop in a step of `dt` (s) with initial nodal velocities `v` (m/s): those
     /// of nodes in contact or near it that were not at rest.
-    pub fn moving(&self, v: &[f64], dt: f64) -> Vec<bool> {
-        let mut moving = if self.is_empty() {
-            Vec::new()
-        } else {
-            vec![false; v.len()]
-        };
+    pub fn mark_stoppable(&self, v: &[f64], dt: f64, moving: &mut Vec<bool>) {
+        if !self.nodes.is_empty() {
+            moving.resize(v.len(), false);
+        }
         for at in &self.nodes {
             let near = at.gap <= MEETING * dt * v[Nodal::<D>::at(at.node, at.axis)].abs();
             for component in (0..D).filter(|&component| near && at.decides(component) && !at.rested[component]) {
                 moving[Nodal::<D>::at(at.node, component)] = true;
             }
         }
-        moving
     }
 
     /// Adds friction under the displacement `u` (m) to the out-of-balance force and to the `reaction` (N), which
@@ -179,7 +165,7 @@ impl<const D: usize> Contacts<D> {
     }
 
     /// Adds the stiffness of friction across the direction of slip (3-D).
-    pub fn assemble(&self, matrix: &mut dyn MatrixAssembly, halo: &dyn Halo) {
+    pub fn add_stiffness(&self, matrix: &mut dyn MatrixAssembly, halo: &dyn Halo) {
         let owned = halo.owned();
         for at in self.nodes.iter().filter(|at| owned.contains(at.node)) {
             if let Some(block) = at.resists() {
@@ -190,7 +176,7 @@ impl<const D: usize> Contacts<D> {
 
     /// Corrects every status that the displacement `u` (m) and its `reaction` (N) contradict by more than `force` (N).
     /// Returns the number of corrected nodes on all ranks. One reduction.
-    pub fn correct(&mut self, u: &[f64], reaction: &[f64], force: f64, edge: f64, halo: &dyn Halo) -> usize {
+    pub fn correct_statuses(&mut self, u: &[f64], reaction: &[f64], force: f64, edge: f64, halo: &dyn Halo) -> usize {
         let owned = halo.owned();
         let mut corrected = [0.0];
         for (at, released) in self.nodes.iter_mut().zip(&mut self.released) {

@@ -8,7 +8,7 @@ use crate::dynamics::newmark::Newmark;
 use crate::error::StepError;
 use crate::grid::{Grid, KnotVector, Shape, transfer};
 use crate::initial;
-use crate::interactions::strip::StripConstraints;
+use crate::interactions::absorbing::{ColumnAction, less};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::nodal::Nodal;
@@ -30,16 +30,8 @@ use tied::{Band, TiedHalo};
 pub struct FreeField<const D: usize> {
     /// Material points of the columns at the end of the step.
     pub columns: Vec<Points<D>>,
-    beside: Vec<Beside<D>>,
-}
-
-/// Action of a column on the nodes of its face.
-#[derive(Clone, Debug)]
-struct Beside<const D: usize> {
-    face: usize,                   // index among the absorbing faces
-    force: Vec<Vector<D>>,         // N, of the column's stress
-    start: Option<Vec<Vector<D>>>, // N, the same at the start of the column's first step
-    velocity: Vec<Vector<D>>,      // m/s
+    /// Action of each column.
+    pub actions: Vec<ColumnAction<D>>,
 }
 
 impl<const D: usize> FreeField<D> {
@@ -59,34 +51,11 @@ impl<const D: usize> FreeField<D> {
                 Some(column) => (column.clone(), None),
                 None => begin(model, &alone, support, points, interval.start, halo)?,
             };
-            let (column, beside) = advance(&alone, support, column, interval)?;
-            field.beside.push(Beside { face, start, ..beside });
+            let (column, action) = advance(&alone, support, column, interval)?;
+            field.actions.push(ColumnAction { face, start, ..action });
             field.columns.push(column);
         }
         Ok(field)
-    }
-
-    /// Applies forces and velocities of the columns to the dashpots of the step.
-    pub fn drive(&self, nodes: &mut GridState<D>) {
-        for Beside {
-            face,
-            force,
-            start,
-            velocity,
-        } in &self.beside
-        {
-            nodes.dashpots.drive(*face, &less(force, start.as_deref()), velocity);
-        }
-    }
-
-    /// Subtracts the columns' initial forces from the forces `held` that carry the initial stress, because the columns
-    /// carry their part from now on.
-    pub fn settle(&self, held: &mut [Vec<Vector<D>>]) {
-        for Beside { face, start, .. } in &self.beside {
-            if let Some(held) = held.get_mut(*face) {
-                *held = less(held, start.as_deref());
-            }
-        }
     }
 }
 
@@ -106,13 +75,6 @@ pub fn go_on<K: Kinematics<D>, const D: usize>(
         }
     }
     Ok(())
-}
-
-fn less<const D: usize>(forces: &[Vector<D>], start: Option<&[Vector<D>]>) -> Vec<Vector<D>> {
-    match start {
-        Some(start) => forces.iter().zip(start).map(|(force, start)| force - start).collect(),
-        None => forces.to_vec(),
-    }
 }
 
 /// Returns the model of the column next to a face: one cell wide, with the supports of the other axes.
@@ -194,16 +156,21 @@ fn hold<K: Kinematics<D>, const D: usize>(
     let shape = Shape::at(&alone.grid, column)?;
     let instant = TimeInterval { start: t, dt: 0.0 };
     let nodes = GridState::from_points(alone, &shape, column, instant, &tied)?;
-    let attachments = StripConstraints::at(&[], &column.surface, &alone.grid, &nodes.free, instant);
     let problem = Problem {
         model: alone,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points: column,
         halo: &tied,
     };
-    let trial = DeformationIncrement::of(alone, &shape, &nodes, column, &vec![0.0; nodes.free.len()], &tied);
+    let trial = DeformationIncrement::of(
+        alone,
+        &shape,
+        &nodes,
+        column,
+        &vec![0.0; nodes.constraints.free.len()],
+        &tied,
+    );
     force(&problem, &trial, face)
 }
 
@@ -233,17 +200,15 @@ fn advance<K: Kinematics<D>, const D: usize>(
     face: &Support<D>,
     mut column: Points<D>,
     interval: TimeInterval,
-) -> Result<(Points<D>, Beside<D>), StepError> {
+) -> Result<(Points<D>, ColumnAction<D>), StepError> {
     let tied = TiedHalo::of(&alone.grid);
     let mut solver = Band::of(&alone.grid);
     let shape = Shape::at(&alone.grid, &column)?;
     let nodes = mapped(alone, &shape, &column, interval, &tied)?;
-    let attachments = StripConstraints::at(&[], &column.surface, &alone.grid, &nodes.free, interval);
     let problem = Problem {
         model: alone,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points: &column,
         halo: &tied,
     };
@@ -272,7 +237,7 @@ fn advance<K: Kinematics<D>, const D: usize>(
     column.sort_by_cell(&alone.grid);
     Ok((
         column,
-        Beside {
+        ColumnAction {
             face: 0,
             force,
             start: None,

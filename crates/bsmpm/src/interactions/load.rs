@@ -3,15 +3,16 @@
 
 pub mod follower;
 
-use super::strip::reduce;
-use crate::boundary::anchor::{AnchorCandidates, Surfaces};
+use super::{EquilibriumState, Interaction, InteractionReports, StepContext, StepStart};
 use crate::boundary::surface::{Anchors, Attachment, Surface, SurfacePoint};
 use crate::error::StepError;
 use crate::grid::{Contributions, Grid};
+use crate::interactions::strip::reduce;
+use crate::kinematics::Kinematics;
 use crate::parallel::Halo;
 use crate::schedule::TimeInterval;
 use crate::schedule::{between, turns};
-use crate::tensor::Vector;
+use crate::tensor::{Tensor, Vector};
 use follower::{AttachedPoint, FollowerLoads};
 
 /// A traction or point load on a surface.
@@ -76,39 +77,36 @@ impl<const D: usize> Load<D> {
     }
 }
 
-/// Nodal forces of all loads.
-pub struct LoadForces<const D: usize> {
-    /// Nodal forces of the dead loads, N, D per node; empty without loads.
-    pub dead: Vec<f64>,
-    /// Follower loads.
-    pub followers: FollowerLoads<D>,
+/// Loads in one step.
+#[derive(Debug)]
+struct AppliedLoads<const D: usize> {
+    /// Nodal forces of the dead loads at the end of the step (N), D per node.
+    dead: Vec<f64>,
+    /// Follower loads, if any.
+    followers: Option<FollowerLoads<D>>,
+    interval: TimeInterval,
 }
 
-/// Returns the forces of all loads at time `t`, with the state `surface` of their points. Fails on all ranks if a load
-/// has lost its material. One reduction and one ghost exchange; before the first step, follower loads need two more
-/// reductions.
-pub fn forces<const D: usize>(
-    surfaces: &Surfaces<'_, D>,
-    surface: &Surface<D>,
-    points: AnchorCandidates<'_, D>,
-    grid: &Grid<D>,
-    active: &[bool],
-    t: f64,
-    halo: &dyn Halo,
-) -> Result<LoadForces<D>, StepError> {
-    let loads = &surfaces.boundary.loads[..];
+/// Begins the loads of a step, if there are any, with the state of their points. Fails on all ranks if a load has lost
+/// its material. One reduction and one ghost exchange; before the first step, follower loads need two more reductions.
+pub fn begin<K: Kinematics<D>, const D: usize>(
+    start: &StepStart<'_, K, D>,
+) -> Result<Option<Box<dyn Interaction<D>>>, StepError> {
+    let StepStart { model, halo, .. } = *start;
+    let interval = start.input.interval;
+    let loads = &model.boundary.loads[..];
     if loads.is_empty() {
-        return Ok(LoadForces {
-            dead: Vec::new(),
-            followers: FollowerLoads::default(),
-        });
+        return Ok(None);
     }
+    let grid = &model.grid;
     let offsets = grid.offsets();
+    let surface = &start.points.surface;
+    let active = &start.constraints.active;
     let mut applied = vec![0.0; loads.len()];
     let mut pushed = Vec::new();
     let mut force = Contributions::none(grid, D, Vec::new());
     for (number, load) in loads.iter().enumerate() {
-        let grown = load.grown(t);
+        let grown = load.grown(interval.end());
         for (k, (point, x)) in load.points.iter().zip(&surface.position[number]).enumerate() {
             if let Some(attachment) = Attachment::at(grid, &offsets, |node| active[node], x) {
                 applied[number] += 1.0;
@@ -125,21 +123,62 @@ pub fn forces<const D: usize>(
             }
         }
     }
-    let followers = if loads.iter().any(|load| load.follows) {
-        let anchors = Anchors::of(surfaces, &surface.anchors, points, halo);
-        FollowerLoads::of(loads, pushed, grid, &anchors, points)
-    } else {
-        FollowerLoads::default()
-    };
-    applied.extend(followers.carried(loads));
+    let mut followers = None;
+    if loads.iter().any(|load| load.follows) {
+        let points = start.points.anchored();
+        let anchors = Anchors::of(&model.surfaces(), &surface.anchors, points, halo);
+        let found = FollowerLoads::of(loads, pushed, grid, &anchors, points, K::weight);
+        applied.extend(found.carried(loads));
+        followers = Some(found);
+    }
     halo.all_reduce_sum(&mut applied);
     if let Some(error) = lost_load(loads, &applied) {
         return Err(error);
     }
-    Ok(LoadForces {
+    Ok(Some(Box::new(AppliedLoads {
         dead: halo.assemble_ghosts(&force),
         followers,
-    })
+        interval,
+    })))
+}
+
+impl<const D: usize> AppliedLoads<D> {
+    /// Returns the tractions at all points of every follower load at full amplitude, per initial area (Pa), see
+    /// [`FollowerLoads::tractions`]; empty lists for dead loads.
+    fn tractions(&self, on: &StepContext<'_, D>, u: &[f64], dF: &dyn Fn(usize) -> Tensor) -> Vec<Vec<Vector<D>>> {
+        let loads = &on.boundary.loads;
+        match &self.followers {
+            Some(followers) => followers.tractions(loads, on.grid, on.points, u, dF, on.halo),
+            None => vec![Vec::new(); loads.len()],
+        }
+    }
+}
+
+impl<const D: usize> Interaction<D> for AppliedLoads<D> {
+    fn constant_force(&self) -> &[f64] {
+        &self.dead
+    }
+
+    fn external_force(&self, on: &StepContext<'_, D>, u: &[f64], dF: &dyn Fn(usize) -> Tensor) -> Option<Vec<f64>> {
+        let followers = self.followers.as_ref()?;
+        let tractions = self.tractions(on, u, dF);
+        Some(followers.forces(&tractions, on.grid, on.halo))
+    }
+
+    fn finish(
+        &self,
+        on: &StepContext<'_, D>,
+        at: &EquilibriumState<'_>,
+        after: &mut Surface<D>,
+        reports: &mut InteractionReports,
+    ) -> Result<(), StepError> {
+        let before = &on.points.surface;
+        let loads = &on.boundary.loads;
+        after.position = moved(before, on.grid, &on.constraints.active, at.u, on.halo);
+        after.pressure = self.tractions(on, at.u, at.dF);
+        reports.load_work = work(loads, before, after, self.interval);
+        Ok(())
+    }
 }
 
 /// Returns the error of the first load that has lost material. `applied` has, per load, the number of points with
@@ -160,17 +199,13 @@ fn lost_load<const D: usize>(loads: &[Load<D>], applied: &[f64]) -> Option<StepE
 
 /// Returns the positions of all load points after the converged displacement `u` (m), interpolated with the nodes on
 /// which the forces act; the work of the loads uses them. One reduction.
-pub fn moved<const D: usize>(
-    loads: &[Load<D>],
+fn moved<const D: usize>(
     surface: &Surface<D>,
     grid: &Grid<D>,
     active: &[bool],
     u: &[f64],
     halo: &dyn Halo,
 ) -> Vec<Vec<Vector<D>>> {
-    if loads.is_empty() {
-        return Vec::new();
-    }
     let offsets = grid.offsets();
     let mut position = surface.position.clone();
     for x in position.iter_mut().flatten() {
@@ -184,13 +219,13 @@ pub fn moved<const D: usize>(
 
 /// Returns the work of all loads in the interval by the mean of their tractions (N m), and half of the increase of the
 /// tractions times the displacement of the points (N m). `before` and `after` are the states of the surfaces.
-pub fn work<const D: usize>(
+fn work<const D: usize>(
     loads: &[Load<D>],
     before: &Surface<D>,
     after: &Surface<D>,
     interval: TimeInterval,
-) -> (f64, f64) {
-    let mut sums = (0.0, 0.0);
+) -> [f64; 2] {
+    let mut sums = [0.0; 2];
     for (number, load) in loads.iter().enumerate() {
         let places = before.position[number].iter().zip(&after.position[number]);
         let moved: Vec<Vector<D>> = places.map(|(from, to)| to - from).collect();
@@ -201,8 +236,8 @@ pub fn work<const D: usize>(
             };
             load.grown(t) * full_work(load, traction, &moved)
         });
-        sums.0 += 0.5 * (works[0] + works[1]);
-        sums.1 += 0.5 * (works[1] - works[0]);
+        sums[0] += 0.5 * (works[0] + works[1]);
+        sums[1] += 0.5 * (works[1] - works[0]);
     }
     sums
 }

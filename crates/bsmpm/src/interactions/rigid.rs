@@ -4,6 +4,7 @@
 
 mod body;
 mod extent;
+mod interaction;
 mod motion;
 mod near;
 mod neutral;
@@ -14,6 +15,7 @@ mod terrain;
 
 pub use body::{MOTIONS, RigidBody, RigidState, overlapping};
 pub use extent::extents;
+pub use interaction::begin;
 pub use outline::{Nearest, Outline, Sizes};
 pub use point::{Along, ContactStatus};
 pub use surroundings::{ParticleDomains, Surroundings};
@@ -80,7 +82,7 @@ pub struct RigidContacts<const D: usize> {
     edge: f64,
     /// Nodal components that a body may stop in this step; they are integrated by backward Euler. Empty without
     /// inertia.
-    pub moving: Vec<bool>,
+    moving: Vec<bool>,
 }
 
 impl<const D: usize> RigidContacts<D> {
@@ -111,7 +113,7 @@ impl<const D: usize> RigidContacts<D> {
     }
 
     /// Returns whether any body has friction.
-    pub fn has_friction(&self) -> bool {
+    pub fn is_rough(&self) -> bool {
         self.bodies.iter().any(|at| at.body.friction > 0.0)
     }
 
@@ -242,7 +244,7 @@ impl<const D: usize> RigidContacts<D> {
     }
 
     /// Adds the symmetric part of the contact stiffness, with the bodies fixed, to the matrix.
-    pub fn assemble(&self, matrix: &mut dyn MatrixAssembly) {
+    pub fn add_stiffness(&self, matrix: &mut dyn MatrixAssembly) {
         for point in self.points.iter().filter(|point| point.status != ContactStatus::Open) {
             matrix.add_block(point.first_node, &point.block());
         }
@@ -251,7 +253,7 @@ impl<const D: usize> RigidContacts<D> {
     /// Returns the coupling of every free motion with the nodes in the symmetric contact stiffness (N/m or N, one nodal
     /// array per motion), and per body the matrix of its inertia and contact stiffness. One reduction, and one ghost
     /// exchange per free motion.
-    pub fn coupling(&self, grid: &Grid<D>, halo: &dyn Halo) -> (Vec<Vec<f64>>, Vec<Matrix3<f64>>) {
+    pub fn motion_coupling(&self, grid: &Grid<D>, halo: &dyn Halo) -> (Vec<Vec<f64>>, Vec<Matrix3<f64>>) {
         let columns = self.free_motions().map(|(body, k)| self.column(body, k, grid, halo));
         let columns = columns.collect();
         let stiffness = self.stiffness(false, halo);
@@ -294,7 +296,13 @@ impl<const D: usize> RigidContacts<D> {
     /// Corrects the statuses that the displacement `u` (m) contradicts by more than `force` (N): all of them in the
     /// first `passes`, later only the largest contradictions, because correcting all may cycle. Returns the number of
     /// corrected points on all ranks. Two reductions; more if a body moves freely.
-    pub fn correct(&mut self, u: &[f64], force: f64, passes: usize, halo: &dyn Halo) -> Result<usize, StepError> {
+    pub fn correct_statuses(
+        &mut self,
+        u: &[f64],
+        force: f64,
+        passes: usize,
+        halo: &dyn Halo,
+    ) -> Result<usize, StepError> {
         if self.is_empty() {
             return Ok(0);
         }
@@ -378,7 +386,7 @@ impl<const D: usize> RigidContacts<D> {
     /// Returns the tangential force on each of this rank's `count` material points (N), from which the next step
     /// starts; `None` without friction.
     pub fn carried(&self, u: &[f64], count: usize, halo: &dyn Halo) -> Option<Vec<Vector<D>>> {
-        if !self.has_friction() {
+        if !self.is_rough() {
             return None;
         }
         let motions = self.found(u, halo);

@@ -8,10 +8,13 @@
 //! there follow both motions in fixed proportions ([`MotionShare`]), which also divide their forces.
 
 mod contact;
+mod interaction;
 mod point;
+mod resultant;
 
 use crate::schedule::TimeInterval;
 pub use contact::StripContact;
+pub use interaction::begin;
 
 use super::coulomb::ContactReport;
 use crate::boundary::surface::{Attachment, Surface, SurfacePoint, on_grid};
@@ -25,6 +28,7 @@ use crate::schedule::{between, turns};
 use crate::tensor::Vector;
 use contact::ContactState;
 use point::{LENGTHS, StripPoint, StripSums, contact_report};
+use resultant::{Resultant, resultants};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Prescribed displacement as a function of time, linear between its rows. Cutbacks follow the same path.
@@ -126,44 +130,6 @@ pub fn displacement<const D: usize>(strips: &[Strip<D>], number: usize, point: u
         .fold(own, |sum, other| sum + other.of(&strips[other.strip].path.at(t)))
 }
 
-/// Resultant force of a strip on the body.
-#[derive(Clone, Copy, Debug)]
-struct Resultant<const D: usize> {
-    force: Vector<D>, // N
-    moment: f64,      // N m, about the strip's centroid in the plane of axes 0 and 1, counter-clockwise
-}
-
-impl<const D: usize> Resultant<D> {
-    /// Adds a force (N) at the lever arm `arm` (m) from the centroid.
-    fn add(&mut self, force: Vector<D>, arm: Vector<D>) {
-        self.force += force;
-        self.moment += arm[0] * force[1] - arm[1] * force[0];
-    }
-}
-
-/// Returns the resultants of all strips from the `carried` tractions of their points (Pa). Strips whose motions a point
-/// follows divide its force in the same proportions, so that force times motion equals the work.
-fn resultants<const D: usize>(strips: &[Strip<D>], carried: &[Vec<Vector<D>>]) -> Vec<Resultant<D>> {
-    let middles: Vec<Vector<D>> = strips.iter().map(Strip::middle).collect();
-    let mut resultants = vec![
-        Resultant {
-            force: Vector::zeros(),
-            moment: 0.0
-        };
-        strips.len()
-    ];
-    for (number, strip) in strips.iter().enumerate() {
-        for (at, (point, carried)) in strip.points.iter().zip(&carried[number]).enumerate() {
-            let acting = strip.contact.map_or(*carried, |contact| contact.acting(carried)) * point.area;
-            resultants[number].add(strip.own(at, &acting), point.x - middles[number]);
-            for other in strip.others(at) {
-                resultants[other.strip].add(other.of(&acting), point.x - middles[other.strip]);
-            }
-        }
-    }
-    resultants
-}
-
 /// Returns the local nodes whose functions are non-zero at a point of an active strip at time `t`.
 pub fn nodes_at<const D: usize>(strips: &[Strip<D>], grid: &Grid<D>, t: f64) -> BTreeSet<usize> {
     let mut nodes = BTreeSet::new();
@@ -221,6 +187,8 @@ pub struct StripConstraints<const D: usize> {
     offsets: Vec<usize>,
     interval: TimeInterval,
     held: Vec<StripPoint<D>>,
+    has_contact: bool,  // any strip, on any rank
+    has_friction: bool, // any strip, on any rank
 }
 
 impl<const D: usize> StripConstraints<D> {
@@ -268,10 +236,13 @@ impl<const D: usize> StripConstraints<D> {
                 });
             }
         }
+        let mut contacts = strips.iter().filter_map(|strip| strip.contact);
         Self {
             offsets,
             interval,
             held,
+            has_contact: strips.iter().any(|strip| strip.contact.is_some()),
+            has_friction: contacts.any(|contact| contact.law.friction > 0.0),
         }
     }
 
@@ -302,7 +273,7 @@ impl<const D: usize> StripConstraints<D> {
 
     /// Corrects the contact statuses that the displacement `u` (m) contradicts by more than `force` (N). Returns the
     /// number of corrected points. One reduction over all ranks.
-    pub fn correct(&mut self, u: &[f64], force: f64, halo: &dyn Halo) -> usize {
+    pub fn correct_statuses(&mut self, u: &[f64], force: f64, halo: &dyn Halo) -> usize {
         let offsets = &self.offsets;
         let mut corrected = [0.0];
         for held in &mut self.held {
@@ -322,8 +293,8 @@ impl<const D: usize> StripConstraints<D> {
         }
     }
 
-    /// Adds the product of the stiffness of [`StripConstraints::assemble`], and of the derivative of friction by the
-    /// pressure, with `v`; this rank's contributions only.
+    /// Adds the product of the stiffness of [`StripConstraints::add_stiffness`], and of the derivative of friction by
+    /// the pressure, with `v`; this rank's contributions only.
     pub fn multiply(&self, v: &[f64], out: &mut Contributions) {
         for held in &self.held {
             let moved = held.displacement(&self.offsets, v);
@@ -337,7 +308,7 @@ impl<const D: usize> StripConstraints<D> {
     }
 
     /// Adds beta A N_a N_b, in the prescribed directions, to the stiffness.
-    pub fn assemble(&self, matrix: &mut dyn MatrixAssembly) {
+    pub fn add_stiffness(&self, matrix: &mut dyn MatrixAssembly) {
         for (first_node, block) in self.held.iter().filter_map(|held| held.block(self.offsets.len())) {
             matrix.add_block(first_node, &block);
         }

@@ -3,7 +3,7 @@
 
 use crate::error::SolveError;
 use crate::exact::Exact;
-use crate::interactions::rigid::MOTIONS;
+use crate::interactions::MotionCoupling;
 use crate::linear::{Krylov, LinearSolver, MatrixAssembly, SolveReport, Symmetry};
 use crate::parallel::{Halo, local_dot};
 use crate::step::problem::Problem;
@@ -20,26 +20,33 @@ pub struct BorderedSolver<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> BorderedSolver<'a, D> {
-    /// Creates the solver of a problem with freely moving bodies.
-    pub fn of<K>(problem: &Problem<'a, K, D>, solver: &'a mut dyn LinearSolver) -> Self {
-        let rigid = &problem.nodes.rigid;
+    /// Creates the solver of a problem with these motions.
+    pub fn of<K>(
+        problem: &Problem<'a, K, D>,
+        couplings: Vec<MotionCoupling>,
+        solver: &'a mut dyn LinearSolver,
+    ) -> Self {
         let halo = problem.halo;
-        let (mut columns, blocks) = rigid.coupling(&problem.model.grid, halo);
+        let constraints = &problem.nodes.constraints;
+        let count = couplings.iter().map(|coupling| coupling.columns.len()).sum();
+        let mut resists = DMatrix::zeros(count, count);
+        let mut columns = Vec::with_capacity(count);
+        for coupling in couplings {
+            let size = coupling.columns.len();
+            let block = DMatrix::from_row_slice(size, size, &coupling.stiffness);
+            resists
+                .view_mut((columns.len(), columns.len()), (size, size))
+                .copy_from(&block);
+            columns.extend(coupling.columns);
+        }
         for column in &mut columns {
-            problem.nodes.reduce(&mut [&mut column[..]], halo);
+            constraints.reduce(&mut [&mut column[..]], halo);
             column
                 .iter_mut()
-                .zip(&problem.nodes.free)
+                .zip(&constraints.free)
                 .filter(|(_, free)| !**free)
                 .for_each(|(c, _)| *c = 0.0);
         }
-        let motions: Vec<(usize, usize)> = rigid.free_motions().collect();
-        let resists = DMatrix::from_fn(motions.len(), motions.len(), |row, column| {
-            let (body, k) = motions[row];
-            let (other, l) = motions[column];
-            if body == other { blocks[body][(k, l)] } else { 0.0 }
-        });
-        debug_assert!(blocks.iter().all(|block| block.len() == MOTIONS * MOTIONS));
         Self {
             solver,
             halo,

@@ -2,7 +2,7 @@
 //! statuses, then corrects wrong statuses.
 
 use crate::error::StepError;
-use crate::interactions::strip::StripConstraints;
+use crate::interactions::{Correction, MotionCoupling};
 use crate::kinematics::Kinematics;
 use crate::method::Criteria;
 use crate::model::Model;
@@ -14,10 +14,6 @@ use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 use crate::step::report::Counts;
 
-/// Corrections of statuses after which a step is given up.
-const MOST: usize = 40;
-/// Corrections with rigid bodies, whose statuses are finally corrected one by one.
-const MOST_AT_BODIES: usize = 60;
 /// Force by which a status may be contradicted, as a fraction of the force tolerance times the largest force: forces
 /// are not known more accurately.
 const DOUBT: f64 = 1e-2;
@@ -29,41 +25,33 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     mapped: MappedPoints<'_, D>,
     nodes: &mut GridState<D>,
-    attachments: &mut StripConstraints<D>,
     guess: &[f64],
     backend: &mut Backend<'_>,
     counts: &mut Counts,
 ) -> Result<StepSolution<K, D>, StepError> {
     let halo = backend.halo;
-    let faces = model.boundary.has_contact();
-    let strips = model.boundary.has_strip_contact();
-    if !faces && !strips && nodes.rigid.is_empty() {
-        return find_at_statuses(model, mapped, nodes, attachments, guess, backend, counts);
+    let Some(most) = nodes.interactions.most_corrections() else {
+        return find_at_statuses(model, mapped, nodes, guess, backend, counts);
+    };
+    for interaction in nodes.interactions.iter_mut() {
+        interaction.predict(guess);
     }
-    attachments.predict_status(guess);
     let rough = rough(model);
     let mut u = guess.to_vec();
     let mut history = Vec::new();
     let mut is_rough = true;
     let mut first_guess = true;
-    let most = if nodes.rigid.is_empty() { MOST } else { MOST_AT_BODIES };
     for pass in 0..most {
         let judged = if is_rough { &rough } else { model };
-        let found = match find_at_statuses(judged, mapped, nodes, attachments, &u, backend, counts) {
+        let found = match find_at_statuses(judged, mapped, nodes, &u, backend, counts) {
             Ok(found) => found,
             // If all nodes of the contact faces slide, a body that only these faces support can move freely.
-            Err(error) if !faces || error.is_final() || nodes.contacts.hold_neutral(&model.grid, &u, halo) == 0 => {
-                return Err(error);
-            }
-            Err(_) => {
-                nodes.apply_contact_statuses();
-                nodes.count(halo);
-                continue;
-            }
+            Err(error) if error.is_final() || hold_neutral(model, mapped, nodes, &u, halo) == 0 => return Err(error),
+            Err(_) => continue,
         };
         history.extend(found.history.iter().copied());
         first_guess &= found.first_guess;
-        let corrected = correct(judged, nodes, attachments, &found, pass, halo)?;
+        let corrected = correct(judged, mapped, nodes, &found, pass, halo)?;
         if corrected == 0 && !is_rough {
             return Ok(StepSolution {
                 history,
@@ -77,12 +65,11 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     Err(StepError::Unsettled { passes: most })
 }
 
-/// Finds equilibrium from the displacement `u` (m) with the present statuses of nodes and attachments.
+/// Finds equilibrium from the displacement `u` (m) with the present statuses.
 fn find_at_statuses<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     mapped: MappedPoints<'_, D>,
     nodes: &GridState<D>,
-    attachments: &StripConstraints<D>,
     u: &[f64],
     backend: &mut Backend<'_>,
     counts: &mut Counts,
@@ -91,15 +78,48 @@ fn find_at_statuses<K: Kinematics<D>, const D: usize>(
         model,
         shape: mapped.shape,
         nodes,
-        attachments,
         points: mapped.points,
         halo: backend.halo,
     };
     let solver = &mut *backend.solver;
-    match nodes.rigid.is_coupled() {
-        true => super::find(&problem, u, &mut BorderedSolver::of(&problem, solver), counts),
-        false => super::find(&problem, u, solver, counts),
+    let on = problem.context();
+    let couplings: Vec<MotionCoupling> = nodes
+        .interactions
+        .iter()
+        .filter_map(|each| each.coupling(&on))
+        .collect();
+    match couplings.is_empty() {
+        true => super::find(&problem, u, solver, counts),
+        false => super::find(
+            &problem,
+            u,
+            &mut BorderedSolver::of(&problem, couplings, solver),
+            counts,
+        ),
     }
+}
+
+/// Makes nodes stick that hinder a body from moving freely, after no equilibrium was found from `u` (m). Returns their
+/// number over all ranks.
+fn hold_neutral<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    mapped: MappedPoints<'_, D>,
+    nodes: &mut GridState<D>,
+    u: &[f64],
+    halo: &dyn Halo,
+) -> usize {
+    let mut interactions = std::mem::take(&mut nodes.interactions);
+    let on = nodes.context(model, mapped.shape, mapped.points, halo);
+    let held = interactions
+        .iter_mut()
+        .map(|interaction| interaction.hold_neutral(&on, u));
+    let held = held.sum();
+    nodes.interactions = interactions;
+    if held > 0 {
+        nodes.apply_statuses();
+        nodes.count(halo);
+    }
+    held
 }
 
 /// Returns the model with loose criteria, for an equilibrium whose statuses will change.
@@ -119,24 +139,24 @@ fn rough<K: Kinematics<D>, const D: usize>(model: &Model<K, D>) -> Model<K, D> {
 /// the equilibrium was accepted.
 fn correct<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
+    mapped: MappedPoints<'_, D>,
     nodes: &mut GridState<D>,
-    attachments: &mut StripConstraints<D>,
     found: &StepSolution<K, D>,
     pass: usize,
     halo: &dyn Halo,
 ) -> Result<usize, StepError> {
-    let doubt = DOUBT * model.criteria.force * found.scale;
+    let force = DOUBT * model.criteria.force * found.scale;
+    let mut interactions = std::mem::take(&mut nodes.interactions);
+    let on = nodes.context(model, mapped.shape, mapped.points, halo);
+    let dF = |p: usize| found.trial.dF(p);
+    let at = found.state(&dF);
     let mut corrected = 0;
-    if model.boundary.has_strip_contact() {
-        corrected += attachments.correct(&found.u, doubt, halo);
+    for interaction in interactions.iter_mut() {
+        corrected += interaction.correct(&on, &at, Correction { force, pass })?;
     }
-    corrected += nodes.rigid.correct(&found.u, doubt, pass, halo)?;
-    nodes.contacts.first_energy = found.first_energy;
-    if model.boundary.has_contact() {
-        let edge = model.grid.smallest_edge();
-        corrected += nodes.contacts.correct(&found.u, &found.reaction, doubt, edge, halo);
-        nodes.apply_contact_statuses();
-        nodes.count(halo);
-    }
+    nodes.interactions = interactions;
+    nodes.interactions.first_energy = found.first_energy;
+    nodes.apply_statuses();
+    nodes.count(halo);
     Ok(corrected)
 }

@@ -1,6 +1,7 @@
 //! Convergence criteria, theory-manual equations (T5.15), (T5.16), and early termination of slow iterations.
 
 use crate::error::{Measures, SolveError, StepError, WorstNode};
+use crate::exact::Exact;
 use crate::kinematics::Kinematics;
 use crate::method::Criteria;
 use crate::method::Method;
@@ -40,7 +41,7 @@ impl Convergence {
     pub fn new<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>) -> Self {
         let criteria = problem.model.criteria;
         let round_off = RoundOff::of(problem);
-        let first_energy = problem.nodes.contacts.first_energy;
+        let first_energy = problem.nodes.interactions.first_energy;
         Self {
             criteria,
             round_off,
@@ -178,18 +179,23 @@ impl Convergence {
     }
 }
 
-/// Returns |du_0 . (f_0 - K_strips du_0)| (N m), the energy of the first direction without the penalty energy of strips
+/// Returns |du_0 . (f_0 - K_p du_0)| (N m), the energy of the first direction without the penalty energy of footings
 /// and rigid bodies, whose prescribed motion is in this direction. With the penalty energy the criterion would be too
 /// lenient by the ratio of the penalty to the stiffness. `work` is du_0 . f_0.
 pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, du: &[f64], work: f64) -> f64 {
-    let rigid = &problem.nodes.rigid;
-    if problem.model.boundary.strips.is_empty() && rigid.is_empty() {
+    let interactions = &problem.nodes.interactions;
+    if !interactions.has_penalty() {
         return work.abs();
     }
     let mut du = du.to_vec();
-    problem.nodes.extend(&problem.model.grid, &mut du, problem.halo);
-    let mut penalty = problem.attachments.energy(&du);
-    penalty += &rigid.energy(&du, problem.halo);
+    problem
+        .nodes
+        .constraints
+        .extend(&problem.model.grid, &mut du, problem.halo);
+    let mut penalty = Exact::ZERO;
+    for interaction in interactions.iter() {
+        penalty += &interaction.penalty_energy(&du, problem.halo);
+    }
     let penalty = problem.halo.reproducible_sum(&[penalty]);
     (work - penalty[0]).abs()
 }

@@ -2,10 +2,12 @@
 
 use crate::error::Measures;
 use crate::field::pore_water::residual::WaterBalance;
+use crate::interactions::EquilibriumState;
 use crate::kinematics::Kinematics;
 use crate::solve::convergence::Convergence;
 use crate::step::residual::Residual;
 use crate::step::trial::DeformationIncrement;
+use crate::tensor::Tensor;
 
 /// A converged displacement with the quantities evaluated there.
 #[derive(Clone, Debug)]
@@ -41,6 +43,17 @@ pub struct StepSolution<K: Kinematics<D>, const D: usize> {
 }
 
 impl<K: Kinematics<D>, const D: usize> StepSolution<K, D> {
+    /// Returns the state as interactions see it. `dF` is the deformation increment of a material point (-).
+    pub fn state<'a>(&'a self, dF: &'a dyn Fn(usize) -> Tensor) -> EquilibriumState<'a> {
+        EquilibriumState {
+            u: &self.u,
+            reaction: &self.reaction,
+            dF,
+            scale: self.scale,
+            internal_work: self.work,
+        }
+    }
+
     /// Collects the state that an iteration reached. `u` contains displacements, followed by pressures where water
     /// flows.
     pub fn new(mut u: Vec<f64>, residual: Residual<K, D>, convergence: &Convergence) -> Self {

@@ -172,7 +172,7 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
     /// Adds flowing water to the derivative. In `x` the nodal excess pore pressures (Pa) follow the displacements.
     pub fn with_water(mut self, x: &'a [f64]) -> Self {
         let Problem { nodes, .. } = *self.problem;
-        let p = &x[nodes.free.len()..];
+        let p = &x[nodes.constraints.free.len()..];
         self.water = nodes
             .pores
             .as_ref()
@@ -190,10 +190,10 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
             halo,
             ..
         } = *self.problem;
-        let (v, v_p) = v.split_at(nodes.free.len());
-        let (out, out_p) = out.split_at_mut(nodes.free.len());
+        let (v, v_p) = v.split_at(nodes.constraints.free.len());
+        let (out, out_p) = out.split_at_mut(nodes.constraints.free.len());
         let mut extended = Cow::Borrowed(v);
-        if let Some(extension) = &nodes.extension {
+        if let Some(extension) = &nodes.constraints.extension {
             extension.extend(&self.problem.model.grid, extended.to_mut(), halo);
         }
         let v = &extended[..];
@@ -225,19 +225,20 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
                 flux + water.pressed::<K>(p, changes[p].value) * volume[p]
             })
         });
-        if let Some(background) = &nodes.background {
-            background.multiply::<D>(shape, v, &mut force);
+        let on = self.problem.context();
+        for interaction in nodes.interactions.iter() {
+            interaction.add_product(&on, v, &mut force);
         }
-        self.problem.attachments.multiply(v, &mut force);
-        nodes.rigid.multiply(v, &mut force, halo);
         out.copy_from_slice(&halo.assemble_ghosts(&force));
-        nodes.reduce(&mut [&mut *out], halo);
+        nodes.constraints.reduce(&mut [&mut *out], halo);
         if let Some(inertia) = &nodes.inertia {
             self.add_inertia(inertia, v, out);
         }
-        nodes.contacts.add_derivative(self.reaction, v, out);
+        for interaction in nodes.interactions.iter() {
+            interaction.add_nodal_product(&on, self.reaction, v, out);
+        }
         out.iter_mut()
-            .zip(&nodes.free)
+            .zip(&nodes.constraints.free)
             .filter(|(_, free)| !**free)
             .for_each(|(out, _)| *out = 0.0);
     }
@@ -254,7 +255,7 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
         }))
     }
 
-    /// Adds the resistance of inertia and dashpots to a nodal displacement `v` (m) to `out` (N).
+    /// Adds the resistance of inertia to a nodal displacement `v` (m) to `out` (N).
     fn add_inertia(&self, inertia: &Inertia, v: &[f64], out: &mut [f64]) {
         let factor = inertia.factor();
         let mut scaled = Cow::Borrowed(v);
@@ -265,9 +266,6 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
         }
         for (out, momentum) in out.iter_mut().zip(self.problem.mass().times(&scaled)) {
             *out += factor * momentum;
-        }
-        for (c, stiffness) in self.problem.nodes.dashpots.stiffness(inertia) {
-            out[c] += stiffness * v[c];
         }
     }
 
@@ -287,7 +285,7 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
         let Problem {
             shape, nodes, points, ..
         } = *self.problem;
-        matrix.reinit(&nodes.free);
+        matrix.reinit(&nodes.constraints.free);
         let size = shape.offsets().len();
         let mut slopes = [K::Gradient::NO_SLOPE; MOST];
         let slopes = &mut slopes[..size];
@@ -306,8 +304,8 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
             if let (Some(coupling), Some(dilations)) = (&mut coupling, &dilations) {
                 coupling.add(number, dilations);
             }
-            if let Some(background) = &nodes.background {
-                background.add_to(number, &mut block);
+            for interaction in nodes.interactions.iter() {
+                interaction.add_to_cell(number, &mut block);
             }
             add_mass(
                 self.problem.model.mass,

@@ -68,7 +68,11 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
             }
         };
         if !convergence.has_begun() {
-            convergence.begin(first_energy(problem, &du[..problem.nodes.free.len()], energy));
+            convergence.begin(first_energy(
+                problem,
+                &du[..problem.nodes.constraints.free.len()],
+                energy,
+            ));
         }
         if convergence.reaches(Method::Newton, energy.abs(), &u, &residual.balance) {
             return Ok(StepSolution::new(u, residual, convergence));
@@ -151,7 +155,7 @@ fn around_stiffness<K: Kinematics<D>, const D: usize>(
     let f = &residual.balance.f_oob;
     let linearised = ForceTangent::at(problem, residual);
     stiffness::factorise(problem, Some(&residual.trial), solver)?;
-    let unknowns = Unknowns::of::<D>(&problem.nodes.free, halo);
+    let unknowns = Unknowns::of::<D>(&problem.nodes.constraints.free, halo);
     let mut nodal = vec![0.0; f.len()];
     let mut image = vec![0.0; f.len()];
     let mut force = vec![0.0; f.len()];

@@ -53,7 +53,7 @@ impl Secants {
     /// Creates an empty history for the unknowns of a problem. Where water flows, pressures are among them and the
     /// multisecant method is used.
     fn of<K, const D: usize>(method: QuasiNewton, problem: &Problem<'_, K, D>) -> Self {
-        let free = &problem.nodes.free;
+        let free = &problem.nodes.constraints.free;
         let halo = problem.halo;
         let Some(pores) = &problem.nodes.pores else {
             return Self::new::<D>(method, free, halo);
@@ -253,7 +253,7 @@ fn next_direction<K: Kinematics<D>, const D: usize>(
     counts.linear_iterations += direction.solved.iterations;
     counts.factorisations += direction.solved.factorisations;
     if !convergence.has_begun() {
-        let du = &direction.du[..problem.nodes.free.len()];
+        let du = &direction.du[..problem.nodes.constraints.free.len()];
         convergence.begin(first_energy(problem, du, direction.energy));
     }
     Ok(direction)

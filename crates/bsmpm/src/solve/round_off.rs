@@ -38,12 +38,13 @@ impl RoundOff {
         }
         force
             .iter_mut()
-            .zip(&nodes.free)
+            .zip(&nodes.constraints.free)
             .filter(|(_, free)| !**free)
             .for_each(|(force, _)| *force = 0.0);
         let mut sums = vec![over_layers(problem.halo, D, |c| force[c].powi(2))];
         sums.extend(
             nodes
+                .constraints
                 .apart
                 .iter()
                 .flat_map(|apart| apart.sums(problem.halo, D, |c| [force[c].powi(2)])),

@@ -2,6 +2,7 @@
 //! (T5.17).
 
 use crate::error::StepError;
+use crate::interactions::Interaction;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::parallel::local_dot;
@@ -17,18 +18,7 @@ const NEAR: f64 = 1e-3;
 /// (which decides where an unstable body moves), and with a symmetric derivative (no friction, yielding or flowing
 /// water).
 pub fn is_decisive<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Balance) -> bool {
-    let has_friction = problem
-        .model
-        .boundary
-        .supports
-        .iter()
-        .any(|face| face.contact.is_some_and(|law| law.friction > 0.0));
-    let strips = &problem.model.boundary.strips;
-    let has_friction = has_friction
-        || strips
-            .iter()
-            .any(|strip| strip.contact.is_some_and(|contact| contact.law.friction > 0.0));
-    let has_friction = has_friction || problem.nodes.rigid.has_friction();
+    let has_friction = problem.nodes.interactions.iter().any(Interaction::has_friction);
     let flows = problem.nodes.pores.is_some();
     before.measure() < NEAR && problem.nodes.inertia.is_none() && !has_friction && !flows && is_symmetric(problem.model)
 }

@@ -1,5 +1,5 @@
-//! Assembles parts that the matrices of theory-manual equations (T5.8), (T5.14) share: tangent moduli, mass, footings
-//! and rigid bodies.
+//! Assembles parts that the matrices of theory-manual equations (T5.8), (T5.14) share: tangent moduli, mass and
+//! interactions.
 
 use crate::dynamics::mass::{MassMatrix, SHARE};
 use crate::grid::Shape;
@@ -47,14 +47,15 @@ pub fn add_point<K: Kinematics<D>, const D: usize>(
     }
 }
 
-/// Adds strips, rigid bodies and inertia to a matrix with assembled patches.
+/// Adds interactions and inertia to a matrix with assembled patches.
 pub fn complete<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, matrix: &mut dyn MatrixAssembly) {
     let nodes = problem.nodes;
-    problem.attachments.assemble(matrix);
-    nodes.rigid.assemble(matrix);
-    nodes.contacts.assemble(matrix, problem.halo);
+    let on = problem.context();
+    for interaction in nodes.interactions.iter() {
+        interaction.assemble(&on, matrix);
+    }
     if let Some(inertia) = &nodes.inertia {
-        let factors = (0..nodes.free.len()).map(|c| match problem.model.mass {
+        let factors = (0..nodes.constraints.free.len()).map(|c| match problem.model.mass {
             MassMatrix::Lumped => inertia.factor_of(c),
             MassMatrix::Consistent => (1.0 - SHARE) * inertia.factor(),
         });
@@ -62,10 +63,9 @@ pub fn complete<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, m
             .enumerate()
             .map(|(c, factor)| factor * nodes.weight[Nodal::<D>::node(c)])
             .collect();
-        nodes
-            .dashpots
-            .stiffness(inertia)
-            .for_each(|(component, stiffness)| diagonal[component] += stiffness);
+        for interaction in nodes.interactions.iter() {
+            interaction.add_damping(inertia, &mut diagonal);
+        }
         matrix.add_diagonal(&diagonal);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::dynamics::mass::Mass;
 use crate::grid::Shape;
-use crate::interactions::strip::StripConstraints;
+use crate::interactions::StepContext;
 use crate::model::Model;
 use crate::parallel::Halo;
 use crate::points::Points;
@@ -16,8 +16,6 @@ pub struct Problem<'a, K, const D: usize> {
     pub shape: &'a Shape<D>,
     /// Nodal quantities, step (2).
     pub nodes: &'a GridState<D>,
-    /// Rigid strips with their constraints on the nodes.
-    pub attachments: &'a StripConstraints<D>,
     /// Material points at the start of the step.
     pub points: &'a Points<D>,
     /// Communication with the other ranks.
@@ -28,6 +26,11 @@ impl<'a, K, const D: usize> Problem<'a, K, D> {
     /// Returns the mass matrix (for dynamics).
     pub fn mass(&self) -> Mass<'_, D> {
         self.nodes.mass(self.model, self.shape, self.points, self.halo)
+    }
+
+    /// Returns the data of the step that interactions use.
+    pub fn context(&self) -> StepContext<'a, D> {
+        self.nodes.context(self.model, self.shape, self.points, self.halo)
     }
 
     /// Returns the integration weights of the points for the stress (m^D of reference volume).

@@ -23,7 +23,7 @@ pub fn assemble<K, const D: usize>(
     matrix: &mut dyn MatrixAssembly,
     fill: impl FnOnce(&mut dyn MatrixAssembly),
 ) {
-    let Some(extension) = &problem.nodes.extension else {
+    let Some(extension) = &problem.nodes.constraints.extension else {
         return fill(matrix);
     };
     let mut reduced = ReducedMatrix::new(matrix, extension, &problem.model.grid, problem.halo);

@@ -4,9 +4,8 @@ use crate::boundary::{ContactReport, RigidReport, StripReport};
 use crate::energy::{Flows, Turnover};
 use crate::error::Measures;
 use crate::field::pore_water::saved::WaterReport;
-use crate::grid::Contributions;
+use crate::interactions::InteractionReports;
 use crate::kinematics::Kinematics;
-use crate::nodal::Nodal;
 use crate::solve::found::StepSolution;
 use crate::step::outflow::Outflow;
 use crate::step::problem::Problem;
@@ -95,79 +94,38 @@ pub struct StepReport {
 }
 
 impl StepReport {
-    /// Creates the report of a converged displacement, before the points are updated. One reduction for the forces of
-    /// the supports, and one with a background.
-    pub fn of<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, found: &StepSolution<K, D>) -> Self {
-        let nodes = problem.nodes;
-        let resisted = nodes.resisted(&found.u);
-        let soft = nodes
-            .background
-            .as_ref()
-            .map(|blocks| blocks.work::<D>(problem.shape, &resisted));
+    /// Creates the report of a converged displacement with the results of the interactions, before the points are
+    /// updated. One reduction for the forces of the supports.
+    pub fn of<K: Kinematics<D>, const D: usize>(
+        problem: &Problem<'_, K, D>,
+        found: &StepSolution<K, D>,
+        interactions: InteractionReports,
+    ) -> Self {
+        let constraints = &problem.nodes.constraints;
+        let extension = constraints.extension.as_ref();
+        let boundary = &problem.model.boundary;
         Self {
-            dt: 0.0,
             iterations: found.history.len(),
             history: found.history.clone(),
             judged: found.judged,
             force: found.force,
             newton_iterations: found.newton_iterations,
-            active_nodes: nodes.active_nodes,
-            unknowns: nodes.unknowns,
-            massless_nodes: nodes.massless_nodes,
-            background_cells: nodes.background_cells,
-            tied_functions: nodes.extension.as_ref().map_or(0, |extension| extension.tied),
-            untied_functions: nodes.extension.as_ref().map_or(0, |extension| extension.untied),
+            active_nodes: constraints.active_nodes,
+            unknowns: constraints.unknowns,
+            massless_nodes: constraints.massless_nodes,
+            background_cells: interactions.background_cells,
+            tied_functions: extension.map_or(0, |extension| extension.tied),
+            untied_functions: extension.map_or(0, |extension| extension.untied),
             settled: found.settled,
             first_guess: found.first_guess,
-            reactions: problem
-                .model
-                .boundary
-                .reactions(&problem.model.grid, &found.reaction, problem.halo),
-            contacts: nodes
-                .contacts
-                .report(&problem.model.boundary, &found.u, &found.reaction, problem.halo),
-            rigid: Vec::new(),
-            strips: Vec::new(),
-            background: soft.map(|work| [problem.halo.reproducible_sum(&[work])[0], found.work]),
-            background_share: None,
-            second_order_works: None,
-            energy: None,
-            turnover: None,
-            advance: 0.0,
-            beside_fixed: None,
-            outflow: None,
+            reactions: boundary.reactions(&problem.model.grid, &found.reaction, problem.halo),
+            contacts: interactions.contacts,
+            rigid: interactions.rigid,
+            strips: interactions.strips,
+            background: interactions.background,
+            background_share: interactions.background_share,
             water: WaterReport::of(problem, found),
-            smoothed: 0.0,
+            ..Self::default()
         }
     }
-}
-
-/// Returns the largest force of the background on a free node of all ranks, divided by the RMS force of the active
-/// nodes (-). A spline without other stiffness creeps under this force. `None` without a background or without forces.
-///
-/// One exchange with the neighbours, one reduction, and one gather if ties are published.
-pub fn background_share<K: Kinematics<D>, const D: usize>(
-    problem: &Problem<'_, K, D>,
-    found: &StepSolution<K, D>,
-) -> Option<f64> {
-    let Problem {
-        model,
-        shape,
-        nodes,
-        halo,
-        ..
-    } = *problem;
-    let blocks = nodes.background.as_ref()?;
-    let mut force = Contributions::none(&model.grid, D, Vec::new());
-    blocks.multiply::<D>(shape, &nodes.resisted(&found.u), &mut force);
-    let mut force = halo.assemble_ghosts(&force);
-    nodes.reduce(&mut [&mut force], halo);
-    let sizes = halo.owned().nodes().map(|node| {
-        let free = Nodal::<D>::of(node).filter(|&at| nodes.free[at]);
-        free.map(|at| force[at].powi(2)).sum::<f64>().sqrt()
-    });
-    let mut largest = [sizes.fold(0.0, f64::max)];
-    halo.all_reduce_max(&mut largest);
-    let mean = found.scale / (nodes.active_nodes.max(1) as f64).sqrt();
-    (mean > 0.0).then(|| largest[0] / mean)
 }

@@ -4,6 +4,7 @@
 use crate::exact::Exact;
 use crate::field::pore_water::residual::WaterBalance;
 use crate::grid::{Contributions, transfer};
+use crate::interactions::{Interaction, NodalForces};
 use crate::kinematics::{Gradient, GradientOf, Kinematics};
 use crate::lanes::{self, Eight, InLanes, LANES, Lanes, Simd};
 use crate::model::Model;
@@ -11,6 +12,7 @@ use crate::nodal::Nodal;
 use crate::parallel::over_layers;
 use crate::points::Points;
 use crate::step::adjoint::Pressures;
+use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 use crate::step::trial::DeformationIncrement;
 use crate::tensor::Tensor;
@@ -33,20 +35,20 @@ pub struct Residual<K: Kinematics<D>, const D: usize> {
 /// Step (5b): out-of-balance force at the nodes, with the norms for the convergence criteria.
 #[derive(Clone, Debug)]
 pub struct Balance {
-    /// Out-of-balance force (N): f_ext + strips and rigid bodies + dashpots + friction - f_int - M a - background, with
-    /// a from `Inertia::acting`; zero at components that are not free.
+    /// Out-of-balance force (N): f_ext + elastic supports + dashpots + friction - f_int - M a, with a from
+    /// `Inertia::acting`; zero at components that are not free.
     pub f_oob: Vec<f64>,
     /// Force of the supports on the body (N); zero at components without a prescribed motion, friction or a dashpot.
     pub reaction: Vec<f64>,
     /// Norm |f_oob| (N).
     pub norm: f64,
-    /// Reference force max(|f_ext|, |f_int|, |M a|, |reaction, strips|) (N).
+    /// Reference force max(|f_ext|, |f_int|, |M a|, |reaction, elastic supports|) (N).
     pub scale: f64,
     /// `norm` and `scale` over the nodes that only one material touches (N), per material; empty in a case with one
     /// material.
     pub apart: Vec<[f64; 2]>,
-    /// Sum of the magnitudes of the works f_int u over all nodes and components, background included (J); 0 without a
-    /// background, where it is not needed.
+    /// Sum of the magnitudes of the works f_int u over all nodes and components (J); 0 if no interaction needs it, see
+    /// [`Interaction::is_artificial`].
     pub work: f64,
     /// Points inverted or not finite, over all ranks.
     pub inverted: u64,
@@ -58,8 +60,8 @@ pub struct Balance {
 
 impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
     /// Evaluates the forces under `x`: displacements (m), followed by excess pore pressures (Pa) if water flows;
-    /// missing pressures are zero. One exchange with the neighbours, one more each for F-bar, its adjoint, strips and
-    /// water, and one reduction (two with water).
+    /// missing pressures are zero. One exchange with the neighbours, one more each for F-bar, its adjoint, elastic
+    /// supports and water, and one reduction (two with water).
     pub fn of(problem: &Problem<'_, K, D>, x: &[f64]) -> Self {
         let Problem {
             model,
@@ -69,9 +71,9 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
             halo,
             ..
         } = *problem;
-        let (u, p) = x.split_at(nodes.free.len());
+        let (u, p) = x.split_at(nodes.constraints.free.len());
         let mut extended = Cow::Borrowed(u);
-        if let Some(extension) = &nodes.extension {
+        if let Some(extension) = &nodes.constraints.extension {
             extension.extend(&model.grid, extended.to_mut(), halo);
         }
         let u = &extended[..];
@@ -85,8 +87,9 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
             inverted,
             first_inverted,
         } = InternalForce::of(problem, &trial);
-        if let Some(background) = &nodes.background {
-            background.multiply::<D>(shape, &nodes.resisted(u), &mut f_int);
+        let on = problem.context();
+        for interaction in nodes.interactions.iter() {
+            interaction.add_internal_force(&on, u, &mut f_int);
         }
         let balance = Balance {
             water,
@@ -224,15 +227,22 @@ impl Balance {
         mut f_int: Vec<f64>,
         inverted: u64,
     ) -> Self {
-        let f_ext = &*external_force(problem, u, dF);
-        let mut f_strips = force_of_strips(problem, u);
-        match f_strips.is_empty() {
-            true => problem.nodes.reduce(&mut [&mut f_int], problem.halo),
-            false => problem.nodes.reduce(&mut [&mut f_int, &mut f_strips], problem.halo),
+        let GridState {
+            constraints,
+            interactions,
+            ..
+        } = problem.nodes;
+        let on = &problem.context();
+        let mut f_ext = Cow::Borrowed(&problem.nodes.f_ext[..]);
+        interactions.add_external_forces(on, u, dF, &mut f_ext);
+        let mut f_penalty = interactions.penalty_force(on, u);
+        match f_penalty.is_empty() {
+            true => constraints.reduce(&mut [&mut f_int], problem.halo),
+            false => constraints.reduce(&mut [&mut f_int, &mut f_penalty], problem.halo),
         }
-        let forces = Forces::of(problem, u, f_ext, &f_int, &f_strips);
-        let soft = problem.nodes.background.is_some();
-        let supporting = |c: usize| forces.reaction[c].powi(2) + f_strips.get(c).copied().unwrap_or(0.0).powi(2);
+        let forces = Forces::of(problem, u, &f_ext, &f_int, &f_penalty);
+        let soft = interactions.iter().any(Interaction::is_artificial);
+        let supporting = |c: usize| forces.reaction[c].powi(2) + f_penalty.get(c).copied().unwrap_or(0.0).powi(2);
         let whole = [
             std::iter::once(inverted as f64).collect(),
             over_layers(problem.halo, D, |c| forces.f_oob[c].powi(2)),
@@ -243,8 +253,8 @@ impl Balance {
             over_active(problem, |c| if soft { (f_int[c] * u[c]).abs() } else { 0.0 }),
         ];
         let kinds = whole.len() - 2;
-        // Per material: out-of-balance, external, internal, inertial forces, and those of supports and strips.
-        let apart = problem.nodes.apart.as_ref().map_or_else(Vec::new, |apart| {
+        // Per material: out-of-balance, external, internal, inertial forces, and those of rigid and elastic supports.
+        let apart = constraints.apart.as_ref().map_or_else(Vec::new, |apart| {
             apart.sums(problem.halo, D, |c| {
                 let forces = [forces.f_oob[c], f_ext[c], f_int[c], forces.inertial_at(c)];
                 let [out, external, internal, inertial] = forces.map(|force| force.powi(2));
@@ -288,47 +298,6 @@ impl Balance {
     }
 }
 
-/// Returns the external force at the end of the step, including follower loads (N).
-fn external_force<'a, K: Kinematics<D>, const D: usize>(
-    problem: &Problem<'a, K, D>,
-    u: &[f64],
-    dF: &dyn Fn(usize) -> Tensor,
-) -> Cow<'a, [f64]> {
-    let Problem {
-        model,
-        nodes,
-        points,
-        halo,
-        ..
-    } = *problem;
-    let mut f_ext = Cow::Borrowed(&nodes.f_ext[..]);
-    if !nodes.followers.is_empty() {
-        let traction = nodes
-            .followers
-            .tractions::<K>(&model.boundary.loads, &model.grid, points, u, dF, halo);
-        let mut force = nodes.followers.forces(&traction, &model.grid, halo);
-        nodes.reduce(&mut [&mut force], halo);
-        f_ext
-            .to_mut()
-            .iter_mut()
-            .zip(force)
-            .for_each(|(all, force)| *all += force);
-    }
-    f_ext
-}
-
-/// Returns the force of strips and rigid bodies (N), D numbers per node; empty without any. Otherwise one exchange with
-/// the neighbours.
-fn force_of_strips<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, u: &[f64]) -> Vec<f64> {
-    if problem.model.boundary.strips.is_empty() && problem.nodes.rigid.is_empty() {
-        return Vec::new();
-    }
-    let mut force = Contributions::none(&problem.model.grid, D, Vec::new());
-    problem.attachments.add_forces(u, &mut force);
-    problem.nodes.rigid.add_forces(u, &mut force, problem.halo);
-    problem.halo.assemble_ghosts(&force)
-}
-
 /// Returns the norm of the out-of-balance force and the largest norm of the other forces, from the sums of their
 /// squares.
 fn norms(sums: &[f64]) -> [f64; 2] {
@@ -338,7 +307,7 @@ fn norms(sums: &[f64]) -> [f64; 2] {
 /// Sums over the components of this rank's own active nodes.
 fn over_active<K, const D: usize>(problem: &Problem<'_, K, D>, term: impl Fn(usize) -> f64) -> Exact {
     over_layers(problem.halo, D, |c| {
-        if problem.nodes.active[Nodal::<D>::node(c)] {
+        if problem.nodes.constraints.active[Nodal::<D>::node(c)] {
             term(c)
         } else {
             0.0
@@ -359,9 +328,10 @@ impl Forces {
         u: &[f64],
         f_ext: &[f64],
         f_int: &[f64],
-        f_strips: &[f64],
+        f_penalty: &[f64],
     ) -> Self {
         let nodes = problem.nodes;
+        let constraints = &nodes.constraints;
         let mut forces = Self {
             f_oob: vec![0.0; u.len()],
             reaction: vec![0.0; u.len()],
@@ -369,27 +339,26 @@ impl Forces {
         };
         if let Some(inertia) = &nodes.inertia {
             let mut acting = vec![0.0; u.len()];
-            for c in (0..u.len()).filter(|&c| nodes.active[Nodal::<D>::node(c)]) {
+            for c in (0..u.len()).filter(|&c| constraints.active[Nodal::<D>::node(c)]) {
                 acting[c] = inertia.acting(c, u[c]);
             }
             forces.inertial = problem.mass().times(&acting);
         }
-        for component in (0..u.len()).filter(|&component| nodes.active[Nodal::<D>::node(component)]) {
+        for component in (0..u.len()).filter(|&component| constraints.active[Nodal::<D>::node(component)]) {
             let inertial = forces.inertial_at(component);
-            let held = f_strips.get(component).copied().unwrap_or(0.0);
+            let held = f_penalty.get(component).copied().unwrap_or(0.0);
             let balance = f_ext[component] + held - f_int[component] - inertial;
-            if nodes.free[component] {
+            if constraints.free[component] {
                 forces.f_oob[component] = balance;
-            } else if nodes.prescribed[component].is_some() {
+            } else if constraints.prescribed[component].is_some() {
                 forces.reaction[component] = -balance;
             }
         }
-        if let Some(inertia) = &nodes.inertia {
-            nodes
-                .dashpots
-                .add_forces(inertia, u, &mut forces.f_oob, &mut forces.reaction);
+        let on = problem.context();
+        for interaction in nodes.interactions.iter() {
+            let Self { f_oob, reaction, .. } = &mut forces;
+            interaction.add_reaction(&on, u, NodalForces { f_oob, reaction });
         }
-        nodes.contacts.add_friction(u, &mut forces.f_oob, &mut forces.reaction);
         forces
     }
 

@@ -55,7 +55,7 @@ fn assemble_into<K: Kinematics<D>, const D: usize>(
         ..
     } = *problem;
     let volume = problem.volume();
-    matrix.reinit(&nodes.free);
+    matrix.reinit(&nodes.constraints.free);
     let damping = Damping::of(model, nodes);
     let mut coupling = at.and_then(|_| Coupling::of(model, nodes, DilationForce::Along));
     // Each thread computes columns of patches; the results are added in the order of the patches.
@@ -165,8 +165,8 @@ impl<K: Kinematics<D>, const D: usize> Assembly<'_, K, D> {
         }
         mirror(size * D, &mut part.block);
         add_mass(model.mass, self.nodes, shape, patch, &points.mass, &mut part.block);
-        if let Some(background) = &self.nodes.background {
-            background.add_to(number, &mut part.block);
+        for interaction in self.nodes.interactions.iter() {
+            interaction.add_to_cell(number, &mut part.block);
         }
         part
     }

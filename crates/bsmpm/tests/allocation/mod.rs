@@ -2,7 +2,6 @@
 
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::grid::Shape;
-use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::TimeInterval;
@@ -63,18 +62,10 @@ fn allocations(per_axis: usize, method: Stabilisation) -> usize {
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
     let nodes =
         GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.1 }, &halo).expect("no loads");
-    let attachments = StripConstraints::at(
-        &[],
-        &points.surface,
-        &model.grid,
-        &nodes.free,
-        TimeInterval { start: 0.0, dt: 0.1 },
-    );
     let pieces = Problem {
         model,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points,
         halo: &halo,
     };

@@ -3,7 +3,6 @@
 use crate::support::random::Random;
 use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::grid::{Grid, KnotVector, Shape, transfer};
-use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;
@@ -45,18 +44,10 @@ fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisat
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes =
         GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
-    let attachments = StripConstraints::at(
-        &[],
-        &points.surface,
-        &model.grid,
-        &nodes.free,
-        TimeInterval { start: 0.0, dt: 1.0 },
-    );
     let pieces = Problem {
         model,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points,
         halo: &halo,
     };

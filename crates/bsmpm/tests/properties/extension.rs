@@ -6,7 +6,6 @@ use crate::support::solver::Dense;
 use bsmpm::boundary::Support;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::grid::{Grid, Shape};
-use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
 use bsmpm::nodal::Nodal;
@@ -77,7 +76,7 @@ fn ties_keep_what_they_must<K: Kinematics<D>, const D: usize>(order: usize) {
         &halo,
     )
     .expect("no loads");
-    let extension = nodes.extension.as_ref().expect("cut cells");
+    let extension = nodes.constraints.extension.as_ref().expect("cut cells");
     assert!(
         extension.tied > 0 && extension.untied == 0,
         "{} and {}",
@@ -129,22 +128,14 @@ fn matrix_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, is_genera
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes =
         GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
-    let attachments = StripConstraints::at(
-        &[],
-        &points.surface,
-        &model.grid,
-        &nodes.free,
-        TimeInterval { start: 0.0, dt: 1.0 },
-    );
     let problem = Problem {
         model,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points,
         halo: &halo,
     };
-    let residual = Residual::of(&problem, &vec![0.0; nodes.free.len()]);
+    let residual = Residual::of(&problem, &vec![0.0; nodes.constraints.free.len()]);
     let derivative = ForceTangent::at(&problem, &residual);
     let mut matrix = Dense::new(&model.grid);
     match is_general {
@@ -153,6 +144,7 @@ fn matrix_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, is_genera
     }
     let mut random = Random::new(11);
     let v: Vec<f64> = nodes
+        .constraints
         .free
         .iter()
         .map(|&free| if free { random.signed() } else { 0.0 })
@@ -202,18 +194,10 @@ fn condition(scene: &Scene<PlaneStrain, 2>) -> f64 {
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes =
         GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
-    let attachments = StripConstraints::at(
-        &[],
-        &points.surface,
-        &model.grid,
-        &nodes.free,
-        TimeInterval { start: 0.0, dt: 1.0 },
-    );
     let problem = Problem {
         model,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points,
         halo: &halo,
     };

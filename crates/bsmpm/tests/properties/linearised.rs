@@ -5,7 +5,6 @@ use crate::support::scene::{Scene, axis};
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::grid::Shape;
 use bsmpm::interactions::background::Background;
-use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Branch, CamClay, Elastic, Law, Material, MohrCoulomb, Separation};
 use bsmpm::model::Regime;
@@ -63,27 +62,19 @@ fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64,
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes =
         GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
-    let attachments = StripConstraints::at(
-        &model.boundary.strips,
-        &points.surface,
-        &model.grid,
-        &nodes.free,
-        TimeInterval { start: 0.0, dt: 0.01 },
-    );
     let pieces = Problem {
         model,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points,
         halo: &halo,
     };
     let mut random = Random::new(11);
     let mut free = |size: f64| -> Vec<f64> {
-        let values = random.array(nodes.free.len());
+        let values = random.array(nodes.constraints.free.len());
         values
             .iter()
-            .zip(&nodes.free)
+            .zip(&nodes.constraints.free)
             .map(|(value, &free)| if free { size * value } else { 0.0 })
             .collect()
     };
@@ -333,23 +324,16 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes =
         GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
-    let attachments = StripConstraints::at(
-        &[],
-        &points.surface,
-        &model.grid,
-        &nodes.free,
-        TimeInterval { start: 0.0, dt: 0.01 },
-    );
     let pieces = Problem {
         model,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points,
         halo: &halo,
     };
     let mut free = || -> Vec<f64> {
         nodes
+            .constraints
             .free
             .iter()
             .map(|&free| if free { size * random.signed() } else { 0.0 })

@@ -5,7 +5,6 @@ use crate::support::scene::{Scene, axis};
 use crate::support::solver::Dense;
 use bsmpm::boundary::Support;
 use bsmpm::grid::Shape;
-use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;
@@ -92,24 +91,17 @@ fn products<K: Kinematics<D>, const D: usize>(
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes =
         GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
-    let attachments = StripConstraints::at(
-        &[],
-        &points.surface,
-        &model.grid,
-        &nodes.free,
-        TimeInterval { start: 0.0, dt: 0.01 },
-    );
     let pieces = Problem {
         model,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points,
         halo: &halo,
     };
     let mut random = Random::new(11);
     let mut free = |size: f64| -> Vec<f64> {
         nodes
+            .constraints
             .free
             .iter()
             .map(|&free| if free { size * random.signed() } else { 0.0 })

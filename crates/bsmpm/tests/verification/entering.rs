@@ -5,7 +5,6 @@ use crate::support::solver::Dense;
 use bsmpm::boundary::Support;
 use bsmpm::grid::Shape;
 use bsmpm::interactions::background::Background;
-use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::TimeInterval;
@@ -96,19 +95,11 @@ fn condition(shift: f64, background: Option<Background>) -> [f64; 2] {
     let shape = Shape::at(&model.grid, points).expect("points inside");
     let nodes = GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, halo)
         .expect("loads on material");
-    let attachments = StripConstraints::at(
-        &[],
-        &points.surface,
-        &model.grid,
-        &nodes.free,
-        TimeInterval { start: 0.0, dt: 1.0 },
-    );
     let mut stiffness = Dense::new(&model.grid);
     let scene = Problem {
         model,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points,
         halo,
     };

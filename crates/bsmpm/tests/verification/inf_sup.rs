@@ -35,9 +35,11 @@ fn forms(method: Stabilisation, order: usize, cells: usize) -> [DMatrix<f64>; 2]
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes =
         GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
-    let free: Vec<usize> = (0..nodes.free.len()).filter(|&c| nodes.free[c]).collect();
+    let free: Vec<usize> = (0..nodes.constraints.free.len())
+        .filter(|&c| nodes.constraints.free[c])
+        .collect();
     let mut forms = [(); 2].map(|()| DMatrix::zeros(free.len(), free.len()));
-    let mut u = vec![0.0; nodes.free.len()];
+    let mut u = vec![0.0; nodes.constraints.free.len()];
     for (column, &component) in free.iter().enumerate() {
         u[component] = 1.0;
         let grad = transfer::gradients::<PlaneStrain, 2, _>(&shape, &points.x, &u, |_, grad| grad);

@@ -5,13 +5,14 @@ use bsmpm::boundary::{Path, RigidBody, RigidReport, Strip, Support, surface};
 use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::grid::Shape;
 use bsmpm::interactions::rigid::Outline;
+use bsmpm::interactions::{EquilibriumState, InteractionReports, StepInput};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Nonlinear;
 use bsmpm::model::{Gravity, Regime};
 use bsmpm::points::Points;
 use bsmpm::schedule::TimeInterval;
 use bsmpm::step::nodes::GridState;
-use bsmpm::tensor::Vector;
+use bsmpm::tensor::{Tensor, Vector};
 use std::f64::consts::PI;
 
 const G: f64 = 9.81;
@@ -270,12 +271,29 @@ fn a_step_begins_with_the_force_that_the_last_one_ended_with() {
             &scene.model,
             &shape,
             &scene.points,
-            &still,
-            TimeInterval { start: 1.0, dt: 0.1 },
+            StepInput {
+                last: &still,
+                ..StepInput::over(TimeInterval { start: 1.0, dt: 0.1 })
+            },
             &halo,
         )
         .expect("no loads");
-        let begins = nodes.rigid.finish_step(&still, &halo).0[0].force;
+        let on = nodes.context(&scene.model, &shape, &scene.points, &halo);
+        let at = EquilibriumState {
+            u: &still,
+            reaction: &still,
+            dF: &|_| Tensor::identity(),
+            scale: 0.0,
+            internal_work: 0.0,
+        };
+        let mut reports = InteractionReports::default();
+        let mut after = scene.points.surface.clone();
+        for interaction in nodes.interactions.iter() {
+            interaction
+                .finish(&on, &at, &mut after, &mut reports)
+                .expect("one body");
+        }
+        let begins = reports.rigid[0].force;
         println!(
             "friction {friction}: {:.2e} N of {:.2e}",
             (begins - ended).norm(),

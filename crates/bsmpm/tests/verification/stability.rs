@@ -6,7 +6,6 @@ use bsmpm::boundary::Support;
 use bsmpm::control::{AcceptedStep, Failure, Stepper};
 use bsmpm::error::StepError;
 use bsmpm::grid::Shape;
-use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;
@@ -75,18 +74,16 @@ fn lowest(before: &Plane, step: &AcceptedStep, u: &[f64]) -> f64 {
     };
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
     let nodes = GridState::from_points(model, &shape, points, time, &halo).expect("a mapping");
-    let attachments = StripConstraints::at(&model.boundary.strips, &points.surface, &model.grid, &nodes.free, time);
     let scene = Problem {
         model,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points,
         halo: &halo,
     };
     let residual = Residual::of(&scene, u);
     let linearised = ForceTangent::at(&scene, &residual);
-    let free: Vec<usize> = (0..u.len()).filter(|&c| nodes.free[c]).collect();
+    let free: Vec<usize> = (0..u.len()).filter(|&c| nodes.constraints.free[c]).collect();
     let mut unit = vec![0.0; u.len()];
     let mut image = vec![0.0; u.len()];
     let mut matrix = DMatrix::zeros(free.len(), free.len());

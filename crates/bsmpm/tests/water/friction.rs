@@ -8,8 +8,6 @@ use bsmpm::field::pore_water::flow::{Motion, PermeabilityLaw};
 use bsmpm::field::pore_water::pore_pressure::PorePressure;
 use bsmpm::grid::Shape;
 use bsmpm::model::Regime;
-use bsmpm::schedule::TimeInterval;
-use bsmpm::step::nodes::GridState;
 
 /// A square of 1 m with an excess pore pressure that is linear in the place, Pa, and a left face with friction; what
 /// `of` finds in the pressures that friction takes off.
@@ -29,15 +27,9 @@ fn found<T>(friction: f64, of: impl Fn(&PorePressure<2>, &Plane, &Shape<2>) -> T
     scene.points.pore_pressure = Some(scene.points.x.iter().map(|x| 5e3 + 2e3 * x[0] - 3e3 * x[1]).collect());
     let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, &scene.points).expect("inside");
-    let nodes = GridState::from_points(
-        &scene.model,
-        &shape,
-        &scene.points,
-        TimeInterval { start: 0.0, dt: 1.0 },
-        &halo,
-    )
-    .expect("no loads");
-    nodes.pore_pressure.map(|pores| of(&pores, &scene, &shape))
+    let volume = &scene.points.volume;
+    let pores = carried::pore_pressure(&scene.model, &shape, &scene.points, volume, 1.0, &halo);
+    pores.map(|pores| of(&pores, &scene, &shape))
 }
 
 #[test]

@@ -16,7 +16,6 @@ use bsmpm::field::pore_water::retention::Retention;
 use bsmpm::grid::Shape;
 use bsmpm::interactions::background::Background;
 use bsmpm::interactions::background::ResistedDisplacement;
-use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::{Criteria, Method, Nonlinear, QuasiNewton};
@@ -125,18 +124,10 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes =
         GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.1 }, &halo).expect("no loads");
-    let attachments = StripConstraints::at(
-        &[],
-        &points.surface,
-        &model.grid,
-        &nodes.free,
-        TimeInterval { start: 0.0, dt: 0.1 },
-    );
     let pieces = Problem {
         model,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points,
         halo: &halo,
     };
@@ -144,6 +135,7 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
     let mut random = Random::new(11);
     let mut free = |(length, pressure): (f64, f64)| -> Vec<f64> {
         let all = nodes
+            .constraints
             .free
             .iter()
             .map(|free| (free, length))
@@ -153,13 +145,13 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
     };
     let mut x = free((0.01, 10.0));
     let v = free((1.0, 1e3));
-    for (x, free) in x[nodes.free.len()..].iter_mut().zip(&pores.free) {
+    for (x, free) in x[nodes.constraints.free.len()..].iter_mut().zip(&pores.free) {
         *x += if *free { mean } else { 0.0 };
     }
     for (at, given) in pores.prescribed.iter().enumerate() {
-        x[nodes.free.len() + at] += given.unwrap_or(0.0);
+        x[nodes.constraints.free.len() + at] += given.unwrap_or(0.0);
     }
-    let open = pores.drainage.open(&x[nodes.free.len()..]);
+    let open = pores.drainage.open(&x[nodes.constraints.free.len()..]);
     assert!(
         !open.is_empty() && open.iter().all(|open| *open == (mean > 0.0)),
         "{open:?} under {mean} Pa"
@@ -189,7 +181,7 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
     };
     let after = lacking(step);
     let before = lacking(-step);
-    let errors = [0..nodes.free.len(), nodes.free.len()..x.len()].map(|range| {
+    let errors = [0..nodes.constraints.free.len(), nodes.constraints.free.len()..x.len()].map(|range| {
         let size = product[range.clone()]
             .iter()
             .fold(0.0_f64, |size, value| size.max(value.abs()));

@@ -10,7 +10,6 @@ use bsmpm::field::pore_water::matrix;
 use bsmpm::field::pore_water::residual::pressing;
 use bsmpm::grid::transfer::scalars;
 use bsmpm::grid::{Shape, transfer};
-use bsmpm::interactions::strip::StripConstraints;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::TimeInterval;
@@ -99,26 +98,20 @@ fn constants(mut scene: Plane) -> [f64; 2] {
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes =
         GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
-    let attachments = StripConstraints::at(
-        &[],
-        &points.surface,
-        &model.grid,
-        &nodes.free,
-        TimeInterval { start: 0.0, dt: 1.0 },
-    );
     let problem = Problem {
         model,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points,
         halo: &halo,
     };
     let pores = nodes.pores.as_ref().expect("it flows");
-    let free: Vec<usize> = (0..nodes.free.len()).filter(|&c| nodes.free[c]).collect();
+    let free: Vec<usize> = (0..nodes.constraints.free.len())
+        .filter(|&c| nodes.constraints.free[c])
+        .collect();
     let pressures: Vec<usize> = (0..pores.free.len()).filter(|&c| pores.free[c]).collect();
     let mut stiffness = DMatrix::zeros(free.len(), free.len());
-    let mut unit = vec![0.0; nodes.free.len()];
+    let mut unit = vec![0.0; nodes.constraints.free.len()];
     for (column, &component) in free.iter().enumerate() {
         unit[component] = 1.0;
         let grad = transfer::gradients::<PlaneStrain, 2, _>(&shape, &points.x, &unit, |_, grad| grad);
@@ -214,18 +207,10 @@ fn a_rotation_changes_neither_the_flow_nor_the_content_and_turns_the_forces() {
     let shape = Shape::at(&model.grid, points).unwrap();
     let nodes =
         GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
-    let attachments = StripConstraints::at(
-        &[],
-        &points.surface,
-        &model.grid,
-        &nodes.free,
-        TimeInterval { start: 0.0, dt: 1.0 },
-    );
     let problem = Problem {
         model,
         shape: &shape,
         nodes: &nodes,
-        attachments: &attachments,
         points,
         halo: &halo,
     };

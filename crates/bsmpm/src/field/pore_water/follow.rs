@@ -27,7 +27,7 @@ impl Follow {
     /// Creates the state for a matrix that is assembled at the displacements and pressures `x`.
     pub fn of<K, const D: usize>(problem: &Problem<'_, K, D>, x: &[f64]) -> Self {
         let open = problem.nodes.pores.as_ref().map_or_else(Vec::new, |pores| {
-            let p = &x[problem.nodes.free.len()..];
+            let p = &x[problem.nodes.constraints.free.len()..];
             pores.drainage.open(if p.is_empty() { &pores.guess } else { p })
         });
         Self {
@@ -56,7 +56,7 @@ impl Follow {
             return;
         }
         let entry = flow.entry() * water.unit_weight;
-        let start = problem.nodes.free.len();
+        let start = problem.nodes.constraints.free.len();
         for (node, still) in pores.still.iter().enumerate().filter(|(node, _)| pores.free[*node]) {
             let whole = x[start + node] + still;
             let change = &mut dx[start + node];
@@ -86,7 +86,7 @@ impl Follow {
         if !flow.retains() && !flow.is_one_way() {
             return Ok(false);
         }
-        let p = &x[problem.nodes.free.len()..];
+        let p = &x[problem.nodes.constraints.free.len()..];
         let open = pores.drainage.open(p);
         let mut changed = [open != self.open, self.tamed].map(|is| f64::from(u8::from(is)));
         problem.halo.all_reduce_max(&mut changed);

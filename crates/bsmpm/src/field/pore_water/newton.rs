@@ -68,14 +68,15 @@ pub fn direction<K: Kinematics<D>, const D: usize>(
     relative: f64,
     solver: &mut dyn LinearSolver,
 ) -> Result<Exact, SolveError> {
-    let components = problem.nodes.free.len();
+    let components = problem.nodes.constraints.free.len();
     let halo = problem.halo;
     let balance = &residual.balance;
     let linearised = ForceTangent::at(problem, residual).with_water(x);
     stiffness::factorise(problem, Some(&residual.trial), solver)?;
     matrix::factorise(problem, pores, &x[components..], solver)?;
     let scales = Scales::of(problem, balance);
-    let unknowns = Unknowns::of::<D>(&problem.nodes.free, halo).with_pressures(components, &pores.free, halo);
+    let unknowns =
+        Unknowns::of::<D>(&problem.nodes.constraints.free, halo).with_pressures(components, &pores.free, halo);
     let divided = [1.0 / scales.force, 1.0 / scales.water];
     let back = [scales.force, scales.water];
     let mut f: Vec<f64> = balance

@@ -262,10 +262,10 @@ pub fn pressing<K: Kinematics<D>, const D: usize>(
         identity * (volume[p] * wet.J * (chi * at_points[p]))
     });
     let mut force = problem.halo.assemble_ghosts(&force);
-    problem.nodes.reduce(&mut [&mut force], problem.halo);
+    problem.nodes.constraints.reduce(&mut [&mut force], problem.halo);
     force
         .iter_mut()
-        .zip(&problem.nodes.free)
+        .zip(&problem.nodes.constraints.free)
         .filter(|(_, free)| !**free)
         .for_each(|(force, _)| *force = 0.0);
     force

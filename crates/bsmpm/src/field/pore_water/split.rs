@@ -28,7 +28,7 @@ impl Split {
         solver: &mut dyn LinearSolver,
     ) -> Result<Self, SolveError> {
         let mut f = out_of_balance.to_vec();
-        let (f_u, f_p) = f.split_at_mut(problem.nodes.free.len());
+        let (f_u, f_p) = f.split_at_mut(problem.nodes.constraints.free.len());
         let mut z = vec![0.0; f_u.len() + f_p.len()];
         let (z_u, z_p) = z.split_at_mut(f_u.len());
         let of_water = system(solver)?.solve(f_p, z_p)?;

@@ -11,7 +11,7 @@ impl<const D: usize> Contacts<D> {
     /// Makes a node stick wherever the direction of slip changes along a face: the one of the two neighbours with less
     /// slip under `u` (m), or that did not start to slip in the last correction. Returns the number of these nodes on
     /// all ranks; 0 if any node sticks already. One reduction; if no node sticks, a second one and a ghost exchange.
-    pub fn hold_neutral(&mut self, grid: &Grid<D>, u: &[f64], halo: &dyn Halo) -> usize {
+    pub fn make_neutral_stick(&mut self, grid: &Grid<D>, u: &[f64], halo: &dyn Halo) -> usize {
         let mut sticking = [f64::from(u8::from(
             self.nodes.iter().any(|at| at.status == Status::Stick),
         ))];

@@ -15,6 +15,9 @@ use std::collections::BTreeMap;
 /// Distance, as a fraction of the longest edge of a load's pieces, below which corners count as one.
 const SAME: f64 = 1e-6;
 
+/// Volume per m^D of the grid at a position, see [`Kinematics::weight`].
+type GeometryWeight<const D: usize> = fn(&Vector<D>) -> f64;
+
 /// Corners of the surface pieces of all follower loads. Adjacent pieces share corners.
 #[derive(Clone, Debug, Default)]
 struct LoadCorners<const D: usize> {
@@ -87,13 +90,13 @@ impl<const D: usize> LoadCorners<D> {
 
     /// Returns the tractions at all points of every follower load at full amplitude, per initial area (Pa), with the
     /// corners at these positions (m); empty for dead loads.
-    fn tractions<K: Kinematics<D>>(&self, loads: &[Load<D>], corners: &[Vector<D>]) -> Vec<Vec<Vector<D>>> {
+    fn tractions(&self, loads: &[Load<D>], corners: &[Vector<D>], weight: GeometryWeight<D>) -> Vec<Vec<Vector<D>>> {
         let mut pieces = self.of_piece.iter();
         let mut tractions = vec![Vec::new(); loads.len()];
         for (load, tractions) in loads.iter().zip(&mut tractions).filter(|(load, _)| load.follows) {
             for (traction, point) in load.traction.iter().zip(&load.points) {
                 let piece = pieces.next().map(|piece| piece.map(|corner| corners[corner]));
-                tractions.push(piece.map_or(*traction, |piece| turned::<K, D>(traction, point, piece)));
+                tractions.push(piece.map_or(*traction, |piece| turned(traction, point, piece, weight)));
             }
         }
         tractions
@@ -101,24 +104,25 @@ impl<const D: usize> LoadCorners<D> {
 }
 
 /// Returns the traction of a point per initial area (Pa) with the corners of its piece at these positions (m).
-fn turned<K: Kinematics<D>, const D: usize>(
+fn turned<const D: usize>(
     traction: &Vector<D>,
     point: &SurfacePoint<D>,
     corners: [Vector<D>; CORNERS],
+    weight: GeometryWeight<D>,
 ) -> Vector<D> {
     // The initial area uses the piece's own corners: merged corners may leave a thin piece without area.
-    let start = weighed::<K, D>(point.corners);
+    let start = weighed(point.corners, weight);
     let size = start.norm();
     // A piece on the axis of symmetry has no area.
     if size == 0.0 {
         return *traction;
     }
-    weighed::<K, D>(corners) * (traction.dot(&start) / size.powi(2))
+    weighed(corners, weight) * (traction.dot(&start) / size.powi(2))
 }
 
 /// Returns the area vector of a piece, along its normal, times the geometry weight at its centre.
-fn weighed<K: Kinematics<D>, const D: usize>(corners: [Vector<D>; CORNERS]) -> Vector<D> {
-    area(&corners) * K::weight(&(corners.iter().sum::<Vector<D>>() / CORNERS as f64))
+fn weighed<const D: usize>(corners: [Vector<D>; CORNERS], weight: GeometryWeight<D>) -> Vector<D> {
+    area(&corners) * weight(&(corners.iter().sum::<Vector<D>>() / CORNERS as f64))
 }
 
 /// A material point of this rank that anchors a piece.
@@ -143,37 +147,34 @@ pub(super) struct AttachedPoint {
 }
 
 /// Follower loads of a step, attached to the nodes.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct FollowerLoads<const D: usize> {
     corners: LoadCorners<D>,
     carriers: Vec<Carrier<D>>,
     pushed: Vec<AttachedPoint>,
+    weight: GeometryWeight<D>,
 }
 
 impl<const D: usize> FollowerLoads<D> {
-    /// Creates the follower loads of a step from their attached points `pushed`; empty without follower loads.
+    /// Creates the follower loads of a step from their attached points `pushed`.
     pub(super) fn of(
         loads: &[Load<D>],
         pushed: Vec<AttachedPoint>,
         grid: &Grid<D>,
         anchors: &Anchors,
         points: AnchorCandidates<'_, D>,
+        weight: GeometryWeight<D>,
     ) -> Self {
-        if !loads.iter().any(|load| load.follows) {
-            return Self::default();
-        }
         Self {
             corners: LoadCorners::of(loads),
             carriers: carriers(loads, grid, anchors, points),
             pushed,
+            weight,
         }
     }
 
-    /// Returns, per load, the number of its pieces whose anchor is on this rank; empty without follower loads.
+    /// Returns, per load, the number of its pieces whose anchor is on this rank.
     pub(super) fn carried(&self, loads: &[Load<D>]) -> Vec<f64> {
-        if self.is_empty() {
-            return Vec::new();
-        }
         let ends = loads.iter().scan(0, |end, load| {
             *end += if load.follows { load.points.len() } else { 0 };
             Some(*end)
@@ -186,15 +187,10 @@ impl<const D: usize> FollowerLoads<D> {
         carried
     }
 
-    /// Returns whether there is no follower load.
-    pub fn is_empty(&self) -> bool {
-        self.corners.of_piece.is_empty()
-    }
-
     /// Returns the tractions at all points of every follower load at full amplitude, per initial area (Pa), after the
     /// nodal displacement `u` of the step (m); `dF` returns the deformation increment of a material point. One
     /// reduction.
-    pub fn tractions<K: Kinematics<D>>(
+    pub fn tractions(
         &self,
         loads: &[Load<D>],
         grid: &Grid<D>,
@@ -213,7 +209,7 @@ impl<const D: usize> FollowerLoads<D> {
             },
             halo,
         );
-        self.corners.tractions::<K>(loads, &corners)
+        self.corners.tractions(loads, &corners, self.weight)
     }
 
     /// Returns the nodal forces of these tractions (N). One ghost exchange.
@@ -237,16 +233,16 @@ pub fn now<K: Kinematics<D>, const D: usize>(
     points: AnchorCandidates<'_, D>,
     halo: &dyn Halo,
 ) -> Vec<Vec<Vector<D>>> {
-    let pressures = FollowerLoads::of(loads, Vec::new(), grid, anchors, points);
-    if pressures.is_empty() {
+    if !loads.iter().any(|load| load.follows) {
         return vec![Vec::new(); loads.len()];
     }
+    let pressures = FollowerLoads::of(loads, Vec::new(), grid, anchors, points, K::weight);
     let corners = pressures.corners.carried(
         &pressures.carriers,
         |carrier| (points.x[carrier.point], points.F.at(carrier.point)),
         halo,
     );
-    pressures.corners.tractions::<K>(loads, &corners)
+    pressures.corners.tractions(loads, &corners, K::weight)
 }
 
 /// Returns the material points of this rank that anchor pieces of follower loads.

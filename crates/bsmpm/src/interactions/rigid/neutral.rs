@@ -27,7 +27,7 @@ impl<const D: usize> RigidContacts<D> {
     /// were just `released` do not count for the least slip. Returns the number of these points on all ranks. Two
     /// reductions for each check, and two more per loose motion.
     pub(super) fn hold_neutral(&mut self, moved: &[Vector<D>], released: &[bool], halo: &dyn Halo) -> usize {
-        if self.dt > 0.0 || !self.is_coupled() || !self.has_friction() {
+        if self.dt > 0.0 || !self.is_coupled() || !self.is_rough() {
             return 0;
         }
         let mut held = 0;

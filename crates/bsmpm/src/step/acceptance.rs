@@ -1,0 +1,155 @@
+//! End of a step, (10) and (11) in section 2.4 of Xie, Navas and López-Querol (2023): evaluates a converged
+//! displacement, then updates the material points and the state of the interactions.
+
+use super::commit::{self, ConstitutiveUpdate};
+use super::nodes::GridState;
+use super::outflow::Outflow;
+use super::problem::Problem;
+use super::report::StepReport;
+use crate::boundary::{Anchors, Surface};
+use crate::energy::StepEnergy;
+use crate::error::StepError;
+use crate::field::pore_water::backward::is_smooth;
+use crate::field::pore_water::crossed::PreviousFlow;
+use crate::grid::Shape;
+use crate::interactions::InteractionReports;
+use crate::kinematics::Kinematics;
+use crate::model::{Model, Regime};
+use crate::parallel::Halo;
+use crate::points::Points;
+use crate::schedule::TimeInterval;
+use crate::solve::found::StepSolution;
+
+/// Result of a converged step before the material points are updated.
+pub struct Acceptance<const D: usize> {
+    report: StepReport,
+    surface: Surface<D>, // state of the interactions at the end of the step
+    update: ConstitutiveUpdate,
+    energy: Option<StepEnergy>, // `None` if neither dynamics nor an energy balance needs it
+    load_work: [f64; 2],        // J, see `InteractionReports`
+    interval: TimeInterval,
+}
+
+impl<const D: usize> Acceptance<D> {
+    /// Evaluates a converged displacement. Fails if points leave the grid, rigid bodies overlap, a constitutive law
+    /// rejects a point, or the step is interrupted.
+    pub fn of<K: Kinematics<D>>(
+        problem: &Problem<'_, K, D>,
+        found: &StepSolution<K, D>,
+        interval: TimeInterval,
+    ) -> Result<Self, StepError> {
+        let Problem {
+            model, points, halo, ..
+        } = *problem;
+        commit::check_inside(model, problem.shape, points, &found.u, halo)?;
+        let mut surface = points.surface.clone();
+        let mut reports = InteractionReports::default();
+        let on = problem.context();
+        let dF = |p: usize| found.trial.dF(p);
+        for interaction in problem.nodes.interactions.iter() {
+            interaction.finish(&on, &found.state(&dF), &mut surface, &mut reports)?;
+        }
+        surface.anchors = Anchors::of(&model.surfaces(), &surface.anchors, points.anchored(), halo);
+        let load_work = reports.load_work;
+        let mut report = StepReport {
+            dt: interval.dt,
+            ..StepReport::of(problem, found, reports)
+        };
+        let update = commit::constitutive_update(model, &found.trial, points, halo)?;
+        report.second_order_works = commit::second_order_works(model, points, &update.answers, halo);
+        if let Some([_, internal]) = &mut report.background {
+            *internal = internal.max(commit::stress_work(&found.trial, points, &update.answers, halo));
+        }
+        let accounts = model.balances_energy || model.regime == Regime::Dynamic;
+        let energy = accounts.then(|| StepEnergy::of(problem, found, &update.answers, interval));
+        if halo.rejects() {
+            return Err(StepError::Interrupted);
+        }
+        Ok(Self {
+            report,
+            surface,
+            update,
+            energy,
+            load_work,
+            interval,
+        })
+    }
+
+    /// Updates the material points and the state of the interactions. Returns the report of the step, and the converged
+    /// nodal displacement (m).
+    pub fn accept<K: Kinematics<D>>(
+        self,
+        model: &Model<K, D>,
+        shape: &Shape<D>,
+        mut nodes: GridState<D>,
+        found: StepSolution<K, D>,
+        points: &mut Points<D>,
+        halo: &dyn Halo,
+    ) -> (StepReport, Vec<f64>) {
+        let Self {
+            mut report,
+            mut surface,
+            update,
+            energy,
+            load_work,
+            interval,
+        } = self;
+        let committed = commit::update_points(model, shape, &nodes, found, update, points, halo);
+        for interaction in nodes.interactions.iter_mut() {
+            interaction.update(&model.grid, &committed.u, points, &mut surface, halo);
+        }
+        if let Some(energy) = energy {
+            let (flows, turnover) = energy.close(model, points, load_work, halo);
+            report.energy = flows;
+            report.turnover = Some(turnover);
+        }
+        complete_report(
+            model,
+            points,
+            &mut surface,
+            &mut report,
+            committed.content,
+            interval.end(),
+            halo,
+        );
+        points.surface = surface;
+        let report = StepReport {
+            advance: committed.advance,
+            smoothed: committed.smoothed,
+            beside_fixed: committed.beside_fixed,
+            outflow: Outflow::of(model, points, interval.end(), halo),
+            ..report
+        };
+        (report, committed.u)
+    }
+}
+
+/// Completes the surface and the report with the updated points at the end `t` of the step (s). The points have taken
+/// in `content` of water (m3).
+fn complete_report<K, const D: usize>(
+    model: &Model<K, D>,
+    points: &Points<D>,
+    surface: &mut Surface<D>,
+    report: &mut StepReport,
+    content: f64,
+    t: f64,
+    halo: &dyn Halo,
+) {
+    let strips = &model.boundary.strips;
+    let places = surface
+        .anchors
+        .places(&model.boundary, &model.grid, points.anchored(), halo);
+    for (number, strip) in report.strips.iter_mut().enumerate() {
+        strip.left_behind = places.left_behind(number, strips, t, &model.grid);
+    }
+    surface.position = places.loads;
+    if let Some(water) = &mut report.water {
+        water.stored = content;
+        surface.crossed.add(1.0, &water.crossed);
+        surface.flowed = is_smooth(model).then(|| PreviousFlow {
+            dt: report.dt,
+            crossed: water.crossed.clone(),
+            left: water.left,
+        });
+    }
+}
