@@ -65,17 +65,25 @@ impl PlaneShape {
         })
     }
 
-    /// Whether a place lies inside: a ray to the right crosses its sides an odd number of times.
+    /// Returns whether a position is inside: a ray to the right crosses its sides an odd number of times. This loop is
+    /// most of the cost of the search for openings.
     pub(crate) fn contains(&self, [x, y]: [f64; 2]) -> bool {
-        let crossed = self
-            .sides()
-            .filter(|[a, b]| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
-        crossed.count() % 2 == 1
+        let Some(mut from) = self.corners.last() else {
+            return false;
+        };
+        let mut is_inside = false;
+        for to in &self.corners {
+            let is_level = (from[1] > y) != (to[1] > y);
+            is_inside ^= is_level && x < from[0] + (y - from[1]) / (to[1] - from[1]) * (to[0] - from[0]);
+            from = to;
+        }
+        is_inside
     }
 
     fn sides(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
-        let next = self.corners.iter().cycle().skip(1);
-        self.corners.iter().zip(next).map(|(a, b)| [*a, *b])
+        let closing = self.corners.last().zip(self.corners.first());
+        let open = self.corners.windows(2).map(|side| [side[0], side[1]]);
+        open.chain(closing.map(|(a, b)| [*a, *b]))
     }
 
     /// m  its corners, each with the shorter one of its sides
