@@ -32,6 +32,7 @@ mod read;
 mod record;
 mod reference;
 mod report;
+mod rounding;
 mod seed;
 mod shape_error;
 mod sketch;

@@ -12,7 +12,8 @@ mod waves;
 
 use crate::document::{self, DocumentEntry, DocumentTable, Node, Value};
 use crate::error::Origin;
-use crate::report::{Report, brief};
+use crate::report::Report;
+use crate::rounding::brief;
 use crate::schema::Draft;
 use crate::source::Source;
 use crate::words::{Accuracy, Geometry, Order, Word};

@@ -327,11 +327,6 @@ pub(crate) fn listed(names: &[String]) -> String {
     }
 }
 
-/// A number, to four digits.
-pub(crate) fn brief(number: f64) -> f64 {
-    format!("{number:.3e}").parse().unwrap_or(number)
-}
-
 /// Text of a case made safe to print: no control characters, at most 60 characters.
 pub(crate) fn shortened(text: &str) -> String {
     const LENGTH: usize = 60;

@@ -1,6 +1,6 @@
 //! Messages about shapes that cannot become bodies, and about files that describe shapes.
 
-use crate::report::brief;
+use crate::rounding::brief;
 use bsmpm_shapes::{HeightsError, MOST_COLUMNS, MOST_EDGES, RasterError, ShapeError, StlError, SurfaceError};
 
 /// Returns the message about a shape that is too thin or too costly.

@@ -4,7 +4,7 @@
 use super::Preset;
 use super::axis::{Fine, MOST, ON_LINE, Spacing};
 use super::scene::{GradedSegment, PresetScene, around};
-use crate::report::brief;
+use crate::rounding::brief;
 use crate::schema::SupportTable;
 use crate::validate::SQUARE;
 use crate::words::{Side, Support};

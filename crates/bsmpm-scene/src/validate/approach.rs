@@ -1,7 +1,8 @@
 //! Warns of moving bodies that approach within a cell. They then share nodes and act on each other.
 
 use crate::case::{Case, Support};
-use crate::report::{Report, brief};
+use crate::report::Report;
+use crate::rounding::brief;
 use bsmpm::model::Regime;
 
 /// Times between start and end at which the distance of two bodies is tried.

@@ -3,7 +3,8 @@
 use crate::case::{Body, Case};
 use crate::connected::{near_pairs, pieces_of_pairs};
 use crate::grid::GridSpec;
-use crate::report::{Report, brief};
+use crate::report::Report;
+use crate::rounding::brief;
 use bsmpm_shapes::{Edge, Region};
 
 /// Parts of the shortest cell by which bodies that share a boundary may miss each other: rounding.

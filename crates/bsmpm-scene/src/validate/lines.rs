@@ -6,7 +6,8 @@ mod faces;
 
 use crate::case::{Case, NamedMaterial};
 use crate::grid::Line;
-use crate::report::{Report, brief};
+use crate::report::Report;
+use crate::rounding::brief;
 use crate::schema::Draft;
 use crate::words::C0Lines;
 use bsmpm_shapes::Edge;

@@ -3,7 +3,8 @@
 
 use super::place::is_in;
 use crate::case::{ActiveLoads, Case};
-use crate::report::{Report, brief};
+use crate::report::Report;
+use crate::rounding::brief;
 use crate::schema::Draft;
 use crate::surfaces::transition::{ROUNDING, apart_at_corner, holds_all, meet};
 use crate::surfaces::{self, name_of_strip};

@@ -7,7 +7,8 @@ mod support;
 mod value;
 
 use crate::case::Case;
-use crate::report::{Report, brief};
+use crate::report::Report;
+use crate::rounding::brief;
 use crate::schema::Draft;
 
 /// Warns of what is possible, but probably not meant.

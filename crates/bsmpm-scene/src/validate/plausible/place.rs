@@ -2,7 +2,8 @@
 
 use crate::case::{Body, Case};
 use crate::record::Record;
-use crate::report::{Report, brief, listed};
+use crate::report::{Report, listed};
+use crate::rounding::brief;
 use crate::schema::Draft;
 use crate::validate::place::is_in;
 
