@@ -11,9 +11,6 @@ pub enum Stabilisation {
     None,
     /// F-bar with dJ averaged over the grid in every iteration: ratio = S(dJ)/dJ (Eqs 15-18).
     FBar,
-    /// F-bar with the total J averaged: ratio = R(t+dt)/R(t) with R = S(J)/J, 1 at the start; the reference method of
-    /// the paper, interpreted from Zhao, Jiang and Choo (2022).
-    FBarZhao,
     /// Method of the paper: dJ is averaged, and b^e after every step (T3.5). Results depend on the number of steps.
     ModifiedFBar,
     /// F-bar with ratio = S1(dJ)/dJ (T3.4), where S1 uses splines of degree q - 1, and a filter of the elastic dilation
@@ -116,7 +113,7 @@ impl Stabilisation {
         match self {
             Self::ConsistentFBar => order - 1,
             Self::SubgridFBar => 2 * order - 1,
-            Self::None | Self::FBar | Self::FBarZhao | Self::ModifiedFBar => 0,
+            Self::None | Self::FBar | Self::ModifiedFBar => 0,
         }
     }
 

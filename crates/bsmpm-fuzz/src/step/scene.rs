@@ -320,14 +320,7 @@ fn strips(u: &mut Unstructured<'_>, grid: &FuzzGrid, free: [bool; 4], text: &mut
 
 /// Stabilisation and iteration; few iterations, so that many cases are tried.
 fn solver(u: &mut Unstructured<'_>, text: &mut String) -> Result<()> {
-    let methods = [
-        "none",
-        "f-bar",
-        "f-bar-zhao",
-        "modified-f-bar",
-        "consistent-f-bar",
-        "subgrid-f-bar",
-    ];
+    let methods = ["none", "f-bar", "modified-f-bar", "consistent-f-bar", "subgrid-f-bar"];
     line(text, &format!("[stabilisation]\nmethod = \"{}\"", quoted(u, &methods)?));
     let nonlinear = quoted(u, &["auto", "broyden", "newton"])?;
     line(

@@ -72,9 +72,7 @@ fn against_noise(case: &Case) -> &'static str {
     let is_rubbery = is_nearly_incompressible && case.flow.is_none();
     let is_static = case.analysis.regime == Regime::QuasiStatic;
     match case.stabilisation {
-        Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => {
-            "Set `stabilisation.method = \"consistent-f-bar\"`."
-        }
+        Stabilisation::None | Stabilisation::FBar => "Set `stabilisation.method = \"consistent-f-bar\"`.",
         Stabilisation::ConsistentFBar if is_rubbery && is_static && case.geometry != Geometry::Solid => {
             "If the soil is undrained, set `drainage = \"undrained\"`, otherwise `stabilisation.method = \"subgrid-f-bar\"`."
         }
@@ -102,7 +100,7 @@ fn against_growth(method: Stabilisation) -> &'static str {
         Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => {
             "Reduce `analysis.dt` or the dilation angle, or set `stabilisation.method = \"none\"`."
         }
-        Stabilisation::FBar | Stabilisation::FBarZhao | Stabilisation::ModifiedFBar => {
+        Stabilisation::FBar | Stabilisation::ModifiedFBar => {
             "Set `stabilisation.method = \"consistent-f-bar\"`, or reduce `analysis.dt` or the dilation angle."
         }
     }

@@ -187,7 +187,7 @@ fn against_created_energy(stabilisation: Stabilisation) -> Vec<String> {
         match stabilisation {
             Stabilisation::None => "Reduce `analysis.dt`.",
             Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => "Set `stabilisation.method = \"none\"`.",
-            Stabilisation::FBar | Stabilisation::FBarZhao | Stabilisation::ModifiedFBar => {
+            Stabilisation::FBar | Stabilisation::ModifiedFBar => {
                 "Set `stabilisation.method = \"consistent-f-bar\"`."
             }
         },

@@ -1,5 +1,6 @@
 //! Accepted words for options of the numerical method, such as the mass matrix.
 
+use super::retired::F_BAR_ZHAO;
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::field::pore_water::flow::PermeabilityLaw;
 use bsmpm::grid::extension::ExtendedSplines;
@@ -20,11 +21,10 @@ words! { WallVelocity {
 words! { Stabilisation {
     None = "none": "No stabilisation: the plain B-spline method.",
     FBar = "f-bar": "F-bar method: averages the volume changes of the step.",
-    FBarZhao = "f-bar-zhao": "F-bar method of Zhao: averages the volume changes since the start.",
     ModifiedFBar = "modified-f-bar": "F-bar method of Xie et al. (2023), which also averages the elastic strains after every step.",
     ConsistentFBar = "consistent-f-bar": "F-bar method with consistent forces. Averages over B-splines of the next lower degree.",
     SubgridFBar = "subgrid-f-bar": "F-bar method with consistent forces. Averages over pairs of cells.",
-} }
+} removed [F_BAR_ZHAO] }
 
 words! { Quadrature {
     Points = "points": "Volumes of the material points.",

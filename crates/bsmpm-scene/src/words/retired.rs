@@ -25,11 +25,21 @@ pub(crate) const BACKGROUND_CELLS: Words = Words {
     removed: &[replaced_by_extension("partly-filled")],
 };
 
+/// The last version with the options that were removed after it.
+const LAST: &str = "bsmpm 0.1.0, commit 7816fb16";
+
 /// The table of `[solver] linear`, which gave the linear solver by PETSc's names.
 pub(super) const PETSC_NAMES: RemovedWord = RemovedWord {
     word: "{ ksp, pc, factor }",
-    last: "bsmpm 0.1.0, commit 7816fb16",
+    last: LAST,
     remedy: "Use a word, such as linear = \"direct\", or pass PETSc options after `--`, such as `-- -pc_type redundant`.",
+};
+
+/// The F-bar method of Zhao, Jiang and Choo (2022), which creates energy.
+pub(super) const F_BAR_ZHAO: RemovedWord = RemovedWord {
+    word: "f-bar-zhao",
+    last: LAST,
+    remedy: "Use \"consistent-f-bar\", or \"f-bar\", which averages the volume changes of each step.",
 };
 
 /// A form of the background that extended B-splines replace.

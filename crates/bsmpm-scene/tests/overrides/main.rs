@@ -552,6 +552,20 @@ fn a_linear_solver_by_petscs_names_is_refused_with_what_replaces_it() {
 }
 
 #[test]
+fn the_f_bar_method_of_zhao_is_refused_with_what_replaces_it() {
+    let errors = set(STATIC, &["stabilisation.method=f-bar-zhao"]).unwrap_err();
+    let [error] = &errors[..] else { panic!("{errors:?}") };
+    let reported = "the value \"f-bar-zhao\" does not exist any more; the last version with this value was bsmpm 0.1.0, \
+                    commit 7816fb16. Use \"consistent-f-bar\", or \"f-bar\", which averages the volume changes of each \
+                    step.";
+    assert_eq!(
+        (error.key.as_str(), error.message.as_str()),
+        ("stabilisation.method", reported)
+    );
+    assert_eq!(error.removed.map(|removed| removed.word), Some("f-bar-zhao"));
+}
+
+#[test]
 fn what_the_program_chooses_is_noted() {
     let case = valid(STATIC, &[]);
     let noted = |key: &str| {

@@ -236,7 +236,6 @@ fn band_widths_are_warned_of_where_they_were_not_measured() {
             "with \"modified-f-bar\" (dissipation -35 %)",
         ),
         (with("none", &[]), "without stabilisation (dissipation +50 %)"),
-        (with("f-bar-zhao", &[]), "with \"f-bar-zhao\""),
         (
             with("f-bar", &["grid.degree=linear"]),
             "with linear splines (dissipation +12 %)",

@@ -75,10 +75,10 @@ fn a_block_with_friction_is_the_same_on_1_2_3_and_4_ranks() {
     );
 }
 
-/// Zhao's F-bar gives the points a state of its own, the consistent one exchanges functions of the degree below.
+/// The modified F-bar smooths the strain of the points, the consistent one exchanges functions of the degree below.
 #[test]
 fn the_block_is_the_same_on_1_2_3_and_4_ranks_with_every_f_bar() {
-    for method in ["f-bar-zhao", "consistent-f-bar"] {
+    for method in ["modified-f-bar", "consistent-f-bar"] {
         let scratch = Scratch::with_case(&format!("{SLIDING_BLOCK}\n[stabilisation]\nmethod = \"{method}\"\n"));
         agree(
             &scratch,

@@ -125,7 +125,6 @@ fn a_slice_between_rollers_is_plane_strain_but_for_f_bars_exponent() {
         (&two, "none", 0.0, 1e-10),
         (&one, "consistent-f-bar", 1e-4, 1e-2),
         (&one, "f-bar", 1e-4, 2e-2),
-        (&one, "f-bar-zhao", 1e-4, 2e-2),
     ] {
         let plane = run(&case[0], method);
         let solid = run(&case[1], method);

@@ -246,10 +246,9 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
     /// Returns the change of the adjoint force's pressures at the points (J) for a gradient and the rate of
     /// ln(dJ-bar/dJ); `None` without such a force. One exchange with the neighbours.
     fn pressed(&self, dilation: &[Dilation<K::Gradient>], rate: &[f64], grad: &[K::Gradient]) -> Option<Vec<f64>> {
-        let Problem { model, points, .. } = *self.problem;
         let (adjoint, at) = self.adjoint.as_ref()?;
         Some(transposed(self.problem, adjoint, self.trial, |p| {
-            let (_, mean) = self.trial.means(model, points, p);
+            let mean = self.trial.mean_dJ(p);
             let grown = at[p].own * (rate[p] + dilation[p].trace.dot(&grad[p]));
             (at[p].by_gradient.dot(&grad[p]) + at[p].by_rate * rate[p] - grown) / mean
         }))
@@ -357,7 +356,7 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
         let moduli = K::Gradient::moduli(|k, l| narrow[(k, l)] - flux * trace[(k, l)]);
         add_point::<K, D>(&moduli, slopes, Pairs::All, block);
         let weight = nodes.dilation_weights(model, points)[p];
-        let (dilated, mean) = self.trial.means(model, points, p);
+        let [dilated, mean] = [self.trial.dJ(p), self.trial.mean_dJ(p)];
         let [mut dilation, mut force] = [[Vector::<D>::zeros(); MOST]; 2];
         for ((dilation, force), slope) in dilation.iter_mut().zip(&mut force).zip(slopes) {
             *dilation = trace.times(slope) * (weight * dilated);

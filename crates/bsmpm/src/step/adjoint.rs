@@ -62,7 +62,7 @@ impl Pressures {
         let Problem { model, points, .. } = *problem;
         let volume = problem.volume();
         let transposed = transposed(problem, &adjoint, trial, |p| match trial.respond(model, points, p) {
-            Ok(response) => volume[p] * works::<K, D>(&response.tau().full()) / trial.means(model, points, p).1,
+            Ok(response) => volume[p] * works::<K, D>(&response.tau().full()) / trial.mean_dJ(p),
             Err(_) => 0.0, // the residual refuses such a point
         });
         let pressures = transposed
@@ -115,7 +115,7 @@ pub fn transposed<K: Kinematics<D>, const D: usize>(
         }
     });
     for (p, sum) in sums.iter_mut().enumerate() {
-        *sum *= weights[p] * trial.means(model, points, p).0;
+        *sum *= weights[p] * trial.dJ(p);
     }
     sums
 }

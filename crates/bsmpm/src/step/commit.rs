@@ -197,7 +197,7 @@ impl<K: Kinematics<D>, const D: usize> LawsOfPoints<'_, K, D> {
         let gap = self.points.gap_of(p);
         let mut answer = PointUpdate::of(&response, gap);
         if self.asks
-            && let Some(strain) = self.trial.strain(self.model, self.points, p)
+            && let Some(strain) = self.trial.strain(p)
         {
             answer.second_order_works = response.second_order_works(&strain, gap);
         }
@@ -289,7 +289,7 @@ pub fn update_points<K: Kinematics<D>, const D: usize>(
             let flow = threads::each(answers.len(), |p| answers[p].flow);
             smooth::filter_dilation(model, shape, nodes, points, &flow, halo)
         }
-        Stabilisation::None | Stabilisation::FBar | Stabilisation::FBarZhao => 0.0,
+        Stabilisation::None | Stabilisation::FBar => 0.0,
     };
     points.smoothing = before.map(|before| smooth::change(&before, &points.b_e));
     points.gap = gaps(model, points, &answers);
@@ -310,7 +310,7 @@ fn keep<K: Kinematics<D>, const D: usize>(
     points: &mut Points<D>,
 ) {
     let averages = model.stabilisation.averages();
-    let dilation = averages.then(|| threads::each(points.len(), |p| trial.dilation(model, points, p)));
+    let dilation = averages.then(|| threads::each(points.len(), |p| trial.dilation(points, p)));
     let damped = (!model.damping.is_empty())
         .then(|| threads::each(points.len(), |p| trial.damped_at(model, points, p, answers[p].tau)));
     let [mut sigma, mut b_e] = [&mut points.sigma, &mut points.b_e].map(std::mem::take);

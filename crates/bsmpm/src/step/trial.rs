@@ -9,8 +9,6 @@ use crate::material::{LayeredMaterial, MOST_STATE, MaterialError, Moduli, Respon
 use crate::model::Model;
 use crate::parallel::Halo;
 use crate::points::Points;
-use crate::real::Real;
-use crate::stabilisation::Stabilisation;
 use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
 use crate::tensor::{Symmetric, Tensor};
@@ -23,7 +21,7 @@ pub type Stressed<R> = (Tensor<R>, Symmetric<R>);
 pub struct DeformationIncrement<K: Kinematics<D>, const D: usize> {
     /// Displacement gradient of the step (-, step 4a); NaN at a point that inverted.
     grad: Vec<K::Gradient>,
-    /// Mean S(w dJ) at every point (-), where w dJ is dJ, or J under Zhao's F-bar (steps 4c, 4e); `None` without F-bar.
+    /// Mean S(dJ) at every point (-, steps 4c, 4e); `None` without F-bar.
     mean: Option<Vec<f64>>,
     /// Damping that adds a viscous stress to the stress of the law.
     damping: Damping,
@@ -57,10 +55,10 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
             pore: None,
         };
         let mean = model.stabilisation.averages().then(|| {
-            nodes.mean_dilation(model, shape, points, halo, |p| match trial.own(model, points, p) {
+            nodes.mean_dilation(model, shape, points, halo, |p| match trial.dJ(p) {
                 // An inverted point must not spoil the averages of other points.
-                inverted if inverted.is_nan() => weight(model.stabilisation, points, p),
-                own => own,
+                inverted if inverted.is_nan() => 1.0,
+                dJ => dJ,
             })
         });
         Self { mean, ..trial }
@@ -72,51 +70,31 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         K::deformation::<f64>(&self.grad[p])
     }
 
-    /// Returns w dJ of point `p` (-).
+    /// Returns dJ of point `p` (-).
     #[inline]
-    fn own(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
-        weight(model.stabilisation, points, p) * K::jacobian::<f64>(&self.grad[p])
+    pub(crate) fn dJ(&self, p: usize) -> f64 {
+        K::jacobian::<f64>(&self.grad[p])
     }
 
-    /// Returns the F-bar factor r_p of (T3.2), S(w dJ)_p / (w_p dJ_p kept_p); 1 without F-bar.
+    /// Returns the mean S(dJ) of point `p` (-); 1 without F-bar.
     #[inline]
-    pub fn ratio(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
-        let Some(mean) = &self.mean else { return 1.0 };
-        ratio(
-            mean[p],
-            self.own(model, points, p),
-            kept(model.stabilisation, points, p),
-        )
+    pub(crate) fn mean_dJ(&self, p: usize) -> f64 {
+        self.mean.as_ref().map_or(1.0, |mean| mean[p])
+    }
+
+    /// Returns the F-bar factor r_p of (T3.2), S(dJ)_p / dJ_p; 1 without F-bar.
+    #[inline]
+    pub fn ratio(&self, p: usize) -> f64 {
+        self.mean.as_ref().map_or(1.0, |mean| mean[p] / self.dJ(p))
     }
 
     /// Returns J-bar/J of point `p` at the end of the step (-).
-    pub(crate) fn dilation(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
-        let before = if model.stabilisation == Stabilisation::FBarZhao {
-            1.0
-        } else {
-            points.dilation_of(p)
-        };
-        self.averaged(model, points, p) * before
-    }
-
-    /// Returns S(w dJ)_p / (w_p dJ_p).
-    #[inline]
-    fn averaged(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> f64 {
-        self.mean
-            .as_ref()
-            .map_or(1.0, |mean| mean[p] / self.own(model, points, p))
-    }
-
-    /// Returns w dJ and S(w dJ) of point `p`; 1 for the latter without F-bar.
-    pub(crate) fn means(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> (f64, f64) {
-        (
-            self.own(model, points, p),
-            self.mean.as_ref().map_or(1.0, |mean| mean[p]),
-        )
+    pub(crate) fn dilation(&self, points: &Points<D>, p: usize) -> f64 {
+        self.ratio(p) * points.dilation_of(p)
     }
 
     /// Returns the rate of ln ratio_p for a displacement whose spatial gradient l has the trace `trace`_p at every
-    /// point: S(w dJ tr l)_p / S(w dJ)_p - tr l_p. `None` without F-bar. One exchange with the neighbours.
+    /// point: S(dJ tr l)_p / S(dJ)_p - tr l_p. `None` without F-bar. One exchange with the neighbours.
     pub fn dilation_rate(&self, problem: &Problem<'_, K, D>, trace: &[f64]) -> Option<Vec<f64>> {
         let mean = self.mean.as_ref()?;
         let Problem {
@@ -127,7 +105,7 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
             halo,
             ..
         } = *problem;
-        let mut rate = nodes.mean_dilation(model, shape, points, halo, |p| self.own(model, points, p) * trace[p]);
+        let mut rate = nodes.mean_dilation(model, shape, points, halo, |p| self.dJ(p) * trace[p]);
         rate.iter_mut()
             .zip(mean)
             .zip(trace)
@@ -165,13 +143,8 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         let mut dF_bar = dF;
         if let Some(mean) = &self.mean {
             let mean = eight.of(mean);
-            let mut own = K::jacobian::<Lanes<S>>(&grad);
-            let mut before = Lanes::splat(simd, 1.0);
-            if model.stabilisation == Stabilisation::FBarZhao {
-                own = Lanes::from_fn(simd, |lane| weight(model.stabilisation, points, eight.point(lane))) * own;
-                before = Lanes::from_fn(simd, |lane| kept(model.stabilisation, points, eight.point(lane)));
-            }
-            dF_bar = K::dilate(&dF, ratio(Lanes::from_fn(simd, |lane| *mean[lane]), own, before));
+            let dJ = K::jacobian::<Lanes<S>>(&grad);
+            dF_bar = K::dilate(&dF, Lanes::from_fn(simd, |lane| *mean[lane]) / dJ);
         }
         let zero = Lanes::splat(simd, 0.0);
         let b_e = match (points.b_e.planar(), points.b_e.whole()) {
@@ -211,7 +184,7 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
     pub fn viscous(&self, model: &Model<K, D>, points: &Points<D>, p: usize, response: &Response) -> Option<Viscous> {
         let moduli = self.damping.moduli(model, points, p)?;
         let share = self.damping.relative(points.material[p])?;
-        let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
+        let dF_bar = K::dilate(&self.dF(p), self.ratio(p));
         let strained = K::push_forward(&dF_bar, &points.smoothing_of(p));
         Viscous::of(&strained, moduli, response.returned(), share, points.gap_of(p)).ok()
     }
@@ -233,7 +206,7 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
     /// Returns the work of the viscous stress of point `p` in the step per reference volume (J/m3), if it has damping.
     pub(crate) fn damping_takes(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<f64> {
         let viscous = self.viscous_at(model, points, p)?;
-        Some(viscous.tau.full().dot(&self.strain(model, points, p)?))
+        Some(viscous.tau.full().dot(&self.strain(p)?))
     }
 
     /// Computes the viscous stress of point `p` without a given response of the law, if the point has damping.
@@ -266,8 +239,8 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
     /// Returns the Hencky strain of point `p` in the step, `½ ln (I + e)` with e = dF-bar dF-bar^T - I; `None` for an
     /// inverted point. For small e the series ½ (e - e²/2 + e³/3 - e⁴/4) saves an eigenvalue problem; its error is
     /// below 1e-12.
-    pub(crate) fn strain(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Option<Tensor> {
-        let dF_bar = K::dilate(&self.dF(p), self.ratio(model, points, p));
+    pub(crate) fn strain(&self, p: usize) -> Option<Tensor> {
+        let dF_bar = K::dilate(&self.dF(p), self.ratio(p));
         let strained = K::push_forward(&dF_bar, &Symmetric::IDENTITY);
         let one = Tensor::identity();
         let e = strained.full() - Tensor::identity();
@@ -287,7 +260,7 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
     pub fn respond(&self, model: &Model<K, D>, points: &Points<D>, p: usize) -> Result<Response, MaterialError> {
         let dF = self.dF(p);
         let b_trial: Symmetric = match &self.mean {
-            Some(_) => K::push_forward(&K::dilate(&dF, self.ratio(model, points, p)), &points.b_e.at(p)),
+            Some(_) => K::push_forward(&K::dilate(&dF, self.ratio(p)), &points.b_e.at(p)),
             None => K::push_forward(&dF, &points.b_e.at(p)),
         };
         match points.gap_of(p) {
@@ -299,29 +272,3 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
 
 /// Largest component of e for which the logarithm is replaced by a series.
 const SMALL: f64 = 1e-3;
-
-/// Returns S(w dJ) / (w dJ kept).
-#[inline(always)]
-fn ratio<R: Real>(mean: R, own: R, kept: R) -> R {
-    mean / own * (kept.like(1.0) / kept)
-}
-
-/// Returns J-bar/J at the start of the step if the total J is averaged (Zhao's F-bar), else 1.
-#[inline]
-fn kept<const D: usize>(stabilisation: Stabilisation, points: &Points<D>, p: usize) -> f64 {
-    if stabilisation == Stabilisation::FBarZhao {
-        points.dilation_of(p)
-    } else {
-        1.0
-    }
-}
-
-/// Returns w_p: J at the start of the step if the total J is averaged (Zhao's F-bar), else 1.
-#[inline]
-fn weight<const D: usize>(stabilisation: Stabilisation, points: &Points<D>, p: usize) -> f64 {
-    if stabilisation == Stabilisation::FBarZhao {
-        points.F.at(p).determinant()
-    } else {
-        1.0
-    }
-}

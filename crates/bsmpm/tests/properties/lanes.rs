@@ -58,9 +58,6 @@ fn compared<K: Kinematics<D>, const D: usize>(method: Stabilisation, seed: u64) 
         .stabilised(method);
     let points = &mut scene.points;
     *points = std::mem::take(points).with_state(1);
-    if method == Stabilisation::FBarZhao {
-        points.dilation = Some((0..points.len()).map(|_| 1.0 + 0.1 * random.signed()).collect());
-    }
     for p in 0..points.len() {
         points.state.as_mut().expect("of clay").of_point_mut(p)[0] = random.unit();
         let mut b_e = points.b_e.at(p);

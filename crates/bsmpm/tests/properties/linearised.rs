@@ -19,10 +19,9 @@ use bsmpm::step::residual::Residual;
 use bsmpm::tensor::{Symmetric, Vector};
 use rayon::prelude::*;
 
-const METHODS: [Stabilisation; 6] = [
+const METHODS: [Stabilisation; 5] = [
     Stabilisation::None,
     Stabilisation::FBar,
-    Stabilisation::FBarZhao,
     Stabilisation::ModifiedFBar,
     Stabilisation::ConsistentFBar,
     Stabilisation::SubgridFBar,

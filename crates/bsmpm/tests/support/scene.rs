@@ -25,10 +25,9 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Every method of section 2.3.
-pub const METHODS: [Stabilisation; 6] = [
+pub const METHODS: [Stabilisation; 5] = [
     Stabilisation::None,
     Stabilisation::FBar,
-    Stabilisation::FBarZhao,
     Stabilisation::ModifiedFBar,
     Stabilisation::ConsistentFBar,
     Stabilisation::SubgridFBar,

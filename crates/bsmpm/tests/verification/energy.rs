@@ -186,7 +186,6 @@ fn a_collapse_with_friction_closes() {
     for (method, separation) in [
         (Stabilisation::FBar, Separation::Forgotten),
         (Stabilisation::ModifiedFBar, Separation::Forgotten),
-        (Stabilisation::FBarZhao, Separation::Forgotten),
         (Stabilisation::ConsistentFBar, Separation::Forgotten),
         (Stabilisation::ConsistentFBar, Separation::Closing),
     ] {
@@ -223,7 +222,6 @@ fn a_method_that_makes_energy_exceeds_the_budget_and_no_other() {
         (Stabilisation::ModifiedFBar, soil(0.4, 0.0), false),
         (Stabilisation::FBar, soil(0.4, 0.0), false),
         (Stabilisation::FBar, soil(0.4, 0.4), true),
-        (Stabilisation::FBarZhao, soil(0.4, 0.4), true),
     ] {
         let mut scene = collapse(method, Separation::Forgotten);
         scene.model.materials = vec![material.into()];

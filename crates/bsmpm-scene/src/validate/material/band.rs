@@ -89,7 +89,6 @@ fn unverified_settings(case: &Case) -> Vec<String> {
     match case.stabilisation {
         Stabilisation::ModifiedFBar => settings.push(format!("with \"modified-f-bar\" {}", error(1.3))),
         Stabilisation::None => settings.push(format!("without stabilisation {}", error(3.0))),
-        Stabilisation::FBarZhao => settings.push(format!("with \"{}\"", case.stabilisation.word())),
         Stabilisation::FBar | Stabilisation::ConsistentFBar | Stabilisation::SubgridFBar => {}
     }
     if case.grid.order == 1 {

@@ -59,7 +59,7 @@ impl<'a, const D: usize> WaterTangent<'a, D> {
     ) -> Self {
         let points = scalars::scalars(&pores.shape, p, |p, value, gradient| {
             let wet = pores.wet[p].as_ref()?;
-            let dilation = trial.dilation(problem.model, problem.points, p);
+            let dilation = trial.dilation(problem.points, p);
             let excess = ExcessPressure { value, gradient };
             Change::at(problem.model, problem.points, p, wet, &trial.dF(p), dilation, excess)
         });

@@ -57,7 +57,7 @@ impl WaterBalance {
             let Some(wet) = &pores.wet[p] else {
                 return [(0.0, Vector::zeros()); TERMS];
             };
-            let dilation = trial.dilation(model, points, p);
+            let dilation = trial.dilation(points, p);
             let zero = Vector::zeros();
             let Some(state) = FlowState::at(model, points, p, wet, &trial.dF(p), dilation, pressures[p]) else {
                 closed.fetch_add(1, Relaxed);

@@ -48,7 +48,7 @@ impl Work {
         let each = scalars::scalars(&pores.shape, &found.p, |p, pressure, gradient| {
             let Some(wet) = &pores.wet[p] else { return [0.0; 5] };
             let dF = found.trial.dF(p);
-            let dilation = found.trial.dilation(model, points, p);
+            let dilation = found.trial.dilation(points, p);
             let excess = ExcessPressure {
                 value: pressure,
                 gradient,
