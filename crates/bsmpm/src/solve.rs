@@ -50,7 +50,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     let by_newton = (flows && problem.model.nonlinear == Nonlinear::Auto).then(|| last.clone());
     let mut found = search(problem, method, last, solver, counts);
     // With flowing water, Newton's method is tried before another guess: it converges in more of the steps in which
-    // secants fail, and a failure of both costs the same (`decisions.md` of the manual).
+    // secants fail, and a failure of both costs the same.
     if let Some(last) = by_newton.filter(|_| goes_on(&found)) {
         found = search(problem, Nonlinear::Newton, last, solver, counts);
     }

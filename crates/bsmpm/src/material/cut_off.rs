@@ -1,10 +1,5 @@
 //! Tension cut-off of other laws, theory-manual equations (T4.19) to (T4.23): Rankine planes with associated flow, and
 //! a tensile strength that may decrease with the plastic strain across cracks.
-//!
-//! Cracks add plastic strains γ_A ≥ 0 along the principal axes. The wrapped law returns the trial stress that is left,
-//! `τ_trial - D γ`, so the result satisfies both flow rules with the plastic strain at the end of the step (Koiter,
-//! 1953; Larsson and Runesson, 1996). The sum κ of the γ_A determines all of them, because cracks open where the trial
-//! stress is largest. One scalar equation for κ thus replaces the search for the active faces, edges and corners.
 
 use super::drucker_prager::DruckerPrager;
 use super::law::{Branch, Law, MOST_PARAMETERS, Projection, Separation, Variable};
