@@ -293,7 +293,7 @@ fn a_test_becomes_a_statement_with_its_source() {
         .collect();
     assert_eq!(
         found,
-        [("A cylinder is lames", "Lamé (1852): a cylinder"), ("It ends", "")]
+        [("A cylinder is Lames", "Lamé (1852): a cylinder"), ("It ends", "")]
     );
     assert!(
         is_source("`a = b`") && is_source("Reference: b") && is_source("Waves (Kramer, 1996)") && !is_source("(a)")

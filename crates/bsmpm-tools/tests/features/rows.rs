@@ -150,6 +150,11 @@ pub const ROWS: &[Feature] = &[
          residual_friction_angle = 25.0\nresidual_cohesion = \"2 kPa\"\nsoftening_strain = 0.2\nband_width = 0.1",
     ),
     law(
+        "law: Mohr-Coulomb with tension cut-off",
+        "model = \"mohr-coulomb\"\nyoung = \"30 MPa\"\npoisson = 0.3\nfriction_angle = 30.0\ncohesion = \"10 kPa\"\n\
+         tensile_strength = \"2 kPa\"",
+    ),
+    law(
         "law: sensitive clay",
         "model = \"sensitive-clay\"\nyoung = \"30 MPa\"\npoisson = 0.45\ncohesion = \"30 kPa\"\nsensitivity = 5.0\n\
          softening_strain = 0.5\nband_width = 0.1",
