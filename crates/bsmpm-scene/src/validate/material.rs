@@ -3,6 +3,7 @@
 pub(super) mod band;
 mod cut_off;
 mod law;
+mod parameters;
 
 use super::{limit_load, reduction};
 use crate::case::{Body, NamedMaterial, Stage};
@@ -14,7 +15,8 @@ use crate::schema::{Draft, LawName, Range, SupportTable};
 use crate::words::{Geometry, Side};
 use bsmpm::material::{LayeredMaterial, Profile};
 use bsmpm::model::Regime;
-use law::{Parameters, law};
+use law::law;
+use parameters::Parameters;
 
 /// Materials at most: a point holds its material's number in 16 bits.
 const MOST: usize = 65_536;

@@ -31,6 +31,32 @@ box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }
 points_per_cell = 3
 "#;
 
+/// A law with a tension cut-off that softens.
+const CRACKED: &str = r#"geometry = "plane-strain"
+analysis = { type = "quasi-static", steps = 10 }
+grid = { lower = [0.0, 0.0], upper = [2.0, 2.0], cell = 1, degree = "quadratic" }
+boundary = { bottom = "fixed" }
+stabilisation = { method = "consistent-f-bar" }
+
+[material.clay]
+model                   = "mohr-coulomb"
+young                   = "10 MPa"
+poisson                 = 0.3
+cohesion                = "20 kPa"
+friction_angle          = 20.0
+dilation_angle          = 0.0
+unit_weight             = "18 kN/m3"
+tensile_strength        = "5 kPa"
+crack_opening           = "10 mm"
+softening               = "exponential"
+reduce_tensile_strength = true
+
+[[body]]
+material = "clay"
+box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }
+points_per_cell = 3
+"#;
+
 /// Changes of [`FULL`] to what excludes what is there.
 const OTHERWISE: [&[(&str, &str)]; 7] = [
     &[
@@ -215,6 +241,7 @@ pub fn all() -> Vec<String> {
         LIMIT_LOAD.to_owned(),
         FULL.to_owned(),
         STATIC.to_owned(),
+        CRACKED.to_owned(),
         later,
         retired,
         RUBBING.to_owned(),

@@ -1,7 +1,7 @@
 //! Checks of a tension cut-off, and its softening by the cell size.
 
 use super::band::band_of_cells;
-use super::law::Parameters;
+use super::parameters::Parameters;
 use super::{Layer, profile};
 use crate::grid::GridSpec;
 use crate::record::Record;
