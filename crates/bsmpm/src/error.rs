@@ -352,7 +352,7 @@ impl StepError {
 
     /// Returns whether no other method or predictor can help at this step size.
     pub fn is_final(&self) -> bool {
-        self.meaning().severity != Severity::AnotherMethod
+        matches!(self, Self::Interrupted | Self::Unstable { .. })
     }
 
     /// Returns the nodes of this rank with the largest out-of-balance forces; `None` if the error is not about nodes.
