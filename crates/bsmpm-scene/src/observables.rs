@@ -137,7 +137,8 @@ observables! { sample =>
     /// Displacement of the material that is initially at `at`, extrapolated from the nearest material point.
     Displacement = "displacement": MaterialPlace, "m", VECTOR, [], ["at = [2.0, 0.5]"] => sample.displacement();
     /// Velocity of the material point that is initially nearest to `at`; with `surface`, velocity at `at`.
-    Velocity = "velocity": Place, "m/s", VECTOR, [NeedsVelocities], ["at = [2.0, 1.0]", "surface = true"] => sample.at_place(|p| sample.velocity(p));
+    Velocity = "velocity": Place, "m/s", VECTOR, [NeedsVelocities], ["at = [2.0, 1.0]", "surface = true"] =>
+        sample.at_place(|p| sample.velocity(p));
     /// Cauchy stress, positive in tension, of the material point that is initially nearest to `at`; with `surface`,
     /// stress at `at`.
     Stress = "stress": Place, "Pa", STRESS, [], ["at = [2.0, 1.0]", "surface = true"] =>
@@ -174,13 +175,14 @@ observables! { sample =>
         sample.halo,
     )?);
     /// Oscillation of the pressure between neighbouring material points: its root mean square.
-    PressureNoise = "pressure-noise": Part, "Pa", NOISE, [PlaneOnly], ["box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }"] => both(noise::pressure_noise(
-        &sample.model.grid,
-        sample.points,
-        sample.part,
-        sample.model.weighting,
-        sample.halo,
-    )?);
+    PressureNoise = "pressure-noise": Part, "Pa", NOISE, [PlaneOnly], ["box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }"] =>
+        both(noise::pressure_noise(
+            &sample.model.grid,
+            sample.points,
+            sample.part,
+            sample.model.weighting,
+            sample.halo,
+        )?);
     /// The largest upward displacement of all material points.
     Heave = "heave": Part, "m", SCALAR, [], [] => vec![observe::heave(sample.points, sample.part, sample.halo)];
     /// Mean normal pressure at the base of the footing.
@@ -215,7 +217,8 @@ observables! { sample =>
     /// Force of the soil on a rigid body.
     RigidForce = "rigid-force": Rigid, "N/m", VECTOR, [Force], [r#"rigid = "pipe""#] => sample.rigid().force.as_slice()[..D].to_vec();
     /// Moment of the soil on a rigid body about its reference point, positive counter-clockwise.
-    RigidMoment = "rigid-moment": Rigid, "N", SCALAR, [PlaneOnly, ZeroByAxisymmetry], [r#"rigid = "pipe""#] => vec![sample.rigid().force[2]];
+    RigidMoment = "rigid-moment": Rigid, "N", SCALAR, [PlaneOnly, ZeroByAxisymmetry], [r#"rigid = "pipe""#] =>
+        vec![sample.rigid().force[2]];
     /// Displacement of the reference point of a rigid body.
     RigidDisplacement = "rigid-displacement": Rigid, "m", VECTOR, [RigidMotion], [r#"rigid = "pipe""#] =>
         sample.rigid().moved.as_slice()[..D].to_vec();

@@ -459,8 +459,8 @@ const SHARES: Range = Range::of(Included(0.0), Included(1.0));
 static DAMPING: Table = Table {
     header: "[material.NAME] damping",
     doc: "Kelvin-Voigt damping. The viscous stress is the elastic stiffness times `ratio`/(π `frequency`) times the \
-          rate of elastic strain. Vibrations of another frequency have a damping ratio in proportion to their frequency. Rigid-body motion and plastic flow \
-          are not damped.",
+          rate of elastic strain. Vibrations of another frequency have a damping ratio in proportion to their \
+          frequency. Rigid-body motion and plastic flow are not damped.",
     keys: &[
         key(
             "ratio",
