@@ -4,72 +4,50 @@ use super::{GRADED_POINTS, METHOD, ORDER, Preset};
 use crate::constants::NEARLY_INCOMPRESSIBLE;
 use crate::words::{Accuracy, Word};
 
-/// A row of the table: a number that each preset has.
-struct Row {
-    symbol: &'static str,
-    meaning: &'static str,
-    value: fn(&Preset) -> String,
-}
-
-/// The rows, with the symbols of chapter 11 of the theory manual.
-const ROWS: [Row; 11] = [
-    Row {
-        symbol: "$n_0$",
-        meaning: "cells across the shorter side of the rectangle around all bodies",
-        value: |preset| preset.across.to_string(),
-    },
-    Row {
-        symbol: "$n_B$",
-        meaning: "cells across a footing, loaded segment or rigid body",
-        value: |preset| preset.along.to_string(),
-    },
-    Row {
-        symbol: "$r$",
-        meaning: "distance to which fine cells extend beyond a footing, loaded segment, rigid body or opening, divided \
-                  by its width",
-        value: |preset| preset.reach.to_string(),
-    },
-    Row {
-        symbol: "$n_o$",
-        meaning: "cells across a hole or notch",
-        value: |preset| preset.opening.to_string(),
-    },
-    Row {
-        symbol: "$n_k$",
-        meaning: "basic cell size, divided by the cell size at a steep re-entrant corner",
-        value: |preset| preset.corner.to_string(),
-    },
-    Row {
-        symbol: "$\\rho$",
-        meaning: "largest ratio of the sizes of neighbouring cells",
-        value: |preset| preset.growth.to_string(),
-    },
-    Row {
-        symbol: "$n_p$",
-        meaning: "material points along each axis of a cell",
-        value: |preset| preset.points.to_string(),
-    },
-    Row {
-        symbol: "$n_c$",
-        meaning: "cells that a shear wave crosses in a step (dynamics)",
-        value: |preset| preset.crossed.to_string(),
-    },
-    Row {
-        symbol: "$a$",
-        meaning: "displacement of a moving face of the grid in a step, in cells (quasi-static)",
-        value: |preset| preset.advance.to_string(),
-    },
-    Row {
-        symbol: "$n_\\text{min}$",
-        meaning: "smallest number of steps (quasi-static)",
-        value: |preset| preset.steps.to_string(),
-    },
-    Row {
-        symbol: "-",
-        meaning: "`solver.tolerance`; `solver.force_tolerance`",
-        value: |preset| preset.tolerances.join("; "),
-    },
+/// Symbol, as in chapter 11 of the theory manual, and meaning of each number that a preset has.
+const NUMBERS: [[&str; 2]; 11] = [
+    [
+        "$n_0$",
+        "cells across the shorter side of the rectangle around all bodies",
+    ],
+    ["$n_B$", "cells across a footing, loaded segment or rigid body"],
+    [
+        "$r$",
+        "distance to which fine cells extend beyond a footing, loaded segment, rigid body or opening, divided by its \
+         width",
+    ],
+    ["$n_o$", "cells across a hole or notch"],
+    [
+        "$n_k$",
+        "basic cell size, divided by the cell size at a steep re-entrant corner",
+    ],
+    ["$\\rho$", "largest ratio of the sizes of neighbouring cells"],
+    ["$n_p$", "material points along each axis of a cell"],
+    ["$n_c$", "cells that a shear wave crosses in a step (dynamics)"],
+    [
+        "$a$",
+        "displacement of a moving face of the grid in a step, in cells (quasi-static)",
+    ],
+    ["$n_\\text{min}$", "smallest number of steps (quasi-static)"],
+    ["-", "`solver.tolerance`; `solver.force_tolerance`"],
 ];
+
+/// The numbers of a preset in the order of [`NUMBERS`].
+fn values(preset: &Preset) -> [String; NUMBERS.len()] {
+    [
+        preset.across.to_string(),
+        preset.along.to_string(),
+        preset.reach.to_string(),
+        preset.opening.to_string(),
+        preset.corner.to_string(),
+        preset.growth.to_string(),
+        preset.points.to_string(),
+        preset.crossed.to_string(),
+        preset.advance.to_string(),
+        preset.steps.to_string(),
+        preset.tolerances.join("; "),
+    ]
+}
 
 /// What the presets choose: an introduction, then a table in Markdown.
 pub(crate) fn preset_table() -> [String; 2] {
@@ -87,9 +65,10 @@ pub(crate) fn preset_table() -> [String; 2] {
         "| symbol | meaning | {} |\n| --- | --- | --- | --- | --- |",
         words.join(" | ")
     );
-    for row in ROWS {
-        let values = presets.map(|accuracy| (row.value)(&Preset::of(accuracy)));
-        table += &format!("\n| {} | {} | {} |", row.symbol, row.meaning, values.join(" | "));
+    let numbers = presets.map(|accuracy| values(&Preset::of(accuracy)));
+    for (row, [symbol, meaning]) in NUMBERS.into_iter().enumerate() {
+        let values = numbers.each_ref().map(|of_preset| of_preset[row].as_str());
+        table += &format!("\n| {symbol} | {meaning} | {} |", values.join(" | "));
     }
     [introduction, table]
 }
