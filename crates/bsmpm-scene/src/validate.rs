@@ -3,6 +3,7 @@
 mod approach;
 mod axisymmetric;
 mod body;
+mod course;
 mod domain;
 mod element;
 mod flow;
@@ -10,6 +11,7 @@ mod free_field;
 mod gap;
 mod grid;
 mod history;
+mod initial;
 mod lasting;
 mod leaving;
 mod limit_load;
@@ -140,7 +142,7 @@ fn read(draft: &Draft, text: String, report: &mut Report<'_>) -> Option<(Case, f
         tractions: loads.tractions,
         point_loads: loads.point_loads,
         strength_reduction: domain.factor,
-        settles: loads.initial.is_some() && load::settles(draft),
+        settles: loads.initial.is_some() && initial::settles(draft),
         initial: loads.initial,
         stabilisation: stabilisation?,
         solver: solver?,
@@ -173,7 +175,7 @@ fn check(case: &mut Case, draft: &Draft, stiffness: f64, report: &mut Report<'_>
     solid::check(case, draft, report);
     rigid::check(case, draft, report);
     stage::check(case, draft, report);
-    load::sudden(case, report);
+    initial::sudden(case, report);
     physics::rest(case, draft, report);
     strip::beside_fixed(case, report);
     section::warn_of_neighbours(case, draft, report);

@@ -4,7 +4,7 @@ use super::history::CaseBodies;
 use super::limit_load::{MovedBodies, shrink};
 use super::material::{CaseFacts, Reduction};
 use super::site::AroundStrip;
-use super::{analysis, body, boundary, contacts, grid, load, material, reduction, rigid, stage, strip};
+use super::{analysis, body, boundary, contacts, grid, initial, load, material, reduction, rigid, stage, strip};
 use crate::case::{
     Analysis, Body, Footing, Gravity, Initial, NamedMaterial, PointLoad, PrescribedMotion, Rigid, Stage, Support,
     Traction,
@@ -154,7 +154,7 @@ impl Loads {
         let around = domain.around();
         let tractions = load::tractions(draft, around, report);
         let point_loads = load::point_loads(draft, around, report);
-        let initial = load::initial(draft, materials, around.bodies, gravity.as_ref(), domain.regime, report);
+        let initial = initial::initial(draft, materials, around.bodies, gravity.as_ref(), domain.regime, report);
         let mut loads = Self {
             gravity,
             tractions,

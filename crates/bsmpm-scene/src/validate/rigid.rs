@@ -1,14 +1,18 @@
 //! Validates rigid bodies.
 
 mod beyond;
+mod motion;
 mod outline;
+mod overlap;
 mod solid;
 
+use self::motion::{moves_as_given, of_free_motions};
 use self::outline::{sharpest, thickness};
+use self::overlap::{inside, joined, overlap, together};
 use super::site::{AroundStrip, normal};
 use super::strip;
-use super::{MOST_SHOWN_FRICTION, NO_INERTIA, load, place, shape};
-use crate::case::{ActiveLoads, Body, Case, Initial, MotionPath, Rigid, RigidShape, Stage, Support};
+use super::{MOST_SHOWN_FRICTION, course, load, place, shape};
+use crate::case::{ActiveLoads, Case, Initial, MotionPath, Rigid, RigidShape, Support};
 use crate::record::Record;
 use crate::report::Report;
 use crate::schema::Draft;
@@ -168,7 +172,7 @@ fn rotation(record: &Record, report: &mut Report<'_>) -> Option<Vec<(f64, f64)>>
     if !record.gives("rotation") {
         return Some(Vec::new());
     }
-    let rows: Vec<(f64, f64)> = load::increasing(&record.rows_field("rotation"), report)?
+    let rows: Vec<(f64, f64)> = course::increasing(&record.rows_field("rotation"), report)?
         .map(|row| (row[0], row[1].to_radians()))
         .collect();
     if rows[0].0 == 0.0 && rows[0].1 != 0.0 {
@@ -209,106 +213,6 @@ fn friction(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Op
         ));
     }
     Some(friction)
-}
-
-/// A motion is on a way or follows from forces.
-fn moves_as_given(record: &Record, rigid: &Rigid, report: &mut Report<'_>) {
-    let way = ["displacement", "velocity", "path"]
-        .into_iter()
-        .find(|key| record.gives(key))
-        .unwrap_or("path");
-    for (axis, name) in ["x", "y"].into_iter().enumerate() {
-        if rigid.free[axis] && rigid.path.rows.iter().any(|(_, moved)| moved[axis] != 0.0) {
-            record.error(way, prescribed_and_free(&format!("motion along {name}")), report);
-        }
-        if !rigid.free[axis] && rigid.force[axis] != 0.0 {
-            let key = if record.gives("force_path") {
-                "force_path"
-            } else {
-                "force"
-            };
-            record.error(key, without_effect(&format!("motion along {name}"), name), report);
-        }
-        if !rigid.free[axis] && rigid.velocity[axis] != 0.0 {
-            record.error(
-                "start_velocity",
-                without_effect(&format!("motion along {name}"), name),
-                report,
-            );
-        }
-    }
-    if rigid.free[2] && !rigid.rotation.is_empty() {
-        record.error("rotation", prescribed_and_free("rotation"), report);
-    }
-    for (key, value) in [("moment", rigid.force[2]), ("start_spin", rigid.velocity[2])] {
-        if !rigid.free[2] && value != 0.0 {
-            record.error(key, without_effect("rotation", "rotation"), report);
-        }
-    }
-    if rigid.free.contains(&true) && record.gives("about") {
-        let message = "E0425: a rigid body that moves freely rotates about its centre of mass, not about this point. Delete \
-             `about`.";
-        record.error("about", message, report);
-    }
-}
-
-/// Says that a motion is prescribed and free.
-fn prescribed_and_free(motion: &str) -> String {
-    format!(
-        "E0423: this key prescribes the {motion} of the rigid body, but `free` lists the same motion as free. Delete \
-         this key, or remove the {motion} from `free`."
-    )
-}
-
-/// Says that what acts on a motion, called `name` in `free`, has no effect on it.
-fn without_effect(motion: &str, name: &str) -> String {
-    format!(
-        "E0424: this key has no effect, because the {motion} of the rigid body is not free. Add \"{name}\" to \
-         `free`, or delete this key."
-    )
-}
-
-/// What moves freely has mass in dynamics, and what has mass moves freely.
-fn of_free_motions(record: &Record, rigid: &Rigid, regime: Option<Regime>, report: &mut Report<'_>) {
-    let is_free = rigid.free.contains(&true);
-    if !is_free {
-        for key in ["mass", "density", "inertia"]
-            .into_iter()
-            .filter(|key| record.gives(key))
-        {
-            let message = format!(
-                "E0426: `{key}` has no effect, because all motions of this rigid body are prescribed. Delete `{key}`, or list \
-                 the free motions in `free`."
-            );
-            record.error(key, message, report);
-        }
-    }
-    let massless = rigid.mass[0] == 0.0 || rigid.free[2] && rigid.mass[1] == 0.0;
-    if is_free && massless && regime == Some(Regime::Dynamic) {
-        let message = "E0427: in a dynamic analysis a rigid body that moves freely needs mass, but this body has \
-                       none. Give `mass` or `density`.";
-        record.error("free", message, report);
-    }
-    if is_free && rigid.mass[0] == 0.0 && rigid.force == [0.0; 3] {
-        let message = "E0428: this rigid body can move freely, but neither weight nor load acts on it. Give `mass`, \
-                       `density`, `force` or `moment`.";
-        record.error("free", message, report);
-    }
-    for key in ["ramp", "amplitude"]
-        .into_iter()
-        .filter(|key| record.gives(key) && rigid.force == [0.0; 3])
-    {
-        let path = record.path_of(key);
-        report.warn(format!(
-            "W0410: {path}: the rigid body has no `force` or `moment` that this key could scale, so the key has no \
-             effect. Delete the key, or give a force or moment."
-        ));
-    }
-    for key in ["start_velocity", "start_spin"] {
-        if record.gives(key) && regime == Some(Regime::QuasiStatic) {
-            record.error(key, NO_INERTIA, report);
-        }
-    }
 }
 
 /// Cells and steps resolve it.
@@ -437,72 +341,6 @@ pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     }
 }
 
-/// The stage with which a body and a rigid one are there together first; `Some(None)`: from the start on.
-fn together(case: &Case, rigid: usize, body: usize) -> Option<Option<&Stage>> {
-    let mut times = std::iter::once((0.0, None)).chain(case.stages.iter().map(|stage| (stage.at, Some(stage))));
-    let first =
-        times.find(|(t, _)| case.is_there(body, *t) && case.acts_since(ActiveLoads::Rigid(rigid), *t).is_some());
-    first.map(|(_, stage)| stage)
-}
-
-/// What is said where a body is in a rigid one when they are there together first.
-fn inside(case: &Case, rigid: usize, body: usize, at: &str) -> String {
-    let stage = together(case, rigid, body).flatten();
-    let (when, or) = match stage {
-        None => ("at the start".to_owned(), String::new()),
-        Some(stage) if stage.add.contains(&body) => (
-            format!("when a stage adds body.{body} at t = {}", stage.at),
-            String::new(),
-        ),
-        Some(stage) => (
-            format!("when a stage adds the rigid body at t = {}", stage.at),
-            format!(", or remove body.{body} in this stage"),
-        ),
-    };
-    format!(
-        "E0431: body.{body} overlaps this rigid body at [{at}] m by more than {OVERLAP} cells {when}. Subtract the \
-         shape of the rigid body from body.{body}{or}."
-    )
-}
-
-/// What stages place at a rigid body, or where one is that they apply, may lie nearer than it reaches.
-fn joined(case: &Case, number: usize, rigid: &Rigid, record: &Record, report: &mut Report<'_>) {
-    let reach = surfaces::outline(&rigid.shape, rigid.about).radius() + longest(case);
-    let moves = rigid.free.contains(&true) || !rigid.path.rows.is_empty() || !rigid.rotation.is_empty();
-    for (body, of) in case.bodies.iter().enumerate() {
-        let Some(stage) = together(case, number, body).flatten() else {
-            continue;
-        };
-        let [lower, upper] = of.bounds();
-        let is_near = (0..2).all(|k| lower[k] < rigid.about[k] + reach && upper[k] > rigid.about[k] - reach);
-        let is_added = stage.add.contains(&body);
-        if !(is_near || moves && is_added) {
-            continue;
-        }
-        let added = if is_added {
-            format!("body.{body} next to this rigid body")
-        } else {
-            format!("this rigid body next to body.{body}")
-        };
-        report.warn(format!(
-            "W0416: {}: a stage adds {added}. Material points closer than half their spacing to the rigid body are pushed \
-             away in one step, and strained. Leave a gap of half a spacing of material points.",
-            record.path
-        ));
-        return;
-    }
-}
-
-/// m  longest edge of all cells.
-fn longest(case: &Case) -> f64 {
-    let mut longest: f64 = 0.0;
-    for knots in &case.grid.axes[..2] {
-        let edges = (0..knots.cells()).map(|cell| knots.breakpoint(cell + 1) - knots.breakpoint(cell));
-        longest = edges.fold(longest, f64::max);
-    }
-    longest
-}
-
 /// Whether a rigid body other than `except` that rests or is moved holds a component of a body that lies at it from the
 /// start on.
 pub(super) fn hold(case: &Case, component: usize, except: Option<ActiveLoads>) -> bool {
@@ -535,51 +373,4 @@ fn holds(case: &Case, rigid: &Rigid, component: usize) -> bool {
 /// Whether some body of a plane is at a place.
 fn is_body_at(case: &Case, at: [f64; 2]) -> bool {
     case.bodies.iter().any(|body| body.region.contains(at))
-}
-
-/// A place of a body among those that are `there` that is inside a rigid one as it is at the start, if there is one.
-fn overlap(case: &Case, rigid: &Rigid, there: impl Fn(usize) -> bool) -> Option<([f64; 2], usize)> {
-    let inset = OVERLAP * case.grid.shortest();
-    let outline = surfaces::outline(&rigid.shape, rigid.about);
-    let bodies = case.bodies.iter().enumerate();
-    let bodies: Vec<(usize, &Body)> = bodies.filter(|(number, _)| there(*number)).collect();
-    for at in places_inside(rigid, inset) {
-        if !is_inside(&outline, rigid.about, at, inset) {
-            continue;
-        }
-        if let Some((number, _)) = bodies.iter().find(|(_, body)| body.region.contains(at)) {
-            return Some((at, *number));
-        }
-    }
-    // A small body may lie in it whole.
-    for (number, body) in bodies {
-        let [lower, upper] = body.bounds();
-        let middle = [0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis]));
-        if is_inside(&outline, rigid.about, middle, inset) && body.region.contains(middle) {
-            return Some((middle, number));
-        }
-    }
-    None
-}
-
-/// Places along a rigid body in the plane, at a distance (m) from its surface; corners may be nearer.
-fn places_inside(rigid: &Rigid, inset: f64) -> Vec<[f64; 2]> {
-    match &rigid.shape {
-        RigidShape::Circle { center, radius } => place::ring(*center, (radius - inset).max(0.0)).collect(),
-        RigidShape::Polygon(corners) => {
-            let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-            let places = edges.flat_map(|(from, to)| {
-                let normal = normal(*from, *to); // to the left, inside
-                place::along([*from, *to]).map(move |at| [at[0] + inset * normal[0], at[1] + inset * normal[1]])
-            });
-            places.collect()
-        }
-        RigidShape::InSpace(_) => Vec::new(),
-    }
-}
-
-/// Whether a place is deeper than half of `inset` (m) in an outline about a reference point.
-fn is_inside(outline: &Outline, about: [f64; 2], at: [f64; 2], inset: f64) -> bool {
-    let seen = Vector::<2>::new(at[0] - about[0], at[1] - about[1]);
-    outline.nearest(&seen).distance < -0.5 * inset
 }

@@ -1,6 +1,6 @@
 //! Validates footings and prescribed displacements.
 
-use super::load::{not_increasing, warn_of_late};
+use super::course::{not_increasing, warn_of_late};
 use super::place::{is_beyond, is_in, side_of_bodies};
 use super::site::{AroundStrip, corners, normal_of, places, site};
 use crate::case::{Base, Body, Case, Face, Footing, History, MotionPath, PrescribedMotion, Quantity, Site};

@@ -1,6 +1,6 @@
 //! Validates hydrostatic water.
 
-use super::load::increasing;
+use super::course::increasing;
 use super::uplift;
 use crate::case::{Case, Gravity, Support, Water};
 use crate::constants::STANDARD_GRAVITY;

@@ -1,24 +1,23 @@
 //! Refuses options that are not verified for cases with pore-water flow.
 
+mod stages;
+
 use super::is_permeable;
-use crate::case::{ActiveLoads, Case, DrainSite, Flow, Initial, Stage, Support, Water};
-use crate::record::{CaseTable, KeyPlace};
+use super::water_table::{hanging, ponds, weighed, weightless};
+use crate::case::{Case, Flow, Initial, Support};
+use crate::record::CaseTable;
 use crate::report::Report;
-use crate::schema::{Draft, LawName, StageTable, SupportTable};
+use crate::schema::{Draft, LawName, SupportTable};
 use crate::validate::flow::crossing::{is_beside, places};
-use crate::validate::side::side;
 use crate::words::{AnalysisType, Side, Word};
-use bsmpm::field::pore_water::flow::{Course, Given, Motion};
+use bsmpm::field::pore_water::flow::Motion;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::model::Regime;
 use bsmpm::quadrature::Quadrature;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm_shapes::GridAxis;
 
 /// Points along each axis of a cell with cubic splines: with fewer the pressure oscillates at surfaces that cut cells.
 const POINTS_OF_CUBIC: usize = 4;
-/// Cells of water that a step may let into the ground where a drain lies above the water table.
-const FILM: f64 = 0.1;
 /// Growth per step above which steps are warned of: their own error is first order in them.
 const MOST_GROWTH: f64 = 1.25;
 
@@ -218,137 +217,6 @@ fn not_available(what: &str, instead: &str) -> String {
     format!("E0540: {what} is not available if a material has drainage = \"coupled\" or \"undrained\". {instead}")
 }
 
-/// What a stage changes.
-fn of_stage(case: &Case, number: usize, record: &StageTable, report: &mut Report<'_>) {
-    if record.remove.is_given() && case.analysis.regime != Regime::QuasiStatic {
-        let message = not_available(
-            "removal of bodies in a dynamic analysis",
-            "Use analysis.type = \"consolidation\".",
-        );
-        record.remove.error(message, report);
-    } else if case
-        .stages
-        .get(number)
-        .is_some_and(|stage| !stage.remove.is_empty() && !drains_what_is_bare(case, stage))
-    {
-        report.warn(format!(
-            "W0544: stage.{number}.remove: the surface exposed by the excavation has no drain, so it is impermeable. \
-             Add a [[drain]] along this surface, and list the drain in `activate` of this stage."
-        ));
-    }
-    case.stages
-        .get(number)
-        .into_iter()
-        .for_each(|stage| goes(case, number, stage, report));
-    if record.add.is_given() && case.analysis.regime != Regime::QuasiStatic {
-        let message = not_available(
-            "placement of bodies in a dynamic analysis",
-            "Use analysis.type = \"consolidation\".",
-        );
-        record.add.error(message, report);
-    } else if let Some(stage) = case.stages.get(number) {
-        placed(case, number, stage, report);
-    }
-    let changes: [(&KeyPlace, &str, &str); 3] = [
-        (
-            &record.boundary,
-            "a change of the boundary",
-            "Remove `boundary` of this stage, and give one boundary for all stages in [boundary].",
-        ),
-        (
-            &record.strength_reduction,
-            "a strength reduction in a stage",
-            "Remove it, and find the factor of safety with `bsmpm fos --stage end`.",
-        ),
-        (
-            &record.materials,
-            "a change of material",
-            "Remove `materials`: fast loading of \"coupled\" soil is undrained anyway.",
-        ),
-    ];
-    for (key, what, instead) in changes.into_iter().filter(|(key, ..)| key.is_given()) {
-        key.error(not_available(what, instead), report);
-    }
-}
-
-/// What a stage places, and what that covers.
-fn placed(case: &Case, number: usize, stage: &Stage, report: &mut Report<'_>) {
-    let Some(flow) = &case.flow else { return };
-    for &body in &stage.add {
-        if !is_permeable(&flow.soils, case.bodies[body].material) {
-            continue;
-        }
-        let is_drained = flow.drains.iter().enumerate().any(|(drain, of)| {
-            acts_at(case, drain, stage.at)
-                && places(of, case)
-                    .iter()
-                    .any(|at| is_beside(case, at, |other| other == body))
-        });
-        if !is_drained {
-            report.warn(format!(
-                "W0544: stage.{number}.add: the added body.{body} has no drain, so its surface is impermeable. Add a \
-                 [[drain]] along this surface, and list the drain in `activate` of this stage."
-            ));
-        }
-    }
-    for (drain, of) in flow.drains.iter().enumerate() {
-        let stays = acts_at(case, drain, case.just_before(stage.at)) && acts_at(case, drain, stage.at);
-        if stays && places(of, case).iter().any(|at| is_covered(case, flow, stage, at)) {
-            report.warn(format!(
-                "W0545: stage.{number}.add: drain.{drain} keeps draining below the added soil, like a drainage \
-                 blanket. If there is no blanket, list the drain in `deactivate` of this stage."
-            ));
-        }
-    }
-}
-
-/// Whether a drain acts at a time.
-fn acts_at(case: &Case, drain: usize, t: f64) -> bool {
-    case.acts_since(ActiveLoads::Drain(drain), t).is_some()
-}
-
-/// Whether a body is at a place at a time.
-fn is_ground(case: &Case, at: &[f64; 3], t: f64) -> bool {
-    is_beside(case, at, |body| case.is_there(body, t))
-}
-
-/// Whether a stage adds soil with pore water at a place of ground.
-fn is_covered(case: &Case, flow: &Flow, stage: &Stage, at: &[f64; 3]) -> bool {
-    is_beside(case, at, |body| {
-        stage.add.contains(&body) && flow.soils[case.bodies[body].material].is_some()
-    }) && is_ground(case, at, case.just_before(stage.at))
-}
-
-/// Warns of drains whose ground goes with what a stage removes.
-fn goes(case: &Case, number: usize, stage: &Stage, report: &mut Report<'_>) {
-    let before = case.just_before(stage.at);
-    for (drain, of) in case.flow.iter().flat_map(|flow| flow.drains.iter().enumerate()) {
-        let acts = acts_at(case, drain, before) && acts_at(case, drain, stage.at);
-        if acts
-            && matches!(of.site, DrainSite::Lines(_) | DrainSite::Plate(_))
-            && places(of, case)
-                .iter()
-                .all(|at| is_ground(case, at, before) && !is_ground(case, at, stage.at))
-        {
-            report.warn(format!(
-                "W0546: stage.{number}.remove: drain.{drain} is removed with its soil, so the new surface is \
-                 impermeable. Add a [[drain]] along the new surface, and list it in `activate` of this stage."
-            ));
-        }
-    }
-}
-
-/// Whether a drain lies between what a stage removes and what stays.
-fn drains_what_is_bare(case: &Case, stage: &Stage) -> bool {
-    let mut drains = case.flow.iter().flat_map(|flow| &flow.drains);
-    drains.any(|drain| {
-        places(drain, case).iter().all(|at| {
-            is_beside(case, at, |number| stage.remove.contains(&number))
-                && is_beside(case, at, |number| !stage.remove.contains(&number))
-        })
-    })
-}
-
 /// Whether a drain lies between bodies of a material and others through which water flows.
 fn drains_where_they_meet(case: &Case, flow: &Flow, material: usize) -> bool {
     let mut places = flow.drains.iter().flat_map(|drain| places(drain, case));
@@ -385,7 +253,7 @@ fn acting(case: &Case, draft: &Draft, report: &mut Report<'_>) {
         .items()
         .iter()
         .enumerate()
-        .for_each(|(number, stage)| of_stage(case, number, stage, report));
+        .for_each(|(number, stage)| stages::of_stage(case, number, stage, report));
     if let Some(gravity) = draft
         .gravity
         .value()
@@ -467,155 +335,4 @@ fn timed(case: &Case, draft: &Draft, report: &mut Report<'_>) {
              `growth`, or remove `dt_max`.",
         );
     }
-}
-
-/// Water that begins without the pressure of its own weight.
-fn weighed(case: &Case, report: &mut Report<'_>) {
-    if case.gravity.is_some() && case.water.is_none() {
-        report.warn(
-            "W0551: water: the case has gravity but no water table, so pore pressures are zero at the start, and the \
-             hydrostatic pressure builds up in time like an excess pressure. Give `water.level`.",
-        );
-    }
-}
-
-/// Drains above the water table, which let water in without end where the ground would take it.
-fn ponds(case: &Case, flow: &Flow, report: &mut Report<'_>) {
-    let Some(water) = &case.water else { return };
-    let times: Vec<f64> = water.table.levels().into_iter().flatten().map(|row| row.0).collect();
-    let cell = case
-        .grid
-        .axes
-        .iter()
-        .map(GridAxis::shortest)
-        .fold(f64::INFINITY, f64::min);
-    // Without a table all of the ground is above it: what is let in sinks, if it has weight.
-    let none = if case.gravity.is_some() {
-        f64::NEG_INFINITY
-    } else {
-        f64::INFINITY
-    };
-    let up = case.grid.dims() - 1;
-    let permeable = flow
-        .soils
-        .iter()
-        .flatten()
-        .filter_map(|soil| soil.permeability.as_ref());
-    let most = permeable.map(|k| k.along.max()).fold(0.0, f64::max);
-    let end = case.analysis.end;
-    let dt = case
-        .analysis
-        .growth
-        .map_or(case.analysis.dt, |(_, longest)| longest.min(end));
-    // What has suction loses it in however many steps.
-    let (time, period) = if flow.retains() {
-        (end, "during the analysis")
-    } else {
-        (dt, "in one step")
-    };
-    let height = most * time / cell;
-    for (number, drain) in flow
-        .drains
-        .iter()
-        .enumerate()
-        .filter(|(_, drain)| drain.given == Given::StillWater)
-    {
-        let is_dry = height > FILM
-            && places(drain, case)
-                .iter()
-                .any(|at| at[up] > lowest_table(water, &times, at[0], none) + 0.5 * cell);
-        if is_dry {
-            report.warn(format!(
-                "W0552: drain.{number}: above the water table soil suction draws water from this drain, a layer up to \
-                 {height:.1} cells high {period}. Set `seepage = true`, or for a pond give its `head`."
-            ));
-        }
-    }
-}
-
-/// m  lowest water table at x over some times, `none` when there is none
-fn lowest_table(water: &Water, times: &[f64], x: f64, none: f64) -> f64 {
-    let heights = times.iter().map(|t| water.table.table(x, *t));
-    heights
-        .map(|table| table.map_or(none, |(height, _)| height))
-        .fold(f64::INFINITY, f64::min)
-}
-
-/// Ground above the water table whose pores stay full all the same: the water in them hangs on its skeleton.
-fn hanging(case: &Case, flow: &Flow, report: &mut Report<'_>) {
-    let Some(water) = case.water.as_ref().filter(|_| case.grid.dims() == 2) else {
-        return;
-    };
-    let lower = case.grid.lower();
-    let cell = case.grid.shortest();
-    let times: Vec<f64> = water.table.levels().into_iter().flatten().map(|row| row.0).collect();
-    for (number, named) in case.materials.iter().enumerate() {
-        let is_full = flow.soils[number]
-            .as_ref()
-            .is_some_and(|soil| soil.permeability.is_some() && soil.retention.is_none());
-        if !is_full {
-            continue;
-        }
-        let made = case.bodies.iter().filter(|body| body.material == number);
-        let corners = made
-            .flat_map(|body| body.region.edges(&case.grid.axes).0)
-            .flat_map(|edge| [edge.a, edge.b]);
-        let above = corners.flat_map(|[x, y]| {
-            let heights = times.iter().filter_map(move |t| water.table.table(lower[0] + x, *t));
-            heights.map(move |(height, _)| lower[1] + y - height)
-        });
-        let most = above.fold(0.0, f64::max);
-        if most > cell {
-            report.warn(format!(
-                "W0553: material.{}: the soil stays saturated to {most:.2} m above the water table, and suction (to \
-                 {:.0} kPa) strengthens it. Add `retention`. If that soil is dry, set drainage = \"hydrostatic\".",
-                named.name,
-                1e-3 * most * water.unit_weight
-            ));
-        }
-    }
-}
-
-/// Heads above a body's surface, where water would stand on it and press; but for what still water presses.
-fn weightless(case: &Case, flow: &Flow, report: &mut Report<'_>) {
-    let up = case.grid.dims() - 1;
-    let cell = case
-        .grid
-        .axes
-        .iter()
-        .map(GridAxis::shortest)
-        .fold(f64::INFINITY, f64::min);
-    for (number, drain) in flow.drains.iter().enumerate() {
-        let Given::Head(Course(rows)) = &drain.given else {
-            continue;
-        };
-        let lines = drain.site.lines();
-        if !lines
-            .iter()
-            .any(|line| side(line, &case.grid, case.bodies.iter()).is_some())
-        {
-            continue; // a face of the grid, or a well inside the ground
-        }
-        let highest = rows.iter().map(|row| row.1).fold(f64::NEG_INFINITY, f64::max);
-        let above = places(drain, case)
-            .into_iter()
-            .map(|at| highest - at[up].max(still_water(case, at[0])));
-        let most = above.fold(0.0, f64::max);
-        if most > 0.5 * cell {
-            report.warn(format!(
-                "W0554: drain.{number}: the head is up to {most:.3} m above the surface of the soil, but no water \
-                 presses on the surface. For a pond or reservoir give `water.level` instead of `head`."
-            ));
-        }
-    }
-}
-
-/// m  the highest level of the still water at x
-fn still_water(case: &Case, x: f64) -> f64 {
-    let tables = case.water.iter().map(|water| &water.table);
-    let heights = tables.flat_map(|table| {
-        let rows = table.levels().into_iter().flatten();
-        rows.filter_map(move |row| table.table(x, row.0))
-    });
-    heights.map(|(height, _)| height).fold(f64::NEG_INFINITY, f64::max)
 }

@@ -2,6 +2,7 @@
 
 use super::super::shape::{cuboid, raster};
 use super::super::site::AroundStrip;
+use super::overlap::{inside, together};
 use super::{OVERLAP, Solidity, friction, way};
 use crate::case::{Case, Rigid, RigidShape, RigidSolid};
 use crate::record::Record;
@@ -166,14 +167,14 @@ pub(super) fn check(
         .unwrap_or("box");
     let body = crate::surfaces::rigid_body::<3>(rigid, [0.0; 3], case.geometry);
     for (number, of) in case.bodies.iter().enumerate() {
-        let Some(stage) = super::together(case, place, number) else {
+        let Some(stage) = together(case, place, number) else {
             continue;
         };
         let moved = body.on_path(stage.map_or(0.0, |stage| stage.at));
         let mut places = places(solid, &moved, of.region.corners(), cell).into_iter();
         let found = places.find(|at| of.region.contains_in_space(*at) && depth(&body, &moved, *at) > OVERLAP * cell);
         if let Some([x, y, z]) = found {
-            let message = super::inside(case, place, number, &format!("{x:.4}, {y:.4}, {z:.4}"));
+            let message = inside(case, place, number, &format!("{x:.4}, {y:.4}, {z:.4}"));
             record.error(key, message, report);
         }
     }
