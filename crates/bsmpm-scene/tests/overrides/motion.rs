@@ -1,6 +1,9 @@
 //! Tests bodies with initial velocity or spin.
 
-use super::*;
+use super::{FULL, STATIC, set, valid};
+use bsmpm::kinematics::PlaneStrain;
+use bsmpm::tensor::Vector;
+use bsmpm_scene::seed;
 
 /// A square with 1 m edges in cells of 0.25 m, 2 points along an axis of each: its points lie 0.0625 m inside.
 #[test]
