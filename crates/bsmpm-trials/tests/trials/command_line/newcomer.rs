@@ -30,8 +30,10 @@ fn a_step_that_fails_repeats_the_warning_of_a_probable_slip() {
         ),
     ];
     for (part, by, warning) in slips {
+        // With enough iterations, whether the slope that fails finds an equilibrium depends on round-off, and so on the
+        // vector instructions of the processor.
         let output = Scratch::with_case(&changed(SLOPE, part, by))
-            .direct(&["case.toml"])
+            .direct(&["case.toml", "--set", "solver.max_iterations=30"])
             .expect(80);
         output.says_once(&format!("warning {warning}"));
         let [code, key] = [0, 1].map(|part| warning.split(": ").nth(part).unwrap_or_default());
