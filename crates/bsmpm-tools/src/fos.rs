@@ -14,6 +14,7 @@ use crate::launch::{self, RunCost, SolverProgram, command};
 use crate::report::save;
 use crate::{Error, case};
 
+mod conditions;
 mod curve;
 mod guess;
 mod jobs;

@@ -3,11 +3,12 @@
 use bsmpm_messages::headed;
 use serde::Serialize;
 
+use super::conditions::Conditions;
 use super::curve::{Bracket, DOUBLED, FactorCurve, Kink};
 use super::moved::{Mechanism, PulledSide};
 use super::search::SearchPlan;
 use super::sought::{ELASTIC, PushedSide, Sought};
-use super::subject::{Conditions, Subject};
+use super::subject::Subject;
 use super::trial::{End, FosTrial};
 use crate::record::short;
 use crate::report::{Quoted, ReportTable, some, word};

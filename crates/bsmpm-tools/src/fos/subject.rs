@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use bsmpm::field::pore_water::flow::Motion;
 use bsmpm_scene::observables::{HistorySubject, Observable};
 use bsmpm_scene::words::{Geometry, Side, Support, Word};
-use bsmpm_scene::{Case, NamedMaterial, PointSelection, Quantity, Rigid, RigidShape, Traction};
-use serde::Serialize;
+use bsmpm_scene::{Case, PointSelection, Quantity, Rigid};
 
+use super::conditions::Conditions;
 use super::moved::{CountedPoints, HoldingSide};
 use super::refusal::{acting, followed, is_moved, ramps, refusals};
 use super::sought::{ELASTIC, Sought};
@@ -22,11 +22,6 @@ const STAGE: &str = "strength_reduction.stage";
 const UNDRAINED: &str = "strength_reduction.drainage=undrained";
 /// What ends a run there, with a checkpoint.
 const UNTIL: [&str; 2] = ["strength_reduction.steps=0", "output.checkpoint.wall=\"15 min\""];
-/// Strain by which a load may change the geometry: (weight of the body's height + traction)/E. Beyond, the branch after
-/// failure, up to 20 times the elastic displacement, is flattened by the body's settling, and with it the factor.
-const SMALL: f64 = 2e-3;
-/// Stiffening by less is none.
-const UNCHANGED: f64 = 1.01;
 /// What the factor of strength that falls with strain is.
 const SOFTENS: &str = "W0809: a material softens, so the result depends on the size of the cells and on the stiffness \
      of the soil. Repeat the analysis with another `grid.cell`, and use the smaller result.";
@@ -91,30 +86,6 @@ pub(super) struct FosQuestion<'a> {
     pub region: &'a [f64],
 }
 
-/// What belongs to a factor of safety.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Conditions {
-    /// m  the largest size of a cell along each axis
-    pub cell: Vec<f64>,
-    /// of the B-splines
-    pub order: usize,
-    /// along each axis, of every body
-    pub points_per_cell: Vec<usize>,
-    pub stabilisation: String,
-    /// of the artificial stiffness, over Young's modulus
-    pub background: f64,
-    /// of the energy
-    pub tolerance: f64,
-    /// of the forces
-    pub force_tolerance: f64,
-    /// nominal load steps
-    pub steps: u64,
-    /// Pa  of every material, where it depends on the height the largest
-    pub young: Vec<f64>,
-    /// by which the trials multiply all of them
-    pub stiffness: f64,
-}
-
 impl Subject {
     /// The case at `path` with overrides, of which something is asked.
     ///
@@ -123,107 +94,37 @@ impl Subject {
     /// [`Error::NoFactor`] with all reasons why it has no factor of safety, [`Error::Usage`] for overrides of the
     /// factor.
     pub fn read(path: &Path, set: &[String], question: &FosQuestion<'_>) -> Result<Self, Error> {
-        let FosQuestion {
-            sought,
-            from,
-            stage,
-            undrained,
-            ..
-        } = *question;
-        if let Some(set) = set
-            .iter()
-            .map(|set| set.trim_start())
-            .find(|set| set.starts_with("strength_reduction"))
-        {
-            let key = set.split('=').next().unwrap_or(set).trim_end();
-            let reason = format!(
-                "E0830: --set {key} changes the strength reduction, which `bsmpm fos` sets itself. Remove this --set. \
-                 Choose a stage with --stage, and undrained failure with --undrained."
-            );
-            return Err(Error::Usage { reason });
-        }
+        let FosQuestion { sought, from, .. } = *question;
+        refuse_overrides(set)?;
         let bytes = case::load(path)?;
-        let mut set = set.to_vec();
         // As it is, which says what the trials set; then with the strength that the search begins with.
-        let as_it_is = parsed(path, &bytes, &set)?;
-        let from_the_start = if stage.is_none() {
-            sought.overrides(&as_it_is, from, 1.0)
-        } else {
-            Vec::new()
-        };
-        let refused = sought.refusal(&as_it_is).map(|reason| vec![reason]);
-        if let Some(reasons) = refused {
-            return Err(Error::NoFactor {
-                path: path.to_owned(),
-                reasons,
-            });
+        let as_it_is = parsed(path, &bytes, set)?;
+        if let Some(reason) = sought.refusal(&as_it_is) {
+            return Err(no_factor(path, vec![reason]));
         }
-        let case = parsed(path, &bytes, &[&set[..], &from_the_start].concat())?;
-        let stage = match stage {
-            Some(name) => Some((name.to_owned(), until(&case, name)?)),
-            None => None,
-        };
+        let is_whole = question.stage.is_none();
+        let from_the_start = is_whole.then(|| sought.overrides(&as_it_is, from, 1.0));
+        let case = parsed(path, &bytes, &[set, &from_the_start.unwrap_or_default()].concat())?;
+        let stage = question.stage.map(|name| stage_of(&case, name)).transpose()?;
         let until = stage.as_ref().map(|(_, until)| *until);
         let reasons = refusals(&case, until);
         if !reasons.is_empty() {
-            return Err(Error::NoFactor {
-                path: path.to_owned(),
-                reasons,
-            });
+            return Err(no_factor(path, reasons));
         }
-        let whole = Quantity::new(
-            Observable::MaxDisplacement,
-            HistorySubject::Part(PointSelection::default()),
-        );
-        let mut recorded: Vec<_> = case
-            .histories
-            .iter()
-            .filter(|history| history.quantity == whole)
-            .collect();
-        recorded.sort_by_key(|history| history.scale == 1.0);
-        let column = recorded.first().map_or(QUANTITY, |history| &history.name).to_owned();
-        let scale = recorded.first().map_or(1.0, |history| history.scale);
         let counted = counted(&case, question.region)?;
-        let sides = holding_sides(&case, until);
-        let free_bodies = case
-            .rigid
-            .iter()
-            .filter(|rigid| rigid.free.contains(&true))
-            .map(|rigid| rigid.name.clone())
-            .collect();
-        let mut conditions = Conditions::of(&case, until);
-        let is_whole = stage.is_none();
         let is_grown = is_whole && ramps(&case).any(|ramp| ramp == 0.0);
-        if is_grown {
-            set.push(format!("{UNLOADED}=true"));
-        }
-        if let Some((name, _)) = &stage {
-            set.push(format!("{STAGE}={name:?}"));
-        }
-        if undrained {
-            set.push(UNDRAINED.to_owned());
-        }
-        let [of_first, of_elastic] =
-            [from, ELASTIC].map(|value| sought.overrides(&as_it_is, value, conditions.stiffness));
-        let unloaded = if is_whole {
-            Vec::new()
-        } else {
-            vec![format!("{UNLOADED}=true")]
-        };
-        let first = parsed(path, &bytes, &[&set[..], &of_first].concat())?;
-        let elastic = parsed(path, &bytes, &[&set[..], &of_elastic, &unloaded].concat())?;
+        let set = overrides_of_all(set, question, is_grown);
+        let mut conditions = Conditions::of(&case, until);
+        let first = sought.overrides(&as_it_is, from, conditions.stiffness);
+        let first = parsed(path, &bytes, &[&set[..], &first].concat())?;
+        let elastic = sought.overrides(&as_it_is, ELASTIC, conditions.stiffness);
+        let elastic = parsed(path, &bytes, &[&set[..], &elastic, &unloaded(!is_whole)].concat())?;
         let end = first.analysis.end;
-        if let Some((_, until)) = &stage {
+        if let Some(until) = until {
             // The first one is of the whole strength.
             conditions.steps = ((end - until) / case.analysis.dt).round() as u64 - 1;
         }
-        let has_friction = case.has_interface_friction();
-        let has_rigid = [
-            !case.rigid.is_empty(),
-            case.rigid.iter().any(Rigid::is_moved) || is_moved(&case),
-        ];
-        let softens = followed(&case, until).iter().any(|named| named.material.softens());
-        let holds_water = first.flow.is_some_and(|flow| flow.at_rest == Motion::Held);
+        let (column, scale) = recorded(&case);
         Ok(Self {
             path: path.to_owned(),
             bytes,
@@ -237,15 +138,18 @@ impl Subject {
             sought,
             from,
             counted,
-            sides,
-            free_bodies,
+            sides: holding_sides(&case, until),
+            free_bodies: free_bodies(&case),
             case: as_it_is,
             is_grown,
             is_stressed: is_whole && case.initial.is_some(),
-            has_friction,
-            has_rigid,
-            holds_water,
-            softens,
+            has_friction: case.has_interface_friction(),
+            has_rigid: [
+                !case.rigid.is_empty(),
+                case.rigid.iter().any(Rigid::is_moved) || is_moved(&case),
+            ],
+            holds_water: first.flow.is_some_and(|flow| flow.at_rest == Motion::Held),
+            softens: followed(&case, until).iter().any(|named| named.material.softens()),
             conditions,
         })
     }
@@ -271,16 +175,10 @@ impl Subject {
 
     /// The overrides of a trial.
     pub fn overrides(&self, factor: f64) -> Vec<String> {
-        let unloaded = self.stage.is_some() && factor == ELASTIC;
-        let unloaded = if unloaded {
-            vec![format!("{UNLOADED}=true")]
-        } else {
-            Vec::new()
-        };
         [
             &self.set[..],
             &self.sought.overrides(&self.case, factor, self.conditions.stiffness),
-            &unloaded,
+            &unloaded(self.stage.is_some() && factor == ELASTIC),
         ]
         .concat()
     }
@@ -362,6 +260,63 @@ impl Subject {
     }
 }
 
+/// Refuses overrides of what the search itself sets.
+fn refuse_overrides(set: &[String]) -> Result<(), Error> {
+    let mut set = set.iter().map(|set| set.trim_start());
+    let Some(set) = set.find(|set| set.starts_with("strength_reduction")) else {
+        return Ok(());
+    };
+    let key = set.split('=').next().unwrap_or(set).trim_end();
+    let reason = format!(
+        "E0830: --set {key} changes the strength reduction, which `bsmpm fos` sets itself. Remove this --set. \
+         Choose a stage with --stage, and undrained failure with --undrained."
+    );
+    Err(Error::Usage { reason })
+}
+
+/// Says that the case at `path` has no factor of safety.
+fn no_factor(path: &Path, reasons: Vec<String>) -> Error {
+    Error::NoFactor {
+        path: path.to_owned(),
+        reasons,
+    }
+}
+
+/// The overrides `set` of the search, and those that all of its trials have in addition.
+fn overrides_of_all(set: &[String], question: &FosQuestion<'_>, is_grown: bool) -> Vec<String> {
+    let mut set = [set, &unloaded(is_grown)].concat();
+    if let Some(name) = question.stage {
+        set.push(format!("{STAGE}={name:?}"));
+    }
+    if question.undrained {
+        set.push(UNDRAINED.to_owned());
+    }
+    set
+}
+
+/// The override that lets a trial start without stress, if it does.
+fn unloaded(is_unloaded: bool) -> Vec<String> {
+    is_unloaded.then(|| format!("{UNLOADED}=true")).into_iter().collect()
+}
+
+/// What the case calls the largest displacement of all points, and by which it multiplies it.
+fn recorded(case: &Case) -> (String, f64) {
+    let whole = Quantity::new(
+        Observable::MaxDisplacement,
+        HistorySubject::Part(PointSelection::default()),
+    );
+    let histories = case.histories.iter().filter(|history| history.quantity == whole);
+    let recorded = histories.min_by_key(|history| history.scale == 1.0);
+    let column = recorded.map_or(QUANTITY, |history| &history.name).to_owned();
+    (column, recorded.map_or(1.0, |history| history.scale))
+}
+
+/// Names of the rigid bodies that move freely.
+fn free_bodies(case: &Case) -> Vec<String> {
+    let free = case.rigid.iter().filter(|rigid| rigid.free.contains(&true));
+    free.map(|rigid| rigid.name.clone()).collect()
+}
+
 /// Which points of a case are judged, in a region of `[lower..., upper...]` or everywhere.
 fn counted(case: &Case, region: &[f64]) -> Result<CountedPoints, Error> {
     let dims = case.grid.dims();
@@ -412,74 +367,9 @@ fn holding_sides(case: &Case, until: Option<f64>) -> Vec<HoldingSide> {
     sides
 }
 
-/// What Young's moduli must be multiplied with so that the load strains no body by more than [`SMALL`], to three
-/// digits.
-fn stiffness(case: &Case, materials: &[NamedMaterial]) -> f64 {
-    // What consolidates does so by its own stiffness, and what softens or has been compressed fails by it.
-    let mut followed = (0..case.materials.len()).filter(|number| case.is_followed(*number));
-    if case.flow.is_some() || followed.any(|number| case.materials[number].material.softens()) {
-        return 1.0;
-    }
-    let up = case.grid.dims() - 1;
-    let heights = case
-        .bodies
-        .iter()
-        .map(|body| body.region.corners().map(|corner| corner[up]));
-    let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [c, d]| {
-        [a.min(c), b.max(d)]
-    });
-    let base = case.grid.lower()[up];
-    let mut softest = f64::INFINITY;
-    for body in &case.bodies {
-        let material = &materials[body.material].material;
-        for corner in body.region.corners() {
-            softest = softest.min(material.at(corner[up] - base).elastic().young);
-        }
-    }
-    let densities = case.bodies.iter().filter_map(|body| {
-        let named = &case.materials[body.material];
-        named.saturated.or(named.density)
-    });
-    let gravity = case.gravity.as_ref().map_or(0.0, |gravity| {
-        gravity.acceleration.iter().fold(0.0, |length: f64, g| length.hypot(*g))
-    });
-    let weight = densities.fold(0.0, f64::max) * gravity * (high - low);
-    let tractions = case.tractions.iter().map(Traction::largest);
-    let driven = case.rigid.iter().map(|rigid| pressure(rigid, case.geometry, gravity));
-    let needed = (weight + tractions.chain(driven).fold(0.0, f64::max)) / softest / SMALL;
-    if needed < UNCHANGED {
-        1.0
-    } else {
-        format!("{needed:.2e}").parse().unwrap_or(needed)
-    }
-}
-
-/// Pa  what drives a rigid body, over its width.
-fn pressure(rigid: &Rigid, geometry: Geometry, gravity: f64) -> f64 {
-    let is_round = geometry == Geometry::Axisymmetric;
-    let half = match &rigid.shape {
-        RigidShape::Circle { radius, .. } => *radius,
-        RigidShape::Polygon(corners) => {
-            let [right, left] = [1.0, -1.0].map(|side| {
-                let places = corners.iter().map(|corner| side * corner[0]);
-                places.fold(f64::NEG_INFINITY, f64::max)
-            });
-            if is_round { right } else { 0.5 * (right + left) }
-        }
-        // Nothing moves freely in space.
-        RigidShape::InSpace(_) => return 0.0,
-    };
-    let area = if is_round {
-        std::f64::consts::PI * half * half
-    } else {
-        2.0 * half
-    };
-    (rigid.force[0].hypot(rigid.force[1]) + rigid.mass[0] * gravity) / area
-}
-
-/// When the stage of a name ends.
-fn until(case: &Case, name: &str) -> Result<f64, Error> {
-    case.end_of_stage(name).ok_or_else(|| {
+/// The stage of a name, and when it ends.
+fn stage_of(case: &Case, name: &str) -> Result<(String, f64), Error> {
+    let until = case.end_of_stage(name).ok_or_else(|| {
         let names = case
             .stages
             .iter()
@@ -492,70 +382,6 @@ fn until(case: &Case, name: &str) -> Result<f64, Error> {
                 names.join(", ")
             ),
         }
-    })
-}
-
-impl Conditions {
-    fn of(case: &Case, until: Option<f64>) -> Self {
-        let materials = case.materials_at(acting(case, until));
-        let mut points_per_cell: Vec<usize> = case.bodies.iter().map(|body| body.points_per_cell).collect();
-        points_per_cell.dedup();
-        Self {
-            cell: case.grid.axes.iter().map(bsmpm_scene::GridAxis::longest).collect(),
-            order: case.grid.order,
-            points_per_cell,
-            stabilisation: case.stabilisation.word().to_owned(),
-            background: case.solver.background,
-            tolerance: case.solver.tolerance,
-            force_tolerance: case.solver.force_tolerance,
-            steps: (case.analysis.end / case.analysis.dt).round() as u64,
-            young: followed(case, until)
-                .iter()
-                .map(|named| named.material.elastic().young)
-                .collect(),
-            stiffness: stiffness(case, &materials),
-        }
-    }
-
-    /// Cells and points in words.
-    pub fn mesh(&self) -> String {
-        let mut sizes: Vec<String> = self.cell.iter().map(|size| format!("{} m", shown(*size))).collect();
-        sizes.dedup();
-        let cell = format!("h = {}", sizes.join(" x "));
-        let points = self.points_per_cell.iter();
-        let points: Vec<String> = points
-            .map(|points| vec![points.to_string(); self.cell.len()].join(" x "))
-            .collect();
-        format!("{cell}, {} points a cell, order {}", points.join(" and "), self.order)
-    }
-
-    /// Everything in words.
-    pub fn lines(&self) -> [String; 2] {
-        let young: Vec<String> = self.young.iter().map(|young| shown(young * 1e-6)).collect();
-        [
-            format!(
-                "{}; {}; background {:e} E",
-                self.mesh(),
-                self.stabilisation,
-                self.background
-            ),
-            format!(
-                "{} load steps; tolerances {:e} (energy), {:e} (forces); E = {} MPa{}",
-                self.steps,
-                self.tolerance,
-                self.force_tolerance,
-                young.join(", "),
-                if self.stiffness == 1.0 {
-                    String::new()
-                } else {
-                    format!(", times {}", self.stiffness)
-                }
-            ),
-        ]
-    }
-}
-
-/// A number without the noise that divisions leave at its end.
-fn shown(number: f64) -> String {
-    crate::record::short(number).to_string()
+    })?;
+    Ok((name.to_owned(), until))
 }
