@@ -15,7 +15,6 @@ use crate::field::pore_water::residual::{ExcessPressure, FlowState, pushed};
 use crate::grid::transfer::scalars;
 use crate::kinematics::{Gradient, Kinematics};
 use crate::model::Model;
-use crate::points::Points;
 use crate::step::problem::Problem;
 use crate::step::trial::DeformationIncrement;
 use crate::tensor::{Tensor, Vector};
@@ -61,7 +60,15 @@ impl<'a, const D: usize> WaterTangent<'a, D> {
             let wet = pores.wet[p].as_ref()?;
             let dilation = trial.dilation(problem.points, p);
             let excess = ExcessPressure { value, gradient };
-            Change::at(problem.model, problem.points, p, wet, &trial.dF(p), dilation, excess)
+            let state = FlowState::at(problem.model, problem.points, p, wet, &trial.dF(p), dilation, excess)?;
+            Change::at(
+                problem.model,
+                problem.points.material[p],
+                wet,
+                state,
+                dilation,
+                gradient,
+            )
         });
         Self { pores, p, points }
     }
@@ -116,19 +123,18 @@ impl<'a, const D: usize> WaterTangent<'a, D> {
 }
 
 impl<const D: usize> Change<D> {
+    /// Linearises the `state` of a point of a material for the excess pressure gradient of the trial (Pa/m).
     fn at<K>(
         model: &Model<K, D>,
-        points: &Points<D>,
-        p: usize,
+        material: u16,
         wet: &FlowPoint<D>,
-        dF: &Tensor,
+        state: FlowState<D>,
         dilation: f64,
-        excess: ExcessPressure<D>,
+        gradient: Vector<D>,
     ) -> Option<Self> {
-        let state = FlowState::at(model, points, p, wet, dF, dilation, excess)?;
         let water = model.water.as_ref()?;
         let flow = water.flow.as_ref()?;
-        let soil = flow.soils[usize::from(points.material[p])].as_ref()?;
+        let soil = flow.soils[usize::from(material)].as_ref()?;
         let FlowState {
             J,
             whole,
@@ -157,7 +163,7 @@ impl<const D: usize> Change<D> {
             relative: (by_volume, change.permeability / retained.permeability),
             tau: (
                 wet.tau * lumped,
-                wet.tau_of(excess.gradient) * (wet.lumps(soil) * change.chord),
+                wet.tau_of(gradient) * (wet.lumps(soil) * change.chord),
             ),
             presses: J * (retained.effective + change.effective * whole),
         })
