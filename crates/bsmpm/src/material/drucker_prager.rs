@@ -1,9 +1,9 @@
 //! Drucker-Prager law, theory-manual equations (T4.8), (T4.9): perfectly plastic, non-associated. Stresses return to
 //! the cone or its tip.
 
-use super::law::{Branch, FRICTIONAL, Law, Projection, Strength, Variable, frictional, split};
+use super::law::{Branch, FRICTIONAL, Law, Projection, Strength, Variable, frictional, joined, split};
 use super::{Elastic, Moduli};
-use crate::real::{Real, three};
+use crate::real::{Real, choose, three};
 use crate::tensor::Tensor;
 
 /// Fit of the cone to the Mohr-Coulomb pyramid.
@@ -182,8 +182,8 @@ impl Law for DruckerPrager {
         let apex = after.below(zero) | root.at_most(zero);
         let kept = after / root;
         let tip = mean.like(self.strength / eta);
-        let returned = three(|k| R::choose(apex, tip, p + kept * deviator[k]));
-        let tau = three(|k| R::choose(yields, returned[k], trial[k]));
+        let returned = choose(apex, [tip; 3], joined(p, kept, deviator));
+        let tau = choose(yields, returned, trial);
         let direction = three(|k| deviator[k] / norm);
         Projection {
             tau,

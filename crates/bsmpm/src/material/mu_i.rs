@@ -1,9 +1,9 @@
 //! Dense granular flow μ(I), theory-manual equations (T4.17), (T4.18): a cone at constant volume, whose friction
 //! coefficient μ increases with the inertial number I.
 
-use super::law::{Branch, Law, Projection, Variable, split};
+use super::law::{Branch, Law, Projection, Variable, joined, split};
 use super::{Elastic, Moduli};
-use crate::real::{Real, three};
+use crate::real::{Real, choose, three};
 use crate::tensor::Tensor;
 use std::f64::consts::SQRT_2;
 
@@ -128,10 +128,8 @@ impl Law for MuI {
         let (gamma, rates) = self.sheared(root, pressure);
         let kept = -(gamma * self.moduli.mu / root) + 1.0;
         let mu = self.moduli.mu;
-        let tau = three(|k| {
-            let returned = R::choose(apex, zero, mean + kept * deviator[k]);
-            R::choose(yields, returned, trial[k])
-        });
+        let returned = choose(apex, [zero; 3], joined(mean, kept, deviator));
+        let tau = choose(yields, returned, trial);
         let flow = MuIReturn {
             apex,
             direction: three(|k| deviator[k] / norm),

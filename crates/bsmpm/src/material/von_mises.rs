@@ -1,8 +1,8 @@
 //! Von Mises law with linear isotropic hardening (T4.10).
 
-use super::law::{Branch, Law, Projection, Variable, split};
+use super::law::{Branch, Law, Projection, Variable, joined, split};
 use super::{Elastic, Moduli};
-use crate::real::{Real, three};
+use crate::real::{Real, choose, three};
 use crate::tensor::Tensor;
 
 /// Associated plasticity with the elastic domain `q = √(3/2) |s| ≤ σ_y + H κ`: s is the deviator of τ, κ the equivalent
@@ -100,7 +100,7 @@ impl Law for VonMises {
         let growth = (q - strength) / (shear + self.hardening);
         // The form 1 - 3μ Δκ/q would cancel for trials far outside.
         let kept = (q * self.hardening + strength * shear) / (q * (shear + self.hardening));
-        let tau = three(|k| R::choose(yields, mean + kept * deviator[k], trial[k]));
+        let tau = choose(yields, joined(mean, kept, deviator), trial);
         let direction = three(|k| deviator[k] / norm);
         let followed = self.hardening / (shear + self.hardening);
         Projection {
