@@ -150,13 +150,15 @@ fn correct<K: Kinematics<D>, const D: usize>(
     let on = nodes.context(model, mapped.shape, mapped.points, halo);
     let dF = |p: usize| found.trial.dF(p);
     let at = found.state(&dF);
-    let mut corrected = 0;
-    for interaction in interactions.iter_mut() {
-        corrected += interaction.correct(&on, &at, Correction { force, pass })?;
-    }
+    let corrected = interactions
+        .iter_mut()
+        .map(|interaction| interaction.correct(&on, &at, Correction { force, pass }))
+        .sum::<Result<usize, _>>();
     nodes.interactions = interactions;
     nodes.interactions.first_energy = found.first_energy;
-    nodes.apply_statuses();
-    nodes.count(halo);
-    Ok(corrected)
+    if corrected.as_ref().is_ok_and(|corrected| *corrected > 0) {
+        nodes.apply_statuses();
+        nodes.count(halo);
+    }
+    corrected
 }
