@@ -74,8 +74,8 @@ gate "words" ci/count-words --most 60000
 gate "clippy" cargo clippy --workspace --all-targets -- -D warnings
 RUSTDOCFLAGS='-D warnings' gate "docs" cargo doc --workspace --no-deps --lib
 gate "tests" scripts/test
-# It builds no HTML: mdBook and mdbook-katex are compiled from source, which takes minutes. After a change of equations or
-# of the layout, run scripts/book.
+# `--check` builds no HTML, because compiling mdBook and mdbook-katex takes minutes. After a change of equations or of the
+# layout, run scripts/book.
 gate "book" scripts/book --check
 gate "short cases, golden curves" scripts/golden --check
 gate "lanes" lanes_are_inlined

@@ -136,8 +136,8 @@ fn solve(universe: &Universe, task: Task, cut: Cut) -> Result<u8, u8> {
     let petsc = agreed(universe, exit::BUG, petsc)?;
     let probed = linear::probe(&petsc, &choice).map_err(|error| {
         format!(
-            "E0713: the linear solver cannot be used: {error}. Nothing was run. Choose another `solver.linear`, \
-            for example \"direct\"."
+            "E0713: the linear solver cannot be used: {error}. Nothing was run. Remove the PETSc options \
+            after `--`, or set solver.linear = \"direct\"."
         )
     });
     agreed(universe, exit::CASE, probed)?;

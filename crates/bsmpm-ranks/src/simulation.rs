@@ -14,7 +14,6 @@ use bsmpm::boundary::{Idle, Surface};
 use bsmpm::control::{AcceptedStep, Failure, Progress, Stepper};
 use bsmpm::error::StepError;
 use bsmpm::field::pore_water::observed::PoreWater;
-use bsmpm::grid::Grid;
 use bsmpm::initial::{self, Equilibrium, EquilibriumSearchReport};
 use bsmpm::interactions::free_field;
 use bsmpm::interactions::load::follower;

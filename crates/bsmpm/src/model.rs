@@ -143,7 +143,7 @@ pub struct Model<K, const D: usize> {
     pub quadrature: Quadrature,
     /// Whether functions of nearly empty cells are extrapolated from those of full cells.
     pub extended_splines: ExtendedSplines,
-    /// Fictitious soft stiffness in occupied cells, if any.
+    /// Artificial stiffness of occupied cells, if any.
     pub background: Option<Background>,
     /// Convergence criteria.
     pub criteria: Criteria,

@@ -145,8 +145,8 @@ fn unreadable(what: &str, errors: &[Error]) -> String {
              version that began the run, or start again with `--force`."
         ),
         Some((key, removed)) => format!(
-            "E0728: the case of {what} uses `{key} = {}`, which was removed after {}. The run cannot be \
-             continued. Use {}, or start again with `--force`. {}",
+            "E0728: the case of {what} uses `{key} = {}`, which was removed after {}. This version cannot \
+             continue the run. Use {}, or change the case and start again with `--force`. {}",
             removed.value(),
             removed.last,
             removed.last,

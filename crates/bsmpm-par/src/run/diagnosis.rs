@@ -174,7 +174,7 @@ fn fixed_advice(advice: Advice, case: &Case) -> &'static [&'static str] {
         ],
         Advice::SingularSystem | Advice::LinearSolver => &[
             "Check that every body is supported, or increase `solver.background`.",
-            "Append `-- -pc_type redundant` to the command line: MUMPS then solves the equations.",
+            "Set `solver.linear = \"direct\"`, and append `-- -pc_type redundant` to the command line: MUMPS then solves the equations.",
         ],
         Advice::ShorterSteps => &["Increase `analysis.steps`, or reduce `analysis.dt`."],
         Advice::Iteration | Advice::CreatedEnergy | Advice::LooseBody | Advice::OverlappingBodies | Advice::None => &[],

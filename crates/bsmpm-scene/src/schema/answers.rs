@@ -102,7 +102,7 @@ const ANSWERS: &[Answer] = &[
     ),
     symbol(
         &["fracture_energy", "Gf", "G_f"],
-        "The softening of a crack with the fracture energy G_f is the key `crack_opening` = 2 G_f / tensile_strength.",
+        "The softening of a crack with the fracture energy G_f is the key `crack_opening` = 2 G_f / tensile_strength (linear softening).",
     ),
     symbol(
         &["adhesion"],

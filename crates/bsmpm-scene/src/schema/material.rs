@@ -289,9 +289,9 @@ pub(crate) static MATERIAL: Table = Table {
             "crack_opening",
             Quantity(In::Length, Range::POSITIVE),
             Optional,
-            "Opening of a crack at which tensile_strength has decreased to 0; with exponential softening by 95 %. In \
-             cells of size h it is a plastic strain of crack_opening / (2 h), so that the dissipated energy does not \
-             depend on the cell size (crack-band model). All cells must have the same size. Without this key the \
+            "Opening of a crack at which tensile_strength has decreased to 0; with exponential softening, 5 % of it \
+             remain. In cells of size h the crack is smeared over 2 h, so its plastic strain is crack_opening / (2 h). \
+             The dissipated energy then does not depend on the cell size (crack-band model). All cells must have the same size. Without this key the \
              tensile strength is constant.",
         )
         .symbol("w_c")

@@ -147,8 +147,8 @@ pub(super) fn warn_of_background(case: &Case, report: &mut Report<'_>) {
     let bears_loads = !case.has_prescribed_motion() || case.strength_reduction.is_some();
     if is_at_rest && bears_loads && case.solver.background > SOFT {
         report.warn(format!(
-            "W0602: solver.background: the artificial stiffness of empty cells ({:e}) is above {SOFT:e} and makes the \
-             ground too strong. Remove `background`.",
+            "W0602: solver.background: the artificial stiffness ({:e}) is above {SOFT:e} and makes the ground too \
+             strong. Remove `background`.",
             case.solver.background
         ));
     }

@@ -32,7 +32,7 @@ const LAST: &str = "bsmpm 0.1.0, commit 7816fb16";
 pub(super) const PETSC_NAMES: RemovedWord = RemovedWord {
     word: "{ ksp, pc, factor }",
     last: LAST,
-    remedy: "Use a word, such as linear = \"direct\", or pass PETSc options after `--`, such as `-- -pc_type redundant`.",
+    remedy: "Use a word, such as linear = \"direct\". PETSc options follow `--` on the command line.",
 };
 
 /// The F-bar method of Zhao, Jiang and Choo (2022), which creates energy.

@@ -1,6 +1,6 @@
 //! Tests that a preset grades the cells around footings, loads and rigid bodies.
 
-use super::{COLUMN, FOOTING, valid};
+use super::{COLUMN, FOOTING, discretisation, valid};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm_scene::{Case, GridAxis, seed};
 

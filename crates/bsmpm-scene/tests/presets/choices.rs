@@ -1,20 +1,8 @@
 //! Tests that a preset chooses what the case leaves open, and that given keys win.
 
-use super::{COLUMN, FOOTING, SLOPE, valid};
+use super::{COLUMN, FOOTING, SLOPE, discretisation, valid};
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm_scene::{Case, differences};
-
-/// Cells along x, their edge in m, points along it, length of a step, force tolerance.
-fn discretisation(case: &Case) -> (usize, f64, usize, f64, f64) {
-    let x = &case.grid.axes[0];
-    (
-        x.cells(),
-        x.shortest(),
-        case.bodies[0].points_per_cell,
-        case.analysis.dt,
-        case.solver.force_tolerance,
-    )
-}
 
 #[test]
 fn every_word_fills_in_another_discretisation_of_the_same_scene() {

@@ -22,3 +22,15 @@ fn read(text: &str, overrides: &[&str]) -> Result<Case, Vec<Error>> {
 fn valid(text: &str, overrides: &[&str]) -> Case {
     read(text, overrides).unwrap_or_else(|errors| panic!("{overrides:?}: {errors:#?}"))
 }
+
+/// Cells along x, their edge in m, points along it, length of a step, force tolerance.
+fn discretisation(case: &Case) -> (usize, f64, usize, f64, f64) {
+    let x = &case.grid.axes[0];
+    (
+        x.cells(),
+        x.shortest(),
+        case.bodies[0].points_per_cell,
+        case.analysis.dt,
+        case.solver.force_tolerance,
+    )
+}

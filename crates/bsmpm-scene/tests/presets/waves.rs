@@ -1,7 +1,6 @@
 //! Tests that a preset takes cells that resolve the waves of a record.
 
 use super::valid;
-use bsmpm_scene::Case;
 
 /// A bar of 64 m between rollers; a pulse of 95 % of its energy below 1.664 times 2 Hz runs along it at 60 m/s.
 fn pulsed(frequency: f64) -> String {

@@ -1,7 +1,6 @@
 //! Tests that circles and cut-outs have the right points.
 
 use super::{METRES, Random, case, polygon, shoelace, star, try_case, verify, winds};
-use bsmpm_scene::seed;
 
 #[test]
 fn a_ball_on_the_axis_is_what_a_box_leaves_of_a_circle() {

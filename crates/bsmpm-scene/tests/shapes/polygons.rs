@@ -1,7 +1,7 @@
 //! Tests that polygons have the right points, areas, overlaps and weights.
 
 use super::{ELSEWHERE, GRADED, METRES, Random, case, polygon, shoelace, star, try_case, verify, winds};
-use bsmpm_scene::{Case, Region, seed};
+use bsmpm_scene::{Case, Region};
 
 #[test]
 fn slopes_of_the_paper() {

@@ -20,7 +20,7 @@ use crate::points::Points;
 use form::{CellForms, Forms};
 use std::borrow::Cow;
 
-/// Soft background of all occupied cells.
+/// Artificial stiffness of all occupied cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Background {
     /// Fraction c of the largest Young's modulus in the cell (-).
@@ -44,7 +44,7 @@ pub struct Blocks {
     forms: CellForms,
 }
 
-/// Background stiffness of a cell: `factor` times a geometric block.
+/// Artificial stiffness of a cell: `factor` times a geometric block.
 #[derive(Clone, Copy, Debug)]
 struct SoftCell {
     form: usize,

@@ -6,6 +6,7 @@ use super::{Layer, profile};
 use crate::grid::GridSpec;
 use crate::record::Record;
 use crate::report::Report;
+use crate::rounding::brief;
 use bsmpm::material::Decay;
 
 /// Keys that have a meaning only with others.
@@ -67,9 +68,11 @@ fn warn_of_apex(record: &Record, law: &Parameters, layer: Option<&Layer>, report
         let strength = law.of("tensile_strength").at(y);
         if friction > 0.0 && strength > BEYOND * apex {
             report.warn(format!(
-                "W0318: {}: {strength:.4} Pa exceeds c/tan(phi) = {apex:.4} Pa, which the law carries at most, so it \
-                 has no effect at y = {y} m. Reduce `tensile_strength`, or remove it.",
-                record.path_of("tensile_strength")
+                "W0318: {}: {} Pa has no effect at y = {y} m, because the law carries at most c/tan(phi) = {} Pa. \
+                 Reduce it below this value, or remove it.",
+                record.path_of("tensile_strength"),
+                brief(strength),
+                brief(apex)
             ));
             return;
         }
@@ -90,8 +93,8 @@ fn warn_of_collapse(record: &Record, law: &Parameters, layer: Option<&Layer>, re
         let limit = young.at(y);
         if rate > limit {
             report.warn(format!(
-                "W0319: {}: the tensile strength falls by {rate:.3e} Pa per unit of crack strain (limit {limit:.3e} \
-                 Pa), so it is lost at once. Increase `crack_opening`, or use smaller cells.",
+                "W0319: {}: the tensile strength falls by {rate:.3e} Pa per unit of crack strain (Young's modulus: \
+                 {limit:.3e} Pa), so a crack loses its strength at once. Increase `crack_opening`, or use smaller cells.",
                 record.path
             ));
             return;
