@@ -240,8 +240,8 @@ pub fn split<R: Real>(tau: [R; 3]) -> (R, [R; 3], R) {
     (mean, deviator, squares.root())
 }
 
-/// Returns principal values from their mean and a multiple of a deviator, the inverse of [`split`]. Without a closure it
-/// is inlined for all number types also where a law is evaluated several times.
+/// Returns principal values from their mean and a multiple of a deviator, the inverse of [`split`]. Without a closure
+/// it is inlined for all number types also where a law is evaluated several times.
 #[inline(always)]
 pub fn joined<R: Real>(mean: R, factor: R, deviator: [R; 3]) -> [R; 3] {
     [
