@@ -1,5 +1,5 @@
-//! Checkpoints: an HDF5 file with the state of a run, and a record ([`CheckpointRecord`]) with the size and hash of
-//! this file. [`Store::commit`] writes the record, which makes the checkpoint valid.
+//! Checkpoints: an HDF5 file with the state of a run, and a record ([`CheckpointRecord`]), which makes the checkpoint
+//! valid.
 
 mod find;
 mod record;

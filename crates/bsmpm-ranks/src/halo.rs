@@ -1,5 +1,5 @@
 //! Adds the contributions of all ranks to nodes that they share: first within columns of cells, then in the order of
-//! the columns. Nodal sums are therefore bitwise identical on any number of slabs.
+//! the columns.
 
 use crate::signals::{Requests, WIDTH};
 use crate::slab::{SharedLayer, Slabs, common};

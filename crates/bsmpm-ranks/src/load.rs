@@ -1,5 +1,4 @@
 //! Estimates the load of a rank, for load balance: its number of points and nodes, theory-manual equation (T12.1).
-//! Times are not measured, so that a run can be repeated exactly.
 
 use crate::slab::Slabs;
 use bsmpm::grid::Grid;

@@ -1,9 +1,7 @@
 //! List of the quantities that histories record. A new quantity is an entry here; fields of frames and profiles are in
 //! `fields.rs`.
 //!
-//! An entry has the word that cases use, its documentation, the kind of subject that it is of, unit, columns, aspects
-//! (what it needs, and how it is treated), and its value for a [`Sample`] of the state. Units are those of plane
-//! strain, in which extensive quantities are per metre of thickness.
+//! Units are those of plane strain, in which extensive quantities are per metre of thickness.
 
 #[macro_use]
 mod define;

@@ -1,7 +1,7 @@
 //! Finds openings (holes and notches) of bodies, for presets and for the indicator `cells-across-opening`.
 //!
 //! A ray starts at the surface of a body, along the outward normal. If it meets an opposite wall of the same body,
-//! there is an opening. Openings that a body fills, or with walls that slope at 60 degrees or less, do not count.
+//! there is an opening.
 
 mod plane;
 mod search;

@@ -2,7 +2,7 @@
 //!
 //! A file imports another where one of its `use` items or paths leads there. Modules and re-exports that it declares do
 //! not count, nor does what a file takes from the files above it (`step/nodes.rs` from `step.rs`): a parent and its
-//! child are one subject. What a file takes from its children counts, so that no circle hides behind a parent.
+//! child are one subject. What a file takes from its children counts.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

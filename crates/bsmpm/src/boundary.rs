@@ -1,7 +1,5 @@
 //! Boundary conditions and loads: supports, footings, loads, absorbing faces, contact and rigid bodies. They prescribe
 //! nodal displacements, or add forces to the residual.
-//!
-//! `(T6.1)` is equation (6.1) of the theory manual, `crates/bsmpm-book/src/theory/boundaries.md`.
 
 pub mod anchor;
 pub mod surface;

@@ -1,6 +1,4 @@
 //! Energy balance of a run, theory-manual equations (T10.1) to (T10.3), in J (plane strain: J per metre).
-//! [`StepEnergy`] computes each term of a step independently, so a small residual confirms the balance.
-//! [`EnergyBound`] is the energy bound of dynamic runs.
 
 mod budget;
 

@@ -19,16 +19,7 @@
 //! # A new interaction
 //!
 //! Write a file with a type that implements [`Interaction`], and its function `begin`; add one line to
-//! [`Interactions::begin`]. All methods have defaults, so that only those are written that the interaction needs:
-//!
-//! - An **elastic (Winkler) foundation** on a face or segment has surface points, like a footing ([`strip`]). It adds
-//!   its pressure in `add_force`, its stiffness in `add_product` and `assemble`, and its work in `add_work`. If it
-//!   carries no tension, it has statuses: `most_corrections` and `correct`.
-//! - An **anchor or strut** is an elastic bar between two places. Its two ends are attached to the nodes like surface
-//!   points, each by the rank that owns the cell. `add_force` needs the elongation, which both ends determine: sum the
-//!   displacements of the ends over the ranks (`StepContext::halo`), as [`rigid`] does for the forces on a body. The
-//!   product in `add_product` is exact; `assemble` may omit the coupling of distant ends, because it only serves as
-//!   preconditioner. `finish` stores the axial force.
+//! [`Interactions::begin`]. All methods have defaults. The manual shows an example (`how-to/add-a-boundary.md`).
 
 pub mod absorbing;
 pub mod background;

@@ -1,6 +1,5 @@
 //! Weights of material points in stress integrals, computed at the start of a step: the volumes of the points, or
-//! fitted weights. Inside a body, fitted weights integrate splines of one degree below the grid's exactly,
-//! theory-manual equation (T2.9).
+//! fitted weights, theory-manual equation (T2.9).
 
 use crate::boundary::Boundary;
 use crate::grid::occupied::OccupiedCells;

@@ -1,5 +1,5 @@
 //! Kelvin-Voigt damping: adds the viscous stress, theory-manual equation (T5.6), to the stress of the law in each
-//! iteration. Smoothing of the elastic tensor b^e causes no viscous stress.
+//! iteration.
 
 use crate::material::Moduli;
 use crate::material::{MaterialError, Response};

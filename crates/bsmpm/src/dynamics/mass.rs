@@ -1,5 +1,4 @@
 //! Mass matrix of the nodes, theory-manual equation (T2.8): lumped, or a blend of the consistent and the lumped matrix.
-//! The transfer of velocities and the inertia use the same matrix, because two different matrices would create energy.
 
 use crate::grid::{Shape, transfer};
 use crate::nodal::Nodal;

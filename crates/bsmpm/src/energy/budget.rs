@@ -1,5 +1,4 @@
-//! Energy bound of dynamic runs, theory-manual equation (T10.4): kinetic energy, elastic energy and dissipation must
-//! not exceed the initial energy plus the external work.
+//! Energy bound of dynamic runs, theory-manual equation (T10.4).
 
 use super::StoredEnergy;
 use crate::error::StepError;

@@ -1,7 +1,5 @@
-//! Pore water: effective stress (T8.1), hydrostatic pressure, given pressures, coupled flow and suction. In coupled
-//! flow the excess pore pressures are additional unknowns.
-//!
-//! `(T8.1)` is equation (8.1) of the theory manual, `crates/bsmpm-book/src/theory/water.md`.
+//! Pore water: effective stress, theory-manual equation (T8.1), hydrostatic pressure, given pressures, coupled flow and
+//! suction. In coupled flow the excess pore pressures are additional unknowns.
 
 pub mod ambient;
 pub mod backward;

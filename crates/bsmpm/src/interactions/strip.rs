@@ -1,11 +1,6 @@
 //! Rigid footings and prescribed segments (`Strip`). A penalty stiffness imposes the displacement; its traction is
-//! stored from step to step, theory-manual equations (T6.5), (T6.6). With a [`StripContact`], soil can slide and
-//! separate (T7.5), (T7.6).
-//!
-//! # Adjacent footings
-//!
-//! Between adjacent footings with different motions, the prescribed displacement is a spline (T6.7). Surface points
-//! there follow both motions in fixed proportions ([`MotionShare`]), which also divide their forces.
+//! stored from step to step, theory-manual equations (T6.5), (T6.6). Between adjacent footings, surface points follow
+//! both motions (T6.7). With a [`StripContact`], soil can slide and separate (T7.5), (T7.6).
 
 mod contact;
 mod interaction;

@@ -1,5 +1,4 @@
 //! Modified Cam-clay at finite strain, theory-manual equations (T4.14) to (T4.16), after Borja and Tamagnini (1998).
-//! The slopes κ* and λ* refer to the Cauchy pressure, κ̂ and λ̂ to the Kirchhoff pressure.
 
 use super::law::{Branch, Law, Projection, Variable, split};
 use super::{Elastic, Moduli};

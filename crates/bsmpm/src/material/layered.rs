@@ -1,7 +1,4 @@
 //! Material of a body: one law at all heights, or a law with parameters that depend on the height.
-//!
-//! Only the [`Material`] of a height responds to a strain. A layered material has properties that hold at all heights,
-//! and bounds.
 
 use super::{Elastic, GradedLaw, Material, Separation, Variable};
 use std::borrow::Cow;

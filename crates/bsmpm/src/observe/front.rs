@@ -1,5 +1,4 @@
-//! Run-out front, theory-manual equation (T10.8): the farthest material point of the lowest row of cells behind which
-//! half a cell is filled.
+//! Run-out front, theory-manual equation (T10.8).
 
 use crate::grid::Grid;
 use crate::kinematics::Kinematics;

@@ -1,5 +1,4 @@
-//! Section forces across a line or plane, theory-manual equations (T10.10) to (T10.12). They are the virtual work of
-//! the stress under a unit rigid motion of one side, so that scatter of single stresses cancels.
+//! Section forces across a line or plane, theory-manual equations (T10.10) to (T10.12).
 
 use crate::exact::Exact;
 use crate::grid::Grid;

@@ -1,5 +1,5 @@
-//! Internal force of consistent F-bar in dilatant material, theory-manual equation (T3.9): the mean stress is averaged
-//! with the transpose of the average of the volume change, and replaces the mean stress in (T5.1).
+//! Internal force of consistent F-bar in dilatant material, theory-manual equation (T3.9). It replaces the mean stress
+//! in (T5.1).
 
 use crate::kinematics::Kinematics;
 use crate::material::LayeredMaterial;

@@ -1,10 +1,5 @@
 //! Extended B-splines, theory-manual equations (T2.10) to (T2.12): coefficients of splines of nearly empty cells are
-//! tied to (extrapolated from) those of full cells. Splines at footings, prescribed segments and points in contact with
-//! rigid bodies are not tied.
-//!
-//! - [`Extension::extend`] sets the tied displacements.
-//! - [`Extension::reduce`] moves nodal forces of tied splines to the unknowns.
-//! - [`reduced_matrix`](super::reduced_matrix) forms the matrices E^T K E (T2.12).
+//! tied to (extrapolated from) those of full cells.
 //!
 //! A *published* tie is used by several ranks. All ranks know it and exchange its displacement and force.
 

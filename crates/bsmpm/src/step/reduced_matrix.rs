@@ -4,9 +4,6 @@
 //! ```text
 //! (E^T K E)_im = K_im + sum_j e_ij K_jm + sum_k K_ik e_mk + sum_jk e_ij K_jk e_mk.
 //! ```
-//!
-//! An entry outside the sparsity pattern is replaced by its absolute value on both diagonals, which keeps the matrix
-//! positive definite.
 
 use crate::grid::Grid;
 use crate::linear::MatrixAssembly;

@@ -1,5 +1,4 @@
-//! Prescribed or free motion of a rigid body in a step, theory-manual equation (T7.10). Free motion is integrated by
-//! [`Newmark`], except by backward Euler in the first step, at an impact and in the step after an impact.
+//! Prescribed or free motion of a rigid body in a step, theory-manual equation (T7.10).
 
 use super::body::{MOTIONS, RigidBody, RigidState};
 use super::surroundings::Surroundings;
