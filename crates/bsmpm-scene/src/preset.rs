@@ -184,7 +184,7 @@ fn fill_accuracy(
     filling.put("solver", &["tolerance"], energy, "");
     filling.put("solver", &["force_tolerance"], force, "");
     let filled = filling.filled;
-    if filled && draft.rigid.items().iter().any(|rigid| rigid.gives("free")) {
+    if filled && draft.rigid.items().iter().any(|rigid| rigid.free.is_given()) {
         report.warn(format!(
             "W0201: {ACCURACY}: the preset does not know the speed of free rigid bodies, so its steps may be too \
              long. Set analysis.steps so that these bodies move less than a cell in a step."

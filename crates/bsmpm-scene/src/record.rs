@@ -12,7 +12,7 @@ use crate::schema::{Group, Key, Kind, Presence, Table};
 use crate::slips;
 use crate::unit::Dimension;
 use crate::words::{AnalysisType, Geometry, Word};
-pub(crate) use field::{CaseTable, Field, KeyPlace, Location, OrTable};
+pub(crate) use field::{CaseTable, Field, KeyPlace, Location, Measure, OrTable, vector};
 pub(crate) use value::UNREAD;
 
 /// Of a key of the language that this version does not have.
@@ -373,11 +373,6 @@ impl Record {
     /// Path of a key of this table.
     pub(crate) fn path_of(&self, key: &str) -> String {
         join(&self.path, key)
-    }
-
-    /// Records an error about the key that follows from another one if that is about one of the `causes`.
-    pub(crate) fn consequence(&self, key: &str, message: impl Into<String>, causes: &[&str], report: &mut Report<'_>) {
-        report.consequence(self.place(key), &self.path_of(key), message, causes);
     }
 
     /// Records an error about the key.

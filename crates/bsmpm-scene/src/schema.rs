@@ -12,6 +12,7 @@ mod loads;
 mod material;
 mod output;
 mod rigid;
+mod site;
 mod stage;
 mod tables;
 mod water;
@@ -20,11 +21,20 @@ pub(crate) use answers::answer;
 
 pub use crate::unit::Dimension;
 pub use crate::words::Words;
+pub(crate) use body::{
+    BodyTable, BoxTable, CircleTable, ExtrudeTable, RevolveTable, ShapeKey, SpinTable, SurfaceTable, TerrainTable,
+};
 pub(crate) use element::{ElementStageTable, ElementTable};
+pub(crate) use flow::{DrainTable, InflowTable};
 pub(crate) use laws::LawName;
-pub(crate) use loads::{InitialTable, ReductionTable, SupportField, SupportTable};
+pub(crate) use loads::{
+    DiscTable, FootingTable, InitialTable, PointLoadTable, PrescribedTable, ReductionTable, StressProfileTable,
+    SupportField, SupportTable, TractionTable,
+};
 pub(crate) use material::MATERIAL;
-pub(crate) use output::{CheckpointTable, OutputTable};
+pub(crate) use output::{CheckTable, CheckpointTable, HistoryTable, OutputTable, ProfileTable};
+pub(crate) use rigid::RigidTable;
+pub(crate) use site::{MotionKey, PlateKey, SiteKey, StripKeys};
 pub(crate) use stage::{ExchangeTable, StageTable};
 pub use tables::ROOT;
 pub(crate) use tables::{AnalysisTable, Draft, GridTable, KnotsTable, SolverTable};

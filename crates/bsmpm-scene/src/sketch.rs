@@ -2,9 +2,8 @@
 
 use crate::case::Support;
 use crate::observables::Observable;
-use crate::record::Record;
 use crate::report::Report;
-use crate::schema::Draft;
+use crate::schema::{Draft, HistoryTable};
 use crate::source::Source;
 use crate::words::AnalysisType;
 use crate::{document, validate};
@@ -60,7 +59,7 @@ impl Sketch {
             is_timeless,
             stabilisation: regime.and_then(|_| validate::stabilisation(&draft)),
             boundary: validate::boundary(&draft),
-            footing: footing.and_then(|strip| Some([strip.pair("from")?, strip.pair("to")?])),
+            footing: footing.and_then(|strip| Some([strip.from.get()?, strip.to.get()?])),
             strength_reduction: draft
                 .strength_reduction
                 .value()
@@ -71,13 +70,13 @@ impl Sketch {
 }
 
 impl SketchedHistory {
-    fn of(record: &Record) -> Option<Self> {
-        let quantity: Observable = record.word("quantity")?;
-        let name = record.text("name").map_or_else(|| quantity.to_string(), str::to_owned);
+    fn of(record: &HistoryTable) -> Option<Self> {
+        let quantity = record.quantity.get()?;
+        let name = record.name.text().map_or_else(|| quantity.to_string(), str::to_owned);
         Some(Self {
             quantity,
             name,
-            scale: record.number("scale")?,
+            scale: record.scale.get()?,
         })
     }
 }

@@ -1,15 +1,11 @@
 //! Finds time-dependent inputs of a case that cause waves.
 
-use crate::record::{CaseTable, ListRow, Record};
-use crate::schema::{Draft, SupportTable};
+use crate::record::{CaseTable, Field, ListRow, OrTable, vector};
+use crate::schema::{Draft, SiteKey, SupportTable, TractionTable};
 use crate::spectrum::{InputKind, Signal};
 use crate::words::{Side, Support};
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm_shapes::polygon;
-
-/// What loads are given by, and which loads. Rigid bodies are left out: in contact material flows more than it swings.
-const FORCES: [&str; 4] = ["amplitude", "stress_path", "pressure_path", "force_path"];
-const LOADED: [&str; 2] = ["traction", "point_load"];
 
 /// Cells a wavelength at which the speed of a wave is wrong by 2 %, by splines of order 1 to 3. Rounded up from a bar
 /// with two and three points along each axis of a cell and 100 steps a period (trials of `waves`).
@@ -47,7 +43,8 @@ impl WaveInput {
     }
 }
 
-/// The inputs of a case that a record or a table gives, but for those that make no wave.
+/// The inputs of a case, but for those that make no wave. Rigid bodies are left out: in contact material flows more
+/// than it swings.
 pub(crate) fn inputs(draft: &Draft) -> Vec<WaveInput> {
     let Some(end) = draft.analysis.value().and_then(|analysis| analysis.end.get()) else {
         return Vec::new();
@@ -60,43 +57,46 @@ pub(crate) fn inputs(draft: &Draft) -> Vec<WaveInput> {
         let path = &shaking.location().path;
         found.extend(WaveInput::of(path, InputKind::Acceleration, rows, axis, end));
     }
-    for (table, record) in LOADED.into_iter().flat_map(|table| listed(draft, table)) {
-        for (key, rows) in FORCES.into_iter().filter_map(|key| Some((key, record.rows(key)?))) {
-            let along = if key == "amplitude" {
-                stress(record)
-            } else {
-                columns(rows)
+    for load in draft.traction.items() {
+        for key in load.courses() {
+            let Some(rows) = key.value() else { continue };
+            let along = match key.path() == load.amplitude.path() {
+                true => stress(load),
+                false => columns(rows),
             };
-            let axis = if table == "traction" {
-                guided(draft, LoadedPart::of(record), pressure(record).or(along))
-            } else {
-                None
-            };
-            found.extend(WaveInput::of(&record.path, InputKind::Force, rows, axis, end));
+            let axis = guided(draft, LoadedPart::of(load.site()), pressure(load).or(along));
+            found.extend(WaveInput::of(&load.location().path, InputKind::Force, rows, axis, end));
         }
     }
-    let footing = draft.footing.value().map(|record| ("footing", record));
-    for (table, record) in listed(draft, "prescribed").chain(footing) {
-        if let Some(rows) = record.rows("path") {
-            let axis = if table == "prescribed" {
-                guided(draft, LoadedPart::of(record), columns(rows))
-            } else {
-                None
-            };
-            found.extend(WaveInput::of(&record.path, InputKind::Motion, rows, axis, end));
+    for load in draft.point_load.items() {
+        for rows in [&load.amplitude, &load.force_path].into_iter().filter_map(Field::value) {
+            found.extend(WaveInput::of(&load.location().path, InputKind::Force, rows, None, end));
         }
+    }
+    for motion in draft.prescribed.items() {
+        if let Some(rows) = motion.path.value() {
+            let axis = guided(draft, LoadedPart::of(motion.site()), columns(rows));
+            found.extend(WaveInput::of(
+                &motion.location().path,
+                InputKind::Motion,
+                rows,
+                axis,
+                end,
+            ));
+        }
+    }
+    if let Some(footing) = draft.footing.value()
+        && let Some(rows) = footing.path.value()
+    {
+        found.extend(WaveInput::of(
+            &footing.location().path,
+            InputKind::Motion,
+            rows,
+            None,
+            end,
+        ));
     }
     found
-}
-
-/// The tables of a list, each with the list's name.
-fn listed<'a>(draft: &'a Draft, table: &'static str) -> impl Iterator<Item = (&'static str, &'a Record)> {
-    let records = match table {
-        "traction" => &draft.traction,
-        "prescribed" => &draft.prescribed,
-        _ => &draft.point_load,
-    };
-    records.items().iter().map(move |record| (table, record))
 }
 
 /// The only axis along which numbers are not zero.
@@ -114,20 +114,19 @@ fn columns(rows: &[ListRow]) -> Option<usize> {
 }
 
 /// The only axis along which a traction acts.
-fn stress(record: &Record) -> Option<usize> {
-    let stress = record.vector("stress")?;
+fn stress(load: &TractionTable) -> Option<usize> {
+    let OrTable::Value(stress) = load.stress.value()? else {
+        return None;
+    };
+    let stress = vector(stress);
     only(|axis| stress[axis] != 0.0)
 }
 
 /// The axis that is normal to a segment under a pressure.
-fn pressure(record: &Record) -> Option<usize> {
-    let is_pressure = record.gives("pressure") || record.gives("pressure_path");
-    let [from, to] = ends(record).filter(|_| is_pressure)?;
+fn pressure(load: &TractionTable) -> Option<usize> {
+    let is_pressure = load.pressure.is_given() || load.pressure_path.is_given();
+    let [from, to] = load.site().ends().filter(|_| is_pressure)?;
     (0..2).find(|&axis| from[axis] == to[axis])
-}
-
-fn ends(record: &Record) -> Option<[[f64; 2]; 2]> {
-    Some([record.pair("from")?, record.pair("to")?])
 }
 
 /// The axis along which an input acts if its waves are of compression alone: rollers hold all faces along it, and it
@@ -154,11 +153,11 @@ enum LoadedPart {
 }
 
 impl LoadedPart {
-    fn of(record: &Record) -> Self {
-        if record.gives("face") {
-            return Self::Everything;
+    fn of(site: SiteKey<'_>) -> Self {
+        match site {
+            SiteKey::Face(_) => Self::Everything,
+            site => site.ends().map_or(Self::Unknown, Self::Segment),
         }
-        ends(record).map_or(Self::Unknown, Self::Segment)
     }
 }
 

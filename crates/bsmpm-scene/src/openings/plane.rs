@@ -1,7 +1,7 @@
 //! Outlines of 2-D bodies, to find openings.
 
 use super::{SurfaceKind, SurfacePoint};
-use crate::record::Record;
+use crate::schema::{BodyTable, ShapeKey};
 use bsmpm::tensor::Vector;
 use bsmpm_shapes::polygon;
 
@@ -31,38 +31,41 @@ pub(crate) struct PlaneBody {
 }
 
 impl PlaneShape {
-    pub(crate) fn of(record: &Record) -> Option<Self> {
-        if let Some(shape) = record.record("box") {
-            let [x, y] = shape.pair("lower")?;
-            let [to_x, to_y] = shape.pair("upper")?;
-            return Some(Self {
-                corners: vec![[x, y], [to_x, y], [to_x, to_y], [x, to_y]],
-                is_round: false,
-            });
+    pub(crate) fn of(key: ShapeKey<'_>) -> Option<Self> {
+        match key {
+            ShapeKey::Box(key) => {
+                let shape = key.value()?;
+                let [x, y] = shape.lower.pair()?;
+                let [to_x, to_y] = shape.upper.pair()?;
+                Some(Self {
+                    corners: vec![[x, y], [to_x, y], [to_x, to_y], [x, to_y]],
+                    is_round: false,
+                })
+            }
+            ShapeKey::Circle(key) => {
+                let circle = key.value()?;
+                let [x, y] = circle.centre.get()?;
+                let angle = std::f64::consts::TAU / SIDES as f64;
+                let radius = circle.radius.get()? / (0.5 * angle).cos();
+                let corners = (0..SIDES).map(|k| {
+                    let (sin, cos) = (k as f64 * angle).sin_cos();
+                    [x + radius * cos, y + radius * sin]
+                });
+                Some(Self {
+                    corners: corners.collect(),
+                    is_round: true,
+                })
+            }
+            ShapeKey::Polygon(key) => {
+                let rows = key.value()?.iter();
+                let corners: Vec<[f64; 2]> = rows.map(|row| [row.numbers[0], row.numbers[1]]).collect();
+                (corners.len() >= 3).then_some(Self {
+                    corners,
+                    is_round: false,
+                })
+            }
+            _ => None,
         }
-        if let Some(circle) = record.record("circle") {
-            let [x, y] = circle.pair("centre")?;
-            let radius = circle.number("radius")?;
-            let angle = std::f64::consts::TAU / SIDES as f64;
-            let radius = radius / (0.5 * angle).cos();
-            let corners = (0..SIDES).map(|k| {
-                let (sin, cos) = (k as f64 * angle).sin_cos();
-                [x + radius * cos, y + radius * sin]
-            });
-            return Some(Self {
-                corners: corners.collect(),
-                is_round: true,
-            });
-        }
-        let corners: Vec<[f64; 2]> = record
-            .rows("polygon")?
-            .iter()
-            .map(|row| [row.numbers[0], row.numbers[1]])
-            .collect();
-        (corners.len() >= 3).then_some(Self {
-            corners,
-            is_round: false,
-        })
     }
 
     /// Returns whether a position is inside: a ray to the right crosses its sides an odd number of times. This loop is
@@ -146,10 +149,11 @@ fn clipped([a, b]: [[f64; 2]; 2], [lower, upper]: [[f64; 2]; 2]) -> Option<[[f64
 }
 
 impl PlaneBody {
-    pub(crate) fn of(record: &Record) -> Option<Self> {
-        let cuts: Option<Vec<PlaneShape>> = record.records("subtract").iter().map(PlaneShape::of).collect();
+    pub(crate) fn of(body: &BodyTable) -> Option<Self> {
+        let cuts = body.subtract.items().iter();
+        let cuts: Option<Vec<PlaneShape>> = cuts.map(|cut| PlaneShape::of(cut.shape())).collect();
         Some(Self {
-            whole: PlaneShape::of(record)?,
+            whole: PlaneShape::of(body.shape())?,
             cuts: cuts?,
         })
     }

@@ -4,8 +4,8 @@ use super::plane::{PlaneBody, PlaneShape};
 use super::solid::surface_points;
 use super::{MirrorPlane, OpeningGeometry, Surroundings};
 use crate::case::{Case, RigidShape};
-use crate::record::{Field, Record};
-use crate::schema::{Draft, StageTable};
+use crate::record::Field;
+use crate::schema::{BodyTable, Draft, StageTable};
 use crate::words::Support;
 
 /// Parts of the grid's size by which a body may miss a face that it reaches.
@@ -58,7 +58,12 @@ pub(crate) struct BodyOpening {
 /// Those of the bodies of a plane.
 pub(crate) fn in_plane(draft: &Draft, faces: &GridFaces) -> Vec<BodyOpening> {
     let bodies: Vec<Option<PlaneBody>> = draft.body.items().iter().map(PlaneBody::of).collect();
-    let rigid: Vec<PlaneShape> = draft.rigid.items().iter().filter_map(PlaneShape::of).collect();
+    let rigid: Vec<PlaneShape> = draft
+        .rigid
+        .items()
+        .iter()
+        .filter_map(|rigid| PlaneShape::of(rigid.shape()))
+        .collect();
     let mut found: Vec<BodyOpening> = Vec::new();
     for there in phases(draft) {
         for (number, body) in bodies.iter().enumerate().filter(|(number, _)| there[*number]) {
@@ -120,8 +125,8 @@ pub(crate) fn in_space(case: &Case, draft: &Draft, faces: &GridFaces) -> Vec<Bod
                 planes: &faces.planes(region.corners()),
                 bounds: region.corners(),
             };
-            for (cut, record) in record.records("subtract").iter().enumerate() {
-                let points = surface_points(record, region.corners()).unwrap_or_default();
+            for (cut, shape) in record.subtract.items().iter().enumerate() {
+                let points = surface_points(shape.shape(), region.corners()).unwrap_or_default();
                 add(&mut found, number, cut + 1, || surroundings.opening(&points));
             }
         }
@@ -174,7 +179,7 @@ pub(crate) fn phases(draft: &Draft) -> Vec<Vec<bool>> {
 }
 
 /// Whether a key of a stage names a body.
-fn names(key: &Field<Vec<String>>, body: &Record) -> bool {
-    let name = body.text("name");
+fn names(key: &Field<Vec<String>>, body: &BodyTable) -> bool {
+    let name = body.name.text();
     key.items().iter().any(|listed| Some(listed.as_str()) == name)
 }

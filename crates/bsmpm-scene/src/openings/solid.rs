@@ -2,7 +2,7 @@
 
 use super::plane::PlaneShape;
 use super::{SurfaceKind, SurfacePoint};
-use crate::record::Record;
+use crate::schema::{ExtrudeTable, RevolveTable, ShapeKey};
 use crate::words::Axis;
 use bsmpm::tensor::Vector;
 use bsmpm_shapes::plane;
@@ -15,38 +15,32 @@ const LATITUDES: usize = 9;
 const MOST_TRIANGLES: usize = 256;
 
 /// Pieces of the surface of a shape within a cuboid (m); of terrain none, which is no hole.
-pub(crate) fn surface_points(record: &Record, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> {
-    if record.gives("box") {
-        let shape = record.record("box")?;
-        return Some(cuboid([shape.vector("lower")?, shape.vector("upper")?], bounds));
+pub(crate) fn surface_points(key: ShapeKey<'_>, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> {
+    match key {
+        ShapeKey::Box(key) => {
+            let shape = key.value()?;
+            Some(cuboid([shape.lower.vector()?, shape.upper.vector()?], bounds))
+        }
+        ShapeKey::Sphere(key) => {
+            let shape = key.value()?;
+            Some(sphere(shape.centre.vector()?.into(), shape.radius.get()?))
+        }
+        ShapeKey::Extrude(key) => extruded(key.value()?, bounds),
+        ShapeKey::Revolve(key) => revolved(key.value()?, bounds),
+        ShapeKey::Surface(key) => {
+            let shape = key.value()?;
+            let scale = shape.scale.get()?;
+            let rows = shape.triangles.value()?;
+            let every = rows.len().div_ceil(MOST_TRIANGLES).max(1);
+            let triangles = rows
+                .iter()
+                .step_by(every)
+                .map(|row| [0, 1, 2].map(|k| Vector::from([0, 1, 2].map(|axis| scale * row.numbers[3 * k + axis]))));
+            let points = triangles.enumerate();
+            Some(points.filter_map(|(edge, corners)| triangle(corners, edge)).collect())
+        }
+        _ => Some(Vec::new()),
     }
-    if record.gives("sphere") {
-        let shape = record.record("sphere")?;
-        return Some(sphere(shape.vector("centre")?.into(), shape.number("radius")?));
-    }
-    if record.gives("extrude") {
-        return extruded(record.record("extrude")?, bounds);
-    }
-    if record.gives("revolve") {
-        return revolved(record.record("revolve")?, bounds);
-    }
-    if record.gives("surface") {
-        let shape = record.record("surface")?;
-        let scale = shape.number("scale")?;
-        let rows = shape.rows("triangles")?;
-        let every = rows.len().div_ceil(MOST_TRIANGLES).max(1);
-        let triangles = rows
-            .iter()
-            .step_by(every)
-            .map(|row| [0, 1, 2].map(|k| Vector::from([0, 1, 2].map(|axis| scale * row.numbers[3 * k + axis]))));
-        return Some(
-            triangles
-                .enumerate()
-                .filter_map(|(edge, corners)| triangle(corners, edge))
-                .collect(),
-        );
-    }
-    Some(Vec::new())
 }
 
 fn triangle([a, b, c]: [Vector<3>; 3], edge: usize) -> Option<SurfacePoint> {
@@ -106,13 +100,13 @@ fn sphere(center: Vector<3>, radius: f64) -> Vec<SurfacePoint> {
 }
 
 /// Sides of an outline at the middle of its length within a cuboid (m), and its ends.
-fn extruded(shape: &Record, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> {
-    let outline = PlaneShape::of(shape)?;
+fn extruded(shape: &ExtrudeTable, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> {
+    let outline = PlaneShape::of(shape.outline())?;
     let along = [Axis::X, Axis::Y, Axis::Z]
         .iter()
-        .position(|axis| Some(*axis) == shape.word::<Axis>("along"))?;
-    let from = shape.number("from")?;
-    let to = shape.number("to")?;
+        .position(|axis| Some(*axis) == shape.along.get())?;
+    let from = shape.from.get()?;
+    let to = shape.to.get()?;
     let [across, up] = plane(along);
     let axis = Vector::from_fn(|component, _| f64::from(u8::from(component == along)));
     let first = from.max(bounds[0][along]);
@@ -154,9 +148,9 @@ fn placed(flat: Vector<3>, across: usize, up: usize) -> Vector<3> {
 
 /// Sides of an outline of radius and height in some directions around the vertical, between the heights of a cuboid
 /// (m).
-fn revolved(shape: &Record, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> {
-    let outline = PlaneShape::of(shape)?;
-    let [x, y] = shape.pair("about")?;
+fn revolved(shape: &RevolveTable, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> {
+    let outline = PlaneShape::of(shape.outline())?;
+    let [x, y] = shape.about.get()?;
     let sides = outline.surface([[0.0, bounds[0][2]], [f64::MAX, bounds[1][2]]]);
     let mut points = Vec::new();
     for azimuth in 0..AZIMUTHS {

@@ -172,7 +172,7 @@ impl PresetScene<'_> {
             .prescribed
             .items()
             .iter()
-            .filter_map(|motion| motion.word("face"))
+            .filter_map(|motion| motion.face.get())
             .collect();
         let mut sides = Side::ALL[axis].into_iter();
         Some(sides.all(|side| boundary.face(side).plain() != Some(Support::Free) || moved.contains(&side)))

@@ -47,7 +47,13 @@ impl PresetScene<'_> {
         let Some(faces) = self.faces() else { return Vec::new() };
         let bodies: Vec<Option<PlaneBody>> = self.draft.body.items().iter().map(PlaneBody::of).collect();
         // What a rigid body touches is no free corner.
-        let rigid: Vec<PlaneShape> = self.draft.rigid.items().iter().filter_map(PlaneShape::of).collect();
+        let rigid: Vec<PlaneShape> = self
+            .draft
+            .rigid
+            .items()
+            .iter()
+            .filter_map(|rigid| PlaneShape::of(rigid.shape()))
+            .collect();
         let mut found: Vec<[f64; 2]> = Vec::new();
         for there in openings::phases(self.draft) {
             let there: Vec<&PlaneBody> = bodies

@@ -1,6 +1,7 @@
 //! Computes the region that a moving rigid body passes through. A preset (key `accuracy`) chooses fine cells there.
 
-use crate::record::Record;
+use super::scene::corners;
+use crate::schema::{RigidTable, ShapeKey};
 use bsmpm_shapes::polygon;
 
 /// Part of a body's shorter side by which a place lies beyond its edge.
@@ -34,21 +35,15 @@ struct Outline {
 type Edge = (usize, bool);
 
 impl Outline {
-    fn of(rigid: &Record) -> Option<Self> {
-        if let Some(rows) = rigid.rows("polygon") {
-            let corners: Vec<[f64; 2]> = rows.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();
-            return (!corners.is_empty()).then(|| Self {
-                bounds: polygon::bounds(&corners),
-                corners,
-            });
-        }
-        let circle = rigid.record("circle")?;
-        let center = circle.pair("centre")?;
-        let radius = circle.number("radius")?;
-        Some(Self {
-            corners: Vec::new(),
-            bounds: [-radius, radius].map(|by| center.map(|at| at + by)),
-        })
+    fn of(rigid: &RigidTable) -> Option<Self> {
+        let corners = match rigid.shape() {
+            shape @ (ShapeKey::Polygon(_) | ShapeKey::Circle(_)) => corners(shape)?,
+            _ => return None,
+        };
+        let bounds = polygon::bounds(&corners);
+        let is_round = matches!(rigid.shape(), ShapeKey::Circle(_));
+        let corners = if is_round { Vec::new() } else { corners };
+        Some(Self { corners, bounds })
     }
 
     fn size(&self) -> [f64; 2] {
@@ -75,13 +70,14 @@ impl Outline {
 }
 
 /// m  from the reference point to the corner that is farthest from it
-pub(super) fn radius(rigid: &Record) -> Option<f64> {
+pub(super) fn radius(rigid: &RigidTable) -> Option<f64> {
     let Outline {
         corners,
         bounds: [lower, upper],
     } = Outline::of(rigid)?;
     let about = rigid
-        .pair("about")
+        .about
+        .get()
         .unwrap_or([0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis])));
     let all = corners.iter().chain([&lower, &upper]);
     Some(
@@ -93,7 +89,7 @@ pub(super) fn radius(rigid: &Record) -> Option<f64> {
 impl RigidExtent {
     /// Of a body that is not free, which goes by `ways` (m), beside soil in these rectangles; `None` where it meets
     /// none.
-    pub fn of(rigid: &Record, ways: &[[f64; 2]], bodies: &[[[f64; 2]; 2]]) -> Option<Self> {
+    pub fn of(rigid: &RigidTable, ways: &[[f64; 2]], bodies: &[[[f64; 2]; 2]]) -> Option<Self> {
         let outline = Outline::of(rigid)?;
         let size = outline.size();
         let edges = [0, 1].into_iter().flat_map(|axis| [(axis, false), (axis, true)]);
@@ -121,11 +117,7 @@ impl RigidExtent {
         let is_on = |(axis, up): &Edge, corner: &[f64; 2]| corner[*axis] == outline.bounds[usize::from(*up)][*axis];
         let sides = outline.corners.iter().zip(outline.corners.iter().cycle().skip(1));
         let lines = sides.filter(|(a, b)| met.iter().any(|edge| is_on(edge, a) && is_on(edge, b)));
-        let angles = rigid
-            .rows("rotation")
-            .unwrap_or_default()
-            .iter()
-            .map(|row| row.numbers[1].abs());
+        let angles = rigid.rotation.items().iter().map(|row| row.numbers[1].abs());
         (!met.is_empty()).then_some(Self {
             ends: outline.edge(first),
             corners: met.iter().flat_map(|edge| outline.edge(*edge)).collect(),

@@ -4,8 +4,8 @@
 use super::Preset;
 use super::rigid::{self, RigidExtent};
 use crate::constants::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
-use crate::record::{Field, Record};
-use crate::schema::{Draft, LawName};
+use crate::record::{CaseTable, Field, ListRow, Record};
+use crate::schema::{BodyTable, Draft, LawName, MotionKey, RigidTable, ShapeKey, SiteKey, TractionTable};
 use crate::words::{AnalysisType, Purpose};
 use bsmpm_shapes::polygon;
 
@@ -45,7 +45,7 @@ pub(super) struct PresetScene<'a> {
 /// A strip, a loaded segment or a rigid body.
 pub(super) struct GradedSegment<'a> {
     pub name: String,
-    record: &'a Record,
+    motion: Option<MotionKey<'a>>,
     /// m  of its width
     pub ends: [[f64; 2]; 2],
     rigid: Option<RigidExtent>,
@@ -171,27 +171,27 @@ impl<'a> PresetScene<'a> {
     /// Strips, loaded segments, and rigid bodies that are not free.
     pub(super) fn segments(&self) -> impl Iterator<Item = GradedSegment<'a>> + '_ {
         let draft = self.draft;
-        let listed = draft.prescribed.items().iter().chain(draft.traction.items());
-        let strips = draft.footing.value().into_iter().chain(listed).filter_map(|record| {
+        let strips = draft
+            .strips()
+            .map(|strip| (strip.location, strip.site, Some(strip.motion)));
+        let loads = draft.traction.items().iter();
+        let loads = loads.map(|load| (load.location(), load.site(), None));
+        let strips = strips.chain(loads).filter_map(|(location, site, motion)| {
             Some(GradedSegment {
-                name: record.path.clone(),
-                record,
-                ends: [record.pair("from")?, record.pair("to")?],
+                name: location.path.clone(),
+                motion,
+                ends: site.ends()?,
                 rigid: None,
             })
         });
         let bodies: Vec<[[f64; 2]; 2]> = draft.body.items().iter().filter_map(around).collect();
-        let rigid = draft
-            .rigid
-            .items()
-            .iter()
-            .enumerate()
-            .filter(|(_, record)| !record.gives("free"));
-        let rigid = rigid.filter_map(move |(number, record)| {
-            let extent = RigidExtent::of(record, &self.ways(record), &bodies)?;
+        let rigid = draft.rigid.items().iter().filter(|rigid| !rigid.free.is_given());
+        let rigid = rigid.filter_map(move |rigid| {
+            let motion = Some(rigid.motion());
+            let extent = RigidExtent::of(rigid, &self.ways(motion), &bodies)?;
             Some(GradedSegment {
-                name: format!("rigid.{number}"),
-                record,
+                name: rigid.location().path.clone(),
+                motion,
                 ends: extent.ends,
                 rigid: Some(extent),
             })
@@ -216,38 +216,34 @@ impl<'a> PresetScene<'a> {
     /// in a step
     fn moved(&self, preset: &Preset) -> impl Iterator<Item = (f64, f64)> {
         let end = self.end();
-        let of_strips = STRIP_ADVANCE;
         let of_faces = preset.advance;
-        let moved = self
-            .draft
-            .footing
-            .value()
-            .into_iter()
-            .chain(self.draft.prescribed.items());
-        moved.chain(self.draft.rigid.items()).map(move |record| {
-            let path = path_speed(record, end) * end;
-            let steady = record.pair("velocity").map_or(0.0, norm) * end;
-            let way = path + steady + record.pair("displacement").map_or(0.0, norm) + turned(record, end);
-            (way, if record.gives("face") { of_faces } else { of_strips })
-        })
+        let strips = self.draft.strips().map(move |strip| {
+            let is_face = matches!(strip.site, SiteKey::Face(_));
+            let advance = if is_face { of_faces } else { STRIP_ADVANCE };
+            (distance(strip.motion, end), advance)
+        });
+        let rigid = self.draft.rigid.items().iter();
+        strips.chain(rigid.map(move |rigid| (distance(rigid.motion(), end) + turned(rigid, end), STRIP_ADVANCE)))
     }
 
     /// m  where what is moved as prescribed comes to in the run, at every change of its speed
-    fn ways(&self, record: &Record) -> Vec<[f64; 2]> {
+    fn ways(&self, motion: Option<MotionKey<'_>>) -> Vec<[f64; 2]> {
         let end = self.end();
         let mut moved = vec![[0.0; 2]];
-        if self.seeks_limit_load() {
-            return moved;
+        match motion.filter(|_| !self.seeks_limit_load()) {
+            Some(MotionKey::Path(key)) => {
+                for pair in rows(key)
+                    .windows(2)
+                    .filter(|pair| pair[0].0 < end && pair[1].0 > pair[0].0)
+                {
+                    let part = ((end - pair[0].0) / (pair[1].0 - pair[0].0)).min(1.0);
+                    moved.push([0, 1].map(|k| pair[0].1[k] + part * (pair[1].1[k] - pair[0].1[k])));
+                }
+            }
+            Some(MotionKey::Velocity(key)) => moved.extend(key.pair().map(|velocity| velocity.map(|v| v * end))),
+            Some(MotionKey::Displacement(key)) => moved.extend(key.pair()),
+            None => {}
         }
-        for pair in rows(record)
-            .windows(2)
-            .filter(|pair| pair[0].0 < end && pair[1].0 > pair[0].0)
-        {
-            let part = ((end - pair[0].0) / (pair[1].0 - pair[0].0)).min(1.0);
-            moved.push([0, 1].map(|k| pair[0].1[k] + part * (pair[1].1[k] - pair[0].1[k])));
-        }
-        moved.extend(record.pair("velocity").map(|velocity| velocity.map(|v| v * end)));
-        moved.extend(record.pair("displacement"));
         moved
     }
 
@@ -257,7 +253,7 @@ impl<'a> PresetScene<'a> {
             Some(rigid) => (&rigid.corners[..], rigid.swing),
             None => (&segment.ends[..], 0.0),
         };
-        let ways = self.ways(segment.record);
+        let ways = self.ways(segment.motion);
         let ways = ways
             .iter()
             .flat_map(|way| [-swing, swing].map(|by| way.map(|at| at + by)));
@@ -267,15 +263,13 @@ impl<'a> PresetScene<'a> {
 
     /// s  the shortest time between two rows of the ground's acceleration or of a load
     fn interval(&self) -> Option<f64> {
-        let loads = self.draft.traction.items().iter().chain(self.draft.point_load.items());
-        let keys = ["amplitude", "stress_path", "pressure_path", "force_path"];
-        let amplitudes = loads.flat_map(|load| keys.into_iter().filter_map(|key| load.rows(key)));
-        let shaking = self
-            .draft
-            .shaking
-            .value()
-            .and_then(|shaking| shaking.acceleration.value().map(Vec::as_slice));
-        let pairs = amplitudes.chain(shaking).flat_map(|rows| rows.windows(2));
+        let tractions = self.draft.traction.items().iter();
+        let tractions = tractions.flat_map(TractionTable::courses);
+        let loads = self.draft.point_load.items().iter();
+        let loads = loads.flat_map(|load| [&load.amplitude, &load.force_path]);
+        let shaking = self.draft.shaking.value().map(|shaking| &shaking.acceleration);
+        let courses = tractions.chain(loads).chain(shaking);
+        let pairs = courses.flat_map(|key| key.items().windows(2));
         let intervals = pairs.map(|pair| pair[1].numbers[0] - pair[0].numbers[0]);
         intervals.filter(|interval| *interval > 0.0).reduce(f64::min)
     }
@@ -301,7 +295,7 @@ impl<'a> PresetScene<'a> {
             .material
             .items()
             .iter()
-            .filter(move |(name, _)| bodies.iter().any(|body| body.text("material") == Some(name.as_str())))
+            .filter(move |(name, _)| bodies.iter().any(|body| body.material.text() == Some(name.as_str())))
             .map(|(_, material)| material)
     }
 
@@ -328,10 +322,8 @@ pub(super) fn shear_wave(material: &Record, heights: [f64; 2]) -> Option<f64> {
 
 /// m  how far the corner of a rigid body that is farthest from its reference point would turn in the whole run at its
 /// fastest
-fn turned(record: &Record, end: f64) -> f64 {
-    let Some(turns) = record.rows("rotation") else {
-        return 0.0;
-    };
+fn turned(rigid: &RigidTable, end: f64) -> f64 {
+    let turns = rigid.rotation.items();
     let all: Vec<(f64, f64)> = std::iter::once((0.0, 0.0))
         .chain(turns.iter().map(|row| (row.numbers[0], row.numbers[1])))
         .collect();
@@ -339,23 +331,14 @@ fn turned(record: &Record, end: f64) -> f64 {
     let fastest = pairs
         .map(|pair| (pair[1].1 - pair[0].1).abs() / (pair[1].0 - pair[0].0))
         .fold(0.0, f64::max);
-    fastest * end * rigid::radius(record).unwrap_or(0.0)
+    fastest * end * rigid::radius(rigid).unwrap_or(0.0)
 }
 
 /// m  ends of the straight sides of a body
-fn sides(body: &Record) -> Vec<([f64; 2], [f64; 2])> {
-    let corners: Vec<[f64; 2]> = match (body.record("box"), body.rows("polygon")) {
-        (Some(shape), _) => {
-            let Some(lower) = shape.pair("lower") else {
-                return Vec::new();
-            };
-            let Some(upper) = shape.pair("upper") else {
-                return Vec::new();
-            };
-            vec![lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]]
-        }
-        (None, Some(rows)) => rows.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect(),
-        (None, None) => Vec::new(),
+fn sides(body: &BodyTable) -> Vec<([f64; 2], [f64; 2])> {
+    let corners = match body.shape() {
+        ShapeKey::Circle(_) => Vec::new(),
+        shape => corners(shape).unwrap_or_default(),
     };
     (0..corners.len())
         .map(|k| (corners[k], corners[(k + 1) % corners.len()]))
@@ -363,33 +346,52 @@ fn sides(body: &Record) -> Vec<([f64; 2], [f64; 2])> {
 }
 
 /// m  corners of a body's rectangle
-pub(crate) fn around(body: &Record) -> Option<[[f64; 2]; 2]> {
-    if let Some(shape) = body.record("box") {
-        return Some([shape.pair("lower")?, shape.pair("upper")?]);
-    }
-    if let Some(circle) = body.record("circle") {
-        let center = circle.pair("centre")?;
-        let radius = circle.number("radius")?;
-        return Some([-radius, radius].map(|reach| center.map(|x| x + reach)));
-    }
-    let corners: Vec<[f64; 2]> = body
-        .rows("polygon")?
-        .iter()
-        .map(|row| [row.numbers[0], row.numbers[1]])
-        .collect();
-    (!corners.is_empty()).then(|| polygon::bounds(&corners))
+pub(crate) fn around(body: &BodyTable) -> Option<[[f64; 2]; 2]> {
+    corners(body.shape()).map(|corners| polygon::bounds(&corners))
+}
+
+/// m  corners of a polygon or a box, or of the square around a circle
+pub(super) fn corners(key: ShapeKey<'_>) -> Option<Vec<[f64; 2]>> {
+    let [lower, upper] = match key {
+        ShapeKey::Box(key) => {
+            let shape = key.value()?;
+            [shape.lower.pair()?, shape.upper.pair()?]
+        }
+        ShapeKey::Circle(key) => {
+            let circle = key.value()?;
+            let center = circle.centre.get()?;
+            let radius = circle.radius.get()?;
+            [-radius, radius].map(|reach| center.map(|x| x + reach))
+        }
+        ShapeKey::Polygon(key) => {
+            let rows = key.value()?.iter();
+            let corners: Vec<[f64; 2]> = rows.map(|row| [row.numbers[0], row.numbers[1]]).collect();
+            return (!corners.is_empty()).then_some(corners);
+        }
+        _ => return None,
+    };
+    Some(vec![lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]])
 }
 
 /// s, m  Times and displacements of a path, from none at the start on.
-fn rows(record: &Record) -> Vec<(f64, [f64; 2])> {
-    let rows = record.rows("path").unwrap_or_default().iter();
+fn rows(path: &Field<Vec<ListRow>>) -> Vec<(f64, [f64; 2])> {
+    let rows = path.items().iter();
     let rows = rows.map(|row| (row.numbers[0], [row.numbers[1], row.numbers[2]]));
     std::iter::once((0.0, [0.0; 2])).chain(rows).collect()
 }
 
+/// m  how far a motion would lead in the whole run at its fastest
+fn distance(motion: MotionKey<'_>, end: f64) -> f64 {
+    match motion {
+        MotionKey::Displacement(key) => key.pair().map_or(0.0, norm),
+        MotionKey::Velocity(key) => key.pair().map_or(0.0, norm) * end,
+        MotionKey::Path(key) => path_speed(key, end) * end,
+    }
+}
+
 /// m/s  the fastest that a path leads between two of its rows, of which the first is before `end` (s)
-fn path_speed(record: &Record, end: f64) -> f64 {
-    let places = rows(record);
+fn path_speed(path: &Field<Vec<ListRow>>, end: f64) -> f64 {
+    let places = rows(path);
     let speeds = places.windows(2).map(|pair| {
         let [from, to] = [pair[0], pair[1]];
         let t = to.0 - from.0;

@@ -67,23 +67,11 @@ impl PresetScene<'_> {
     /// Whether a face of the grid, a strip or a rigid body is in contact with material.
     fn touches(&self) -> bool {
         let mut boundaries = self.draft.boundary.value().into_iter();
-        let strips = self
-            .draft
-            .footing
-            .value()
-            .into_iter()
-            .chain(self.draft.prescribed.items());
         let has_contact = boundaries.any(|boundary| {
             let mut faces = Side::ALL.as_flattened().iter().map(|side| boundary.face(*side));
             faces.any(|face| face.table().is_some() || face.plain() == Some(Support::Contact))
         });
-        has_contact
-            || !self.draft.rigid.items().is_empty()
-            || strips.into_iter().any(|strip| {
-                ["interface", "components"]
-                    .into_iter()
-                    .any(|key| strip.record(key).is_some())
-            })
+        has_contact || !self.draft.rigid.items().is_empty() || self.draft.strips().any(|strip| strip.contact.is_some())
     }
 
     /// m/s  slowest elastic wave that an input makes in the bodies' materials, at the middle of their height

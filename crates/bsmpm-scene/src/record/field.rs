@@ -4,6 +4,7 @@ use super::{Datum, ListRow, Record};
 use crate::error::Origin;
 use crate::report::Report;
 use crate::schema::Table;
+use crate::unit::Dimension;
 use crate::words::Word;
 use std::ops::Deref;
 
@@ -41,9 +42,15 @@ pub(crate) struct KeyPlace {
     path: String,
     origin: Origin,
     is_given: bool,
+    has_unit: bool,
 }
 
 impl KeyPlace {
+    /// Whether the case gives the key with a unit, so that its author has said which one is meant.
+    pub(crate) fn has_unit(&self) -> bool {
+        self.has_unit
+    }
+
     /// Whether the case gives the key, even with a wrong value.
     pub(crate) fn is_given(&self) -> bool {
         self.is_given
@@ -62,6 +69,11 @@ impl KeyPlace {
     /// Place of the value, or of the table if the key is absent.
     pub(crate) fn origin(&self) -> Origin {
         self.origin
+    }
+
+    /// Path of the table that has the key.
+    pub(crate) fn table_path(&self) -> &str {
+        self.path.rsplit_once('.').map_or("", |(table, _)| table)
     }
 
     /// Records an error about the key that follows from another one if that is about one of the `causes`.
@@ -143,9 +155,18 @@ impl Field<String> {
 impl Field<Vec<f64>> {
     /// As many numbers as the geometry has axes, and zeros behind.
     pub(crate) fn vector(&self) -> Option<[f64; 3]> {
-        let numbers = self.value()?;
-        Some(std::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(0.0)))
+        self.value().map(|numbers| vector(numbers))
     }
+
+    /// Two numbers, if there are two.
+    pub(crate) fn pair(&self) -> Option<[f64; 2]> {
+        self.value()?.as_slice().try_into().ok()
+    }
+}
+
+/// As many numbers as the geometry has axes, and zeros behind.
+pub(crate) fn vector(numbers: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(0.0))
 }
 
 impl<T> Field<Vec<T>> {
@@ -171,12 +192,14 @@ impl Record {
             path: self.path_of(key),
             origin: self.origin,
             is_given: false,
+            has_unit: false,
         };
         let Some(field) = self.fields.iter_mut().find(|field| field.key == key) else {
             return Field { place, value: None };
         };
         place.origin = field.origin;
         place.is_given = field.written;
+        place.has_unit = field.is_worded;
         Field {
             place,
             value: field.datum.take().and_then(read),
@@ -195,6 +218,13 @@ impl Record {
             origin: self.origin,
         }
     }
+}
+
+/// A number in SI and the dimension of its unit, if it has one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Measure {
+    pub(crate) number: f64,
+    pub(crate) dimension: Option<Dimension>,
 }
 
 /// A value, or a table in its place.
@@ -222,12 +252,17 @@ impl Datum {
         numbers: Vec<f64>, Self::Numbers(numbers) => numbers;
         rows: Vec<ListRow>, Self::Rows(rows) => rows;
         count: u64, Self::Count(count) => count;
+        measure: Measure, Self::Measure(number, dimension) => Measure { number, dimension };
         text: String, Self::Text(text) => text;
         names: Vec<String>, Self::Names(names) => names;
         flag: bool, Self::Flag(flag) => flag;
         record: Record, Self::Record(record) => record;
         records: Vec<Record>, Self::Records(records) => records;
         named_records: Vec<(String, Record)>, Self::Named(records) => records;
+    }
+
+    pub(crate) fn pair(self) -> Option<[f64; 2]> {
+        self.numbers()?.try_into().ok()
     }
 
     pub(crate) fn word<T: Word>(self) -> Option<T> {
@@ -250,6 +285,20 @@ impl Datum {
     pub(crate) fn named<T: CaseTable>(self) -> Option<Vec<(String, T)>> {
         let records = self.named_records()?.into_iter();
         Some(records.map(|(name, record)| (name, T::from_record(record))).collect())
+    }
+
+    pub(crate) fn number_or_table<T: CaseTable>(self) -> Option<OrTable<f64, T>> {
+        match self {
+            Self::Number(number) => Some(OrTable::Value(number)),
+            other => other.table().map(OrTable::Table),
+        }
+    }
+
+    pub(crate) fn numbers_or_table<T: CaseTable>(self) -> Option<OrTable<Vec<f64>, T>> {
+        match self {
+            Self::Numbers(numbers) => Some(OrTable::Value(numbers)),
+            other => other.table().map(OrTable::Table),
+        }
     }
 
     pub(crate) fn word_or_table<V: Word, T: CaseTable>(self) -> Option<OrTable<V, T>> {

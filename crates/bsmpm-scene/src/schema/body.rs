@@ -1,351 +1,277 @@
 //! Schema of bodies and their shapes.
 
-use super::Kind::*;
-use super::Presence::{Default, Optional, Required};
-use super::{Dimension as In, Key, Kind, Range, Table, key, one_of};
-use crate::words::{Axis, Word};
+use super::Presence::Optional;
+use super::rigid::GroundTable;
+use super::{Dimension as In, Key, Kind, Range, key};
+use crate::record::{CaseTable, Field, KeyPlace, ListRow};
+use crate::words::Axis;
 
-pub(super) static BODY: Table = Table {
-    header: "[[body]]",
-    doc: "A body of soil, which is filled with material points.",
-    keys: &[
-        key("material", Name, Required, "Name of the body's material.").example(r#""clay""#),
-        key(
-            "name",
-            Name,
-            Optional,
-            "Name of the body in stages, histories and results.",
-        )
-        .example(r#""lift_1""#),
-        BOX_KEY,
-        POLYGON_KEY,
-        CIRCLE_KEY,
-        EXTRUDE_KEY,
-        SPHERE_KEY,
-        REVOLVE_KEY,
-        TERRAIN_KEY,
-        SURFACE_KEY,
-        key(
-            "subtract",
-            Tables(&SUBTRACT),
-            Optional,
-            "Shapes that are removed from the body.",
-        )
-        .example("[{ box = { lower = [2.0, 2.0], upper = [4.0, 4.0] } }]"),
-        key(
-            "points_per_cell",
-            Count(1, 100),
-            Required,
-            "Number of material points along each axis of a cell. Without this key `accuracy` or `purpose` chooses the \
-             number.",
-        )
-        .example("3")
-        .or_preset(),
-        key(
-            "velocity",
-            Vector(In::Velocity, Range::ANY),
-            Optional,
-            "Velocity at the start. Without this key the body is at rest.",
-        )
-        .symbol("v")
-        .example("[1.0, 0.0]"),
-        key(
-            "spin",
-            Kind::Table(&SPIN),
-            Optional,
-            "Rigid-body rotation at the start, added to `velocity`.",
-        )
-        .example("{ rate = 1.0, about = [0.0, 0.0] }"),
-    ],
-    exclusive: &[one_of(SHAPES, true)],
-};
+table! {
+    /// A body of soil, which is filled with material points.
+    struct BodyTable = "[[body]]" {
+        /// Name of the body's material.
+        material: Name, Required, example(r#""clay""#);
+        /// Name of the body in stages, histories and results.
+        name: Name, Optional, example(r#""lift_1""#);
+        r#box: Shared(BOX_KEY, Table(BoxTable));
+        polygon: Shared(POLYGON_KEY, Rows);
+        circle: Shared(CIRCLE_KEY, Table(CircleTable));
+        extrude: Shared(EXTRUDE_KEY, Table(ExtrudeTable));
+        sphere: Shared(SPHERE_KEY, Table(SphereTable));
+        revolve: Shared(REVOLVE_KEY, Table(RevolveTable));
+        terrain: Shared(TERRAIN_KEY, Table(TerrainTable));
+        surface: Shared(SURFACE_KEY, Table(SurfaceTable));
+        /// Shapes that are removed from the body.
+        subtract: Tables(SubtractTable), Optional, example("[{ box = { lower = [2.0, 2.0], upper = [4.0, 4.0] } }]");
+        /// Number of material points along each axis of a cell. Without this key `accuracy` or `purpose` chooses the
+        /// number.
+        points_per_cell: Count(1, 100), Required, example("3"), or_preset();
+        /// Velocity at the start. Without this key the body is at rest.
+        velocity: Vector(In::Velocity, Range::ANY), Optional, symbol("v"), example("[1.0, 0.0]");
+        /// Rigid-body rotation at the start, added to `velocity`.
+        spin: Table(SpinTable), Optional, example("{ rate = 1.0, about = [0.0, 0.0] }");
+    }
+    one_of required [r#box, polygon, circle, extrude, sphere, revolve, terrain, surface];
+}
 
-const SHAPES: &[&str] = &[
-    "box", "polygon", "circle", "extrude", "sphere", "revolve", "terrain", "surface",
-];
+table! {
+    /// Rigid-body rotation at the start. A material point at x has the velocity `velocity` + rate × (x - about).
+    struct SpinTable = "spin = { rate, about, axis }" {
+        /// Angular velocity in rad/s, positive counter-clockwise.
+        rate: Quantity(In::Number, Range::ANY), Required, symbol("ω"), example("1.0");
+        /// Centre of the rotation.
+        about: Vector(In::Length, Range::ANY), Required, example("[0.0, 0.0]");
+        /// Axis of the rotation in 3-D. The rotation is right-handed about it. Default: the vertical axis.
+        axis: Vector(In::Number, Range::ANY), Optional, example("[0.0, 0.0, 1.0]");
+    }
+}
 
-pub(super) const POLYGON: Kind = Rows(&[(In::Length, Range::ANY), (In::Length, Range::ANY)]);
+table! {
+    /// A circle.
+    struct CircleTable = "circle = { centre, radius }" {
+        /// Centre of the circle.
+        centre: Pair(In::Length, Range::ANY), Required, example("[2.0, 2.0]"), renamed_from(&["center"]);
+        /// Radius of the circle.
+        radius: Quantity(In::Length, Range::POSITIVE), Required, example(r#""1 m""#);
+    }
+}
 
-static SPIN: Table = Table {
-    header: "spin = { rate, about, axis }",
-    doc: "Rigid-body rotation at the start. A material point at x has the velocity `velocity` + rate × (x - about).",
-    keys: &[
-        key(
-            "rate",
-            Quantity(In::Number, Range::ANY),
-            Required,
-            "Angular velocity in rad/s, positive counter-clockwise.",
-        )
-        .symbol("ω")
-        .example("1.0"),
-        key(
-            "about",
-            Vector(In::Length, Range::ANY),
-            Required,
-            "Centre of the rotation.",
-        )
-        .example("[0.0, 0.0]"),
-        key(
-            "axis",
-            Vector(In::Number, Range::ANY),
-            Optional,
-            "Axis of the rotation in 3-D. The rotation is right-handed about it. Default: the vertical axis.",
-        )
-        .example("[0.0, 0.0, 1.0]"),
-    ],
-    exclusive: &[],
-};
+table! {
+    /// A shape that is removed from a body. The shape may extend beyond the body.
+    struct SubtractTable = "subtract = [{ ... }, ...]" {
+        r#box: Shared(BOX_KEY, Table(BoxTable));
+        polygon: Shared(POLYGON_KEY, Rows);
+        circle: Shared(CIRCLE_KEY, Table(CircleTable));
+        extrude: Shared(EXTRUDE_KEY, Table(ExtrudeTable));
+        sphere: Shared(SPHERE_KEY, Table(SphereTable));
+        revolve: Shared(REVOLVE_KEY, Table(RevolveTable));
+        terrain: Shared(TERRAIN_KEY, Table(TerrainTable));
+        surface: Shared(SURFACE_KEY, Table(SurfaceTable));
+    }
+    one_of required [r#box, polygon, circle, extrude, sphere, revolve, terrain, surface];
+}
 
-pub(super) static CIRCLE: Table = Table {
-    header: "circle = { centre, radius }",
-    doc: "A circle.",
-    keys: &[
-        key(
-            "centre",
-            Pair(In::Length, Range::ANY),
-            Required,
-            "Centre of the circle.",
-        )
-        .example("[2.0, 2.0]")
-        .renamed_from(&["center"]),
-        key(
-            "radius",
-            Quantity(In::Length, Range::POSITIVE),
-            Required,
-            "Radius of the circle.",
-        )
-        .example(r#""1 m""#),
-    ],
-    exclusive: &[],
-};
+table! {
+    /// Ground between a terrain surface and a base. The surface is a regular raster of heights with bilinear
+    /// interpolation.
+    struct TerrainTable = "terrain = { top, base, level }" {
+        /// Heights of the terrain: rows [x, y, z] in any order. A file may also be an ESRI ASCII grid, whose values are
+        /// heights at the centres of its cells.
+        top: Rows(HEIGHTS), Required, example(r#"{ file = "terrain.asc" }"#);
+        /// Heights of the base at the same x and y as `top`. The base must not be above the terrain.
+        base: Rows(HEIGHTS), Optional, example(r#"{ file = "bedrock.asc" }"#);
+        /// Alternative to `base`: height of a horizontal base.
+        level: Quantity(In::Length, Range::ANY), Optional, example("0.0");
+    }
+    one_of required [base, level];
+}
 
-static SUBTRACT: Table = Table {
-    header: "subtract = [{ ... }, ...]",
-    doc: "A shape that is removed from a body. The shape may extend beyond the body.",
-    keys: &[
-        BOX_KEY,
-        POLYGON_KEY,
-        CIRCLE_KEY,
-        EXTRUDE_KEY,
-        SPHERE_KEY,
-        REVOLVE_KEY,
-        TERRAIN_KEY,
-        SURFACE_KEY,
-    ],
-    exclusive: &[one_of(SHAPES, true)],
-};
+table! {
+    /// A surface of triangles. The surface of a body must be closed, and closed surfaces inside it are cavities. The
+    /// surface of a traction may be open, but must be in one piece.
+    struct SurfaceTable = "surface = { triangles, scale }" {
+        /// A row for each triangle: the nine coordinates of its three corners. A file may also be STL.
+        triangles: Rows(&[(In::Length, Range::ANY); 9]), Required, example(r#"{ file = "body.stl" }"#);
+        /// Factor that multiplies all coordinates, for instance 0.001 for millimetres.
+        scale: Quantity(In::Number, Range::POSITIVE), Default("1.0"), example("0.001");
+    }
+}
 
-static TERRAIN: Table = Table {
-    header: "terrain = { top, base, level }",
-    doc: "Ground between a terrain surface and a base. The surface is a regular raster of heights with bilinear \
-          interpolation.",
-    keys: &[
-        key(
-            "top",
-            HEIGHTS,
-            Required,
-            "Heights of the terrain: rows [x, y, z] in any order. A file may also be an ESRI ASCII grid, whose values \
-             are heights at the centres of its cells.",
-        )
-        .example(r#"{ file = "terrain.asc" }"#),
-        key(
-            "base",
-            HEIGHTS,
-            Optional,
-            "Heights of the base at the same x and y as `top`. The base must not be above the terrain.",
-        )
-        .example(r#"{ file = "bedrock.asc" }"#),
-        key(
-            "level",
-            Quantity(In::Length, Range::ANY),
-            Optional,
-            "Alternative to `base`: height of a horizontal base.",
-        )
-        .example("0.0"),
-    ],
-    exclusive: &[one_of(&["base", "level"], true)],
-};
+table! {
+    /// A 2-D outline that is extended along one axis. The coordinates of the outline are those of the other two axes,
+    /// in the order x, y, z. A circle gives a cylinder.
+    struct ExtrudeTable = "extrude = { polygon, circle, along, from, to }" {
+        polygon: Shared(POLYGON_KEY, Rows);
+        circle: Shared(CIRCLE_KEY, Table(CircleTable));
+        /// Axis along which the outline is extended.
+        along: Choice(Axis), Required, example(r#""z""#);
+        /// Coordinate at which the shape begins.
+        from: Quantity(In::Length, Range::ANY), Required, example("0.0");
+        /// Coordinate at which the shape ends.
+        to: Quantity(In::Length, Range::ANY), Required, example(r#""2 m""#);
+    }
+    one_of required [polygon, circle];
+}
 
-pub(super) const HEIGHTS: Kind = Rows(&[
-    (In::Length, Range::ANY),
-    (In::Length, Range::ANY),
-    (In::Length, Range::ANY),
-]);
+table! {
+    /// A sphere.
+    struct SphereTable = "sphere = { centre, radius }" {
+        /// Centre of the sphere.
+        centre: Vector(In::Length, Range::ANY), Required, example("[0.0, 0.0, 1.0]"), renamed_from(&["center"]);
+        /// Radius of the sphere.
+        radius: Quantity(In::Length, Range::POSITIVE), Required, example(r#""1 m""#);
+    }
+}
 
-pub(super) static SURFACE: Table = Table {
-    header: "surface = { triangles, scale }",
-    doc: "A surface of triangles. The surface of a body must be closed, and closed surfaces inside it are cavities. \
-          The surface of a traction may be open, but must be in one piece.",
-    keys: &[
-        key(
-            "triangles",
-            TRIANGLES,
-            Required,
-            "A row for each triangle: the nine coordinates of its three corners. A file may also be STL.",
-        )
-        .example(r#"{ file = "body.stl" }"#),
-        key(
-            "scale",
-            Quantity(In::Number, Range::POSITIVE),
-            Default("1.0"),
-            "Factor that multiplies all coordinates, for instance 0.001 for millimetres.",
-        )
-        .example("0.001"),
-    ],
-    exclusive: &[],
-};
+table! {
+    /// An outline that is rotated about a vertical axis. The coordinates of the outline are [radius, z].
+    struct RevolveTable = "revolve = { polygon, circle, about }" {
+        /// Corners of a polygon as [radius, z], clockwise or counter-clockwise.
+        polygon: Rows(POLYGON), Optional,
+            example("[[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]]");
+        /// Alternative to `polygon`: a circle, which gives a torus.
+        circle: Table(CircleTable), Optional, example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#);
+        /// Coordinates x and y of the vertical axis.
+        about: Pair(In::Length, Range::ANY), Required, example("[0.0, 0.0]");
+    }
+    one_of required [polygon, circle];
+}
 
-const TRIANGLES: Kind = Rows(&[(In::Length, Range::ANY); 9]);
+table! {
+    /// A rectangle, in 3-D a cuboid, with edges parallel to the axes. Edges need not be grid lines.
+    struct BoxTable = "box = { lower, upper }" {
+        /// Corner with the smallest coordinates.
+        lower: Vector(In::Length, Range::ANY), Required, example("[0.0, 0.0]");
+        /// Corner with the largest coordinates.
+        upper: Vector(In::Length, Range::ANY), Required, example("[10.0, 4.0]");
+    }
+}
 
-static EXTRUDE: Table = Table {
-    header: "extrude = { polygon, circle, along, from, to }",
-    doc: "A 2-D outline that is extended along one axis. The coordinates of the outline are those of the other two \
-          axes, in the order x, y, z. A circle gives a cylinder.",
-    keys: &[
-        POLYGON_KEY,
-        CIRCLE_KEY,
-        key(
-            "along",
-            Choice(Axis::WORDS),
-            Required,
-            "Axis along which the outline is extended.",
-        )
-        .example(r#""z""#),
-        key(
-            "from",
-            Quantity(In::Length, Range::ANY),
-            Required,
-            "Coordinate at which the shape begins.",
-        )
-        .example("0.0"),
-        key(
-            "to",
-            Quantity(In::Length, Range::ANY),
-            Required,
-            "Coordinate at which the shape ends.",
-        )
-        .example(r#""2 m""#),
-    ],
-    exclusive: &[one_of(&["polygon", "circle"], true)],
-};
+/// Columns of a polygon: two coordinates.
+pub(super) const POLYGON: &[(In, Range)] = &[(In::Length, Range::ANY); 2];
+/// Columns of a raster of heights: x, y and z.
+pub(super) const HEIGHTS: &[(In, Range)] = &[(In::Length, Range::ANY); 3];
 
-pub(super) static SPHERE: Table = Table {
-    header: "sphere = { centre, radius }",
-    doc: "A sphere.",
-    keys: &[
-        key(
-            "centre",
-            Vector(In::Length, Range::ANY),
-            Required,
-            "Centre of the sphere.",
-        )
-        .example("[0.0, 0.0, 1.0]")
-        .renamed_from(&["center"]),
-        key(
-            "radius",
-            Quantity(In::Length, Range::POSITIVE),
-            Required,
-            "Radius of the sphere.",
-        )
-        .example(r#""1 m""#),
-    ],
-    exclusive: &[],
-};
+/// The key that gives a shape. Without any it is the last one, which is then absent.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum ShapeKey<'a> {
+    Sphere(&'a Field<SphereTable>),
+    Extrude(&'a Field<ExtrudeTable>),
+    Revolve(&'a Field<RevolveTable>),
+    Terrain(&'a Field<TerrainTable>),
+    Ground(&'a Field<GroundTable>),
+    Surface(&'a Field<SurfaceTable>),
+    Polygon(&'a Field<Vec<ListRow>>),
+    Circle(&'a Field<CircleTable>),
+    Box(&'a Field<BoxTable>),
+}
 
-pub(super) static REVOLVE: Table = Table {
-    header: "revolve = { polygon, circle, about }",
-    doc: "An outline that is rotated about a vertical axis. The coordinates of the outline are [radius, z].",
-    keys: &[
-        key(
-            "polygon",
-            POLYGON,
-            Optional,
-            "Corners of a polygon as [radius, z], clockwise or counter-clockwise.",
-        )
-        .example("[[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]]"),
-        key(
-            "circle",
-            Kind::Table(&CIRCLE),
-            Optional,
-            "Alternative to `polygon`: a circle, which gives a torus.",
-        )
-        .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#),
-        key(
-            "about",
-            Pair(In::Length, Range::ANY),
-            Required,
-            "Coordinates x and y of the vertical axis.",
-        )
-        .example("[0.0, 0.0]"),
-    ],
-    exclusive: &[one_of(&["polygon", "circle"], true)],
-};
+impl<'a> ShapeKey<'a> {
+    /// Where the key is written.
+    pub(crate) fn place(self) -> &'a KeyPlace {
+        match self {
+            Self::Sphere(key) => key,
+            Self::Extrude(key) => key,
+            Self::Revolve(key) => key,
+            Self::Terrain(key) => key,
+            Self::Ground(key) => key,
+            Self::Surface(key) => key,
+            Self::Polygon(key) => key,
+            Self::Circle(key) => key,
+            Self::Box(key) => key,
+        }
+    }
+}
 
-pub(super) static BOX: Table = Table {
-    header: "box = { lower, upper }",
-    doc: "A rectangle, in 3-D a cuboid, with edges parallel to the axes. Edges need not be grid lines.",
-    keys: &[
-        key(
-            "lower",
-            Vector(In::Length, Range::ANY),
-            Required,
-            "Corner with the smallest coordinates.",
-        )
-        .example("[0.0, 0.0]"),
-        key(
-            "upper",
-            Vector(In::Length, Range::ANY),
-            Required,
-            "Corner with the largest coordinates.",
-        )
-        .example("[10.0, 4.0]"),
-    ],
-    exclusive: &[],
-};
+/// Shape of a table with the keys of all shapes.
+macro_rules! any_shape {
+    ($Table:ident) => {
+        impl $Table {
+            /// The keys that exist in 3-D only.
+            pub(crate) fn solid_shapes(&self) -> [&KeyPlace; 5] {
+                [&self.extrude, &self.sphere, &self.revolve, &self.terrain, &self.surface]
+            }
+
+            /// The key that gives the shape.
+            pub(crate) fn shape(&self) -> ShapeKey<'_> {
+                first_given!(self, ShapeKey:
+                    Sphere(sphere), Extrude(extrude), Revolve(revolve), Terrain(terrain), Surface(surface),
+                    Polygon(polygon), Circle(circle), Box(r#box))
+            }
+        }
+    };
+}
+
+any_shape!(BodyTable);
+any_shape!(SubtractTable);
+
+impl ExtrudeTable {
+    /// The key that gives the outline.
+    pub(crate) fn outline(&self) -> ShapeKey<'_> {
+        first_given!(self, ShapeKey: Polygon(polygon), Circle(circle))
+    }
+}
+
+impl RevolveTable {
+    /// The key that gives the outline.
+    pub(crate) fn outline(&self) -> ShapeKey<'_> {
+        first_given!(self, ShapeKey: Polygon(polygon), Circle(circle))
+    }
+}
 
 // Keys that several tables have.
-const BOX_KEY: Key = key("box", Kind::Table(&BOX), Optional, "A rectangle, in 3-D a cuboid.")
-    .example("{ lower = [0.0, 0.0], upper = [10.0, 4.0] }");
+const BOX_KEY: Key = key(
+    "box",
+    Kind::Table(BoxTable::TABLE),
+    Optional,
+    "A rectangle, in 3-D a cuboid.",
+)
+.example("{ lower = [0.0, 0.0], upper = [10.0, 4.0] }");
 const POLYGON_KEY: Key = key(
     "polygon",
-    POLYGON,
+    Kind::Rows(POLYGON),
     Optional,
     "Corners of a polygon, clockwise or counter-clockwise.",
 )
 .example("[[0.0, 0.0], [20.0, 0.0], [0.0, 10.0]]");
 pub(super) const CIRCLE_KEY: Key = key(
     "circle",
-    Kind::Table(&CIRCLE),
+    Kind::Table(CircleTable::TABLE),
     Optional,
     "A circle. Parts outside the grid are ignored.",
 )
 .example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#);
 const EXTRUDE_KEY: Key = key(
     "extrude",
-    Kind::Table(&EXTRUDE),
+    Kind::Table(ExtrudeTable::TABLE),
     Optional,
     "An outline that is extended along an axis, for instance a cylinder. Only in 3-D.",
 )
 .example(r#"{ circle = { centre = [0.0, 0.0], radius = 1.0 }, along = "z", from = 0.0, to = 2.0 }"#);
-const SPHERE_KEY: Key = key("sphere", Kind::Table(&SPHERE), Optional, "A sphere. Only in 3-D.")
-    .example(r#"{ centre = [0.0, 0.0, 1.0], radius = "1 m" }"#);
+const SPHERE_KEY: Key = key(
+    "sphere",
+    Kind::Table(SphereTable::TABLE),
+    Optional,
+    "A sphere. Only in 3-D.",
+)
+.example(r#"{ centre = [0.0, 0.0, 1.0], radius = "1 m" }"#);
 const REVOLVE_KEY: Key = key(
     "revolve",
-    Kind::Table(&REVOLVE),
+    Kind::Table(RevolveTable::TABLE),
     Optional,
     "An outline that is rotated about a vertical axis. Only in 3-D.",
 )
 .example("{ polygon = [[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]], about = [0.0, 0.0] }");
 const TERRAIN_KEY: Key = key(
     "terrain",
-    Kind::Table(&TERRAIN),
+    Kind::Table(TerrainTable::TABLE),
     Optional,
     "The ground below a terrain surface. Only in 3-D.",
 )
 .example(r#"{ top = { file = "terrain.asc" }, level = 0.0 }"#);
 const SURFACE_KEY: Key = key(
     "surface",
-    Kind::Table(&SURFACE),
+    Kind::Table(SurfaceTable::TABLE),
     Optional,
     "The space inside a closed surface of triangles. Only in 3-D.",
 )

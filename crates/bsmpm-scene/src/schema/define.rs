@@ -121,8 +121,6 @@ macro_rules! declared_kind {
             <$Table as $crate::record::CaseTable>::TABLE,
         )
     };
-    (UntypedTable($table:expr)) => { $crate::schema::Kind::Table(&$table) };
-    (UntypedTables($table:expr)) => { $crate::schema::Kind::Tables(&$table) };
     (UntypedNamed($table:expr)) => { $crate::schema::Kind::Named(&$table) };
     ($kind:ident $(($($of:tt)*))?) => { $crate::schema::Kind::$kind $(($($of)*))? };
 }
@@ -137,8 +135,6 @@ macro_rules! value_type {
     (Named($Table:ty)) => { Vec<(String, $Table)> };
     (Profile($dimension:expr, $range:expr, $Table:ty)) => { $crate::record::OrTable<f64, $Table> };
     (PairProfile($dimension:expr, $range:expr, $Table:ty)) => { $crate::record::OrTable<Vec<f64>, $Table> };
-    (UntypedTable($table:expr)) => { $crate::record::Record };
-    (UntypedTables($table:expr)) => { Vec<$crate::record::Record> };
     (UntypedNamed($table:expr)) => { Vec<(String, $crate::record::Record)> };
     (Shared($key:expr, $($kind:tt)+)) => { value_type!($($kind)+) };
     (Quantity $(($($of:tt)*))?) => { f64 };
@@ -169,8 +165,6 @@ macro_rules! value_reader {
     (Named $($of:tt)?) => { $crate::record::Datum::named };
     (Profile $($of:tt)?) => { $crate::record::Datum::number_or_table };
     (PairProfile $($of:tt)?) => { $crate::record::Datum::numbers_or_table };
-    (UntypedTable $($of:tt)?) => { $crate::record::Datum::record };
-    (UntypedTables $($of:tt)?) => { $crate::record::Datum::records };
     (UntypedNamed $($of:tt)?) => { $crate::record::Datum::named_records };
     (Quantity $($of:tt)?) => { $crate::record::Datum::number };
     (Gradient $($of:tt)?) => { $crate::record::Datum::number };
@@ -199,6 +193,21 @@ macro_rules! exclusive_group {
             keys: &[$($crate::schema::define::name(stringify!($member))),+],
             required: $required,
             has_preset: $has_preset,
+        }
+    };
+}
+
+/// The variant of the first key of a table that is given, or of the last one.
+macro_rules! first_given {
+    ($table:ident, $Keys:ident: $($Variant:ident($key:ident)),+) => {
+        first_given!(@ $table, $Keys, $($Variant $key)+)
+    };
+    (@ $table:ident, $Keys:ident, $Last:ident $last:ident) => { $Keys::$Last(&$table.$last) };
+    (@ $table:ident, $Keys:ident, $First:ident $first:ident $($rest:ident)+) => {
+        if $table.$first.is_given() {
+            $Keys::$First(&$table.$first)
+        } else {
+            first_given!(@ $table, $Keys, $($rest)+)
         }
     };
 }

@@ -1,20 +1,18 @@
 //! Schema of footings, prescribed displacements, loads, strength reduction and initial stress.
 
-use super::Kind::*;
 use super::Presence::{Default, Optional, Required};
-use super::{Dimension as In, Key, Kind, Range, Table, body, key, one_of};
-use crate::record::{Field, OrTable};
-use crate::words::{Axis, Base, Components, Failure, Settled, Side, Start, Support, Word};
+use super::body::{self, BoxTable, CircleTable, SphereTable, SurfaceTable};
+use super::{Dimension as In, Key, Kind, Range, key};
+use crate::record::{CaseTable, Field, KeyPlace, ListRow, OrTable};
+use crate::words::{Axis, Base, Components, Failure, Settled, Side, Start, Support};
+use bsmpm::material::Profile;
 use std::ops::Bound::Included;
 
-const PLACE: Kind = Pair(In::Length, Range::ANY);
-pub(super) const DISPLACEMENT: Kind = Vector(In::Length, Range::ANY);
-pub(super) const VELOCITY: Kind = Vector(In::Velocity, Range::ANY);
-pub(super) const PATH: Kind = Course(In::Length);
-pub(super) const RECTANGLE: Kind = Kind::Table(&body::BOX);
-pub(super) const AMPLITUDE: Kind = Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Number, Range::ANY)]);
-/// Of a load whose direction may change.
-pub(super) const RAMP: Kind = Quantity(In::Time, Range::NOT_NEGATIVE);
+/// Columns of an amplitude: time and factor.
+pub(super) const AMPLITUDE: &[(In, Range)] = &[(In::Time, Range::NOT_NEGATIVE), (In::Number, Range::ANY)];
+const PRESSURES: &[(In, Range)] = &[(In::Time, Range::NOT_NEGATIVE), (In::Stress, Range::ANY)];
+/// Coefficients of friction.
+pub(super) const FRICTION: Range = Range::of(Included(0.0), Included(2.0));
 /// That strength is divided by.
 pub(super) const FACTOR: Range = Range::of(Included(0.1), Included(100.0));
 /// Horizontal over vertical stress: from nothing to far beyond passive pressure.
@@ -39,189 +37,111 @@ pub(crate) trait SupportTable {
     fn face(&self, side: Side) -> &SupportField;
 }
 
-pub(super) static FOOTING: Table = Table {
-    header: "[footing]",
-    doc: "A rigid footing with a prescribed motion. Its base is a segment, in 3-D a plate.",
-    keys: &[
-        key("from", PLACE, Optional, "One end of the base at the start.").example("[0.0, 10.0]"),
-        key("to", PLACE, Optional, "The other end of the base.").example("[2.0, 10.0]"),
-        RECTANGLE_KEY,
-        DISC_KEY,
-        DISPLACEMENT_KEY,
-        VELOCITY_KEY,
-        PATH_KEY,
-        key(
-            "interface",
-            ChoiceOr(Base::WORDS, &FRICTIONAL),
-            Default("\"smooth\""),
-            "Interface of the base and the soil. A table defines a frictional contact.",
-        )
-        .example(r#""rough""#)
-        .renamed_from(&["base"]),
-        key(
-            "name",
-            Name,
-            Optional,
-            "Name of the footing in stages and histories. Default: \"footing\".",
-        )
-        .example(r#""footing""#),
-    ],
-    exclusive: &[
-        one_of(&["from", "rectangle", "disc"], true),
-        one_of(&["to", "rectangle", "disc"], true),
-        one_of(&["displacement", "velocity", "path"], true),
-    ],
-};
+table! {
+    /// A rigid footing with a prescribed motion. Its base is a segment, in 3-D a plate.
+    struct FootingTable = "[footing]" {
+        /// One end of the base at the start.
+        from: Pair(In::Length, Range::ANY), Optional, example("[0.0, 10.0]");
+        /// The other end of the base.
+        to: Pair(In::Length, Range::ANY), Optional, example("[2.0, 10.0]");
+        rectangle: Shared(RECTANGLE_KEY, Table(BoxTable));
+        disc: Shared(DISC_KEY, Table(DiscTable));
+        displacement: Shared(DISPLACEMENT_KEY, Vector);
+        velocity: Shared(VELOCITY_KEY, Vector);
+        path: Shared(PATH_KEY, Course);
+        /// Interface of the base and the soil. A table defines a frictional contact.
+        interface: ChoiceOr(Base, FrictionalTable), Default("\"smooth\""),
+            example(r#""rough""#),
+            renamed_from(&["base"]);
+        /// Name of the footing in stages and histories. Default: "footing".
+        name: Name, Optional, example(r#""footing""#);
+    }
+    one_of required [from, rectangle, disc];
+    one_of required [to, rectangle, disc];
+    one_of required [displacement, velocity, path];
+}
 
-pub(super) static DISC: Table = Table {
-    header: "disc = { centre, radius, normal }",
-    doc: "A flat disc.",
-    keys: &[
-        key(
-            "centre",
-            Vector(In::Length, Range::ANY),
-            Required,
-            "Centre of the disc.",
-        )
-        .example("[0.0, 0.0, 2.0]")
-        .renamed_from(&["center"]),
-        key(
-            "radius",
-            Quantity(In::Length, Range::POSITIVE),
-            Required,
-            "Radius of the disc.",
-        )
-        .example(r#""1 m""#),
-        key(
-            "normal",
-            Choice(Axis::WORDS),
-            Default("\"z\""),
-            "The axis normal to the disc.",
-        )
-        .example(r#""z""#),
-    ],
-    exclusive: &[],
-};
+table! {
+    /// A flat disc.
+    struct DiscTable = "disc = { centre, radius, normal }" {
+        /// Centre of the disc.
+        centre: Vector(In::Length, Range::ANY), Required, example("[0.0, 0.0, 2.0]"), renamed_from(&["center"]);
+        /// Radius of the disc.
+        radius: Quantity(In::Length, Range::POSITIVE), Required, example(r#""1 m""#);
+        /// The axis normal to the disc.
+        normal: Choice(Axis), Default("\"z\""), example(r#""z""#);
+    }
+}
 
-pub(super) static PRESCRIBED: Table = Table {
-    header: "[[prescribed]]",
-    doc: "A prescribed motion of the soil at a face of the grid or at a segment, in 3-D at a plate.",
-    keys: &[
-        key(
-            "face",
-            Choice(Side::WORDS),
-            Optional,
-            "The face of the grid that moves. It must be free in [boundary].",
-        )
-        .example(r#""left""#),
-        FROM_KEY,
-        TO_KEY,
-        RECTANGLE_KEY,
-        DISC_KEY,
-        DISPLACEMENT_KEY,
-        VELOCITY_KEY,
-        PATH_KEY,
-        key(
-            "components",
-            ChoiceOr(Components::WORDS, &FRICTIONAL),
-            Default("\"all\""),
-            "Displacement components that are prescribed. A table defines a frictional contact of a segment.",
-        )
-        .example(r#""normal""#),
-        key("name", Name, Optional, "Name of the motion in stages and histories.").example(r#""wall""#),
-    ],
-    exclusive: &[
-        one_of(&["face", "from", "rectangle", "disc"], true),
-        one_of(&["face", "to", "rectangle", "disc"], true),
-        one_of(&["displacement", "velocity", "path"], true),
-    ],
-};
+table! {
+    /// A prescribed motion of the soil at a face of the grid or at a segment, in 3-D at a plate.
+    struct PrescribedTable = "[[prescribed]]" {
+        /// The face of the grid that moves. It must be free in [boundary].
+        face: Choice(Side), Optional, example(r#""left""#);
+        from: Shared(FROM_KEY, Pair);
+        to: Shared(TO_KEY, Pair);
+        rectangle: Shared(RECTANGLE_KEY, Table(BoxTable));
+        disc: Shared(DISC_KEY, Table(DiscTable));
+        displacement: Shared(DISPLACEMENT_KEY, Vector);
+        velocity: Shared(VELOCITY_KEY, Vector);
+        path: Shared(PATH_KEY, Course);
+        /// Displacement components that are prescribed. A table defines a frictional contact of a segment.
+        components: ChoiceOr(Components, FrictionalTable), Default("\"all\""), example(r#""normal""#);
+        /// Name of the motion in stages and histories.
+        name: Name, Optional, example(r#""wall""#);
+    }
+    one_of required [face, from, rectangle, disc];
+    one_of required [face, to, rectangle, disc];
+    one_of required [displacement, velocity, path];
+}
 
-static FRICTIONAL: Table = Table {
-    header: "interface = { friction_coefficient, separates }",
-    doc: "Contact with Coulomb friction between a footing or prescribed segment and the soil on one side of it.",
-    keys: &[
-        FRICTION_KEY,
-        key(
-            "separates",
-            Flag,
-            Default("true"),
-            "With true, the soil may separate. With false the normal displacement stays prescribed, and under tension \
-             there is no friction.",
-        )
-        .renamed_from(&["lifts"]),
-    ],
-    exclusive: &[],
-};
+table! {
+    /// Contact with Coulomb friction between a footing or prescribed segment and the soil on one side of it.
+    struct FrictionalTable = "interface = { friction_coefficient, separates }" {
+        friction_coefficient: Shared(FRICTION_KEY, Quantity);
+        /// With true, the soil may separate. With false the normal displacement stays prescribed, and under tension
+        /// there is no friction.
+        separates: Flag, Default("true"), renamed_from(&["lifts"]);
+    }
+}
 
-pub(super) static TRACTION: Table = Table {
-    header: "[[traction]]",
-    doc: "A load per area of a surface. In 2-D the surface is a segment or a circle; in 3-D a rectangle, a disc, a \
-          sphere or triangles. The load moves with the soil.",
-    keys: &[
-        FROM_KEY,
-        TO_KEY,
-        CIRCLE_KEY,
-        RECTANGLE_KEY,
-        DISC_KEY,
-        key(
-            "sphere",
-            Kind::Table(&body::SPHERE),
-            Optional,
-            "A sphere. Only in 3-D. Parts outside the grid are ignored.",
-        )
-        .example(r#"{ centre = [0.0, 0.0, 4.0], radius = "1 m" }"#),
-        key(
-            "surface",
-            Kind::Table(&body::SURFACE),
-            Optional,
-            "Triangles on the surface of bodies. Only in 3-D.",
-        )
-        .example(r#"{ triangles = { file = "surface.stl" } }"#),
-        key(
-            "stress",
-            PairProfile(In::Stress, Range::ANY, &STRESSES_PROFILE),
-            Optional,
-            "Dead load: force per undeformed area, in components along the axes. Its direction is constant.",
-        )
-        .example(r#"[0.0, "-50 kPa"]"#),
-        key(
-            "pressure",
-            Profile(In::Stress, Range::ANY, &STRESS_PROFILE),
-            Optional,
-            "Alternative to `stress`: pressure that presses on the body. It stays normal to the deformed surface \
-             (follower load).",
-        )
-        .example(r#""50 kPa""#),
-        key(
-            "stress_path",
-            Course(In::Stress),
-            Optional,
-            "Alternative to `stress`: time-dependent load, in rows [t, x, y], in 3-D [t, x, y, z], with increasing t. \
-             The stress is linear between the rows, and constant after the last row. It is zero at t = 0, unless a row \
-             gives another value. Time counts from the activation of the load.",
-        )
-        .example(r#"[[0.0, 0.0, 0.0], [1.0, 0.0, "-50 kPa"]]"#),
-        key(
-            "pressure_path",
-            Rows(&[(In::Time, Range::NOT_NEGATIVE), (In::Stress, Range::ANY)]),
-            Optional,
-            "Alternative to `pressure`: time-dependent pressure, in rows [t, pressure] with increasing t. The pressure \
-             is linear between the rows, and constant after the last row. It is zero at t = 0, unless a row gives \
-             another value. Time counts from the activation of the load.",
-        )
-        .example(r#"[[0.0, 0.0], [1.0, "50 kPa"]]"#),
-        RAMP_KEY,
-        AMPLITUDE_KEY,
-        key("name", Name, Optional, "Name of the load in stages.").example(r#""surcharge""#),
-    ],
-    exclusive: &[
-        one_of(&["from", "circle", "rectangle", "disc", "sphere", "surface"], true),
-        one_of(&["to", "circle", "rectangle", "disc", "sphere", "surface"], true),
-        one_of(&["stress", "pressure", "stress_path", "pressure_path"], true),
-        one_of(&["ramp", "amplitude", "stress_path", "pressure_path"], false),
-    ],
-};
+table! {
+    /// A load per area of a surface. In 2-D the surface is a segment or a circle; in 3-D a rectangle, a disc, a sphere
+    /// or triangles. The load moves with the soil.
+    struct TractionTable = "[[traction]]" {
+        from: Shared(FROM_KEY, Pair);
+        to: Shared(TO_KEY, Pair);
+        circle: Shared(body::CIRCLE_KEY, Table(CircleTable));
+        rectangle: Shared(RECTANGLE_KEY, Table(BoxTable));
+        disc: Shared(DISC_KEY, Table(DiscTable));
+        /// A sphere. Only in 3-D. Parts outside the grid are ignored.
+        sphere: Table(SphereTable), Optional, example(r#"{ centre = [0.0, 0.0, 4.0], radius = "1 m" }"#);
+        /// Triangles on the surface of bodies. Only in 3-D.
+        surface: Table(SurfaceTable), Optional, example(r#"{ triangles = { file = "surface.stl" } }"#);
+        /// Dead load: force per undeformed area, in components along the axes. Its direction is constant.
+        stress: PairProfile(In::Stress, Range::ANY, StressesProfileTable), Optional, example(r#"[0.0, "-50 kPa"]"#);
+        /// Alternative to `stress`: pressure that presses on the body. It stays normal to the deformed surface
+        /// (follower load).
+        pressure: Profile(In::Stress, Range::ANY, StressProfileTable), Optional, example(r#""50 kPa""#);
+        /// Alternative to `stress`: time-dependent load, in rows [t, x, y], in 3-D [t, x, y, z], with increasing t. The
+        /// stress is linear between the rows, and constant after the last row. It is zero at t = 0, unless a row gives
+        /// another value. Time counts from the activation of the load.
+        stress_path: Course(In::Stress), Optional, example(r#"[[0.0, 0.0, 0.0], [1.0, 0.0, "-50 kPa"]]"#);
+        /// Alternative to `pressure`: time-dependent pressure, in rows [t, pressure] with increasing t. The pressure is
+        /// linear between the rows, and constant after the last row. It is zero at t = 0, unless a row gives another
+        /// value. Time counts from the activation of the load.
+        pressure_path: Rows(PRESSURES), Optional,
+            example(r#"[[0.0, 0.0], [1.0, "50 kPa"]]"#);
+        ramp: Shared(RAMP_KEY, Quantity);
+        amplitude: Shared(AMPLITUDE_KEY, Rows);
+        /// Name of the load in stages.
+        name: Name, Optional, example(r#""surcharge""#);
+    }
+    one_of required [from, circle, rectangle, disc, sphere, surface];
+    one_of required [to, circle, rectangle, disc, sphere, surface];
+    one_of required [stress, pressure, stress_path, pressure_path];
+    one_of optional [ramp, amplitude, stress_path, pressure_path];
+}
 
 table! {
     /// Acceleration of the ground in a dynamic analysis. The frame of reference moves with the ground: supports are
@@ -235,44 +155,26 @@ table! {
     }
 }
 
-pub(super) static POINT_LOAD: Table = Table {
-    header: "[[point_load]]",
-    doc: "A force at a point of a body. The force moves with the point.",
-    keys: &[
-        key(
-            "at",
-            Vector(In::Length, Range::ANY),
-            Required,
-            "Position of the point at the start.",
-        )
-        .example("[2.0, 6.0]"),
-        key(
-            "force",
-            Vector(In::LineForce, Range::ANY),
-            Optional,
-            "Force along the axes: in plane strain N per metre of thickness, in axisymmetry N on the whole ring, in \
-             3-D N.",
-        )
-        .symbol("F")
-        .example(r#"[0.0, "-10 kN/m"]"#),
-        key(
-            "force_path",
-            Course(In::LineForce),
-            Optional,
-            "Alternative to `force`: time-dependent force, in rows [t, x, y], in 3-D [t, x, y, z], with increasing t. \
-             The force is linear between the rows, and constant after the last row. It is zero at t = 0, unless a row \
-             gives another value. Time counts from the activation of the load.",
-        )
-        .example(r#"[[0.0, 0.0, 0.0], [1.0, 0.0, "-10 kN/m"]]"#),
-        RAMP_KEY,
-        AMPLITUDE_KEY,
-        key("name", Name, Optional, "Name of the load in stages.").example(r#""crane""#),
-    ],
-    exclusive: &[
-        one_of(&["force", "force_path"], true),
-        one_of(&["ramp", "amplitude", "force_path"], false),
-    ],
-};
+table! {
+    /// A force at a point of a body. The force moves with the point.
+    struct PointLoadTable = "[[point_load]]" {
+        /// Position of the point at the start.
+        at: Vector(In::Length, Range::ANY), Required, example("[2.0, 6.0]");
+        /// Force along the axes: in plane strain N per metre of thickness, in axisymmetry N on the whole ring, in 3-D
+        /// N.
+        force: Vector(In::LineForce, Range::ANY), Optional, symbol("F"), example(r#"[0.0, "-10 kN/m"]"#);
+        /// Alternative to `force`: time-dependent force, in rows [t, x, y], in 3-D [t, x, y, z], with increasing t. The
+        /// force is linear between the rows, and constant after the last row. It is zero at t = 0, unless a row gives
+        /// another value. Time counts from the activation of the load.
+        force_path: Course(In::LineForce), Optional, example(r#"[[0.0, 0.0, 0.0], [1.0, 0.0, "-10 kN/m"]]"#);
+        ramp: Shared(RAMP_KEY, Quantity);
+        amplitude: Shared(AMPLITUDE_KEY, Rows);
+        /// Name of the load in stages.
+        name: Name, Optional, example(r#""crane""#);
+    }
+    one_of required [force, force_path];
+    one_of optional [ramp, amplitude, force_path];
+}
 
 table! {
     /// Division of the strength of all materials by a factor F. The cohesion becomes c/F, the friction angle
@@ -316,100 +218,106 @@ table! {
     one_of optional [k0, gravity];
 }
 
-pub(super) static STRESS_PROFILE: Table = Table {
-    header: "{ value, at_y, per_metre } of a stress",
-    doc: "A stress that varies linearly with the height y, in 3-D z: value + per_metre (at_y - y), above and below \
-          at_y. A material point keeps the value of its initial height.",
-    keys: &[
-        key(
-            "value",
-            Quantity(In::Stress, Range::ANY),
-            Required,
-            "Value at the height at_y.",
-        )
-        .example(r#""20 kPa""#),
-        key(
-            "at_y",
-            Quantity(In::Length, Range::ANY),
-            Required,
-            "Height of `value`: y, in 3-D z.",
-        )
-        .example(r#""10 m""#),
-        key(
-            "per_metre",
-            Gradient(In::Stress),
-            Required,
-            "Increase per metre of depth.",
-        )
-        .example(r#""2 kPa/m""#),
-    ],
-    exclusive: &[],
-};
+table! {
+    /// A stress that varies linearly with the height y, in 3-D z: value + per_metre (at_y - y), above and below at_y. A
+    /// material point keeps the value of its initial height.
+    struct StressProfileTable = "{ value, at_y, per_metre } of a stress" {
+        /// Value at the height at_y.
+        value: Quantity(In::Stress, Range::ANY), Required, example(r#""20 kPa""#);
+        /// Height of `value`: y, in 3-D z.
+        at_y: Quantity(In::Length, Range::ANY), Required, example(r#""10 m""#);
+        /// Increase per metre of depth.
+        per_metre: Gradient(In::Stress), Required, example(r#""2 kPa/m""#);
+    }
+}
 
-static STRESSES_PROFILE: Table = Table {
-    header: "{ value, at_y, per_metre } of stresses",
-    doc: "Stress components that vary linearly with the height y, in 3-D z: value + per_metre (at_y - y), above and \
-          below at_y. The height is that at the start.",
-    keys: &[
-        key(
-            "value",
-            Vector(In::Stress, Range::ANY),
-            Required,
-            "Components along the axes at the height at_y.",
-        )
-        .example(r#"["10 kPa", 0.0]"#),
-        key(
-            "at_y",
-            Quantity(In::Length, Range::ANY),
-            Required,
-            "Height of `value`: y, in 3-D z.",
-        )
-        .example(r#""10 m""#),
-        key(
-            "per_metre",
-            GradientVector(In::Stress),
-            Required,
-            "Increase of each component per metre of depth.",
-        )
-        .example(r#"["5 kPa/m", 0.0]"#),
-    ],
-    exclusive: &[],
-};
+table! {
+    /// Stress components that vary linearly with the height y, in 3-D z: value + per_metre (at_y - y), above and below
+    /// at_y. The height is that at the start.
+    struct StressesProfileTable = "{ value, at_y, per_metre } of stresses" {
+        /// Components along the axes at the height at_y.
+        value: Vector(In::Stress, Range::ANY), Required, example(r#"["10 kPa", 0.0]"#);
+        /// Height of `value`: y, in 3-D z.
+        at_y: Quantity(In::Length, Range::ANY), Required, example(r#""10 m""#);
+        /// Increase of each component per metre of depth.
+        per_metre: GradientVector(In::Stress), Required, example(r#"["5 kPa/m", 0.0]"#);
+    }
+}
 
-pub(super) static ANGLE_PROFILE: Table = Table {
-    header: "{ value, at_y, per_metre } of an angle",
-    doc: "An angle that varies linearly with the height y, in 3-D z: value + per_metre (at_y - y), above and below \
-          at_y. A material point keeps the value of its initial height.",
-    keys: &[
-        key(
-            "value",
-            Quantity(In::Angle, Range::ANY),
-            Required,
-            "Value at the height at_y.",
-        )
-        .example("30.0"),
-        key(
-            "at_y",
-            Quantity(In::Length, Range::ANY),
-            Required,
-            "Height of `value`: y, in 3-D z.",
-        )
-        .example(r#""10 m""#),
-        key(
-            "per_metre",
-            Gradient(In::Angle),
-            Required,
-            "Increase per metre of depth.",
-        )
-        .example("0.5"),
-    ],
-    exclusive: &[],
-};
+table! {
+    /// An angle that varies linearly with the height y, in 3-D z: value + per_metre (at_y - y), above and below at_y. A
+    /// material point keeps the value of its initial height.
+    struct AngleProfileTable = "{ value, at_y, per_metre } of an angle" {
+        /// Value at the height at_y.
+        value: Quantity(In::Angle, Range::ANY), Required, example("30.0");
+        /// Height of `value`: y, in 3-D z.
+        at_y: Quantity(In::Length, Range::ANY), Required, example(r#""10 m""#);
+        /// Increase per metre of depth.
+        per_metre: Gradient(In::Angle), Required, example("0.5");
+    }
+}
+
+impl TractionTable {
+    /// The keys of what follows time.
+    pub(crate) fn courses(&self) -> [&Field<Vec<ListRow>>; 3] {
+        [&self.amplitude, &self.stress_path, &self.pressure_path]
+    }
+
+    /// The key of the load.
+    pub(crate) fn load(&self) -> &KeyPlace {
+        let keys: [&KeyPlace; 3] = [&self.pressure, &self.stress_path, &self.pressure_path];
+        keys.into_iter().find(|key| key.is_given()).unwrap_or(&self.stress)
+    }
+}
+
+impl PointLoadTable {
+    /// The key of the load.
+    pub(crate) fn load(&self) -> &KeyPlace {
+        match self.force_path.is_given() {
+            true => &self.force_path,
+            false => &self.force,
+        }
+    }
+}
+
+/// A table that says how a number varies with depth.
+pub(crate) trait DepthTable {
+    /// The number by depth; `None` after an error.
+    fn profile(&self) -> Option<Profile>;
+}
+
+/// The profile of a table with the keys `value`, `at_y` and `per_metre`.
+macro_rules! depth_table {
+    ($Table:ident) => {
+        impl DepthTable for $Table {
+            fn profile(&self) -> Option<Profile> {
+                Some(Profile {
+                    value: self.value.get()?,
+                    at: self.at_y.get()?,
+                    per_metre: self.per_metre.get()?,
+                })
+            }
+        }
+    };
+}
+
+depth_table!(StressProfileTable);
+depth_table!(AngleProfileTable);
+
+impl<T: DepthTable> Field<OrTable<f64, T>> {
+    /// The number by depth; `None` without the key, or after an error.
+    pub(crate) fn profile(&self) -> Option<Profile> {
+        match self.value()? {
+            OrTable::Value(value) => Some(Profile::constant(*value)),
+            OrTable::Table(table) => table.profile(),
+        }
+    }
+}
 
 // Keys that several tables have.
 const FRICTION_KEY: Key = key(
     "friction_coefficient",
-    Quantity(In::Number, Range::of(Included(0.0), Included(2.0))),
+    Kind::Quantity(In::Number, FRICTION),
     Required,
     "Friction coefficient, the tangent of the friction angle δ of the interface (wall friction): 0.364 for 20 degrees. \
      [strength_reduction] also reduces it.",
@@ -419,21 +327,21 @@ const FRICTION_KEY: Key = key(
 .renamed_from(&["friction"]);
 pub(super) const RECTANGLE_KEY: Key = key(
     "rectangle",
-    RECTANGLE,
+    Kind::Table(BoxTable::TABLE),
     Optional,
     "A rectangle. Only in 3-D. Both corners have the same coordinate along one axis.",
 )
 .example("{ lower = [0.0, 0.0, 6.0], upper = [1.0, 1.0, 6.0] }");
 pub(super) const DISC_KEY: Key = key(
     "disc",
-    Kind::Table(&DISC),
+    Kind::Table(DiscTable::TABLE),
     Optional,
     "A disc. Only in 3-D. Parts outside the grid are ignored.",
 )
 .example("{ centre = [0.0, 0.0, 6.0], radius = 1.0 }");
 pub(super) const DISPLACEMENT_KEY: Key = key(
     "displacement",
-    DISPLACEMENT,
+    Kind::Vector(In::Length, Range::ANY),
     Optional,
     "Prescribed displacement at the end of the run. It grows linearly with time.",
 )
@@ -441,7 +349,7 @@ pub(super) const DISPLACEMENT_KEY: Key = key(
 .example("[0.0, -0.2]");
 pub(super) const VELOCITY_KEY: Key = key(
     "velocity",
-    VELOCITY,
+    Kind::Vector(In::Velocity, Range::ANY),
     Optional,
     "Prescribed constant velocity. In a quasi-static analysis give numbers, in metres per unit of pseudo-time.",
 )
@@ -449,32 +357,36 @@ pub(super) const VELOCITY_KEY: Key = key(
 .example("[0.0, -0.01]");
 pub(super) const PATH_KEY: Key = key(
     "path",
-    PATH,
+    Kind::Course(In::Length),
     Optional,
     "Prescribed displacement, in rows [t, ux, uy], in 3-D [t, ux, uy, uz], with increasing t. It is zero at t = 0, \
      linear between the rows, and constant after the last row.",
 )
 .example("[[0.0, 0.0, 0.0], [1.0, 0.0, -0.2]]");
-pub(super) const FROM_KEY: Key =
-    key("from", PLACE, Optional, "One end of the segment at the start.").example("[0.0, 2.0]");
-pub(super) const TO_KEY: Key = key("to", PLACE, Optional, "The other end of the segment.").example("[0.0, 4.0]");
-pub(super) const CIRCLE_KEY: Key = key(
-    "circle",
-    Kind::Table(&body::CIRCLE),
+pub(super) const FROM_KEY: Key = key(
+    "from",
+    Kind::Pair(In::Length, Range::ANY),
     Optional,
-    "A circle. Parts outside the grid are ignored.",
+    "One end of the segment at the start.",
 )
-.example(r#"{ centre = [2.0, 2.0], radius = "1 m" }"#);
+.example("[0.0, 2.0]");
+pub(super) const TO_KEY: Key = key(
+    "to",
+    Kind::Pair(In::Length, Range::ANY),
+    Optional,
+    "The other end of the segment.",
+)
+.example("[0.0, 4.0]");
 const RAMP_KEY: Key = key(
     "ramp",
-    RAMP,
+    Kind::Quantity(In::Time, Range::NOT_NEGATIVE),
     Default("0.0"),
     "Time in which the load grows from zero to its full value. With 0 the full load acts at once.",
 )
 .example("1.0");
 const AMPLITUDE_KEY: Key = key(
     "amplitude",
-    AMPLITUDE,
+    Kind::Rows(AMPLITUDE),
     Optional,
     "Alternative to `ramp`: factor that multiplies the load, in rows [t, factor] with increasing t. The factor is \
      linear between the rows, and constant after the last row. It is zero at t = 0, unless a row gives another value. \

@@ -3,7 +3,9 @@
 use super::Kind::{self, *};
 use super::Presence::{Default, Optional, Required};
 use super::laws::LawName;
+use super::loads::{AngleProfileTable, StressProfileTable};
 use super::{Dimension as In, Range, Table, key, loads, one_of};
+use crate::record::CaseTable;
 use crate::words::{Drainage, Word};
 use bsmpm::field::pore_water::flow::PermeabilityLaw;
 use bsmpm::material::{Decay, Match, Separation};
@@ -16,7 +18,7 @@ pub(crate) static MATERIAL: Table = Table {
         key("model", Choice(LawName::WORDS), Required, "Constitutive law.").example(r#""mohr-coulomb""#),
         key(
             "young",
-            Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
+            Profile(In::Stress, Range::POSITIVE, StressProfileTable::TABLE),
             Required,
             "Young's modulus. In modified-cam-clay it determines only the constant shear modulus G = E / (2 (1 + ν)). \
              Use E = 3 (1 - 2ν) p'/κ* at a typical pressure p'.",
@@ -28,7 +30,7 @@ pub(crate) static MATERIAL: Table = Table {
             .example("0.3"),
         key(
             "friction_angle",
-            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
+            Profile(In::Angle, BELOW_90, AngleProfileTable::TABLE),
             Optional,
             "Friction angle. Required by mohr-coulomb, drucker-prager and mohr-coulomb-softening. In \
              mohr-coulomb-softening it is the peak value.",
@@ -38,7 +40,7 @@ pub(crate) static MATERIAL: Table = Table {
         .renamed_from(&["friction"]),
         key(
             "dilation_angle",
-            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
+            Profile(In::Angle, BELOW_90, AngleProfileTable::TABLE),
             Optional,
             "Dilation angle, at most equal to the friction angle. Default: 0.",
         )
@@ -47,7 +49,7 @@ pub(crate) static MATERIAL: Table = Table {
         .renamed_from(&["dilation"]),
         key(
             "cohesion",
-            Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
+            Profile(In::Stress, Range::NOT_NEGATIVE, StressProfileTable::TABLE),
             Optional,
             "Cohesion; in tresca and sensitive-clay the undrained shear strength. Required by all models except \
              elastic, von-mises, modified-cam-clay and mu-i.",
@@ -56,7 +58,7 @@ pub(crate) static MATERIAL: Table = Table {
         .example(r#""10 kPa""#),
         key(
             "residual_friction_angle",
-            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
+            Profile(In::Angle, BELOW_90, AngleProfileTable::TABLE),
             Optional,
             "Friction angle after complete softening. Required by mohr-coulomb-softening.",
         )
@@ -65,7 +67,7 @@ pub(crate) static MATERIAL: Table = Table {
         .renamed_from(&["residual_friction"]),
         key(
             "residual_dilation_angle",
-            Profile(In::Angle, BELOW_90, &loads::ANGLE_PROFILE),
+            Profile(In::Angle, BELOW_90, AngleProfileTable::TABLE),
             Optional,
             "Dilation angle after complete softening, at most equal to residual_friction_angle. Default: 0.",
         )
@@ -74,7 +76,7 @@ pub(crate) static MATERIAL: Table = Table {
         .renamed_from(&["residual_dilation"]),
         key(
             "residual_cohesion",
-            Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
+            Profile(In::Stress, Range::NOT_NEGATIVE, StressProfileTable::TABLE),
             Optional,
             "Cohesion after complete softening. Required by mohr-coulomb-softening.",
         )
@@ -191,7 +193,7 @@ pub(crate) static MATERIAL: Table = Table {
         .renamed_from(&["critical_ratio"]),
         key(
             "preconsolidation",
-            Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
+            Profile(In::Stress, Range::POSITIVE, StressProfileTable::TABLE),
             Optional,
             "Isotropic preconsolidation pressure at the start (size of the yield surface). modified-cam-clay requires \
              preconsolidation or ocr.",
@@ -261,7 +263,7 @@ pub(crate) static MATERIAL: Table = Table {
         .renamed_from(&["match"]),
         key(
             "yield_stress",
-            Profile(In::Stress, Range::POSITIVE, &loads::STRESS_PROFILE),
+            Profile(In::Stress, Range::POSITIVE, StressProfileTable::TABLE),
             Optional,
             "Uniaxial yield stress. Required by von-mises.",
         )
@@ -269,7 +271,7 @@ pub(crate) static MATERIAL: Table = Table {
         .example(r#""200 kPa""#),
         key(
             "hardening",
-            Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
+            Profile(In::Stress, Range::NOT_NEGATIVE, StressProfileTable::TABLE),
             Optional,
             "Hardening modulus of von-mises: increase of the yield stress per plastic strain. Default: 0.",
         )
@@ -277,7 +279,7 @@ pub(crate) static MATERIAL: Table = Table {
         .example(r#""1 MPa""#),
         key(
             "tensile_strength",
-            Profile(In::Stress, Range::NOT_NEGATIVE, &loads::STRESS_PROFILE),
+            Profile(In::Stress, Range::NOT_NEGATIVE, StressProfileTable::TABLE),
             Optional,
             "Tension cut-off: largest principal stress of mohr-coulomb, tresca, drucker-prager and von-mises. With 0 \
              the soil carries no tension. Without this key, laws with a friction angle carry a mean tension of up to \

@@ -1,11 +1,17 @@
 //! Schema of the case file's main tables: analysis, grid, boundaries and solver.
 
+use super::body::BodyTable;
 use super::element::ElementTable;
-use super::loads::{self, ContactTable, InitialTable, ReductionTable, ShakingTable};
-use super::output::{self, OutputTable};
+use super::flow::{DrainTable, InflowTable};
+use super::loads::{
+    ContactTable, FootingTable, InitialTable, PointLoadTable, PrescribedTable, ReductionTable, ShakingTable,
+    TractionTable,
+};
+use super::output::{CheckTable, HistoryTable, OutputTable, ProfileTable};
+use super::rigid::RigidTable;
 use super::stage::StageTable;
 use super::water::WaterTable;
-use super::{Dimension as In, Kind, Range, Table, body, flow, material, rigid};
+use super::{Dimension as In, Kind, Range, Table, material};
 use crate::document::DocumentTable;
 use crate::record::{self, CaseTable};
 use crate::report::Report;
@@ -38,16 +44,16 @@ table! {
         material: UntypedNamed(material::MATERIAL), Required,
             example(r#"{ clay = { model = "tresca", young = "10 MPa", poisson = 0.49, cohesion = "30 kPa" } }"#);
         /// Bodies of soil, which are filled with material points.
-        body: UntypedTables(body::BODY), Required,
+        body: Tables(BodyTable), Required,
             example(r#"[{ material = "clay", box = { lower = [0.0, 0.0], upper = [20.0, 8.0] } }]"#);
         /// Gravity. Without this table there is no gravity.
         gravity: Table(GravityTable), Optional, example(r#"{ acceleration = [0.0, -9.81] }"#);
         /// Water in the ground. Without this table there is no water.
         water: Table(WaterTable), Optional, example(r#"{ level = "4 m" }"#);
         /// A surface through which water flows freely.
-        drain: UntypedTables(flow::DRAIN), Optional, example(r#"[{ face = "bottom", head = "3 m" }]"#);
+        drain: Tables(DrainTable), Optional, example(r#"[{ face = "bottom", head = "3 m" }]"#);
         /// A surface through which water enters the ground at a given rate.
-        inflow: UntypedTables(flow::INFLOW), Optional,
+        inflow: Tables(InflowTable), Optional,
             example(r#"[{ from = [0.0, 8.0], to = [20.0, 8.0], rate = "10 mm/h", runoff = true }]"#);
         /// Acceleration of the ground in an earthquake.
         shaking: Table(ShakingTable), Optional,
@@ -63,23 +69,23 @@ table! {
         /// Frames for ParaView. Without this table the run writes one frame at the start and one at the end.
         output: Table(OutputTable), Optional, example(r#"{ every = "0.5 s", fields = ["q", "yielding"] }"#);
         /// A quantity that history.csv records at every step.
-        history: UntypedTables(output::HISTORY), Optional, example(r#"[{ quantity = "runout", percentile = 99.0 }]"#);
+        history: Tables(HistoryTable), Optional, example(r#"[{ quantity = "runout", percentile = 99.0 }]"#);
         /// Bounds of a column of history.csv.
-        check: UntypedTables(output::CHECK), Optional, example(r#"[{ quantity = "max-displacement", max = "2 cm" }]"#);
+        check: Tables(CheckTable), Optional, example(r#"[{ quantity = "max-displacement", max = "2 cm" }]"#);
         /// A rigid footing with a prescribed motion.
-        footing: UntypedTable(loads::FOOTING), Optional,
+        footing: Table(FootingTable), Optional,
             example(r#"{ from = [0.0, 8.0], to = [1.0, 8.0], displacement = [0.0, "-10 cm"] }"#);
         /// A prescribed motion of the soil at a face of the grid or at a segment.
-        prescribed: UntypedTables(loads::PRESCRIBED), Optional,
+        prescribed: Tables(PrescribedTable), Optional,
             example(r#"[{ face = "right", displacement = ["-5 cm", 0.0], components = "normal" }]"#);
         /// A rigid body in frictional contact with the soil.
-        rigid: UntypedTables(rigid::RIGID), Optional,
+        rigid: Tables(RigidTable), Optional,
             example(r#"[{ name = "pipe", circle = { centre = [10.0, 6.0], radius = 0.3 }, displacement = [0.0, 0.2] }]"#);
         /// A load per area on the surface of a body.
-        traction: UntypedTables(loads::TRACTION), Optional,
+        traction: Tables(TractionTable), Optional,
             example(r#"[{ from = [0.0, 8.0], to = [5.0, 8.0], stress = [0.0, "-20 kPa"], ramp = "0.5 s" }]"#);
         /// A force at a point of a body.
-        point_load: UntypedTables(loads::POINT_LOAD), Optional,
+        point_load: Tables(PointLoadTable), Optional,
             example(r#"[{ at = [5.0, 8.0], force = [0.0, "-10 kN/m"] }]"#);
         /// Reduction of the strength of all materials.
         strength_reduction: Table(ReductionTable), Optional, example(r#"{ factor = 1.25 }"#);
@@ -92,7 +98,7 @@ table! {
         stage: Tables(StageTable), Optional,
             example(r#"[{ name = "excavated", at = "0.5 s", remove = ["upper_layer"] }]"#);
         /// Values along a line, written to a file.
-        profile: UntypedTables(output::PROFILE), Optional,
+        profile: Tables(ProfileTable), Optional,
             example(r#"[{ name = "wall", from = [2.0, 0.0], to = [2.0, 6.0], count = 25, quantities = ["stress"] }]"#);
     }
 }

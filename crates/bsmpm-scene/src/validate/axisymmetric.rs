@@ -2,7 +2,7 @@
 
 use crate::case::{Case, DrainSite, Face, Geometry, LoadedLine, Support};
 use crate::observables::{Aspect, HistorySubject};
-use crate::record::{KeyPlace, Record};
+use crate::record::KeyPlace;
 use crate::report::Report;
 use crate::schema::{Draft, SupportTable};
 use crate::words::Side;
@@ -80,14 +80,13 @@ fn water_on_axis(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     for (drain, record) in drains {
         match &drain.site {
             DrainSite::Face(AXIS) => {
-                record.error(
-                    "face",
+                record.face.error(
                     "E0241: the axis of symmetry has no area, so nothing can drain there. Use another face.",
                     report,
                 );
             }
-            DrainSite::Lines(lines) if record.gives("from") => {
-                lines.iter().for_each(|ends| on_axis(*ends, record, report));
+            DrainSite::Lines(lines) if record.from.is_given() => {
+                lines.iter().for_each(|ends| on_axis(*ends, &record.from, report));
             }
             _ => {}
         }
@@ -102,7 +101,7 @@ fn water_on_axis(case: &Case, draft: &Draft, report: &mut Report<'_>) {
             .site
             .ends()
             .into_iter()
-            .for_each(|ends| on_axis(ends, record, report));
+            .for_each(|ends| on_axis(ends, &record.from, report));
     }
 }
 
@@ -121,42 +120,33 @@ fn sideways(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     }
     for (body, record) in case.bodies.iter().zip(draft.body.items()) {
         if body.velocity.is_some_and(|v| v[0] != 0.0) {
-            record.error("velocity", SIDEWAYS, report);
+            record.velocity.error(SIDEWAYS, report);
         }
         if body.spin.is_some() {
-            record.error("spin", ROTATION, report);
+            record.spin.error(ROTATION, report);
         }
     }
     if let Some(footing) = &case.footing
         && footing.path.rows.iter().any(|(_, moved)| moved[0] != 0.0)
         && let Some(record) = draft.footing.value()
     {
-        let moves = ["displacement", "velocity", "path"]
-            .into_iter()
-            .find(|key| record.gives(key));
-        record.error(moves.unwrap_or("path"), SIDEWAYS, report);
+        record.motion().place().error(SIDEWAYS, report);
     }
     for (prescribed, record) in case.prescribed.iter().zip(draft.prescribed.items()) {
         prescribed
             .site
             .ends()
             .into_iter()
-            .for_each(|ends| on_axis(ends, record, report));
+            .for_each(|ends| on_axis(ends, &record.from, report));
     }
     for (traction, record) in case.tractions.iter().zip(draft.traction.items()) {
         if let LoadedLine::Segment { from, to } = traction.line {
-            on_axis([from, to], record, report);
+            on_axis([from, to], &record.from, report);
         }
     }
     for (load, record) in case.point_loads.iter().zip(draft.point_load.items()) {
         if load.at[0] == 0.0 && load.force[0] != 0.0 {
-            let key = if record.gives("force_path") {
-                "force_path"
-            } else {
-                "force"
-            };
-            record.error(
-                key,
+            record.load().error(
                 "E0242: a force on the axis of symmetry cannot have a radial component. Set the x component of the \
                  force to 0.",
                 report,
@@ -169,17 +159,13 @@ fn sideways(case: &Case, draft: &Draft, report: &mut Report<'_>) {
 fn rigid(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     for (rigid, record) in case.rigid.iter().zip(draft.rigid.items()) {
         if rigid.path.rows.iter().any(|(_, moved)| moved[0] != 0.0) {
-            let moves = ["displacement", "velocity", "path"]
-                .into_iter()
-                .find(|key| record.gives(key));
-            record.error(moves.unwrap_or("path"), SIDEWAYS, report);
+            record.motion().place().error(SIDEWAYS, report);
         }
         if !rigid.rotation.is_empty() {
-            record.error("rotation", ROTATION, report);
+            record.rotation.error(ROTATION, report);
         }
         if rigid.free[0] || rigid.free[2] {
-            record.error(
-                "free",
+            record.free.error(
                 "E0242: in an axisymmetric case a rigid body can move along the axis (y) only. Use free = [\"y\"].",
                 report,
             );
@@ -192,8 +178,7 @@ fn quantities(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     for (history, record) in case.histories.iter().zip(draft.history.items()) {
         let observable = history.quantity.observable;
         if observable.has(Aspect::ZeroByAxisymmetry) {
-            record.error(
-                "quantity",
+            record.quantity.error(
                 format!(
                     "E0243: the quantity \"{observable}\" is zero in every axisymmetric case, because of the symmetry. \
                      Choose another quantity."
@@ -204,16 +189,15 @@ fn quantities(case: &Case, draft: &Draft, report: &mut Report<'_>) {
         if let HistorySubject::Section { lines, .. } = &history.quantity.subject {
             lines
                 .iter()
-                .for_each(|[from, to]| on_axis([[from[0], from[1]], [to[0], to[1]]], record, report));
+                .for_each(|[from, to]| on_axis([[from[0], from[1]], [to[0], to[1]]], &record.from, report));
         }
     }
 }
 
 /// What lies on the axis has no area.
-fn on_axis(ends: [[f64; 2]; 2], record: &Record, report: &mut Report<'_>) {
+fn on_axis(ends: [[f64; 2]; 2], from: &KeyPlace, report: &mut Report<'_>) {
     if ends.iter().all(|end| end[0] == 0.0) {
-        record.error(
-            "from",
+        from.error(
             "E0241: the segment lies on the axis of symmetry, so its area is zero. Move one end away from the axis.",
             report,
         );

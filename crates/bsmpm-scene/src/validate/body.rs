@@ -6,9 +6,9 @@ use crate::case::{Body, Case};
 use crate::estimate::MOST_POINTS;
 use crate::grid::GridSpec;
 use crate::nearest::nearest;
-use crate::record::Record;
+use crate::record::{CaseTable, KeyPlace};
 use crate::report::{Report, listed, shortened};
-use crate::schema::Draft;
+use crate::schema::{BodyTable, Draft, ShapeKey, SpinTable};
 use crate::words::Geometry;
 use bsmpm::model::Regime;
 use bsmpm_shapes::{AxisExtent, Region, Volume, Window, is_filled, sweep};
@@ -67,16 +67,16 @@ pub(super) fn read_all(
 }
 
 /// rad/s along the axis, and the place about which, m.
-fn turning(spin: &Record, geometry: Geometry, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
-    let rate = spin.number("rate")?;
-    let about = spin.vector("about")?;
-    let axis = if spin.gives("axis") {
-        spin.vector("axis")?
+fn turning(spin: &SpinTable, geometry: Geometry, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
+    let rate = spin.rate.get()?;
+    let about = spin.about.vector()?;
+    let axis = if spin.axis.is_given() {
+        spin.axis.vector()?
     } else {
         [0.0, 0.0, 1.0]
     };
     let length = axis.iter().map(|along| along * along).sum::<f64>().sqrt();
-    if spin.gives("axis") && (geometry != Geometry::Solid || length == 0.0) {
+    if spin.axis.is_given() && (geometry != Geometry::Solid || length == 0.0) {
         let message = match geometry {
             Geometry::Solid => {
                 "E0217: all components of the axis of rotation are zero, so it has no direction. Give a vector along \
@@ -87,41 +87,42 @@ fn turning(spin: &Record, geometry: Geometry, report: &mut Report<'_>) -> Option
                  not allowed. Delete `axis`, or use geometry = \"3d\"."
             }
         };
-        spin.error("axis", message, report);
+        spin.axis.error(message, report);
         return None;
     }
     Some([axis.map(|along| rate * along / length), about])
 }
 
 fn read(
-    record: &Record,
+    record: &BodyTable,
     draft: &Draft,
     grid: Option<&GridSpec>,
     regime: Option<Regime>,
     report: &mut Report<'_>,
 ) -> Option<Body> {
     let material = material(record, draft, report);
-    for key in ["velocity", "spin"].into_iter().filter(|key| record.gives(key)) {
+    let moving: [&KeyPlace; 2] = [&record.velocity, &record.spin];
+    for key in moving.into_iter().filter(|key| key.is_given()) {
         if regime == Some(Regime::QuasiStatic) {
-            record.error(key, super::NO_INERTIA, report);
+            key.error(super::NO_INERTIA, report);
         }
     }
-    let points_per_cell = record.count("points_per_cell").map(|count| count as usize);
+    let points_per_cell = record.points_per_cell.get().map(|count| count as usize);
     if points_per_cell == Some(2) && grid.is_some_and(|grid| grid.order == 3) {
         report.warn(format!(
             "W0209: {}: points_per_cell = 2 is too small for cubic splines. Stresses are off by several per cent. Use \
              points_per_cell = 3, or grid.degree = \"quadratic\".",
-            record.path
+            record.location().path
         ));
     }
     let boundary = super::boundary(draft);
     let region = shape::region(record, draft.geometry.get()?, grid, points_per_cell, boundary, report);
-    let velocity = record.vector("velocity");
-    let spin = match record.record("spin") {
+    let velocity = record.velocity.vector();
+    let spin = match record.spin.value() {
         Some(spin) => Some(turning(spin, draft.geometry.get()?, report)?),
         None => None,
     };
-    let name = record.text("name").map(str::to_owned);
+    let name = record.name.text().map(str::to_owned);
     let body = Body {
         name,
         material: material?,
@@ -133,16 +134,19 @@ fn read(
     if grid.is_some_and(|grid| body.points(grid) == 0) {
         let message = "E0219: the body is thinner than 1e-9 of a cell, so it has no material points. Make the body \
                        thicker, or use smaller cells.";
-        match record.record("box") {
-            Some(record) => record.error("upper", message, report),
-            None => record.error(shape::key(record), message, report),
+        match record.shape() {
+            ShapeKey::Box(key) => key
+                .value()
+                .map_or(&**key, |corners| &*corners.upper)
+                .error(message, report),
+            shape => shape.place().error(message, report),
         }
     }
     Some(body)
 }
 
 /// Warns of bodies whose points integrate too coarsely, each cause in one line.
-fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: &mut Report<'_>) {
+fn warn_of_coarse(records: &[BodyTable], bodies: &[Body], grid: &GridSpec, report: &mut Report<'_>) {
     let single = paths(records, bodies, |body| {
         body.points_per_cell == 1 && is_coarse(body, grid)
     });
@@ -175,9 +179,9 @@ fn warn_of_coarse(records: &[Record], bodies: &[Body], grid: &GridSpec, report: 
 }
 
 /// Paths of the bodies that are meant, in the order of the file.
-fn paths(records: &[Record], bodies: &[Body], is_meant: impl Fn(&Body) -> bool) -> Vec<String> {
+fn paths(records: &[BodyTable], bodies: &[Body], is_meant: impl Fn(&Body) -> bool) -> Vec<String> {
     let meant = records.iter().zip(bodies).filter(|(_, body)| is_meant(body));
-    meant.map(|(record, _)| record.path.clone()).collect()
+    meant.map(|(record, _)| record.location().path.clone()).collect()
 }
 
 /// Part of a body of several points per cell that is thinner than their spacing, if it is more than [`ALONE`].
@@ -221,8 +225,8 @@ fn thinnest(body: &Body, grid: &GridSpec) -> Option<(usize, f64)> {
     (least.1 < (1.0 - ROUNDING) / body.points_per_cell as f64).then_some(least)
 }
 
-fn material(record: &Record, draft: &Draft, report: &mut Report<'_>) -> Option<usize> {
-    let name = record.text("material")?;
+fn material(record: &BodyTable, draft: &Draft, report: &mut Report<'_>) -> Option<usize> {
+    let name = record.material.text()?;
     let named = draft.material.items();
     let found = named.iter().position(|(known, _)| known == name);
     if found.is_none() {
@@ -231,7 +235,7 @@ fn material(record: &Record, draft: &Draft, report: &mut Report<'_>) -> Option<u
             Some(known) => format!("E0220: [material.{name_as_given}] is not defined. Did you mean `{known}`?"),
             None => format!("E0220: [material.{name_as_given}] is not defined. Add this table, or correct the name."),
         };
-        record.consequence("material", message, &["material"], report);
+        record.material.consequence(message, &["material"], report);
     }
     found
 }

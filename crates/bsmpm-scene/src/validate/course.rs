@@ -2,16 +2,21 @@
 
 use super::site::AroundStrip;
 use crate::case::Shares;
-use crate::record::{Field, ListRow, Record};
+use crate::record::{Field, ListRow};
 use crate::report::Report;
 use bsmpm::tensor::Vector;
 
 /// Ramp and amplitude of a load, of which one holds.
-pub(super) fn course(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<(f64, Shares)> {
-    if !record.gives("amplitude") {
-        let ramp = record.number("ramp")?;
+pub(super) fn course(
+    ramp: &Field<f64>,
+    amplitude: &Field<Vec<ListRow>>,
+    around: AroundStrip<'_>,
+    report: &mut Report<'_>,
+) -> Option<(f64, Shares)> {
+    if !amplitude.is_given() {
+        let path = ramp.path();
+        let ramp = ramp.get()?;
         if let Some(end) = around.end.filter(|end| ramp > *end) {
-            let path = record.path_of("ramp");
             report.warn(format!(
                 "W0402: {path}: the load grows until t = {ramp}, but the analysis ends at t = {end}, so the load \
                  never acts in full. Reduce `ramp`, or increase analysis.end."
@@ -19,7 +24,7 @@ pub(super) fn course(record: &Record, around: AroundStrip<'_>, report: &mut Repo
         }
         return Some((ramp, Vec::new()));
     }
-    let rows = in_time(record, "amplitude", around, report)?;
+    let rows = in_time(amplitude, around, report)?;
     Some((
         0.0,
         rows.into_iter()
@@ -29,25 +34,22 @@ pub(super) fn course(record: &Record, around: AroundStrip<'_>, report: &mut Repo
 }
 
 /// Rows of what acts in time; warned of what of them the steps do not meet.
-fn in_time(record: &Record, key: &str, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Vec<Vec<f64>>> {
-    let rows: Vec<Vec<f64>> = increasing(&record.rows_field(key), report)?
-        .map(<[f64]>::to_vec)
-        .collect();
-    let path = record.path_of(key);
-    warn_of_late(&path, rows.iter().map(|row| row[0]), around.end, report);
-    coarse(&path, rows.iter().map(|row| row[0]), around.dt, report);
+fn in_time(key: &Field<Vec<ListRow>>, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Vec<Vec<f64>>> {
+    let rows: Vec<Vec<f64>> = increasing(key, report)?.map(<[f64]>::to_vec).collect();
+    let path = key.path();
+    warn_of_late(path, rows.iter().map(|row| row[0]), around.end, report);
+    coarse(path, rows.iter().map(|row| row[0]), around.dt, report);
     Some(rows)
 }
 
 /// The largest load of a path along each axis, by size, and the shares of it; an axis along which nothing acts has
 /// those of one along which something does.
 pub(super) fn path(
-    record: &Record,
-    key: &str,
+    key: &Field<Vec<ListRow>>,
     around: AroundStrip<'_>,
     report: &mut Report<'_>,
 ) -> Option<([f64; 3], Shares)> {
-    let rows = in_time(record, key, around, report)?;
+    let rows = in_time(key, around, report)?;
     let largest = [0, 1, 2].map(|axis| {
         let components = rows.iter().map(|row| component(row, axis));
         components.fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a })

@@ -18,7 +18,7 @@ use self::retention::retention;
 use super::site::AroundStrip;
 use crate::case::{ActiveLoads, Flow, NamedMaterial, Stage};
 use crate::constants::STANDARD_GRAVITY;
-use crate::record::Record;
+use crate::record::{CaseTable, Record};
 use crate::report::Report;
 use crate::schema::Draft;
 use crate::words::{AnalysisType, Drainage};
@@ -101,10 +101,10 @@ pub(super) fn read(
 
 /// Refuses what only pore-water flow uses, in a case without it.
 fn refuse_without_flow(draft: &Draft, report: &mut Report<'_>) {
-    for list in [&draft.drain, &draft.inflow] {
-        if let Some(record) = list.items().first() {
-            report.error(record.origin, &record.path, WITHOUT_FLOW);
-        }
+    let drain = draft.drain.items().first().map(CaseTable::location);
+    let inflow = draft.inflow.items().first().map(CaseTable::location);
+    for location in drain.into_iter().chain(inflow) {
+        location.error(WITHOUT_FLOW, report);
     }
     if let Some(water) = draft.water.value().filter(|water| water.bulk.is_given()) {
         water.bulk.error(WITHOUT_FLOW, report);

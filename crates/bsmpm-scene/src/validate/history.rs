@@ -9,13 +9,13 @@ use crate::case::{Body, Check, Column, History, Made, NamedMaterial, PointSelect
 use crate::grid::GridSpec;
 use crate::nearest::{nearest, unknown_name};
 use crate::observables::{Aspect, HistorySubject, Observable, SubjectKeys, SubjectKind};
-use crate::record::Record;
+use crate::record::{CaseTable, Field, Measure};
 use crate::report::{Report, shortened};
-use crate::schema::{Draft, SupportTable};
+use crate::schema::{CheckTable, Draft, HistoryTable, SupportTable};
 use crate::unit::Dimension;
 use crate::words::{Geometry, Side, Word};
 use bsmpm::model::Regime;
-use location::{at, at_surface, at_x, face, section, within};
+use location::{at, at_x, face, section, within};
 use std::collections::HashSet;
 
 /// Histories at most, each a column or several of every row.
@@ -60,7 +60,7 @@ pub(super) fn read_all(
                     different `name`.",
                 column.name
             );
-            record.error("name", message, report);
+            record.name.error(message, report);
         }
         histories.push(history);
     }
@@ -69,26 +69,25 @@ pub(super) fn read_all(
 
 fn read(
     draft: &Draft,
-    record: &Record,
+    record: &HistoryTable,
     regime: Option<Regime>,
     grid: Option<&GridSpec>,
     made: Option<CaseBodies<'_>>,
     report: &mut Report<'_>,
 ) -> Option<History> {
-    let observable: Observable = record.word("quantity")?;
-    let of_strip = record.gives("of") && observable.definition().kind.is_of_strip();
+    let observable = record.quantity.get()?;
+    let of_strip = record.of.is_given() && observable.definition().kind.is_of_strip();
     check_keys(record, observable, of_strip, draft.geometry.get(), report);
     check_case(draft, record, observable, regime, report);
     let subject = match of_strip {
         true => HistorySubject::Strip(strip(draft, record, observable, report)?),
         false => subject(observable, record, draft, grid, made, report)?,
     };
-    let name = if record.gives("name") {
-        record.text("name")?
-    } else {
-        observable.word()
+    let name = match record.name.is_given() {
+        true => record.name.text()?,
+        false => observable.word(),
     };
-    let scale = record.number("scale")?;
+    let scale = record.scale.get()?;
     let geometry = draft.geometry.get()?;
     Some(History {
         quantity: Quantity::new(observable, subject),
@@ -101,111 +100,118 @@ fn read(
 
 /// Refuses keys that have no effect on the quantity, and reports those that it needs and does not have.
 fn check_keys(
-    record: &Record,
+    record: &HistoryTable,
     observable: Observable,
     of_strip: bool,
     geometry: Option<Geometry>,
     report: &mut Report<'_>,
 ) {
     let SubjectKeys { own, needed } = observable.definition().kind.keys(geometry);
-    for key in KEYS.into_iter().filter(|key| record.gives(key)) {
-        if own.contains(&key) || needed.contains(&key) || (key == "of" && of_strip) {
+    let keys = record.subject_keys();
+    for key in keys.into_iter().filter(|key| key.is_given()) {
+        let name = key.name();
+        if own.contains(&name) || needed.contains(&name) || (name == "of" && of_strip) {
             continue;
         }
-        let message = format!("E0642: the key `{key}` has no effect on the quantity \"{observable}\". Remove `{key}`.");
-        record.error(key, message, report);
+        let message =
+            format!("E0642: the key `{name}` has no effect on the quantity \"{observable}\". Remove `{name}`.");
+        key.error(message, report);
     }
-    if of_strip && record.gives("face") {
+    if of_strip && record.face.is_given() {
         let message = "E0643: the history has both `face` (a side of the grid) and `of` (a footing or motion), but \
             can measure only one. Remove one of the two keys.";
-        record.error("of", message, report);
+        record.of.error(message, report);
     }
-    for key in needed.iter().filter(|key| !record.gives(key) && !of_strip) {
-        let message = format!("E0644: the quantity \"{observable}\" cannot be measured without `{key}`. Add `{key}`.");
-        report.error(record.origin, &record.path_of(key), message);
+    let missing = needed
+        .iter()
+        .filter_map(|name| keys.iter().find(|key| key.name() == *name));
+    for key in missing.filter(|key| !key.is_given() && !of_strip) {
+        let name = key.name();
+        let message =
+            format!("E0644: the quantity \"{observable}\" cannot be measured without `{name}`. Add `{name}`.");
+        key.error(message, report);
     }
 }
 
 /// Refuses a quantity that is zero, or has no meaning, in the case.
-fn check_case(draft: &Draft, record: &Record, observable: Observable, regime: Option<Regime>, report: &mut Report<'_>) {
+fn check_case(
+    draft: &Draft,
+    record: &HistoryTable,
+    observable: Observable,
+    regime: Option<Regime>,
+    report: &mut Report<'_>,
+) {
     if regime == Some(Regime::QuasiStatic) && observable.has(Aspect::NeedsVelocities) {
-        record.error("quantity", needs_dynamics(observable.word()), report);
+        record.quantity.error(needs_dynamics(observable.word()), report);
     }
     if observable.has(Aspect::NeedsFooting) && !draft.footing.is_given() {
         let message = format!(
             "E0646: the quantity \"{observable}\" needs a footing, and the case has none. Add [footing], or use \
                 another quantity."
         );
-        record.consequence("quantity", message, &["footing"], report);
+        record.quantity.consequence(message, &["footing"], report);
     }
     if observable.has(Aspect::NeedsFlow) && !flow::flows(draft) {
-        record.error("quantity", needs_flow(observable.word()), report);
+        record.quantity.error(needs_flow(observable.word()), report);
     }
-    if record.number("scale") == Some(0.0) {
-        record.error(
-            "scale",
+    if record.scale.get() == Some(0.0) {
+        record.scale.error(
             "E0647: with scale = 0 all values of this history would be 0. Use another scale.",
             report,
         );
     }
-    if let Some(side) = record
-        .word::<Side>("face")
-        .filter(|_| observable.has(Aspect::NeedsContact))
+    if let Some(side) = record.face.get().filter(|_| observable.has(Aspect::NeedsContact))
         && !supports(draft, side).contains(&Support::Contact)
     {
         let message = format!(
             "E0646: the quantity \"{observable}\" needs contact, but the boundary `{side}` is not in contact. Set \
              boundary.{side} = \"contact\"."
         );
-        record.error("face", message, report);
+        record.face.error(message, report);
     }
-    if let Some(side) = record
-        .word::<Side>("face")
-        .filter(|_| observable.has(Aspect::NeedsSupport))
+    if let Some(side) = record.face.get().filter(|_| observable.has(Aspect::NeedsSupport))
         && is_never_held(draft, side)
     {
         let message = format!(
             "E0646: boundary `{side}` does not restrain the soil, so its reaction is always 0. Name another `face`, \
              or set boundary.{side} to \"fixed\" or \"roller\"."
         );
-        record.consequence("face", message, &["boundary", "prescribed", "stage"], report);
+        record
+            .face
+            .consequence(message, &["boundary", "prescribed", "stage"], report);
     }
     let mut sides = Side::ALL.into_iter().flatten();
     if observable.has(Aspect::NeedsOutflow) && !sides.any(|side| supports(draft, side).contains(&Support::Outflow)) {
         let message = "E0646: no boundary has the condition \"outflow\", so no material can leave the grid. Set a \
              side in [boundary] to \"outflow\".";
-        record.error("quantity", message, report);
+        record.quantity.error(message, report);
     }
 }
 
 /// Number of the strip that a history is of, if the history has a meaning for it; `None` after an error.
-fn strip(draft: &Draft, record: &Record, observable: Observable, report: &mut Report<'_>) -> Option<usize> {
-    let wanted = record.text("of")?;
-    let footing = draft
-        .footing
-        .value()
-        .into_iter()
-        .map(|strip| (strip, strip.text("name").unwrap_or(NAMELESS), "interface"));
-    let motions = draft
-        .prescribed
-        .items()
-        .iter()
-        .map(|strip| (strip, strip.text("name").unwrap_or(""), "components"));
-    let strips: Vec<_> = footing.chain(motions).collect();
-    let Some(number) = strips.iter().position(|(_, name, _)| *name == wanted) else {
-        let names = strips.iter().map(|(_, name, _)| *name);
+fn strip(draft: &Draft, record: &HistoryTable, observable: Observable, report: &mut Report<'_>) -> Option<usize> {
+    let wanted = record.of.text()?;
+    let has_footing = draft.footing.value().is_some();
+    let strips = draft.strips().zip(0..).map(|(strip, number)| {
+        let unnamed = if has_footing && number == 0 { NAMELESS } else { "" };
+        (strip, strip.name.text().unwrap_or(unnamed))
+    });
+    let strips: Vec<_> = strips.collect();
+    let Some(number) = strips.iter().position(|(_, name)| *name == wanted) else {
+        let names = strips.iter().map(|(_, name)| *name);
         let message = unknown_name("[[prescribed]] or [footing]", wanted, names);
-        record.consequence("of", message, &["footing", "prescribed"], report);
+        record.of.consequence(message, &["footing", "prescribed"], report);
         return None;
     };
-    let (strip, _, key) = strips[number];
-    if observable.has(Aspect::NeedsContact) && strip.record(key).is_none() {
+    let (strip, _) = strips[number];
+    if observable.has(Aspect::NeedsContact) && strip.contact.is_none() {
         let message = format!(
-            "E0646: the quantity \"{observable}\" needs frictional contact, but {0} is tied to the ground. Add `{key}` \
+            "E0646: the quantity \"{observable}\" needs frictional contact, but {0} is tied to the ground. Add `{1}` \
              to {0}.",
-            strip.path
+            strip.location.path,
+            strip.interface.name()
         );
-        record.consequence("of", message, &[&strip.path], report);
+        record.of.consequence(message, &[&strip.location.path], report);
         return None;
     }
     Some(number)
@@ -231,7 +237,7 @@ fn is_never_held(draft: &Draft, side: Side) -> bool {
         && supports(draft, side)
             .iter()
             .all(|support| matches!(support, Support::Free | Support::Outflow))
-        && !motions.any(|motion| motion.gives("face") && motion.word::<Side>("face") == Some(side))
+        && !motions.any(|motion| motion.face.get() == Some(side))
 }
 
 /// The error of a time after the end of the run.
@@ -260,30 +266,10 @@ pub(super) fn needs_flow(quantity: &str) -> String {
     )
 }
 
-/// Keys that belong to some quantities.
-const KEYS: [&str; 16] = [
-    "percentile",
-    "face",
-    "at",
-    "at_x",
-    "box",
-    "material",
-    "body",
-    "from",
-    "to",
-    "fixed",
-    "surface",
-    "rigid",
-    "of",
-    "drain",
-    "rectangle",
-    "disc",
-];
-
 /// What an observable is of.
 fn subject(
     observable: Observable,
-    record: &Record,
+    record: &HistoryTable,
     draft: &Draft,
     grid: Option<&GridSpec>,
     made: Option<CaseBodies<'_>>,
@@ -300,27 +286,26 @@ fn subject(
         }
         SubjectKind::Percentile => {
             let of = counted(record, grid, made, report)?;
-            let given = record.gives("percentile");
-            let percentile = if given { record.number("percentile")? } else { 100.0 };
+            let percentile = record.percentile.if_given()?.unwrap_or(100.0);
             HistorySubject::Percentile { percentile, of }
         }
         SubjectKind::Near => {
             let of = counted(record, grid, made, report)?;
-            let at_x = at_x(record, grid, report)?;
+            let at_x = at_x(&record.at_x, grid, report)?;
             HistorySubject::Near { at_x, of }
         }
         SubjectKind::MaterialPlace => HistorySubject::Place {
-            at: at(record, grid, report)?,
+            at: at(&record.at, grid, report)?,
             surface: false,
         },
         SubjectKind::Place => HistorySubject::Place {
-            at: at(record, grid, report)?,
-            surface: at_surface(record)?,
+            at: at(&record.at, grid, report)?,
+            surface: record.surface.if_given()?.unwrap_or(false),
         },
-        SubjectKind::Face => HistorySubject::Face(face(record, draft, report)?),
+        SubjectKind::Face => HistorySubject::Face(face(&record.face, draft, report)?),
         SubjectKind::Section => {
             let (lines, round) = section(draft, record, grid, report)?;
-            let fixed = record.gives("fixed") && record.flag("fixed")?;
+            let fixed = record.fixed.if_given()?.unwrap_or(false);
             HistorySubject::Section { lines, round, fixed }
         }
         SubjectKind::Rigid => HistorySubject::Rigid(rigid(record, draft, report)?),
@@ -330,34 +315,35 @@ fn subject(
 }
 
 /// Number of the rigid body that a history is of.
-fn rigid(record: &Record, draft: &Draft, report: &mut Report<'_>) -> Option<usize> {
-    let name = record.text("rigid")?;
+fn rigid(record: &HistoryTable, draft: &Draft, report: &mut Report<'_>) -> Option<usize> {
+    let name = record.rigid.text()?;
     let names: Vec<&str> = draft
         .rigid
         .items()
         .iter()
-        .filter_map(|rigid| rigid.text("name"))
+        .filter_map(|rigid| rigid.name.text())
         .collect();
     let found = names.iter().position(|known| *known == name);
     if found.is_none() {
-        record.consequence("rigid", unknown_name("[[rigid]]", name, names), &["rigid"], report);
+        record
+            .rigid
+            .consequence(unknown_name("[[rigid]]", name, names), &["rigid"], report);
     }
     found
 }
 
 /// The points that count: of a material that a body is made of, of a body, or all; of those all, or those in a box.
 fn counted(
-    record: &Record,
+    record: &HistoryTable,
     grid: Option<&GridSpec>,
     made: Option<CaseBodies<'_>>,
     report: &mut Report<'_>,
 ) -> Option<PointSelection> {
-    let within = if record.gives("box") {
-        Some(within(record.record("box")?, grid, report)?)
-    } else {
-        None
+    let within = match record.r#box.is_given() {
+        true => Some(within(record.r#box.value()?, grid, report)?),
+        false => None,
     };
-    let made = match (record.gives("material"), record.gives("body")) {
+    let made = match (record.material.is_given(), record.body.is_given()) {
         (true, _) => Made::Material(material(record, made, report)?),
         (_, true) => Made::Body(body(record, made?.bodies, report)?),
         _ => Made::All,
@@ -366,12 +352,12 @@ fn counted(
 }
 
 /// Number of the history's material, which a body is made of.
-fn material(record: &Record, made: Option<CaseBodies<'_>>, report: &mut Report<'_>) -> Option<u16> {
-    let name = record.text("material")?;
+fn material(record: &HistoryTable, made: Option<CaseBodies<'_>>, report: &mut Report<'_>) -> Option<u16> {
+    let name = record.material.text()?;
     let CaseBodies { materials, bodies } = made?;
     let Some(number) = materials.iter().position(|material| material.name == name) else {
         let names = materials.iter().map(|material| &*material.name);
-        record.error("material", unknown_name("material", name, names), report);
+        record.material.error(unknown_name("material", name, names), report);
         return None;
     };
     if bodies.iter().all(|body| body.material != number) {
@@ -379,19 +365,21 @@ fn material(record: &Record, made: Option<CaseBodies<'_>>, report: &mut Report<'
             "E0613: no body consists of the material `{name}`, so there is nothing to measure. Name \
             the material of a body."
         );
-        record.error("material", message, report);
+        record.material.error(message, report);
         return None;
     }
     u16::try_from(number).ok()
 }
 
 /// Number of the history's body.
-fn body(record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<usize> {
-    let name = record.text("body")?;
+fn body(record: &HistoryTable, bodies: &[Body], report: &mut Report<'_>) -> Option<usize> {
+    let name = record.body.text()?;
     let found = bodies.iter().position(|body| body.name.as_deref() == Some(name));
     if found.is_none() {
         let names = bodies.iter().filter_map(|body| body.name.as_deref());
-        record.consequence("body", unknown_name("[[body]]", name, names), &["body"], report);
+        record
+            .body
+            .consequence(unknown_name("[[body]]", name, names), &["body"], report);
     }
     found
 }
@@ -399,7 +387,7 @@ fn body(record: &Record, bodies: &[Body], report: &mut Report<'_>) -> Option<usi
 /// The points that count, if they have mass.
 fn weighing(
     of: PointSelection,
-    record: &Record,
+    record: &HistoryTable,
     made: Option<CaseBodies<'_>>,
     report: &mut Report<'_>,
 ) -> Option<PointSelection> {
@@ -412,7 +400,7 @@ fn weighing(
     if !counted.any(|(_, body)| materials[body.material].density.is_some()) {
         let message = "E0646: this quantity needs the mass of the soil, but the material of this part of the ground has no \
              weight. Add `unit_weight` to the material.";
-        record.error("quantity", message, report);
+        record.quantity.error(message, report);
         return None;
     }
     Some(of)
@@ -428,8 +416,8 @@ pub(super) fn checks(draft: &Draft, histories: &[History], end: Option<f64>, rep
         .collect()
 }
 
-fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut Report<'_>) -> Option<Check> {
-    let quantity = record.text("quantity")?;
+fn check(record: &CheckTable, histories: &[History], end: Option<f64>, report: &mut Report<'_>) -> Option<Check> {
+    let quantity = record.quantity.text()?;
     let columns: Vec<Column> = histories.iter().flat_map(History::columns).collect();
     let Some(column) = columns.iter().find(|column| column.name == quantity) else {
         let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
@@ -442,26 +430,29 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
             "E0660: no [[history]] records a column `{}` ({known}). Correct the name, or add a [[history]].",
             shortened(quantity)
         );
-        record.consequence("quantity", message, &["history", "geometry"], report);
+        record.quantity.consequence(message, &["history", "geometry"], report);
         return None;
     };
-    let at = if record.gives("at") { record.number("at")? } else { end? };
+    let at = match record.at.if_given()? {
+        Some(at) => at,
+        None => end?,
+    };
     if end.is_some_and(|end| at > end) {
-        record.error("at", after_the_end(at), report);
+        record.at.error(after_the_end(at), report);
     }
-    let min = bound("min", record, column, report)?;
-    let max = bound("max", record, column, report)?;
+    let min = bound(&record.min, column, report)?;
+    let max = bound(&record.max, column, report)?;
     match (min, max) {
         (None, None) => {
             let message = "E0661: the check has no limit, so it can never fail. Add `min`, `max` or both.";
-            report.error(record.origin, &record.path, message);
+            record.location().error(message, report);
         }
         (Some(min), Some(max)) if min > max => {
             let message = format!(
                 "E0661: `min` = {min} is larger than `max` = {max}, so the check could never pass. Exchange \
                     `min` and `max`."
             );
-            record.error("min", message, report);
+            record.min.error(message, report);
         }
         _ => {}
     }
@@ -474,24 +465,24 @@ fn check(record: &Record, histories: &[History], end: Option<f64>, report: &mut 
 }
 
 /// A bound in the column's unit; the outer option is `None` after an error.
-fn bound(key: &str, record: &Record, column: &Column, report: &mut Report<'_>) -> Option<Option<f64>> {
-    if !record.gives(key) {
+fn bound(key: &Field<Measure>, column: &Column, report: &mut Report<'_>) -> Option<Option<f64>> {
+    let Some(Measure { number, dimension }) = key.if_given()? else {
         return Some(None);
-    }
-    let (value, dimension) = record.measure(key)?;
+    };
     let Some(dimension) = dimension else {
-        return Some(Some(value));
+        return Some(Some(number));
     };
     let expected = Dimension::of_unit(&column.unit);
     if expected == Some(dimension) {
-        return Some(Some(value));
+        return Some(Some(number));
     }
     let allowed = expected.map_or("a number".to_owned(), |expected| expected.to_string());
     let message = format!(
         "E0665: this limit has the unit of {dimension}, but the column `{}` is {allowed}. Correct the unit of \
-         `{key}`.",
-        column.name
+         `{}`.",
+        column.name,
+        key.name()
     );
-    record.error(key, message, report);
+    key.error(message, report);
     None
 }

@@ -5,6 +5,7 @@ use super::physics::{ALONG, holds_at_rest};
 use super::place::{along, ring};
 use super::site::{normal, normal_of};
 use crate::case::{ActiveLoads, Case, Initial, LoadedLine, MotionPath, Push, Rigid, Shares, Site, Support, Traction};
+use crate::record::CaseTable;
 use crate::report::Report;
 use crate::schema::Draft;
 use crate::surfaces::name_of_strip;
@@ -101,7 +102,7 @@ fn rigid(case: &Case, draft: &Draft, axis: usize) -> impl Iterator<Item = String
         .zip(draft.rigid.items())
         .filter(|_| case.gravity.is_none());
     all.filter(move |((number, of), _)| pushes(case, *number, of, axis))
-        .map(|(_, record)| record.path.clone())
+        .map(|(_, record)| record.location().path.clone())
 }
 
 /// Whether a rigid body with a number pushes along an axis, or stays away from where it began, and nothing else holds

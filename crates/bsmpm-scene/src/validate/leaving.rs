@@ -2,6 +2,7 @@
 
 use super::physics;
 use crate::case::{Body, Case, Face, Geometry, RigidShape, RigidSolid, Support};
+use crate::record::CaseTable;
 use crate::report::Report;
 use crate::schema::Draft;
 use bsmpm::model::Regime;
@@ -49,7 +50,9 @@ pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
             report.warn(format!(
                 "W0230: {}: the body moves out of the grid through the free face {side} at about t = {:.3} s, so the \
                  run would stop then. Enlarge the grid at this face by {:.3} m, or support the face.",
-                record.path, exit.time, exit.overshoot
+                record.location().path,
+                exit.time,
+                exit.overshoot
             ));
         }
     }

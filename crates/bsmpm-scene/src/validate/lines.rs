@@ -8,7 +8,7 @@ use crate::case::{Case, NamedMaterial};
 use crate::grid::Line;
 use crate::report::Report;
 use crate::rounding::brief;
-use crate::schema::Draft;
+use crate::schema::{Draft, FootingTable, PrescribedTable, TractionTable};
 use crate::words::C0Lines;
 use bsmpm_shapes::Edge;
 use std::collections::BTreeMap;
@@ -45,13 +45,14 @@ pub(super) fn place(case: &mut Case, draft: &Draft, report: &mut Report<'_>) -> 
     ends::corners(case, &mut found);
     ends::plates(case, &mut found);
     for (table, number, message) in std::mem::take(&mut found.narrow) {
-        let of = match table {
-            "footing" => draft.footing.value(),
-            "prescribed" => draft.prescribed.items().get(number),
-            _ => draft.traction.items().get(number),
+        let site = match table {
+            "footing" => draft.footing.value().map(FootingTable::site),
+            "prescribed" => draft.prescribed.items().get(number).map(PrescribedTable::site),
+            _ => draft.traction.items().get(number).map(TractionTable::site),
         };
-        let key = if case.grid.dims() == 2 { "to" } else { "rectangle" };
-        of.into_iter().for_each(|record| record.error(key, &message, report));
+        if let Some(site) = site {
+            site.end().error(message, report);
+        }
     }
     let lines = std::mem::take(&mut found.lines);
     let chosen = draft

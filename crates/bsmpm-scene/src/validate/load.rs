@@ -1,14 +1,13 @@
 //! Validates tractions, point loads and shaking.
 
 use super::course::{coarse, component, course, increasing, path, warn_of_late};
-use super::material::profile;
 use super::place::{along, at_body, at_volume, beyond, is_at, is_beyond, ring};
 use super::sheet::pieces;
 use super::site::{AroundStrip, places, plate, segment};
 use crate::case::{Gravity, LoadedLine, PointLoad, Push, Rigid, Shares, Site, Traction};
-use crate::record::{CaseTable, Record};
+use crate::record::{CaseTable, Field, KeyPlace, ListRow, OrTable, vector};
 use crate::report::Report;
-use crate::schema::Draft;
+use crate::schema::{CircleTable, Draft, PointLoadTable, SiteKey, TractionTable};
 use bsmpm::material::Profile;
 use bsmpm::model::Regime;
 
@@ -19,8 +18,8 @@ pub(super) fn tractions(draft: &Draft, around: AroundStrip<'_>, report: &mut Rep
 }
 
 /// A traction; `None` after an error.
-fn traction(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Traction> {
-    let line = line(record, around, report);
+fn traction(record: &TractionTable, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Traction> {
+    let line = line(record.site(), around, report);
     let push = push(record, around, report);
     let line = line?;
     let (push, (ramp, amplitude)) = push?;
@@ -30,47 +29,48 @@ fn traction(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -
         ramp,
         amplitude,
     };
-    let keys = ["pressure", "stress_path", "pressure_path"];
-    let key = keys.into_iter().find(|key| record.gives(key)).unwrap_or("stress");
-    warn_of_nothing(record, key, [traction.largest(); 3], report);
+    warn_of_nothing(record.load(), [traction.largest(); 3], report);
     Some(traction)
 }
 
 /// Where a traction acts: on a body everywhere.
-fn line(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<LoadedLine> {
-    if record.gives("circle") {
-        let (center, radius, places) = circle(record, around, report)?;
-        acts_on_body(record, "circle", places.into_iter(), around, report);
-        return Some(LoadedLine::Circle { center, radius });
-    }
-    if let Some(key) = ["rectangle", "disc"].into_iter().find(|key| record.gives(key)) {
-        let grid = around.grid?;
-        let bodies = around.bodies?;
-        let plate = plate(record, grid, report)?;
-        let mut places = places(Site::Plate(plate), grid).into_iter();
-        if let Some(at) = places.find(|at| beyond(grid, *at).is_none() && !at_volume(bodies, grid, *at)) {
-            record.consequence(key, no_body(&at), &["body"], report);
-            return None;
+fn line(key: SiteKey<'_>, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<LoadedLine> {
+    match key {
+        SiteKey::Circle(circle_key) => {
+            let (center, radius, places) = circle(circle_key, around, report)?;
+            acts_on_body(circle_key, places.into_iter(), around, report);
+            Some(LoadedLine::Circle { center, radius })
         }
-        return Some(LoadedLine::Plate(plate));
+        SiteKey::Plate(plate_key) => {
+            let grid = around.grid?;
+            let bodies = around.bodies?;
+            let plate = plate(plate_key, grid, report)?;
+            let mut places = places(Site::Plate(plate), grid).into_iter();
+            if let Some(at) = places.find(|at| beyond(grid, *at).is_none() && !at_volume(bodies, grid, *at)) {
+                key.place().consequence(no_body(&at), &["body"], report);
+                return None;
+            }
+            Some(LoadedLine::Plate(plate))
+        }
+        SiteKey::Segment(from_key, to_key) => {
+            let [from, to] = segment([from_key, to_key], around, report)?;
+            acts_on_body(from_key, along([from, to]), around, report);
+            Some(LoadedLine::Segment { from, to })
+        }
+        SiteKey::Surface(_) | SiteKey::Sphere(_) => Some(LoadedLine::Triangles(pieces(key, around, report)?)),
+        SiteKey::Face(_) => None,
     }
-    if record.gives("surface") || record.gives("sphere") {
-        return Some(LoadedLine::Triangles(pieces(record, around, report)?));
-    }
-    let [from, to] = segment(record, around, report)?;
-    acts_on_body(record, "from", along([from, to]), around, report);
-    Some(LoadedLine::Segment { from, to })
 }
 
 /// Centre, radius and places of a circle, some of which are inside the grid.
 pub(super) fn circle(
-    record: &Record,
+    key: &Field<CircleTable>,
     around: AroundStrip<'_>,
     report: &mut Report<'_>,
 ) -> Option<([f64; 2], f64, Vec<[f64; 2]>)> {
-    let circle = record.record("circle")?;
-    let center = circle.pair("centre")?;
-    let radius = circle.number("radius")?;
+    let circle = key.value()?;
+    let center = circle.centre.get()?;
+    let radius = circle.radius.get()?;
     let lower = around.grid?.lower();
     let upper = around.grid?.upper();
     let places: Vec<[f64; 2]> = ring(center, radius)
@@ -79,20 +79,21 @@ pub(super) fn circle(
     if places.is_empty() {
         let message =
             "E0201: no part of the circle is inside the grid. Move the circle into the grid, or enlarge the grid.";
-        record.error("circle", message, report);
+        key.error(message, report);
         return None;
     }
     Some((center, radius, places))
 }
 
 /// A stress along the axes, by depth.
-fn stresses(record: &Record) -> Option<[Profile; 3]> {
-    let Some(table) = record.record("stress") else {
-        return record.vector("stress").map(|of| of.map(Profile::constant));
+fn stresses(record: &TractionTable) -> Option<[Profile; 3]> {
+    let table = match record.stress.value()? {
+        OrTable::Value(stress) => return Some(vector(stress).map(Profile::constant)),
+        OrTable::Table(table) => table,
     };
-    let value = table.vector("value")?;
-    let at = table.number("at_y")?;
-    let growth = table.vector("per_metre")?;
+    let value = table.value.vector()?;
+    let at = table.at_y.get()?;
+    let growth = table.per_metre.vector()?;
     Some([0, 1, 2].map(|axis| Profile {
         value: value[axis],
         at,
@@ -101,21 +102,21 @@ fn stresses(record: &Record) -> Option<[Profile; 3]> {
 }
 
 /// What a traction is; on which side of a pressure bodies lie follows from the whole case only ([`super::side`]).
-fn push(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<(Push, (f64, Shares))> {
+fn push(record: &TractionTable, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<(Push, (f64, Shares))> {
     let side = 0.0;
-    if record.gives("pressure_path") {
-        let (largest, shares) = path(record, "pressure_path", around, report)?;
+    if record.pressure_path.is_given() {
+        let (largest, shares) = path(&record.pressure_path, around, report)?;
         let profile = Profile::constant(largest[0]);
         return Some((Push::Pressure { profile, side }, (0.0, shares)));
     }
-    if record.gives("stress_path") {
-        let (largest, shares) = path(record, "stress_path", around, report)?;
+    if record.stress_path.is_given() {
+        let (largest, shares) = path(&record.stress_path, around, report)?;
         return Some((Push::Stress(largest.map(Profile::constant)), (0.0, shares)));
     }
-    let course = course(record, around, report);
-    let push = match record.gives("pressure") {
+    let course = course(&record.ramp, &record.amplitude, around, report);
+    let push = match record.pressure.is_given() {
         true => Push::Pressure {
-            profile: profile(record, "pressure")?,
+            profile: record.pressure.profile()?,
             side,
         },
         false => Push::Stress(stresses(record)?),
@@ -132,23 +133,29 @@ pub(super) fn point_loads(draft: &Draft, around: AroundStrip<'_>, report: &mut R
 }
 
 /// A point load; `None` after an error.
-fn point_load(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<PointLoad> {
-    let at = record.vector("at")?;
-    let force = force(record, around, report);
+fn point_load(record: &PointLoadTable, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<PointLoad> {
+    let at = record.at.vector()?;
+    let PointLoadTable {
+        force: constant,
+        force_path,
+        ramp,
+        amplitude,
+        ..
+    } = record;
+    let value = match constant.is_given() {
+        true => constant.vector(),
+        false => Some([0.0; 3]),
+    };
+    let force = force(value, force_path, ramp, amplitude, around, report);
     let grid = around.grid?;
     let bodies = around.bodies?;
     if let Some(message) = is_beyond(grid, at) {
-        record.error("at", message, report);
+        record.at.error(message, report);
     } else if !is_at(bodies, grid, at) {
-        record.consequence("at", no_body(&at[..grid.dims()]), &["body"], report);
+        record.at.consequence(no_body(&at[..grid.dims()]), &["body"], report);
     }
     let (force, (ramp, amplitude)) = force?;
-    let key = if record.gives("force_path") {
-        "force_path"
-    } else {
-        "force"
-    };
-    warn_of_nothing(record, key, force, report);
+    warn_of_nothing(record.load(), force, report);
     Some(PointLoad {
         at,
         force,
@@ -157,30 +164,29 @@ fn point_load(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>)
     })
 }
 
-/// A force along the axes that exist, and what of it acts in time.
+/// A force along the axes that exist, and what of it acts in time: a `constant` one with its ramp or amplitude, or that
+/// of a `force_path`.
 pub(super) fn force(
-    record: &Record,
+    constant: Option<[f64; 3]>,
+    force_path: &Field<Vec<ListRow>>,
+    ramp: &Field<f64>,
+    amplitude: &Field<Vec<ListRow>>,
     around: AroundStrip<'_>,
     report: &mut Report<'_>,
 ) -> Option<([f64; 3], (f64, Shares))> {
-    if record.gives("force_path") {
-        let (largest, shares) = path(record, "force_path", around, report)?;
+    if force_path.is_given() {
+        let (largest, shares) = path(force_path, around, report)?;
         return Some((largest, (0.0, shares)));
     }
-    let course = course(record, around, report);
-    let force = if record.gives("force") {
-        record.vector("force")?
-    } else {
-        [0.0; 3]
-    };
-    Some((force, course?))
+    let course = course(ramp, amplitude, around, report);
+    Some((constant?, course?))
 }
 
-fn warn_of_nothing(record: &Record, key: &str, load: [f64; 3], report: &mut Report<'_>) {
+fn warn_of_nothing(key: &KeyPlace, load: [f64; 3], report: &mut Report<'_>) {
     if load == [0.0; 3] {
         report.warn(format!(
             "W0401: {}: this load is zero and has no effect. Give a value, or delete the load.",
-            record.path_of(key)
+            key.path()
         ));
     }
 }
@@ -195,8 +201,7 @@ fn no_body(at: &[f64]) -> String {
 
 /// A load has a body under every part of it.
 fn acts_on_body(
-    record: &Record,
-    key: &str,
+    key: &KeyPlace,
     mut places: impl Iterator<Item = [f64; 2]>,
     around: AroundStrip<'_>,
     report: &mut Report<'_>,
@@ -204,7 +209,7 @@ fn acts_on_body(
     let Some(grid) = around.grid else { return };
     let Some(bodies) = around.bodies else { return };
     if let Some(at) = places.find(|at| !at_body(bodies, grid, *at)) {
-        record.consequence(key, no_body(&at), &["body"], report);
+        key.consequence(no_body(&at), &["body"], report);
     }
 }
 

@@ -95,23 +95,11 @@ pub(super) fn read_all(draft: &Draft, around: CaseFacts<'_>, report: &mut Report
 fn has_friction(draft: &Draft) -> bool {
     let faces = draft.boundary.value();
     let mut sides = Side::ALL.as_flattened().iter();
-    let mut bodies = draft
-        .rigid
-        .items()
-        .iter()
-        .chain(draft.prescribed.items())
-        .chain(draft.footing.value());
-    sides.any(|side| faces.is_some_and(|faces| faces.face(*side).table().is_some())) || bodies.any(is_frictional)
-}
-
-/// Whether a rigid body or strip has friction, by what is written of it.
-fn is_frictional(record: &Record) -> bool {
-    let contact = record.record("components").or(record.record("interface"));
-    [Some(record), contact]
-        .into_iter()
-        .flatten()
-        .filter_map(|record| record.number("friction_coefficient"))
-        .any(|friction| friction > 0.0)
+    let bodies = draft.rigid.items().iter().map(|rigid| &rigid.friction_coefficient);
+    let contacts = draft.strips().filter_map(|strip| strip.contact);
+    let mut coefficients = bodies.chain(contacts.map(|contact| &contact.friction_coefficient));
+    sides.any(|side| faces.is_some_and(|faces| faces.face(*side).table().is_some()))
+        || coefficients.any(|key| key.get().is_some_and(|friction| friction > 0.0))
 }
 
 fn read(

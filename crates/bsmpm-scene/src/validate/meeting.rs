@@ -82,18 +82,16 @@ pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
 /// Refuses a meeting, or notes it and warns of it.
 fn judge(case: &Case, draft: &Draft, meeting: &StripMeeting, other: &str, report: &mut Report<'_>) {
     let name = name_of_strip(case, meeting.strip);
-    let record = match meeting.strip.checked_sub(usize::from(case.footing.is_some())) {
-        None => draft.footing.value(),
-        Some(number) => draft.prescribed.items().get(number),
+    let Some(strip) = draft.strips().nth(meeting.strip) else {
+        return;
     };
-    let Some(record) = record else { return };
     match meeting.other {
         Other::Rigid(_) => {
             let message = format!(
                 "E0251: `{name}` ([[prescribed]] or [footing]) and `{other}` ([[rigid]]) share an edge and move \
                  differently. The soil cannot follow both. Use one kind of table, or leave a cell between."
             );
-            record.error("from", message, report);
+            strip.from.error(message, report);
         }
         Other::Corner { apart, .. } => {
             let message = format!(
@@ -101,7 +99,7 @@ fn judge(case: &Case, draft: &Draft, meeting: &StripMeeting, other: &str, report
                  cannot follow both. Use components = \"normal\" in both, or leave a cell between the two.",
                 brief(apart)
             );
-            record.error("from", message, report);
+            strip.from.error(message, report);
         }
         Other::Strip {
             act_together: false, ..
@@ -110,7 +108,7 @@ fn judge(case: &Case, draft: &Draft, meeting: &StripMeeting, other: &str, report
                 "E0251: `{other}` and `{name}` are adjacent, move differently and begin to act in different stages. \
                  The soil cannot follow both. Apply both in the same stage, or leave a cell between the two."
             );
-            record.error("from", message, report);
+            strip.from.error(message, report);
         }
         Other::Strip { sliding, edge, .. } if sliding > ROUNDING * edge => {
             let message = format!(
@@ -118,7 +116,7 @@ fn judge(case: &Case, draft: &Draft, meeting: &StripMeeting, other: &str, report
                  soil cannot follow both. Use components = \"normal\" in one, or leave a cell between the two.",
                 brief(sliding)
             );
-            record.error("from", message, report);
+            strip.from.error(message, report);
         }
         Other::Strip { along, edge, .. } if along > ALONG * edge => {
             let message = format!(
@@ -126,7 +124,7 @@ fn judge(case: &Case, draft: &Draft, meeting: &StripMeeting, other: &str, report
                  (at most {:.3} m), which the soil next to both cannot follow. Leave a cell between the two.",
                 ALONG * edge
             );
-            record.error("from", message, report);
+            strip.from.error(message, report);
         }
         Other::Strip { apart, edge, .. } => note_transition(&name, other, apart, edge, report),
     }

@@ -2,6 +2,7 @@
 
 use crate::case::{Case, NarrowestOpening};
 use crate::openings::{self, BodyOpening, GridFaces};
+use crate::record::CaseTable;
 use crate::report::Report;
 use crate::schema::Draft;
 use crate::words::Geometry;
@@ -53,8 +54,8 @@ pub(super) fn check(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
 fn path(draft: &Draft, opening: &BodyOpening) -> String {
     let body = &draft.body.items()[opening.body];
     match opening.cut {
-        Some(cut) => body.records("subtract")[cut].path.clone(),
-        None => body.path_of(super::shape::key(body)),
+        Some(cut) => body.subtract.items()[cut].location().path.clone(),
+        None => body.shape().place().path().to_owned(),
     }
 }
 

@@ -7,6 +7,7 @@ use super::strip::{moves, with_body};
 use crate::case::{ActiveLoads, Base, Body, Case, Geometry, Initial, Site, Support};
 use crate::constants::NEARLY_INCOMPRESSIBLE;
 use crate::observables::{HistorySubject, Observable};
+use crate::record::CaseTable;
 use crate::report::Report;
 use crate::schema::{Draft, SupportTable};
 use crate::words::{AnalysisType, Side, Word};
@@ -51,7 +52,7 @@ fn too_soon(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     }
     for (check, record) in case.checks.iter().zip(draft.check.items()) {
         if check.at <= least {
-            record.error("at", too_close_to_start(check.at, least), report);
+            record.at.error(too_close_to_start(check.at, least), report);
         }
     }
 }
@@ -299,7 +300,7 @@ pub(super) fn rest(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
             report.warn(format!(
                 "W0672: {}: in the initial equilibrium this prescribed motion carries a part of the ground in \
                  tension, so the initial stresses are wrong. Activate the motion in a [[stage]], or use [footing].",
-                record.path
+                record.location().path
             ));
         }
     }

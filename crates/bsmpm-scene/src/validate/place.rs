@@ -2,7 +2,7 @@
 
 use crate::case::{Body, Face, Geometry};
 use crate::grid::GridSpec;
-use crate::record::Record;
+use crate::record::Field;
 use crate::report::Report;
 use crate::words::Side;
 use std::fmt;
@@ -195,9 +195,9 @@ pub(super) fn is_in(body: &Body, grid: &GridSpec, at: [f64; 3]) -> bool {
     }
 }
 
-/// The face of the grid that a record names.
-pub(super) fn face(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -> Option<Face> {
-    let side: Side = record.word("face")?;
+/// The face of the grid that a key names.
+pub(super) fn face(key: &Field<Side>, grid: &GridSpec, report: &mut Report<'_>) -> Option<Face> {
+    let side = key.get()?;
     let face = Face::of(
         side,
         if grid.dims() == 3 {
@@ -209,7 +209,7 @@ pub(super) fn face(record: &Record, grid: &GridSpec, report: &mut Report<'_>) ->
     if face.is_none() {
         let message =
             format!("E0207: a 2-D grid has no face \"{side}\". Use left, right, bottom or top, or geometry = \"3d\".");
-        record.error("face", message, report);
+        key.error(message, report);
     }
     face
 }

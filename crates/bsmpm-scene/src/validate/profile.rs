@@ -4,9 +4,8 @@ use super::history;
 use crate::case::Profile;
 use crate::grid::GridSpec;
 use crate::observables::ProfileQuantity;
-use crate::record::Record;
 use crate::report::Report;
-use crate::schema::Draft;
+use crate::schema::{Draft, ProfileTable};
 use bsmpm::model::Regime;
 
 /// Profiles at most, each a file.
@@ -40,7 +39,7 @@ pub(super) fn read_all(
                  two profiles.",
                 profile.name
             );
-            record.error("name", message, report);
+            record.name.error(message, report);
         }
         profiles.push(profile);
     }
@@ -49,50 +48,45 @@ pub(super) fn read_all(
 
 fn read(
     draft: &Draft,
-    record: &Record,
+    record: &ProfileTable,
     regime: Option<Regime>,
     grid: Option<&GridSpec>,
     end: Option<f64>,
     report: &mut Report<'_>,
 ) -> Option<Profile> {
-    let ends = history::ends(record, grid, report);
-    let quantities: Vec<ProfileQuantity> = record.choices("quantities")?;
+    let ends = history::ends(&record.from, &record.to, grid, report);
+    let quantities = record.quantities.value()?.clone();
     if quantities.is_empty() {
-        record.error(
-            "quantities",
+        record.quantities.error(
             "E0652: the list is empty, so the profile has no values. Name a quantity.",
             report,
         );
     }
     if regime == Some(Regime::QuasiStatic) && quantities.contains(&ProfileQuantity::Velocity) {
-        record.error("quantities", history::needs_dynamics("velocity"), report);
+        record.quantities.error(history::needs_dynamics("velocity"), report);
     }
     if quantities.contains(&ProfileQuantity::ExcessPressure) && !super::flow::flows(draft) {
-        record.error("quantities", history::needs_flow("excess-pressure"), report);
+        record.quantities.error(history::needs_flow("excess-pressure"), report);
     }
-    let mut times = if record.gives("times") {
-        record.numbers("times")?.to_vec()
-    } else {
-        Vec::new()
-    };
-    if record.gives("times") && times.is_empty() {
+    let mut times = record.times.list()?.to_vec();
+    if record.times.is_given() && times.is_empty() {
         let message = "E0652: the list is empty, so the profile is never written. Give a time, or remove `times` to \
                        write the profile with every frame.";
-        record.error("times", message, report);
+        record.times.error(message, report);
     }
     if let Some(late) = times.iter().find(|time| end.is_some_and(|end| **time > end)) {
-        record.error("times", history::after_the_end(*late), report);
+        record.times.error(history::after_the_end(*late), report);
         return None;
     }
     times.sort_by(f64::total_cmp);
     times.dedup();
     Some(Profile {
-        name: record.text("name")?.to_owned(),
+        name: record.name.text()?.to_owned(),
         dims: draft.geometry.get()?.dims(),
         ends: ends?,
-        count: record.count("count")? as usize,
+        count: record.count.get()? as usize,
         quantities,
         times,
-        fixed: record.flag("fixed")?,
+        fixed: record.fixed.get()?,
     })
 }

@@ -13,9 +13,9 @@ use super::site::{AroundStrip, normal};
 use super::strip;
 use super::{MOST_SHOWN_FRICTION, course, load, place, shape};
 use crate::case::{ActiveLoads, Case, Initial, MotionPath, Rigid, RigidShape, Support};
-use crate::record::Record;
+use crate::record::{CaseTable, Field};
 use crate::report::Report;
-use crate::schema::Draft;
+use crate::schema::{Draft, RigidTable};
 use crate::surfaces;
 use crate::words::{Geometry, RigidMotion, Word};
 use bsmpm::interactions::rigid::{Outline, Sizes};
@@ -50,7 +50,7 @@ pub(super) fn read_all(
                          Give each rigid body its own `name`.",
                 rigid.name
             );
-            record.error("name", message, report);
+            record.name.error(message, report);
         }
         found.push(rigid);
     }
@@ -58,7 +58,7 @@ pub(super) fn read_all(
 }
 
 fn read(
-    record: &Record,
+    record: &RigidTable,
     geometry: Geometry,
     around: AroundStrip<'_>,
     regime: Option<Regime>,
@@ -70,12 +70,20 @@ fn read(
         fine_enough(record, &rigid, geometry, around, report);
         return Some(rigid);
     }
-    let shape = shape::rigid(record, report);
-    let free = free(record, report);
+    let shape = shape::rigid(record.shape(), report);
+    let free = free(&record.free, report);
     let path = way(record, around.end, report);
     let rotation = rotation(record, report);
-    let force = load::force(record, around, report);
-    let name = record.text("name")?.to_owned();
+    let force = record.force.if_given().map(|force| force.map_or([0.0; 3], place::flat));
+    let force = load::force(
+        force,
+        &record.force_path,
+        &record.ramp,
+        &record.amplitude,
+        around,
+        report,
+    );
+    let name = record.name.text()?.to_owned();
     let shape = shape?;
     let free = free?;
     let path = path?;
@@ -87,15 +95,15 @@ fn read(
         RigidShape::Circle { center, .. } => *center,
         RigidShape::InSpace(_) => return None,
     };
-    let about = pair_or(record, "about", centroid)?;
+    let about = record.about.if_given()?.unwrap_or(centroid);
     let volume = match geometry {
         Geometry::Axisymmetric => geometry.whole() * surfaces::outline(&shape, centroid).swept(-centroid[0]),
         Geometry::PlaneStrain | Geometry::Solid => sizes.area,
     };
     let mass = mass(record, volume, &sizes)?;
-    let moment = number_or(record, "moment", 0.0)?;
-    let [vx, vy] = pair_or(record, "start_velocity", [0.0; 2])?;
-    let spin = number_or(record, "start_spin", 0.0)?;
+    let moment = record.moment.if_given()?.unwrap_or(0.0);
+    let [vx, vy] = record.start_velocity.if_given()?.unwrap_or_default();
+    let spin = record.start_spin.if_given()?.unwrap_or(0.0);
     let rigid = Rigid {
         name,
         shape,
@@ -116,38 +124,17 @@ fn read(
     Some(rigid)
 }
 
-/// The number of a key, or a default without the key; `None` after an error.
-fn number_or(record: &Record, key: &str, default: f64) -> Option<f64> {
-    if record.gives(key) {
-        record.number(key)
-    } else {
-        Some(default)
-    }
-}
-
-/// The pair of a key, or a default without the key; `None` after an error.
-fn pair_or(record: &Record, key: &str, default: [f64; 2]) -> Option<[f64; 2]> {
-    if record.gives(key) {
-        record.pair(key)
-    } else {
-        Some(default)
-    }
-}
-
 /// Which motions follow from forces; `None` after an error.
-fn free(record: &Record, report: &mut Report<'_>) -> Option<[bool; 3]> {
+fn free(key: &Field<Vec<String>>, report: &mut Report<'_>) -> Option<[bool; 3]> {
     let mut free = [false; 3];
-    if !record.gives("free") {
-        return Some(free);
-    }
-    for name in record.names("free")? {
+    for name in key.list()? {
         let Some(motion) = RigidMotion::of(name) else {
             let allowed: Vec<String> = RigidMotion::WORDS.words().map(|word| format!("\"{word}\"")).collect();
             let message = format!(
                 "E0422: `{name}` is not a motion of a rigid body. Use one or more of: {}.",
                 allowed.join(", ")
             );
-            record.error("free", message, report);
+            key.error(message, report);
             return None;
         };
         free[motion as usize] = true;
@@ -156,23 +143,20 @@ fn free(record: &Record, report: &mut Report<'_>) -> Option<[bool; 3]> {
 }
 
 /// The way of its reference point; of a body that has none an empty one.
-fn way(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<MotionPath> {
-    let moves = ["displacement", "velocity", "path"]
-        .into_iter()
-        .any(|key| record.gives(key));
-    if moves {
-        strip::path(record, end, report)
+fn way(record: &RigidTable, end: Option<f64>, report: &mut Report<'_>) -> Option<MotionPath> {
+    if record.motion().place().is_given() {
+        strip::path(record.motion(), end, report)
     } else {
         Some(MotionPath { rows: Vec::new() })
     }
 }
 
 /// Its rotation, rad.
-fn rotation(record: &Record, report: &mut Report<'_>) -> Option<Vec<(f64, f64)>> {
-    if !record.gives("rotation") {
+fn rotation(record: &RigidTable, report: &mut Report<'_>) -> Option<Vec<(f64, f64)>> {
+    if !record.rotation.is_given() {
         return Some(Vec::new());
     }
-    let rows: Vec<(f64, f64)> = course::increasing(&record.rows_field("rotation"), report)?
+    let rows: Vec<(f64, f64)> = course::increasing(&record.rotation, report)?
         .map(|row| (row[0], row[1].to_radians()))
         .collect();
     if rows[0].0 == 0.0 && rows[0].1 != 0.0 {
@@ -181,42 +165,48 @@ fn rotation(record: &Record, report: &mut Report<'_>) -> Option<Vec<(f64, f64)>>
              or give the row a later time.",
             rows[0].1.to_degrees()
         );
-        record.error("rotation", message, report);
+        record.rotation.error(message, report);
         return None;
     }
     Some(rows)
 }
 
 /// Mass of a shape of this `volume`, and its second moment; 0 without mass.
-fn mass(record: &Record, volume: f64, sizes: &Sizes) -> Option<[f64; 2]> {
-    let mass = match (record.gives("mass"), record.gives("density")) {
-        (true, _) => record.number("mass")?,
-        (_, true) => record.number("density")? * volume,
+fn mass(record: &RigidTable, volume: f64, sizes: &Sizes) -> Option<[f64; 2]> {
+    let mass = match (record.mass.is_given(), record.density.is_given()) {
+        (true, _) => record.mass.get()?,
+        (_, true) => record.density.get()? * volume,
         _ => 0.0,
     };
-    let inertia = number_or(record, "inertia", mass * sizes.polar / sizes.area)?;
+    let inertia = record.inertia.if_given()?.unwrap_or(mass * sizes.polar / sizes.area);
     Some([mass, inertia])
 }
 
-fn friction(record: &Record, factor: Option<f64>, report: &mut Report<'_>) -> Option<f64> {
-    let given = record.number("friction_coefficient")?;
+fn friction(record: &RigidTable, factor: Option<f64>, report: &mut Report<'_>) -> Option<f64> {
+    let given = record.friction_coefficient.get()?;
     let friction = factor.map_or(given, |factor| given / factor);
     if friction != given {
         let reason = format!("divided by strength_reduction.factor = {}", factor.unwrap_or(1.0));
-        report.note(record.path_of("friction_coefficient"), format!("{friction}"), reason);
+        report.note(record.friction_coefficient.path(), format!("{friction}"), reason);
     }
     if friction > MOST_SHOWN_FRICTION {
         report.warn(format!(
             "W0204: {}: {friction} is above the largest verified friction coefficient, {MOST_SHOWN_FRICTION}, so \
              steps may not converge. Use at most {MOST_SHOWN_FRICTION}.",
-            record.path_of("friction_coefficient")
+            record.friction_coefficient.path()
         ));
     }
     Some(friction)
 }
 
 /// Cells and steps resolve it.
-fn fine_enough(record: &Record, rigid: &Rigid, geometry: Geometry, around: AroundStrip<'_>, report: &mut Report<'_>) {
+fn fine_enough(
+    record: &RigidTable,
+    rigid: &Rigid,
+    geometry: Geometry,
+    around: AroundStrip<'_>,
+    report: &mut Report<'_>,
+) {
     let Some(grid) = around.grid else { return };
     let Some(dt) = around.dt else { return };
     let cell = grid.shortest();
@@ -244,7 +234,7 @@ fn fine_enough(record: &Record, rigid: &Rigid, geometry: Geometry, around: Aroun
         report.warn(format!(
             "W0411: {}: the rigid body moves up to {:.2} cells in a step (limit {ADVANCE}), so it may pass through \
              soil without pushing it. Increase analysis.steps, or reduce analysis.dt.",
-            record.path_of("path"),
+            record.path.path(),
             most / cell
         ));
     }
@@ -254,7 +244,7 @@ fn fine_enough(record: &Record, rigid: &Rigid, geometry: Geometry, around: Aroun
         report.warn(format!(
             "W0412: {}: the corner at [{}, {}] m has {:.0} degrees (limit 60), so it acts as if it were rounded over \
              a cell. Use smaller cells, or a blunter corner.",
-            record.path_of(shape::key(record)),
+            record.shape().place().path(),
             corner[0] + about[0],
             corner[1] + about[1],
             angle.to_degrees()
@@ -264,7 +254,7 @@ fn fine_enough(record: &Record, rigid: &Rigid, geometry: Geometry, around: Aroun
         report.warn(format!(
             "W0413: {}: the rigid body is {:.1} cells thick (limit {THICK}), so soil on one side sticks to soil on \
              the other. If there is soil on both sides, use cells of at most {:.3e} m.",
-            record.path_of(shape::key(record)),
+            record.shape().place().path(),
             thickness / cell,
             thickness / THICK
         ));
@@ -304,20 +294,19 @@ pub(super) fn has_moved(rigid: &Rigid, t: f64) -> bool {
 pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     for (number, (rigid, record)) in case.rigid.iter().zip(draft.rigid.items()).enumerate() {
         if rigid.velocity != [0.0; 3] && case.acts_since(ActiveLoads::Rigid(number), 0.0).is_none() {
-            let key = if record.gives("start_velocity") {
-                "start_velocity"
-            } else {
-                "start_spin"
+            let key = match record.start_velocity.is_given() {
+                true => &*record.start_velocity,
+                false => &record.start_spin,
             };
             let message = "E0430: an initial velocity applies at t = 0, but a stage adds this rigid body later. \
                  Delete this key, and let `force` or gravity move the body.";
-            record.error(key, message, report);
+            key.error(message, report);
         }
         if case.settles || case.initial == Some(Initial::Elastic) {
             report.warn(format!(
                 "W0414: {}: the equilibrium of [initial] is found without rigid bodies, so soil that these bodies \
                  support moves at the start. Give only `k0` in [initial], or replace [initial] by gravity.ramp.",
-                record.path
+                record.location().path
             ));
         }
         let absorbs = case.is_ever(Support::Absorbing) || case.is_ever(Support::FreeField);
@@ -325,7 +314,7 @@ pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
             report.warn(format!(
                 "W0415: {}: absorbing boundaries carry no permanent load, so the ground sinks steadily under the \
                  weight of this rigid body. Set one boundary to \"fixed\".",
-                record.path
+                record.location().path
             ));
         }
         beyond::check(case, rigid, record, report);
@@ -334,7 +323,7 @@ pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
             joined(case, number, rigid, record, report);
         } else if let Some((at, body)) = overlap(case, rigid, |body| together(case, number, body).is_some()) {
             let message = inside(case, number, body, &format!("{:.4}, {:.4}", at[0], at[1]));
-            record.error(shape::key(record), message, report);
+            record.shape().place().error(message, report);
         } else {
             joined(case, number, rigid, record, report);
         }

@@ -3,6 +3,7 @@
 use super::{place, stage};
 use crate::case::{Case, RigidShape, RigidSolid};
 use crate::observables::HistorySubject;
+use crate::record::CaseTable;
 use crate::report::Report;
 use crate::schema::Draft;
 use bsmpm::tensor::Vector;
@@ -128,7 +129,7 @@ pub(super) fn warn_of_neighbours(case: &Case, draft: &Draft, report: &mut Report
         let Some(cut) = Cut::of(case, lines) else { continue };
         let acting = stage::surfaces(case, draft)
             .into_iter()
-            .map(|(_, of, _, places)| (of.path.clone(), places));
+            .map(|(_, key, places)| (key.table_path().to_owned(), places));
         let acting = acting.chain((0..case.rigid.len()).map(|k| (format!("rigid.{k}"), outline(case, k))));
         for (name, mut places) in acting {
             places.retain(|at| cut.is_near(*at) && place::is_at(&case.bodies, &case.grid, *at));
@@ -137,7 +138,7 @@ pub(super) fn warn_of_neighbours(case: &Case, draft: &Draft, report: &mut Report
                 report.warn(format!(
                     "W0428: {}: `{name}` acts within {cells} cells of this section, so the section forces include an \
                      arbitrary part of its force. Move the section {cells} cells away, or use smaller cells.",
-                    record.path
+                    record.location().path
                 ));
             }
         }

@@ -2,14 +2,15 @@
 
 mod solid;
 
-pub(super) use solid::{cuboid, key, raster};
+pub(super) use solid::{cuboid, raster};
 
 use super::place;
 use crate::case::{Face, RigidShape, Support};
 use crate::error::Origin;
 use crate::grid::GridSpec;
-use crate::record::Record;
+use crate::record::{Field, ListRow};
 use crate::report::Report;
+use crate::schema::{BodyTable, BoxTable, ShapeKey};
 use crate::shape_error;
 use crate::words::Geometry;
 use bsmpm::interactions::rigid;
@@ -96,11 +97,11 @@ impl<const D: usize> BeyondSymmetry<D> {
     }
 
     /// Notes the faces at which the body is cut.
-    fn note(&self, body: &Record, geometry: Geometry, report: &mut Report<'_>) {
+    fn note(&self, body: &BodyTable, geometry: Geometry, report: &mut Report<'_>) {
         let sides: Vec<String> = self.faces.iter().map(|face| face.side(geometry).to_string()).collect();
         let value = format!("cut at {}", sides.join(", "));
         report.note(
-            body.path_of(key(body)),
+            body.shape().place().path(),
             value,
             "the roller there is a plane of symmetry of the body, and the half beyond it is left out",
         );
@@ -119,7 +120,7 @@ impl BeyondSymmetry<2> {
 
 /// What a body fills, with `points_per_cell` along an axis; place and size are checked only if the grid is valid.
 pub(super) fn region(
-    body: &Record,
+    body: &BodyTable,
     geometry: Geometry,
     grid: Option<&GridSpec>,
     points_per_cell: Option<usize>,
@@ -129,17 +130,11 @@ pub(super) fn region(
     if geometry == Geometry::Solid {
         return solid::region(body, grid, points_per_cell, boundary, report);
     }
-    let whole = read(body, report);
-    let cut: Option<Vec<BodyShape>> = body
-        .records("subtract")
-        .iter()
-        .map(|record| read(record, report))
-        .collect();
+    let whole = read(body.shape(), report);
+    let cuts = body.subtract.items().iter();
+    let cut: Option<Vec<BodyShape>> = cuts.map(|cut| read(cut.shape(), report)).collect();
     let mut whole = whole?;
     let mut cut = cut?;
-    if body.gives("subtract") && cut.len() != body.records("subtract").len() {
-        return None;
-    }
     let grid = grid?;
     let left = left_of_box(whole.bounds(), &boxes_of(&cut));
     let beyond = BeyondSymmetry::of(whole.bounds(), left, boundary?, grid);
@@ -148,7 +143,7 @@ pub(super) fn region(
         beyond.note(body, geometry, report);
     }
     let bounds = left_of_box(whole.bounds(), &boxes_of(&cut));
-    inside(&whole, bounds, body, grid, report)?;
+    inside(&whole, bounds, body.shape(), grid, report)?;
     if let (BodyShape::Box { lower, upper }, true) = (&whole, cut.is_empty()) {
         return Some(Region::Box {
             lower: *lower,
@@ -169,7 +164,7 @@ pub(super) fn region(
     ) {
         Ok(outline) => Some(Region::Outline(outline)),
         Err(error) => {
-            body.error(key(body), shape_error::of_shape(&error), report);
+            body.shape().place().error(shape_error::of_shape(&error), report);
             None
         }
     }
@@ -185,8 +180,8 @@ fn boxes_of(shapes: &[BodyShape]) -> Vec<[[f64; 2]; 2]> {
 }
 
 /// The shape of a rigid body, which may reach beyond the grid.
-pub(super) fn rigid(record: &Record, report: &mut Report<'_>) -> Option<RigidShape> {
-    Some(match read(record, report)? {
+pub(super) fn rigid(key: ShapeKey<'_>, report: &mut Report<'_>) -> Option<RigidShape> {
+    Some(match read(key, report)? {
         BodyShape::Circle { center, radius } => RigidShape::Circle { center, radius },
         BodyShape::Polygon(mut corners) => {
             let outline = rigid::Outline::Polygon(corners.iter().map(|&corner| corner.into()).collect());
@@ -196,8 +191,7 @@ pub(super) fn rigid(record: &Record, report: &mut Report<'_>) -> Option<RigidSha
             RigidShape::Polygon(corners)
         }
         BodyShape::Box { .. } => {
-            record.error(
-                "box",
+            key.place().error(
                 "E0207: a rigid box is available in 3-D only. Use `polygon`, or geometry = \"3d\".",
                 report,
             );
@@ -206,24 +200,32 @@ pub(super) fn rigid(record: &Record, report: &mut Report<'_>) -> Option<RigidSha
     })
 }
 
-fn read(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
-    if record.gives("polygon") {
-        return polygon(record, report);
+fn read(key: ShapeKey<'_>, report: &mut Report<'_>) -> Option<BodyShape> {
+    match key {
+        ShapeKey::Polygon(key) => polygon(key, report),
+        ShapeKey::Circle(key) => {
+            let circle = key.value()?;
+            Some(BodyShape::Circle {
+                center: circle.centre.get()?,
+                radius: circle.radius.get()?,
+            })
+        }
+        ShapeKey::Box(key) => {
+            let [lower, upper] = corners(key)?.map(|[x, y, _]| [x, y]);
+            if lower[0] >= upper[0] || lower[1] >= upper[1] {
+                key.value()?.upper.error(empty_box(&lower, &upper), report);
+                return None;
+            }
+            Some(BodyShape::Box { lower, upper })
+        }
+        _ => None,
     }
-    if record.gives("circle") {
-        let circle = record.record("circle")?;
-        return Some(BodyShape::Circle {
-            center: circle.pair("centre")?,
-            radius: circle.number("radius")?,
-        });
-    }
-    let shape = record.record("box")?;
-    let [lower, upper] = [shape.vector("lower")?, shape.vector("upper")?].map(|[x, y, _]| [x, y]);
-    if lower[0] >= upper[0] || lower[1] >= upper[1] {
-        shape.error("upper", empty_box(&lower, &upper), report);
-        return None;
-    }
-    Some(BodyShape::Box { lower, upper })
+}
+
+/// m  lower and upper corner of a box
+fn corners(key: &Field<BoxTable>) -> Option<[[f64; 3]; 2]> {
+    let corners = key.value()?;
+    Some([corners.lower.vector()?, corners.upper.vector()?])
 }
 
 /// Of a box without extent along some axis.
@@ -234,8 +236,8 @@ fn empty_box(lower: &[f64], upper: &[f64]) -> String {
     )
 }
 
-fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
-    let rows = record.rows("polygon")?;
+fn polygon(key: &Field<Vec<ListRow>>, report: &mut Report<'_>) -> Option<BodyShape> {
+    let rows = key.value()?;
     let mut corners: Vec<[f64; 2]> = rows.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();
     // Some close a polygon by its first corner once more.
     if corners.len() > 3 && corners.first() == corners.last() {
@@ -247,7 +249,7 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
             corners.len(),
             MOST_EDGES
         );
-        record.error("polygon", message, report);
+        key.error(message, report);
         return None;
     }
     let Some(fault) = polygon::fault(&corners) else {
@@ -259,7 +261,7 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
                 "E0222: the polygon has {} corners, but needs at least 3. Add corners.",
                 corners.len()
             );
-            (record.place("polygon"), message)
+            (key.origin(), message)
         }
         PolygonFault::Repeated(one, other) => {
             let message = format!(
@@ -271,7 +273,7 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
         PolygonFault::Flat => {
             let message =
                 "E0222: all corners of the polygon lie on one line, so its area is zero. Correct the corners.";
-            (record.place("polygon"), message.to_owned())
+            (key.origin(), message.to_owned())
         }
         PolygonFault::Crossing(i, j) => {
             let edges = [j, i].map(|k| format!("{:?} to {:?}", corners[k], corners[(k + 1) % corners.len()]));
@@ -282,7 +284,7 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
             (rows[j].origin, message)
         }
     };
-    report.error(origin, &record.path_of("polygon"), message);
+    report.error(origin, key.path(), message);
     None
 }
 
@@ -290,40 +292,33 @@ fn polygon(record: &Record, report: &mut Report<'_>) -> Option<BodyShape> {
 fn inside(
     shape: &BodyShape,
     [lower, upper]: [[f64; 2]; 2],
-    body: &Record,
+    key: ShapeKey<'_>,
     grid: &GridSpec,
     report: &mut Report<'_>,
 ) -> Option<()> {
     if place::beyond(grid, lower).is_none() && place::beyond(grid, upper).is_none() {
         return Some(());
     }
-    match shape {
-        BodyShape::Box { .. } => {
-            let [lower, upper] = shape.bounds();
-            for (key, corner) in [("lower", lower), ("upper", upper)] {
-                let message = place::beyond(grid, corner);
-                message.into_iter().for_each(|message| {
-                    if let Some(shape) = body.record("box") {
-                        shape.error(key, message, report);
-                    }
-                });
+    match (shape, key) {
+        (BodyShape::Polygon(corners), ShapeKey::Polygon(key)) => {
+            let mut corners = corners.iter().zip(key.items());
+            let outside = corners.find_map(|(corner, row)| Some((row.origin, place::beyond(grid, *corner)?)));
+            if let Some((origin, message)) = outside {
+                report.error(origin, key.path(), message);
             }
         }
-        BodyShape::Polygon(corners) => {
-            let mut corners = corners.iter().enumerate();
-            let outside = corners.find_map(|(k, corner)| Some((k, place::beyond(grid, *corner)?)));
-            if let Some((k, message)) = outside {
-                let origin = body
-                    .rows("polygon")
-                    .map_or(body.place("polygon"), |rows| rows[k].origin);
-                report.error(origin, &body.path_of("polygon"), message);
+        (BodyShape::Box { lower, upper }, ShapeKey::Box(key)) => {
+            let corners = key.value()?;
+            for (key, corner) in [(&corners.lower, *lower), (&corners.upper, *upper)] {
+                if let Some(message) = place::beyond(grid, corner) {
+                    key.error(message, report);
+                }
             }
         }
-        BodyShape::Circle { .. } => {
-            let message = place::beyond(grid, lower).or(place::beyond(grid, upper));
-            message
-                .into_iter()
-                .for_each(|message| body.error("circle", message, report));
+        _ => {
+            if let Some(message) = place::beyond(grid, lower).or(place::beyond(grid, upper)) {
+                key.place().error(message, report);
+            }
         }
     }
     None

@@ -4,8 +4,8 @@ use super::place::{at_volume, beyond};
 use super::site::AroundStrip;
 use crate::case::{Body, Triangle};
 use crate::grid::GridSpec;
-use crate::record::Record;
 use crate::report::Report;
+use crate::schema::{SiteKey, SurfaceTable};
 use crate::surfaces::{area_of, normal_of};
 use bsmpm::tensor::Vector;
 use bsmpm_shapes::edges_of;
@@ -22,32 +22,32 @@ const LARGEST: f64 = 2e5;
 
 /// The surface that a traction's `surface` or `sphere` gives, in pieces as small as the spacing of points: inside the
 /// grid, at bodies everywhere, in one piece, turned alike.
-pub(super) fn pieces(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Arc<[Triangle]>> {
+pub(super) fn pieces(key: SiteKey<'_>, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Arc<[Triangle]>> {
     let grid = around.grid.filter(|grid| grid.dims() == 3)?;
     let bodies = around.bodies?;
     let spacing = grid.shortest() / bodies.iter().map(|body| body.points_per_cell).max()? as f64;
-    let (key, found) = if record.gives("sphere") {
-        let sphere = record.record("sphere")?;
-        let center = sphere.vector("centre")?;
-        let radius = sphere.number("radius")?;
-        let sound = countable(2.0 * TAU * radius * radius, spacing);
-        let pieces = sound.map(|()| sphere_of(center, radius, spacing).into_iter());
-        let kept = pieces.map(|pieces| pieces.flat_map(|of| inside(grid, of)).collect());
-        ("sphere", kept)
-    } else {
-        let all = given(record, report)?;
-        let wrong = all.iter().flatten().find_map(|corner| beyond(grid, *corner));
-        let wrong = wrong.map_or(Ok(()), |outside| Err(outside.into()));
-        let sound = wrong.and_then(|()| in_one_piece(&all));
-        let sound = sound.and_then(|()| countable(all.iter().map(area).sum(), spacing));
-        (
-            "surface",
-            sound.map(|()| all.iter().flat_map(|of| split(*of, spacing)).collect::<Vec<_>>()),
-        )
+    let found = match key {
+        SiteKey::Sphere(key) => {
+            let sphere = key.value()?;
+            let center = sphere.centre.vector()?;
+            let radius = sphere.radius.get()?;
+            let sound = countable(2.0 * TAU * radius * radius, spacing);
+            let pieces = sound.map(|()| sphere_of(center, radius, spacing).into_iter());
+            pieces.map(|pieces| pieces.flat_map(|of| inside(grid, of)).collect())
+        }
+        SiteKey::Surface(key) => {
+            let all = given(key.value()?, report)?;
+            let wrong = all.iter().flatten().find_map(|corner| beyond(grid, *corner));
+            let wrong = wrong.map_or(Ok(()), |outside| Err(outside.into()));
+            let sound = wrong.and_then(|()| in_one_piece(&all));
+            let sound = sound.and_then(|()| countable(all.iter().map(area).sum(), spacing));
+            sound.map(|()| all.iter().flat_map(|of| split(*of, spacing)).collect::<Vec<_>>())
+        }
+        _ => return None,
     };
     let found = found.and_then(|all| at_bodies(all, bodies, grid));
     found
-        .map_err(|message| record.consequence(key, message, &["body"], report))
+        .map_err(|message| key.place().consequence(message, &["body"], report))
         .ok()
         .map(Arc::from)
 }
@@ -79,18 +79,17 @@ fn countable(area: f64, spacing: f64) -> Result<(), String> {
     Ok(())
 }
 
-/// The triangles of a record's table, m, without those that are a line or a place.
-fn given(record: &Record, report: &mut Report<'_>) -> Option<Vec<Triangle>> {
-    let table = record.record("surface")?;
-    let scale = table.number("scale")?;
+/// The triangles of a table, m, without those that are a line or a place.
+fn given(table: &SurfaceTable, report: &mut Report<'_>) -> Option<Vec<Triangle>> {
+    let scale = table.scale.get()?;
     let rows = table
-        .rows("triangles")?
+        .triangles
+        .value()?
         .iter()
         .map(|row| [0, 1, 2].map(|k| [0, 1, 2].map(|axis| scale * row.numbers[3 * k + axis] + 0.0)));
     let all: Vec<Triangle> = rows.filter(|triangle| normal_of(triangle) != [0.0; 3]).collect();
     if all.is_empty() {
-        table.error(
-            "triangles",
+        table.triangles.error(
             "E0227: all triangles have zero area. Check the file and `scale`.",
             report,
         );

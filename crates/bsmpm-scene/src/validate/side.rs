@@ -83,16 +83,11 @@ pub(super) fn of_pressures(case: &mut Case, draft: &Draft, report: &mut Report<'
         let sides: Vec<(f64, Option<f64>)> = sides.collect();
         let first = sides.first().and_then(|(_, side)| *side);
         if let Some((t, _)) = sides.iter().find(|(_, side)| side.is_none() || *side != first) {
-            let key = if record.gives("pressure_path") {
-                "pressure_path"
-            } else {
-                "pressure"
-            };
             let message = format!(
                 "E0252: at t = {t} soil lies on both sides of the loaded surface, or on neither side. A pressure acts \
                  towards the soil, so its direction is not defined. Move the load to a free surface."
             );
-            record.error(key, message, report);
+            record.load().error(message, report);
         }
         case.tractions[number].push = Push::Pressure {
             profile,

@@ -3,9 +3,9 @@
 use super::place::{along, beyond, face, flat, is_at, over};
 use crate::case::{Body, Plate, Site, Support};
 use crate::grid::GridSpec;
-use crate::record::Record;
+use crate::record::{Field, KeyPlace};
 use crate::report::Report;
-use crate::words::{Axis, Side};
+use crate::schema::{DiscTable, PlateKey, SiteKey};
 
 /// What the rest of the case says to a strip.
 #[derive(Clone, Copy)]
@@ -21,12 +21,15 @@ pub(super) struct AroundStrip<'a> {
 }
 
 /// A segment's ends inside the grid.
-pub(super) fn segment(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<[[f64; 2]; 2]> {
-    let from = record.pair("from")?;
-    let to = record.pair("to")?;
+pub(super) fn segment(
+    [from_key, to_key]: [&Field<[f64; 2]>; 2],
+    around: AroundStrip<'_>,
+    report: &mut Report<'_>,
+) -> Option<[[f64; 2]; 2]> {
+    let from = from_key.get()?;
+    let to = to_key.get()?;
     if from == to {
-        record.error(
-            "to",
+        to_key.error(
             "E0232: `from` and `to` are the same place, so the length is zero. Move one of the two ends.",
             report,
         );
@@ -34,9 +37,9 @@ pub(super) fn segment(record: &Record, around: AroundStrip<'_>, report: &mut Rep
     }
     let grid = around.grid?;
     let mut inside = true;
-    for (key, at) in [("from", from), ("to", to)] {
+    for (key, at) in [(from_key, from), (to_key, to)] {
         if let Some(message) = beyond(grid, at) {
-            record.error(key, message, report);
+            key.error(message, report);
             inside = false;
         }
     }
@@ -44,7 +47,7 @@ pub(super) fn segment(record: &Record, around: AroundStrip<'_>, report: &mut Rep
 }
 
 /// A strip starts at a body, if only with a part of it.
-fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_>, report: &mut Report<'_>) {
+fn starts_at_body(key: &KeyPlace, site: Site, around: AroundStrip<'_>, report: &mut Report<'_>) {
     let Some(grid) = around.grid else { return };
     let Some(bodies) = around.bodies else { return };
     if !places(site, grid).into_iter().any(|at| is_at(bodies, grid, at)) {
@@ -53,7 +56,7 @@ fn starts_at_body(record: &Record, key: &str, site: Site, around: AroundStrip<'_
             "E0401: no body lies between {from:.3?} and {to:.3?} m at the start of the analysis, so this footing or \
              motion would not touch any soil. Move the footing or motion to the surface of a body."
         );
-        record.consequence(key, message, &["body"], report);
+        key.consequence(message, &["body"], report);
     }
 }
 
@@ -95,44 +98,25 @@ pub(crate) fn normal_of(site: Site) -> [f64; 3] {
 }
 
 /// A plate inside the grid; of a disc a part of it.
-pub(super) fn plate(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -> Option<Plate> {
-    if let Some(disc) = record.record("disc") {
-        let center = disc.vector("centre")?;
-        let radius = disc.number("radius")?;
-        let normal = disc.word::<Axis>("normal")? as usize;
-        let [lower, upper] =
-            [-1.0, 1.0].map(|side| std::array::from_fn(|k| center[k] + if k == normal { 0.0 } else { side * radius }));
-        let plate = Plate {
-            lower,
-            upper,
-            round: true,
-        };
-        let bounds = [grid.lower(), grid.upper()];
-        let is_inside = (0..3).all(|axis| bounds[0][axis] <= upper[axis] && lower[axis] <= bounds[1][axis]);
-        if !is_inside || plate.area(bounds) == 0.0 {
-            record.error(
-                "disc",
-                "E0201: no part of the disc is inside the grid. Move the disc into the grid, or enlarge the grid.",
-                report,
-            );
-            return None;
-        }
-        return Some(plate);
-    }
-    let table = record.record("rectangle")?;
-    let lower = table.vector("lower")?;
-    let upper = table.vector("upper")?;
+pub(super) fn plate(key: PlateKey<'_>, grid: &GridSpec, report: &mut Report<'_>) -> Option<Plate> {
+    let key = match key {
+        PlateKey::Disc(key) => return disc(key, grid, report),
+        PlateKey::Rectangle(key) => key,
+    };
+    let table = key.value()?;
+    let lower = table.lower.vector()?;
+    let upper = table.upper.vector()?;
     let flat = (0..3).filter(|&axis| lower[axis] == upper[axis]).count();
     if flat != 1 || (0..3).any(|axis| lower[axis] > upper[axis]) {
         let message = format!(
             "E0234: the corners {lower:?} and {upper:?} m do not form a rectangle. Make the corners equal along one \
              axis, and `upper` larger than `lower` along the other two."
         );
-        record.error("rectangle", message, report);
+        key.error(message, report);
         return None;
     }
     if let Some(message) = [lower, upper].into_iter().find_map(|corner| beyond(grid, corner)) {
-        record.error("rectangle", message, report);
+        key.error(message, report);
         return None;
     }
     Some(Plate {
@@ -142,31 +126,57 @@ pub(super) fn plate(record: &Record, grid: &GridSpec, report: &mut Report<'_>) -
     })
 }
 
-/// Where a footing or a prescribed motion holds.
-pub(super) fn site(record: &Record, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Site> {
-    if let Some(key) = ["rectangle", "disc"].into_iter().find(|key| record.gives(key)) {
-        let site = Site::Plate(plate(record, around.grid?, report)?);
-        starts_at_body(record, key, site, around, report);
-        return Some(site);
-    }
-    if !record.gives("face") {
-        let [from, to] = segment(record, around, report)?;
-        starts_at_body(record, "from", Site::Segment { from, to }, around, report);
-        return Some(Site::Segment { from, to });
-    }
-    let side = record.word::<Side>("face")?;
-    let face = face(record, around.grid?, report)?;
-    let support = around.boundary?[face.axis][usize::from(face.upper)];
-    if support != Support::Free {
-        let message = format!(
-            "E0236: this table and [boundary] both prescribe the motion of the face \"{side}\". Set boundary.{side} = \
-             \"free\"."
+/// A disc, a part of which is inside the grid.
+fn disc(key: &Field<DiscTable>, grid: &GridSpec, report: &mut Report<'_>) -> Option<Plate> {
+    let disc = key.value()?;
+    let center = disc.centre.vector()?;
+    let radius = disc.radius.get()?;
+    let normal = disc.normal.get()? as usize;
+    let [lower, upper] =
+        [-1.0, 1.0].map(|side| std::array::from_fn(|k| center[k] + if k == normal { 0.0 } else { side * radius }));
+    let plate = Plate {
+        lower,
+        upper,
+        round: true,
+    };
+    let bounds = [grid.lower(), grid.upper()];
+    let is_inside = (0..3).all(|axis| bounds[0][axis] <= upper[axis] && lower[axis] <= bounds[1][axis]);
+    if !is_inside || plate.area(bounds) == 0.0 {
+        key.error(
+            "E0201: no part of the disc is inside the grid. Move the disc into the grid, or enlarge the grid.",
+            report,
         );
-        record.error("face", message, report);
         return None;
     }
-    starts_at_body(record, "face", Site::Face(face), around, report);
-    Some(Site::Face(face))
+    Some(plate)
+}
+
+/// Where a footing or a prescribed motion holds.
+pub(super) fn site(key: SiteKey<'_>, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Site> {
+    let site = match key {
+        SiteKey::Plate(key) => Site::Plate(plate(key, around.grid?, report)?),
+        SiteKey::Face(key) => {
+            let side = key.get()?;
+            let face = face(key, around.grid?, report)?;
+            let support = around.boundary?[face.axis][usize::from(face.upper)];
+            if support != Support::Free {
+                let message = format!(
+                    "E0236: this table and [boundary] both prescribe the motion of the face \"{side}\". Set \
+                     boundary.{side} = \"free\"."
+                );
+                key.error(message, report);
+                return None;
+            }
+            Site::Face(face)
+        }
+        SiteKey::Segment(from, to) => {
+            let [from, to] = segment([from, to], around, report)?;
+            Site::Segment { from, to }
+        }
+        _ => return None,
+    };
+    starts_at_body(key.place(), site, around, report);
+    Some(site)
 }
 
 /// Unit normal of a segment.

@@ -1,7 +1,8 @@
 //! Refuses keys that do not apply to the geometry (2-D or 3-D) of a case.
 
 use crate::case::{Case, FaceSupport, Support};
-use crate::observables::{Aspect, Observable};
+use crate::observables::Aspect;
+use crate::record::KeyPlace;
 use crate::report::Report;
 use crate::schema::{Draft, SupportTable};
 use crate::words::{Geometry, LinearSolver, Side};
@@ -18,68 +19,70 @@ pub(super) fn refuse(draft: &Draft, report: &mut Report<'_>) {
     if geometry != Geometry::Solid {
         return in_space(draft, report);
     }
-    for drain in draft.drain.items().iter().chain(draft.inflow.items()) {
-        for key in ["from", "to", "circle", "surface"]
-            .into_iter()
-            .filter(|key| drain.gives(key))
-        {
-            let message = "E0225: this key is available in 2-D only, and the case is 3-D. Use `face`, rectangle = { \
-                           lower, upper } or `disc`.";
-            drain.error(key, message, report);
-        }
+    let message = "E0225: this key is available in 2-D only, and the case is 3-D. Use `face`, rectangle = { lower, \
+                   upper } or `disc`.";
+    for drain in draft.drain.items() {
+        refuse_given(
+            &[&drain.from, &drain.to, &drain.circle, &drain.surface],
+            message,
+            report,
+        );
+    }
+    for inflow in draft.inflow.items() {
+        refuse_given(&[&inflow.from, &inflow.to], message, report);
     }
     for traction in draft.traction.items() {
-        for key in ["from", "to", "circle"].into_iter().filter(|key| traction.gives(key)) {
-            let message = "E0225: this key is available in 2-D only, and the case is 3-D. Use rectangle = { lower, \
-                           upper }, `disc`, `sphere` or `surface`.";
-            traction.error(key, message, report);
-        }
+        let message = "E0225: this key is available in 2-D only, and the case is 3-D. Use rectangle = { lower, upper \
+                       }, `disc`, `sphere` or `surface`.";
+        refuse_given(&[&traction.from, &traction.to, &traction.circle], message, report);
     }
-    for strip in draft.footing.value().into_iter().chain(draft.prescribed.items()) {
-        for key in ["from", "to"].into_iter().filter(|key| strip.gives(key)) {
-            let message = "E0225: this key is available in 2-D only, and the case is 3-D. Use rectangle = { lower, \
-                           upper } or `disc`.";
-            strip.error(key, message, report);
-        }
+    for strip in draft.strips() {
+        let message = "E0225: this key is available in 2-D only, and the case is 3-D. Use rectangle = { lower, upper \
+                       } or `disc`.";
+        refuse_given(&[strip.from, strip.to], message, report);
     }
     for history in draft.history.items() {
-        if let Some(quantity) = history
-            .word::<Observable>("quantity")
-            .filter(|of| of.has(Aspect::PlaneOnly))
-        {
+        if let Some(quantity) = history.quantity.get().filter(|of| of.has(Aspect::PlaneOnly)) {
             let message = format!(
                 "E0226: the quantity \"{quantity}\" is not available in 3-D. Delete this history, and evaluate \
                      the quantity from the output frames."
             );
-            history.error("quantity", message, report);
+            history.quantity.error(message, report);
         }
-        if history.gives("at_x") {
-            history.error("at_x", "E0226: this key is not available in 3-D. Delete it.", report);
+        if history.at_x.is_given() {
+            history
+                .at_x
+                .error("E0226: this key is not available in 3-D. Delete it.", report);
         }
+    }
+}
+
+/// Errors about those of the keys that are given.
+fn refuse_given(keys: &[&KeyPlace], message: &str, report: &mut Report<'_>) {
+    for key in keys.iter().filter(|key| key.is_given()) {
+        key.error(message, report);
     }
 }
 
 /// Of a plane what only a solid has.
 fn in_space(draft: &Draft, report: &mut Report<'_>) {
-    let strips = draft.footing.value().into_iter().chain(draft.prescribed.items());
-    let strips = strips.chain(draft.drain.items()).chain(draft.inflow.items());
-    for flat in draft.traction.items().iter().chain(strips) {
-        for key in ["rectangle", "disc"].into_iter().filter(|key| flat.gives(key)) {
-            flat.error(
-                key,
-                "E0207: this key is available in 3-D only. Use `from` and `to`, or set geometry = \"3d\".",
-                report,
-            );
-        }
+    let message = "E0207: this key is available in 3-D only. Use `from` and `to`, or set geometry = \"3d\".";
+    for traction in draft.traction.items() {
+        refuse_given(&[&traction.rectangle, &traction.disc], message, report);
+    }
+    for strip in draft.strips() {
+        refuse_given(&[strip.rectangle, strip.disc], message, report);
+    }
+    for drain in draft.drain.items() {
+        refuse_given(&[&drain.rectangle, &drain.disc], message, report);
+    }
+    for inflow in draft.inflow.items() {
+        refuse_given(&[&inflow.rectangle, &inflow.disc], message, report);
     }
     for traction in draft.traction.items() {
-        for key in ["sphere", "surface"].into_iter().filter(|key| traction.gives(key)) {
-            traction.error(
-                key,
-                "E0207: this key is available in 3-D only. Use `from` and `to`, or `circle`, or set geometry = \"3d\".",
-                report,
-            );
-        }
+        let message = "E0207: this key is available in 3-D only. Use `from` and `to`, or `circle`, or set geometry = \
+                       \"3d\".";
+        refuse_given(&[&traction.sphere, &traction.surface], message, report);
     }
     let stages = draft.stage.items().iter().filter_map(|stage| stage.boundary.value());
     let stages = stages.map(|boundary| boundary as &dyn SupportTable);
@@ -91,20 +94,16 @@ fn in_space(draft: &Draft, report: &mut Report<'_>) {
             face.error(message, report);
         }
     }
-    let shapes = draft
-        .body
-        .items()
-        .iter()
-        .flat_map(|body| std::iter::once(body).chain(body.records("subtract")));
-    for shape in shapes.chain(draft.rigid.items()) {
-        for key in ["extrude", "sphere", "revolve", "terrain", "surface"]
-            .into_iter()
-            .filter(|key| shape.gives(key))
-        {
-            let message = "E0207: this shape is available in 3-D only. Use `box`, `polygon` or `circle`, or set \
-                           geometry = \"3d\".";
-            shape.error(key, message, report);
+    let message = "E0207: this shape is available in 3-D only. Use `box`, `polygon` or `circle`, or set geometry = \
+                   \"3d\".";
+    for body in draft.body.items() {
+        refuse_given(&body.solid_shapes(), message, report);
+        for cut in body.subtract.items() {
+            refuse_given(&cut.solid_shapes(), message, report);
         }
+    }
+    for rigid in draft.rigid.items() {
+        refuse_given(&[&rigid.sphere, &rigid.revolve, &rigid.terrain], message, report);
     }
 }
 

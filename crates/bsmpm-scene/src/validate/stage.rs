@@ -8,7 +8,7 @@ pub(super) use effects::{check, surfaces};
 use super::history::NAMELESS;
 use crate::case::{ActiveLoads, Body, Face, FaceSupport, Stage, Support};
 use crate::nearest::unknown_name;
-use crate::record::{CaseTable, Field, Record};
+use crate::record::{CaseTable, Field, Location};
 use crate::report::{Report, shortened};
 use crate::schema::{Draft, StageTable, SupportTable};
 use crate::words::{Geometry, Side};
@@ -44,7 +44,7 @@ pub(super) fn read_all(
             .position(|body| name.is_some() && body.name == *name)
         {
             let message = format!("E0610: body.{first} has the same name as this body. Rename one of the two bodies.");
-            record.error("name", message, report);
+            record.name.error(message, report);
         }
     }
     let mut before = 0.0;
@@ -71,26 +71,20 @@ struct NamedItem<'a, T> {
 
 /// Strips and loads with names, which are unique, rigid bodies, and what water crosses.
 fn acting<'a>(draft: &'a Draft, report: &mut Report<'_>) -> Vec<NamedItem<'a, ActiveLoads>> {
-    let strips = draft
-        .footing
-        .value()
-        .into_iter()
-        .chain(draft.prescribed.items())
-        .enumerate();
-    let loads = draft
-        .traction
-        .items()
-        .iter()
-        .chain(draft.point_load.items())
-        .enumerate();
-    let strips = strips.map(|(number, record)| (record, ActiveLoads::Strip(number)));
-    let all = strips.chain(loads.map(|(number, record)| (record, ActiveLoads::Load(number))));
-    let mut found: Vec<(&str, ActiveLoads, &Record)> = Vec::new();
-    for (record, acting) in all {
-        let Some(name) = record.text("name") else { continue };
+    let strips = draft.strips().zip(0..);
+    let strips = strips.map(|(strip, number)| (strip.name, strip.location, ActiveLoads::Strip(number)));
+    let tractions = draft.traction.items().iter();
+    let tractions = tractions.map(|load| (&load.name, load.location()));
+    let loads = draft.point_load.items().iter();
+    let loads = tractions
+        .chain(loads.map(|load| (&load.name, load.location())))
+        .zip(0..);
+    let all = strips.chain(loads.map(|((name, location), number)| (name, location, ActiveLoads::Load(number))));
+    let mut found: Vec<(&str, ActiveLoads, &Location)> = Vec::new();
+    for (key, location, acting) in all {
+        let Some(name) = key.text() else { continue };
         if let Some((.., first)) = found.iter().find(|(other, ..)| *other == name) {
-            record.error(
-                "name",
+            key.error(
                 format!(
                     "E0610: {} has the same name, so a stage could not tell which of the two is \
                 meant. Rename one of the two.",
@@ -99,24 +93,16 @@ fn acting<'a>(draft: &'a Draft, report: &mut Report<'_>) -> Vec<NamedItem<'a, Ac
                 report,
             );
         }
-        found.push((name, acting, record));
+        found.push((name, acting, location));
     }
-    let rigid = draft.rigid.items().iter().enumerate();
-    let rigid = rigid.map(|(number, record)| (record, ActiveLoads::Rigid(number)));
-    let drains = draft
-        .drain
-        .items()
-        .iter()
-        .zip(0..)
-        .map(|(record, number)| (record, ActiveLoads::Drain(number)));
-    let inflows = draft
-        .inflow
-        .items()
-        .iter()
-        .zip(0..)
-        .map(|(record, number)| (record, ActiveLoads::Inflow(number)));
-    let others = rigid.chain(drains).chain(inflows).filter_map(|(record, what)| {
-        let name = record.text("name")?;
+    let rigid = draft.rigid.items().iter().zip(0..);
+    let rigid = rigid.map(|(rigid, number)| (&rigid.name, ActiveLoads::Rigid(number)));
+    let drains = draft.drain.items().iter().zip(0..);
+    let drains = drains.map(|(drain, number)| (&drain.name, ActiveLoads::Drain(number)));
+    let inflows = draft.inflow.items().iter().zip(0..);
+    let inflows = inflows.map(|(inflow, number)| (&inflow.name, ActiveLoads::Inflow(number)));
+    let others = rigid.chain(drains).chain(inflows).filter_map(|(name, what)| {
+        let name = name.text()?;
         Some(NamedItem { name, what })
     });
     let unique = found.into_iter().map(|(name, what, _)| NamedItem { name, what });
@@ -125,7 +111,7 @@ fn acting<'a>(draft: &'a Draft, report: &mut Report<'_>) -> Vec<NamedItem<'a, Ac
     let is_nameless = draft
         .footing
         .value()
-        .is_some_and(|footing| footing.text("name").is_none());
+        .is_some_and(|footing| footing.name.text().is_none());
     if is_nameless && all.iter().all(|named| named.name != NAMELESS) {
         all.push(NamedItem {
             name: NAMELESS,
@@ -244,12 +230,12 @@ fn faces(record: &StageTable, factor: Option<f64>, draft: &Draft, report: &mut R
             boundary.face(side).error(message, report);
         }
         let mut motions = draft.prescribed.items().iter();
-        let moving = motions.find(|motion| motion.word::<Side>("face") == Some(side));
+        let moving = motions.find(|motion| motion.face.get() == Some(side));
         if let Some(motion) = moving.filter(|_| support != Support::Free) {
             let message = format!(
                 "E0615: {} already prescribes the motion of this boundary, so the stage cannot restrain the same \
                  boundary. Remove this side from the stage.",
-                motion.path
+                motion.location().path
             );
             boundary.face(side).error(message, report);
         }

@@ -6,9 +6,9 @@ use super::site::{AroundStrip, corners, normal_of, places, site};
 use crate::case::{Base, Body, Case, Face, Footing, History, MotionPath, PrescribedMotion, Quantity, Site};
 use crate::grid::GridSpec;
 use crate::observables::{Aspect, HistorySubject, Observable};
-use crate::record::{Datum, Record};
+use crate::record::{Field, ListRow};
 use crate::report::Report;
-use crate::schema::Draft;
+use crate::schema::{Draft, MotionKey, StripKeys};
 use crate::surfaces::{name_of_strip, strip_of_face};
 use crate::words::{AnalysisType, Components, Side, Support, Word};
 use bsmpm::boundary::StripContact;
@@ -20,20 +20,21 @@ const ON: f64 = 1e-9;
 
 /// The footing, if there is one and it is right.
 pub(super) fn footing(draft: &Draft, around: AroundStrip<'_>, report: &mut Report<'_>) -> Option<Footing> {
-    let record = draft.footing.value()?;
-    let path = path(record, around.end, report);
-    let site = site(record, around, report);
+    let table = draft.footing.value()?;
+    let strip = table.strip();
+    let path = path(strip.motion, around.end, report);
+    let site = site(strip.site, around, report);
     let path = path?;
     let site = site?;
-    stays_inside(record, site, &path, around, report);
-    let (base, contact) = match contact_of(draft, record, "interface", site, around, report) {
+    stays_inside(strip.motion, site, &path, around, report);
+    let (base, contact) = match contact_of(draft, strip, site, around, report) {
         Some(found) => found?,
-        None => (record.word("interface")?, None),
+        None => (table.interface.plain()?, None),
     };
     if base == Base::Smooth && contact.is_none() && normal_part(&path, site) <= NOTHING * path.farthest() {
         let message = "E0416: a smooth footing acts only perpendicular to its base, but this motion is parallel to \
                        the base and would not load the soil. Use interface = \"rough\", or change the motion.";
-        record.error(motion(record), message, report);
+        strip.motion.place().error(message, report);
     }
     Some(Footing {
         site,
@@ -47,29 +48,30 @@ pub(super) fn footing(draft: &Draft, around: AroundStrip<'_>, report: &mut Repor
 /// All prescribed motions in the order of the file, without those that have an error.
 pub(super) fn prescribed(draft: &Draft, around: AroundStrip<'_>, report: &mut Report<'_>) -> Vec<PrescribedMotion> {
     let mut found: Vec<PrescribedMotion> = Vec::new();
-    for record in draft.prescribed.items() {
-        let path = path(record, around.end, report);
-        let site = site(record, around, report);
+    for table in draft.prescribed.items() {
+        let strip = table.strip();
+        let path = path(strip.motion, around.end, report);
+        let site = site(strip.site, around, report);
         let Some(path) = path else { continue };
         let Some(site) = site else { continue };
         match site {
             Site::Face(face) => {
-                inward(record, face, &path, report);
+                inward(strip.motion, face, &path, report);
                 if found.iter().any(|other| other.site == site) {
                     let message = "E0417: another [[prescribed]] already moves this face of the grid. Combine both motions in \
                          one [[prescribed]].";
-                    record.error("face", message, report);
+                    table.face.error(message, report);
                 }
             }
-            Site::Segment { .. } | Site::Plate(_) => stays_inside(record, site, &path, around, report),
+            Site::Segment { .. } | Site::Plate(_) => stays_inside(strip.motion, site, &path, around, report),
         }
         let given = match site {
-            Site::Segment { .. } | Site::Plate(_) => contact_of(draft, record, "components", site, around, report),
+            Site::Segment { .. } | Site::Plate(_) => contact_of(draft, strip, site, around, report),
             Site::Face(_) => {
-                if record.record("components").is_some() {
+                if strip.contact.is_some() {
                     let message = "E0418: contact is not available on a moving face of the grid. Replace `face` by a \
                                    segment (`from`, `to`) inside the grid.";
-                    record.error("components", message, report);
+                    table.components.error(message, report);
                 }
                 None
             }
@@ -77,7 +79,7 @@ pub(super) fn prescribed(draft: &Draft, around: AroundStrip<'_>, report: &mut Re
         let (base, contact) = match given {
             Some(Some(contact)) => contact,
             Some(None) => continue,
-            None => (record.word("components").unwrap_or(Components::All).base(), None),
+            None => (table.components.plain().unwrap_or(Components::All).base(), None),
         };
         found.push(PrescribedMotion {
             site,
@@ -94,16 +96,13 @@ pub(super) fn prescribed(draft: &Draft, around: AroundStrip<'_>, report: &mut Re
 /// `Some(None)` after an error.
 fn contact_of(
     draft: &Draft,
-    record: &Record,
-    key: &str,
+    strip: StripKeys<'_>,
     site: Site,
     around: AroundStrip<'_>,
     report: &mut Report<'_>,
 ) -> Option<Option<(Base, Option<StripContact<3>>)>> {
-    let mut table = record.record(key)?.clone();
-    let coefficient = table.take("friction_coefficient", Datum::number);
-    let separates = table.take("separates", Datum::flag);
-    let Some(law) = super::law(&coefficient, &separates, around.factor, report) else {
+    let table = strip.contact?;
+    let Some(law) = super::law(&table.friction_coefficient, &table.separates, around.factor, report) else {
         return Some(None);
     };
     let Some(grid) = around.grid else { return Some(None) };
@@ -112,7 +111,7 @@ fn contact_of(
     let Some(side) = side_of_bodies(grid, |off| with_body(site, off, grid, &bodies)) else {
         let message = "E0404: contact needs soil on exactly one side of this surface, but bodies lie on both sides \
                        or on neither. Move this surface to the free surface of a body.";
-        record.error(key, message, report);
+        strip.interface.error(message, report);
         return Some(None);
     };
     let regime = draft.analysis.value().and_then(|analysis| analysis.r#type.get());
@@ -120,7 +119,7 @@ fn contact_of(
         report.warn(format!(
             "W0406: {}: this contact is verified in quasi-static analysis only. In dynamic analysis impacts may \
              create or lose energy. Record the energy in a [[history]], and check the energy balance.",
-            record.path_of(key)
+            strip.interface.path()
         ));
     }
     let base = if law.friction > 0.0 { Base::Rough } else { Base::Smooth };
@@ -144,33 +143,24 @@ pub(super) fn with_body(site: Site, off: f64, grid: &GridSpec, bodies: &[&Body])
         .count()
 }
 
-/// The key that gives a motion.
-fn motion(record: &Record) -> &'static str {
-    ["displacement", "velocity"]
-        .into_iter()
-        .find(|key| record.gives(key))
-        .unwrap_or("path")
-}
-
-pub(super) fn path(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<MotionPath> {
-    let rows = if record.gives("displacement") {
-        vec![(end?, record.vector("displacement")?)]
-    } else if record.gives("velocity") {
-        vec![(end?, record.vector("velocity")?.map(|v| v * end.unwrap_or(0.0)))]
-    } else {
-        rows(record, end, report)?
+/// The path that a key gives.
+pub(super) fn path(motion: MotionKey<'_>, end: Option<f64>, report: &mut Report<'_>) -> Option<MotionPath> {
+    let rows = match motion {
+        MotionKey::Displacement(key) => vec![(end?, key.vector()?)],
+        MotionKey::Velocity(key) => vec![(end?, key.vector()?.map(|v| v * end.unwrap_or(0.0)))],
+        MotionKey::Path(key) => rows(key, end, report)?,
     };
     Some(MotionPath { rows })
 }
 
-fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Vec<(f64, [f64; 3])>> {
-    let written = record.rows("path")?;
+fn rows(path: &Field<Vec<ListRow>>, end: Option<f64>, report: &mut Report<'_>) -> Option<Vec<(f64, [f64; 3])>> {
+    let written = path.value()?;
+    let key = path.path();
     let mut rows: Vec<(f64, [f64; 3])> = Vec::with_capacity(written.len());
     for (k, row) in written.iter().enumerate() {
         let t = row.numbers[0];
         let along = &row.numbers[1..];
         let u: [f64; 3] = std::array::from_fn(|axis| along.get(axis).copied().unwrap_or(0.0));
-        let key = record.path_of("path");
         match rows.last() {
             _ if k == 0 && t == 0.0 && u == [0.0; 3] => continue,
             _ if k == 0 && t == 0.0 => {
@@ -178,34 +168,39 @@ fn rows(record: &Record, end: Option<f64>, report: &mut Report<'_>) -> Option<Ve
                     "E0403: the displacement at t = 0 is {along:?} m, but a path must begin with zero. Set this row \
                      to zeros, or give the row a later time."
                 );
-                report.error(row.origin, &key, message);
+                report.error(row.origin, key, message);
                 return None;
             }
             Some((before, _)) if *before >= t => {
-                report.error(row.origin, &key, not_increasing("t", t, *before));
+                report.error(row.origin, key, not_increasing("t", t, *before));
                 return None;
             }
             None if t == 0.0 => {
-                report.error(row.origin, &key, not_increasing("t", t, 0.0));
+                report.error(row.origin, key, not_increasing("t", t, 0.0));
                 return None;
             }
             _ => rows.push((t, u)),
         }
     }
     if rows.is_empty() {
-        record.error(
-            "path",
+        path.error(
             "E0435: the path has no row after t = 0. Give at least one row [t, ux, uy].",
             report,
         );
         return None;
     }
-    warn_of_late(&record.path_of("path"), rows.iter().map(|row| row.0), end, report);
+    warn_of_late(key, rows.iter().map(|row| row.0), end, report);
     Some(rows)
 }
 
 /// Between its rows a path is straight, and the grid convex: the rows decide.
-fn stays_inside(record: &Record, site: Site, path: &MotionPath, around: AroundStrip<'_>, report: &mut Report<'_>) {
+fn stays_inside(
+    motion: MotionKey<'_>,
+    site: Site,
+    path: &MotionPath,
+    around: AroundStrip<'_>,
+    report: &mut Report<'_>,
+) {
     let Some(grid) = around.grid else { return };
     let corners = match site {
         // Of a disc what lies inside the grid counts anyway.
@@ -222,11 +217,11 @@ fn stays_inside(record: &Record, site: Site, path: &MotionPath, around: AroundSt
         let message = format!(
             "E0419: at t = {t} this motion leaves the grid: {outside}. Reduce the motion, or enlarge the grid."
         );
-        record.error(motion(record), message, report);
+        motion.place().error(message, report);
     }
 }
 
-fn inward(record: &Record, face: Face, path: &MotionPath, report: &mut Report<'_>) {
+fn inward(motion: MotionKey<'_>, face: Face, path: &MotionPath, report: &mut Report<'_>) {
     let mut rows = path.rows.iter().map(|(t, u)| (t, u[face.axis]));
     if let Some((t, u)) = rows.find(|(_, u)| if face.upper { *u > 0.0 } else { *u < 0.0 }) {
         let message = format!(
@@ -234,7 +229,7 @@ fn inward(record: &Record, face: Face, path: &MotionPath, report: &mut Report<'_
              or parallel to itself. Reverse the motion.",
             u.abs()
         );
-        record.error(motion(record), message, report);
+        motion.place().error(message, report);
     }
 }
 

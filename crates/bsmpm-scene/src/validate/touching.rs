@@ -32,7 +32,7 @@ pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
              the two is not available. Change one of the paths, or reduce analysis.end."
         );
         if let Some(record) = draft.rigid.items().get(*other) {
-            record.error("name", message, report);
+            record.name.error(message, report);
         }
     }
     if case.geometry != Geometry::Solid && overlaps.is_empty() {
@@ -112,7 +112,7 @@ fn check_meetings(case: &Case, draft: &Draft, report: &mut Report<'_>) {
                  large ({cells:.0} cells across; needed: {FEWEST_CELLS:.0}). Use smaller cells, or [[prescribed]] for both."
             );
             match draft.rigid.items().get(other) {
-                Some(record) if cells < FEWEST_CELLS => record.error("name", error, report),
+                Some(record) if cells < FEWEST_CELLS => record.name.error(error, report),
                 _ => report.warn(warning),
             }
         }

@@ -2,7 +2,7 @@
 
 use super::is_permeable;
 use crate::case::{ActiveLoads, Case, Drain, DrainSite, Face, Flow, LoadedLine, Plate, Site};
-use crate::record::Record;
+use crate::record::{CaseTable, Location};
 use crate::report::{Report, listed};
 use crate::schema::Draft;
 use crate::validate::side::side;
@@ -19,7 +19,7 @@ const PARTS_OF_FACE: usize = 64;
 
 /// A surface that water crosses, with what is given there: a pressure, or else a rate.
 struct CrossedSurface<'a> {
-    record: &'a Record,
+    location: &'a Location,
     called: String,
     what: ActiveLoads,
     parts: Vec<SurfacePart>,
@@ -41,7 +41,7 @@ pub(super) fn check(case: &Case, flow: &Flow, draft: &Draft, report: &mut Report
     for (number, one) in crossings.iter().enumerate() {
         for other in &crossings[..number] {
             if let Some(message) = contradiction(one, other).filter(|_| meet(case, one, other)) {
-                report.error(one.record.origin, &one.record.path, message);
+                one.location.error(message, report);
             }
         }
     }
@@ -84,7 +84,7 @@ fn touch(case: &Case, one: usize, other: usize, near: f64) -> bool {
 fn all<'a>(case: &Case, flow: &'a Flow, draft: &'a Draft) -> Vec<CrossedSurface<'a>> {
     let drains = flow.drains.iter().zip(draft.drain.items()).enumerate();
     let drains = drains.map(|(number, (drain, record))| CrossedSurface {
-        record,
+        location: record.location(),
         called: drain.name.clone().unwrap_or_else(|| format!("drain.{number}")),
         what: ActiveLoads::Drain(number),
         parts: parts(&drain.site, case),
@@ -92,7 +92,7 @@ fn all<'a>(case: &Case, flow: &'a Flow, draft: &'a Draft) -> Vec<CrossedSurface<
     });
     let inflows = flow.inflows.iter().zip(draft.inflow.items()).enumerate();
     let inflows = inflows.map(|(number, (inflow, record))| CrossedSurface {
-        record,
+        location: record.location(),
         called: format!("inflow.{number}"),
         what: ActiveLoads::Inflow(number),
         parts: match inflow.site {

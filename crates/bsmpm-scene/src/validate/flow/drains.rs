@@ -4,9 +4,9 @@ use super::is_permeable;
 use crate::case::{ActiveLoads, Body, Drain, DrainSite, Face, Inflow, NamedMaterial, Plate, Site, Stage, Support};
 use crate::grid::GridSpec;
 use crate::nearest::hint;
-use crate::record::Record;
+use crate::record::{Field, KeyPlace, ListRow};
 use crate::report::Report;
-use crate::schema::Draft;
+use crate::schema::{Draft, DrainTable, HistoryTable, InflowTable, SiteKey};
 use crate::validate::course::increasing;
 use crate::validate::load::circle;
 use crate::validate::place;
@@ -57,26 +57,26 @@ impl Ground<'_> {
     }
 
     /// A segment, or of a solid a plate, of the surface of bodies that let water through.
-    fn site(&self, record: &Record, report: &mut Report<'_>) -> Option<Site> {
+    fn site(&self, key: SiteKey<'_>, report: &mut Report<'_>) -> Option<Site> {
         let grid = self.around.grid?;
-        let (key, site) = match ["rectangle", "disc"].into_iter().find(|key| record.gives(key)) {
-            Some(key) => (key, Site::Plate(plate(record, grid, report)?)),
-            None => {
-                let [from, to] = segment(record, self.around, report)?;
-                ("from", Site::Segment { from, to })
+        let site = match key {
+            SiteKey::Plate(key) => Site::Plate(plate(key, grid, report)?),
+            SiteKey::Segment(from, to) => {
+                let [from, to] = segment([from, to], self.around, report)?;
+                Site::Segment { from, to }
             }
+            _ => return None,
         };
         let mut places = places(site, grid);
         places.retain(|at| place::is_beyond(grid, *at).is_none());
-        self.lies_at(record, key, places.into_iter(), report)?;
+        self.lies_at(key.place(), places.into_iter(), report)?;
         Some(site)
     }
 
     /// Whether bodies that let water through are at all of these places, which a key gives.
     fn lies_at(
         &self,
-        record: &Record,
-        key: &str,
+        key: &KeyPlace,
         mut places: impl Iterator<Item = [f64; 3]>,
         report: &mut Report<'_>,
     ) -> Option<()> {
@@ -104,7 +104,7 @@ impl Ground<'_> {
                      can pass there. Move the drain or inflow to the surface of the soil."
                 ),
             };
-            record.consequence(key, message, PERMEABLE, report);
+            key.consequence(message, PERMEABLE, report);
             return None;
         }
         Some(())
@@ -115,73 +115,73 @@ impl Ground<'_> {
 pub(super) fn named(draft: &Draft, report: &mut Report<'_>) {
     let drains = draft.drain.items();
     for (number, record) in drains.iter().enumerate() {
-        let Some(name) = record.text("name") else { continue };
-        if drains[..number].iter().any(|other| other.text("name") == Some(name)) {
+        let Some(name) = record.name.text() else { continue };
+        if drains[..number].iter().any(|other| other.name.text() == Some(name)) {
             let message = format!(
                 "E0421: another drain is also called `{name}`, so histories and stages cannot tell which one is \
                  meant. Give each drain its own `name`."
             );
-            record.error("name", message, report);
+            record.name.error(message, report);
         }
     }
 }
 
-pub(super) fn drain(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Drain> {
+pub(super) fn drain(record: &DrainTable, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Drain> {
     let given = given(record, report);
-    let site = if record.gives("face") {
-        DrainSite::Face(face(record, ground, report)?)
-    } else if record.gives("surface") {
-        if !record.flag("surface")? {
+    let site = if record.face.is_given() {
+        DrainSite::Face(face(&record.face, ground, report)?)
+    } else if record.surface.is_given() {
+        if !record.surface.get()? {
             let message = "E0514: with `surface = false` the drain has no location. Set `surface = true`, or replace \
                  `surface` by `face`, by `circle`, or by `from` and `to`.";
-            record.error("surface", message, report);
+            record.surface.error(message, report);
             return None;
         }
         // What is wrong with it in space is reported there.
         ground.around.grid.filter(|grid| grid.dims() == 2)?;
-        DrainSite::Lines(surface(record, ground, report)?)
-    } else if record.gives("circle") {
-        let (center, radius, places) = circle(record, ground.around, report)?;
-        ground.lies_at(record, "circle", places.into_iter().map(|[x, y]| [x, y, 0.0]), report)?;
+        DrainSite::Lines(surface(&record.surface, ground, report)?)
+    } else if record.circle.is_given() {
+        let (center, radius, places) = circle(&record.circle, ground.around, report)?;
+        ground.lies_at(&record.circle, places.into_iter().map(|[x, y]| [x, y, 0.0]), report)?;
         DrainSite::Circle { center, radius }
     } else {
-        match ground.site(record, report)? {
+        match ground.site(record.site(), report)? {
             Site::Plate(plate) => DrainSite::Plate(plate),
             Site::Segment { from, to } => DrainSite::Lines(vec![[from, to]]),
             Site::Face(_) => return None,
         }
     };
     Some(Drain {
-        name: record.text("name").map(str::to_owned),
+        name: record.name.text().map(str::to_owned),
         site,
         given: given?,
     })
 }
 
 /// The pressure at a drain.
-fn given(record: &Record, report: &mut Report<'_>) -> Option<Given> {
-    if record.gives("head_path") {
-        return Some(Given::Head(course(record, "head_path", report)?));
+fn given(record: &DrainTable, report: &mut Report<'_>) -> Option<Given> {
+    if record.head_path.is_given() {
+        return Some(Given::Head(course(&record.head_path, report)?));
     }
-    if record.gives("pressure_path") {
-        return Some(Given::Pressure(course(record, "pressure_path", report)?));
+    if record.pressure_path.is_given() {
+        return Some(Given::Pressure(course(&record.pressure_path, report)?));
     }
-    if record.gives("head") {
-        return constant(record, "head").map(Given::Head);
+    if record.head.is_given() {
+        return constant(&record.head).map(Given::Head);
     }
-    if record.gives("pressure") {
-        return constant(record, "pressure").map(Given::Pressure);
+    if record.pressure.is_given() {
+        return constant(&record.pressure).map(Given::Pressure);
     }
-    if record.gives("seepage") {
-        if !record.flag("seepage")? {
+    if record.seepage.is_given() {
+        if !record.seepage.get()? {
             let message = "E0514: `seepage = false` has no effect. Set `seepage = true` for a seepage face, or remove \
                  `seepage`.";
-            record.error("seepage", message, report);
+            record.seepage.error(message, report);
         }
-        if record.gives("face") {
+        if record.face.is_given() {
             let message = "E0515: at a seepage face water can only leave the soil, but through a face of the grid \
                  water could also enter. Replace `face` by `from` and `to` on the surface of the body.";
-            record.error("seepage", message, report);
+            record.seepage.error(message, report);
         }
         return Some(Given::Seepage);
     }
@@ -189,23 +189,20 @@ fn given(record: &Record, report: &mut Report<'_>) -> Option<Given> {
 }
 
 /// Rows of a number that follows time.
-fn course(record: &Record, key: &str, report: &mut Report<'_>) -> Option<Course> {
-    Some(Course(
-        increasing(&record.rows_field(key), report)?
-            .map(|row| (row[0], row[1]))
-            .collect(),
-    ))
+fn course(key: &Field<Vec<ListRow>>, report: &mut Report<'_>) -> Option<Course> {
+    let rows = increasing(key, report)?;
+    Some(Course(rows.map(|row| (row[0], row[1])).collect()))
 }
 
 /// A number that does not change in time.
-fn constant(record: &Record, key: &str) -> Option<Course> {
-    Some(Course(vec![(0.0, record.number(key)?)]))
+fn constant(key: &Field<f64>) -> Option<Course> {
+    Some(Course(vec![(0.0, key.get()?)]))
 }
 
 /// A face of the grid at which a body of permeable soil lies.
-fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Face> {
+fn face(key: &Field<Side>, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Face> {
     let grid = ground.around.grid?;
-    let face = place::face(record, grid, report)?;
+    let face = place::face(key, grid, report)?;
     let slack = AT * grid.axes[face.axis].shortest();
     let at = [grid.lower(), grid.upper()][usize::from(face.upper)][face.axis];
     let side = usize::from(face.upper);
@@ -219,14 +216,14 @@ fn face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<
              or give the surface of the soil by `from` and `to` (3-D: `rectangle`).",
             ["x", "y", "z"][face.axis]
         );
-        record.consequence("face", message, PERMEABLE, report);
+        key.consequence(message, PERMEABLE, report);
         return None;
     }
     Some(face)
 }
 
 /// The surface of bodies of permeable soil, but for what lies at faces of the grid that hold it.
-fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Vec<[[f64; 2]; 2]>> {
+fn surface(key: &KeyPlace, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Vec<[[f64; 2]; 2]>> {
     let grid = ground.around.grid?;
     let bodies = ground.there;
     let boundary = ground.around.boundary?;
@@ -243,16 +240,12 @@ fn surface(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Opti
     if pieces.is_empty() {
         let message = "E0517: `surface = true` needs a free surface, but the soil with pore-water flow has only edges \
              at restrained boundaries or other bodies. Replace `surface` by `face`, or by `from` and `to`.";
-        record.consequence("surface", message, PERMEABLE, report);
+        key.consequence(message, PERMEABLE, report);
         return None;
     }
     let long: f64 = pieces.iter().map(|[p, q]| (q[0] - p[0]).hypot(q[1] - p[1])).sum();
     let reason = "free surface of permeable soil when the drain begins to act; surface that forms later is not drained";
-    report.note(
-        record.path_of("surface"),
-        format!("{long:.6} m in {} pieces", pieces.len()),
-        reason,
-    );
+    report.note(key.path(), format!("{long:.6} m in {} pieces", pieces.len()), reason);
     Some(pieces)
 }
 
@@ -270,16 +263,15 @@ fn is_held(piece: &[[f64; 2]; 2], grid: &GridSpec, boundary: &[[Support; 2]; 3])
     false
 }
 
-pub(super) fn inflow(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Inflow> {
-    let rate = match record.gives("rate_path") {
-        true => course(record, "rate_path", report),
-        false => constant(record, "rate"),
+pub(super) fn inflow(record: &InflowTable, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Inflow> {
+    let rate = match record.rate_path.is_given() {
+        true => course(&record.rate_path, report),
+        false => constant(&record.rate),
     };
-    let runs_off = record.flag("runoff")?;
-    let site = if record.gives("face") {
-        along_face(record, ground, report)?
-    } else {
-        ground.site(record, report)?
+    let runs_off = record.runoff.get()?;
+    let site = match record.face.is_given() {
+        true => along_face(&record.face, ground, report)?,
+        false => ground.site(record.site(), report)?,
     };
     Some(Inflow {
         site,
@@ -289,9 +281,9 @@ pub(super) fn inflow(record: &Record, ground: Ground<'_>, report: &mut Report<'_
 }
 
 /// What of a face of the grid lies between the ends of the permeable bodies there.
-fn along_face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Site> {
+fn along_face(key: &Field<Side>, ground: Ground<'_>, report: &mut Report<'_>) -> Option<Site> {
     let grid = ground.around.grid?;
-    let face = face(record, ground, report)?;
+    let face = face(key, ground, report)?;
     let slack = AT * grid.axes[face.axis].shortest();
     let at = if face.upper { grid.upper() } else { grid.lower() }[face.axis];
     let there = ground.permeable().into_iter().map(|body| body.region.corners());
@@ -319,34 +311,32 @@ fn along_face(record: &Record, ground: Ground<'_>, report: &mut Report<'_>) -> O
 
 /// The number of the drain that a history names, in the order of the file, by its name or its face; the outer option is
 /// `None` after an error.
-pub(in crate::validate) fn drain_of(record: &Record, draft: &Draft, report: &mut Report<'_>) -> Option<Option<usize>> {
+pub(in crate::validate) fn drain_of(
+    record: &HistoryTable,
+    draft: &Draft,
+    report: &mut Report<'_>,
+) -> Option<Option<usize>> {
     let drains = draft.drain.items();
-    let (key, found) = if record.gives("drain") {
-        let name = record.text("drain")?;
-        (
-            "drain",
-            drains.iter().position(|drain| drain.text("name") == Some(name)),
-        )
-    } else if record.gives("face") {
-        let side: Side = record.word("face")?;
-        (
-            "face",
-            drains
-                .iter()
-                .position(|drain| drain.gives("face") && drain.word("face") == Some(side)),
-        )
+    let (key, found): (&KeyPlace, _) = if record.drain.is_given() {
+        let name = record.drain.text()?;
+        let found = drains.iter().position(|drain| drain.name.text() == Some(name));
+        (&record.drain, found)
+    } else if record.face.is_given() {
+        let side = record.face.get()?;
+        let found = drains.iter().position(|drain| drain.face.get() == Some(side));
+        (&record.face, found)
     } else {
         return Some(None);
     };
     if found.is_none() {
-        let names = drains.iter().filter_map(|drain| drain.text("name"));
-        let near = record.text("drain").map(|name| hint(name, names)).unwrap_or_default();
+        let names = drains.iter().filter_map(|drain| drain.name.text());
+        let near = record.drain.text().map(|name| hint(name, names)).unwrap_or_default();
         let end = if near.is_empty() { "." } else { &near };
         let message = format!(
             "E0518: no [[drain]] of the case has this name or face. Correct the name or face, or \
                                add a drain{end}"
         );
-        record.consequence(key, message, &["drain"], report);
+        key.consequence(message, &["drain"], report);
         return None;
     }
     Some(found)

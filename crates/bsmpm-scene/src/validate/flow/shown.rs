@@ -154,7 +154,7 @@ fn discretised(case: &Case, draft: &Draft, report: &mut Report<'_>) {
                  pressure would oscillate. Use at least {POINTS_OF_CUBIC}, or grid.degree = \"quadratic\".",
                 body.points_per_cell
             );
-            record.error("points_per_cell", message, report);
+            record.points_per_cell.error(message, report);
         }
     }
     let shown = matches!(case.stabilisation, Stabilisation::None | Stabilisation::ConsistentFBar);
@@ -232,7 +232,7 @@ fn drains_where_they_meet(case: &Case, flow: &Flow, material: usize) -> bool {
 fn acting(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     if let Some(rigid) = draft.rigid.items().first() {
         let message = not_available("a rigid body", "Use a [footing] or a [[prescribed]] displacement.");
-        report.error(rigid.origin, &rigid.path, message);
+        rigid.location().error(message, report);
     }
     refuse_supports(case, draft, report);
     let have_contact = case
@@ -240,13 +240,12 @@ fn acting(case: &Case, draft: &Draft, report: &mut Report<'_>) {
         .iter()
         .map(|of| of.contact.is_some())
         .chain(case.prescribed.iter().map(|of| of.contact.is_some()));
-    let strips = draft.footing.value().into_iter().chain(draft.prescribed.items());
-    for (_, record) in have_contact.zip(strips).filter(|(has_contact, _)| *has_contact) {
+    for (_, strip) in have_contact.zip(draft.strips()).filter(|(has_contact, _)| *has_contact) {
         let message = not_available(
             "frictional contact of a footing",
             "Use interface = \"rough\" or \"smooth\" ([footing]), or components = \"all\" ([[prescribed]]).",
         );
-        report.error(record.origin, &record.path, message);
+        strip.location.error(message, report);
     }
     draft
         .stage

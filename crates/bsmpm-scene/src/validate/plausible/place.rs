@@ -1,10 +1,10 @@
 //! Warns of tiny bodies and of histories outside all material.
 
 use crate::case::{Body, Case};
-use crate::record::Record;
+use crate::record::CaseTable;
 use crate::report::{Report, listed};
 use crate::rounding::brief;
-use crate::schema::Draft;
+use crate::schema::{BodyTable, Draft};
 use crate::validate::place::is_in;
 
 /// Size of a body over that of the grid, along each axis, below which a unit is probably wrong.
@@ -16,9 +16,9 @@ const DISTANCES: [f64; 6] = [0.0, 0.05, 0.25, 0.5, 0.75, 1.0];
 pub(super) fn bodies(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     let dims = case.grid.dims();
     let all = case.bodies.iter().zip(draft.body.items());
-    let tiny: Vec<(&Body, &Record)> = all.filter(|(body, _)| is_tiny(body, case)).collect();
+    let tiny: Vec<(&Body, &BodyTable)> = all.filter(|(body, _)| is_tiny(body, case)).collect();
     let Some((first, _)) = tiny.first() else { return };
-    let paths: Vec<String> = tiny.iter().map(|(_, record)| record.path.clone()).collect();
+    let paths: Vec<String> = tiny.iter().map(|(_, record)| record.location().path.clone()).collect();
     let [lower, upper] = first.region.corners();
     let sizes: Vec<String> = (0..dims)
         .map(|axis| format!("{} m", brief(upper[axis] - lower[axis])))
@@ -44,8 +44,8 @@ fn is_tiny(body: &Body, case: &Case) -> bool {
 
 /// Warns of histories at places from which all bodies are more than a cell away.
 pub(super) fn histories(case: &Case, draft: &Draft, report: &mut Report<'_>) {
-    for record in draft.history.items().iter().filter(|record| record.gives("at")) {
-        let Some(at) = record.vector("at") else { continue };
+    for record in draft.history.items().iter() {
+        let Some(at) = record.at.vector() else { continue };
         let reach = case.grid.axes.iter().map(|axis| axis.longest()).fold(0.0, f64::max);
         if case.bodies.iter().any(|body| is_near(body, case, at, reach)) {
             continue;
@@ -53,7 +53,7 @@ pub(super) fn histories(case: &Case, draft: &Draft, report: &mut Report<'_>) {
         report.warn(format!(
             "W0106: {}: no body is within a cell ({reach:.2} m) of the place {:?} m. The history records the nearest \
              material point, which is at another place. Move `at` into a body.",
-            record.path_of("at"),
+            record.at.path(),
             &at[..case.grid.dims()]
         ));
     }

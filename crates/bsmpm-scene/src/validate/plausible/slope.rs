@@ -1,6 +1,7 @@
 //! Warns of cohesionless slopes steeper than the friction angle.
 
 use crate::case::{Body, Case, Geometry};
+use crate::record::CaseTable;
 use crate::report::Report;
 use crate::schema::Draft;
 use bsmpm::model::Regime;
@@ -31,7 +32,7 @@ pub(super) fn bodies(case: &Case, draft: &Draft, report: &mut Report<'_>) {
             report.warn(format!(
                 "W0111: {}: the slope of {steepest:.1} degrees is steeper than the friction angle of material.{name} \
                  ({friction:.1}), so it fails without cohesion. Flatten the slope, or increase `cohesion`.",
-                record.path
+                record.location().path
             ));
             return;
         }

@@ -2,6 +2,7 @@
 
 use crate::case::{Case, Stage};
 use crate::connected::{near_pairs, pieces_of_pairs};
+use crate::record::CaseTable;
 use crate::report::{Report, listed};
 use crate::schema::Draft;
 use crate::validate::gap::are_apart;
@@ -47,9 +48,9 @@ pub(super) fn bodies(case: &Case, draft: &Draft, report: &mut Report<'_>) {
 
 fn warn(draft: &Draft, piece: &[usize], free: &[&str], stage: Option<&Stage>, report: &mut Report<'_>) {
     let records = piece.iter().map(|body| &draft.body.items()[*body]);
-    let names = records.map(|record| match record.text("name") {
-        Some(name) => format!("{} `{name}`", record.path),
-        None => record.path.clone(),
+    let names = records.map(|record| match record.name.text() {
+        Some(name) => format!("{} `{name}`", record.location().path),
+        None => record.location().path.clone(),
     });
     let names: Vec<String> = names.collect();
     let since = stage.map_or(String::new(), |stage| format!(" from t = {} on", stage.at));

@@ -1,9 +1,9 @@
 //! Warns of values that are probably given in a wrong unit.
 
 use super::Scale;
-use crate::record::Record;
+use crate::record::{Field, KeyPlace, OrTable, Record};
 use crate::report::Report;
-use crate::schema::Draft;
+use crate::schema::{Draft, StressProfileTable};
 
 /// Young's modulus (Pa) above which it is that of some soil.
 const STIFF: f64 = 1e5;
@@ -97,15 +97,20 @@ fn is_weak(strength: f64, record: &Record, scale: &Scale) -> bool {
 pub(super) fn loads(draft: &Draft, scale: &Scale, report: &mut Report<'_>) {
     let Some(stress) = scale.stress else { return };
     for record in draft.traction.items() {
-        let pressure = bare(record, "pressure")
-            .map(f64::abs)
-            .or_else(|| bare_list(record, "stress"));
-        let key = if record.gives("pressure") { "pressure" } else { "stress" };
+        let pressure = bare_profile(&record.pressure).map(f64::abs);
+        let pressure = pressure.or_else(|| match record.stress.value()? {
+            OrTable::Value(stress) => bare_list(&record.stress, stress),
+            OrTable::Table(_) => None,
+        });
+        let key: &KeyPlace = match record.pressure.is_given() {
+            true => &record.pressure,
+            false => &record.stress,
+        };
         if let Some(load) = pressure.filter(|load| *load < LOAD && *load < NO_LOAD * stress) {
             report.warn(format!(
                 "W0110: {}: a load of {load} Pa ({} kPa) is negligible against the stress in this case{}. If kPa are \
                  meant, write \"{load} kPa\"; otherwise write \"{load} Pa\".",
-                record.path_of(key),
+                key.path(),
                 1e-3 * load,
                 scale.shown()
             ));
@@ -113,27 +118,28 @@ pub(super) fn loads(draft: &Draft, scale: &Scale, report: &mut Report<'_>) {
     }
     for record in draft.point_load.items() {
         let weight = stress * scale.height;
-        if let Some(force) = bare_list(record, "force").filter(|force| *force < NO_FORCE * weight) {
+        if let Some(force) = bare_list(&record.force, record.force.items()).filter(|force| *force < NO_FORCE * weight) {
             report.warn(format!(
                 "W0110: {}: a force of {force} N is negligible against the weight of the soil in this case ({:.3} \
                  kN). Check the value, and write its unit, such as \"{force} kN/m\" in plane strain.",
-                record.path_of("force"),
+                record.force.path(),
                 1e-3 * weight
             ));
         }
     }
 }
 
+/// The value of a key, or of its profile, if it is written without a unit.
+fn bare_profile(key: &Field<OrTable<f64, StressProfileTable>>) -> Option<f64> {
+    let (place, value): (&KeyPlace, f64) = match key.value()? {
+        OrTable::Value(value) => (key, *value),
+        OrTable::Table(table) => (&table.value, table.value.get()?),
+    };
+    (value != 0.0 && !place.has_unit()).then_some(value)
+}
+
 /// Size of a vector that is written without units.
-fn bare_list(record: &Record, key: &str) -> Option<f64> {
-    if !record.gives(key) || record.has_unit(key) {
-        return None;
-    }
-    let size = record
-        .numbers(key)?
-        .iter()
-        .map(|along| along * along)
-        .sum::<f64>()
-        .sqrt();
-    (size > 0.0).then_some(size)
+fn bare_list(key: &KeyPlace, numbers: &[f64]) -> Option<f64> {
+    let size = numbers.iter().map(|along| along * along).sum::<f64>().sqrt();
+    (size > 0.0 && !key.has_unit()).then_some(size)
 }

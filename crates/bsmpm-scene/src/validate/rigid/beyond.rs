@@ -2,16 +2,15 @@
 
 use super::{OVERLAP, Outline, surfaces};
 use crate::case::{Case, Face, Geometry, Rigid, RigidShape, Support};
-use crate::record::Record;
 use crate::report::Report;
-use crate::validate::shape;
+use crate::schema::RigidTable;
 
 /// Cells from a face within which a body touches it.
 const TOUCHING: f64 = 0.1;
 
 /// Warns of a body that no material can come to, and of half of one on half of the ground.
-pub(super) fn check(case: &Case, rigid: &Rigid, record: &Record, report: &mut Report<'_>) {
-    let key = record.path_of(shape::key(record));
+pub(super) fn check(case: &Case, rigid: &Rigid, record: &RigidTable, report: &mut Report<'_>) {
+    let key = record.shape().place().path();
     if stays_outside(case, rigid) {
         report.warn(format!(
             "W0417: {key}: the rigid body lies outside the grid and never enters it, so it has no effect. Move the \

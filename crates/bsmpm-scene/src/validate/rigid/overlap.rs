@@ -2,8 +2,9 @@
 
 use super::OVERLAP;
 use crate::case::{ActiveLoads, Body, Case, Rigid, RigidShape, Stage};
-use crate::record::Record;
+use crate::record::CaseTable;
 use crate::report::Report;
+use crate::schema::RigidTable;
 use crate::surfaces;
 use crate::validate::place;
 use crate::validate::site::normal;
@@ -39,7 +40,7 @@ pub(super) fn inside(case: &Case, rigid: usize, body: usize, at: &str) -> String
 }
 
 /// What stages place at a rigid body, or where one is that they apply, may lie nearer than it reaches.
-pub(super) fn joined(case: &Case, number: usize, rigid: &Rigid, record: &Record, report: &mut Report<'_>) {
+pub(super) fn joined(case: &Case, number: usize, rigid: &Rigid, record: &RigidTable, report: &mut Report<'_>) {
     let reach = surfaces::outline(&rigid.shape, rigid.about).radius() + longest(case);
     let moves = rigid.free.contains(&true) || !rigid.path.rows.is_empty() || !rigid.rotation.is_empty();
     for (body, of) in case.bodies.iter().enumerate() {
@@ -60,7 +61,7 @@ pub(super) fn joined(case: &Case, number: usize, rigid: &Rigid, record: &Record,
         report.warn(format!(
             "W0416: {}: a stage adds {added}. Material points closer than half their spacing to the rigid body are pushed \
              away in one step, and strained. Leave a gap of half a spacing of material points.",
-            record.path
+            record.location().path
         ));
         return;
     }

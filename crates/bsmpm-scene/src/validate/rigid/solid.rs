@@ -5,57 +5,55 @@ use super::super::site::AroundStrip;
 use super::overlap::{inside, together};
 use super::{OVERLAP, Solidity, friction, way};
 use crate::case::{Case, Rigid, RigidShape, RigidSolid};
-use crate::record::Record;
+use crate::record::KeyPlace;
 use crate::report::Report;
+use crate::schema::{RevolveTable, RigidTable, ShapeKey};
 use crate::shape_error;
 use bsmpm::boundary::RigidBody;
 use bsmpm::interactions::rigid::{Outline, Terrain};
 use bsmpm::tensor::Vector;
 
-/// Shapes that only a plane knows.
-const FLAT_SHAPES: &[&str] = &["polygon", "circle"];
-/// Keys of motions that only a plane knows.
-const IN_A_PLANE: &[&str] = &[
-    "rotation",
-    "about",
-    "free",
-    "mass",
-    "density",
-    "inertia",
-    "force",
-    "force_path",
-    "moment",
-    "ramp",
-    "amplitude",
-    "start_velocity",
-    "start_spin",
-];
 /// Places along an edge of what two boxes share at which a body is looked for.
 const PLACES: usize = 24;
 
 /// A rigid body; `None` after an error.
 pub(super) fn read(
-    record: &Record,
+    record: &RigidTable,
     around: AroundStrip<'_>,
     factor: Option<f64>,
     report: &mut Report<'_>,
 ) -> Option<Rigid> {
-    if let Some(key) = FLAT_SHAPES.iter().find(|key| record.gives(key)) {
+    if let ShapeKey::Polygon(_) | ShapeKey::Circle(_) = record.shape() {
         let message = "E0432: this shape is not available for rigid bodies in 3-D. Use `box`, `sphere`, `revolve` or \
                        `terrain`.";
-        record.error(key, message, report);
+        record.shape().place().error(message, report);
         return None;
     }
-    if let Some(key) = IN_A_PLANE.iter().find(|key| record.gives(key)) {
+    let in_a_plane: [&KeyPlace; 13] = [
+        &record.rotation,
+        &record.about,
+        &record.free,
+        &record.mass,
+        &record.density,
+        &record.inertia,
+        &record.force,
+        &record.force_path,
+        &record.moment,
+        &record.ramp,
+        &record.amplitude,
+        &record.start_velocity,
+        &record.start_spin,
+    ];
+    if let Some(key) = in_a_plane.into_iter().find(|key| key.is_given()) {
         let message = "E0433: this key is not available in 3-D, where rigid bodies can only translate along a \
                        prescribed path. Use `displacement`, `velocity` or `path`.";
-        record.error(key, message, report);
+        key.error(message, report);
         return None;
     }
-    let shape = shape(record, report);
+    let shape = shape(record.shape(), report);
     let path = way(record, around.end, report);
     let rigid = Rigid {
-        name: record.text("name")?.to_owned(),
+        name: record.name.text()?.to_owned(),
         shape: RigidShape::InSpace(shape?),
         about: [0.0; 2],
         friction: friction(record, factor, report)?,
@@ -71,39 +69,43 @@ pub(super) fn read(
     Some(rigid)
 }
 
-fn shape(record: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
-    if let Some(shape) = record.record("sphere").filter(|_| record.gives("sphere")) {
-        return Some(RigidSolid::Sphere {
-            center: shape.vector("centre")?,
-            radius: shape.number("radius")?,
-        });
-    }
-    if let Some(shape) = record.record("revolve").filter(|_| record.gives("revolve")) {
-        return revolved(shape, report);
-    }
-    if let Some(shape) = record.record("terrain").filter(|_| record.gives("terrain")) {
-        return match raster(shape, "top", f64::NEG_INFINITY)? {
-            Ok(raster) => Some(RigidSolid::Terrain(Terrain {
-                lower: raster.lower(),
-                spacing: raster.spacing(),
-                count: raster.count(),
-                heights: raster.top().to_vec(),
-            })),
-            Err(error) => {
-                shape.error("top", shape_error::of_raster(&error), report);
-                None
+fn shape(key: ShapeKey<'_>, report: &mut Report<'_>) -> Option<RigidSolid> {
+    match key {
+        ShapeKey::Sphere(key) => {
+            let sphere = key.value()?;
+            Some(RigidSolid::Sphere {
+                center: sphere.centre.vector()?,
+                radius: sphere.radius.get()?,
+            })
+        }
+        ShapeKey::Revolve(key) => revolved(key.value()?, report),
+        ShapeKey::Ground(key) => {
+            let top = &key.value()?.top;
+            match raster(top, f64::NEG_INFINITY)? {
+                Ok(raster) => Some(RigidSolid::Terrain(Terrain {
+                    lower: raster.lower(),
+                    spacing: raster.spacing(),
+                    count: raster.count(),
+                    heights: raster.top().to_vec(),
+                })),
+                Err(error) => {
+                    top.error(shape_error::of_raster(&error), report);
+                    None
+                }
             }
-        };
+        }
+        ShapeKey::Box(key) => {
+            let [lower, upper] = cuboid(key, report)?;
+            Some(RigidSolid::Box { lower, upper })
+        }
+        _ => None,
     }
-    let [lower, upper] = cuboid(record, report)?;
-    Some(RigidSolid::Box { lower, upper })
 }
 
 /// A polygon about a vertical, with its mirror image where it reaches that.
-fn revolved(shape: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
-    let RigidShape::Polygon(mut corners) = super::shape::rigid(shape, report)? else {
-        shape.error(
-            "circle",
+fn revolved(shape: &RevolveTable, report: &mut Report<'_>) -> Option<RigidSolid> {
+    let RigidShape::Polygon(mut corners) = super::shape::rigid(shape.outline(), report)? else {
+        shape.circle.error(
             "E0432: `revolve` needs a polygon, but this shape is a circle. Use `polygon`, or replace `revolve` by \
              `sphere`.",
             report,
@@ -116,7 +118,7 @@ fn revolved(shape: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
              Move the polygon to radii of 0 or more.",
             corner[0]
         );
-        shape.error("polygon", message, report);
+        shape.polygon.error(message, report);
         return None;
     }
     let count = corners.len();
@@ -127,7 +129,7 @@ fn revolved(shape: &Record, report: &mut Report<'_>) -> Option<RigidSolid> {
         corners.extend(mirrored);
     }
     Some(RigidSolid::Revolved {
-        about: shape.pair("about")?,
+        about: shape.about.get()?,
         corners,
     })
 }
@@ -157,14 +159,11 @@ pub(super) fn check(
     place: usize,
     rigid: &Rigid,
     solid: &RigidSolid,
-    record: &Record,
+    record: &RigidTable,
     report: &mut Report<'_>,
 ) {
     let cell = case.grid.shortest();
-    let key = ["box", "sphere", "revolve", "terrain"]
-        .into_iter()
-        .find(|key| record.gives(key))
-        .unwrap_or("box");
+    let key = record.shape().place();
     let body = crate::surfaces::rigid_body::<3>(rigid, [0.0; 3], case.geometry);
     for (number, of) in case.bodies.iter().enumerate() {
         let Some(stage) = together(case, place, number) else {
@@ -175,7 +174,7 @@ pub(super) fn check(
         let found = places.find(|at| of.region.contains_in_space(*at) && depth(&body, &moved, *at) > OVERLAP * cell);
         if let Some([x, y, z]) = found {
             let message = inside(case, place, number, &format!("{x:.4}, {y:.4}, {z:.4}"));
-            record.error(key, message, report);
+            key.error(message, report);
         }
     }
     let RigidSolid::Terrain(terrain) = solid else { return };
@@ -189,7 +188,7 @@ pub(super) fn check(
         report.warn(format!(
             "W0420: {}: the terrain heights end inside the grid, and the terrain continues horizontally from there. \
              Give heights up to the edges of the grid.",
-            record.path_of(key)
+            key.path()
         ));
     }
 }

@@ -4,8 +4,9 @@ use super::super::place;
 use super::{BeyondSymmetry, BodyShape};
 use crate::case::Support;
 use crate::grid::GridSpec;
-use crate::record::{ListRow, Record};
+use crate::record::{Field, ListRow};
 use crate::report::Report;
+use crate::schema::{BodyTable, BoxTable, ExtrudeTable, RevolveTable, ShapeKey, SurfaceTable, TerrainTable};
 use crate::shape_error;
 use crate::words::{Axis, Geometry};
 use bsmpm_shapes::{
@@ -18,25 +19,19 @@ const SCALED: f64 = 0.1;
 
 /// What a body of a solid fills.
 pub(super) fn region(
-    body: &Record,
+    body: &BodyTable,
     grid: Option<&GridSpec>,
     points_per_cell: Option<usize>,
     boundary: Option<[[Support; 2]; 3]>,
     report: &mut Report<'_>,
 ) -> Option<Region> {
-    let whole = read(body, report);
-    let cut: Option<Vec<SolidShape>> = body
-        .records("subtract")
-        .iter()
-        .map(|record| read(record, report))
-        .collect();
+    let whole = read(body.shape(), report);
+    let cuts = body.subtract.items().iter();
+    let cut: Option<Vec<SolidShape>> = cuts.map(|cut| read(cut.shape(), report)).collect();
     let mut whole = whole?;
     let mut cut = cut?;
     let grid = grid?;
-    let key = key(body);
-    if body.gives("subtract") && cut.len() != body.records("subtract").len() {
-        return None;
-    }
+    let key = body.shape().place();
     let beyond = BeyondSymmetry::of(whole.bounds(), bounds_of_difference(&whole, &cut), boundary?, grid);
     if !beyond.boxes.is_empty() {
         match &mut whole {
@@ -49,7 +44,7 @@ pub(super) fn region(
         .into_iter()
         .find_map(|corner| place::beyond(grid, corner));
     if let Some(outside) = outside {
-        body.error(key, reach(&whole).unwrap_or_else(|| outside.into()), report);
+        key.error(reach(&whole).unwrap_or_else(|| outside.into()), report);
         return None;
     }
     let shift = grid.lower().map(|by| -by);
@@ -60,14 +55,14 @@ pub(super) fn region(
                 report.warn(format!(
                     "W0214: {}: the body is too thin for the cells, so its volume in surface cells was scaled by \
                      {:.2}. Stresses there are inaccurate. Use cells of at most five times the thickness.",
-                    body.path_of(key),
+                    key.path(),
                     volume.scale()
                 ));
             }
             Some(Region::Solid(Box::new(volume)))
         }
         Err(error) => {
-            body.error(key, shape_error::of_shape(&error), report);
+            key.error(shape_error::of_shape(&error), report);
             None
         }
     }
@@ -96,60 +91,45 @@ fn is_turned(rows: &[ListRow]) -> bool {
     six_times.sum::<f64>() < 0.0
 }
 
-/// The key that gives a body's or a cut's shape.
-pub(in super::super) fn key(record: &Record) -> &'static str {
-    let keys = [
-        "extrude", "sphere", "revolve", "terrain", "surface", "polygon", "circle",
-    ];
-    keys.into_iter().find(|key| record.gives(key)).unwrap_or("box")
-}
-
 /// A shape in the case's coordinates.
-fn read(record: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
-    if let Some(sphere) = record.record("sphere").filter(|_| record.gives("sphere")) {
-        return Some(SolidShape::Sphere {
-            center: sphere.vector("centre")?,
-            radius: sphere.number("radius")?,
-        });
+fn read(key: ShapeKey<'_>, report: &mut Report<'_>) -> Option<SolidShape> {
+    match key {
+        ShapeKey::Sphere(key) => {
+            let sphere = key.value()?;
+            Some(SolidShape::Sphere {
+                center: sphere.centre.vector()?,
+                radius: sphere.radius.get()?,
+            })
+        }
+        ShapeKey::Extrude(key) => extruded(key.value()?, report),
+        ShapeKey::Revolve(key) => revolved(key.value()?, report),
+        ShapeKey::Terrain(key) => terrain(key.value()?, report),
+        ShapeKey::Surface(key) => enclosed(key.value()?, report),
+        ShapeKey::Box(key) => Some(SolidShape::Box {
+            corners: cuboid(key, report)?,
+        }),
+        ShapeKey::Ground(_) => None,
+        ShapeKey::Polygon(_) | ShapeKey::Circle(_) => {
+            let message = "E0225: a plane outline has no volume, and the case is 3-D. Give the outline a length with \
+                           extrude = { ... }.";
+            key.place().error(message, report);
+            None
+        }
     }
-    if let Some(shape) = record.record("extrude").filter(|_| record.gives("extrude")) {
-        return extruded(shape, report);
-    }
-    if let Some(shape) = record.record("revolve").filter(|_| record.gives("revolve")) {
-        return revolved(shape, report);
-    }
-    if let Some(shape) = record.record("terrain").filter(|_| record.gives("terrain")) {
-        return terrain(shape, report);
-    }
-    if let Some(shape) = record.record("surface").filter(|_| record.gives("surface")) {
-        return enclosed(shape, report);
-    }
-    if let Some(key) = ["polygon", "circle"].into_iter().find(|key| record.gives(key)) {
-        record.error(
-            key,
-            "E0225: a plane outline has no volume, and the case is 3-D. Give the outline a length with extrude = { \
-             ... }.",
-            report,
-        );
-        return None;
-    }
-    Some(SolidShape::Box {
-        corners: cuboid(record, report)?,
-    })
 }
 
 /// A prism: an outline along an axis.
-fn extruded(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
-    let outline = section(shape, report)?;
-    let along = shape.word::<Axis>("along")?;
-    let from = shape.number("from")?;
-    let to = shape.number("to")?;
+fn extruded(shape: &ExtrudeTable, report: &mut Report<'_>) -> Option<SolidShape> {
+    let outline = section(shape.outline(), report)?;
+    let along = shape.along.get()?;
+    let from = shape.from.get()?;
+    let to = shape.to.get()?;
     if from >= to {
         let message = format!(
             "E0203: to = {to} m is not above from = {from} m, so the body has no length. Exchange or correct \
              `from` and `to`."
         );
-        shape.error("to", message, report);
+        shape.to.error(message, report);
         return None;
     }
     let along = [Axis::X, Axis::Y, Axis::Z].iter().position(|axis| *axis == along)?;
@@ -161,28 +141,27 @@ fn extruded(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
 }
 
 /// An outline about a vertical axis.
-fn revolved(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
-    let outline = section(shape, report)?;
+fn revolved(shape: &RevolveTable, report: &mut Report<'_>) -> Option<SolidShape> {
+    let outline = section(shape.outline(), report)?;
     if outline.bounds[0][0] < 0.0 {
         let message = format!(
             "E0224: the outline crosses the axis of revolution: its smallest radius is {} m. Correct the outline \
              so that all radii are at least 0.",
             outline.bounds[0][0]
         );
-        let key = if shape.gives("circle") { "circle" } else { "polygon" };
-        shape.error(key, message, report);
+        shape.outline().place().error(message, report);
         return None;
     }
     Some(SolidShape::Revolved {
         outline,
-        about: shape.pair("about")?,
+        about: shape.about.get()?,
     })
 }
 
 /// What a surface of triangles encloses.
-fn enclosed(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
-    let scale = shape.number("scale")?;
-    let rows = shape.rows("triangles")?;
+fn enclosed(shape: &SurfaceTable, report: &mut Report<'_>) -> Option<SolidShape> {
+    let scale = shape.scale.get()?;
+    let rows = shape.triangles.value()?;
     let scaled = rows.iter().map(|row| std::array::from_fn(|k| scale * row.numbers[k]));
     match Surface::new(scaled) {
         Ok(surface) => {
@@ -190,33 +169,31 @@ fn enclosed(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
                 report.warn(format!(
                     "W0215: {}: the normals of all triangles point inwards. The enclosed volume is taken as the \
                      body. If the triangles describe a hole, use `subtract`; otherwise reverse the normals.",
-                    shape.path_of("triangles")
+                    shape.triangles.path()
                 ));
             }
             Some(SolidShape::Surface(Box::new(surface)))
         }
         Err(error) => {
-            shape.error("triangles", shape_error::of_surface(&error), report);
+            shape.triangles.error(shape_error::of_surface(&error), report);
             None
         }
     }
 }
 
-/// Lower and upper corner of a record's box.
-pub(in super::super) fn cuboid(record: &Record, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
-    let shape = record.record("box")?;
-    let lower = shape.vector("lower")?;
-    let upper = shape.vector("upper")?;
+/// Lower and upper corner of a box.
+pub(in super::super) fn cuboid(key: &Field<BoxTable>, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
+    let [lower, upper] = super::corners(key)?;
     if (0..3).any(|axis| lower[axis] >= upper[axis]) {
-        shape.error("upper", super::empty_box(&lower, &upper), report);
+        key.value()?.upper.error(super::empty_box(&lower, &upper), report);
         return None;
     }
     Some([lower, upper])
 }
 
 /// Heights that a key of terrain gives, on a level.
-pub(in super::super) fn raster(shape: &Record, key: &str, level: f64) -> Option<Result<Raster, RasterError>> {
-    let rows = shape.rows(key)?.iter();
+pub(in super::super) fn raster(key: &Field<Vec<ListRow>>, level: f64) -> Option<Result<Raster, RasterError>> {
+    let rows = key.value()?.iter();
     let heights: Vec<[f64; 3]> = rows
         .map(|row| [row.numbers[0], row.numbers[1], row.numbers[2]])
         .collect();
@@ -224,36 +201,32 @@ pub(in super::super) fn raster(shape: &Record, key: &str, level: f64) -> Option<
 }
 
 /// Heights on others, or on a level.
-fn terrain(shape: &Record, report: &mut Report<'_>) -> Option<SolidShape> {
-    let level = if shape.gives("level") {
-        shape.number("level")?
-    } else {
-        f64::NEG_INFINITY
-    };
-    let base = if shape.gives("base") {
-        Some(raster(shape, "base", f64::NEG_INFINITY)?)
+fn terrain(shape: &TerrainTable, report: &mut Report<'_>) -> Option<SolidShape> {
+    let TerrainTable { top, base, .. } = shape;
+    let level = shape.level.if_given()?.unwrap_or(f64::NEG_INFINITY);
+    let lower = if base.is_given() {
+        Some(raster(base, f64::NEG_INFINITY)?)
     } else {
         None
     };
-    let top = raster(shape, "top", level)?;
-    let whole = match (top, base) {
-        (Err(error), _) => Err(("top", error)),
-        (_, Some(Err(error))) => Err(("base", error)),
-        (Ok(top), Some(Ok(base))) => top.on(base).map_err(|error| ("base", error)),
-        (Ok(top), None) => Ok(top),
+    let whole = match (raster(top, level)?, lower) {
+        (Err(error), _) => Err((top, error)),
+        (_, Some(Err(error))) => Err((base, error)),
+        (Ok(upper), Some(Ok(lower))) => upper.on(lower).map_err(|error| (base, error)),
+        (Ok(upper), None) => Ok(upper),
     };
     match whole {
         Ok(raster) => Some(SolidShape::Terrain(Box::new(raster))),
         Err((key, error)) => {
-            shape.error(key, shape_error::of_raster(&error), report);
+            key.error(shape_error::of_raster(&error), report);
             None
         }
     }
 }
 
 /// The outline of an extruded or revolved shape.
-fn section(record: &Record, report: &mut Report<'_>) -> Option<Section> {
-    match super::read(record, report)? {
+fn section(key: ShapeKey<'_>, report: &mut Report<'_>) -> Option<Section> {
+    match super::read(key, report)? {
         BodyShape::Polygon(corners) => Some(Section::polygon(&corners)),
         BodyShape::Circle { center, radius } => Some(Section::circle(center, radius)),
         BodyShape::Box { .. } => None,

@@ -3,7 +3,7 @@
 use super::absorbing;
 use crate::case::{ActiveLoads, Body, Case, LoadedLine, Site};
 use crate::observables::HistorySubject;
-use crate::record::Record;
+use crate::record::KeyPlace;
 use crate::report::Report;
 use crate::schema::{Draft, ExchangeTable};
 use crate::validate::{place, reduction, rigid, sheet, site, strip};
@@ -73,7 +73,7 @@ pub(in crate::validate) fn check(case: &mut Case, draft: &Draft, report: &mut Re
 /// `lasting`.
 fn check_surfaces(case: &Case, lasting: &[Body], draft: &Draft, report: &mut Report<'_>) {
     let grid = &case.grid;
-    for (what, record, key, places) in surfaces(case, draft) {
+    for (what, key, places) in surfaces(case, draft) {
         let mut at_bodies = places.into_iter().filter(|at| place::is_at(&case.bodies, grid, *at));
         let (lost, duration) = match what {
             ActiveLoads::Strip(_) => (
@@ -91,7 +91,7 @@ fn check_surfaces(case: &Case, lasting: &[Body], draft: &Draft, report: &mut Rep
                  that body. Use another position, or keep the body.",
                 &at[..case.grid.dims()]
             );
-            record.error(key, message, report);
+            key.error(message, report);
         }
     }
 }
@@ -146,23 +146,18 @@ fn follow(case: &mut Case, lasting: &[Body]) {
     }
 }
 
-/// What acts: strips and loads with their records, the key of their place, and places along them.
+/// What acts: strips and loads with the keys of their places, and places along them.
 pub(in crate::validate) fn surfaces<'a>(
     case: &Case,
     draft: &'a Draft,
-) -> Vec<(ActiveLoads, &'a Record, &'static str, Vec<[f64; 3]>)> {
+) -> Vec<(ActiveLoads, &'a KeyPlace, Vec<[f64; 3]>)> {
     let mut found = Vec::new();
     let held = case.footing.iter().map(|footing| footing.site);
     let held = held.chain(case.prescribed.iter().map(|prescribed| prescribed.site));
-    let strips = draft.footing.value().into_iter().chain(draft.prescribed.items());
-    for (number, (site, record)) in held.zip(strips).enumerate() {
+    for (number, (site, strip)) in held.zip(draft.strips()).enumerate() {
         if !matches!(site, Site::Face(_)) {
-            found.push((
-                ActiveLoads::Strip(number),
-                record,
-                key(record),
-                site::places(site, &case.grid),
-            ));
+            let places = site::places(site, &case.grid);
+            found.push((ActiveLoads::Strip(number), strip.site.place(), places));
         }
     }
     for (number, (traction, record)) in case.tractions.iter().zip(draft.traction.items()).enumerate() {
@@ -172,23 +167,11 @@ pub(in crate::validate) fn surfaces<'a>(
             LoadedLine::Plate(plate) => site::places(Site::Plate(*plate), &case.grid),
             LoadedLine::Triangles(all) => all.iter().map(sheet::middle).collect(),
         };
-        found.push((ActiveLoads::Load(number), record, key(record), places));
+        found.push((ActiveLoads::Load(number), record.site().place(), places));
     }
     for (number, (of, record)) in case.point_loads.iter().zip(draft.point_load.items()).enumerate() {
-        found.push((
-            ActiveLoads::Load(case.tractions.len() + number),
-            record,
-            "at",
-            vec![of.at],
-        ));
+        let what = ActiveLoads::Load(case.tractions.len() + number);
+        found.push((what, &record.at, vec![of.at]));
     }
     found
-}
-
-/// The key that gives a strip's or a load's place.
-fn key(record: &Record) -> &'static str {
-    ["rectangle", "disc", "circle", "surface", "sphere"]
-        .into_iter()
-        .find(|key| record.gives(key))
-        .unwrap_or("from")
 }
