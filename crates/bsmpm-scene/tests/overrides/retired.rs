@@ -80,8 +80,8 @@ fn a_linear_solver_by_petscs_names_is_refused_with_what_replaces_it() {
         let errors = set(text, &[table]).unwrap_err();
         let [error] = &errors[..] else { panic!("{errors:?}") };
         let reported = "the value { ksp, pc, factor } does not exist any more; the last version with this value was \
-                        bsmpm 0.1.0, commit 7816fb16. Use a word, such as linear = \"direct\", or pass PETSc options \
-                        after `--`, such as `-- -pc_type redundant`.";
+                        bsmpm 0.1.0, commit 7816fb16. Use a word, such as linear = \"direct\". PETSc options follow \
+                        `--` on the command line.";
         assert_eq!(
             (error.key.as_str(), error.message.as_str()),
             ("solver.linear", reported)
