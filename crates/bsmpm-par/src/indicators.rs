@@ -13,6 +13,7 @@ use crate::record::Recorder;
 use crate::setup;
 use bsmpm::energy::{EnergyBound, StoredEnergy};
 use bsmpm::error::StepError;
+use bsmpm::field::pore_water::crossed::CrossedVolumes;
 use bsmpm::field::pore_water::observed::PoreWater;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::{Model, Regime};
@@ -105,10 +106,12 @@ struct Energy {
 }
 
 impl IndicatorState {
-    /// Of the points of all ranks at a time. Collective; the same on all.
+    /// Of the points of all ranks at a time, until which these volumes of water have crossed the surface. Collective;
+    /// the same on all.
     pub fn of<K: Kinematics<D>, const D: usize>(
         model: &Model<K, D>,
         points: &Points<D>,
+        crossed: &CrossedVolumes,
         t: f64,
         recorder: &Recorder<D>,
         budget: Option<EnergyBound>,
@@ -138,7 +141,7 @@ impl IndicatorState {
             }
         });
         let water = PoreWater::of(model, points, t)
-            .and_then(|water| water.balance(halo))
+            .and_then(|water| water.balance(crossed, halo))
             .map(f64::abs);
         let interfaces = interfaces::shift(model, points, halo);
         let growth = budget.map(|budget| budget.growth);

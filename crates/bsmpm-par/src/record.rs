@@ -3,6 +3,7 @@
 use crate::checkpoint::{BooksForm, Outlet, RecordState, Row};
 use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::error::StepError;
+use bsmpm::field::pore_water::crossed::CrossedVolumes;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::observe::{self, Part};
@@ -26,6 +27,7 @@ pub struct Recorder<const D: usize> {
     reacting: Vec<Option<usize>>, // strip whose force a reaction is
     gauge: Option<FootingMonitor>,
     drains: Vec<DrainPlace>,       // where the physics has each
+    crossed: CrossedVolumes,       // water that has left until the last row
     books: Option<EnergyAccounts>, // of energy, opened by the first row
     energy: Vec<f64>,              // J/m, of the last row, in the order of the columns; empty if it is not balanced
     left: Outlet,
@@ -86,6 +88,7 @@ impl<const D: usize> Recorder<D> {
             reacting: reacting.collect(),
             gauge: FootingMonitor::of(case),
             drains: surfaces::drain_places(case),
+            crossed: CrossedVolumes::default(),
             books: state.books.map(|BooksForm(books)| books),
             energy: Vec::new(),
             datum: state.datum,
@@ -216,10 +219,12 @@ impl<const D: usize> Recorder<D> {
         &mut self,
         model: &Model<K, D>,
         points: &Points<D>,
+        crossed: &CrossedVolumes,
         t: f64,
         report: &StepReport,
         halo: &dyn Halo,
     ) -> Result<Vec<f64>, StepError> {
+        self.crossed.clone_from(crossed);
         if model.balances_energy {
             self.energy = self.balance_energy(model, points, t, report, halo);
         }
@@ -261,8 +266,8 @@ impl<const D: usize> Recorder<D> {
             _ => 0.0,
         };
         let drained = match subject {
-            HistorySubject::Drain(Some(drain)) => self.drained(*drain, points),
-            _ => points.surface.crossed.out(),
+            HistorySubject::Drain(Some(drain)) => self.drained(*drain),
+            _ => self.crossed.out(),
         };
         observable.values(&Sample {
             model,
@@ -280,6 +285,7 @@ impl<const D: usize> Recorder<D> {
             footing: self.footing(t, report),
             work,
             drained,
+            crossed: &self.crossed,
             outflow: self.left.mass,
             energy: &self.energy,
         })
@@ -300,8 +306,8 @@ impl<const D: usize> Recorder<D> {
     }
 
     /// m3/m  out of a drain so far, by its number in the file.
-    fn drained(&self, drain: usize, points: &Points<D>) -> f64 {
-        let crossed = &points.surface.crossed;
+    fn drained(&self, drain: usize) -> f64 {
+        let crossed = &self.crossed;
         let found = match self.drains.get(drain) {
             Some(DrainPlace::Face(number)) => crossed.faces.get(*number),
             Some(DrainPlace::Surface(number)) => crossed.drains.get(*number),

@@ -4,10 +4,10 @@ mod there;
 
 use crate::checkpoint::{self, CheckpointChoice, CheckpointState, OpenCheckpoint, Refusal, agree, broadcast, find};
 use crate::cli::{Arguments, Restart};
-use bsmpm::boundary::Surface;
 use bsmpm::control::Stepper;
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::grid::Grid;
+use bsmpm::interactions::state::{InteractionState, SoilColumn};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::points::Points;
@@ -69,6 +69,18 @@ impl Default for FreshStart {
             warnings: Vec::new(),
         }
     }
+}
+
+/// State that a checkpoint holds, on this rank.
+pub struct RestartedState<const D: usize> {
+    /// Partition of the grid.
+    pub slabs: Slabs,
+    /// Points of this rank.
+    pub points: Points<D>,
+    /// State of the interactions.
+    pub state: InteractionState<D>,
+    /// State of the step control.
+    pub stepper: Stepper,
 }
 
 /// A checkpoint from which a run goes on.
@@ -243,7 +255,7 @@ impl ResumedRun<'_> {
         case: &Case,
         model: &mut Model<K, D>,
         schedule: &Schedule,
-    ) -> Result<(Slabs, Points<D>, Stepper), Refusal> {
+    ) -> Result<RestartedState<D>, Refusal> {
         let world = universe.world();
         let mut points = self.points(universe, case, model)?;
         let held = self
@@ -258,12 +270,12 @@ impl ResumedRun<'_> {
         let rank = world.rank().unsigned_abs() as usize;
         let window = model.grid.window_of(slabs.cells(rank, model.grid.room()));
         migrate::points(&world, &Traffic::default(), &slabs, &window, &mut points);
-        points.surface = self
+        let mut state = self
             .state
-            .surface()
-            .filter(|surface| fits(surface, model))
+            .interactions()
+            .filter(|state| fits(state, model))
             .ok_or_else(|| self.foreign("its surfaces are not those of the case"))?;
-        points.free_field = self
+        state.columns = self
             .free_field(model, state_width(case))
             .ok_or_else(|| self.foreign("its free-field columns are not those of the case"))?;
         let guess = self.guess(&held, &past, &window)?;
@@ -277,11 +289,12 @@ impl ResumedRun<'_> {
             },
         )?;
         let stepper = Stepper::resume(guess, self.state.progress, schedule);
-        Ok((
+        Ok(RestartedState {
             slabs,
             points,
-            stepper.ok_or_else(|| self.foreign("the state of its step control is invalid"))?,
-        ))
+            state,
+            stepper: stepper.ok_or_else(|| self.foreign("the state of its step control is invalid"))?,
+        })
     }
 
     fn foreign(&self, what: &str) -> Refusal {
@@ -323,12 +336,14 @@ impl ResumedRun<'_> {
         &self,
         model: &Model<K, D>,
         width: usize,
-    ) -> Option<Vec<Points<D>>> {
+    ) -> Option<Vec<SoilColumn<D>>> {
         let mut columns = Vec::new();
         for column in &self.state.free_field {
-            columns.push(column.points(width)?);
+            columns.push(column.column(width)?);
         }
-        let mut laws = columns.iter().flat_map(|column: &Points<D>| &column.material);
+        let mut laws = columns
+            .iter()
+            .flat_map(|column: &SoilColumn<D>| &column.points.material);
         let is_sound = laws.all(|&law| usize::from(law) < model.materials.len());
         let followers = model.boundary.absorbing().filter(|face| face.follows).count();
         let expected = if self.state.steps > 0 { followers } else { 0 };
@@ -464,19 +479,19 @@ fn lengths<T>(lists: &[Vec<T>]) -> Vec<usize> {
     lists.iter().map(Vec::len).collect()
 }
 
-/// Whether `read` has as many lists, and as long ones, as the surface of the model.
-fn fits<K: Kinematics<D>, const D: usize>(read: &Surface<D>, model: &Model<K, D>) -> bool {
-    let surface = model.boundary.surface();
-    let is_same = lengths(&read.traction) == lengths(&surface.traction)
-        && lengths(&read.position) == lengths(&surface.position)
-        && lengths(&read.pressure) == lengths(&surface.pressure)
-        && read.bodies.len() == surface.bodies.len()
+/// Whether `read` has as many lists, and as long ones, as the initial state of the model.
+fn fits<K: Kinematics<D>, const D: usize>(read: &InteractionState<D>, model: &Model<K, D>) -> bool {
+    let start = model.boundary.initial_state();
+    let is_same = lengths(&read.traction) == lengths(&start.traction)
+        && lengths(&read.position) == lengths(&start.position)
+        && lengths(&read.pressure) == lengths(&start.pressure)
+        && read.bodies.len() == start.bodies.len()
         && model.boundary.fits(&model.grid, &read.held);
     let anchors = &read.anchors;
     let has_none = anchors.strips.is_empty() && anchors.loads.is_empty();
     let is_anchored = has_none
-        || (lengths(&anchors.strips) == lengths(&surface.traction)
-            && lengths(&anchors.loads) == lengths(&surface.position));
+        || (lengths(&anchors.strips) == lengths(&start.traction)
+            && lengths(&anchors.loads) == lengths(&start.position));
     let wet = model.surfaces().water;
     let wet: Vec<usize> = wet.iter().map(|points| points.len()).collect();
     is_same && is_anchored && (anchors.water.is_empty() || lengths(&anchors.water) == wet)

@@ -257,10 +257,14 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("histories");
         let Simulation {
-            model, points, halo, ..
+            model,
+            points,
+            state,
+            halo,
+            ..
         } = &self.simulation;
         let time = self.simulation.time();
-        let row = match self.recorder.row(model, points, time, report, &**halo) {
+        let row = match self.recorder.row(model, points, &state.crossed, time, report, &**halo) {
             Ok(row) => row,
             Err(error) => launch::end(&self.universe.world(), exit::BUG, &error),
         };

@@ -10,13 +10,14 @@ use crate::signals::Requests;
 use crate::slab::Slabs;
 use crate::timers::Timers;
 use crate::traffic::{TrafficCounts, TrafficKind};
-use bsmpm::boundary::{Idle, Surface};
+use bsmpm::boundary::Idle;
 use bsmpm::control::{AcceptedStep, Failure, Progress, Stepper};
 use bsmpm::error::StepError;
 use bsmpm::field::pore_water::observed::PoreWater;
 use bsmpm::initial::{self, Equilibrium, EquilibriumSearchReport};
 use bsmpm::interactions::free_field;
 use bsmpm::interactions::load::follower;
+use bsmpm::interactions::state::InteractionState;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::parallel::Halo;
@@ -83,6 +84,8 @@ pub struct Simulation<'p, K, const D: usize> {
     pub model: Model<K, D>,
     /// Points of this rank.
     pub points: Points<D>,
+    /// State of the interactions, the same on all ranks.
+    pub state: InteractionState<D>,
     /// Exchange with the other ranks in the present partition.
     pub halo: Rc<MpiHalo>,
     libraries: Libraries<'p>,
@@ -115,7 +118,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         model.grid = model.grid.window_of(slabs.cells(petsc.rank(), model.grid.room()));
         let slabs = slabs.reaching(model.grid.beyond());
         points.sort_by_cell(&model.grid);
-        points.surface = model.boundary.surface();
+        let state = model.boundary.initial_state();
         let halo = MpiHalo::new(universe.world(), &slabs, &model.grid, Rc::clone(&timers), requests);
         let halo = Rc::new(halo);
         let solver = KspSolver::of_model(petsc, &choice, &model, &halo, &timers);
@@ -125,6 +128,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         Self {
             model,
             points,
+            state,
             halo,
             libraries,
             choice,
@@ -148,25 +152,26 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let Self {
             model,
             points,
+            state,
             halo,
             solver,
             ..
         } = self;
         match start {
             StartStress::Given(sigma) => initial::set_stress(model, points, sigma),
-            StartStress::Elastic => initial::set_elastic(model, points, &**halo, solver)?,
-            StartStress::Spread(k0) => initial::set_spread(model, points, k0, &**halo, solver)?,
+            StartStress::Elastic => initial::set_elastic(model, points, state, &**halo, solver)?,
+            StartStress::Spread(k0) => initial::set_spread(model, points, state, k0, &**halo, solver)?,
         }
         let settling = settles
-            .then(|| initial::settle(model, points, &**halo, solver))
+            .then(|| initial::settle(model, points, state, &**halo, solver))
             .transpose()?;
-        initial::hold(model, points, &**halo, solver)?;
-        Ok((initial::balance(model, points, &**halo)?, settling))
+        initial::hold(model, points, state, &**halo, solver)?;
+        Ok((initial::balance(model, points, state, &**halo)?, settling))
     }
 
     /// Sets the state of a run after `steps` steps. The points must have been set before.
-    pub fn resume(&mut self, steps: u64, stepper: Stepper, surface: Surface<D>) {
-        (self.steps, self.stepper, self.points.surface) = (steps, stepper, surface);
+    pub fn resume(&mut self, steps: u64, stepper: Stepper, state: InteractionState<D>) {
+        (self.steps, self.stepper, self.state) = (steps, stepper, state);
     }
 
     /// Returns the state of the step size control.
@@ -234,6 +239,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
                 &self.schedule,
                 &self.model,
                 &mut self.points,
+                &mut self.state,
                 &*self.halo,
                 &mut self.solver,
             )?
@@ -270,17 +276,16 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     ) -> [u64; 2] {
         let water = PoreWater::of(&self.model, &self.points, self.time());
         let taken = water.map_or(0.0, |water| water.taken_by(&gone, &*self.halo));
-        self.points.surface.crossed.removed += taken;
+        self.state.crossed.removed += taken;
         let before = self.points.len();
         self.points.remove(&gone);
         let left = self.points.len();
         let anchored = self.points.anchored();
         let anchors = self
-            .points
-            .surface
+            .state
             .anchors
             .without(&self.model.surfaces(), &gone, anchored, &*self.halo);
-        self.points.surface.anchors = anchors;
+        self.state.anchors = anchors;
         let slabs = self.slabs.clone();
         let rank = self.libraries.petsc.rank();
         let grid = self.model.grid.clone();
@@ -313,6 +318,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
     fn begin_afresh(&mut self) {
         self.stepper.begin_stage();
         self.points.forget_flow();
+        self.state.flowed = None;
     }
 
     /// Initialises the pore water of the newly placed points from index `first` on, and adds it to the water balance.
@@ -329,7 +335,7 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let held = water.map_or(0.0, |water| {
             water.taken_by(|id| placed.binary_search(&id).is_ok(), &*self.halo)
         });
-        self.points.surface.crossed.removed -= held;
+        self.state.crossed.removed -= held;
     }
 
     /// Anchors surfaces that did not act so far to the present ground, and moves their loads there. Collective.
@@ -337,19 +343,18 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let boundary = &self.model.boundary;
         let anchored = self.points.anchored();
         let anchors = self
-            .points
-            .surface
+            .state
             .anchors
             .renewed(&self.model.surfaces(), idle, anchored, &*self.halo);
         let places = anchors.places(boundary, &self.model.grid, anchored, &*self.halo);
         let pressure = follower::now::<K, D>(&boundary.loads, &self.model.grid, &anchors, anchored, &*self.halo);
-        let surface = &mut self.points.surface;
-        surface.anchors = anchors;
+        let state = &mut self.state;
+        state.anchors = anchors;
         for load in (0..idle.loads.len()).filter(|&load| idle.loads[load]) {
-            surface.position[load].clone_from(&places.loads[load]);
+            state.position[load].clone_from(&places.loads[load]);
         }
         // Loads that continue may have new anchors where bodies were removed.
-        surface.pressure = pressure;
+        state.pressure = pressure;
     }
 
     /// Replaces the laws, supports and loads by those of the model `next`, which has the same grid. Fails on all ranks
@@ -372,13 +377,14 @@ impl<'p, K: Kinematics<D>, const D: usize> Simulation<'p, K, D> {
         let Self {
             model,
             points,
+            state,
             halo,
             solver,
             ..
         } = self;
-        points.surface.held.clear();
-        initial::hold_at(model, points, t, &**halo, solver)?;
-        free_field::go_on(model, points, t)
+        state.held.clear();
+        initial::hold_at(model, points, state, t, &**halo, solver)?;
+        free_field::go_on(model, state, t)
     }
 
     /// Returns whether the active domain is too small for a point of this rank.

@@ -162,7 +162,7 @@ observables! { sample =>
     /// volume that has left the ground, divided by the larger of these volumes. It is 0 if no water is created or
     /// lost.
     WaterBalance = "water-balance": Case, "-", SCALAR, [NeedsFlow], [] =>
-        vec![sample.water().and_then(|water| water.balance(sample.halo)).unwrap_or(0.0)];
+        vec![sample.water().and_then(|water| water.balance(sample.crossed, sample.halo)).unwrap_or(0.0)];
     /// Oscillation of the vertical stress between neighbouring material points: its root mean square, divided by
     /// the mean of |sigma_yy|.
     StressNoise = "stress-noise": Case, "-", NOISE, [PlaneOnly], [] => both(noise::stress_noise(

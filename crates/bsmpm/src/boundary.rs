@@ -9,12 +9,13 @@ pub use crate::interactions::load::Load;
 pub use crate::interactions::rigid::{RigidBody, RigidReport, RigidState};
 pub use crate::interactions::strip::{MotionShare, Path, Strip, StripContact, StripReport};
 use crate::schedule::TimeInterval;
-pub use anchor::Idle;
-pub use surface::{Anchors, Surface, SurfacePoint};
+pub use anchor::{AnchoredPoints, Idle};
+pub use surface::{Anchors, SurfacePoint};
 
 use crate::exact::Exact;
 use crate::field::pore_water::crossed::CrossedVolumes;
 use crate::grid::Grid;
+use crate::interactions::state::InteractionState;
 use crate::nodal::Nodal;
 use crate::parallel::{Halo, OwnedNodes};
 use crate::points::Points;
@@ -195,8 +196,8 @@ impl<const D: usize> Boundary<D> {
         moves
     }
 
-    /// Returns the initial state of all surfaces: no traction, and every surface point at its initial position.
-    pub fn surface(&self) -> Surface<D> {
+    /// Returns the initial state of all interactions: no traction, and every surface point at its initial position.
+    pub fn initial_state(&self) -> InteractionState<D> {
         let at_rest = self
             .strips
             .iter()
@@ -205,7 +206,7 @@ impl<const D: usize> Boundary<D> {
             .loads
             .iter()
             .map(|load| load.points.iter().map(|point| point.x).collect());
-        Surface {
+        InteractionState {
             traction: at_rest.collect(),
             position: places.collect(),
             pressure: self.loads.iter().map(Load::at_rest).collect(),
@@ -214,6 +215,7 @@ impl<const D: usize> Boundary<D> {
             bodies: self.rigid.iter().map(RigidBody::at_rest).collect(),
             crossed: CrossedVolumes::default(),
             flowed: None,
+            columns: Vec::new(),
         }
     }
 

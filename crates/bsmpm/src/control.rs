@@ -6,13 +6,15 @@ use crate::energy::{EnergyBound, StoredEnergy};
 use crate::error::{Severity, StepError};
 use crate::grid::extension::ExtendedSplines;
 use crate::interactions::background::ResistedDisplacement;
+use crate::interactions::state::InteractionState;
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
 use crate::method::Criteria;
 use crate::model::{Model, Regime};
-use crate::parallel::{Backend, Halo};
+use crate::parallel::Halo;
 use crate::points::Points;
 use crate::schedule::{Schedule, TimeInterval};
+use crate::solve::Backend;
 use crate::step::{Counts, StepReport, step};
 use std::borrow::Cow;
 
@@ -134,6 +136,7 @@ impl Stepper {
         schedule: &Schedule,
         model: &Model<K, D>,
         points: &mut Points<D>,
+        state: &mut InteractionState<D>,
         halo: &dyn Halo,
         solver: &mut dyn LinearSolver,
     ) -> Option<Result<AcceptedStep, Failure>> {
@@ -155,8 +158,12 @@ impl Stepper {
             };
             let model = self.with_sudden_forces(model.over(dt));
             let interval = TimeInterval { start: self.at.t, dt };
-            let backend = &mut Backend { halo, solver };
-            let error = match step(&model, points, &mut guess, interval, resisted, backend, &mut counts) {
+            let backend = &mut Backend {
+                halo,
+                solver,
+                counts: &mut counts,
+            };
+            let error = match step(&model, points, state, &mut guess, interval, resisted, backend) {
                 Ok(report) => {
                     (self.guess, self.at.guess_dt, self.at.t) = (guess, dt, end);
                     self.accept(&report, &model.criteria);

@@ -4,7 +4,6 @@
 mod settle;
 
 use crate::material::Moduli;
-use crate::parallel::Backend;
 use crate::points::MappedPoints;
 use crate::schedule::TimeInterval;
 pub use settle::{EquilibriumSearchReport, set_spread, settle};
@@ -12,6 +11,7 @@ pub use settle::{EquilibriumSearchReport, set_spread, settle};
 use crate::boundary::StripReport;
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
+use crate::interactions::state::InteractionState;
 use crate::interactions::{EquilibriumState, InteractionReports};
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
@@ -19,9 +19,9 @@ use crate::material::{Branch, Elastic, Material, Separation};
 use crate::model::Model;
 use crate::parallel::{Halo, agreed};
 use crate::points::{PackedTensors, Points};
-use crate::solve::contact;
 use crate::solve::found::StepSolution;
 use crate::solve::round_off::RoundOff;
+use crate::solve::{Backend, contact};
 use crate::step::Counts;
 use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
@@ -139,11 +139,12 @@ pub fn b_e_of(law: &Material, stress: &Symmetric, state: &mut [f64]) -> Symmetri
 pub fn set_elastic<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
+    state: &mut InteractionState<D>,
     halo: &dyn Halo,
     solver: &mut dyn LinearSolver,
 ) -> Result<(), StepError> {
     let model = &model.settling();
-    let start = UndeformedState::of(model, points, halo)?;
+    let start = UndeformedState::of(model, points, state, halo)?;
     let problem = start.problem(model, points, halo);
     stiffness::factorise(&problem, None, solver)?;
     let mut u = vec![0.0; model.grid.nodes() * D];
@@ -165,8 +166,8 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
         });
     }
     let reaction = vec![0.0; u.len()];
-    let (_, traction) = start.finish_footings(model, points, &u, &reaction, halo)?;
-    points.surface.traction = traction;
+    let (_, traction) = start.finish_footings(model, points, state, &u, &reaction, halo)?;
+    state.traction = traction;
     for (p, strain) in strains.iter().enumerate() {
         points.b_e.set(p, exponential(strain));
         points.sigma.set(p, stress_of(&elastic_at(model, points, p), strain));
@@ -179,17 +180,19 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
 /// correction, a body that only dashpots support would drift. Fails if there is no equilibrium.
 pub fn hold<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    points: &mut Points<D>,
+    points: &Points<D>,
+    state: &mut InteractionState<D>,
     halo: &dyn Halo,
     solver: &mut dyn LinearSolver,
 ) -> Result<(), StepError> {
-    hold_at(model, points, 0.0, halo, solver)
+    hold_at(model, points, state, 0.0, halo, solver)
 }
 
 /// Finds the forces as [`hold`], at a later time `t` (s) after the soil or its loads have changed.
 pub fn hold_at<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    points: &mut Points<D>,
+    points: &Points<D>,
+    state: &mut InteractionState<D>,
     t: f64,
     halo: &dyn Halo,
     solver: &mut dyn LinearSolver,
@@ -198,10 +201,14 @@ pub fn hold_at<K: Kinematics<D>, const D: usize>(
         return Ok(());
     }
     let at_rest = &model.at_rest();
-    let mut start = UndeformedState::at(at_rest, points, t, halo)?;
-    let backend = &mut Backend { halo, solver };
-    let found = start.find(at_rest, points, backend, &mut Counts::default())?;
-    points.surface.held = model.boundary.held(&model.grid, &found.reaction, halo);
+    let mut start = UndeformedState::at(at_rest, points, state, t, halo)?;
+    let backend = &mut Backend {
+        halo,
+        solver,
+        counts: &mut Counts::default(),
+    };
+    let found = start.find(at_rest, points, backend)?;
+    state.held = model.boundary.held(&model.grid, &found.reaction, halo);
     Ok(())
 }
 
@@ -210,6 +217,7 @@ pub fn hold_at<K: Kinematics<D>, const D: usize>(
 pub fn balance<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
+    state: &InteractionState<D>,
     halo: &dyn Halo,
 ) -> Result<Equilibrium, StepError> {
     let model = &model.at_rest();
@@ -218,12 +226,12 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
         Ok(sum + f64::from(u32::from(yields)))
     });
     let mut yielding = [agreed(halo, counted, StepError::OtherRank)?];
-    let start = UndeformedState::of(model, points, halo)?;
+    let start = UndeformedState::of(model, points, state, halo)?;
     let at_rest = vec![0.0; model.grid.nodes() * D];
     let balance = Residual::of(&start.problem(model, points, halo), &at_rest).balance;
     halo.all_reduce_sum(&mut yielding);
     let reactions = model.boundary.reactions(&model.grid, &balance.reaction, halo);
-    let (strips, _) = start.finish_footings(model, points, &at_rest, &balance.reaction, halo)?;
+    let (strips, _) = start.finish_footings(model, points, state, &at_rest, &balance.reaction, halo)?;
     Ok(Equilibrium {
         force: balance.measure(),
         yielding: yielding[0] as u64,
@@ -250,6 +258,7 @@ fn yields<K: Kinematics<D>, const D: usize>(
 pub fn is_pushed<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
+    state: &InteractionState<D>,
     halo: &dyn Halo,
 ) -> Result<bool, StepError> {
     let shaking = model.shaking.clone();
@@ -257,7 +266,7 @@ pub fn is_pushed<K: Kinematics<D>, const D: usize>(
         shaking,
         ..model.at_rest()
     };
-    let start = UndeformedState::of(model, points, halo)?;
+    let start = UndeformedState::of(model, points, state, halo)?;
     let problem = start.problem(model, points, halo);
     let balance = Residual::of(&problem, &vec![0.0; model.grid.nodes() * D]).balance;
     Ok(balance.measure() > model.criteria.force && !RoundOff::of(&problem).covers(&balance, &problem))
@@ -273,19 +282,25 @@ struct UndeformedState<const D: usize> {
 }
 
 impl<const D: usize> UndeformedState<D> {
-    fn of<K: Kinematics<D>>(model: &Model<K, D>, points: &Points<D>, halo: &dyn Halo) -> Result<Self, StepError> {
-        Self::at(model, points, 0.0, halo)
+    fn of<K: Kinematics<D>>(
+        model: &Model<K, D>,
+        points: &Points<D>,
+        state: &InteractionState<D>,
+        halo: &dyn Halo,
+    ) -> Result<Self, StepError> {
+        Self::at(model, points, state, 0.0, halo)
     }
 
     fn at<K: Kinematics<D>>(
         model: &Model<K, D>,
         points: &Points<D>,
+        state: &InteractionState<D>,
         t: f64,
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
         let shape = agreed(halo, Shape::at(&model.grid, points), StepError::OtherRank)?;
         let instant = TimeInterval { start: t, dt: 0.0 };
-        let nodes = GridState::from_points(model, &shape, points, instant, halo)?;
+        let nodes = GridState::from_points(model, &shape, points, state, instant, halo)?;
         Ok(Self { shape, nodes })
     }
 
@@ -295,12 +310,13 @@ impl<const D: usize> UndeformedState<D> {
         &self,
         model: &Model<K, D>,
         points: &Points<D>,
+        state: &InteractionState<D>,
         u: &[f64],
         reaction: &[f64],
         halo: &dyn Halo,
     ) -> Result<FootingState<D>, StepError> {
         let on = self.nodes.context(model, &self.shape, points, halo);
-        let mut after = points.surface.clone();
+        let mut after = state.clone();
         let mut reports = InteractionReports::default();
         let at = EquilibriumState {
             u,
@@ -321,12 +337,11 @@ impl<const D: usize> UndeformedState<D> {
         model: &Model<K, D>,
         points: &Points<D>,
         backend: &mut Backend<'_>,
-        counts: &mut Counts,
     ) -> Result<StepSolution<K, D>, StepError> {
         let shape = &self.shape;
         let mapped = MappedPoints { shape, points };
         let guess = vec![0.0; model.grid.nodes() * D];
-        contact::find(model, mapped, &mut self.nodes, &guess, backend, counts)
+        contact::find(model, mapped, &mut self.nodes, &guess, backend)
     }
 
     fn problem<'a, K>(

@@ -28,9 +28,10 @@ pub mod coulomb;
 pub mod free_field;
 pub mod load;
 pub mod rigid;
+pub mod state;
 pub mod strip;
 
-use crate::boundary::{Boundary, ContactReport, RigidReport, StripReport, Surface};
+use crate::boundary::{Boundary, ContactReport, RigidReport, StripReport};
 use crate::dynamics::inertia::Inertia;
 use crate::error::StepError;
 use crate::exact::Exact;
@@ -38,6 +39,7 @@ use crate::field::pore_water::pore_pressure::PorePressure;
 use crate::grid::{Contributions, Grid, Shape};
 use crate::interactions::absorbing::ColumnAction;
 use crate::interactions::background::ResistedDisplacement;
+use crate::interactions::state::InteractionState;
 use crate::kinematics::Kinematics;
 use crate::linear::MatrixAssembly;
 use crate::model::Model;
@@ -55,6 +57,8 @@ pub const MOST_CORRECTIONS: usize = 40;
 /// What precedes a step, and its time.
 #[derive(Clone, Copy, Debug)]
 pub struct StepInput<'a, const D: usize> {
+    /// State of the interactions at the start of the step.
+    pub state: &'a InteractionState<D>,
     /// Start and length of the step.
     pub interval: TimeInterval,
     /// Nodal displacement of the last step (m, up to a factor); may be empty.
@@ -65,10 +69,11 @@ pub struct StepInput<'a, const D: usize> {
     pub columns: &'a [ColumnAction<D>],
 }
 
-impl<const D: usize> StepInput<'_, D> {
+impl<'a, const D: usize> StepInput<'a, D> {
     /// Creates the input of a step without a predecessor.
-    pub fn over(interval: TimeInterval) -> Self {
+    pub fn over(interval: TimeInterval, state: &'a InteractionState<D>) -> Self {
         Self {
+            state,
             interval,
             last: &[],
             resisted: ResistedDisplacement::Whole,
@@ -83,7 +88,7 @@ pub struct StepStart<'a, K, const D: usize> {
     pub model: &'a Model<K, D>,
     /// Shape functions at the material points.
     pub shape: &'a Shape<D>,
-    /// Material points, and the state of the interactions.
+    /// Material points.
     pub points: &'a Points<D>,
     /// Weights of the points in the integrals of the stress (m^D).
     pub volume: &'a [f64],
@@ -91,7 +96,7 @@ pub struct StepStart<'a, K, const D: usize> {
     pub constraints: &'a Constraints<D>,
     /// Pore pressure that friction does not act on; `None` without pore pressure or without friction.
     pub pore_pressure: Option<&'a PorePressure<D>>,
-    /// What precedes the step.
+    /// State of the interactions at the start of the step, and what precedes it.
     pub input: StepInput<'a, D>,
     /// Communication with the other ranks.
     pub halo: &'a dyn Halo,
@@ -106,7 +111,7 @@ pub struct StepContext<'a, const D: usize> {
     pub grid: &'a Grid<D>,
     /// Shape functions at the material points.
     pub shape: &'a Shape<D>,
-    /// Material points at the start of the step, and the state of the interactions.
+    /// Material points at the start of the step.
     pub points: &'a Points<D>,
     /// Unknowns.
     pub constraints: &'a Constraints<D>,
@@ -309,7 +314,7 @@ pub trait Interaction<const D: usize>: fmt::Debug + Send + Sync {
         &self,
         _on: &StepContext<'_, D>,
         _at: &EquilibriumState<'_>,
-        _after: &mut Surface<D>,
+        _after: &mut InteractionState<D>,
         _reports: &mut InteractionReports,
     ) -> Result<(), StepError> {
         Ok(())
@@ -321,7 +326,7 @@ pub trait Interaction<const D: usize>: fmt::Debug + Send + Sync {
         _grid: &Grid<D>,
         _u: &[f64],
         _points: &mut Points<D>,
-        _after: &mut Surface<D>,
+        _after: &mut InteractionState<D>,
         _halo: &dyn Halo,
     ) {
     }

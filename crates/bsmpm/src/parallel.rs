@@ -2,7 +2,6 @@
 
 use crate::exact::Exact;
 use crate::grid::Contributions;
-use crate::linear::LinearSolver;
 use crate::nodal::Nodal;
 use std::ops::Range;
 
@@ -138,12 +137,4 @@ impl Halo for Alone {
         sums.iter().map(Exact::value).collect()
     }
     fn all_reduce_max(&self, _numbers: &mut [f64]) {}
-}
-
-/// Communication between the ranks, and the solver of the linear systems.
-pub struct Backend<'a> {
-    /// Communication with the other ranks.
-    pub halo: &'a dyn Halo,
-    /// Solver of the linear systems.
-    pub solver: &'a mut dyn LinearSolver,
 }

@@ -6,7 +6,6 @@ mod packed;
 pub use column::{Column, Number, Rows};
 pub use packed::{Components, PackedTensors};
 
-use crate::boundary::Surface;
 use crate::boundary::anchor::AnchorCandidates;
 use crate::grid::{Grid, PointPositions, Shape};
 use crate::tensor::{Symmetric, Tensor, Vector};
@@ -68,11 +67,6 @@ macro_rules! columns {
             $($(#[$some_doc])+ pub $some: Option<$SomeType>,)+
             /// State variables of the constitutive laws, if any.
             pub state: Option<Rows>,
-            /// State of footings and loads. It is no column, because it is the same on every rank.
-            pub surface: Surface<D>,
-            /// Soil columns of the free field, in the order of the faces that have one; the same on every rank, empty
-            /// before the first step.
-            pub free_field: Vec<Points<D>>,
         }
 
         impl<const D: usize> Points<D> {
@@ -263,13 +257,9 @@ impl<const D: usize> Points<D> {
         seeds.into_iter().for_each(|seed| self.push(&seed));
     }
 
-    /// Returns the points `kept`, in that order, without the data that are the same on every rank.
+    /// Returns the points `kept`, in that order.
     pub fn only(&self, kept: &[u32]) -> Self {
-        let mut some = Self {
-            surface: Surface::default(),
-            free_field: Vec::new(),
-            ..self.clone()
-        };
+        let mut some = self.clone();
         some.columns().into_iter().for_each(|column| column.reorder(kept));
         some
     }
@@ -284,7 +274,7 @@ impl<const D: usize> Points<D> {
 
     /// Discards the flow of the last step, after a change of the ground or of its loads.
     pub fn forget_flow(&mut self) {
-        (self.content_change, self.gradient_change, self.surface.flowed) = (None, None, None);
+        (self.content_change, self.gradient_change) = (None, None);
     }
 
     /// Resets the displacements: later output counts from the present state.

@@ -19,6 +19,7 @@ use crate::field::pore_water::matrix;
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
 use crate::method::{Nonlinear, QuasiNewton};
+use crate::parallel::Halo;
 use crate::solve::quasi_newton::SecantMethod;
 use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
@@ -28,6 +29,16 @@ use crate::step::stiffness;
 use convergence::{Convergence, inverted};
 use found::StepSolution;
 use quasi_newton::FailedIteration;
+
+/// Communication between the ranks, the solver of the linear systems, and the work done.
+pub struct Backend<'a> {
+    /// Communication with the other ranks.
+    pub halo: &'a dyn Halo,
+    /// Solver of the linear systems.
+    pub solver: &'a mut dyn LinearSolver,
+    /// Work done, failed attempts included.
+    pub counts: &'a mut Counts,
+}
 
 /// Finds equilibrium from the previous displacement `guess` (m, step 3b). If this fails, the iteration restarts from
 /// zero.

@@ -4,6 +4,7 @@ use bsmpm::error::StepError;
 use bsmpm::grid::{Shape, transfer};
 use bsmpm::interactions::StepInput;
 use bsmpm::interactions::free_field::FreeField;
+use bsmpm::interactions::state::InteractionState;
 use bsmpm::kinematics::{Gradient, Kinematics};
 use bsmpm::linear::{LinearSolver, MatrixAssembly};
 use bsmpm::model::Model;
@@ -36,6 +37,7 @@ pub fn shortest(seconds: f64, mut call: impl FnMut()) -> f64 {
 pub struct Bench<'a, K, const D: usize> {
     pub model: &'a Model<K, D>,
     pub points: &'a Points<D>,
+    pub state: &'a InteractionState<D>,
     pub halo: &'a dyn Halo,
     /// s  time and step
     pub interval: TimeInterval,
@@ -50,15 +52,16 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
         let Self {
             model,
             points,
+            state,
             halo,
             interval,
             ..
         } = *self;
         let shape = Shape::at(&model.grid, points)?;
-        let field = FreeField::after(model, points, interval, halo)?;
+        let field = FreeField::after(model, points, state, interval, halo)?;
         let input = StepInput {
             columns: &field.actions,
-            ..StepInput::over(interval)
+            ..StepInput::over(interval, state)
         };
         let nodes = GridState::from_points_after(model, &shape, points, input, halo)?;
         let problem = Problem {
@@ -79,11 +82,13 @@ impl<K: Kinematics<D>, const D: usize> Bench<'_, K, D> {
             drop(black_box(Shape::at(&model.grid, points)))
         });
         self.row("(2) points to nodes", None, || {
-            drop(black_box(GridState::from_points(model, &shape, points, interval, halo)))
+            drop(black_box(GridState::from_points(
+                model, &shape, points, state, interval, halo,
+            )))
         });
         if !field.columns.is_empty() {
             self.row("columns of the free field", None, || {
-                drop(black_box(FreeField::after(model, points, interval, halo)))
+                drop(black_box(FreeField::after(model, points, state, interval, halo)))
             });
         }
         self.row("(4a) gather of grad u", Some(traffic.gradients), || {

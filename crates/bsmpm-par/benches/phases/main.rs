@@ -3,6 +3,7 @@
 mod kernels;
 mod machine;
 
+use bsmpm::interactions::state::InteractionState;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Model;
 use bsmpm::points::Points;
@@ -47,8 +48,13 @@ fn main() -> ExitCode {
     }
 }
 
-/// A state of a run: its points, sorted, the nodal displacement of its last step (m), and its time (s).
-type State<const D: usize> = (Points<D>, Vec<f64>, f64);
+/// A state of a run.
+struct State<const D: usize> {
+    points: Points<D>, // sorted by cell
+    interactions: InteractionState<D>,
+    guess: Vec<f64>, // m, nodal displacement of the last step
+    time: f64,       // s
+}
 
 /// What a checkpoint holds.
 fn state<K: Kinematics<D>, const D: usize>(
@@ -78,15 +84,22 @@ fn state<K: Kinematics<D>, const D: usize>(
         .guess(layers, model.grid.layer_nodes() * D, 0..layers)
         .map_err(refused)?;
     opened.close().map_err(refused)?;
-    points.surface = state.surface().ok_or("the checkpoint's surfaces are of another case")?;
+    let mut interactions = state
+        .interactions()
+        .ok_or("the checkpoint's surfaces are of another case")?;
     let columns = state
         .free_field
         .iter()
-        .map(|column| column.points(width))
+        .map(|column| column.column(width))
         .collect::<Option<_>>();
-    points.free_field = columns.ok_or("the columns of the checkpoint's free field are not whole")?;
+    interactions.columns = columns.ok_or("the columns of the checkpoint's free field are not whole")?;
     points.sort_by_cell(&model.grid);
-    Ok((points, guess, found.record.time()))
+    Ok(State {
+        points,
+        interactions,
+        guess,
+        time: found.record.time(),
+    })
 }
 
 fn measure(universe: &Universe, case: &str, set: &[String], path: &str, seconds: f64) -> Result<(), Box<dyn Error>> {
@@ -110,7 +123,12 @@ fn measure_in<K: Kinematics<D>, const D: usize>(
     seconds: f64,
 ) -> Result<(), Box<dyn Error>> {
     let mut model = bsmpm_scene::model::model::<K, D>(case)?;
-    let (points, guess, time) = state(universe, Path::new(path), &mut model)?;
+    let State {
+        points,
+        interactions,
+        guess,
+        time,
+    } = state(universe, Path::new(path), &mut model)?;
     let columns = model.grid.columns();
     let slabs = Slabs::new(vec![columns.start, columns.end], 1, columns).ok_or("no columns")?;
     let timers = Rc::new(Timers::default());
@@ -134,6 +152,7 @@ fn measure_in<K: Kinematics<D>, const D: usize>(
     let bench = kernels::Bench {
         model: &model,
         points: &points,
+        state: &interactions,
         halo: &*halo,
         interval: TimeInterval {
             start: time,

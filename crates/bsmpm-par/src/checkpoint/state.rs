@@ -8,11 +8,12 @@ pub use free_field::FreeFieldState;
 
 use super::Refusal;
 use super::issued::{IssuedWarning, SurfaceCounts, numbered};
-use bsmpm::boundary::{Anchors, RigidState, Surface};
+use bsmpm::boundary::{Anchors, RigidState};
 use bsmpm::control::Progress;
 use bsmpm::energy::{EnergyAccounts, EnergyBound, Flows};
 use bsmpm::field::pore_water::crossed::CrossedVolumes;
 use bsmpm::grid::Grid;
+use bsmpm::interactions::state::InteractionState;
 use bsmpm::tensor::Vector;
 use bsmpm_io::exit;
 use bsmpm_io::frames::Entry;
@@ -282,8 +283,8 @@ impl CheckpointState {
         fits.then(|| grid.within(room.map(|[start, end]| start..end)))
     }
 
-    /// The surfaces; `None` if they are of another dimension.
-    pub fn surface<const D: usize>(&self) -> Option<Surface<D>> {
+    /// The state of the interactions without the columns of the free field; `None` if it is of another dimension.
+    pub fn interactions<const D: usize>(&self) -> Option<InteractionState<D>> {
         let [strips, loads] = self.anchors.clone();
         let anchors = Anchors {
             strips,
@@ -296,7 +297,7 @@ impl CheckpointState {
         } else {
             vectors(&self.pressure[0])?
         };
-        Some(Surface {
+        Some(InteractionState {
             traction: vectors(&self.traction)?,
             position: vectors(&self.position)?,
             pressure,
@@ -305,6 +306,7 @@ impl CheckpointState {
             bodies: (0..self.rigid.len()).map(|body| self.rigid_state(body)).collect(),
             crossed: self.crossed.volumes(),
             flowed: self.flowed.as_ref().map(FlowedState::flow),
+            columns: Vec::new(),
         })
     }
 

@@ -8,7 +8,7 @@ use crate::ledger::RunWriter;
 use crate::log::Log;
 use crate::machine;
 use crate::record::Recorder;
-use crate::restart::{self, ResumedRun, RunStart};
+use crate::restart::{self, RestartedState, ResumedRun, RunStart};
 use crate::run::RecordedSimulation;
 use crate::run::RunFiles;
 use crate::run::{PriorState, Run, Task};
@@ -159,11 +159,16 @@ fn scene<'p, K: Kinematics<D>, const D: usize>(
     let mut model = model_at::<K, D>(case, at).map_err(|error| Refusal::new(exit::CASE, error.to_string()))?;
     let schedule = schedule(case);
     if let RunStart::Resumed(resumed) = start {
-        let (slabs, points, stepper) = resumed.read(universe, case, &mut model, &schedule)?;
-        let surface = points.surface.clone();
+        let restarted = resumed.read(universe, case, &mut model, &schedule)?;
+        let RestartedState {
+            slabs,
+            points,
+            state,
+            stepper,
+        } = restarted;
         let partitioned = PartitionedModel { model, slabs, points };
         let mut simulation = Simulation::new(libraries, choice, partitioned, schedule, timers, requests);
-        simulation.resume(resumed.state.steps, stepper, surface);
+        simulation.resume(resumed.state.steps, stepper, state);
         let recorder = Recorder::resume(case, &resumed.state.record);
         let recorder = recorder.ok_or_else(|| {
             Refusal::new(

@@ -126,16 +126,20 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let timers = Rc::clone(&self.timers);
         let _timed = timers.time("indicators");
         let Simulation {
-            model, points, halo, ..
+            model,
+            points,
+            state,
+            halo,
+            ..
         } = &self.simulation;
         let time = self.simulation.time();
         let budget = self.simulation.progress().budget;
-        match IndicatorState::of(model, points, time, &self.recorder, budget, &**halo) {
-            Ok(state) => {
+        match IndicatorState::of(model, points, &state.crossed, time, &self.recorder, budget, &**halo) {
+            Ok(indicators) => {
                 if let Some(ledger) = &mut self.ledger {
                     let history = table::read(&ledger.path().join(HISTORY)).ok();
                     let manifest = ledger.manifest();
-                    manifest.indicators = state.indicators(&self.case, &manifest.summary, history.as_ref());
+                    manifest.indicators = indicators.indicators(&self.case, &manifest.summary, history.as_ref());
                 }
             }
             Err(error) => launch::end(&self.universe.world(), exit::BUG, &error),

@@ -182,7 +182,7 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             return Ok(Vec::new());
         };
         let simulation = &self.simulation;
-        let surface = &self.simulation.points.surface;
+        let interactions = &simulation.state;
         let state = CheckpointState {
             steps: step,
             slabs: simulation.slabs().bounds().to_vec(),
@@ -205,21 +205,21 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
                     .collect(),
             ),
             progress: simulation.progress(),
-            traction: rows(&surface.traction),
-            anchors: [surface.anchors.strips.clone(), surface.anchors.loads.clone()],
-            water_anchors: surface.anchors.water.clone(),
-            crossed: CrossedState::of(&surface.crossed),
-            flowed: surface.flowed.as_ref().map(FlowedState::of),
-            position: rows(&surface.position),
-            held: rows(&surface.held),
-            free_field: simulation.points.free_field.iter().map(FreeFieldState::of).collect(),
-            rigid: surface.bodies.iter().map(rigid_numbers).collect(),
-            rigid_accelerations: rigid_accelerations(&surface.bodies),
+            traction: rows(&interactions.traction),
+            anchors: [interactions.anchors.strips.clone(), interactions.anchors.loads.clone()],
+            water_anchors: interactions.anchors.water.clone(),
+            crossed: CrossedState::of(&interactions.crossed),
+            flowed: interactions.flowed.as_ref().map(FlowedState::of),
+            position: rows(&interactions.position),
+            held: rows(&interactions.held),
+            free_field: interactions.columns.iter().map(FreeFieldState::of).collect(),
+            rigid: interactions.bodies.iter().map(rigid_numbers).collect(),
+            rigid_accelerations: rigid_accelerations(&interactions.bodies),
             pressure: [
-                if surface.pressure.iter().all(Vec::is_empty) {
+                if interactions.pressure.iter().all(Vec::is_empty) {
                     Vec::new()
                 } else {
-                    rows(&surface.pressure)
+                    rows(&interactions.pressure)
                 },
                 Vec::new(),
             ],

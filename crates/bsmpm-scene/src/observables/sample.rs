@@ -5,6 +5,7 @@ use super::subject::{Face, HistorySubject};
 use crate::grid::{GridSpec, vector};
 use bsmpm::boundary::{ContactReport, RigidReport, StripContact, StripReport, Support};
 use bsmpm::error::StepError;
+use bsmpm::field::pore_water::crossed::CrossedVolumes;
 use bsmpm::field::pore_water::observed::PoreWater;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
@@ -46,6 +47,8 @@ pub struct Sample<'a, K, const D: usize> {
     pub work: f64,
     /// Water that has left the ground through the history's drain (m3/m).
     pub drained: f64,
+    /// Volumes of water that have crossed the surface so far.
+    pub crossed: &'a CrossedVolumes,
     /// Mass that has left the grid (kg/m).
     pub outflow: f64,
     /// Where the energy is, and where it went (J/m), in the order of the columns; empty if it is not balanced.

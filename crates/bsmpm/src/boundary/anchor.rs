@@ -6,7 +6,7 @@ use super::{Boundary, Support};
 use crate::grid::Grid;
 use crate::interactions::strip::{Strip, displacement, reduce};
 use crate::parallel::Halo;
-use crate::points::PackedTensors;
+use crate::points::{PackedTensors, Points};
 use crate::tensor::{Tensor, Vector};
 
 /// Distance, as a fraction of the grid's length, within which a position counts as on a face.
@@ -25,6 +25,15 @@ pub struct AnchorCandidates<'a, const D: usize> {
     pub u: &'a [Vector<D>],
     /// Deformation gradients (-).
     pub F: &'a PackedTensors<D, Tensor>,
+}
+
+/// Material points, and the anchors of the surface points among them.
+#[derive(Clone, Copy)]
+pub struct AnchoredPoints<'a, const D: usize> {
+    /// Material points of this rank.
+    pub points: &'a Points<D>,
+    /// Anchors; empty before the first step.
+    pub anchors: &'a Anchors,
 }
 
 /// Initial position of a surface point (m), and whether water crosses there.

@@ -1,10 +1,8 @@
 //! Surface points of footings, loads and drains, and their shape functions at nodes, theory-manual equation (T6.3). All
 //! ranks store all surface points; the rank of the cell computes forces.
 
-use crate::field::pore_water::crossed::{CrossedVolumes, PreviousFlow};
 use crate::grid::shape::with_width;
 use crate::grid::{Contributions, Grid, KnotVector, digit};
-use crate::interactions::rigid::RigidState;
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;
 use crate::tensor::Vector;
@@ -264,31 +262,6 @@ fn cuts<const D: usize>(grid: &Grid<D>, from: &Vector<D>, to: &Vector<D>) -> Vec
     cuts.sort_by(f64::total_cmp);
     cuts.dedup_by(|b, a| *b - *a < 1e-9);
     cuts
-}
-
-/// State of all surfaces between steps; the same on every rank.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Surface<const D: usize> {
-    /// Traction of every strip on the body at its points, in the last converged state (Pa). For an open point it is the
-    /// penalty times the displacement of the point relative to the material, see
-    /// [`strip`](crate::interactions::strip).
-    pub traction: Vec<Vec<Vector<D>>>,
-    /// Positions of the points of every load (m). They move with the material that anchors them.
-    pub position: Vec<Vec<Vector<D>>>,
-    /// Traction of every follower load at full amplitude, per initial area (Pa), rotated and stretched with the
-    /// material (see [`follower`](crate::interactions::load::follower)); empty for dead loads.
-    pub pressure: Vec<Vec<Vector<D>>>,
-    /// Material points that anchor the surface points.
-    pub anchors: Anchors,
-    /// Forces that carry the initial stress at the nodes of every absorbing face (N), in the order of the nodes on the
-    /// face of the whole grid; empty without initial stress.
-    pub held: Vec<Vec<Vector<D>>>,
-    /// State of every rigid body.
-    pub bodies: Vec<RigidState>,
-    /// Cumulative flux of water through drains and inflows since the start.
-    pub crossed: CrossedVolumes,
-    /// Flow of the last step, if the next step continues from it.
-    pub flowed: Option<PreviousFlow>,
 }
 
 /// Ids of the material points that anchor all surface points; the same on every rank, empty before the first step.

@@ -3,12 +3,14 @@
 
 use super::{UndeformedState, b_e_of, set_elastic};
 use crate::error::StepError;
+use crate::interactions::state::InteractionState;
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
 use crate::method::Criteria;
 use crate::model::Model;
-use crate::parallel::{Backend, Halo};
+use crate::parallel::Halo;
 use crate::points::Points;
+use crate::solve::Backend;
 use crate::solve::convergence::worst_nodes;
 use crate::solve::found::StepSolution;
 use crate::solve::round_off::RoundOff;
@@ -47,11 +49,12 @@ pub struct EquilibriumSearchReport {
 pub fn set_spread<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
+    state: &mut InteractionState<D>,
     k0: impl Fn(u16) -> f64,
     halo: &dyn Halo,
     solver: &mut dyn LinearSolver,
 ) -> Result<(), StepError> {
-    set_elastic(model, points, halo, solver)?;
+    set_elastic(model, points, state, halo, solver)?;
     let mut most = [points.sigma.iter().map(|stress| -stress.0[D - 1]).fold(0.0, f64::max)];
     halo.all_reduce_max(&mut most);
     for p in 0..points.len() {
@@ -78,6 +81,7 @@ pub fn set_spread<K: Kinematics<D>, const D: usize>(
 pub fn settle<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,
+    state: &mut InteractionState<D>,
     halo: &dyn Halo,
     solver: &mut dyn LinearSolver,
 ) -> Result<EquilibriumSearchReport, StepError> {
@@ -90,12 +94,12 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
     let mut left = 1.0_f64;
     let mut part = 1.0_f64;
     loop {
-        let mut start = UndeformedState::of(model, points, halo)?;
+        let mut start = UndeformedState::of(model, points, state, halo)?;
         let problem = start.problem(model, points, halo);
         let balance = Residual::of(&problem, &at_rest).balance;
         let is_balanced =
             balance.measure() <= model.criteria.force || RoundOff::of(&problem).covers(&balance, &problem);
-        if is_balanced && (left == 0.0 || rounds == 0 && super::balance(model, points, halo)?.yielding == 0) {
+        if is_balanced && (left == 0.0 || rounds == 0 && super::balance(model, points, state, halo)?.yielding == 0) {
             return Ok(EquilibriumSearchReport {
                 rounds,
                 evaluations: counts.evaluations,
@@ -114,9 +118,14 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
         let next = (left - part).max(0.0);
         let f_ext = start.nodes.f_ext.iter_mut().zip(&*held);
         f_ext.for_each(|(force, held)| *force -= next * held);
-        match start.find(sought, points, &mut Backend { halo, solver }, &mut counts) {
+        let backend = &mut Backend {
+            halo,
+            solver,
+            counts: &mut counts,
+        };
+        match start.find(sought, points, backend) {
             Ok(found) => {
-                take(model, &start, points, &found, halo)?;
+                take(model, &start, points, state, &found, halo)?;
                 (left, part, rounds) = (next, 2.0 * part, rounds + 1);
             }
             Err(error) if error.is_final() || part.min(left) <= LEAST => return Err(error),
@@ -143,12 +152,13 @@ fn take<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     start: &UndeformedState<D>,
     points: &mut Points<D>,
+    interactions: &mut InteractionState<D>,
     found: &StepSolution<K, D>,
     halo: &dyn Halo,
 ) -> Result<(), StepError> {
     let ConstitutiveUpdate { answers, state } = commit::constitutive_update(model, &found.trial, points, halo)?;
-    let (_, traction) = start.finish_footings(model, points, &found.u, &found.reaction, halo)?;
-    points.surface.traction = traction;
+    let (_, traction) = start.finish_footings(model, points, interactions, &found.u, &found.reaction, halo)?;
+    interactions.traction = traction;
     for (p, answer) in answers.iter().enumerate() {
         points.b_e.set(p, answer.b_e);
         points.sigma.set(p, answer.tau);

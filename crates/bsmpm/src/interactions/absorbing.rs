@@ -3,10 +3,11 @@
 
 use super::contact::face_cell;
 use super::{EquilibriumState, Interaction, InteractionReports, InteractionWork, NodalForces, StepContext, StepStart};
-use crate::boundary::{Boundary, Support, Surface};
+use crate::boundary::{Boundary, Support};
 use crate::dynamics::inertia::Inertia;
 use crate::error::StepError;
 use crate::grid::{Grid, transfer};
+use crate::interactions::state::InteractionState;
 use crate::kinematics::Kinematics;
 use crate::model::Regime;
 use crate::nodal::Nodal;
@@ -60,7 +61,7 @@ impl Dashpots {
                 }
                 _ => [0.0; 2],
             }));
-            let held = points.surface.held.get(number);
+            let held = start.input.state.held.get(number);
             for node in grid.face_nodes(face.axis, face.upper) {
                 let [compression, shear] = across(grid, face, node, &nodal);
                 let place = [number, number_on(grid, face, node)];
@@ -209,7 +210,7 @@ impl<const D: usize> Interaction<D> for AbsorbingFaces<D> {
         &self,
         _on: &StepContext<'_, D>,
         _at: &EquilibriumState<'_>,
-        after: &mut Surface<D>,
+        after: &mut InteractionState<D>,
         _reports: &mut InteractionReports,
     ) -> Result<(), StepError> {
         for ColumnAction { face, start, .. } in &self.columns {

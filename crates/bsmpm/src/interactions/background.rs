@@ -7,11 +7,11 @@ mod integrals;
 mod tensor;
 
 use super::{EquilibriumState, Interaction, InteractionReports, InteractionWork, StepContext, StepStart};
-use crate::boundary::Surface;
 use crate::error::StepError;
 use crate::exact::Exact;
 use crate::grid::shape::Shape;
 use crate::grid::{Contributions, Grid};
+use crate::interactions::state::InteractionState;
 use crate::kinematics::Kinematics;
 use crate::lanes::LANES;
 use crate::material::LayeredMaterial;
@@ -254,7 +254,7 @@ impl<const D: usize> Interaction<D> for ArtificialStiffness {
         &self,
         on: &StepContext<'_, D>,
         at: &EquilibriumState<'_>,
-        _after: &mut Surface<D>,
+        _after: &mut InteractionState<D>,
         reports: &mut InteractionReports,
     ) -> Result<(), StepError> {
         let work = self.blocks.work::<D>(on.shape, &self.resisted(at.u));

@@ -3,12 +3,13 @@
 
 mod tied;
 
-use crate::boundary::{Boundary, Support};
+use crate::boundary::{AnchoredPoints, Boundary, Support};
 use crate::dynamics::newmark::Newmark;
 use crate::error::StepError;
 use crate::grid::{Grid, KnotVector, Shape, transfer};
 use crate::initial;
 use crate::interactions::absorbing::{ColumnAction, less};
+use crate::interactions::state::{InteractionState, SoilColumn};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::nodal::Nodal;
@@ -28,8 +29,8 @@ use tied::{Band, TiedHalo};
 /// Free-field columns after a step, and their action on the faces that they drive.
 #[derive(Clone, Debug, Default)]
 pub struct FreeField<const D: usize> {
-    /// Material points of the columns at the end of the step.
-    pub columns: Vec<Points<D>>,
+    /// Columns at the end of the step.
+    pub columns: Vec<SoilColumn<D>>,
     /// Action of each column.
     pub actions: Vec<ColumnAction<D>>,
 }
@@ -40,6 +41,7 @@ impl<const D: usize> FreeField<D> {
     pub fn after<K: Kinematics<D>>(
         model: &Model<K, D>,
         points: &Points<D>,
+        state: &InteractionState<D>,
         interval: TimeInterval,
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
@@ -47,9 +49,12 @@ impl<const D: usize> FreeField<D> {
         let followers = model.boundary.absorbing().enumerate().filter(|(_, face)| face.follows);
         for (number, (face, support)) in followers.enumerate() {
             let alone = beside(model, support)?;
-            let (column, start) = match points.free_field.get(number) {
+            let (column, start) = match state.columns.get(number) {
                 Some(column) => (column.clone(), None),
-                None => begin(model, &alone, support, points, interval.start, halo)?,
+                None => {
+                    let column = copied(model, &alone, support, points, halo);
+                    begin(&alone, support, column, state, interval.start)?
+                }
             };
             let (column, action) = advance(&alone, support, column, interval)?;
             field.actions.push(ColumnAction { face, start, ..action });
@@ -64,13 +69,13 @@ impl<const D: usize> FreeField<D> {
 /// may have become absorbing.
 pub fn go_on<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
-    points: &mut Points<D>,
+    state: &mut InteractionState<D>,
     t: f64,
 ) -> Result<(), StepError> {
     let followers = model.boundary.absorbing().enumerate().filter(|(_, face)| face.follows);
-    for ((face, support), column) in followers.zip(&mut points.free_field) {
+    for ((face, support), column) in followers.zip(&mut state.columns) {
         let now = hold(&beside(model, support)?, support, column, t)?;
-        if let Some(held) = points.surface.held.get_mut(face) {
+        if let Some(held) = state.held.get_mut(face) {
             *held = less(held, Some(&now));
         }
     }
@@ -108,16 +113,17 @@ fn beside<K: Kinematics<D>, const D: usize>(model: &Model<K, D>, face: &Support<
     })
 }
 
-/// Creates the column at time `t`, and computes its force on the face (N) if there is initial stress. Two reductions.
-#[allow(clippy::type_complexity)]
-fn begin<K: Kinematics<D>, const D: usize>(
+/// Column with its force on the nodes of the face (N) under the initial stress, if there is any.
+type StartedColumn<const D: usize> = (SoilColumn<D>, Option<Vec<Vector<D>>>);
+
+/// Copies the material points next to a face into the column. Two reductions.
+fn copied<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     alone: &Model<K, D>,
     face: &Support<D>,
     points: &Points<D>,
-    t: f64,
     halo: &dyn Halo,
-) -> Result<(Points<D>, Option<Vec<Vector<D>>>), StepError> {
+) -> Points<D> {
     let last = face.last_cell(&model.grid);
     let at_face = (0..points.len()).filter(|&p| {
         let cell = model.grid.locate(&points.x[p]);
@@ -128,7 +134,23 @@ fn begin<K: Kinematics<D>, const D: usize>(
     let lower = model.grid.axes()[face.axis].breakpoint(last);
     column.x.iter_mut().for_each(|x| x[face.axis] -= lower);
     column.sort_by_cell(&alone.grid);
-    if points.surface.held.is_empty() {
+    column
+}
+
+/// Starts the column at time `t`, when the ground has the `state`, and computes its force on the face (N) if there is
+/// initial stress.
+fn begin<K: Kinematics<D>, const D: usize>(
+    alone: &Model<K, D>,
+    face: &Support<D>,
+    points: Points<D>,
+    state: &InteractionState<D>,
+    t: f64,
+) -> Result<StartedColumn<D>, StepError> {
+    let mut column = SoilColumn {
+        points,
+        state: InteractionState::default(),
+    };
+    if state.held.is_empty() {
         return Ok((column, None));
     }
     let force = hold(alone, face, &mut column, t)?;
@@ -140,34 +162,35 @@ fn begin<K: Kinematics<D>, const D: usize>(
 fn hold<K: Kinematics<D>, const D: usize>(
     alone: &Model<K, D>,
     face: &Support<D>,
-    column: &mut Points<D>,
+    column: &mut SoilColumn<D>,
     t: f64,
 ) -> Result<Vec<Vector<D>>, StepError> {
+    let SoilColumn { points, state } = column;
     let tied = TiedHalo::of(&alone.grid);
     let mut solver = Band::of(&alone.grid);
-    column.surface.held.clear();
-    initial::hold_at(alone, column, t, &tied, &mut solver)?;
-    for held in &mut column.surface.held {
+    state.held.clear();
+    initial::hold_at(alone, points, state, t, &tied, &mut solver)?;
+    for held in &mut state.held {
         let row = held.len() / (alone.grid.order() + 1);
         let first = held[..row].to_vec();
         held.chunks_exact_mut(row)
             .for_each(|layer| layer.copy_from_slice(&first));
     }
-    let shape = Shape::at(&alone.grid, column)?;
+    let shape = Shape::at(&alone.grid, points)?;
     let instant = TimeInterval { start: t, dt: 0.0 };
-    let nodes = GridState::from_points(alone, &shape, column, instant, &tied)?;
+    let nodes = GridState::from_points(alone, &shape, points, state, instant, &tied)?;
     let problem = Problem {
         model: alone,
         shape: &shape,
         nodes: &nodes,
-        points: column,
+        points,
         halo: &tied,
     };
     let trial = DeformationIncrement::of(
         alone,
         &shape,
         &nodes,
-        column,
+        points,
         &vec![0.0; nodes.constraints.free.len()],
         &tied,
     );
@@ -198,18 +221,19 @@ fn everywhere<const D: usize>(mut own: Points<D>, halo: &dyn Halo) -> Points<D> 
 fn advance<K: Kinematics<D>, const D: usize>(
     alone: &Model<K, D>,
     face: &Support<D>,
-    mut column: Points<D>,
+    column: SoilColumn<D>,
     interval: TimeInterval,
-) -> Result<(Points<D>, ColumnAction<D>), StepError> {
+) -> Result<(SoilColumn<D>, ColumnAction<D>), StepError> {
+    let SoilColumn { mut points, state } = column;
     let tied = TiedHalo::of(&alone.grid);
     let mut solver = Band::of(&alone.grid);
-    let shape = Shape::at(&alone.grid, &column)?;
-    let nodes = mapped(alone, &shape, &column, interval, &tied)?;
+    let shape = Shape::at(&alone.grid, &points)?;
+    let nodes = mapped(alone, &shape, &points, &state, interval, &tied)?;
     let problem = Problem {
         model: alone,
         shape: &shape,
         nodes: &nodes,
-        points: &column,
+        points: &points,
         halo: &tied,
     };
     let guess: Vec<f64> = nodes
@@ -218,25 +242,29 @@ fn advance<K: Kinematics<D>, const D: usize>(
         .flat_map(|inertia| inertia.v.iter().map(|v| v * interval.dt))
         .collect();
     let found = solve::find(&problem, &guess, &mut solver, &mut Counts::default())?;
-    commit::check_inside(alone, &shape, &column, &found.u, &tied)?;
+    let ground = AnchoredPoints {
+        points: &points,
+        anchors: &state.anchors,
+    };
+    commit::check_inside(alone, &shape, ground, &found.u, &tied)?;
     let force = force(&problem, &found.trial, face)?;
     let inertia = nodes.inertia.as_ref();
     let layer = tied.owned().places::<D>();
     let velocity = layer.map(|c| inertia.map_or(0.0, |inertia| inertia.velocity(c, found.u[c])));
     let velocity: Vec<f64> = velocity.collect();
     let velocity = velocity.chunks_exact(D).map(Vector::from_column_slice).collect();
-    let update = commit::constitutive_update(alone, &found.trial, &column, &tied)?;
-    let across: Vec<f64> = column.x.iter().map(|x| x[face.axis]).collect();
-    commit::update_points(alone, &shape, &nodes, found, update, &mut column, &tied);
+    let update = commit::constitutive_update(alone, &found.trial, &points, &tied)?;
+    let across: Vec<f64> = points.x.iter().map(|x| x[face.axis]).collect();
+    commit::update_points(alone, &shape, &nodes, found, update, &mut points, &tied);
     // The state is uniform across the column, so its points keep their position normal to the face.
-    column
+    points
         .x
         .iter_mut()
         .zip(across)
         .for_each(|(x, across)| x[face.axis] = across);
-    column.sort_by_cell(&alone.grid);
+    points.sort_by_cell(&alone.grid);
     Ok((
-        column,
+        SoilColumn { points, state },
         ColumnAction {
             face: 0,
             force,
@@ -251,13 +279,14 @@ fn advance<K: Kinematics<D>, const D: usize>(
 fn mapped<K: Kinematics<D>, const D: usize>(
     alone: &Model<K, D>,
     shape: &Shape<D>,
-    column: &Points<D>,
+    points: &Points<D>,
+    state: &InteractionState<D>,
     interval: TimeInterval,
     tied: &TiedHalo,
 ) -> Result<GridState<D>, StepError> {
-    let mut nodes = GridState::from_points(alone, shape, column, interval, tied)?;
+    let mut nodes = GridState::from_points(alone, shape, points, state, interval, tied)?;
     if let Some(inertia) = nodes.inertia.as_mut().filter(|_| interval.start == 0.0)
-        && initial::is_pushed(alone, column, tied)?
+        && initial::is_pushed(alone, points, state, tied)?
     {
         inertia.newmark = Newmark::for_sudden_load();
     }

@@ -4,9 +4,10 @@
 pub mod follower;
 
 use super::{EquilibriumState, Interaction, InteractionReports, StepContext, StepStart};
-use crate::boundary::surface::{Anchors, Attachment, Surface, SurfacePoint};
+use crate::boundary::surface::{Anchors, Attachment, SurfacePoint};
 use crate::error::StepError;
 use crate::grid::{Contributions, Grid};
+use crate::interactions::state::InteractionState;
 use crate::interactions::strip::reduce;
 use crate::kinematics::Kinematics;
 use crate::parallel::Halo;
@@ -100,14 +101,14 @@ pub fn begin<K: Kinematics<D>, const D: usize>(
     }
     let grid = &model.grid;
     let offsets = grid.offsets();
-    let surface = &start.points.surface;
+    let state = start.input.state;
     let active = &start.constraints.active;
     let mut applied = vec![0.0; loads.len()];
     let mut pushed = Vec::new();
     let mut force = Contributions::none(grid, D, Vec::new());
     for (number, load) in loads.iter().enumerate() {
         let grown = load.grown(interval.end());
-        for (k, (point, x)) in load.points.iter().zip(&surface.position[number]).enumerate() {
+        for (k, (point, x)) in load.points.iter().zip(&state.position[number]).enumerate() {
             if let Some(attachment) = Attachment::at(grid, &offsets, |node| active[node], x) {
                 applied[number] += 1.0;
                 if load.follows {
@@ -126,7 +127,7 @@ pub fn begin<K: Kinematics<D>, const D: usize>(
     let mut followers = None;
     if loads.iter().any(|load| load.follows) {
         let points = start.points.anchored();
-        let anchors = Anchors::of(&model.surfaces(), &surface.anchors, points, halo);
+        let anchors = Anchors::of(&model.surfaces(), &state.anchors, points, halo);
         let found = FollowerLoads::of(loads, pushed, grid, &anchors, points, K::weight);
         applied.extend(found.carried(loads));
         followers = Some(found);
@@ -169,14 +170,17 @@ impl<const D: usize> Interaction<D> for AppliedLoads<D> {
         &self,
         on: &StepContext<'_, D>,
         at: &EquilibriumState<'_>,
-        after: &mut Surface<D>,
+        after: &mut InteractionState<D>,
         reports: &mut InteractionReports,
     ) -> Result<(), StepError> {
-        let before = &on.points.surface;
         let loads = &on.boundary.loads;
-        after.position = moved(before, on.grid, &on.constraints.active, at.u, on.halo);
-        after.pressure = self.tractions(on, at.u, at.dF);
-        reports.load_work = work(loads, before, after, self.interval);
+        let position = moved(&after.position, on.grid, &on.constraints.active, at.u, on.halo);
+        let pressure = self.tractions(on, at.u, at.dF);
+        let positions = [&after.position, &position];
+        let pressures = [&after.pressure, &pressure];
+        reports.load_work = work(loads, positions, pressures, self.interval);
+        after.position = position;
+        after.pressure = pressure;
         Ok(())
     }
 }
@@ -197,17 +201,17 @@ fn lost_load<const D: usize>(loads: &[Load<D>], applied: &[f64]) -> Option<StepE
     None
 }
 
-/// Returns the positions of all load points after the converged displacement `u` (m), interpolated with the nodes on
-/// which the forces act; the work of the loads uses them. One reduction.
+/// Returns the positions of all load points, which were `before` (m), after the converged displacement `u` (m),
+/// interpolated with the nodes on which the forces act; the work of the loads uses them. One reduction.
 fn moved<const D: usize>(
-    surface: &Surface<D>,
+    before: &[Vec<Vector<D>>],
     grid: &Grid<D>,
     active: &[bool],
     u: &[f64],
     halo: &dyn Halo,
 ) -> Vec<Vec<Vector<D>>> {
     let offsets = grid.offsets();
-    let mut position = surface.position.clone();
+    let mut position = before.to_vec();
     for x in position.iter_mut().flatten() {
         let attachment = Attachment::at(grid, &offsets, |node| active[node], x);
         let moved = attachment.map(|attachment| *x + attachment.displacement::<D>(&offsets, u));
@@ -218,20 +222,21 @@ fn moved<const D: usize>(
 }
 
 /// Returns the work of all loads in the interval by the mean of their tractions (N m), and half of the increase of the
-/// tractions times the displacement of the points (N m). `before` and `after` are the states of the surfaces.
+/// tractions times the displacement of the points (N m). `positions` (m) and `pressures` (Pa) are those of the load
+/// points at the start and at the end.
 fn work<const D: usize>(
     loads: &[Load<D>],
-    before: &Surface<D>,
-    after: &Surface<D>,
+    positions: [&Vec<Vec<Vector<D>>>; 2],
+    pressures: [&Vec<Vec<Vector<D>>>; 2],
     interval: TimeInterval,
 ) -> [f64; 2] {
     let mut sums = [0.0; 2];
     for (number, load) in loads.iter().enumerate() {
-        let places = before.position[number].iter().zip(&after.position[number]);
+        let places = positions[0][number].iter().zip(&positions[1][number]);
         let moved: Vec<Vector<D>> = places.map(|(from, to)| to - from).collect();
-        let works = [(before, interval.start), (after, interval.end())].map(|(surface, t)| {
+        let works = [(pressures[0], interval.start), (pressures[1], interval.end())].map(|(pressure, t)| {
             let traction = match load.follows {
-                true => &surface.pressure[number],
+                true => &pressure[number],
                 false => &load.traction,
             };
             load.grown(t) * full_work(load, traction, &moved)

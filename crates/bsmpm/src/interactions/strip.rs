@@ -12,10 +12,11 @@ pub use contact::StripContact;
 pub use interaction::begin;
 
 use super::coulomb::ContactReport;
-use crate::boundary::surface::{Attachment, Surface, SurfacePoint, on_grid};
+use crate::boundary::surface::{Attachment, SurfacePoint, on_grid};
 use crate::exact::Exact;
 use crate::field::pore_water::pore_pressure::PorePressure;
 use crate::grid::{Contributions, Grid};
+use crate::interactions::state::InteractionState;
 use crate::linear::MatrixAssembly;
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
@@ -191,7 +192,7 @@ impl<const D: usize> StripConstraints<D> {
     /// that are `free`. Supports take precedence: a strip does not act on components that a support prescribes.
     pub fn at(
         strips: &[Strip<D>],
-        surface: &Surface<D>,
+        before: &InteractionState<D>,
         grid: &Grid<D>,
         free: &[bool],
         interval: TimeInterval,
@@ -202,7 +203,7 @@ impl<const D: usize> StripConstraints<D> {
             for (index, point) in strip.points.iter().enumerate() {
                 let place = displacement(strips, number, index, interval.start);
                 let motion = displacement(strips, number, index, interval.end()) - place;
-                let carried = surface.traction[number][index];
+                let carried = before.traction[number][index];
                 let state = strip.contact.map(|contact| ContactState::of(contact, &carried));
                 // An open point is attached to the material across its gap.
                 let off = strip
@@ -341,12 +342,13 @@ impl<const D: usize> StripConstraints<D> {
     }
 
     /// Returns the results of every strip under the converged displacement `u` (m), and the tractions with which the
-    /// next step starts (Pa). Three reductions over all ranks.
+    /// next step starts (Pa). `before` are the tractions with which this one started (Pa). Three reductions over all
+    /// ranks.
     pub fn finish_step(
         &self,
         strips: &[Strip<D>],
         grid: &Grid<D>,
-        surface: &Surface<D>,
+        before: &[Vec<Vector<D>>],
         u: &[f64],
         halo: &dyn Halo,
     ) -> (Vec<StripReport>, Vec<Vec<Vector<D>>>) {
@@ -387,7 +389,7 @@ impl<const D: usize> StripConstraints<D> {
         traction.extend(there);
         reduce(&mut traction, halo);
         let there = traction.split_off(count);
-        self.keep_apart(strips, &there, surface, &mut traction);
+        self.keep_apart(strips, &there, before, &mut traction);
         let resultants = resultants(strips, &traction);
         let of_strip = totals.len() / strips.len();
         let reports = strips.iter().enumerate().map(|(number, strip)| {
@@ -420,7 +422,7 @@ impl<const D: usize> StripConstraints<D> {
         &self,
         strips: &[Strip<D>],
         there: &[Vec<Vector<D>>],
-        surface: &Surface<D>,
+        before: &[Vec<Vector<D>>],
         traction: &mut [Vec<Vector<D>>],
     ) {
         for (number, strip) in strips
@@ -435,8 +437,8 @@ impl<const D: usize> StripConstraints<D> {
             for (point, _) in there[number].iter().enumerate().filter(|(_, there)| there[0] == 0.0) {
                 let [start, end] = times.map(|t| displacement(strips, number, point, t));
                 let closer = (end - start).dot(&inward);
-                let before = inward.dot(&surface.traction[number][point]).min(0.0);
-                traction[number][point] = inward * (before + strip.penalty * closer).min(0.0);
+                let gap = inward.dot(&before[number][point]).min(0.0);
+                traction[number][point] = inward * (gap + strip.penalty * closer).min(0.0);
             }
         }
     }

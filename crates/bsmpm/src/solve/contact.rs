@@ -6,13 +6,13 @@ use crate::interactions::{Correction, MotionCoupling};
 use crate::kinematics::Kinematics;
 use crate::method::Criteria;
 use crate::model::Model;
-use crate::parallel::{Backend, Halo};
+use crate::parallel::Halo;
 use crate::points::MappedPoints;
+use crate::solve::Backend;
 use crate::solve::bordered::BorderedSolver;
 use crate::solve::found::StepSolution;
 use crate::step::nodes::GridState;
 use crate::step::problem::Problem;
-use crate::step::report::Counts;
 
 /// Force by which a status may be contradicted, as a fraction of the force tolerance times the largest force: forces
 /// are not known more accurately.
@@ -27,11 +27,10 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     nodes: &mut GridState<D>,
     guess: &[f64],
     backend: &mut Backend<'_>,
-    counts: &mut Counts,
 ) -> Result<StepSolution<K, D>, StepError> {
     let halo = backend.halo;
     let Some(most) = nodes.interactions.most_corrections() else {
-        return find_at_statuses(model, mapped, nodes, guess, backend, counts);
+        return find_at_statuses(model, mapped, nodes, guess, backend);
     };
     for interaction in nodes.interactions.iter_mut() {
         interaction.predict(guess);
@@ -43,7 +42,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     let mut first_guess = true;
     for pass in 0..most {
         let judged = if is_rough { &rough } else { model };
-        let found = match find_at_statuses(judged, mapped, nodes, &u, backend, counts) {
+        let found = match find_at_statuses(judged, mapped, nodes, &u, backend) {
             Ok(found) => found,
             // If all nodes of the contact faces slide, a body that only these faces support can move freely.
             Err(error) if error.is_final() || hold_neutral(model, mapped, nodes, &u, halo) == 0 => return Err(error),
@@ -72,7 +71,6 @@ fn find_at_statuses<K: Kinematics<D>, const D: usize>(
     nodes: &GridState<D>,
     u: &[f64],
     backend: &mut Backend<'_>,
-    counts: &mut Counts,
 ) -> Result<StepSolution<K, D>, StepError> {
     let problem = Problem {
         model,
@@ -82,6 +80,7 @@ fn find_at_statuses<K: Kinematics<D>, const D: usize>(
         halo: backend.halo,
     };
     let solver = &mut *backend.solver;
+    let counts = &mut *backend.counts;
     let on = problem.context();
     let couplings: Vec<MotionCoupling> = nodes
         .interactions

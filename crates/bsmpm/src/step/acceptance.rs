@@ -6,13 +6,14 @@ use super::nodes::GridState;
 use super::outflow::Outflow;
 use super::problem::Problem;
 use super::report::StepReport;
-use crate::boundary::{Anchors, Surface};
+use crate::boundary::{AnchoredPoints, Anchors};
 use crate::energy::StepEnergy;
 use crate::error::StepError;
 use crate::field::pore_water::backward::is_smooth;
 use crate::field::pore_water::crossed::PreviousFlow;
 use crate::grid::Shape;
 use crate::interactions::InteractionReports;
+use crate::interactions::state::InteractionState;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime};
 use crate::parallel::Halo;
@@ -20,10 +21,20 @@ use crate::points::Points;
 use crate::schedule::TimeInterval;
 use crate::solve::found::StepSolution;
 
+/// Result of an accepted step besides the material points.
+pub struct AcceptedState<const D: usize> {
+    /// Report of the step.
+    pub report: StepReport,
+    /// State of the interactions at the end of the step.
+    pub state: InteractionState<D>,
+    /// Converged nodal displacement (m), D numbers per node.
+    pub u: Vec<f64>,
+}
+
 /// Result of a converged step before the material points are updated.
 pub struct Acceptance<const D: usize> {
     report: StepReport,
-    surface: Surface<D>, // state of the interactions at the end of the step
+    state: InteractionState<D>, // at the end of the step
     update: ConstitutiveUpdate,
     energy: Option<StepEnergy>, // `None` if neither dynamics nor an energy balance needs it
     load_work: [f64; 2],        // J, see `InteractionReports`
@@ -31,29 +42,34 @@ pub struct Acceptance<const D: usize> {
 }
 
 impl<const D: usize> Acceptance<D> {
-    /// Evaluates a converged displacement. Fails if points leave the grid, rigid bodies overlap, a constitutive law
-    /// rejects a point, or the step is interrupted.
+    /// Evaluates a converged displacement of a step that began with the state `before`. Fails if points leave the grid,
+    /// rigid bodies overlap, a constitutive law rejects a point, or the step is interrupted.
     pub fn of<K: Kinematics<D>>(
         problem: &Problem<'_, K, D>,
         found: &StepSolution<K, D>,
+        before: &InteractionState<D>,
         interval: TimeInterval,
     ) -> Result<Self, StepError> {
         let Problem {
             model, points, halo, ..
         } = *problem;
-        commit::check_inside(model, problem.shape, points, &found.u, halo)?;
-        let mut surface = points.surface.clone();
+        let ground = AnchoredPoints {
+            points,
+            anchors: &before.anchors,
+        };
+        commit::check_inside(model, problem.shape, ground, &found.u, halo)?;
+        let mut state = before.clone();
         let mut reports = InteractionReports::default();
         let on = problem.context();
         let dF = |p: usize| found.trial.dF(p);
         for interaction in problem.nodes.interactions.iter() {
-            interaction.finish(&on, &found.state(&dF), &mut surface, &mut reports)?;
+            interaction.finish(&on, &found.state(&dF), &mut state, &mut reports)?;
         }
-        surface.anchors = Anchors::of(&model.surfaces(), &surface.anchors, points.anchored(), halo);
+        state.anchors = Anchors::of(&model.surfaces(), &state.anchors, points.anchored(), halo);
         let load_work = reports.load_work;
         let mut report = StepReport {
             dt: interval.dt,
-            ..StepReport::of(problem, found, reports)
+            ..StepReport::of(problem, found, reports, before.flowed.as_ref())
         };
         let update = commit::constitutive_update(model, &found.trial, points, halo)?;
         report.second_order_works = commit::second_order_works(model, points, &update.answers, halo);
@@ -67,7 +83,7 @@ impl<const D: usize> Acceptance<D> {
         }
         Ok(Self {
             report,
-            surface,
+            state,
             update,
             energy,
             load_work,
@@ -75,8 +91,7 @@ impl<const D: usize> Acceptance<D> {
         })
     }
 
-    /// Updates the material points and the state of the interactions. Returns the report of the step, and the converged
-    /// nodal displacement (m).
+    /// Updates the material points, and returns what else follows from the step.
     pub fn accept<K: Kinematics<D>>(
         self,
         model: &Model<K, D>,
@@ -85,10 +100,10 @@ impl<const D: usize> Acceptance<D> {
         found: StepSolution<K, D>,
         points: &mut Points<D>,
         halo: &dyn Halo,
-    ) -> (StepReport, Vec<f64>) {
+    ) -> AcceptedState<D> {
         let Self {
             mut report,
-            mut surface,
+            mut state,
             update,
             energy,
             load_work,
@@ -96,7 +111,7 @@ impl<const D: usize> Acceptance<D> {
         } = self;
         let committed = commit::update_points(model, shape, &nodes, found, update, points, halo);
         for interaction in nodes.interactions.iter_mut() {
-            interaction.update(&model.grid, &committed.u, points, &mut surface, halo);
+            interaction.update(&model.grid, &committed.u, points, &mut state, halo);
         }
         if let Some(energy) = energy {
             let (flows, turnover) = energy.close(model, points, load_work, halo);
@@ -106,13 +121,12 @@ impl<const D: usize> Acceptance<D> {
         complete_report(
             model,
             points,
-            &mut surface,
+            &mut state,
             &mut report,
             committed.content,
             interval.end(),
             halo,
         );
-        points.surface = surface;
         let report = StepReport {
             advance: committed.advance,
             smoothed: committed.smoothed,
@@ -120,33 +134,37 @@ impl<const D: usize> Acceptance<D> {
             outflow: Outflow::of(model, points, interval.end(), halo),
             ..report
         };
-        (report, committed.u)
+        AcceptedState {
+            report,
+            state,
+            u: committed.u,
+        }
     }
 }
 
-/// Completes the surface and the report with the updated points at the end `t` of the step (s). The points have taken
-/// in `content` of water (m3).
+/// Completes the state of the interactions and the report with the updated points at the end `t` of the step (s). The
+/// points have taken in `content` of water (m3).
 fn complete_report<K, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
-    surface: &mut Surface<D>,
+    state: &mut InteractionState<D>,
     report: &mut StepReport,
     content: f64,
     t: f64,
     halo: &dyn Halo,
 ) {
     let strips = &model.boundary.strips;
-    let places = surface
+    let places = state
         .anchors
         .places(&model.boundary, &model.grid, points.anchored(), halo);
     for (number, strip) in report.strips.iter_mut().enumerate() {
         strip.left_behind = places.left_behind(number, strips, t, &model.grid);
     }
-    surface.position = places.loads;
+    state.position = places.loads;
     if let Some(water) = &mut report.water {
         water.stored = content;
-        surface.crossed.add(1.0, &water.crossed);
-        surface.flowed = is_smooth(model).then(|| PreviousFlow {
+        state.crossed.add(1.0, &water.crossed);
+        state.flowed = is_smooth(model).then(|| PreviousFlow {
             dt: report.dt,
             crossed: water.crossed.clone(),
             left: water.left,

@@ -1,6 +1,7 @@
 //! Updates the material points from the converged state, theory-manual equations (T2.6), (T2.7), (T3.8), (T4.3).
 //! Smoothing, (T3.5) or (T3.7), changes the elastic tensor b^e, not the Cauchy stress.
 
+use crate::boundary::AnchoredPoints;
 use crate::dynamics::inertia::Inertia;
 use crate::dynamics::mass::MassMatrix;
 use crate::error::StepError;
@@ -27,10 +28,11 @@ use std::sync::Mutex;
 pub fn check_inside<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
-    points: &Points<D>,
+    ground: AnchoredPoints<'_, D>,
     u: &[f64],
     halo: &dyn Halo,
 ) -> Result<(), StepError> {
+    let AnchoredPoints { points, anchors } = ground;
     let leaves = transfer::to_points::<D, D, _>(shape, u, |p, du| {
         let x = points.x[p] + Vector::from(du);
         model
@@ -39,7 +41,6 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
             .is_none()
             .then(|| (p, x, model.boundary.lets_out(&model.grid, &x)))
     });
-    let anchors = &points.surface.anchors;
     let acting = anchors
         .strips
         .iter()

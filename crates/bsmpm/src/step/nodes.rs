@@ -7,6 +7,7 @@ use crate::error::StepError;
 use crate::field::pore_water::carried;
 use crate::field::pore_water::nodes::PorePressureField;
 use crate::grid::{Shape, transfer};
+use crate::interactions::state::InteractionState;
 use crate::interactions::{Interactions, StepContext, StepInput, StepStart};
 use crate::kinematics::Kinematics;
 use crate::model::{AverageWeight, Model, Regime};
@@ -40,15 +41,17 @@ pub struct GridState<const D: usize> {
 }
 
 impl<const D: usize> GridState<D> {
-    /// Transfers the points to the nodes for a step over `interval`. Fails if a load has lost its material.
+    /// Transfers the points to the nodes for a step over `interval`, at whose start the interactions have the `state`.
+    /// Fails if a load has lost its material.
     pub fn from_points<K: Kinematics<D>>(
         model: &Model<K, D>,
         shape: &Shape<D>,
         points: &Points<D>,
+        state: &InteractionState<D>,
         interval: TimeInterval,
         halo: &dyn Halo,
     ) -> Result<Self, StepError> {
-        Self::from_points_after(model, shape, points, StepInput::over(interval), halo)
+        Self::from_points_after(model, shape, points, StepInput::over(interval, state), halo)
     }
 
     /// Transfers the points as [`Self::from_points`], after what precedes the step. Faces with contact keep the
@@ -78,7 +81,7 @@ impl<const D: usize> GridState<D> {
         nodes.tie(model, shape, points, input, halo);
         nodes.inertia = nodes.start_inertia(model, shape, points, interval.dt, halo);
         nodes.load(model, shape, points, interval.end(), halo);
-        nodes.pores = PorePressureField::of(model, shape, points, interval, halo)?;
+        nodes.pores = PorePressureField::of(model, shape, points, input.state, interval, halo)?;
         nodes.apply_statuses();
         nodes.count(halo);
         Ok(nodes)

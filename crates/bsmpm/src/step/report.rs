@@ -3,6 +3,7 @@
 use crate::boundary::{ContactReport, RigidReport, StripReport};
 use crate::energy::{Flows, Turnover};
 use crate::error::Measures;
+use crate::field::pore_water::crossed::PreviousFlow;
 use crate::field::pore_water::saved::WaterReport;
 use crate::interactions::InteractionReports;
 use crate::kinematics::Kinematics;
@@ -94,12 +95,13 @@ pub struct StepReport {
 }
 
 impl StepReport {
-    /// Creates the report of a converged displacement with the results of the interactions, before the points are
-    /// updated. One reduction for the forces of the supports.
+    /// Creates the report of a converged displacement with the results of the interactions, after the flow `flowed` of
+    /// the last step, before the points are updated. One reduction for the forces of the supports.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         found: &StepSolution<K, D>,
         interactions: InteractionReports,
+        flowed: Option<&PreviousFlow>,
     ) -> Self {
         let constraints = &problem.nodes.constraints;
         let extension = constraints.extension.as_ref();
@@ -124,7 +126,7 @@ impl StepReport {
             strips: interactions.strips,
             background: interactions.background,
             background_share: interactions.background_share,
-            water: WaterReport::of(problem, found),
+            water: WaterReport::of(problem, found, flowed),
             ..Self::default()
         }
     }

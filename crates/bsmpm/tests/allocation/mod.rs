@@ -60,8 +60,15 @@ fn allocations(per_axis: usize, method: Stabilisation) -> usize {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
-    let nodes =
-        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.1 }, &halo).expect("no loads");
+    let nodes = GridState::from_points(
+        model,
+        &shape,
+        points,
+        &scene.state,
+        TimeInterval { start: 0.0, dt: 0.1 },
+        &halo,
+    )
+    .expect("no loads");
     let pieces = Problem {
         model,
         shape: &shape,

@@ -40,8 +40,15 @@ fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisat
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes =
-        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let nodes = GridState::from_points(
+        model,
+        &shape,
+        points,
+        &scene.state,
+        TimeInterval { start: 0.0, dt: 1.0 },
+        &halo,
+    )
+    .expect("no loads");
     let pieces = Problem {
         model,
         shape: &shape,
@@ -204,6 +211,7 @@ fn the_filter_smooths_the_elastic_dilation_where_the_material_flows_and_nothing_
         &scene.model,
         &shape,
         &scene.points,
+        &scene.state,
         TimeInterval { start: 0.0, dt: 1.0 },
         &halo,
     )
@@ -246,6 +254,7 @@ fn without_flow_the_filter_leaves_every_bit() {
         &scene.model,
         &shape,
         &scene.points,
+        &scene.state,
         TimeInterval { start: 0.0, dt: 1.0 },
         &halo,
     )
@@ -264,8 +273,15 @@ fn means<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, value: &[f64]) -
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes =
-        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let nodes = GridState::from_points(
+        model,
+        &shape,
+        points,
+        &scene.state,
+        TimeInterval { start: 0.0, dt: 1.0 },
+        &halo,
+    )
+    .expect("no loads");
     nodes.mean_dilation(model, &shape, points, &halo, |p| value[p])
 }
 

@@ -2,7 +2,7 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Dense;
-use bsmpm::boundary::{Anchors, Support, SurfacePoint, surface};
+use bsmpm::boundary::{AnchoredPoints, Anchors, Support, SurfacePoint, surface};
 use bsmpm::error::StepError;
 use bsmpm::exact::{Exact, WORDS};
 use bsmpm::field::pore_water::Water;
@@ -114,7 +114,7 @@ fn no_water(_: &Vector<2>) -> f64 {
 fn drainage(scene: &Plane) -> Result<Drainage, StepError> {
     Drainage::at(
         &scene.model,
-        &scene.points,
+        scene.anchored(),
         TimeInterval { start: 0.0, dt: DT },
         Differences::EULER,
         |_| true,
@@ -141,7 +141,7 @@ fn a_linear_pressure_gives_the_exact_flux_and_its_moment() {
         let (p, places) = linear(grid, field);
         let drainage = Drainage::at(
             &scene.model,
-            &scene.points,
+            scene.anchored(),
             TimeInterval { start: 0.0, dt: DT },
             Differences::EULER,
             |_| true,
@@ -308,7 +308,7 @@ fn water_goes_through_no_surface_without_material_near_nor_one_of_tight_soil() {
     let left = |node: usize| grid.node_at(node)[0] <= 4;
     let some = Drainage::at(
         &scene.model,
-        &scene.points,
+        scene.anchored(),
         TimeInterval { start: 0.0, dt: DT },
         Differences::EULER,
         left,
@@ -467,9 +467,13 @@ fn several_ranks_make_the_same_of_drains_to_the_bit() {
                     nodes: model.grid.nodes(),
                     meeting,
                 };
+                let ground = AnchoredPoints {
+                    points: &points,
+                    anchors: &Anchors::default(),
+                };
                 let drainage = Drainage::at(
                     &model,
-                    &points,
+                    ground,
                     TimeInterval { start: 0.0, dt: DT },
                     Differences::EULER,
                     |_| true,

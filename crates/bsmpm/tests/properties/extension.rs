@@ -72,6 +72,7 @@ fn ties_keep_what_they_must<K: Kinematics<D>, const D: usize>(order: usize) {
         model,
         &shape,
         &scene.points,
+        &scene.state,
         TimeInterval { start: 0.0, dt: 1.0 },
         &halo,
     )
@@ -126,8 +127,15 @@ fn matrix_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, is_genera
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes =
-        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let nodes = GridState::from_points(
+        model,
+        &shape,
+        points,
+        &scene.state,
+        TimeInterval { start: 0.0, dt: 1.0 },
+        &halo,
+    )
+    .expect("no loads");
     let problem = Problem {
         model,
         shape: &shape,
@@ -192,8 +200,15 @@ fn condition(scene: &Scene<PlaneStrain, 2>) -> f64 {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes =
-        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let nodes = GridState::from_points(
+        model,
+        &shape,
+        points,
+        &scene.state,
+        TimeInterval { start: 0.0, dt: 1.0 },
+        &halo,
+    )
+    .expect("no loads");
     let problem = Problem {
         model,
         shape: &shape,

@@ -264,6 +264,7 @@ fn a_pass_of_smoothing_has_the_variance_of_its_formula() {
             &scene.model,
             &shape,
             points,
+            &scene.state,
             TimeInterval { start: 0.0, dt: 1.0 },
             &halo,
         )

@@ -70,8 +70,15 @@ fn compared<K: Kinematics<D>, const D: usize>(method: Stabilisation, seed: u64) 
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
-    let nodes =
-        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let nodes = GridState::from_points(
+        model,
+        &shape,
+        points,
+        &scene.state,
+        TimeInterval { start: 0.0, dt: 1.0 },
+        &halo,
+    )
+    .expect("no loads");
     let mut u: Vec<f64> = (0..model.grid.nodes() * D).map(|_| 2e-3 * random.signed()).collect();
     u[0] = 3.0; // the points of the first cell
     let trial = DeformationIncrement::of(model, &shape, &nodes, points, &u, &halo);

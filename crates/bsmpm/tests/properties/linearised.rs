@@ -59,8 +59,15 @@ fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64,
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes =
-        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
+    let nodes = GridState::from_points(
+        model,
+        &shape,
+        points,
+        &scene.state,
+        TimeInterval { start: 0.0, dt: 0.01 },
+        &halo,
+    )
+    .expect("no loads");
     let pieces = Problem {
         model,
         shape: &shape,
@@ -289,6 +296,7 @@ fn what_opens_is_in_the_product() {
                 gap: None,
                 ..scene.points.clone()
             },
+            state: scene.state.clone(),
         };
         assert_ne!(product_error(&forgotten).0, error, "the gap is seen");
     }
@@ -321,8 +329,15 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes =
-        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
+    let nodes = GridState::from_points(
+        model,
+        &shape,
+        points,
+        &scene.state,
+        TimeInterval { start: 0.0, dt: 0.01 },
+        &halo,
+    )
+    .expect("no loads");
     let pieces = Problem {
         model,
         shape: &shape,

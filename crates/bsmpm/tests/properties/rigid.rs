@@ -85,7 +85,14 @@ fn the_guess_is_scaled_to_the_step_so_that_free_flight_needs_no_iteration_after_
     let mut solver = Skyline::new(&scene.model.grid);
     let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     let mut iterations = Vec::new();
-    while let Some(step) = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
+    while let Some(step) = stepper.advance(
+        &schedule,
+        &scene.model,
+        &mut scene.points,
+        &mut scene.state,
+        &halo,
+        &mut solver,
+    ) {
         iterations.push(step.unwrap().report.iterations);
         scene.points.sort_by_cell(&scene.model.grid);
     }
@@ -131,6 +138,7 @@ fn a_rigidly_rotating_field_turns_the_stress_of_every_point() {
             &scene.model,
             &shape,
             points,
+            &scene.state,
             TimeInterval { start: 0.0, dt: 1.0 },
             &halo,
         )

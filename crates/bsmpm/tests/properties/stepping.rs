@@ -34,7 +34,14 @@ fn run(scene: &mut Scene<PlaneStrain, 2>, schedule: &Schedule, refusals: usize) 
     let halo = scene.halo();
     let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     let mut steps = Vec::new();
-    while let Some(found) = stepper.advance(schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
+    while let Some(found) = stepper.advance(
+        schedule,
+        &scene.model,
+        &mut scene.points,
+        &mut scene.state,
+        &halo,
+        &mut solver,
+    ) {
         steps.push(found?);
         scene.points.sort_by_cell(&scene.model.grid);
     }
@@ -93,16 +100,22 @@ fn nominal_ends_of_a_schedule_ascend_and_are_a_function_of_time_alone() {
     }
 }
 
+/// Points and interactions have the same state in both.
+fn assert_is_same(scene: &Scene<PlaneStrain, 2>, other: &Scene<PlaneStrain, 2>) {
+    assert_eq!(scene.points, other.points);
+    assert_eq!(scene.state, other.state);
+}
+
 #[test]
 fn a_step_that_never_converges_fails_after_ten_halvings_and_leaves_the_points_bit_by_bit() {
     for regime in [Regime::QuasiStatic, Regime::Dynamic] {
         let mut scene = block(regime);
-        let before = scene.points.clone();
+        let before = scene.clone();
         let failure = run(&mut scene, &Schedule::new(1.0, 4.0, []), usize::MAX).unwrap_err();
         assert_eq!((failure.t, failure.dt), (0.0, 1.0 / 1024.0));
         assert_eq!(failure.attempts.len(), 11);
         assert!(matches!(failure.attempts[10], StepError::Solve(SolveError::Failed(_))));
-        assert_eq!(scene.points, before);
+        assert_is_same(&scene, &before);
     }
 }
 
@@ -111,7 +124,7 @@ fn too_few_iterations_are_a_failure_and_not_an_answer() {
     let mut scene = block(Regime::QuasiStatic);
     scene.model.criteria.max_iterations = 1;
     scene.model.nonlinear = Nonlinear::QuasiNewton(QuasiNewton::Broyden);
-    let before = scene.points.clone();
+    let before = scene.clone();
     let failure = run(&mut scene, &Schedule::new(1.0, 1.0, []), 0).unwrap_err();
     assert!(
         failure
@@ -119,7 +132,7 @@ fn too_few_iterations_are_a_failure_and_not_an_answer() {
             .iter()
             .all(|error| matches!(error, StepError::NotConverged { iterations: 1, .. }))
     );
-    assert_eq!(scene.points, before);
+    assert_is_same(&scene, &before);
 }
 
 #[test]
@@ -135,7 +148,7 @@ fn a_point_that_leaves_the_grid_whatever_the_step_ends_the_run_with_the_points_u
         .v
         .iter_mut()
         .for_each(|v| *v = [-1.0, 0.0].into());
-    let before = scene.points.clone();
+    let before = scene.clone();
     // Even the smallest step takes the first column of points, 0.125 m from the face, beyond it.
     let failure = run(&mut scene, &Schedule::new(1024.0, 1024.0, []), 0).unwrap_err();
     assert_eq!((failure.t, failure.dt, failure.attempts.len()), (0.0, 1.0, 11));
@@ -146,7 +159,7 @@ fn a_point_that_leaves_the_grid_whatever_the_step_ends_the_run_with_the_points_u
             first: Some((0, _))
         }
     )));
-    assert_eq!(scene.points, before);
+    assert_is_same(&scene, &before);
 }
 
 /// At 1 m/s they are there after 0.125 s.
@@ -285,13 +298,20 @@ fn a_step_that_is_given_up_on_request_has_never_been() {
             let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
             let mut lengths = Vec::new();
             loop {
-                let before = scene.points.clone();
-                match stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
+                let before = scene.clone();
+                match stepper.advance(
+                    &schedule,
+                    &scene.model,
+                    &mut scene.points,
+                    &mut scene.state,
+                    &halo,
+                    &mut solver,
+                ) {
                     None => break,
                     Some(Ok(accepted)) => lengths.push(accepted.dt),
                     Some(Err(failure)) => {
                         assert!(failure.is_interruption(), "{:?}", failure.attempts);
-                        assert_eq!(scene.points, before);
+                        assert_is_same(&scene, &before);
                         given_up += 1;
                         // The fault of the step's first attempt repeats with it.
                         halo.reductions.set(usize::MAX / 2);
@@ -303,7 +323,7 @@ fn a_step_that_is_given_up_on_request_has_never_been() {
             let mut expected = whole.clone();
             let steps = run(&mut expected, &schedule, 1).unwrap();
             assert_eq!(lengths, steps.iter().map(|step| step.dt).collect::<Vec<_>>());
-            assert_eq!(scene.points, expected.points);
+            assert_is_same(&scene, &expected);
         }
         assert!(given_up > 5, "{nonlinear:?}: {given_up}");
     }
@@ -329,23 +349,37 @@ fn a_converged_step_that_is_rejected_has_never_been() {
         let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
         loop {
             halo.convinced.set(false);
-            let before = scene.points.clone();
-            match stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver) {
+            let before = scene.clone();
+            match stepper.advance(
+                &schedule,
+                &scene.model,
+                &mut scene.points,
+                &mut scene.state,
+                &halo,
+                &mut solver,
+            ) {
                 None => break,
                 found => assert!(
                     found.unwrap().is_err_and(|failure| failure.is_interruption()),
                     "rejected"
                 ),
             }
-            assert_eq!(scene.points, before);
+            assert_is_same(&scene, &before);
             stepper
-                .advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver)
+                .advance(
+                    &schedule,
+                    &scene.model,
+                    &mut scene.points,
+                    &mut scene.state,
+                    &halo,
+                    &mut solver,
+                )
                 .unwrap()
                 .unwrap();
             scene.points.sort_by_cell(&scene.model.grid);
         }
         assert_eq!(run(&mut expected, &schedule, 0).unwrap().len(), 4);
-        assert_eq!(scene.points, expected.points);
+        assert_is_same(&scene, &expected);
     }
 }
 
@@ -359,11 +393,13 @@ fn a_start_that_is_given_up_on_request_leaves_the_points_as_they_are() {
         let halo = impatient(&scene, interrupted_in);
         let mut solver = Skyline::new(&scene.model.grid);
         let mut points = before.clone();
-        match initial::set_elastic(&scene.model, &mut points, &halo, &mut solver) {
+        let mut state = scene.state.clone();
+        match initial::set_elastic(&scene.model, &mut points, &mut state, &halo, &mut solver) {
             Ok(()) => assert_ne!(points, before),
             Err(error) => {
                 assert_eq!(error, StepError::Interrupted);
                 assert_eq!(points, before);
+                assert_eq!(state, scene.state);
                 given_up += 1;
             }
         }

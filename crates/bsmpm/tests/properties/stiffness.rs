@@ -89,8 +89,15 @@ fn products<K: Kinematics<D>, const D: usize>(
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes =
-        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.01 }, &halo).expect("no loads");
+    let nodes = GridState::from_points(
+        model,
+        &shape,
+        points,
+        &scene.state,
+        TimeInterval { start: 0.0, dt: 0.01 },
+        &halo,
+    )
+    .expect("no loads");
     let pieces = Problem {
         model,
         shape: &shape,

@@ -152,6 +152,7 @@ fn the_mapping_conserves<K: Kinematics<D>, const D: usize>(order: usize) {
         &scene.model,
         &shape,
         points,
+        &scene.state,
         TimeInterval { start: 0.0, dt: 0.1 },
         &halo,
     )

@@ -2,13 +2,14 @@
 
 use super::random::Random;
 use super::solver::Skyline;
-use bsmpm::boundary::{Boundary, Load, RigidBody, Strip, Support};
+use bsmpm::boundary::{AnchoredPoints, Boundary, Load, RigidBody, Strip, Support};
 use bsmpm::control::{AcceptedStep, Stepper};
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::interactions::background::Background;
+use bsmpm::interactions::state::InteractionState;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::material::{Elastic, Hencky, LayeredMaterial, Material};
 use bsmpm::method::Criteria;
@@ -40,6 +41,8 @@ pub struct Scene<K, const D: usize> {
     pub model: Model<K, D>,
     /// The points.
     pub points: Points<D>,
+    /// State of the interactions.
+    pub state: InteractionState<D>,
 }
 
 /// `cells` equal cells of length `cell` and order `order`.
@@ -87,6 +90,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         Self {
             model,
             points: Points::from_seeds([], regime == Regime::Dynamic),
+            state: InteractionState::default(),
         }
     }
 
@@ -182,21 +186,21 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
     /// Adds a rigid strip.
     pub fn strip(mut self, strip: Strip<D>) -> Self {
         self.model.boundary.strips.push(strip);
-        self.points.surface = self.model.boundary.surface();
+        self.state = self.model.boundary.initial_state();
         self
     }
 
     /// Adds a rigid body.
     pub fn rigid(mut self, body: RigidBody<D>) -> Self {
         self.model.boundary.rigid.push(body);
-        self.points.surface = self.model.boundary.surface();
+        self.state = self.model.boundary.initial_state();
         self
     }
 
     /// Adds a load.
     pub fn load(mut self, load: Load<D>) -> Self {
         self.model.boundary.loads.push(load);
-        self.points.surface = self.model.boundary.surface();
+        self.state = self.model.boundary.initial_state();
         self
     }
 
@@ -269,16 +273,36 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         }
     }
 
-    /// Steps to `end` with nominal steps `dt`; `watch` sees the state after every accepted one. Panics on a failure.
+    /// The points with the anchors of the surfaces.
+    pub fn anchored(&self) -> AnchoredPoints<'_, D> {
+        AnchoredPoints {
+            points: &self.points,
+            anchors: &self.state.anchors,
+        }
+    }
+
+    /// Steps to `end` with nominal steps `dt`; `watch` sees the points after every accepted one. Panics on a failure.
     pub fn march(&mut self, dt: f64, end: f64, mut watch: impl FnMut(&Points<D>, &AcceptedStep)) {
+        self.march_watched(dt, end, |scene, accepted| watch(&scene.points, accepted));
+    }
+
+    /// Steps as [`Self::march`]; `watch` sees the scene.
+    pub fn march_watched(&mut self, dt: f64, end: f64, mut watch: impl FnMut(&Self, &AcceptedStep)) {
         let halo = self.halo();
         let schedule = Schedule::new(dt, end, []);
         let mut solver = Skyline::new(&self.model.grid);
         let mut stepper = Stepper::new(self.model.grid.nodes() * D);
-        while let Some(found) = stepper.advance(&schedule, &self.model, &mut self.points, &halo, &mut solver) {
+        while let Some(found) = stepper.advance(
+            &schedule,
+            &self.model,
+            &mut self.points,
+            &mut self.state,
+            &halo,
+            &mut solver,
+        ) {
             let accepted = found.unwrap_or_else(|failure| panic!("{failure:?}"));
             self.points.sort_by_cell(&self.model.grid);
-            watch(&self.points, &accepted);
+            watch(self, &accepted);
         }
     }
 

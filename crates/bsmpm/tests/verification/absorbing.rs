@@ -137,9 +137,9 @@ fn column(n: usize) -> Scene<PlaneStrain, 2> {
     initial::set_stress(&scene.model, &mut scene.points, |_, x| stress(x));
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
-    initial::hold(&scene.model, &mut scene.points, &halo, &mut solver).expect("an equilibrium");
+    initial::hold(&scene.model, &scene.points, &mut scene.state, &halo, &mut solver).expect("an equilibrium");
     let weight: f64 = scene.points.mass.iter().sum::<f64>() * 10.0;
-    let held: f64 = scene.points.surface.held.iter().flatten().map(|force| force[1]).sum();
+    let held: f64 = scene.state.held.iter().flatten().map(|force| force[1]).sum();
     assert!(
         (held / weight - 1.0).abs() < 1e-9,
         "the base holds {held} of {weight} N"

@@ -93,8 +93,15 @@ fn condition(shift: f64, background: Option<Background>) -> [f64; 2] {
     let points = &scene.points;
     let halo = &scene.halo();
     let shape = Shape::at(&model.grid, points).expect("points inside");
-    let nodes = GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, halo)
-        .expect("loads on material");
+    let nodes = GridState::from_points(
+        model,
+        &shape,
+        points,
+        &scene.state,
+        TimeInterval { start: 0.0, dt: 1.0 },
+        halo,
+    )
+    .expect("loads on material");
     let mut stiffness = Dense::new(&model.grid);
     let scene = Problem {
         model,

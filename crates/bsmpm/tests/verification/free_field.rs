@@ -76,13 +76,13 @@ fn level_ground_moves_as_its_column_everywhere() {
     let mut worst = 0.0_f64;
     let mut largest = 0.0_f64;
     let mut columns = Vec::new();
-    follows.march(0.005, 0.3, |points, accepted| {
-        for column in &points.free_field {
-            let [off, most] = off(points, column);
+    follows.march_watched(0.005, 0.3, |scene, accepted| {
+        for column in &scene.state.columns {
+            let [off, most] = off(&scene.points, &column.points);
             (worst, largest) = (worst.max(off), largest.max(most));
         }
         books.flows += accepted.report.energy.expect("it is balanced");
-        columns.push(points.free_field[0].clone());
+        columns.push(scene.state.columns[0].points.clone());
     });
     let closure = books.residual(StoredEnergy::of(&model, &follows.points, 0.0, &halo)) / books.flows.external;
     // 5.2e-7 and 2.9e-10.

@@ -39,8 +39,9 @@ fn elastic_start<K: Kinematics<D>, const D: usize>(method: Stabilisation) {
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
     let before = scene.points.clone();
-    initial::set_elastic(&scene.model, &mut scene.points, &halo, &mut solver).expect("an elastic state");
-    let found = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
+    initial::set_elastic(&scene.model, &mut scene.points, &mut scene.state, &halo, &mut solver)
+        .expect("an elastic state");
+    let found = initial::balance(&scene.model, &scene.points, &scene.state, &halo).expect("forces");
     assert_eq!((&scene.points.x, &scene.points.F), (&before.x, &before.F));
     let stress = |p: usize| scene.points.sigma.at(p).0[D - 1] + 20.0 * (4.0 - scene.points.x[p][D - 1]);
     let off = (0..scene.points.len()).map(|p| stress(p).abs()).fold(0.0, f64::max);
@@ -72,9 +73,11 @@ fn a_pressure_at_the_start_is_balanced_on_the_drawn_geometry() {
     });
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
-    initial::set_elastic(&scene.model, &mut scene.points, &halo, &mut solver).expect("an elastic state");
-    let found = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
-    let settling = initial::settle(&scene.model, &mut scene.points, &halo, &mut solver).expect("an equilibrium");
+    initial::set_elastic(&scene.model, &mut scene.points, &mut scene.state, &halo, &mut solver)
+        .expect("an elastic state");
+    let found = initial::balance(&scene.model, &scene.points, &scene.state, &halo).expect("forces");
+    let settling =
+        initial::settle(&scene.model, &mut scene.points, &mut scene.state, &halo, &mut solver).expect("an equilibrium");
     let (after, _) = scene.solved(1.0, 1.0);
     let moved = after.points.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
     println!(
@@ -90,7 +93,7 @@ fn earth_pressure_at_rest_gives_back_its_stress_and_is_nearly_balanced() {
     let mut scene = ground::<PlaneStrain, 2>(hencky(1e4, 0.3));
     let at_rest = |y: f64| Symmetric([-10.0 * (4.0 - y), -20.0 * (4.0 - y), -10.0 * (4.0 - y), 0.0, 0.0, 0.0]);
     initial::set_stress(&scene.model, &mut scene.points, |_, x| at_rest(x[1]));
-    let found = initial::balance(&scene.model, &scene.points, &scene.halo()).expect("forces");
+    let found = initial::balance(&scene.model, &scene.points, &scene.state, &scene.halo()).expect("forces");
     for p in 0..scene.points.len() {
         let tau = scene
             .model
@@ -125,7 +128,7 @@ fn a_state_beyond_yield_is_counted() {
         let deep = if x[1] < 2.0 { 0.1 } else { 0.5 };
         Symmetric([-deep, -1.0, -deep, 0.0, 0.0, 0.0]).scaled(20.0 * (4.0 - x[1]))
     });
-    let found = initial::balance(&scene.model, &scene.points, &scene.halo()).expect("forces");
+    let found = initial::balance(&scene.model, &scene.points, &scene.state, &scene.halo()).expect("forces");
     assert_eq!(found.yielding, scene.points.len() as u64 / 2);
 }
 
@@ -146,10 +149,12 @@ fn settled<K: Kinematics<D>, const D: usize>(method: Stabilisation) {
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
     let before = scene.points.clone();
-    initial::set_elastic(&scene.model, &mut scene.points, &halo, &mut solver).expect("an elastic state");
-    let elastic = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
-    let settling = initial::settle(&scene.model, &mut scene.points, &halo, &mut solver).expect("an equilibrium");
-    let found = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
+    initial::set_elastic(&scene.model, &mut scene.points, &mut scene.state, &halo, &mut solver)
+        .expect("an elastic state");
+    let elastic = initial::balance(&scene.model, &scene.points, &scene.state, &halo).expect("forces");
+    let settling =
+        initial::settle(&scene.model, &mut scene.points, &mut scene.state, &halo, &mut solver).expect("an equilibrium");
+    let found = initial::balance(&scene.model, &scene.points, &scene.state, &halo).expect("forces");
     let active = (1.0 - friction.sin()) / (1.0 + friction.sin());
     let off = |p: usize| {
         let stress = scene.points.sigma.at(p).0;
@@ -211,9 +216,18 @@ fn level_ground_keeps_k0_and_loses_the_quadrature_of_its_weight() {
     scene.model.boundary.resting = vec![true];
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
-    initial::set_spread(&scene.model, &mut scene.points, |_| 0.7, &halo, &mut solver).expect("a state");
-    let settling = initial::settle(&scene.model, &mut scene.points, &halo, &mut solver).expect("an equilibrium");
-    let found = initial::balance(&scene.model, &scene.points, &halo).expect("forces");
+    initial::set_spread(
+        &scene.model,
+        &mut scene.points,
+        &mut scene.state,
+        |_| 0.7,
+        &halo,
+        &mut solver,
+    )
+    .expect("a state");
+    let settling =
+        initial::settle(&scene.model, &mut scene.points, &mut scene.state, &halo, &mut solver).expect("an equilibrium");
+    let found = initial::balance(&scene.model, &scene.points, &scene.state, &halo).expect("forces");
     let stress = |p: usize| scene.points.sigma.at(p).0;
     let off = (0..scene.points.len())
         .map(|p| (stress(p)[0] / stress(p)[1] - 0.7).abs())
@@ -236,7 +250,7 @@ fn a_stress_whose_strain_has_no_response_is_an_error() {
     initial::set_stress(&scene.model, &mut scene.points, |_, x| {
         Symmetric([1.0, 1.0, 1.0, 1.0, 0.0, 0.0]).scaled(-20.0 * (4.0 - x[1]))
     });
-    let found = initial::balance(&scene.model, &scene.points, &scene.halo());
+    let found = initial::balance(&scene.model, &scene.points, &scene.state, &scene.halo());
     assert!(matches!(found, Err(StepError::Material { .. })), "{found:?}");
 }
 

@@ -33,8 +33,15 @@ fn forms(method: Stabilisation, order: usize, cells: usize) -> [DMatrix<f64>; 2]
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes =
-        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 1.0 }, &halo).expect("no loads");
+    let nodes = GridState::from_points(
+        model,
+        &shape,
+        points,
+        &scene.state,
+        TimeInterval { start: 0.0, dt: 1.0 },
+        &halo,
+    )
+    .expect("no loads");
     let free: Vec<usize> = (0..nodes.constraints.free.len())
         .filter(|&c| nodes.constraints.free[c])
         .collect();

@@ -273,7 +273,7 @@ fn a_step_begins_with_the_force_that_the_last_one_ended_with() {
             &scene.points,
             StepInput {
                 last: &still,
-                ..StepInput::over(TimeInterval { start: 1.0, dt: 0.1 })
+                ..StepInput::over(TimeInterval { start: 1.0, dt: 0.1 }, &scene.state)
             },
             &halo,
         )
@@ -287,7 +287,7 @@ fn a_step_begins_with_the_force_that_the_last_one_ended_with() {
             internal_work: 0.0,
         };
         let mut reports = InteractionReports::default();
-        let mut after = scene.points.surface.clone();
+        let mut after = scene.state.clone();
         for interaction in nodes.interactions.iter() {
             interaction
                 .finish(&on, &at, &mut after, &mut reports)

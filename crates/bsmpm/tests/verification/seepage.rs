@@ -54,7 +54,7 @@ fn steady(scene: &Plane) -> (Vec<f64>, [Vec<DrainReport>; 2]) {
     }
     let drainage = Drainage::at(
         &scene.model,
-        &scene.points,
+        scene.anchored(),
         TimeInterval { start: 0.0, dt: 1.0 },
         Differences::EULER,
         |node| seen[node],

@@ -56,7 +56,14 @@ fn march(scene: &mut Plane, dt: f64, mut watch: impl FnMut(&Plane, &AcceptedStep
     let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     loop {
         let before = scene.clone();
-        match stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver)? {
+        match stepper.advance(
+            &schedule,
+            &scene.model,
+            &mut scene.points,
+            &mut scene.state,
+            &halo,
+            &mut solver,
+        )? {
             Err(failure) => return Some(failure),
             Ok(accepted) if !watch(&before, &accepted, &stepper.guess) => return None,
             Ok(_) => scene.points.sort_by_cell(&scene.model.grid),
@@ -66,14 +73,14 @@ fn march(scene: &mut Plane, dt: f64, mut watch: impl FnMut(&Plane, &AcceptedStep
 
 /// Lowest eigenvalue of the symmetric part of the complete derivative under the displacement `u` of a step, N/m.
 fn lowest(before: &Plane, step: &AcceptedStep, u: &[f64]) -> f64 {
-    let Scene { model, points } = before;
+    let Scene { model, points, state } = before;
     let halo = before.halo();
     let time = TimeInterval {
         start: step.t - step.dt,
         dt: step.dt,
     };
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
-    let nodes = GridState::from_points(model, &shape, points, time, &halo).expect("a mapping");
+    let nodes = GridState::from_points(model, &shape, points, state, time, &halo).expect("a mapping");
     let scene = Problem {
         model,
         shape: &shape,

@@ -169,7 +169,7 @@ fn a_uniform_traction_gives_uniform_stress_before_the_body_has_moved_and_follows
     // W(-t/M): tau = M ln l = sigma l under a dead load.
     let mut l = 1.0_f64;
     (0..100).for_each(|_| l = (-100.0 / M * l).exp());
-    let top = scene.points.surface.position[0][0][1];
+    let top = scene.state.position[0][0][1];
     println!("stress off by {first:.1e} in the first step, {last:.1e} in the last; top at {top:.6}, exact {l:.6}");
     // In the end the surface lies 0.27 of a cell inside its row, which the points do not fill.
     assert!(first <= 1e-10 && last <= 0.06); // measured 0.046
@@ -186,7 +186,7 @@ fn a_load_stays_on_the_surface_of_a_column_that_is_compressed_by_a_third() {
     let pressure = -1.5 * (2.0_f64 / 3.0).ln() * M;
     scene = scene.load(Load::dead(points, at(0.0, -pressure), 1.0));
     scene.march(1.0 / 64.0, 1.0, |_, _| {});
-    let heights = scene.points.surface.position[0].iter().map(|x| x[1]);
+    let heights = scene.state.position[0].iter().map(|x| x[1]);
     let (lowest, highest) = heights.fold((f64::INFINITY, 0.0), |(a, b), y| (f64::min(a, y), f64::max(b, y)));
     println!(
         "the load lies between {lowest:.5} and {highest:.5}, exact {:.5}",
@@ -202,10 +202,10 @@ fn a_load_stays_on_the_surface_of_a_column_that_is_compressed_by_a_third() {
 fn a_point_load_is_carried_by_the_supports_and_its_work_is_positive() {
     let load = Load::dead(vec![SurfacePoint::at(at(0.5, 1.0), 1.0)], at(3.0, -20.0), 0.0);
     let mut scene = block([4, 4], 2).load(load);
-    scene.march(1.0, 1.0, |points, accepted| {
+    scene.march_watched(1.0, 1.0, |scene, accepted| {
         let reactions = &accepted.report.reactions;
         let sum: [f64; 2] = [0, 1].map(|c| reactions.iter().map(|force| force[c]).sum());
-        let moved = points.surface.position[0][0] - at(0.5, 1.0);
+        let moved = scene.state.position[0][0] - at(0.5, 1.0);
         println!("reactions {sum:?}, moved {moved:?}");
         assert!((sum[0] + 3.0).abs() <= 1e-8 && (sum[1] - 20.0).abs() <= 1e-8);
         assert!(moved[0] > 0.0 && moved[1] < 0.0);
@@ -227,8 +227,8 @@ fn a_point_load_beside_a_plane_of_symmetry_an_axis_or_a_corner_stays_there() {
         let mut push = Vector::<D>::zeros();
         (start[D - 1], push[D - 1]) = (0.5, -2.0);
         scene = scene.load(Load::dead(vec![SurfacePoint::at(start, 1.0)], push, 1.0));
-        scene.march(0.25, 1.0, |points, _| {
-            let at = points.surface.position[0][0];
+        scene.march_watched(0.25, 1.0, |scene, _| {
+            let at = scene.state.position[0][0];
             assert!(
                 (0..D - 1).all(|axis| (0.0..=2.0 * from).contains(&at[axis])) && at[D - 1] < 0.5,
                 "{at}"
@@ -272,7 +272,14 @@ fn a_load_without_material_is_an_error() {
     let schedule = Schedule::new(1.0, 1.0, []);
     let mut solver = crate::support::solver::Skyline::new(&scene.model.grid);
     let mut stepper = bsmpm::control::Stepper::new(scene.model.grid.nodes() * 2);
-    let found = stepper.advance(&schedule, &scene.model, &mut scene.points, &halo, &mut solver);
+    let found = stepper.advance(
+        &schedule,
+        &scene.model,
+        &mut scene.points,
+        &mut scene.state,
+        &halo,
+        &mut solver,
+    );
     let attempts = found.and_then(Result::err).expect("a failure").attempts;
     assert!(
         matches!(attempts[..], [StepError::Unloaded { load: 0, points: 1 }]),

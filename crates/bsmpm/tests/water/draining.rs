@@ -1,6 +1,6 @@
 //! Tests of consolidation. The drained and loaded surfaces cut cells and move through them.
 
-use super::{M, Plane, at, column, flowing, geometric, run, settlement};
+use super::{M, Plane, at, column, flowing, geometric, run, run_watched, settlement};
 use crate::support::scene::{axis, hencky};
 use bsmpm::boundary::surface;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
@@ -8,7 +8,6 @@ use bsmpm::field::pore_water::flow::{Course, Drain, Given, PermeabilityLaw};
 use bsmpm::interactions::background::Background;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{AverageWeight, Regime};
-use bsmpm::points::Points;
 use bsmpm::tensor::Vector;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{FRAC_PI_2, LN_2, PI};
@@ -34,8 +33,8 @@ fn a_column_settles_alike_wherever_its_drained_surface_cuts_the_cells() {
 }
 
 /// Height of the loaded surface, m: mean of its points.
-fn height(points: &Points<2>) -> f64 {
-    let places = &points.surface.position[0];
+fn height(scene: &Plane) -> f64 {
+    let places = &scene.state.position[0];
     places.iter().map(|x| x[1]).sum::<f64>() / places.len() as f64
 }
 
@@ -56,18 +55,18 @@ fn a_drained_surface_that_settles_through_rows_of_cells_stays_drained() {
         (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
         let mut errors = Vec::new();
         let mut iterations = 0;
-        run(&mut scene, steps(1e-4, 100, &times), |t, points, report| {
+        run_watched(&mut scene, 0.0, steps(1e-4, 100, &times), |t, scene, report| {
             iterations += report.iterations;
             let water = report.water.as_ref().expect("water flows");
             assert_eq!(water.held, [3], "the drain has material near");
             if let Some(k) = times.iter().position(|time| *time == t) {
-                errors.push((1.0 - height(points)) / exact[k] - 1.0);
+                errors.push((1.0 - height(scene)) / exact[k] - 1.0);
             }
         });
         // What has left is what the points have lost of their volume.
         let volume = |p: usize| scene.points.volume[p] * (1.0 - scene.points.F.at(p).determinant());
         let lost: f64 = (0..scene.points.len()).map(volume).sum();
-        let out = scene.points.surface.crossed.out() / lost - 1.0;
+        let out = scene.state.crossed.out() / lost - 1.0;
         println!("{law:?}: settlement off by {errors:.4?}, {iterations} iterations, water by {out:.1e}");
         assert!(errors.iter().all(|error| error.abs() <= 0.007) && out.abs() <= 2e-6);
     }

@@ -35,7 +35,7 @@ fn found<T>(friction: f64, of: impl Fn(&PorePressure<2>, &Plane, &Shape<2>) -> T
 #[test]
 fn excess_pore_pressure_is_taken_off_the_normal_force_of_a_face() {
     let force = |pores: &PorePressure<2>, scene: &Plane, shape: &Shape<2>| -> f64 {
-        let Plane { model, points } = scene;
+        let Plane { model, points, .. } = scene;
         let forces = carried::forces_on_faces(pores, model, shape, points, &points.volume, &scene.halo());
         forces.iter().step_by(2).sum()
     };

@@ -20,9 +20,9 @@ use bsmpm::field::pore_water::flow::{Drain, DrainedFace, Flow, Given, Motion, Pe
 use bsmpm::interactions::background::ResistedDisplacement;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
-use bsmpm::parallel::Backend;
 use bsmpm::points::Points;
 use bsmpm::schedule::TimeInterval;
+use bsmpm::solve::Backend;
 use bsmpm::step::{Counts, StepReport, step};
 use bsmpm::tensor::Vector;
 
@@ -149,6 +149,16 @@ pub fn run_from(
     times: impl IntoIterator<Item = f64>,
     mut watch: impl FnMut(f64, &Points<2>, &StepReport),
 ) {
+    run_watched(scene, from, times, |t, scene, report| watch(t, &scene.points, report));
+}
+
+/// The same; `watch` sees the scene.
+pub fn run_watched(
+    scene: &mut Plane,
+    from: f64,
+    times: impl IntoIterator<Item = f64>,
+    mut watch: impl FnMut(f64, &Plane, &StepReport),
+) {
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
     let mut guess = vec![0.0; scene.model.grid.nodes() * 2];
@@ -156,26 +166,26 @@ pub fn run_from(
     let mut last = 0.0;
     for next in times {
         let dt = next - t;
-        let mut counts = Counts::default();
         if last > 0.0 {
             guess.iter_mut().for_each(|u| *u *= dt / last);
         }
         let report = step(
             &scene.model,
             &mut scene.points,
+            &mut scene.state,
             &mut guess,
             TimeInterval { start: t, dt },
             ResistedDisplacement::Whole,
             &mut Backend {
                 halo: &halo,
                 solver: &mut solver,
+                counts: &mut Counts::default(),
             },
-            &mut counts,
         )
         .unwrap_or_else(|error| panic!("from {t} to {next}: {error}"));
         (t, last) = (next, dt);
         scene.points.sort_by_cell(&scene.model.grid);
-        watch(t, &scene.points, &report);
+        watch(t, scene, &report);
     }
 }
 

@@ -21,8 +21,8 @@ use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::{Criteria, Method, Nonlinear, QuasiNewton};
 use bsmpm::model::Regime;
 use bsmpm::observe::{Part, largest_displacement};
-use bsmpm::parallel::Backend;
 use bsmpm::schedule::TimeInterval;
+use bsmpm::solve::Backend;
 use bsmpm::solve::linearised::ForceTangent;
 use bsmpm::stabilisation::Stabilisation;
 use bsmpm::step::nodes::GridState;
@@ -122,8 +122,15 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes =
-        GridState::from_points(model, &shape, points, TimeInterval { start: 0.0, dt: 0.1 }, &halo).expect("no loads");
+    let nodes = GridState::from_points(
+        model,
+        &shape,
+        points,
+        &scene.state,
+        TimeInterval { start: 0.0, dt: 0.1 },
+        &halo,
+    )
+    .expect("no loads");
     let pieces = Problem {
         model,
         shape: &shape,
@@ -284,14 +291,15 @@ fn steps(scene: &mut Plane, times: &[f64]) -> Result<(f64, Vec<StepReport>, usiz
         reports.push(step(
             &scene.model,
             &mut scene.points,
+            &mut scene.state,
             &mut guess,
             TimeInterval { start: t, dt },
             ResistedDisplacement::Whole,
             &mut Backend {
                 halo: &halo,
                 solver: &mut solver,
+                counts: &mut counts,
             },
-            &mut counts,
         )?);
         products += counts.products;
         t = *next;

@@ -266,6 +266,7 @@ fn books_of_ground_that_a_part_is_taken_from_are_off_by_what_the_iterations_left
     let removed = taken(&scene, 0.2, &|id| gone.contains(&id));
     scene.points.remove(|id| gone.contains(&id));
     scene.points.forget_flow();
+    scene.state.flowed = None;
     run_from(
         &mut scene,
         0.2,

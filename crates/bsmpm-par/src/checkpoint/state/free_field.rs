@@ -1,6 +1,7 @@
 //! Free-field columns in a checkpoint.
 
 use super::{Row, rows, vectors};
+use bsmpm::interactions::state::{InteractionState, SoilColumn};
 use bsmpm::points::{Number, Points};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -17,9 +18,9 @@ pub struct FreeFieldState {
 }
 
 impl FreeFieldState {
-    /// Of the points of a column.
-    pub fn of<const D: usize>(points: &Points<D>) -> Self {
-        let mut points = points.clone();
+    /// Of a column.
+    pub fn of<const D: usize>(column: &SoilColumn<D>) -> Self {
+        let mut points = column.points.clone();
         let arrays = points.named_columns().into_iter().map(|(name, column)| {
             let mut numbers = Vec::with_capacity(column.rows() * column.width());
             (0..column.rows()).for_each(|p| column.show(p, &mut numbers));
@@ -27,12 +28,12 @@ impl FreeFieldState {
         });
         Self {
             arrays: arrays.collect(),
-            held: rows(&points.surface.held),
+            held: rows(&column.state.held),
         }
     }
 
-    /// The points, whose laws have so many numbers of state; `None` if they are not whole.
-    pub fn points<const D: usize>(&self, state: usize) -> Option<Points<D>> {
+    /// The column, whose laws have so many numbers of state; `None` if it is not whole.
+    pub fn column<const D: usize>(&self, state: usize) -> Option<SoilColumn<D>> {
         let names: Vec<&str> = self.arrays.keys().map(String::as_str).collect();
         let mut points = Points::holding(&names, state);
         let mut columns = points.named_columns();
@@ -56,8 +57,11 @@ impl FreeFieldState {
         if columns.len() != names.len() {
             return None;
         }
-        points.surface.held = vectors(&self.held)?;
-        Some(points)
+        let state = InteractionState {
+            held: vectors(&self.held)?,
+            ..InteractionState::default()
+        };
+        Some(SoilColumn { points, state })
     }
 }
 

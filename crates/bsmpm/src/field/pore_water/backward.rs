@@ -1,6 +1,7 @@
 //! Time integration of pore-water flow: second-order backward difference, theory-manual equation (T8.10), or backward
 //! Euler.
 
+use crate::field::pore_water::crossed::PreviousFlow;
 use crate::field::pore_water::flow::{Course, Motion};
 use crate::model::{Model, Regime};
 use crate::points::Points;
@@ -44,11 +45,15 @@ impl Differences {
         }
     }
 
-    /// Returns the coefficients of the step `interval` from the previous flow that the points store.
-    pub fn of<K, const D: usize>(model: &Model<K, D>, points: &Points<D>, interval: TimeInterval) -> Self {
+    /// Returns the coefficients of the step `interval` after the flow `before` of the last step, if any.
+    pub fn of<K, const D: usize>(
+        model: &Model<K, D>,
+        points: &Points<D>,
+        before: Option<&PreviousFlow>,
+        interval: TimeInterval,
+    ) -> Self {
         let goes_on = is_smooth(model) && points.content_change.is_some() && !turns(model, interval);
-        let before = points.surface.flowed.as_ref().filter(|_| goes_on);
-        before.map_or(Self::EULER, |flowed| {
+        before.filter(|_| goes_on).map_or(Self::EULER, |flowed| {
             Self::of_second_order(interval.end() - interval.start, flowed.dt)
         })
     }

@@ -3,7 +3,7 @@
 
 use crate::boundary::anchor::turned;
 use crate::boundary::surface::Attachment;
-use crate::boundary::{Anchors, SurfacePoint};
+use crate::boundary::{AnchoredPoints, Anchors, SurfacePoint};
 use crate::error::StepError;
 use crate::exact::Exact;
 use crate::field::pore_water::backward::Differences;
@@ -150,7 +150,7 @@ impl Drainage {
     /// three before the first step. Fails on all ranks if a surface lies on impermeable material.
     pub fn at<K, const D: usize>(
         model: &Model<K, D>,
-        points: &Points<D>,
+        ground: AnchoredPoints<'_, D>,
         interval: TimeInterval,
         differences: Differences,
         counts: impl Fn(usize) -> bool,
@@ -167,7 +167,8 @@ impl Drainage {
         }
         let grid = &model.grid;
         let offsets = model.grid.lowered_offsets();
-        let anchors = Anchors::of(&model.surfaces(), &points.surface.anchors, points.anchored(), halo).water;
+        let AnchoredPoints { points, anchors } = ground;
+        let anchors = Anchors::of(&model.surfaces(), anchors, points.anchored(), halo).water;
         let mut places = places(flow, points, &anchors, halo).into_iter();
         let mut outlets = Vec::new();
         let mut torn = vec![0.0; of[0] + of[1]];

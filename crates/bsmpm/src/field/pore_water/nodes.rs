@@ -1,6 +1,7 @@
 //! Nodal pore pressures at the start of a step: unknowns, prescribed values and stabilisation, theory-manual equation
 //! (T8.11).
 
+use crate::boundary::AnchoredPoints;
 use crate::error::StepError;
 use crate::field::pore_water::Water;
 use crate::field::pore_water::backward::Differences;
@@ -9,6 +10,7 @@ use crate::field::pore_water::flow::{Flow, Motion, Soil};
 use crate::field::pore_water::ties::Ties;
 use crate::grid::transfer::scalars;
 use crate::grid::{Contributions, Grid, Shape};
+use crate::interactions::state::InteractionState;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime};
 use crate::parallel::{Halo, over_layers};
@@ -104,6 +106,7 @@ impl<const D: usize> PorePressureField<D> {
         model: &Model<K, D>,
         full: &Shape<D>,
         points: &Points<D>,
+        state: &InteractionState<D>,
         interval: TimeInterval,
         halo: &dyn Halo,
     ) -> Result<Option<Self>, StepError> {
@@ -113,7 +116,7 @@ impl<const D: usize> PorePressureField<D> {
         };
         let shape = full.lowered_with_derivatives(&model.grid, points);
         let end = interval.end();
-        let differences = Differences::of(model, points, interval);
+        let differences = Differences::of(model, points, state.flowed.as_ref(), interval);
         let duration = differences.now * interval.dt;
         let ground = FlowingGround::of(model, water, flow, points, interval, differences.last);
         let wet: Vec<Option<FlowPoint<D>>> = (0..points.len()).map(|p| ground.wet(p)).collect();
@@ -127,7 +130,10 @@ impl<const D: usize> PorePressureField<D> {
             .collect();
         let drainage = Drainage::at(
             model,
-            points,
+            AnchoredPoints {
+                points,
+                anchors: &state.anchors,
+            },
             interval,
             differences,
             |node| seen[node],

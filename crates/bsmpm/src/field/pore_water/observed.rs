@@ -3,6 +3,7 @@
 use crate::error::StepError;
 use crate::exact::Exact;
 use crate::field::pore_water::Water;
+use crate::field::pore_water::crossed::CrossedVolumes;
 use crate::field::pore_water::flow::{Flow, Motion, Soil};
 use crate::grid::shape::Patch;
 use crate::grid::{Contributions, Grid, Shape};
@@ -161,10 +162,10 @@ impl<'a, const D: usize> PoreWater<'a, D> {
     }
 
     /// Returns the relative error of the global water balance since the start: water gained by the points plus water
-    /// that left or was removed, divided by the largest of outflow, inflow, removed water and the sum of the points'
-    /// changes, at least 1e-9 of the pore volume. `None` without coupled flow or with constant pressures. One
-    /// reduction.
-    pub fn balance(&self, halo: &dyn Halo) -> Option<f64> {
+    /// that has `crossed` the surface or was removed, divided by the largest of outflow, inflow, removed water and the
+    /// sum of the points' changes, at least 1e-9 of the pore volume. `None` without coupled flow or with constant
+    /// pressures. One reduction.
+    pub fn balance(&self, crossed: &CrossedVolumes, halo: &dyn Halo) -> Option<f64> {
         self.water.flow.as_ref().filter(|flow| flow.motion != Motion::Held)?;
         let pores: Exact = (0..self.points.len())
             .map(|p| {
@@ -173,7 +174,6 @@ impl<'a, const D: usize> PoreWater<'a, D> {
             })
             .collect();
         let sums = halo.reproducible_sum(&[self.taken().collect(), self.taken().map(f64::abs).collect(), pores]);
-        let crossed = &self.points.surface.crossed;
         let out = crossed.out() + crossed.removed;
         let scale = sums[1]
             .max(crossed.through())

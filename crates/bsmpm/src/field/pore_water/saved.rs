@@ -2,7 +2,7 @@
 
 use crate::exact::Exact;
 use crate::field::pore_water::backward::is_smooth;
-use crate::field::pore_water::crossed::CrossedVolumes;
+use crate::field::pore_water::crossed::{CrossedVolumes, PreviousFlow};
 use crate::field::pore_water::flow::{DrainedFace, Flow};
 use crate::field::pore_water::nodes::{PorePressureField, face_functions};
 use crate::field::pore_water::residual::{ExcessPressure, FlowState};
@@ -57,11 +57,12 @@ pub struct WaterReport {
 }
 
 impl WaterReport {
-    /// Returns the results of the step solution `found` before the points are updated; `None` without pore-water flow.
-    /// Two reductions, three with drained faces.
+    /// Returns the results of the step solution `found`, after the flow `before` of the last step, before the points
+    /// are updated; `None` without pore-water flow. Two reductions, three with drained faces.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         found: &StepSolution<K, D>,
+        before: Option<&PreviousFlow>,
     ) -> Option<Self> {
         let Problem { model, nodes, halo, .. } = *problem;
         let pores = nodes.pores.as_ref()?;
@@ -90,7 +91,7 @@ impl WaterReport {
         };
         let mut left = water.left;
         let last = pores.differences.last;
-        if let Some(flowed) = &problem.points.surface.flowed {
+        if let Some(flowed) = before {
             crossed.add(last, &flowed.crossed);
             left += last * flowed.left;
         }

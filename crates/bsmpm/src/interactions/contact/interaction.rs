@@ -1,9 +1,9 @@
 //! Contact of faces as an [`Interaction`] of a step.
 
 use super::Contacts;
-use crate::boundary::Surface;
 use crate::error::StepError;
 use crate::field::pore_water::carried;
+use crate::interactions::state::InteractionState;
 use crate::interactions::{
     Correction, EquilibriumState, Interaction, InteractionReports, InteractionWork, MOST_CORRECTIONS, NodalForces,
     StepContext, StepStart,
@@ -111,7 +111,7 @@ impl<const D: usize> Interaction<D> for ContactFaces<D> {
         &self,
         on: &StepContext<'_, D>,
         at: &EquilibriumState<'_>,
-        _after: &mut Surface<D>,
+        _after: &mut InteractionState<D>,
         reports: &mut InteractionReports,
     ) -> Result<(), StepError> {
         reports.contacts = self.contacts.report(on.boundary, at.u, at.reaction, on.halo);

@@ -224,8 +224,8 @@ impl<const D: usize> FollowerLoads<D> {
     }
 }
 
-/// Returns [`Surface::pressure`](crate::boundary::Surface) for the present material points. One reduction if there are
-/// follower loads.
+/// Returns [`InteractionState::pressure`](crate::interactions::state::InteractionState) for the present material
+/// points. One reduction if there are follower loads.
 pub fn now<K: Kinematics<D>, const D: usize>(
     loads: &[Load<D>],
     grid: &Grid<D>,

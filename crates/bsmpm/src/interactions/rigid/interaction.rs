@@ -1,10 +1,10 @@
 //! Rigid bodies as an [`Interaction`] of a step.
 
 use super::{ParticleDomains, RigidContacts, Surroundings, overlapping};
-use crate::boundary::Surface;
 use crate::error::StepError;
 use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
+use crate::interactions::state::InteractionState;
 use crate::interactions::{
     Correction, EquilibriumState, Interaction, InteractionReports, InteractionWork, MotionCoupling, StepContext,
     StepInput, StepStart,
@@ -33,12 +33,14 @@ pub fn begin<K: Kinematics<D>, const D: usize>(
     start: &StepStart<'_, K, D>,
 ) -> Result<Option<Box<dyn Interaction<D>>>, StepError> {
     let StepStart { model, points, .. } = *start;
-    let StepInput { interval, last, .. } = start.input;
+    let StepInput {
+        interval, last, state, ..
+    } = start.input;
     if model.boundary.rigid.is_empty() {
         return Ok(None);
     }
     let around = Surroundings {
-        bodies: (&model.boundary.rigid, &points.surface.bodies),
+        bodies: (&model.boundary.rigid, &state.bodies),
         reaching: model.reaching(points),
         shape: start.shape,
         body_force: model.body_force(interval.end()).unwrap_or_else(Vector::zeros),
@@ -149,7 +151,7 @@ impl<const D: usize> Interaction<D> for RigidBodies<D> {
         &self,
         on: &StepContext<'_, D>,
         at: &EquilibriumState<'_>,
-        after: &mut Surface<D>,
+        after: &mut InteractionState<D>,
         reports: &mut InteractionReports,
     ) -> Result<(), StepError> {
         (reports.rigid, after.bodies) = self.contacts.finish_step(at.u, on.halo);
@@ -159,7 +161,14 @@ impl<const D: usize> Interaction<D> for RigidBodies<D> {
         }
     }
 
-    fn update(&mut self, grid: &Grid<D>, u: &[f64], points: &mut Points<D>, after: &mut Surface<D>, halo: &dyn Halo) {
+    fn update(
+        &mut self,
+        grid: &Grid<D>,
+        u: &[f64],
+        points: &mut Points<D>,
+        after: &mut InteractionState<D>,
+        halo: &dyn Halo,
+    ) {
         let carried = self.contacts.carried(u, points.len(), halo);
         let held = self.contacts.held(u, halo);
         let reaching = ParticleDomains {

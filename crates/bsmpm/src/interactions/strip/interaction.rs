@@ -1,10 +1,10 @@
 //! Footings and prescribed segments as an [`Interaction`] of a step.
 
 use super::{StripConstraints, nodes_at};
-use crate::boundary::Surface;
 use crate::error::StepError;
 use crate::exact::Exact;
 use crate::grid::Contributions;
+use crate::interactions::state::InteractionState;
 use crate::interactions::{
     Correction, EquilibriumState, Interaction, InteractionReports, InteractionWork, MOST_CORRECTIONS, StepContext,
     StepStart,
@@ -20,9 +20,8 @@ pub fn begin<K, const D: usize>(start: &StepStart<'_, K, D>) -> Option<Box<dyn I
     if strips.is_empty() {
         return None;
     }
-    let surface = &start.points.surface;
     let free = &start.constraints.free;
-    let mut constraints = StripConstraints::at(strips, surface, &model.grid, free, start.input.interval);
+    let mut constraints = StripConstraints::at(strips, start.input.state, &model.grid, free, start.input.interval);
     constraints.wet(start.pore_pressure);
     Some(Box::new(constraints))
 }
@@ -92,11 +91,11 @@ impl<const D: usize> Interaction<D> for StripConstraints<D> {
         &self,
         on: &StepContext<'_, D>,
         at: &EquilibriumState<'_>,
-        after: &mut Surface<D>,
+        after: &mut InteractionState<D>,
         reports: &mut InteractionReports,
     ) -> Result<(), StepError> {
         let strips = &on.boundary.strips;
-        (reports.strips, after.traction) = self.finish_step(strips, on.grid, &on.points.surface, at.u, on.halo);
+        (reports.strips, after.traction) = self.finish_step(strips, on.grid, &after.traction, at.u, on.halo);
         Ok(())
     }
 }
