@@ -3,6 +3,7 @@
 use crate::document;
 use crate::earlier;
 use crate::error::Error;
+use crate::key_path::join;
 use crate::preset;
 use crate::record::{self, Datum, Record};
 use crate::report::Report;
@@ -133,7 +134,8 @@ fn values(text: &str) -> Result<BTreeMap<String, DifferenceValue>, Vec<Error>> {
 }
 
 fn collect(record: &Record, values: &mut BTreeMap<String, DifferenceValue>) {
-    for (key, datum) in record.all() {
+    for field in &record.fields {
+        let Some(datum) = &field.datum else { continue };
         let shown = match datum {
             Datum::Record(inner) => {
                 collect(inner, values);
@@ -162,10 +164,10 @@ fn collect(record: &Record, values: &mut BTreeMap<String, DifferenceValue>) {
             Datum::Flag(flag) => flag.to_string(),
         };
         values.insert(
-            record.path_of(key),
+            join(&record.path, field.key),
             DifferenceValue {
                 shown,
-                written: record.gives(key),
+                written: field.written,
             },
         );
     }

@@ -1,6 +1,5 @@
 //! Compares a case file with the schema. The result is a record: typed values in SI units, with angles in degrees.
 
-mod access;
 mod field;
 mod value;
 
@@ -29,20 +28,19 @@ fn presets(has_preset: bool) -> &'static [&'static str] {
 #[derive(Clone, Debug)]
 pub(crate) struct Record {
     pub(crate) path: String,
-    pub(crate) origin: Origin,
-    root: &'static Table,
-    table: &'static Table,
-    fields: Vec<RecordField>,
+    origin: Origin,
+    pub(crate) fields: Vec<RecordField>,
 }
 
+/// A key of a table that has a value, given or by default, or an error.
 #[derive(Clone, Debug)]
-struct RecordField {
-    key: &'static str,
+pub(crate) struct RecordField {
+    pub(crate) key: &'static str,
     origin: Origin,
-    written: bool,
+    pub(crate) written: bool,
     /// a text, or a list with one, as a number with its unit is
     is_worded: bool,
-    datum: Option<Datum>, // None: an error has been reported
+    pub(crate) datum: Option<Datum>, // None: an error has been reported
 }
 
 impl RecordField {
@@ -129,8 +127,6 @@ impl Context {
         let mut record = Record {
             path: path.to_owned(),
             origin,
-            root: self.root,
-            table,
             fields: Vec::new(),
         };
         for key in table.keys {
@@ -320,63 +316,4 @@ fn missing(key: &Key) -> String {
 fn first_two(group: &Group) -> String {
     let names: Vec<String> = group.keys.iter().take(2).map(|name| format!("`{name}`")).collect();
     names.join(" or ")
-}
-
-impl Record {
-    fn field(&self, key: &str) -> Option<&RecordField> {
-        self.fields.iter().find(|field| field.key == key)
-    }
-
-    /// The value of a key, whose kind is one that `fits` the type it is wanted as; none of a key of other tables only.
-    ///
-    /// # Panics
-    /// By a mistake of the program: a key that no table has, or whose value is of another type.
-    fn datum(&self, key: &str, fits: impl Fn(&Kind) -> bool) -> Option<&Datum> {
-        let known = self.known(key)?;
-        assert!(fits(&known.kind), "{} of {} is {}", key, self.table.header, known.kind);
-        self.field(key)?.datum.as_ref()
-    }
-
-    /// The key as the schema has it.
-    fn known(&self, key: &str) -> Option<&'static Key> {
-        let known = self.table.key(key);
-        assert!(
-            known.is_some() || self.root.all().iter().any(|table| table.key(key).is_some()),
-            "no table has a key {key}"
-        );
-        known
-    }
-
-    /// Every key that has a value, and the value.
-    pub(crate) fn all(&self) -> impl Iterator<Item = (&'static str, &Datum)> {
-        self.fields
-            .iter()
-            .filter_map(|field| field.datum.as_ref().map(|datum| (field.key, datum)))
-    }
-
-    /// Whether the file gives the key, even with a wrong value.
-    pub(crate) fn gives(&self, key: &str) -> bool {
-        self.known(key);
-        self.field(key).is_some_and(|field| field.written)
-    }
-
-    /// Whether the file gives the key with a unit, so that its author has said which one is meant.
-    pub(crate) fn has_unit(&self, key: &str) -> bool {
-        self.field(key).is_some_and(|field| field.is_worded)
-    }
-
-    /// Place of the key's value, or of the table where there is none.
-    pub(crate) fn place(&self, key: &str) -> Origin {
-        self.field(key).map_or(self.origin, |field| field.origin)
-    }
-
-    /// Path of a key of this table.
-    pub(crate) fn path_of(&self, key: &str) -> String {
-        join(&self.path, key)
-    }
-
-    /// Records an error about the key.
-    pub(crate) fn error(&self, key: &str, message: impl Into<String>, report: &mut Report<'_>) {
-        report.error(self.place(key), &self.path_of(key), message);
-    }
 }

@@ -28,10 +28,10 @@ pub(crate) use element::{ElementStageTable, ElementTable};
 pub(crate) use flow::{DrainTable, InflowTable};
 pub(crate) use laws::LawName;
 pub(crate) use loads::{
-    DiscTable, FootingTable, InitialTable, PointLoadTable, PrescribedTable, ReductionTable, StressProfileTable,
-    SupportField, SupportTable, TractionTable,
+    DepthTable, DiscTable, FootingTable, InitialTable, PointLoadTable, PrescribedTable, ReductionTable, SupportField,
+    SupportTable, TractionTable,
 };
-pub(crate) use material::MATERIAL;
+pub(crate) use material::{LawKey, MaterialTable, RetentionTable};
 pub(crate) use output::{CheckTable, CheckpointTable, HistoryTable, OutputTable, ProfileTable};
 pub(crate) use rigid::RigidTable;
 pub(crate) use site::{MotionKey, PlateKey, SiteKey, StripKeys};
@@ -65,14 +65,6 @@ pub struct Group {
     pub required: bool,
     /// Whether `accuracy` or `purpose` chooses one of them where none is given.
     pub has_preset: bool,
-}
-
-const fn one_of(keys: &'static [&'static str], required: bool) -> Group {
-    Group {
-        keys,
-        required,
-        has_preset: false,
-    }
 }
 
 /// A key of a table.

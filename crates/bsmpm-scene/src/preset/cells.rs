@@ -158,10 +158,11 @@ impl PresetScene<'_> {
     }
 
     /// The key of a material whose softening depends on the cell size.
-    fn width_of_band(&self) -> Option<&'static str> {
-        ["band_width", "crack_opening"]
-            .into_iter()
-            .find(|key| self.materials().any(|material| material.gives(key)))
+    fn width_of_band(&self) -> Option<&str> {
+        let bands = self.materials().map(|material| &material.band_width);
+        let openings = self.materials().map(|material| &material.crack_opening);
+        let mut keys = bands.chain(openings);
+        keys.find(|key| key.is_given()).map(|key| key.name())
     }
 
     /// Whether both faces across an axis stay where they are.

@@ -4,9 +4,12 @@
 use super::Preset;
 use super::rigid::{self, RigidExtent};
 use crate::constants::{NEARLY_INCOMPRESSIBLE, STANDARD_GRAVITY};
-use crate::record::{CaseTable, Field, ListRow, Record};
-use crate::schema::{BodyTable, Draft, LawName, MotionKey, RigidTable, ShapeKey, SiteKey, TractionTable};
+use crate::record::{CaseTable, Field, ListRow};
+use crate::schema::{
+    BodyTable, Draft, LawName, MaterialTable, MotionKey, RigidTable, ShapeKey, SiteKey, TractionTable,
+};
 use crate::words::{AnalysisType, Purpose};
+use bsmpm::material::Profile;
 use bsmpm_shapes::polygon;
 
 /// What steps follow from.
@@ -131,12 +134,12 @@ impl<'a> PresetScene<'a> {
     pub(super) fn locks(&self) -> Option<&'static str> {
         if self
             .materials()
-            .filter_map(|material| material.word("model"))
+            .filter_map(|material| material.model.get())
             .any(LawName::is_plastic)
         {
             return Some("prevents volumetric locking of plastic material");
         }
-        let mut poissons = self.materials().filter_map(|material| material.number("poisson"));
+        let mut poissons = self.materials().filter_map(|material| material.poisson.get());
         poissons
             .any(|poisson| poisson > NEARLY_INCOMPRESSIBLE)
             .then_some("prevents volumetric locking of nearly incompressible material")
@@ -144,12 +147,8 @@ impl<'a> PresetScene<'a> {
 
     /// Whether a material of the bodies dilates as it yields.
     pub(super) fn dilates(&self) -> bool {
-        let mut angles = self.materials().filter_map(|material| {
-            let profile = material.record("dilation_angle");
-            let of_profile = profile.and_then(|profile| profile.number("value"));
-            material.number("dilation_angle").or(of_profile)
-        });
-        angles.any(|angle| angle > 0.0)
+        self.materials()
+            .any(|material| material.dilation_angle.profile_or_zero().value > 0.0)
     }
 
     pub(super) fn is_consolidation(&self) -> bool {
@@ -289,7 +288,7 @@ impl<'a> PresetScene<'a> {
     }
 
     /// Materials that bodies are made of.
-    pub(super) fn materials(&self) -> impl Iterator<Item = &Record> {
+    pub(super) fn materials(&self) -> impl Iterator<Item = &MaterialTable> {
         let bodies = self.draft.body.items();
         self.draft
             .material
@@ -310,14 +309,13 @@ impl<'a> PresetScene<'a> {
 }
 
 /// m/s  shear wave in a material, as fast as it is between two heights
-pub(super) fn shear_wave(material: &Record, heights: [f64; 2]) -> Option<f64> {
+pub(super) fn shear_wave(material: &MaterialTable, heights: [f64; 2]) -> Option<f64> {
     let density = material
-        .number("density")
-        .or_else(|| Some(material.number("unit_weight")? / STANDARD_GRAVITY))?;
-    let young = material
-        .number("young")
-        .or_else(|| stiffest(material.record("young")?, heights))?;
-    Some((young / (2.0 * (1.0 + material.number("poisson")?)) / density).sqrt())
+        .density
+        .get()
+        .or_else(|| Some(material.unit_weight.get()? / STANDARD_GRAVITY))?;
+    let young = stiffest(material.young.profile()?, heights);
+    Some((young / (2.0 * (1.0 + material.poisson.get()?)) / density).sqrt())
 }
 
 /// m  how far the corner of a rigid body that is farthest from its reference point would turn in the whole run at its
@@ -407,9 +405,7 @@ fn norm([x, y]: [f64; 2]) -> f64 {
 }
 
 /// Pa  the largest value of a profile between two heights
-fn stiffest(profile: &Record, heights: [f64; 2]) -> Option<f64> {
-    let value = profile.number("value")?;
-    let at = profile.number("at_y")?;
-    let growth = profile.number("per_metre")?;
-    heights.map(|y| value + growth * (at - y)).into_iter().reduce(f64::max)
+fn stiffest(profile: Profile, heights: [f64; 2]) -> f64 {
+    let [lower, upper] = heights.map(|y| profile.value + profile.per_metre * (profile.at - y));
+    lower.max(upper)
 }

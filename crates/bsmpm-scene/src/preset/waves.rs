@@ -55,7 +55,7 @@ impl PresetScene<'_> {
         if let Some(given) = self.draft.analysis.value().and_then(|analysis| analysis.mass.get()) {
             return given;
         }
-        let mut laws = self.materials().map(|material| material.word("model"));
+        let mut laws = self.materials().map(|material| material.model.get());
         let waves = self.draft.shaking.value().is_some() || laws.all(|law| law == Some(LawName::Hencky));
         if waves && !self.touches() {
             MassMatrix::Consistent
@@ -79,7 +79,7 @@ impl PresetScene<'_> {
         let [lower, upper] = self.bounds()?;
         let speeds = self.materials().filter_map(|material| {
             let shear = super::scene::shear_wave(material, [0.5 * (lower[1] + upper[1]); 2])?;
-            let poisson = material.number("poisson")?;
+            let poisson = material.poisson.get()?;
             let ratio = if input.axis.is_some() {
                 (2.0 - 2.0 * poisson) / (1.0 - 2.0 * poisson)
             } else {

@@ -2,6 +2,7 @@
 
 use super::{Datum, ListRow, Record};
 use crate::error::Origin;
+use crate::key_path::join;
 use crate::report::Report;
 use crate::schema::Table;
 use crate::unit::Dimension;
@@ -189,7 +190,7 @@ impl Record {
     /// Moves the value of a key out of the record.
     pub(crate) fn take<T>(&mut self, key: &str, read: fn(Datum) -> Option<T>) -> Field<T> {
         let mut place = KeyPlace {
-            path: self.path_of(key),
+            path: join(&self.path, key),
             origin: self.origin,
             is_given: false,
             has_unit: false,
@@ -204,11 +205,6 @@ impl Record {
             place,
             value: field.datum.take().and_then(read),
         }
-    }
-
-    /// A copy of the rows of a key.
-    pub(crate) fn rows_field(&self, key: &str) -> Field<Vec<ListRow>> {
-        self.clone().take(key, Datum::rows)
     }
 
     /// Where the table is written.

@@ -121,7 +121,6 @@ macro_rules! declared_kind {
             <$Table as $crate::record::CaseTable>::TABLE,
         )
     };
-    (UntypedNamed($table:expr)) => { $crate::schema::Kind::Named(&$table) };
     ($kind:ident $(($($of:tt)*))?) => { $crate::schema::Kind::$kind $(($($of)*))? };
 }
 
@@ -135,7 +134,6 @@ macro_rules! value_type {
     (Named($Table:ty)) => { Vec<(String, $Table)> };
     (Profile($dimension:expr, $range:expr, $Table:ty)) => { $crate::record::OrTable<f64, $Table> };
     (PairProfile($dimension:expr, $range:expr, $Table:ty)) => { $crate::record::OrTable<Vec<f64>, $Table> };
-    (UntypedNamed($table:expr)) => { Vec<(String, $crate::record::Record)> };
     (Shared($key:expr, $($kind:tt)+)) => { value_type!($($kind)+) };
     (Quantity $(($($of:tt)*))?) => { f64 };
     (Gradient $(($($of:tt)*))?) => { f64 };
@@ -165,7 +163,6 @@ macro_rules! value_reader {
     (Named $($of:tt)?) => { $crate::record::Datum::named };
     (Profile $($of:tt)?) => { $crate::record::Datum::number_or_table };
     (PairProfile $($of:tt)?) => { $crate::record::Datum::numbers_or_table };
-    (UntypedNamed $($of:tt)?) => { $crate::record::Datum::named_records };
     (Quantity $($of:tt)?) => { $crate::record::Datum::number };
     (Gradient $($of:tt)?) => { $crate::record::Datum::number };
     (Pair $($of:tt)?) => { $crate::record::Datum::pair };

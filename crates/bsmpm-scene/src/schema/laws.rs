@@ -1,6 +1,6 @@
 //! Constitutive laws in the case file: the name of each law, its keys, and its conversion to a Rust type.
 
-use crate::record::Record;
+use super::MaterialTable;
 use bsmpm::material::Strength;
 use bsmpm::material::{
     CamClay, CutOff, Decay, DruckerPrager, Elastic, Hencky, Match, Material, MohrCoulomb, MuI, Rate, Separation,
@@ -141,11 +141,11 @@ impl LawName {
     }
 
     /// The law with the choices of its table; its numbers are those of the elastic part only.
-    pub(crate) fn chosen(self, record: &Record, elastic: Elastic) -> Material {
+    pub(crate) fn chosen(self, record: &MaterialTable, elastic: Elastic) -> Material {
         match self {
             Self::Hencky => Material::Hencky(Hencky { elastic }),
             Self::MohrCoulomb | Self::Tresca => {
-                let separation = record.word("separation").unwrap_or_default();
+                let separation = record.separation.get().unwrap_or_default();
                 let law = MohrCoulomb::new(elastic, 0.0, 0.0, 0.0).separating(separation);
                 match tension(record) {
                     Some(tension) => Material::MohrCoulombCutOff(CutOff::new(law, tension)),
@@ -153,7 +153,7 @@ impl LawName {
                 }
             }
             Self::DruckerPrager => {
-                let fit = record.word("fit").unwrap_or_default();
+                let fit = record.fit.get().unwrap_or_default();
                 let law = DruckerPrager::new(elastic, 0.0, 0.0, 0.0, fit);
                 match tension(record) {
                     Some(tension) => Material::DruckerPragerCutOff(CutOff::new(law, tension)),
@@ -163,7 +163,7 @@ impl LawName {
             Self::SensitiveClay => {
                 let none = Strength::default();
                 let law = SofteningMohrCoulomb::new(elastic, none, none, 1.0, Decay::Exponential);
-                let rate = record.number("rate_parameter").zip(record.number("reference_rate"));
+                let rate = record.rate_parameter.get().zip(record.reference_rate.get());
                 let rate = rate.map(|(per_decade, reference)| Rate { per_decade, reference });
                 Material::SofteningMohrCoulomb(match rate {
                     Some(rate) => law.at_rate(rate),
@@ -180,7 +180,7 @@ impl LawName {
                 }
             }
             Self::Softening => {
-                let decay = record.word("softening").unwrap_or_default();
+                let decay = record.softening.get().unwrap_or_default();
                 let none = Strength::default();
                 Material::SofteningMohrCoulomb(SofteningMohrCoulomb::new(elastic, none, none, 1.0, decay))
             }
@@ -188,13 +188,13 @@ impl LawName {
     }
 }
 
-/// The choices of the tension cut-off of a record, without its numbers; `None` without a cut-off.
-fn tension(record: &Record) -> Option<TensileStrength> {
-    record.gives("tensile_strength").then(|| TensileStrength {
+/// The choices of the tension cut-off of a material, without its numbers; `None` without a cut-off.
+fn tension(record: &MaterialTable) -> Option<TensileStrength> {
+    record.tensile_strength.is_given().then(|| TensileStrength {
         strength: 0.0,
         strain: 0.0,
-        decay: record.word("softening").unwrap_or_default(),
-        is_reduced: record.flag("reduce_tensile_strength").unwrap_or(false),
+        decay: record.softening.get().unwrap_or_default(),
+        is_reduced: record.reduce_tensile_strength.get().unwrap_or(false),
     })
 }
 
@@ -213,3 +213,27 @@ words! { Match {
     Inner = "inner": "Equal strength in triaxial extension. In compression drucker-prager is weaker.",
     PlaneStrain = "plane-strain": "Equal strength in plane strain if ψ = φ'. With less dilation drucker-prager is weaker.",
 } }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document;
+    use crate::record::{self, CaseTable};
+    use crate::report::Report;
+    use crate::source::Source;
+    use crate::words::Word;
+
+    #[test]
+    fn every_parameter_of_a_law_is_a_key_of_the_material() {
+        let source = Source::new("case", "");
+        let mut report = Report::new(&source, &[]);
+        let document = document::parse(&source, &mut report);
+        let material = MaterialTable::from_record(record::read(MaterialTable::TABLE, &document, &mut report));
+        let laws = LawName::WORDS.words().filter_map(LawName::of);
+        let mut names: Vec<&str> = laws.flat_map(|law| [law.keys().0, law.keys().1].concat()).collect();
+        names.sort_unstable();
+        names.dedup();
+        let keys = material.law_keys().map(|key| key.place().name());
+        assert_eq!(names, keys);
+    }
+}

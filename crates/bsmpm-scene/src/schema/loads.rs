@@ -282,6 +282,9 @@ impl PointLoadTable {
 
 /// A table that says how a number varies with depth.
 pub(crate) trait DepthTable {
+    /// The key of the number at a height.
+    fn value(&self) -> &Field<f64>;
+
     /// The number by depth; `None` after an error.
     fn profile(&self) -> Option<Profile>;
 }
@@ -290,6 +293,10 @@ pub(crate) trait DepthTable {
 macro_rules! depth_table {
     ($Table:ident) => {
         impl DepthTable for $Table {
+            fn value(&self) -> &Field<f64> {
+                &self.value
+            }
+
             fn profile(&self) -> Option<Profile> {
                 Some(Profile {
                     value: self.value.get()?,

@@ -7,11 +7,12 @@ use super::loads::{
     ContactTable, FootingTable, InitialTable, PointLoadTable, PrescribedTable, ReductionTable, ShakingTable,
     TractionTable,
 };
+use super::material::MaterialTable;
 use super::output::{CheckTable, HistoryTable, OutputTable, ProfileTable};
 use super::rigid::RigidTable;
 use super::stage::StageTable;
 use super::water::WaterTable;
-use super::{Dimension as In, Kind, Range, Table, material};
+use super::{Dimension as In, Kind, Range, Table};
 use crate::document::DocumentTable;
 use crate::record::{self, CaseTable};
 use crate::report::Report;
@@ -41,7 +42,7 @@ table! {
         /// The grid of B-splines.
         grid: Table(GridTable), Required, example(r#"{ lower = [0.0, 0.0], upper = [40.0, 12.0], cell = "0.5 m" }"#);
         /// Materials, each with a name.
-        material: UntypedNamed(material::MATERIAL), Required,
+        material: Named(MaterialTable), Required,
             example(r#"{ clay = { model = "tresca", young = "10 MPa", poisson = 0.49, cohesion = "30 kPa" } }"#);
         /// Bodies of soil, which are filled with material points.
         body: Tables(BodyTable), Required,

@@ -18,9 +18,9 @@ use self::retention::retention;
 use super::site::AroundStrip;
 use crate::case::{ActiveLoads, Flow, NamedMaterial, Stage};
 use crate::constants::STANDARD_GRAVITY;
-use crate::record::{CaseTable, Record};
+use crate::record::{CaseTable, KeyPlace};
 use crate::report::Report;
-use crate::schema::Draft;
+use crate::schema::{Draft, MaterialTable};
 use crate::words::{AnalysisType, Drainage};
 use bsmpm::field::pore_water::flow::{Motion, Soil};
 use bsmpm::model::Regime;
@@ -33,9 +33,9 @@ const WITHOUT_FLOW: &str = "E0501: no material has pore-water flow, so this entr
                             `drainage = \"coupled\"`, `porosity` and `permeability`, or remove this entry.";
 
 /// Drainage that the case gives a material.
-fn drainage(draft: &Draft, material: &Record) -> Option<Drainage> {
-    if material.gives("drainage") {
-        return material.word("drainage");
+fn drainage(draft: &Draft, material: &MaterialTable) -> Option<Drainage> {
+    if material.drainage.is_given() {
+        return material.drainage.get();
     }
     match draft.water.value() {
         Some(water) if water.drainage.is_given() => water.drainage.get(),
@@ -155,34 +155,41 @@ fn unit_weight(draft: &Draft) -> Option<f64> {
 }
 
 /// What a material is to water; the outer option is `None` after an error.
-fn soil(draft: &Draft, record: &Record, report: &mut Report<'_>) -> Option<Option<Soil<3>>> {
-    const FLOWING: [&str; 4] = ["porosity", "permeability", "permeability_law", "retention"];
+fn soil(draft: &Draft, record: &MaterialTable, report: &mut Report<'_>) -> Option<Option<Soil<3>>> {
+    let flowing: [&KeyPlace; 4] = [
+        &record.porosity,
+        &record.permeability,
+        &record.permeability_law,
+        &record.retention,
+    ];
     let drainage = drainage(draft, record)?;
-    let needs: &[&str] = match drainage {
-        Drainage::Given => &[],
-        Drainage::Undrained => &FLOWING[..1],
-        Drainage::Coupled => &FLOWING[..2],
+    let needs = match drainage {
+        Drainage::Given => &flowing[..0],
+        Drainage::Undrained => &flowing[..1],
+        Drainage::Coupled => &flowing[..2],
     };
     let known = if drainage == Drainage::Coupled {
-        FLOWING.len()
+        flowing.len()
     } else {
         needs.len()
     };
     let mut failed = false;
-    for key in needs.iter().filter(|key| !record.gives(key)) {
+    for key in needs.iter().filter(|key| !key.is_given()) {
         let message = format!(
-            "E0505: `{key}` is missing, but drainage = \"{drainage}\" requires it. Add `{key}`, or change \
-             `drainage`."
+            "E0505: `{0}` is missing, but drainage = \"{drainage}\" requires it. Add `{0}`, or change \
+             `drainage`.",
+            key.name()
         );
-        report.error(record.origin, &record.path_of(key), message);
+        key.error(message, report);
         failed = true;
     }
-    for key in FLOWING[known..].iter().filter(|key| record.gives(key)) {
+    for key in flowing[known..].iter().filter(|key| key.is_given()) {
         let message = format!(
-            "E0506: `{key}` has no effect with drainage = \"{drainage}\". Set drainage = \"coupled\" for pore-water \
-             flow, or remove `{key}`."
+            "E0506: `{0}` has no effect with drainage = \"{drainage}\". Set drainage = \"coupled\" for pore-water \
+             flow, or remove `{0}`.",
+            key.name()
         );
-        record.error(key, message, report);
+        key.error(message, report);
         failed = true;
     }
     if failed {
@@ -191,8 +198,8 @@ fn soil(draft: &Draft, record: &Record, report: &mut Report<'_>) -> Option<Optio
     if drainage == Drainage::Given {
         return Some(None);
     }
-    let porosity = record.number("porosity")?;
-    let retention = match record.record("retention") {
+    let porosity = record.porosity.get()?;
+    let retention = match record.retention.value() {
         Some(of) => Some(retention(of, report)?),
         None => None,
     };

@@ -1,10 +1,9 @@
 //! Validates the initial stress.
 
-use super::material::profile;
 use crate::case::{Body, Case, Gravity, Initial, NamedMaterial};
-use crate::record::{CaseTable, Record};
+use crate::record::CaseTable;
 use crate::report::Report;
-use crate::schema::{Draft, InitialTable, LawName};
+use crate::schema::{Draft, InitialTable, LawName, MaterialTable};
 use crate::words::{Geometry, Settled, Start};
 use bsmpm::model::Regime;
 
@@ -28,12 +27,12 @@ pub(super) fn initial(
             false => ("the case has no [initial]", "add a table [initial]"),
         };
         for (_, material) in draft.material.items() {
-            let key = ["k0", "ocr"]
-                .into_iter()
-                .find(|key| material.gives(key) && (*key == "k0" || is_of_k0(material)));
-            if let Some(key) = key {
-                let message = format!("E0405: `{key}` has no effect, because {what}. Delete `{key}`, or {instead}.");
-                material.error(key, message, report);
+            let ocr = is_of_k0(material).then_some(&material.ocr);
+            let k0 = Some(&material.k0).filter(|k0| k0.is_given());
+            if let Some(key) = k0.or(ocr) {
+                let name = key.name();
+                let message = format!("E0405: `{name}` has no effect, because {what}. Delete `{name}`, or {instead}.");
+                key.error(message, report);
             }
         }
     }
@@ -111,34 +110,34 @@ pub(super) fn settles(draft: &Draft) -> bool {
 }
 
 /// Whether a material's ocr stands for its k0: not that of Cam-clay, which is of its yield surface.
-fn is_of_k0(material: &Record) -> bool {
-    material.gives("ocr") && material.word("model") != Some(LawName::CamClay)
+fn is_of_k0(material: &MaterialTable) -> bool {
+    material.ocr.is_given() && material.model.get() != Some(LawName::CamClay)
 }
 
 /// K0 = (1 - sin φ) OCR^sin φ (Mayne and Kulhawy, 1982), below passive pressure.
-fn overconsolidated(material: &Record, report: &mut Report<'_>) -> Option<f64> {
-    let ocr = material.number("ocr")?;
-    let friction = profile(material, "friction_angle")?;
+fn overconsolidated(material: &MaterialTable, report: &mut Report<'_>) -> Option<f64> {
+    let ocr = material.ocr.get()?;
+    let friction = material.friction_angle.profile()?;
     if friction.per_metre != 0.0 {
         let message = "E0410: k0 from `ocr` depends on the friction angle, which varies with depth here, but a \
              material has one k0. Give `k0`, or divide the soil into layers with a constant friction angle.";
-        material.error("ocr", message, report);
+        material.ocr.error(message, report);
         return None;
     }
     let sine = friction.value.to_radians().sin();
     let k0 = (1.0 - sine) * ocr.powf(sine);
     let passive = (1.0 + sine) / (1.0 - sine);
-    let cohesion = profile(material, "cohesion")?;
+    let cohesion = material.cohesion.profile()?;
     if k0 > passive && cohesion.value == 0.0 && cohesion.per_metre == 0.0 {
         let message = format!(
             "E0411: `ocr` = {ocr} gives k0 = {k0:.4}, above the passive limit Kp = {passive:.4}, so the soil would \
              fail at the start. Reduce `ocr`."
         );
-        material.error("ocr", message, report);
+        material.ocr.error(message, report);
         return None;
     }
     let reason = format!("from ocr = {ocr}: k0 = (1 - sin(phi)) ocr^sin(phi) (Mayne and Kulhawy, 1982)");
-    report.note(material.path_of("k0"), format!("{k0}"), reason);
+    report.note(material.k0.path(), format!("{k0}"), reason);
     Some(k0)
 }
 
@@ -150,14 +149,13 @@ fn at_rest(draft: &Draft, record: &InitialTable, bodies: &[Body], report: &mut R
     let named = draft.material.items();
     let mut found = Vec::with_capacity(named.len());
     for (number, (name, material)) in named.iter().enumerate() {
-        let own = match material.gives("k0") {
-            true => Some(material.number("k0")?),
+        let own = match material.k0.is_given() {
+            true => Some(material.k0.get()?),
             false if is_of_k0(material) => Some(overconsolidated(material, report)?),
             false => record.k0.get(),
         };
-        if material.gives("k0") && is_of_k0(material) {
-            material.error(
-                "ocr",
+        if material.k0.is_given() && is_of_k0(material) {
+            material.ocr.error(
                 "E0412: `ocr` and `k0` are both given, but `ocr` already determines k0. Delete one of the two.",
                 report,
             );

@@ -118,7 +118,7 @@ fn undrained_with_friction<'a>(case: &Case, draft: &'a Draft) -> Option<&'a str>
     for (number, ((name, of), soil)) in draft.material.items().iter().zip(soils).enumerate() {
         let is_made = case.bodies.iter().any(|body| body.material == number);
         let is_undrained = soil.as_ref().is_some_and(|soil| soil.permeability.is_none());
-        let has_friction = of.number("friction_angle").is_some_and(|friction| friction > 0.0);
+        let has_friction = of.friction_angle.plain().is_some_and(|friction| friction > 0.0);
         if is_made && is_undrained && has_friction {
             return Some(name);
         }

@@ -9,9 +9,9 @@ use super::{limit_load, reduction};
 use crate::case::{Body, NamedMaterial, Stage};
 use crate::constants::STANDARD_GRAVITY;
 use crate::grid::GridSpec;
-use crate::record::Record;
+use crate::record::{CaseTable, KeyPlace};
 use crate::report::Report;
-use crate::schema::{Draft, LawName, Range, SupportTable};
+use crate::schema::{Draft, LawName, MaterialTable, Range, SupportTable};
 use crate::words::{Geometry, Side};
 use bsmpm::material::{LayeredMaterial, Profile};
 use bsmpm::model::Regime;
@@ -105,24 +105,20 @@ fn has_friction(draft: &Draft) -> bool {
 fn read(
     number: usize,
     name: &str,
-    record: &Record,
+    record: &MaterialTable,
     around: CaseFacts<'_>,
     report: &mut Report<'_>,
 ) -> Option<NamedMaterial> {
     let density = density(record, around.regime, report);
     let saturated = density.and_then(|density| saturated(record, density, report));
-    let ratio = if record.gives("ru") {
-        record.number("ru")
-    } else {
-        Some(0.0)
-    };
+    let ratio = record.ru.if_given().map(Option::unwrap_or_default);
     let layer = Layer::of(number, around);
     let law = law(record, layer.as_ref(), around.grid, around.geometry, report);
     let retardation = retardation(record, around.regime, report);
-    let young = profile(record, "young");
-    let poisson = record.number("poisson");
+    let young = record.young.profile();
+    let poisson = record.poisson.get();
     if let (Some(young), Some(layer)) = (&young, &layer) {
-        layer.check(record, "young", &Range::POSITIVE, young, report);
+        layer.check(&record.young, &Range::POSITIVE, young, report);
     }
     warn_of_stiffness(record, young.map(|young| young.value), poisson, report);
     let Reduction {
@@ -160,17 +156,17 @@ fn read(
 }
 
 /// Refuses a reduced strength of clay whose yield surface follows from its `ocr`.
-fn refuse_reduced_yield(record: &Record, reduction: Reduction, report: &mut Report<'_>) {
-    let of_yield = record.gives("ocr") && record.word("model") == Some(LawName::CamClay);
+fn refuse_reduced_yield(record: &MaterialTable, reduction: Reduction, report: &mut Report<'_>) {
+    let of_yield = record.ocr.is_given() && record.model.get() == Some(LawName::CamClay);
     if reduction.factor != 1.0 && !reduction.elastic && of_yield {
         let message = "E0312: `ocr` sets the yield surface relative to the initial stress, so a lower strength \
              (strength_reduction.factor) would enlarge it. Give `preconsolidation` instead of `ocr`.";
-        record.error("ocr", message, report);
+        record.ocr.error(message, report);
     }
 }
 
 /// Notes a changed stiffness, and strength that is left out.
-fn note_stiffness(record: &Record, reduction: Reduction, report: &mut Report<'_>) {
+fn note_stiffness(record: &MaterialTable, reduction: Reduction, report: &mut Report<'_>) {
     let Reduction { elastic, stiffness, .. } = reduction;
     if elastic || stiffness != 1.0 {
         let value = format!("young x {stiffness}{}", if elastic { ", elastic" } else { "" });
@@ -179,7 +175,7 @@ fn note_stiffness(record: &Record, reduction: Reduction, report: &mut Report<'_>
         } else {
             "strength_reduction.elastic and .stiffness"
         };
-        report.note(&record.path, value, reason);
+        report.note(&record.location().path, value, reason);
     }
 }
 
@@ -214,7 +210,7 @@ impl Layer {
     }
 
     /// Reports a parameter that varies with height and leaves its range; a constant has been compared with it before.
-    fn check(&self, record: &Record, key: &str, range: &Range, profile: &Profile, report: &mut Report<'_>) {
+    fn check(&self, key: &KeyPlace, range: &Range, profile: &Profile, report: &mut Report<'_>) {
         if profile.per_metre == 0.0 && range.contains(profile.value) {
             return;
         }
@@ -224,29 +220,23 @@ impl Layer {
                 let message = format!(
                     "E0303: the value at y = {y} m, inside a body of this material, is {value} (allowed: {}). \
                      Correct `value` or `per_metre` of this parameter.",
-                    range.condition(key)
+                    range.condition(key.name())
                 );
-                record.error(key, message, report);
+                key.error(message, report);
                 return;
             }
         }
     }
 }
 
-/// The parameter in its own unit (degrees for angles) by the height in the case's coordinates.
-pub(super) fn profile(record: &Record, key: &str) -> Option<Profile> {
-    let Some(table) = record.record(key) else {
-        return record.number(key).map(Profile::constant);
-    };
-    Some(Profile {
-        value: table.number("value")?,
-        at: table.number("at_y")?,
-        per_metre: table.number("per_metre")?,
-    })
-}
-
 /// Notes the reduced strength, at the lowest and the highest place if it differs there.
-fn note_reduction(record: &Record, material: &LayeredMaterial, layer: &Layer, factor: f64, report: &mut Report<'_>) {
+fn note_reduction(
+    record: &MaterialTable,
+    material: &LayeredMaterial,
+    layer: &Layer,
+    factor: f64,
+    report: &mut Report<'_>,
+) {
     let low = parameters_at(material, layer.heights.start - layer.base);
     let high = parameters_at(material, layer.heights.end - layer.base);
     if low.is_empty() {
@@ -260,7 +250,11 @@ fn note_reduction(record: &Record, material: &LayeredMaterial, layer: &Layer, fa
             layer.heights.start, layer.heights.end
         )
     };
-    report.note(&record.path, value, format!("strength_reduction.factor = {factor}"));
+    report.note(
+        &record.location().path,
+        value,
+        format!("strength_reduction.factor = {factor}"),
+    );
 }
 
 /// The parameters of a material at a height (m, above the grid's base) in words.
@@ -275,31 +269,27 @@ fn parameters_at(material: &LayeredMaterial, height: f64) -> String {
 }
 
 /// kg/m3; the outer option is `None` after an error.
-fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<Option<f64>> {
-    let density = match (record.gives("unit_weight"), record.gives("density")) {
+fn density(record: &MaterialTable, regime: Option<Regime>, report: &mut Report<'_>) -> Option<Option<f64>> {
+    let density = match (record.unit_weight.is_given(), record.density.is_given()) {
         (true, _) => {
-            let density = record.number("unit_weight")? / STANDARD_GRAVITY;
-            report.note(
-                record.path_of("density"),
-                format!("{density}"),
-                "unit_weight / 9.81 m/s2",
-            );
+            let density = record.unit_weight.get()? / STANDARD_GRAVITY;
+            report.note(record.density.path(), format!("{density}"), "unit_weight / 9.81 m/s2");
             density
         }
-        (_, true) => record.number("density")?,
+        (_, true) => record.density.get()?,
         _ if regime == Some(Regime::Dynamic) => {
             let message = "E0310: a dynamic analysis needs the mass of the material. Add `unit_weight` or `density`.";
-            report.error(record.origin, &record.path, message);
+            record.location().error(message, report);
             return None;
         }
         _ => return Some(None),
     };
-    let has_unit = record.has_unit("unit_weight") || record.has_unit("density");
+    let has_unit = record.unit_weight.has_unit() || record.density.has_unit();
     if !has_unit && !(100.0..=30_000.0).contains(&density) {
         report.warn(format!(
             "W0108: {}: a density of {density:.3} kg/m3 (unit weight {:.3} kN/m3) is unusual: soil and rock have 5 to \
              30 kN/m3. Check the value, and write its unit, such as unit_weight = \"20 kN/m3\".",
-            record.path,
+            record.location().path,
             density * STANDARD_GRAVITY * 1e-3
         ));
     }
@@ -307,17 +297,17 @@ fn density(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> 
 }
 
 /// kg/m3  of a material below the water table; the outer option is `None` after an error.
-fn saturated(record: &Record, density: Option<f64>, report: &mut Report<'_>) -> Option<Option<f64>> {
-    const KEY: &str = "saturated_unit_weight";
-    if !record.gives(KEY) {
+fn saturated(record: &MaterialTable, density: Option<f64>, report: &mut Report<'_>) -> Option<Option<f64>> {
+    let key = &record.saturated_unit_weight;
+    let Some(unit_weight) = key.if_given()? else {
         return Some(None);
-    }
-    let saturated = record.number(KEY)? / STANDARD_GRAVITY;
+    };
+    let saturated = unit_weight / STANDARD_GRAVITY;
     match density {
         None => {
             let message = "E0310: `saturated_unit_weight` is given, but not the unit weight above the water table. Add \
                  `unit_weight` or `density`.";
-            record.error(KEY, message, report);
+            key.error(message, report);
         }
         Some(dry) if saturated < dry => {
             let [wet, dry] = [saturated, dry].map(|density| density * STANDARD_GRAVITY * 1e-3);
@@ -325,12 +315,12 @@ fn saturated(record: &Record, density: Option<f64>, report: &mut Report<'_>) -> 
                 "E0309: the saturated unit weight ({wet:.6} kN/m3) is below the unit weight above the water table \
                  ({dry:.6} kN/m3). Correct one of the two unit weights."
             );
-            record.error(KEY, message, report);
+            key.error(message, report);
         }
         Some(_) => {}
     }
     report.note(
-        record.path_of("saturated density"),
+        format!("{}.saturated density", record.location().path),
         format!("{saturated}"),
         "saturated_unit_weight / 9.81 m/s2",
     );
@@ -338,20 +328,20 @@ fn saturated(record: &Record, density: Option<f64>, report: &mut Report<'_>) -> 
 }
 
 /// s  of its damping, 0 without; `None` after an error.
-fn retardation(record: &Record, regime: Option<Regime>, report: &mut Report<'_>) -> Option<f64> {
-    let Some(damping) = record.record("damping") else {
+fn retardation(record: &MaterialTable, regime: Option<Regime>, report: &mut Report<'_>) -> Option<f64> {
+    let Some(damping) = record.damping.value() else {
         return Some(0.0);
     };
     if regime == Some(Regime::QuasiStatic) {
         let message = "E0311: a quasi-static analysis has no velocities, so damping cannot act. Remove `damping`, or \
                        use analysis.type = \"dynamic\".";
-        record.error("damping", message, report);
+        record.damping.error(message, report);
     }
-    let ratio = damping.number("ratio")?;
-    let frequency = damping.number("frequency")?;
+    let ratio = damping.ratio.get()?;
+    let frequency = damping.frequency.get()?;
     let time = ratio / (std::f64::consts::PI * frequency);
     report.note(
-        &damping.path,
+        &damping.location().path,
         format!("retardation time {time:.6} s"),
         "ratio/(pi frequency)",
     );
@@ -363,26 +353,26 @@ const STIFF: f64 = 0.4999;
 /// Poisson's ratio from which a material that yields is: Tresca's footing takes three times the iterations there.
 const STIFF_TO_FLOW: f64 = 0.499;
 
-fn warn_of_stiffness(record: &Record, young: Option<f64>, poisson: Option<f64>, report: &mut Report<'_>) {
+fn warn_of_stiffness(record: &MaterialTable, young: Option<f64>, poisson: Option<f64>, report: &mut Report<'_>) {
     // Without a unit it is looked at with the stresses of the case.
-    let least = if record.has_unit("young") { 1e3 } else { 0.0 };
+    let least = if record.young.has_unit() { 1e3 } else { 0.0 };
     if let Some(young) = young.filter(|young| !(least..=1e12).contains(young)) {
         report.warn(format!(
             "W0302: {}: a Young's modulus of {} kPa is unusual (usual: 1 kPa to 1000 GPa). Check the unit of \
              `young`.",
-            record.path,
+            record.location().path,
             young * 1e-3
         ));
     }
-    let Some(model) = record.word::<LawName>("model") else {
+    let Some(model) = record.model.get() else {
         return;
     };
     let poisson = poisson.filter(|of| *of > STIFF || model != LawName::Hencky && *of >= STIFF_TO_FLOW);
     let Some(poisson) = poisson else { return };
     let by_itself =
-        [LawName::SensitiveClay, LawName::MuI, LawName::CamClay].contains(&model) || record.gives("drainage");
+        [LawName::SensitiveClay, LawName::MuI, LawName::CamClay].contains(&model) || record.drainage.is_given();
     let instead = young.filter(|_| !by_itself).map(|young| as_undrained(young, poisson));
-    let path = &record.path;
+    let path = &record.location().path;
     report.warn(match instead {
         Some((young, bulk)) => format!(
             "W0303: {path}: poisson = {poisson} makes pressures oscillate. Set drainage = \"undrained\", young = \

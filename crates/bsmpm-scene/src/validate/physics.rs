@@ -7,7 +7,7 @@ use super::strip::{moves, with_body};
 use crate::case::{ActiveLoads, Base, Body, Case, Geometry, Initial, Site, Support};
 use crate::constants::NEARLY_INCOMPRESSIBLE;
 use crate::observables::{HistorySubject, Observable};
-use crate::record::CaseTable;
+use crate::record::{CaseTable, KeyPlace};
 use crate::report::Report;
 use crate::schema::{Draft, SupportTable};
 use crate::words::{AnalysisType, Side, Word};
@@ -76,13 +76,13 @@ fn stressed(case: &Case, draft: &Draft, report: &mut Report<'_>) {
         if !matches!(case.initial, Some(Initial::AtRest(_))) {
             let message = "E0318: the stiffness of this model depends on the stress, so the case needs initial \
                  stresses. Add [initial] with `k0`. Do not give initial.gravity, which starts from zero stress.";
-            written.error("model", message, report);
+            written.model.error(message, report);
         } else if named.density.is_none() {
             let message = format!(
                 "E0310: material.{name} has no weight, so its initial stress and its stiffness would be zero. Add \
                  `unit_weight` or `density`."
             );
-            report.error(written.origin, &written.path, message);
+            written.location().error(message, report);
         }
     }
 }
@@ -95,7 +95,7 @@ fn timed(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     let named = case.materials.iter().zip(draft.material.items()).enumerate();
     for (_, (named, (_, written))) in named.filter(|(number, _)| case.is_followed(*number)) {
         let kind = case.analysis.kind;
-        let is_of_clay = written.gives("rate_parameter");
+        let is_of_clay = written.rate_parameter.is_given();
         let is_timed = kind == AnalysisType::Dynamic || kind == AnalysisType::InTime && is_of_clay;
         if !is_timed && named.material.with_time_step(1.0).is_some() {
             let message = match (kind, is_of_clay) {
@@ -113,18 +113,22 @@ fn timed(case: &Case, draft: &Draft, report: &mut Report<'_>) {
                      Use analysis.type = \"dynamic\"."
                 }
             };
-            let key = if is_of_clay { "rate_parameter" } else { "model" };
-            written.error(key, message, report);
+            let key: &KeyPlace = match is_of_clay {
+                true => &written.rate_parameter,
+                false => &written.model,
+            };
+            key.error(message, report);
         }
         let slowest = written
-            .number("reference_rate")
+            .reference_rate
+            .get()
             .filter(|_| is_of_clay)
             .map(|rate| rate * case.analysis.dt);
         if let Some(strain) = slowest.filter(|strain| *strain < DIGITS) {
             report.warn(format!(
                 "W0312: {}: the strain of one step at this rate is {strain:.1e} (at least {DIGITS:e}), so the \
                  strength is inaccurate. Increase `reference_rate`, and give the cohesion measured at the new rate.",
-                written.path_of("reference_rate")
+                written.reference_rate.path()
             ));
         }
     }
@@ -383,7 +387,7 @@ pub(super) fn walls(case: &mut Case, draft: &Draft, report: &mut Report<'_>) {
     if records_front && !records_percentile {
         let reason = "a front thinner than a cell runs ahead by 10 to 20 % of the run-out; quantity = \"runout\" with \
                       percentile = 99 is more accurate";
-        report.note("history", Observable::Front.word(), reason);
+        report.note(draft.history.path(), Observable::Front.word(), reason);
     }
     let given = draft
         .analysis

@@ -1,12 +1,9 @@
 //! Validates pore pressure ratios `ru`.
 
 use crate::case::{Case, Support};
-use crate::record::Record;
 use crate::report::Report;
-use crate::schema::Draft;
+use crate::schema::{Draft, MaterialTable};
 use crate::words::{Side, Word};
-
-const KEY: &str = "ru";
 
 /// What only the whole case shows.
 pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
@@ -18,7 +15,7 @@ pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
         report.warn(format!(
             "W0313: {}: no body consists of this material, so `ru` has no effect. Assign the material to a body, or \
              remove the material.",
-            material.path_of(KEY)
+            material.ru.path()
         ));
         return;
     }
@@ -30,13 +27,13 @@ pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
             "E0320: [water] already gives the pore pressure by a water table, so `ru` would define the pore pressure \
              twice. Remove `ru`, or [water]."
         };
-        material.error(KEY, message, report);
+        material.ru.error(message, report);
     }
     refuse_gravity(case, material, report);
     refuse_changes(case, material, report);
     if case.bodies.iter().any(|body| !is_wet(case, body.material)) {
         report.note(
-            material.path_of(KEY),
+            material.ru.path(),
             "this material only",
             "the other materials have no pore pressure",
         );
@@ -45,7 +42,7 @@ pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     warn_of_cubic_splines(case, report);
     if !case.tractions.is_empty() || !case.point_loads.is_empty() {
         report.note(
-            material.path_of(KEY),
+            material.ru.path(),
             "from the weight alone",
             "applied loads are drained and raise no pore pressure",
         );
@@ -58,12 +55,12 @@ fn is_wet(case: &Case, material: usize) -> bool {
 }
 
 /// Refuses a case without gravity, or with one that is not vertical.
-fn refuse_gravity(case: &Case, material: &Record, report: &mut Report<'_>) {
+fn refuse_gravity(case: &Case, material: &MaterialTable, report: &mut Report<'_>) {
     match &case.gravity {
         None => {
             let message = "E0321: `ru` relates the pore pressure to the weight of the soil, but the case has no \
                            gravity. Add [gravity].";
-            material.error(KEY, message, report);
+            material.ru.error(message, report);
         }
         Some(gravity) if !gravity.acts_down(case.grid.dims(), Some(case.analysis.regime)) => {
             let message = format!(
@@ -71,14 +68,14 @@ fn refuse_gravity(case: &Case, material: &Record, report: &mut Report<'_>) {
                  the horizontal components of gravity.acceleration to 0.",
                 &gravity.acceleration[..case.grid.dims()]
             );
-            material.error(KEY, message, report);
+            material.ru.error(message, report);
         }
         Some(_) => {}
     }
 }
 
 /// Refuses what would change the pore pressure in the run: stages, shaking, and boundaries that absorb.
-fn refuse_changes(case: &Case, material: &Record, report: &mut Report<'_>) {
+fn refuse_changes(case: &Case, material: &MaterialTable, report: &mut Report<'_>) {
     let mut bodies = case
         .stages
         .iter()
@@ -87,12 +84,12 @@ fn refuse_changes(case: &Case, material: &Record, report: &mut Report<'_>) {
     if bodies.next().is_some() || exchanges.any(|(from, to)| is_wet(case, *from) || is_wet(case, *to)) {
         let message = "E0322: the pore pressure from `ru` follows from the initial weight, and is wrong after a stage \
              adds, removes or changes soil. Use [water] instead of `ru`, or delete these stages.";
-        material.error(KEY, message, report);
+        material.ru.error(message, report);
     }
     if case.shaking.iter().any(|(_, ground)| *ground != [0.0; 3]) {
         let message = "E0322: the pore pressure from `ru` is constant, but an earthquake would change the pore \
                        pressure. Remove `ru` or [shaking].";
-        material.error(KEY, message, report);
+        material.ru.error(message, report);
     }
     for (side, support) in Side::of(case.geometry)
         .iter()
@@ -105,7 +102,7 @@ fn refuse_changes(case: &Case, material: &Record, report: &mut Report<'_>) {
                 "E0322: the pore pressure from `ru` is not available with an absorbing or free-field boundary, here \
                  `{side}`. Set boundary.{side} = \"fixed\" or \"roller\"."
             );
-            material.error(KEY, message, report);
+            material.ru.error(message, report);
         }
     }
 }

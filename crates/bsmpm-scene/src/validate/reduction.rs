@@ -91,7 +91,7 @@ pub(super) fn at_stage(case: &mut Case, draft: &Draft, report: &mut Report<'_>) 
     rest(case, table, unloaded, report);
     if !case.checks.is_empty() {
         report.note(
-            "check",
+            draft.check.path(),
             "none",
             "strength_reduction.stage: checks apply to the unreduced strength",
         );

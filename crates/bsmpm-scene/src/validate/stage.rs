@@ -222,7 +222,7 @@ fn faces(record: &StageTable, factor: Option<f64>, draft: &Draft, report: &mut R
                            this side from the stage to [boundary].";
             boundary.face(side).error(message, report);
         }
-        let is_wet = draft.water.is_given() || draft.material.items().iter().any(|(_, of)| of.gives("drainage"));
+        let is_wet = draft.water.is_given() || draft.material.items().iter().any(|(_, of)| of.drainage.is_given());
         let is_solid = draft.geometry.get() == Some(Geometry::Solid);
         if support == Support::Absorbing && (side != Side::Bottom || is_wet || is_solid) {
             let message = "E0614: a stage can make a boundary absorbing only at the bottom of a 2-D case without \

@@ -73,10 +73,10 @@ pub(super) fn read(
 /// Refuses unit weights of soil below the water table in a case without one.
 fn refuse_saturated_weights(draft: &Draft, report: &mut Report<'_>) {
     for (_, material) in draft.material.items() {
-        if material.gives("saturated_unit_weight") {
+        if material.saturated_unit_weight.is_given() {
             let message = "E0520: `saturated_unit_weight` has no effect, because the case has no water table. \
                            Give `water.level`, or remove `saturated_unit_weight`.";
-            material.error("saturated_unit_weight", message, report);
+            material.saturated_unit_weight.error(message, report);
         }
     }
 }
@@ -250,7 +250,7 @@ pub(super) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     }
     if !case.tractions.is_empty() || !case.point_loads.is_empty() {
         let reason = "water pressure on submerged surfaces is applied automatically; do not include it in the loads";
-        report.note("water", "in addition to loads", reason);
+        report.note(draft.water.path(), "in addition to loads", reason);
     }
     let mut added = case.stages.iter().flat_map(|stage| &stage.add);
     let is_wetted = added.any(|body| case.materials[case.bodies[*body].material].saturated.is_some());
@@ -283,12 +283,10 @@ fn floating(case: &Case, water: &Water, draft: &Draft, report: &mut Report<'_>) 
                  kN/m3), so the soil would float. Set `saturated_unit_weight`, for example to \"20 kN/m3\".",
                 water.unit_weight * 1e-3
             );
-            let key = ["saturated_unit_weight", "unit_weight", "density"]
-                .into_iter()
-                .find(|key| written.gives(key));
-            match key {
-                Some(key) => written.error(key, message, report),
-                None => report.error(written.origin, &written.path, message),
+            let keys = [&written.saturated_unit_weight, &written.unit_weight, &written.density];
+            match keys.into_iter().find(|key| key.is_given()) {
+                Some(key) => key.error(message, report),
+                None => written.location().error(message, report),
             }
         }
     }

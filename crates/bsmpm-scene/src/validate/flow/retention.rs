@@ -1,37 +1,35 @@
 //! Validates the retention curve of a soil.
 
-use crate::record::Record;
+use crate::record::{Field, ListRow};
 use crate::report::Report;
+use crate::schema::RetentionTable;
 use crate::validate::course::increasing;
 use bsmpm::field::pore_water::retention::{Curve, MeasuredCurve, Retention};
 
 /// How much water a soil keeps under suction.
-pub(super) fn retention(of: &Record, report: &mut Report<'_>) -> Option<Retention> {
-    let residual = of.number("residual")?;
-    if !of.gives("curve") {
-        if !of.gives("n") {
+pub(super) fn retention(of: &RetentionTable, report: &mut Report<'_>) -> Option<Retention> {
+    let residual = of.residual.get()?;
+    if !of.curve.is_given() {
+        if !of.n.is_given() {
             let message = "E0507: `alpha` of van Genuchten's curve requires `n`, which is missing. Add `n`, or give a \
                            measured `curve` instead.";
-            of.error("alpha", message, report);
+            of.alpha.error(message, report);
             return None;
         }
-        return Some(Retention::van_genuchten(of.number("alpha")?, of.number("n")?, residual));
+        return Some(Retention::van_genuchten(of.alpha.get()?, of.n.get()?, residual));
     }
-    if of.gives("n") {
+    if of.n.is_given() {
         let message = "E0508: `n` has no effect with a measured `curve`. Remove `n`, or replace `curve` by `alpha`.";
-        of.error("n", message, report);
+        of.n.error(message, report);
         return None;
     }
-    let rows = measured(of, residual, report)?;
+    let rows = measured(&of.curve, residual, report)?;
     Some(Retention::new(Curve::Measured(MeasuredCurve::new(rows)), residual))
 }
 
 /// Rows of a measured curve: suction head, effective saturation, relative permeability.
-fn measured(of: &Record, residual: f64, report: &mut Report<'_>) -> Option<Vec<[f64; 3]>> {
-    const KEY: &str = "curve";
-    let rows: Vec<[f64; 3]> = increasing(&of.rows_field(KEY), report)?
-        .map(|row| [row[0], row[1], row[2]])
-        .collect();
+fn measured(key: &Field<Vec<ListRow>>, residual: f64, report: &mut Report<'_>) -> Option<Vec<[f64; 3]>> {
+    let rows: Vec<[f64; 3]> = increasing(key, report)?.map(|row| [row[0], row[1], row[2]]).collect();
     let mut pairs = rows.windows(2);
     let last = rows[rows.len() - 1];
     let wrong = if rows[0] != [0.0, 1.0, 1.0] {
@@ -61,7 +59,7 @@ fn measured(of: &Record, residual: f64, report: &mut Report<'_>) -> Option<Vec<[
         None
     };
     if let Some(message) = wrong {
-        of.error(KEY, message, report);
+        key.error(message, report);
         return None;
     }
     Some(

@@ -186,7 +186,7 @@ fn of_soils(case: &Case, flow: &Flow, draft: &Draft, report: &mut Report<'_>) {
         .enumerate()
         .filter(|(number, _)| case.bodies.iter().any(|body| body.material == *number));
     for (number, (name, record)) in named {
-        let Some(law) = record.word::<LawName>("model") else {
+        let Some(law) = record.model.get() else {
             continue;
         };
         if flow.soils[number].is_none() && !drains_where_they_meet(case, flow, number) {
@@ -198,16 +198,16 @@ fn of_soils(case: &Case, flow: &Flow, draft: &Draft, report: &mut Report<'_>) {
         let is_excluded = matches!(law, LawName::SensitiveClay | LawName::MuI | LawName::CamClay);
         if is_excluded {
             let instead = "Use another model for this soil, for example \"mohr-coulomb\".";
-            record.error("model", not_available(&format!("the model \"{law}\""), instead), report);
+            record
+                .model
+                .error(not_available(&format!("the model \"{law}\""), instead), report);
         }
     }
     for (_, record) in draft.material.items() {
-        if record.word::<bsmpm::material::Separation>("separation") == Some(bsmpm::material::Separation::Closing) {
-            record.error(
-                "separation",
-                not_available("separation = \"gap\"", "Remove `separation`."),
-                report,
-            );
+        if record.separation.get() == Some(bsmpm::material::Separation::Closing) {
+            record
+                .separation
+                .error(not_available("separation = \"gap\"", "Remove `separation`."), report);
         }
     }
 }

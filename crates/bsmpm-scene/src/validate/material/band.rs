@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Geometry, Site};
 use crate::grid::GridSpec;
-use crate::record::Record;
+use crate::record::KeyPlace;
 use crate::report::Report;
 use crate::schema::Draft;
 use crate::validate::SQUARE;
@@ -20,21 +20,17 @@ pub(super) const CELLS_OF_BAND: f64 = 2.0;
 
 /// Width of a band of cells in which strain localises, m; `None` after the error that cells have different sizes, which
 /// belongs to the `key`.
-pub(super) fn band_of_cells(
-    record: &Record,
-    key: &str,
-    grid: Option<&GridSpec>,
-    report: &mut Report<'_>,
-) -> Option<f64> {
+pub(super) fn band_of_cells(key: &KeyPlace, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<f64> {
     let axes = &grid?.axes;
     let shortest = axes.iter().map(GridAxis::shortest).fold(f64::INFINITY, f64::min);
     let longest = axes.iter().map(GridAxis::longest).fold(0.0, f64::max);
     if longest > SQUARE * shortest {
         let message = format!(
-            "E0316: `{key}` needs cells of equal size, but the cells of the grid are {shortest} to {longest} m \
-             long. Set `grid.cell` to one number, or remove `{key}`."
+            "E0316: `{0}` needs cells of equal size, but the cells of the grid are {shortest} to {longest} m \
+             long. Set `grid.cell` to one number, or remove `{0}`.",
+            key.name()
         );
-        record.error(key, message, report);
+        key.error(message, report);
         return None;
     }
     Some(CELLS_OF_BAND * longest)
@@ -43,7 +39,7 @@ pub(super) fn band_of_cells(
 /// Warns of every material with a `band_width` outside of what was verified.
 pub(in crate::validate) fn check(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     for (number, (_, record)) in draft.material.items().iter().enumerate() {
-        let is_used = record.gives("band_width") && case.is_followed(number);
+        let is_used = record.band_width.is_given() && case.is_followed(number);
         if !is_used || !falls(&case.materials[number].material) {
             continue;
         }
@@ -55,7 +51,7 @@ pub(in crate::validate) fn check(case: &Case, draft: &Draft, report: &mut Report
             report.warn(format!(
                 "W0304: {}: the scaling of softening by `band_width` is not verified {}, so the soil may soften too \
                  fast or too slowly. Compare the results of two cell sizes.",
-                record.path_of("band_width"),
+                record.band_width.path(),
                 settings.join(" and ")
             ));
         }

@@ -2,38 +2,43 @@
 
 use super::band::{CELLS_OF_BAND, band_of_cells};
 use super::parameters::{KeyProfile, Parameters};
-use super::{Layer, cut_off, profile};
+use super::{Layer, cut_off};
 use crate::grid::GridSpec;
-use crate::record::Record;
+use crate::record::{CaseTable, Field};
 use crate::report::Report;
-use crate::schema::{Kind, LawName, MATERIAL};
-use crate::words::{Geometry, Word};
+use crate::schema::{Kind, LawKey, LawName, MaterialTable};
+use crate::words::Geometry;
 use bsmpm::material::{CamClay, Decay, Elastic, LayeredMaterial, Match, Material, Profile, Separation};
 
+/// The keys that Tresca's law has not, but that may be written if they are zero.
+const TRESCA_ANGLES: [&str; 2] = ["friction_angle", "dilation_angle"];
+
 /// The law of a material; `None` after an error.
-pub(super) fn law(
-    record: &Record,
+pub(super) fn law<'a>(
+    record: &'a MaterialTable,
     layer: Option<&Layer>,
     grid: Option<&GridSpec>,
     geometry: Option<Geometry>,
     report: &mut Report<'_>,
-) -> Option<Parameters> {
-    let model: LawName = record.word("model")?;
+) -> Option<Parameters<'a>> {
+    let model = record.model.get()?;
     if !has_its_keys(record, model, report) {
         return None;
     }
     let (required, known) = model.keys();
     let mut values = Vec::new();
-    for &key in required.iter().chain(known).filter(|key| record.gives(key)) {
-        let (profile, range) = match MATERIAL.key(key).map(|key| &key.kind) {
-            Some(Kind::Profile(_, range, _)) => (profile(record, key)?, range),
-            Some(Kind::Quantity(_, range)) => (Profile::constant(record.number(key)?), range),
+    let keys = required.iter().chain(known).filter_map(|name| record.law_key(name));
+    for key in keys.filter(|key| key.place().is_given()) {
+        let name = key.place().name();
+        let range = match MaterialTable::TABLE.key(name).map(|key| &key.kind) {
+            Some(Kind::Profile(_, range, _) | Kind::Quantity(_, range)) => range,
             _ => continue,
         };
+        let profile = key.profile()?;
         if let Some(layer) = layer {
-            layer.check(record, key, range, &profile, report);
+            layer.check(key.place(), range, &profile, report);
         }
-        values.push(KeyProfile { key, profile });
+        values.push(KeyProfile { key: name, profile });
     }
     if model == LawName::CamClay {
         star(record, &mut values, report)?;
@@ -44,13 +49,15 @@ pub(super) fn law(
     }
     check(record, &parameters, layer, report)?;
     warn_of_match(record, &parameters, geometry, report);
-    let [slow, fast] = ["mu_s", "mu_2"].map(|key| parameters.of(key).value);
-    if model == LawName::MuI && slow > fast {
+    if model == LawName::MuI
+        && let Some((slow, fast)) = record.mu_s.get().zip(record.mu_2.get())
+        && slow > fast
+    {
         let message = format!(
             "E0306: the friction coefficient at large shear rates, mu_2 = {fast}, is smaller than the static one, \
              mu_s = {slow}. Set `mu_2` to at least `mu_s`."
         );
-        record.error("mu_2", message, report);
+        record.mu_2.error(message, report);
         return None;
     }
     if model == LawName::CamClay {
@@ -66,25 +73,33 @@ pub(super) fn law(
 }
 
 /// Whether a record gives all keys of its model, and none that this has not.
-fn has_its_keys(record: &Record, model: LawName, report: &mut Report<'_>) -> bool {
+fn has_its_keys(record: &MaterialTable, model: LawName, report: &mut Report<'_>) -> bool {
     let (required, known) = model.keys();
     let mut whole = true;
-    let all = all_keys();
-    let unused = all.iter().filter(|key| !required.contains(key) && !known.contains(key));
-    for key in unused.filter(|key| record.gives(key) && !zero_angle(record, model, key)) {
-        let message = format!(
-            "E0304: the model \"{model}\" has no parameter `{key}`. Remove the key, or choose another \
+    for key in record.law_keys() {
+        // Tresca's angles may be written if they are zero.
+        let is_zero_angle = model == LawName::Tresca
+            && TRESCA_ANGLES.contains(&key.place().name())
+            && matches!(key, LawKey::Angle(angle) if angle.plain() == Some(0.0));
+        let key = key.place();
+        let name = key.name();
+        if key.is_given() && !required.contains(&name) && !known.contains(&name) && !is_zero_angle {
+            let message = format!(
+                "E0304: the model \"{model}\" has no parameter `{name}`. Remove the key, or choose another \
                      `model`."
-        );
-        record.error(key, message, report);
-        whole = false;
+            );
+            key.error(message, report);
+            whole = false;
+        }
     }
-    for key in required.iter().filter(|key| !record.gives(key)) {
+    let needed = required.iter().filter_map(|name| record.law_key(name));
+    for key in needed.map(LawKey::place).filter(|key| !key.is_given()) {
         let message = format!(
-            "E0305: the model \"{model}\" needs the parameter `{key}`, which is missing. Add \
-                               `{key}`."
+            "E0305: the model \"{model}\" needs the parameter `{0}`, which is missing. Add \
+                               `{0}`.",
+            key.name()
         );
-        report.error(record.origin, &record.path_of(key), message);
+        key.error(message, report);
         whole = false;
     }
     whole
@@ -92,27 +107,27 @@ fn has_its_keys(record: &Record, model: LawName, report: &mut Report<'_>) -> boo
 
 /// Cohesion that falls faster than shear stress does where material unloads: the point has no path, it drops at once.
 /// How fast friction falls depends on the pressure, and is not looked at.
-fn warn_of_collapse(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut Report<'_>) {
-    let Some(young) = profile(record, "young") else { return };
-    let Some(poisson) = record.number("poisson") else {
+fn warn_of_collapse(record: &MaterialTable, law: &Parameters<'_>, layer: Option<&Layer>, report: &mut Report<'_>) {
+    let Some(young) = record.young.profile() else { return };
+    let Some(poisson) = record.poisson.get() else {
         return;
     };
     // An exponential decay begins three times as fast as it goes on the whole.
-    let steepest = if (record.word("softening") == Some(Decay::Exponential)) | (law.model == LawName::SensitiveClay) {
+    let steepest = if (record.softening.get() == Some(Decay::Exponential)) | (law.model == LawName::SensitiveClay) {
         3.0
     } else {
         1.0
     };
-    let strain = law.of("softening_strain").value / steepest;
+    let strain = law.of(record.softening_strain.name()).value / steepest;
     let ends = layer.map_or([0.0, 0.0], |layer| [layer.heights.start, layer.heights.end]);
     for y in ends {
-        let rate = (law.of("cohesion").at(y) - law.of("residual_cohesion").at(y)) / strain;
+        let rate = (record.cohesion.profile_or_zero().at(y) - law.of(record.residual_cohesion.name()).at(y)) / strain;
         let limit = 1.5 * 0.5 * young.at(y) / (1.0 + poisson);
         if rate > limit {
             report.warn(format!(
                 "W0305: {}: the cohesion falls by {rate:.3e} Pa per unit of plastic strain (limit {limit:.3e} Pa), so \
                  it is lost all at once. Increase `softening_strain`, or (with `band_width`) use smaller cells.",
-                record.path
+                record.location().path
             ));
             return;
         }
@@ -121,66 +136,70 @@ fn warn_of_collapse(record: &Record, law: &Parameters, layer: Option<&Layer>, re
 
 /// The numbers of softening that sensitive clay's are (Einav and Randolph, 2005): in shear without change of volume the
 /// largest shear is √3 times the plastic strain that the law has. `None` after an error.
-fn remould(record: &Record, law: &mut Parameters, report: &mut Report<'_>) -> Option<()> {
-    let cohesion = law.of("cohesion");
-    let sensitivity = law.of("sensitivity").value;
+fn remould<'a>(record: &'a MaterialTable, law: &mut Parameters<'a>, report: &mut Report<'_>) -> Option<()> {
+    let cohesion = record.cohesion.profile()?;
+    let sensitivity = record.sensitivity.get()?;
     let remoulded = Profile {
         value: cohesion.value / sensitivity,
         per_metre: cohesion.per_metre / sensitivity,
         ..cohesion
     };
     law.values.push(KeyProfile {
-        key: "residual_cohesion",
+        key: record.residual_cohesion.name(),
         profile: remoulded,
     });
-    let strain = law.values.iter_mut().find(|own| own.key == "softening_strain")?;
+    let mut values = law.values.iter_mut();
+    let strain = values.find(|own| own.key == record.softening_strain.name())?;
     strain.profile.value /= 3.0_f64.sqrt();
-    if record.gives("rate_parameter") != record.gives("reference_rate") {
-        let missing = if record.gives("rate_parameter") {
-            "reference_rate"
-        } else {
-            "rate_parameter"
+    if record.rate_parameter.is_given() != record.reference_rate.is_given() {
+        let missing = match record.rate_parameter.is_given() {
+            true => &record.reference_rate,
+            false => &record.rate_parameter,
         };
         let message = format!(
-            "E0305: a rate-dependent strength needs both `rate_parameter` and `reference_rate`. Add `{missing}`."
+            "E0305: a rate-dependent strength needs both `rate_parameter` and `reference_rate`. Add `{}`.",
+            missing.name()
         );
-        report.error(record.origin, &record.path_of(missing), message);
+        missing.error(message, report);
         return None;
     }
     Some(())
 }
 
 /// The slopes in ln v over ln p', from those in v over ln p' where they are given instead; `None` after an error.
-fn star(record: &Record, values: &mut Vec<KeyProfile>, report: &mut Report<'_>) -> Option<()> {
-    const SLOPES: [[&str; 2]; 2] = [["kappa_star", "kappa"], ["lambda_star", "lambda"]];
-    let of_volume = SLOPES.into_iter().find(|[_, slope]| record.gives(slope));
-    if let Some([_, slope]) = of_volume.filter(|_| !record.gives("void_ratio")) {
+fn star<'a>(record: &'a MaterialTable, values: &mut Vec<KeyProfile<'a>>, report: &mut Report<'_>) -> Option<()> {
+    let slopes = [
+        [&record.kappa_star, &record.kappa],
+        [&record.lambda_star, &record.lambda],
+    ];
+    let of_volume = slopes.iter().find(|[_, slope]| slope.is_given());
+    if let Some([_, slope]) = of_volume.filter(|_| !record.void_ratio.is_given()) {
         let message = "E0314: `kappa` and `lambda`, slopes of the specific volume over ln p', need the initial void \
                        ratio e0. Add `void_ratio`, or give `kappa_star` = kappa/(1 + e0) and `lambda_star` = \
                        lambda/(1 + e0).";
-        record.error(slope, message, report);
+        slope.error(message, report);
         return None;
     }
-    for [starred, slope] in SLOPES {
-        if !record.gives(starred) && !record.gives(slope) {
+    for [starred, slope] in slopes {
+        let key = starred.name();
+        if !starred.is_given() && !slope.is_given() {
             let message = format!(
-                "E0305: the model \"modified-cam-clay\" needs the slope `{starred}`, which is missing. Add \
-                 `{starred}`, or `{slope}` and `void_ratio`."
+                "E0305: the model \"modified-cam-clay\" needs the slope `{key}`, which is missing. Add \
+                 `{key}`, or `{}` and `void_ratio`.",
+                slope.name()
             );
-            report.error(record.origin, &record.path_of(starred), message);
+            starred.error(message, report);
             return None;
         }
-        if record.gives(slope) {
-            let value = record.number(slope)? / (1.0 + record.number("void_ratio")?);
+        if slope.is_given() {
+            let value = slope.get()? / (1.0 + record.void_ratio.get()?);
             report.note(
-                record.path_of(starred),
+                starred.path(),
                 value.to_string(),
-                format!("{slope} / (1 + void_ratio)"),
+                format!("{} / (1 + void_ratio)", slope.name()),
             );
-            values.push(KeyProfile {
-                key: starred,
-                profile: Profile::constant(value),
-            });
+            let profile = Profile::constant(value);
+            values.push(KeyProfile { key, profile });
         }
     }
     Some(())
@@ -188,24 +207,24 @@ fn star(record: &Record, values: &mut Vec<KeyProfile>, report: &mut Report<'_>) 
 
 /// What modified Cam-clay asks for beyond the ranges of its keys, and where its linear moduli hold; `None` after an
 /// error.
-fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) -> Option<()> {
-    let [kappa, lambda] = ["kappa_star", "lambda_star"].map(|key| law.of(key).value);
+fn check_cam_clay(record: &MaterialTable, law: &Parameters<'_>, report: &mut Report<'_>) -> Option<()> {
+    let [kappa, lambda] = [&record.kappa_star, &record.lambda_star].map(|key| law.of(key.name()).value);
     if lambda <= kappa {
         let message = format!(
             "E0307: the slope of the normal compression line (lambda_star = {lambda}) must exceed the slope of the \
              unloading line (kappa_star = {kappa}). Correct `lambda_star` or `kappa_star`."
         );
-        record.error("lambda_star", message, report);
+        record.lambda_star.error(message, report);
         return None;
     }
-    if !record.gives("preconsolidation") && !record.gives("ocr") {
+    if !record.preconsolidation.is_given() && !record.ocr.is_given() {
         let message = "E0305: the model \"modified-cam-clay\" needs the size of its initial yield surface. Add \
                        `preconsolidation` or `ocr`.";
-        report.error(record.origin, &record.path_of("preconsolidation"), message);
+        record.preconsolidation.error(message, report);
         return None;
     }
-    let young = profile(record, "young")?;
-    let poisson = record.number("poisson")?;
+    let young = record.young.profile()?;
+    let poisson = record.poisson.get()?;
     let clay = CamClay::new(
         Elastic {
             young: young.value,
@@ -215,18 +234,18 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
     );
     let at = clay.reference_pressure();
     report.note(
-        &record.path,
+        &record.location().path,
         format!(
             "young and poisson are those at p = {at:.6} Pa; Poisson's ratio is negative below p = {:.6} Pa",
             at * (1.0 - 2.0 * poisson) / (1.0 + poisson)
         ),
         "K = p (1 - kappa*)/kappa*, G constant",
     );
-    if record.number("ocr").is_some_and(|ocr| ocr > 2.0) {
+    if record.ocr.get().is_some_and(|ocr| ocr > 2.0) {
         report.warn(format!(
             "W0306: {}: with ocr above 2 this clay softens and dilates in shear, so results depend on the cell size. \
              Compare the results of two values of `grid.cell`.",
-            record.path
+            record.location().path
         ));
     }
     Some(())
@@ -234,37 +253,45 @@ fn check_cam_clay(record: &Record, law: &Parameters, report: &mut Report<'_>) ->
 
 /// The plastic strain of cells for that of a shear band, so that a band does the same work in any (crack band: Bažant
 /// and Oh, 1983). `None` after an error.
-fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<()> {
-    let falls = ["friction_angle", "cohesion"].map(|key| (law.of(key), law.of(&format!("residual_{key}"))));
-    let falls = falls.into_iter().any(|(first, last)| first.value > last.value);
+fn regularise(
+    record: &MaterialTable,
+    law: &mut Parameters<'_>,
+    grid: Option<&GridSpec>,
+    report: &mut Report<'_>,
+) -> Option<()> {
+    let residual = [record.residual_friction_angle.name(), record.residual_cohesion.name()];
+    let [friction, cohesion] = residual.map(|key| law.of(key).value);
+    let falls =
+        record.friction_angle.profile_or_zero().value > friction || record.cohesion.profile_or_zero().value > cohesion;
     if !falls {
         report.note(
-            &record.path,
+            &record.location().path,
             "hardens",
             "no residual strength is below its peak, so shear bands do not form",
         );
     }
-    let Some(width) = record.number("band_width") else {
+    let Some(width) = record.band_width.get() else {
         if !falls {
             return Some(());
         }
         report.warn(format!(
             "W0307: {}: this material softens, and shear bands are always two cells wide, so results depend on the \
              cell size. Add `band_width` (real width of a band), or compare two cell sizes.",
-            record.path
+            record.location().path
         ));
         return Some(());
     };
-    let smeared = band_of_cells(record, "band_width", grid, report)?;
+    let smeared = band_of_cells(&record.band_width, grid, report)?;
+    let scaled = [&record.softening_strain, &record.reference_rate];
     for KeyProfile { key, profile } in &mut law.values {
-        if !["softening_strain", "reference_rate"].contains(key) {
+        let Some(key) = scaled.iter().find(|scaled| scaled.name() == *key) else {
             continue;
-        }
+        };
         let of_band = profile.value;
         profile.value *= width / smeared;
         if of_band > 0.0 {
             report.note(
-                record.path_of(key),
+                key.path(),
                 profile.value.to_string(),
                 format!(
                     "{of_band} in a band of {width} m, which is {smeared} m wide in cells of {} m",
@@ -276,15 +303,6 @@ fn regularise(record: &Record, law: &mut Parameters, grid: Option<&GridSpec>, re
     Some(())
 }
 
-/// All keys that some laws have and others have not.
-fn all_keys() -> Vec<&'static str> {
-    let laws = LawName::WORDS.words().filter_map(LawName::of);
-    let mut all: Vec<&str> = laws.flat_map(|law| [law.keys().0, law.keys().1].concat()).collect();
-    all.sort_unstable();
-    all.dedup();
-    all
-}
-
 /// The error of a dilation angle above the friction angle, deg.
 fn dilates_too_much(dilation: f64, friction: f64) -> String {
     format!(
@@ -294,26 +312,30 @@ fn dilates_too_much(dilation: f64, friction: f64) -> String {
 }
 
 /// What laws with friction ask for beyond the ranges of their keys; `None` after an error.
-fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<()> {
+fn check(record: &MaterialTable, law: &Parameters<'_>, layer: Option<&Layer>, report: &mut Report<'_>) -> Option<()> {
     if !law.model.keys().0.contains(&"cohesion") {
         return Some(());
     }
-    let friction = law.bounds("friction_angle", layer);
-    let dilation = law.bounds("dilation_angle", layer);
-    let cohesion = law.bounds("cohesion", layer);
-    let last = ["residual_dilation_angle", "residual_friction_angle"].map(|key| law.of(key));
+    let friction = bounds(record.friction_angle.profile_or_zero(), layer);
+    let dilation = bounds(record.dilation_angle.profile_or_zero(), layer);
+    let cohesion = bounds(record.cohesion.profile_or_zero(), layer);
+    let last = [&record.residual_dilation_angle, &record.residual_friction_angle].map(Field::profile_or_zero);
     let ends = layer.map_or([0.0, 0.0], |layer| [layer.heights.start, layer.heights.end]);
     if let Some(y) = ends.into_iter().find(|&y| last[0].at(y) > last[1].at(y)) {
         let [dilation, friction] = last.map(|profile| profile.at(y));
-        record.error("residual_dilation_angle", dilates_too_much(dilation, friction), report);
+        record
+            .residual_dilation_angle
+            .error(dilates_too_much(dilation, friction), report);
         return None;
     }
     if dilation.1 > friction.1 {
-        record.error("dilation_angle", dilates_too_much(dilation.1, friction.1), report);
+        record
+            .dilation_angle
+            .error(dilates_too_much(dilation.1, friction.1), report);
         return None;
     }
     if dilation.1 > friction.0 {
-        let path = record.path_of("dilation_angle");
+        let path = record.dilation_angle.path();
         report.warn(format!(
             "W0308: {path}: where the dilation angle ({} deg) exceeds the friction angle, the program reduces it to \
              the friction angle. Let `dilation_angle` vary with height as `friction_angle` does.",
@@ -324,29 +346,29 @@ fn check(record: &Record, law: &Parameters, layer: Option<&Layer>, report: &mut 
         report.warn(format!(
             "W0309: {}: friction angle and cohesion are both 0, so the material has no shear strength. Correct \
              `friction_angle` or `cohesion`.",
-            record.path
+            record.location().path
         ));
     }
-    if !matches!(law.model, LawName::Tresca | LawName::SensitiveClay) && !record.gives("dilation_angle") {
+    if !matches!(law.model, LawName::Tresca | LawName::SensitiveClay) && !record.dilation_angle.is_given() {
         report.note(
-            record.path_of("dilation_angle"),
+            record.dilation_angle.path(),
             "0.0",
             "default: plastic flow without volume change",
         );
     }
     // Only where an apex is free of stress can what opens there be a gap: with cohesion it would pull with c cot phi
     // until it has closed, and without friction there is no apex.
-    if record.word("separation") == Some(Separation::Closing) && (friction.0 <= 0.0 || cohesion.1 > 0.0) {
+    if record.separation.get() == Some(Separation::Closing) && (friction.0 <= 0.0 || cohesion.1 > 0.0) {
         let message = "E0317: separation = \"gap\" needs a friction angle above 0 and zero cohesion, because only \
              such soil opens without tension. Correct `friction_angle` and `cohesion`, or remove `separation`.";
-        record.error("separation", message, report);
+        record.separation.error(message, report);
     }
     Some(())
 }
 
 /// A cone that has another strength in plane strain than the pyramid it is to stand for; in other geometries one that
 /// is matched there by default.
-fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, report: &mut Report<'_>) {
+fn warn_of_match(record: &MaterialTable, law: &Parameters<'_>, geometry: Option<Geometry>, report: &mut Report<'_>) {
     let values = law.values.iter().map(|own| KeyProfile {
         key: own.key,
         profile: Profile::constant(own.profile.value),
@@ -362,11 +384,11 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
         return;
     };
     if geometry.is_some_and(|geometry| geometry != Geometry::PlaneStrain) {
-        if !record.gives("fit") {
+        if !record.fit.is_given() {
             report.warn(format!(
                 "W0310: {}: the default cone (for plane strain) has {:.1} % of the Mohr-Coulomb strength in \
                  compression, {:.1} % in extension. Use fit = \"outer\" for compression, or \"inner\" for extension.",
-                record.path_of("fit"),
+                record.fit.path(),
                 100.0 * cone.strength_over(Match::Outer),
                 100.0 * cone.strength_over(Match::Inner)
             ));
@@ -378,13 +400,13 @@ fn warn_of_match(record: &Record, law: &Parameters, geometry: Option<Geometry>, 
         report.warn(format!(
             "W0311: {}: in plane strain this Drucker-Prager cone has {:.1} % of the Mohr-Coulomb strength. For the \
              Mohr-Coulomb strength use model = \"mohr-coulomb\".",
-            record.path,
+            record.location().path,
             100.0 * ratio
         ));
     }
 }
 
-/// Tresca's angles may be written if they are zero.
-fn zero_angle(record: &Record, model: LawName, key: &str) -> bool {
-    model == LawName::Tresca && matches!(key, "friction_angle" | "dilation_angle") && record.number(key) == Some(0.0)
+/// Least and largest value within a layer; without a layer those at the profile's own height.
+fn bounds(profile: Profile, layer: Option<&Layer>) -> (f64, f64) {
+    profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()))
 }

@@ -1,23 +1,23 @@
 //! Parameters of the law of a material, and the law that they make.
 
 use super::Layer;
-use crate::record::Record;
-use crate::schema::{Dimension, Kind, LawName, MATERIAL};
+use crate::record::CaseTable;
+use crate::schema::{Dimension, Kind, LawName, MaterialTable};
 use bsmpm::material::{Elastic, GradedLaw, LayeredMaterial, Profile};
 
 /// A law and its numbers, by the height in the case's coordinates and units.
-pub(super) struct Parameters {
+pub(super) struct Parameters<'a> {
     pub(super) model: LawName,
-    pub(super) values: Vec<KeyProfile>,
+    pub(super) values: Vec<KeyProfile<'a>>,
 }
 
 /// A parameter by the height, and its key.
-pub(super) struct KeyProfile {
-    pub(super) key: &'static str,
+pub(super) struct KeyProfile<'a> {
+    pub(super) key: &'a str,
     pub(super) profile: Profile,
 }
 
-impl Parameters {
+impl Parameters<'_> {
     /// What is left of them where no strength limits the stress.
     pub(super) fn elastic() -> Self {
         Self {
@@ -42,16 +42,10 @@ impl Parameters {
         found.map_or(Profile::constant(0.0), |own| own.profile)
     }
 
-    /// Least and largest value of a key within a layer; without a layer those at the profile's own height.
-    pub(super) fn bounds(&self, key: &str, layer: Option<&Layer>) -> (f64, f64) {
-        let profile = self.of(key);
-        profile.bounds(&layer.map_or(profile.at..profile.at, |layer| layer.heights.clone()))
-    }
-
     /// The material, its strength divided by `factor`.
     pub(super) fn material(
         &self,
-        record: &Record,
+        record: &MaterialTable,
         young: Profile,
         poisson: f64,
         layer: Option<&Layer>,
@@ -100,7 +94,7 @@ fn relative(profile: Profile, base: f64) -> Profile {
 
 /// A parameter as laws take it: angles in rad.
 fn in_si(key: &str, profile: Profile) -> Profile {
-    match MATERIAL.key(key).map(|key| &key.kind) {
+    match MaterialTable::TABLE.key(key).map(|key| &key.kind) {
         Some(Kind::Profile(Dimension::Angle, ..)) => Profile {
             value: profile.value.to_radians(),
             per_metre: profile.per_metre.to_radians(),

@@ -22,8 +22,9 @@ pub(super) fn bodies(case: &Case, draft: &Draft, report: &mut Report<'_>) {
     for (body, record) in case.bodies.iter().zip(draft.body.items()) {
         let (name, material) = &materials[body.material];
         let Some(friction) = material
-            .number("friction_angle")
-            .filter(|_| material.number("cohesion") == Some(0.0))
+            .friction_angle
+            .plain()
+            .filter(|_| material.cohesion.plain() == Some(0.0))
         else {
             continue;
         };

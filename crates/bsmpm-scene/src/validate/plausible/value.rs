@@ -1,9 +1,9 @@
 //! Warns of values that are probably given in a wrong unit.
 
 use super::Scale;
-use crate::record::{Field, KeyPlace, OrTable, Record};
+use crate::record::{Field, KeyPlace, OrTable};
 use crate::report::Report;
-use crate::schema::{Draft, StressProfileTable};
+use crate::schema::{DepthTable, Draft, MaterialTable};
 
 /// Young's modulus (Pa) above which it is that of some soil.
 const STIFF: f64 = 1e5;
@@ -28,51 +28,42 @@ const LOAD: f64 = 1e3;
 /// Force over the weight of a square of the case's height below which it changes nothing.
 const NO_FORCE: f64 = 1e-4;
 
-/// The value of a key, or of its profile, if it is written without a unit.
-fn bare(record: &Record, key: &str) -> Option<f64> {
-    if !record.gives(key) {
-        return None;
-    }
-    let (owner, key) = record.record(key).map_or((record, key), |profile| (profile, "value"));
-    owner.number(key).filter(|value| *value != 0.0 && !owner.has_unit(key))
-}
-
 /// Stiffness, strength and angles of a material.
-pub(super) fn material(record: &Record, scale: &Scale, report: &mut Report<'_>) {
-    if let Some(young) = bare(record, "young").filter(|young| is_soft(*young, scale)) {
+pub(super) fn material(record: &MaterialTable, scale: &Scale, report: &mut Report<'_>) {
+    if let Some(young) = bare(&record.young).filter(|young| is_soft(*young, scale)) {
         report.warn(format!(
             "W0101: {}: a modulus of {young} Pa ({} kPa) is too small for the stress in this case{}. If kPa are \
              meant, write \"{young} kPa\"; otherwise write \"{young} Pa\".",
-            record.path_of("young"),
+            record.young.path(),
             1e-3 * young,
             scale.shown()
         ));
     }
-    for key in ["cohesion", "yield_stress", "residual_cohesion"] {
-        let Some(strength) = bare(record, key).filter(|strength| is_weak(*strength, record, scale)) else {
+    for key in [&record.cohesion, &record.yield_stress, &record.residual_cohesion] {
+        let Some(strength) = bare(key).filter(|strength| is_weak(*strength, record, scale)) else {
             continue;
         };
         report.warn(format!(
             "W0102: {}: a strength of {strength} Pa ({} kPa) is negligible against the stress in this case{}. If kPa \
              are meant, write \"{strength} kPa\"; otherwise write \"{strength} Pa\".",
-            record.path_of(key),
+            key.path(),
             1e-3 * strength,
             scale.shown()
         ));
     }
     for (key, least) in [
-        ("friction_angle", FLAT),
-        ("residual_friction_angle", FLAT),
-        ("dilation_angle", BARELY),
-        ("residual_dilation_angle", BARELY),
+        (&record.friction_angle, FLAT),
+        (&record.residual_friction_angle, FLAT),
+        (&record.dilation_angle, BARELY),
+        (&record.residual_dilation_angle, BARELY),
     ] {
-        let Some(angle) = bare(record, key).filter(|angle| angle.abs() < least) else {
+        let Some(angle) = bare(key).filter(|angle| angle.abs() < least) else {
             continue;
         };
         report.warn(format!(
             "W0103: {}: an angle of {angle} degrees is so small that radians may be meant ({:.3} degrees). Without a \
              unit, angles are in degrees. Write \"{angle} rad\" or \"{angle} deg\".",
-            record.path_of(key),
+            key.path(),
             angle.to_degrees()
         ));
     }
@@ -85,8 +76,8 @@ fn is_soft(young: f64, scale: &Scale) -> bool {
 }
 
 /// Whether a strength (Pa) is nothing beside the stress of the case or, where that is not known, beside the modulus.
-fn is_weak(strength: f64, record: &Record, scale: &Scale) -> bool {
-    let young = super::super::material::profile(record, "young").map_or(0.0, |young| young.value);
+fn is_weak(strength: f64, record: &MaterialTable, scale: &Scale) -> bool {
+    let young = record.young.profile_or_zero().value;
     let is_nothing = scale
         .stress
         .map_or(young > RIGID * strength, |stress| strength < NOTHING * stress);
@@ -97,7 +88,7 @@ fn is_weak(strength: f64, record: &Record, scale: &Scale) -> bool {
 pub(super) fn loads(draft: &Draft, scale: &Scale, report: &mut Report<'_>) {
     let Some(stress) = scale.stress else { return };
     for record in draft.traction.items() {
-        let pressure = bare_profile(&record.pressure).map(f64::abs);
+        let pressure = bare(&record.pressure).map(f64::abs);
         let pressure = pressure.or_else(|| match record.stress.value()? {
             OrTable::Value(stress) => bare_list(&record.stress, stress),
             OrTable::Table(_) => None,
@@ -130,10 +121,10 @@ pub(super) fn loads(draft: &Draft, scale: &Scale, report: &mut Report<'_>) {
 }
 
 /// The value of a key, or of its profile, if it is written without a unit.
-fn bare_profile(key: &Field<OrTable<f64, StressProfileTable>>) -> Option<f64> {
+fn bare<T: DepthTable>(key: &Field<OrTable<f64, T>>) -> Option<f64> {
     let (place, value): (&KeyPlace, f64) = match key.value()? {
         OrTable::Value(value) => (key, *value),
-        OrTable::Table(table) => (&table.value, table.value.get()?),
+        OrTable::Table(table) => (table.value(), table.value().get()?),
     };
     (value != 0.0 && !place.has_unit()).then_some(value)
 }
