@@ -340,10 +340,10 @@ fn add_interactions<K: Kinematics<D>, const D: usize>(
 ) -> Exact {
     let Problem { nodes, halo, .. } = *problem;
     let mut work = InteractionWork::default();
-    let on = problem.context();
+    let context = problem.context();
     let dF = |p: usize| found.trial.dF(p);
     for interaction in nodes.interactions.iter() {
-        interaction.add_work(&on, &found.state(&dF), &mut work);
+        interaction.add_work(&context, &found.state(&dF), &mut work);
     }
     flows.external += &work.external;
     flows.integration += &work.integration;

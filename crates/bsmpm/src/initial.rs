@@ -315,7 +315,7 @@ impl<const D: usize> UndeformedState<D> {
         reaction: &[f64],
         halo: &dyn Halo,
     ) -> Result<FootingState<D>, StepError> {
-        let on = self.nodes.context(model, &self.shape, points, halo);
+        let context = self.nodes.context(model, &self.shape, points, halo);
         let mut after = state.clone();
         let mut reports = InteractionReports::default();
         let at = EquilibriumState {
@@ -326,7 +326,7 @@ impl<const D: usize> UndeformedState<D> {
             internal_work: 0.0,
         };
         for interaction in self.nodes.interactions.iter() {
-            interaction.finish(&on, &at, &mut after, &mut reports)?;
+            interaction.finish(&context, &at, &mut after, &mut reports)?;
         }
         Ok((reports.strips, after.traction))
     }

@@ -7,7 +7,7 @@
 //!
 //! The numbers are those of the algorithm in section 2.4 of Xie et al. (2023):
 //!
-//! - (2) start: `begin`, [`Interaction::constrain`], [`Interaction::apply`]
+//! - (2) start: `begin`, [`Interaction::note_unknowns`], [`Interaction::apply_statuses`]
 //! - (2d) external force: [`Interaction::constant_force`]
 //! - (5) out-of-balance force: [`Interaction::external_force`], [`Interaction::add_force`],
 //!   [`Interaction::add_internal_force`], [`Interaction::add_reaction`]
@@ -201,16 +201,16 @@ pub struct InteractionReports {
 /// and are summed over the ranks. Methods that communicate are called on all ranks together.
 pub trait Interaction<const D: usize>: fmt::Debug + Send + Sync {
     /// (2) Marks the local nodes whose splines must remain unknowns. Communicates if all ranks have the interaction.
-    fn mark_untied(&self, _on: &StepContext<'_, D>, _interval: TimeInterval, _marks: &mut [bool]) {}
+    fn mark_untied(&self, _context: &StepContext<'_, D>, _interval: TimeInterval, _marks: &mut [bool]) {}
 
-    /// (2) Takes note of the unknowns after splines are tied. `last` is the displacement of the last step (m).
-    fn constrain(&mut self, _on: &StepContext<'_, D>, _last: &[f64]) {}
+    /// (2) Notes the unknowns after splines are tied. `last` is the displacement of the last step (m).
+    fn note_unknowns(&mut self, _context: &StepContext<'_, D>, _last: &[f64]) {}
 
     /// (2) Frees or prescribes components according to the present statuses.
-    fn apply(&self, _free: &mut [bool], _prescribed: &mut [Option<f64>]) {}
+    fn apply_statuses(&self, _free: &mut [bool], _prescribed: &mut [Option<f64>]) {}
 
-    /// (2b) Sets the velocity to zero (m/s) of components that are at rest and remain so.
-    fn rest(&self, _velocities: &mut [Option<f64>]) {}
+    /// (2b) Holds components at rest that remain at rest: sets their velocity to zero (m/s).
+    fn hold_at_rest(&self, _velocities: &mut [Option<f64>]) {}
 
     /// (2b) Marks components that may stop in a step of `dt` (s) with these initial nodal velocities (m/s). They are
     /// integrated by backward Euler. `moving` is empty before anything is marked.
@@ -227,7 +227,12 @@ pub trait Interaction<const D: usize>: fmt::Debug + Send + Sync {
 
     /// (5) Returns the external force that depends on the displacement `u` (m), which deforms the material points by
     /// `dF` (N, summed over the ranks); `None` if there is none.
-    fn external_force(&self, _on: &StepContext<'_, D>, _u: &[f64], _dF: &dyn Fn(usize) -> Tensor) -> Option<Vec<f64>> {
+    fn external_force(
+        &self,
+        _context: &StepContext<'_, D>,
+        _u: &[f64],
+        _dF: &dyn Fn(usize) -> Tensor,
+    ) -> Option<Vec<f64>> {
         None
     }
 
@@ -237,37 +242,37 @@ pub trait Interaction<const D: usize>: fmt::Debug + Send + Sync {
     }
 
     /// (5) Adds the forces of elastic supports under the displacement `u` (m) to the nodes (N).
-    fn add_force(&self, _on: &StepContext<'_, D>, _u: &[f64], _out: &mut Contributions) {}
+    fn add_force(&self, _context: &StepContext<'_, D>, _u: &[f64], _out: &mut Contributions) {}
 
-    /// Returns whether the interaction is a numerical aid, whose work is compared with that of all internal forces.
-    fn is_artificial(&self) -> bool {
+    /// Returns whether the results need [`EquilibriumState::internal_work`].
+    fn needs_internal_work(&self) -> bool {
         false
     }
 
     /// (5) Adds forces that count as internal ones, with opposite sign (N).
-    fn add_internal_force(&self, _on: &StepContext<'_, D>, _u: &[f64], _out: &mut Contributions) {}
+    fn add_internal_force(&self, _context: &StepContext<'_, D>, _u: &[f64], _out: &mut Contributions) {}
 
     /// (5) Adds forces at nodes under the displacement `u` (m). All other forces are balanced already.
-    fn add_reaction(&self, _on: &StepContext<'_, D>, _u: &[f64], _forces: NodalForces<'_>) {}
+    fn add_reaction(&self, _context: &StepContext<'_, D>, _u: &[f64], _forces: NodalForces<'_>) {}
 
     /// (6) Adds the product of the stiffness with `v` (m).
-    fn add_product(&self, _on: &StepContext<'_, D>, _v: &[f64], _out: &mut Contributions) {}
+    fn add_product(&self, _context: &StepContext<'_, D>, _v: &[f64], _out: &mut Contributions) {}
 
     /// (6) Adds the product of the derivative of [`Self::add_reaction`] with `v` (m), where the nodes had the
     /// `reaction` (N). `out` contains the product of all other parts.
-    fn add_nodal_product(&self, _on: &StepContext<'_, D>, _reaction: &[f64], _v: &[f64], _out: &mut [f64]) {}
+    fn add_nodal_product(&self, _context: &StepContext<'_, D>, _reaction: &[f64], _v: &[f64], _out: &mut [f64]) {}
 
     /// (6) Adds the stiffness in an occupied cell, the `number`-th, to its block of the matrix (N/m).
     fn add_to_cell(&self, _number: usize, _block: &mut [f64]) {}
 
     /// (6) Adds the stiffness to the matrix. It is symmetric and may be approximate.
-    fn assemble(&self, _on: &StepContext<'_, D>, _matrix: &mut dyn MatrixAssembly) {}
+    fn assemble(&self, _context: &StepContext<'_, D>, _matrix: &mut dyn MatrixAssembly) {}
 
     /// (6) Adds the derivative of forces that depend on the velocity to the diagonal of the matrix (N/m).
     fn add_damping(&self, _inertia: &Inertia, _diagonal: &mut [f64]) {}
 
     /// (6) Returns the coupling with motions that are unknowns besides the displacements of nodes, if there are any.
-    fn coupling(&self, _on: &StepContext<'_, D>) -> Option<MotionCoupling> {
+    fn coupling(&self, _context: &StepContext<'_, D>) -> Option<MotionCoupling> {
         None
     }
 
@@ -292,7 +297,7 @@ pub trait Interaction<const D: usize>: fmt::Debug + Send + Sync {
     /// (9) Corrects the statuses that an equilibrium contradicts, and returns their number over all ranks.
     fn correct(
         &mut self,
-        _on: &StepContext<'_, D>,
+        _context: &StepContext<'_, D>,
         _at: &EquilibriumState<'_>,
         _correction: Correction,
     ) -> Result<usize, StepError> {
@@ -301,18 +306,18 @@ pub trait Interaction<const D: usize>: fmt::Debug + Send + Sync {
 
     /// (9) Makes parts stick that hinder a body from moving freely, after no equilibrium was found from `u` (m).
     /// Returns their number over all ranks.
-    fn hold_neutral(&mut self, _on: &StepContext<'_, D>, _u: &[f64]) -> usize {
+    fn hold_neutral(&mut self, _context: &StepContext<'_, D>, _u: &[f64]) -> usize {
         0
     }
 
     /// (11) Adds the works in the accepted step.
-    fn add_work(&self, _on: &StepContext<'_, D>, _at: &EquilibriumState<'_>, _work: &mut InteractionWork) {}
+    fn add_work(&self, _context: &StepContext<'_, D>, _at: &EquilibriumState<'_>, _work: &mut InteractionWork) {}
 
     /// (11) Writes the state at the end of the step, before the material points are updated, and the results. `after`
     /// begins as the state at the start. Fails on all ranks if the step cannot be accepted.
     fn finish(
         &self,
-        _on: &StepContext<'_, D>,
+        _context: &StepContext<'_, D>,
         _at: &EquilibriumState<'_>,
         _after: &mut InteractionState<D>,
         _reports: &mut InteractionReports,
@@ -377,36 +382,36 @@ impl<const D: usize> Interactions<D> {
     /// then they are part of the constant force.
     pub fn add_external_forces(
         &self,
-        on: &StepContext<'_, D>,
+        context: &StepContext<'_, D>,
         u: &[f64],
         dF: &dyn Fn(usize) -> Tensor,
         f_ext: &mut Cow<'_, [f64]>,
     ) {
         if !self.is_instant {
-            self.add_following_forces(on, u, dF, f_ext);
+            self.add_following_forces(context, u, dF, f_ext);
         }
     }
 
     /// Adds the forces that follow the surface to the constant force, if the step has no length.
-    pub fn add_forces_at_rest(&self, on: &StepContext<'_, D>, f_ext: &mut Cow<'_, [f64]>) {
+    pub fn add_forces_at_rest(&self, context: &StepContext<'_, D>, f_ext: &mut Cow<'_, [f64]>) {
         if self.is_instant {
             let u = vec![0.0; f_ext.len()];
-            self.add_following_forces(on, &u, &|_| Tensor::identity(), f_ext);
+            self.add_following_forces(context, &u, &|_| Tensor::identity(), f_ext);
         }
     }
 
     fn add_following_forces(
         &self,
-        on: &StepContext<'_, D>,
+        context: &StepContext<'_, D>,
         u: &[f64],
         dF: &dyn Fn(usize) -> Tensor,
         f_ext: &mut Cow<'_, [f64]>,
     ) {
         for mut force in self
             .iter()
-            .filter_map(|interaction| interaction.external_force(on, u, dF))
+            .filter_map(|interaction| interaction.external_force(context, u, dF))
         {
-            on.constraints.reduce(&mut [&mut force], on.halo);
+            context.constraints.reduce(&mut [&mut force], context.halo);
             f_ext
                 .to_mut()
                 .iter_mut()
@@ -417,14 +422,14 @@ impl<const D: usize> Interactions<D> {
 
     /// Returns the force of elastic supports under the displacement `u` (N), D numbers per node; empty without any.
     /// Otherwise one exchange with the neighbours.
-    pub fn penalty_force(&self, on: &StepContext<'_, D>, u: &[f64]) -> Vec<f64> {
+    pub fn penalty_force(&self, context: &StepContext<'_, D>, u: &[f64]) -> Vec<f64> {
         if !self.has_penalty() {
             return Vec::new();
         }
-        let mut force = Contributions::none(on.grid, D, Vec::new());
+        let mut force = Contributions::none(context.grid, D, Vec::new());
         self.iter()
-            .for_each(|interaction| interaction.add_force(on, u, &mut force));
-        on.halo.assemble_ghosts(&force)
+            .for_each(|interaction| interaction.add_force(context, u, &mut force));
+        context.halo.assemble_ghosts(&force)
     }
 
     /// Returns whether any interaction has a penalty stiffness.

@@ -177,18 +177,18 @@ pub(super) fn less<const D: usize>(forces: &[Vector<D>], start: Option<&[Vector<
 }
 
 impl<const D: usize> Interaction<D> for AbsorbingFaces<D> {
-    fn constrain(&mut self, on: &StepContext<'_, D>, _last: &[f64]) {
-        self.dashpots.0.retain(|at| on.constraints.free[at.component]);
+    fn note_unknowns(&mut self, context: &StepContext<'_, D>, _last: &[f64]) {
+        self.dashpots.0.retain(|at| context.constraints.free[at.component]);
     }
 
-    fn add_reaction(&self, on: &StepContext<'_, D>, u: &[f64], forces: NodalForces<'_>) {
-        if let Some(inertia) = on.inertia {
+    fn add_reaction(&self, context: &StepContext<'_, D>, u: &[f64], forces: NodalForces<'_>) {
+        if let Some(inertia) = context.inertia {
             self.dashpots.add_forces(inertia, u, forces);
         }
     }
 
-    fn add_nodal_product(&self, on: &StepContext<'_, D>, _reaction: &[f64], v: &[f64], out: &mut [f64]) {
-        if let Some(inertia) = on.inertia {
+    fn add_nodal_product(&self, context: &StepContext<'_, D>, _reaction: &[f64], v: &[f64], out: &mut [f64]) {
+        if let Some(inertia) = context.inertia {
             let stiffness = self.dashpots.stiffness(inertia);
             stiffness.for_each(|(component, stiffness)| out[component] += stiffness * v[component]);
         }
@@ -199,16 +199,16 @@ impl<const D: usize> Interaction<D> for AbsorbingFaces<D> {
         stiffness.for_each(|(component, stiffness)| diagonal[component] += stiffness);
     }
 
-    fn add_work(&self, on: &StepContext<'_, D>, at: &EquilibriumState<'_>, work: &mut InteractionWork) {
-        if let Some(inertia) = on.inertia {
-            let works = self.dashpots.work::<D>(inertia, at.u, on.halo).into_iter();
+    fn add_work(&self, context: &StepContext<'_, D>, at: &EquilibriumState<'_>, work: &mut InteractionWork) {
+        if let Some(inertia) = context.inertia {
+            let works = self.dashpots.work::<D>(inertia, at.u, context.halo).into_iter();
             work.friction.extend(works.map(|work| 0.5 * work));
         }
     }
 
     fn finish(
         &self,
-        _on: &StepContext<'_, D>,
+        _context: &StepContext<'_, D>,
         _at: &EquilibriumState<'_>,
         after: &mut InteractionState<D>,
         _reports: &mut InteractionReports,

@@ -189,9 +189,9 @@ impl ArtificialStiffness {
     }
 
     /// Returns the force on the nodes under the displacement `u` (N), this rank's contributions only.
-    fn force<const D: usize>(&self, on: &StepContext<'_, D>, u: &[f64]) -> Contributions {
-        let mut force = Contributions::none(on.grid, D, Vec::new());
-        self.blocks.multiply::<D>(on.shape, &self.resisted(u), &mut force);
+    fn force<const D: usize>(&self, context: &StepContext<'_, D>, u: &[f64]) -> Contributions {
+        let mut force = Contributions::none(context.grid, D, Vec::new());
+        self.blocks.multiply::<D>(context.shape, &self.resisted(u), &mut force);
         force
     }
 
@@ -199,16 +199,16 @@ impl ArtificialStiffness {
     /// nodes (-). A spline without other stiffness creeps under this force. `None` without forces.
     ///
     /// One exchange with the neighbours, one reduction, and one gather if ties are published.
-    fn share<const D: usize>(&self, on: &StepContext<'_, D>, at: &EquilibriumState<'_>) -> Option<f64> {
-        let mut force = on.halo.assemble_ghosts(&self.force(on, at.u));
-        on.constraints.reduce(&mut [&mut force], on.halo);
-        let sizes = on.halo.owned().nodes().map(|node| {
-            let free = Nodal::<D>::of(node).filter(|&at| on.constraints.free[at]);
+    fn share<const D: usize>(&self, context: &StepContext<'_, D>, at: &EquilibriumState<'_>) -> Option<f64> {
+        let mut force = context.halo.assemble_ghosts(&self.force(context, at.u));
+        context.constraints.reduce(&mut [&mut force], context.halo);
+        let sizes = context.halo.owned().nodes().map(|node| {
+            let free = Nodal::<D>::of(node).filter(|&at| context.constraints.free[at]);
             free.map(|at| force[at].powi(2)).sum::<f64>().sqrt()
         });
         let mut largest = [sizes.fold(0.0, f64::max)];
-        on.halo.all_reduce_max(&mut largest);
-        let mean = at.scale / (on.constraints.active_nodes.max(1) as f64).sqrt();
+        context.halo.all_reduce_max(&mut largest);
+        let mean = at.scale / (context.constraints.active_nodes.max(1) as f64).sqrt();
         (mean > 0.0).then(|| largest[0] / mean)
     }
 }
@@ -216,54 +216,59 @@ impl ArtificialStiffness {
 impl<const D: usize> Interaction<D> for ArtificialStiffness {
     /// Limits the resistance to the difference from the displacement `last`, if only changes are resisted. In `last`,
     /// outer splines take the values that their homes imply, because their own have next to no stiffness.
-    fn constrain(&mut self, on: &StepContext<'_, D>, last: &[f64]) {
+    fn note_unknowns(&mut self, context: &StepContext<'_, D>, last: &[f64]) {
         if self.resisted == ResistedDisplacement::Whole {
             return;
         }
         let mut unresisted = last.to_vec();
-        let inactive = on.constraints.active.iter().enumerate().filter(|(_, active)| !**active);
+        let inactive = context
+            .constraints
+            .active
+            .iter()
+            .enumerate()
+            .filter(|(_, active)| !**active);
         inactive.for_each(|(node, _)| unresisted[Nodal::<D>::of(node)].fill(0.0));
-        if let Some(extension) = &on.constraints.extension {
+        if let Some(extension) = &context.constraints.extension {
             extension.drop_loose(&mut unresisted);
-            extension.extend(on.grid, &mut unresisted, on.halo);
+            extension.extend(context.grid, &mut unresisted, context.halo);
         }
         self.unresisted = Some(unresisted);
     }
 
-    fn is_artificial(&self) -> bool {
+    fn needs_internal_work(&self) -> bool {
         true
     }
 
-    fn add_internal_force(&self, on: &StepContext<'_, D>, u: &[f64], out: &mut Contributions) {
-        self.blocks.multiply::<D>(on.shape, &self.resisted(u), out);
+    fn add_internal_force(&self, context: &StepContext<'_, D>, u: &[f64], out: &mut Contributions) {
+        self.blocks.multiply::<D>(context.shape, &self.resisted(u), out);
     }
 
-    fn add_product(&self, on: &StepContext<'_, D>, v: &[f64], out: &mut Contributions) {
-        self.blocks.multiply::<D>(on.shape, v, out);
+    fn add_product(&self, context: &StepContext<'_, D>, v: &[f64], out: &mut Contributions) {
+        self.blocks.multiply::<D>(context.shape, v, out);
     }
 
     fn add_to_cell(&self, number: usize, block: &mut [f64]) {
         self.blocks.add_to(number, block);
     }
 
-    fn add_work(&self, on: &StepContext<'_, D>, at: &EquilibriumState<'_>, work: &mut InteractionWork) {
-        work.background += &self.force(on, at.u).dot(at.u);
+    fn add_work(&self, context: &StepContext<'_, D>, at: &EquilibriumState<'_>, work: &mut InteractionWork) {
+        work.background += &self.force(context, at.u).dot(at.u);
     }
 
     fn finish(
         &self,
-        on: &StepContext<'_, D>,
+        context: &StepContext<'_, D>,
         at: &EquilibriumState<'_>,
         _after: &mut InteractionState<D>,
         reports: &mut InteractionReports,
     ) -> Result<(), StepError> {
-        let work = self.blocks.work::<D>(on.shape, &self.resisted(at.u));
+        let work = self.blocks.work::<D>(context.shape, &self.resisted(at.u));
         let mut cells = [self.blocks.count() as f64];
-        on.halo.all_reduce_sum(&mut cells);
-        reports.background = Some([on.halo.reproducible_sum(&[work])[0], at.internal_work]);
+        context.halo.all_reduce_sum(&mut cells);
+        reports.background = Some([context.halo.reproducible_sum(&[work])[0], at.internal_work]);
         reports.background_cells = cells[0] as usize;
         if !self.is_driven {
-            reports.background_share = self.share(on, at);
+            reports.background_share = self.share(context, at);
         }
         Ok(())
     }

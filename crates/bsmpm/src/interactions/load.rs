@@ -146,10 +146,10 @@ pub fn begin<K: Kinematics<D>, const D: usize>(
 impl<const D: usize> AppliedLoads<D> {
     /// Returns the tractions at all points of every follower load at full amplitude, per initial area (Pa), see
     /// [`FollowerLoads::tractions`]; empty lists for dead loads.
-    fn tractions(&self, on: &StepContext<'_, D>, u: &[f64], dF: &dyn Fn(usize) -> Tensor) -> Vec<Vec<Vector<D>>> {
-        let loads = &on.boundary.loads;
+    fn tractions(&self, context: &StepContext<'_, D>, u: &[f64], dF: &dyn Fn(usize) -> Tensor) -> Vec<Vec<Vector<D>>> {
+        let loads = &context.boundary.loads;
         match &self.followers {
-            Some(followers) => followers.tractions(loads, on.grid, on.points, u, dF, on.halo),
+            Some(followers) => followers.tractions(loads, context.grid, context.points, u, dF, context.halo),
             None => vec![Vec::new(); loads.len()],
         }
     }
@@ -160,22 +160,33 @@ impl<const D: usize> Interaction<D> for AppliedLoads<D> {
         &self.dead
     }
 
-    fn external_force(&self, on: &StepContext<'_, D>, u: &[f64], dF: &dyn Fn(usize) -> Tensor) -> Option<Vec<f64>> {
+    fn external_force(
+        &self,
+        context: &StepContext<'_, D>,
+        u: &[f64],
+        dF: &dyn Fn(usize) -> Tensor,
+    ) -> Option<Vec<f64>> {
         let followers = self.followers.as_ref()?;
-        let tractions = self.tractions(on, u, dF);
-        Some(followers.forces(&tractions, on.grid, on.halo))
+        let tractions = self.tractions(context, u, dF);
+        Some(followers.forces(&tractions, context.grid, context.halo))
     }
 
     fn finish(
         &self,
-        on: &StepContext<'_, D>,
+        context: &StepContext<'_, D>,
         at: &EquilibriumState<'_>,
         after: &mut InteractionState<D>,
         reports: &mut InteractionReports,
     ) -> Result<(), StepError> {
-        let loads = &on.boundary.loads;
-        let position = moved(&after.position, on.grid, &on.constraints.active, at.u, on.halo);
-        let pressure = self.tractions(on, at.u, at.dF);
+        let loads = &context.boundary.loads;
+        let position = moved(
+            &after.position,
+            context.grid,
+            &context.constraints.active,
+            at.u,
+            context.halo,
+        );
+        let pressure = self.tractions(context, at.u, at.dF);
         let positions = [&after.position, &position];
         let pressures = [&after.pressure, &pressure];
         reports.load_work = work(loads, positions, pressures, self.interval);

@@ -81,11 +81,11 @@ fn find_at_statuses<K: Kinematics<D>, const D: usize>(
     };
     let solver = &mut *backend.solver;
     let counts = &mut *backend.counts;
-    let on = problem.context();
+    let context = problem.context();
     let couplings: Vec<MotionCoupling> = nodes
         .interactions
         .iter()
-        .filter_map(|each| each.coupling(&on))
+        .filter_map(|each| each.coupling(&context))
         .collect();
     match couplings.is_empty() {
         true => super::find(&problem, u, solver, counts),
@@ -108,10 +108,10 @@ fn hold_neutral<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> usize {
     let mut interactions = std::mem::take(&mut nodes.interactions);
-    let on = nodes.context(model, mapped.shape, mapped.points, halo);
+    let context = nodes.context(model, mapped.shape, mapped.points, halo);
     let held = interactions
         .iter_mut()
-        .map(|interaction| interaction.hold_neutral(&on, u));
+        .map(|interaction| interaction.hold_neutral(&context, u));
     let held = held.sum();
     nodes.interactions = interactions;
     if held > 0 {
@@ -146,12 +146,12 @@ fn correct<K: Kinematics<D>, const D: usize>(
 ) -> Result<usize, StepError> {
     let force = DOUBT * model.criteria.force * found.scale;
     let mut interactions = std::mem::take(&mut nodes.interactions);
-    let on = nodes.context(model, mapped.shape, mapped.points, halo);
+    let context = nodes.context(model, mapped.shape, mapped.points, halo);
     let dF = |p: usize| found.trial.dF(p);
     let at = found.state(&dF);
     let corrected = interactions
         .iter_mut()
-        .map(|interaction| interaction.correct(&on, &at, Correction { force, pass }))
+        .map(|interaction| interaction.correct(&context, &at, Correction { force, pass }))
         .sum::<Result<usize, _>>();
     nodes.interactions = interactions;
     nodes.interactions.first_energy = found.first_energy;

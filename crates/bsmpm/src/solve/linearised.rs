@@ -225,9 +225,9 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
                 flux + water.pressed::<K>(p, changes[p].value) * volume[p]
             })
         });
-        let on = self.problem.context();
+        let context = self.problem.context();
         for interaction in nodes.interactions.iter() {
-            interaction.add_product(&on, v, &mut force);
+            interaction.add_product(&context, v, &mut force);
         }
         out.copy_from_slice(&halo.assemble_ghosts(&force));
         nodes.constraints.reduce(&mut [&mut *out], halo);
@@ -235,7 +235,7 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
             self.add_inertia(inertia, v, out);
         }
         for interaction in nodes.interactions.iter() {
-            interaction.add_nodal_product(&on, self.reaction, v, out);
+            interaction.add_nodal_product(&context, self.reaction, v, out);
         }
         out.iter_mut()
             .zip(&nodes.constraints.free)

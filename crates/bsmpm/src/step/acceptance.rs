@@ -60,10 +60,10 @@ impl<const D: usize> Acceptance<D> {
         commit::check_inside(model, problem.shape, ground, &found.u, halo)?;
         let mut state = before.clone();
         let mut reports = InteractionReports::default();
-        let on = problem.context();
+        let context = problem.context();
         let dF = |p: usize| found.trial.dF(p);
         for interaction in problem.nodes.interactions.iter() {
-            interaction.finish(&on, &found.state(&dF), &mut state, &mut reports)?;
+            interaction.finish(&context, &found.state(&dF), &mut state, &mut reports)?;
         }
         state.anchors = Anchors::of(&model.surfaces(), &state.anchors, points.anchored(), halo);
         let load_work = reports.load_work;

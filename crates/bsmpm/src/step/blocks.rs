@@ -50,9 +50,9 @@ pub fn add_point<K: Kinematics<D>, const D: usize>(
 /// Adds interactions and inertia to a matrix with assembled patches.
 pub fn complete<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, matrix: &mut dyn MatrixAssembly) {
     let nodes = problem.nodes;
-    let on = problem.context();
+    let context = problem.context();
     for interaction in nodes.interactions.iter() {
-        interaction.assemble(&on, matrix);
+        interaction.assemble(&context, matrix);
     }
     if let Some(inertia) = &nodes.inertia {
         let factors = (0..nodes.constraints.free.len()).map(|c| match problem.model.mass {

@@ -132,14 +132,14 @@ impl<const D: usize> GridState<D> {
         halo: &dyn Halo,
     ) {
         let mut untied = vec![false; model.grid.nodes()];
-        let on = self.context(model, shape, points, halo);
+        let context = self.context(model, shape, points, halo);
         for interaction in self.interactions.iter() {
-            interaction.mark_untied(&on, input.interval, &mut untied);
+            interaction.mark_untied(&context, input.interval, &mut untied);
         }
         let Constraints { active, free, .. } = &mut self.constraints;
         let extension = Extension::of(model, shape, points, active, &untied, free, halo);
         self.constraints.extension = extension;
-        let on = StepContext {
+        let context = StepContext {
             boundary: &model.boundary,
             grid: &model.grid,
             shape,
@@ -149,7 +149,7 @@ impl<const D: usize> GridState<D> {
             halo,
         };
         for interaction in self.interactions.iter_mut() {
-            interaction.constrain(&on, input.last);
+            interaction.note_unknowns(&context, input.last);
         }
     }
 
@@ -186,7 +186,7 @@ impl<const D: usize> GridState<D> {
         }
         let mut starting = model.boundary.velocities(&model.grid);
         for interaction in self.interactions.iter() {
-            interaction.rest(&mut starting);
+            interaction.hold_at_rest(&mut starting);
         }
         let mass = self.mass(model, shape, points, halo);
         let mut inertia = inertia::map(&mass, points, &starting, dt, model.newmark);
@@ -218,8 +218,8 @@ impl<const D: usize> GridState<D> {
         }
         self.constraints.reduce(&mut [&mut f_ext], halo);
         let mut f_ext = Cow::Owned(f_ext);
-        let on = self.context(model, shape, points, halo);
-        self.interactions.add_forces_at_rest(&on, &mut f_ext);
+        let context = self.context(model, shape, points, halo);
+        self.interactions.add_forces_at_rest(&context, &mut f_ext);
         self.f_ext = f_ext.into_owned();
     }
 
@@ -227,7 +227,7 @@ impl<const D: usize> GridState<D> {
     pub fn apply_statuses(&mut self) {
         let Constraints { free, prescribed, .. } = &mut self.constraints;
         for interaction in self.interactions.iter() {
-            interaction.apply(free, prescribed);
+            interaction.apply_statuses(free, prescribed);
         }
         if let Some(inertia) = &mut self.inertia {
             let moving = inertia.moving.iter().zip(&self.constraints.free);

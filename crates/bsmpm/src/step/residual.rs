@@ -48,7 +48,7 @@ pub struct Balance {
     /// material.
     pub apart: Vec<[f64; 2]>,
     /// Sum of the magnitudes of the works f_int u over all nodes and components (J); 0 if no interaction needs it, see
-    /// [`Interaction::is_artificial`].
+    /// [`Interaction::needs_internal_work`].
     pub work: f64,
     /// Points inverted or not finite, over all ranks.
     pub inverted: u64,
@@ -87,9 +87,9 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
             inverted,
             first_inverted,
         } = InternalForce::of(problem, &trial);
-        let on = problem.context();
+        let context = problem.context();
         for interaction in nodes.interactions.iter() {
-            interaction.add_internal_force(&on, u, &mut f_int);
+            interaction.add_internal_force(&context, u, &mut f_int);
         }
         let balance = Balance {
             water,
@@ -232,16 +232,16 @@ impl Balance {
             interactions,
             ..
         } = problem.nodes;
-        let on = &problem.context();
+        let context = &problem.context();
         let mut f_ext = Cow::Borrowed(&problem.nodes.f_ext[..]);
-        interactions.add_external_forces(on, u, dF, &mut f_ext);
-        let mut f_penalty = interactions.penalty_force(on, u);
+        interactions.add_external_forces(context, u, dF, &mut f_ext);
+        let mut f_penalty = interactions.penalty_force(context, u);
         match f_penalty.is_empty() {
             true => constraints.reduce(&mut [&mut f_int], problem.halo),
             false => constraints.reduce(&mut [&mut f_int, &mut f_penalty], problem.halo),
         }
         let forces = Forces::of(problem, u, &f_ext, &f_int, &f_penalty);
-        let soft = interactions.iter().any(Interaction::is_artificial);
+        let soft = interactions.iter().any(Interaction::needs_internal_work);
         let supporting = |c: usize| forces.reaction[c].powi(2) + f_penalty.get(c).copied().unwrap_or(0.0).powi(2);
         let whole = [
             std::iter::once(inverted as f64).collect(),
@@ -354,10 +354,10 @@ impl Forces {
                 forces.reaction[component] = -balance;
             }
         }
-        let on = problem.context();
+        let context = problem.context();
         for interaction in nodes.interactions.iter() {
             let Self { f_oob, reaction, .. } = &mut forces;
-            interaction.add_reaction(&on, u, NodalForces { f_oob, reaction });
+            interaction.add_reaction(&context, u, NodalForces { f_oob, reaction });
         }
         forces
     }

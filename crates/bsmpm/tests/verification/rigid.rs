@@ -278,7 +278,7 @@ fn a_step_begins_with_the_force_that_the_last_one_ended_with() {
             &halo,
         )
         .expect("no loads");
-        let on = nodes.context(&scene.model, &shape, &scene.points, &halo);
+        let context = nodes.context(&scene.model, &shape, &scene.points, &halo);
         let at = EquilibriumState {
             u: &still,
             reaction: &still,
@@ -290,7 +290,7 @@ fn a_step_begins_with_the_force_that_the_last_one_ended_with() {
         let mut after = scene.state.clone();
         for interaction in nodes.interactions.iter() {
             interaction
-                .finish(&on, &at, &mut after, &mut reports)
+                .finish(&context, &at, &mut after, &mut reports)
                 .expect("one body");
         }
         let begins = reports.rigid[0].force;

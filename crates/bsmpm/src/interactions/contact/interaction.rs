@@ -47,17 +47,17 @@ pub fn begin<K: Kinematics<D>, const D: usize>(start: &StepStart<'_, K, D>) -> O
 }
 
 impl<const D: usize> Interaction<D> for ContactFaces<D> {
-    fn constrain(&mut self, on: &StepContext<'_, D>, last: &[f64]) {
-        let free = &on.constraints.free;
+    fn note_unknowns(&mut self, context: &StepContext<'_, D>, last: &[f64]) {
+        let free = &context.constraints.free;
         self.contacts
-            .predict_statuses(on.boundary, on.grid, free, self.start, last);
+            .predict_statuses(context.boundary, context.grid, free, self.start, last);
     }
 
-    fn apply(&self, free: &mut [bool], prescribed: &mut [Option<f64>]) {
+    fn apply_statuses(&self, free: &mut [bool], prescribed: &mut [Option<f64>]) {
         self.contacts.apply_statuses(free, prescribed);
     }
 
-    fn rest(&self, velocities: &mut [Option<f64>]) {
+    fn hold_at_rest(&self, velocities: &mut [Option<f64>]) {
         self.contacts.set_at_rest(velocities);
     }
 
@@ -65,16 +65,16 @@ impl<const D: usize> Interaction<D> for ContactFaces<D> {
         self.contacts.mark_stoppable(velocities, dt, moving);
     }
 
-    fn add_reaction(&self, _on: &StepContext<'_, D>, u: &[f64], forces: NodalForces<'_>) {
+    fn add_reaction(&self, _context: &StepContext<'_, D>, u: &[f64], forces: NodalForces<'_>) {
         self.contacts.add_friction(u, forces.f_oob, forces.reaction);
     }
 
-    fn add_nodal_product(&self, _on: &StepContext<'_, D>, reaction: &[f64], v: &[f64], out: &mut [f64]) {
+    fn add_nodal_product(&self, _context: &StepContext<'_, D>, reaction: &[f64], v: &[f64], out: &mut [f64]) {
         self.contacts.add_derivative(reaction, v, out);
     }
 
-    fn assemble(&self, on: &StepContext<'_, D>, matrix: &mut dyn MatrixAssembly) {
-        self.contacts.add_stiffness(matrix, on.halo);
+    fn assemble(&self, context: &StepContext<'_, D>, matrix: &mut dyn MatrixAssembly) {
+        self.contacts.add_stiffness(matrix, context.halo);
     }
 
     fn has_friction(&self) -> bool {
@@ -87,21 +87,21 @@ impl<const D: usize> Interaction<D> for ContactFaces<D> {
 
     fn correct(
         &mut self,
-        on: &StepContext<'_, D>,
+        context: &StepContext<'_, D>,
         at: &EquilibriumState<'_>,
         correction: Correction,
     ) -> Result<usize, StepError> {
-        let edge = on.grid.smallest_edge();
+        let edge = context.grid.smallest_edge();
         let contacts = &mut self.contacts;
-        Ok(contacts.correct_statuses(at.u, at.reaction, correction.force, edge, on.halo))
+        Ok(contacts.correct_statuses(at.u, at.reaction, correction.force, edge, context.halo))
     }
 
-    fn hold_neutral(&mut self, on: &StepContext<'_, D>, u: &[f64]) -> usize {
-        self.contacts.make_neutral_stick(on.grid, u, on.halo)
+    fn hold_neutral(&mut self, context: &StepContext<'_, D>, u: &[f64]) -> usize {
+        self.contacts.make_neutral_stick(context.grid, u, context.halo)
     }
 
-    fn add_work(&self, on: &StepContext<'_, D>, at: &EquilibriumState<'_>, work: &mut InteractionWork) {
-        let [closing, friction] = self.contacts.work(at.u, at.reaction, on.halo);
+    fn add_work(&self, context: &StepContext<'_, D>, at: &EquilibriumState<'_>, work: &mut InteractionWork) {
+        let [closing, friction] = self.contacts.work(at.u, at.reaction, context.halo);
         work.external -= &closing;
         work.integration -= &closing;
         work.friction += &friction;
@@ -109,12 +109,12 @@ impl<const D: usize> Interaction<D> for ContactFaces<D> {
 
     fn finish(
         &self,
-        on: &StepContext<'_, D>,
+        context: &StepContext<'_, D>,
         at: &EquilibriumState<'_>,
         _after: &mut InteractionState<D>,
         reports: &mut InteractionReports,
     ) -> Result<(), StepError> {
-        reports.contacts = self.contacts.report(on.boundary, at.u, at.reaction, on.halo);
+        reports.contacts = self.contacts.report(context.boundary, at.u, at.reaction, context.halo);
         Ok(())
     }
 }

@@ -60,8 +60,8 @@ pub fn begin<K: Kinematics<D>, const D: usize>(
 }
 
 impl<const D: usize> Interaction<D> for RigidBodies<D> {
-    fn mark_untied(&self, on: &StepContext<'_, D>, _interval: TimeInterval, marks: &mut [bool]) {
-        let touched = self.contacts.touched_nodes(on.grid.nodes(), on.halo);
+    fn mark_untied(&self, context: &StepContext<'_, D>, _interval: TimeInterval, marks: &mut [bool]) {
+        let touched = self.contacts.touched_nodes(context.grid.nodes(), context.halo);
         marks
             .iter_mut()
             .zip(touched)
@@ -91,23 +91,23 @@ impl<const D: usize> Interaction<D> for RigidBodies<D> {
         true
     }
 
-    fn add_force(&self, on: &StepContext<'_, D>, u: &[f64], out: &mut Contributions) {
-        self.contacts.add_forces(u, out, on.halo);
+    fn add_force(&self, context: &StepContext<'_, D>, u: &[f64], out: &mut Contributions) {
+        self.contacts.add_forces(u, out, context.halo);
     }
 
-    fn add_product(&self, on: &StepContext<'_, D>, v: &[f64], out: &mut Contributions) {
-        self.contacts.multiply(v, out, on.halo);
+    fn add_product(&self, context: &StepContext<'_, D>, v: &[f64], out: &mut Contributions) {
+        self.contacts.multiply(v, out, context.halo);
     }
 
-    fn assemble(&self, _on: &StepContext<'_, D>, matrix: &mut dyn MatrixAssembly) {
+    fn assemble(&self, _context: &StepContext<'_, D>, matrix: &mut dyn MatrixAssembly) {
         self.contacts.add_stiffness(matrix);
     }
 
-    fn coupling(&self, on: &StepContext<'_, D>) -> Option<MotionCoupling> {
+    fn coupling(&self, context: &StepContext<'_, D>) -> Option<MotionCoupling> {
         if !self.contacts.is_coupled() {
             return None;
         }
-        let (columns, blocks) = self.contacts.motion_coupling(on.grid, on.halo);
+        let (columns, blocks) = self.contacts.motion_coupling(context.grid, context.halo);
         let motions: Vec<(usize, usize)> = self.contacts.free_motions().collect();
         let mut stiffness = Vec::with_capacity(motions.len() * motions.len());
         for &(body, k) in &motions {
@@ -132,16 +132,16 @@ impl<const D: usize> Interaction<D> for RigidBodies<D> {
 
     fn correct(
         &mut self,
-        on: &StepContext<'_, D>,
+        context: &StepContext<'_, D>,
         at: &EquilibriumState<'_>,
         correction: Correction,
     ) -> Result<usize, StepError> {
         let Correction { force, pass } = correction;
-        self.contacts.correct_statuses(at.u, force, pass, on.halo)
+        self.contacts.correct_statuses(at.u, force, pass, context.halo)
     }
 
-    fn add_work(&self, on: &StepContext<'_, D>, at: &EquilibriumState<'_>, work: &mut InteractionWork) {
-        let [given, grown, friction] = self.contacts.work(at.u, on.halo);
+    fn add_work(&self, context: &StepContext<'_, D>, at: &EquilibriumState<'_>, work: &mut InteractionWork) {
+        let [given, grown, friction] = self.contacts.work(at.u, context.halo);
         work.external += &given;
         work.integration -= &grown;
         work.friction += &friction;
@@ -149,13 +149,13 @@ impl<const D: usize> Interaction<D> for RigidBodies<D> {
 
     fn finish(
         &self,
-        on: &StepContext<'_, D>,
+        context: &StepContext<'_, D>,
         at: &EquilibriumState<'_>,
         after: &mut InteractionState<D>,
         reports: &mut InteractionReports,
     ) -> Result<(), StepError> {
-        (reports.rigid, after.bodies) = self.contacts.finish_step(at.u, on.halo);
-        match overlapping(&on.boundary.rigid, &after.bodies) {
+        (reports.rigid, after.bodies) = self.contacts.finish_step(at.u, context.halo);
+        match overlapping(&context.boundary.rigid, &after.bodies) {
             Some(bodies) => Err(StepError::Overlapping { bodies }),
             None => Ok(()),
         }

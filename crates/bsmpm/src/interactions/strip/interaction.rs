@@ -27,8 +27,8 @@ pub fn begin<K, const D: usize>(start: &StepStart<'_, K, D>) -> Option<Box<dyn I
 }
 
 impl<const D: usize> Interaction<D> for StripConstraints<D> {
-    fn mark_untied(&self, on: &StepContext<'_, D>, interval: TimeInterval, marks: &mut [bool]) {
-        for node in nodes_at(&on.boundary.strips, on.grid, interval.start) {
+    fn mark_untied(&self, context: &StepContext<'_, D>, interval: TimeInterval, marks: &mut [bool]) {
+        for node in nodes_at(&context.boundary.strips, context.grid, interval.start) {
             marks[node] = true;
         }
     }
@@ -37,15 +37,15 @@ impl<const D: usize> Interaction<D> for StripConstraints<D> {
         true
     }
 
-    fn add_force(&self, _on: &StepContext<'_, D>, u: &[f64], out: &mut Contributions) {
+    fn add_force(&self, _context: &StepContext<'_, D>, u: &[f64], out: &mut Contributions) {
         self.add_forces(u, out);
     }
 
-    fn add_product(&self, _on: &StepContext<'_, D>, v: &[f64], out: &mut Contributions) {
+    fn add_product(&self, _context: &StepContext<'_, D>, v: &[f64], out: &mut Contributions) {
         self.multiply(v, out);
     }
 
-    fn assemble(&self, _on: &StepContext<'_, D>, matrix: &mut dyn MatrixAssembly) {
+    fn assemble(&self, _context: &StepContext<'_, D>, matrix: &mut dyn MatrixAssembly) {
         self.add_stiffness(matrix);
     }
 
@@ -67,17 +67,17 @@ impl<const D: usize> Interaction<D> for StripConstraints<D> {
 
     fn correct(
         &mut self,
-        on: &StepContext<'_, D>,
+        context: &StepContext<'_, D>,
         at: &EquilibriumState<'_>,
         correction: Correction,
     ) -> Result<usize, StepError> {
         if !self.has_contact {
             return Ok(0);
         }
-        Ok(self.correct_statuses(at.u, correction.force, on.halo))
+        Ok(self.correct_statuses(at.u, correction.force, context.halo))
     }
 
-    fn add_work(&self, _on: &StepContext<'_, D>, at: &EquilibriumState<'_>, work: &mut InteractionWork) {
+    fn add_work(&self, _context: &StepContext<'_, D>, at: &EquilibriumState<'_>, work: &mut InteractionWork) {
         let strips = self.work(at.u);
         work.external += &strips.given;
         work.external -= &strips.friction_work;
@@ -89,13 +89,13 @@ impl<const D: usize> Interaction<D> for StripConstraints<D> {
 
     fn finish(
         &self,
-        on: &StepContext<'_, D>,
+        context: &StepContext<'_, D>,
         at: &EquilibriumState<'_>,
         after: &mut InteractionState<D>,
         reports: &mut InteractionReports,
     ) -> Result<(), StepError> {
-        let strips = &on.boundary.strips;
-        (reports.strips, after.traction) = self.finish_step(strips, on.grid, &after.traction, at.u, on.halo);
+        let strips = &context.boundary.strips;
+        (reports.strips, after.traction) = self.finish_step(strips, context.grid, &after.traction, at.u, context.halo);
         Ok(())
     }
 }
