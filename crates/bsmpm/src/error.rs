@@ -346,13 +346,16 @@ impl StepError {
                 ErrorMeaning::new(AnotherMethod, NoConvergence, Advice::SingularSystem)
             }
             Self::Solve(_) => ErrorMeaning::new(AnotherMethod, NoConvergence, Advice::LinearSolver),
+            // While a step iterates, a state without response counts as `Inverted`, which another method or a shorter
+            // step may avoid. This error arises where points are updated or a free field is evaluated, with a state
+            // that the iteration has accepted: then the law contradicts itself.
             Self::Material { .. } => ErrorMeaning::new(Final, NoConvergence, Advice::ShorterSteps),
         }
     }
 
-    /// Returns whether no other method or predictor can help at this step size.
-    pub fn is_final(&self) -> bool {
-        matches!(self, Self::Interrupted | Self::Unstable { .. })
+    /// Returns whether another method or predictor may avoid the error at this step size.
+    pub fn another_method_may_help(&self) -> bool {
+        self.meaning().severity == Severity::AnotherMethod
     }
 
     /// Returns the nodes of this rank with the largest out-of-balance forces; `None` if the error is not about nodes.

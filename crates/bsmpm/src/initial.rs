@@ -166,8 +166,7 @@ pub fn set_elastic<K: Kinematics<D>, const D: usize>(
         });
     }
     let reaction = vec![0.0; u.len()];
-    let (_, traction) = start.finish_footings(model, points, state, &u, &reaction, halo)?;
-    state.traction = traction;
+    start.finish(model, points, state, &u, &reaction, halo);
     for (p, strain) in strains.iter().enumerate() {
         points.b_e.set(p, exponential(strain));
         points.sigma.set(p, stress_of(&elastic_at(model, points, p), strain));
@@ -231,12 +230,13 @@ pub fn balance<K: Kinematics<D>, const D: usize>(
     let balance = Residual::of(&start.problem(model, points, halo), &at_rest).balance;
     halo.all_reduce_sum(&mut yielding);
     let reactions = model.boundary.reactions(&model.grid, &balance.reaction, halo);
-    let (strips, _) = start.finish_footings(model, points, state, &at_rest, &balance.reaction, halo)?;
+    let mut after = state.clone();
+    let reports = start.finish(model, points, &mut after, &at_rest, &balance.reaction, halo);
     Ok(Equilibrium {
         force: balance.measure(),
         yielding: yielding[0] as u64,
         reactions,
-        strips,
+        strips: reports.strips,
     })
 }
 
@@ -272,9 +272,6 @@ pub fn is_pushed<K: Kinematics<D>, const D: usize>(
     Ok(balance.measure() > model.criteria.force && !RoundOff::of(&problem).covers(&balance, &problem))
 }
 
-/// Results of the footings, and their tractions (Pa).
-type FootingState<const D: usize> = (Vec<StripReport>, Vec<Vec<Vector<D>>>);
-
 /// Steps (1) and (2) at a given time, without motion.
 struct UndeformedState<const D: usize> {
     shape: Shape<D>,
@@ -304,19 +301,18 @@ impl<const D: usize> UndeformedState<D> {
         Ok(Self { shape, nodes })
     }
 
-    /// Returns the results of the footings under the displacement `u` (m), and the tractions with which the next step
-    /// starts (Pa). The other interactions keep their state, because nothing has moved.
-    fn finish_footings<K: Kinematics<D>>(
+    /// Writes the forces that the equilibrium under the displacement `u` (m) has given the interactions into their
+    /// `state`, and returns their results.
+    fn finish<K: Kinematics<D>>(
         &self,
         model: &Model<K, D>,
         points: &Points<D>,
-        state: &InteractionState<D>,
+        state: &mut InteractionState<D>,
         u: &[f64],
         reaction: &[f64],
         halo: &dyn Halo,
-    ) -> Result<FootingState<D>, StepError> {
+    ) -> InteractionReports {
         let context = self.nodes.context(model, &self.shape, points, halo);
-        let mut after = state.clone();
         let mut reports = InteractionReports::default();
         let at = EquilibriumState {
             u,
@@ -326,9 +322,9 @@ impl<const D: usize> UndeformedState<D> {
             internal_work: 0.0,
         };
         for interaction in self.nodes.interactions.iter() {
-            interaction.finish(&context, &at, &mut after, &mut reports)?;
+            interaction.finish_start(&context, &at, state, &mut reports);
         }
-        Ok((reports.strips, after.traction))
+        reports
     }
 
     /// Finds the equilibrium of the points from zero displacement.

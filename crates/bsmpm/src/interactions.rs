@@ -14,12 +14,15 @@
 //! - (6) tangent, as a product: [`Interaction::add_product`], [`Interaction::add_nodal_product`]; as a matrix:
 //!   [`Interaction::assemble`], [`Interaction::add_to_cell`], [`Interaction::add_damping`]
 //! - (9) active set: [`Interaction::predict`], [`Interaction::correct`], [`Interaction::hold_neutral`]
-//! - (11) acceptance: [`Interaction::add_work`], [`Interaction::finish`], [`Interaction::update`]
+//! - (11) acceptance: [`Interaction::add_work`], [`Interaction::finish`], [`Interaction::update`]; after the equilibrium
+//!   at the start of the run: [`Interaction::finish_start`]
 //!
 //! # A new interaction
 //!
 //! Write a file with a type that implements [`Interaction`], and its function `begin`; add one line to
-//! [`Interactions::begin`]. All methods have defaults. The manual shows an example (`how-to/add-a-boundary.md`).
+//! [`Interactions::begin`]. All methods have defaults. A state of its own also needs a field of [`InteractionState`],
+//! and a result of its own a field of [`InteractionReports`] and of [`StepReport`](crate::step::StepReport). The manual
+//! shows an example (`how-to/add-a-boundary.md`).
 
 pub mod absorbing;
 pub mod background;
@@ -53,6 +56,8 @@ use std::fmt;
 
 /// Corrections of statuses after which a step is given up.
 pub const MOST_CORRECTIONS: usize = 40;
+/// The same for rigid bodies, whose statuses are finally corrected one by one.
+pub const MOST_CORRECTIONS_OF_BODIES: usize = 60;
 
 /// What precedes a step, and its time.
 #[derive(Clone, Copy, Debug)]
@@ -313,6 +318,17 @@ pub trait Interaction<const D: usize>: fmt::Debug + Send + Sync {
     /// (11) Adds the works in the accepted step.
     fn add_work(&self, _context: &StepContext<'_, D>, _at: &EquilibriumState<'_>, _work: &mut InteractionWork) {}
 
+    /// Writes the forces that an equilibrium at the start of the run has given the interaction, with which the first step
+    /// begins, and the results. Nothing has moved, so that all other state stays.
+    fn finish_start(
+        &self,
+        _context: &StepContext<'_, D>,
+        _at: &EquilibriumState<'_>,
+        _after: &mut InteractionState<D>,
+        _reports: &mut InteractionReports,
+    ) {
+    }
+
     /// (11) Writes the state at the end of the step, before the material points are updated, and the results. `after`
     /// begins as the state at the start. Fails on all ranks if the step cannot be accepted.
     fn finish(
@@ -343,9 +359,6 @@ pub struct Interactions<const D: usize> {
     list: Vec<Box<dyn Interaction<D>>>,
     /// Whether the step has no length. Nothing moves, and forces that follow the surface are constant.
     is_instant: bool,
-    /// Energy |du_0 . f_0| of the step's first iteration (N m): reference of the convergence criterion after statuses
-    /// change.
-    pub first_energy: Option<f64>,
 }
 
 impl<const D: usize> Interactions<D> {
@@ -364,7 +377,6 @@ impl<const D: usize> Interactions<D> {
         Ok(Self {
             list: kinds.into_iter().flatten().collect(),
             is_instant: start.input.interval.dt == 0.0,
-            first_energy: None,
         })
     }
 

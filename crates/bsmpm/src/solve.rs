@@ -41,10 +41,11 @@ pub struct Backend<'a> {
 }
 
 /// Finds equilibrium from the previous displacement `guess` (m, step 3b). If this fails, the iteration restarts from
-/// zero.
+/// zero. `first_energy` is the reference of the energy criterion, if an iteration of the step has set it already (N m).
 pub fn find<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     guess: &[f64],
+    first_energy: Option<f64>,
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
 ) -> Result<StepSolution<K, D>, StepError> {
@@ -59,11 +60,11 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         method => method,
     };
     let by_newton = (flows && problem.model.nonlinear == Nonlinear::Auto).then(|| last.clone());
-    let mut found = search(problem, method, last, solver, counts);
+    let mut found = search(problem, method, last, first_energy, solver, counts);
     // With flowing water, Newton's method is tried before another guess: it converges in more of the steps in which
     // secants fail, and a failure of both costs the same.
     if let Some(last) = by_newton.filter(|_| goes_on(&found)) {
-        found = search(problem, Nonlinear::Newton, last, solver, counts);
+        found = search(problem, Nonlinear::Newton, last, first_energy, solver, counts);
     }
     if goes_on(&found) && differs[0] > 0.0 {
         let method = if method == Nonlinear::Auto {
@@ -71,7 +72,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
         } else {
             method
         };
-        found = search(problem, method, zero, solver, counts).map(|found| StepSolution {
+        found = search(problem, method, zero, first_energy, solver, counts).map(|found| StepSolution {
             first_guess: false,
             ..found
         });
@@ -87,7 +88,7 @@ pub fn find<K: Kinematics<D>, const D: usize>(
 
 /// Returns whether another method or guess may succeed.
 fn goes_on<T>(found: &Result<T, StepError>) -> bool {
-    found.as_ref().is_err_and(|error| !error.is_final())
+    found.as_ref().is_err_and(StepError::another_method_may_help)
 }
 
 /// Searches for equilibrium from one guess.
@@ -95,10 +96,11 @@ fn search<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     method: Nonlinear,
     u: Vec<f64>,
+    first_energy: Option<f64>,
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
 ) -> Result<StepSolution<K, D>, StepError> {
-    let mut convergence = Convergence::new(problem);
+    let mut convergence = Convergence::new(problem, first_energy);
     let update = match method {
         Nonlinear::Newton => {
             let found = newton::iterate(problem, u, solver, counts, &mut convergence);
@@ -148,7 +150,7 @@ fn settled<K: Kinematics<D>, const D: usize>(
     counts: &mut Counts,
     convergence: &Convergence,
 ) -> Result<StepSolution<K, D>, FailedIteration> {
-    if failure.error.is_final() {
+    if !failure.error.another_method_may_help() {
         return Err(failure);
     }
     let Some(u) = convergence.settled() else {

@@ -128,7 +128,7 @@ pub fn settle<K: Kinematics<D>, const D: usize>(
                 take(model, &start, points, state, &found, halo)?;
                 (left, part, rounds) = (next, 2.0 * part, rounds + 1);
             }
-            Err(error) if error.is_final() || part.min(left) <= LEAST => return Err(error),
+            Err(error) if !error.another_method_may_help() || part.min(left) <= LEAST => return Err(error),
             Err(_) => part = 0.5 * part.min(left),
         }
     }
@@ -157,8 +157,7 @@ fn take<K: Kinematics<D>, const D: usize>(
     halo: &dyn Halo,
 ) -> Result<(), StepError> {
     let ConstitutiveUpdate { answers, state } = commit::constitutive_update(model, &found.trial, points, halo)?;
-    let (_, traction) = start.finish_footings(model, points, interactions, &found.u, &found.reaction, halo)?;
-    interactions.traction = traction;
+    start.finish(model, points, interactions, &found.u, &found.reaction, halo);
     for (p, answer) in answers.iter().enumerate() {
         points.b_e.set(p, answer.b_e);
         points.sigma.set(p, answer.tau);

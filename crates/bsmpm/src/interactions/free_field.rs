@@ -241,7 +241,7 @@ fn advance<K: Kinematics<D>, const D: usize>(
         .iter()
         .flat_map(|inertia| inertia.v.iter().map(|v| v * interval.dt))
         .collect();
-    let found = solve::find(&problem, &guess, &mut solver, &mut Counts::default())?;
+    let found = solve::find(&problem, &guess, None, &mut solver, &mut Counts::default())?;
     let ground = AnchoredPoints {
         points: &points,
         anchors: &state.anchors,

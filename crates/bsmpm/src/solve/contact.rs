@@ -30,26 +30,30 @@ pub fn find<K: Kinematics<D>, const D: usize>(
 ) -> Result<StepSolution<K, D>, StepError> {
     let halo = backend.halo;
     let Some(most) = nodes.interactions.most_corrections() else {
-        return find_at_statuses(model, mapped, nodes, guess, backend);
+        return find_at_statuses(model, mapped, nodes, guess, None, backend);
     };
     for interaction in nodes.interactions.iter_mut() {
         interaction.predict(guess);
     }
     let rough = rough(model);
     let mut u = guess.to_vec();
+    let mut first_energy = None;
     let mut history = Vec::new();
     let mut is_rough = true;
     let mut first_guess = true;
     for pass in 0..most {
         let judged = if is_rough { &rough } else { model };
-        let found = match find_at_statuses(judged, mapped, nodes, &u, backend) {
+        let found = match find_at_statuses(judged, mapped, nodes, &u, first_energy, backend) {
             Ok(found) => found,
             // If all nodes of the contact faces slide, a body that only these faces support can move freely.
-            Err(error) if error.is_final() || hold_neutral(model, mapped, nodes, &u, halo) == 0 => return Err(error),
+            Err(error) if !error.another_method_may_help() || hold_neutral(model, mapped, nodes, &u, halo) == 0 => {
+                return Err(error);
+            }
             Err(_) => continue,
         };
         history.extend(found.history.iter().copied());
         first_guess &= found.first_guess;
+        first_energy = found.first_energy;
         let corrected = correct(judged, mapped, nodes, &found, pass, halo)?;
         if corrected == 0 && !is_rough {
             return Ok(StepSolution {
@@ -64,12 +68,13 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     Err(StepError::Unsettled { passes: most })
 }
 
-/// Finds equilibrium from the displacement `u` (m) with the present statuses.
+/// Finds equilibrium from the displacement `u` (m) with the present statuses. `first_energy`: see [`find`](super::find).
 fn find_at_statuses<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     mapped: MappedPoints<'_, D>,
     nodes: &GridState<D>,
     u: &[f64],
+    first_energy: Option<f64>,
     backend: &mut Backend<'_>,
 ) -> Result<StepSolution<K, D>, StepError> {
     let problem = Problem {
@@ -88,10 +93,11 @@ fn find_at_statuses<K: Kinematics<D>, const D: usize>(
         .filter_map(|each| each.coupling(&context))
         .collect();
     match couplings.is_empty() {
-        true => super::find(&problem, u, solver, counts),
+        true => super::find(&problem, u, first_energy, solver, counts),
         false => super::find(
             &problem,
             u,
+            first_energy,
             &mut BorderedSolver::of(&problem, couplings, solver),
             counts,
         ),
@@ -154,7 +160,6 @@ fn correct<K: Kinematics<D>, const D: usize>(
         .map(|interaction| interaction.correct(&context, &at, Correction { force, pass }))
         .sum::<Result<usize, _>>();
     nodes.interactions = interactions;
-    nodes.interactions.first_energy = found.first_energy;
     if corrected.as_ref().is_ok_and(|corrected| *corrected > 0) {
         nodes.apply_statuses();
         nodes.count(halo);

@@ -37,11 +37,11 @@ pub struct Convergence {
 }
 
 impl Convergence {
-    /// Starts without iterations.
-    pub fn new<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>) -> Self {
+    /// Starts without iterations. `first_energy` is |du_0 . f_0| of the step's first iteration (N m), if statuses have
+    /// changed since: it remains the reference of all energies.
+    pub fn new<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D>, first_energy: Option<f64>) -> Self {
         let criteria = problem.model.criteria;
         let round_off = RoundOff::of(problem);
-        let first_energy = problem.nodes.interactions.first_energy;
         Self {
             criteria,
             round_off,

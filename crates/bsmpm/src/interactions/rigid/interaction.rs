@@ -6,8 +6,8 @@ use crate::exact::Exact;
 use crate::grid::{Contributions, Grid};
 use crate::interactions::state::InteractionState;
 use crate::interactions::{
-    Correction, EquilibriumState, Interaction, InteractionReports, InteractionWork, MotionCoupling, StepContext,
-    StepInput, StepStart,
+    Correction, EquilibriumState, Interaction, InteractionReports, InteractionWork, MOST_CORRECTIONS_OF_BODIES,
+    MotionCoupling, StepContext, StepInput, StepStart,
 };
 use crate::kinematics::Kinematics;
 use crate::linear::MatrixAssembly;
@@ -16,9 +16,6 @@ use crate::parallel::Halo;
 use crate::points::Points;
 use crate::schedule::TimeInterval;
 use crate::tensor::Vector;
-
-/// Corrections of statuses after which a step is given up; finally they are corrected one by one.
-const MOST_CORRECTIONS: usize = 60;
 
 /// Rigid bodies in a step, and what the update of the material points needs.
 #[derive(Debug)]
@@ -127,7 +124,7 @@ impl<const D: usize> Interaction<D> for RigidBodies<D> {
     }
 
     fn most_corrections(&self) -> Option<usize> {
-        Some(MOST_CORRECTIONS)
+        Some(MOST_CORRECTIONS_OF_BODIES)
     }
 
     fn correct(

@@ -87,6 +87,17 @@ impl<const D: usize> Interaction<D> for StripConstraints<D> {
         work.penalty -= &strips.friction_work;
     }
 
+    fn finish_start(
+        &self,
+        context: &StepContext<'_, D>,
+        at: &EquilibriumState<'_>,
+        after: &mut InteractionState<D>,
+        reports: &mut InteractionReports,
+    ) {
+        let strips = &context.boundary.strips;
+        (reports.strips, after.traction) = self.finish_step(strips, context.grid, &after.traction, at.u, context.halo);
+    }
+
     fn finish(
         &self,
         context: &StepContext<'_, D>,
@@ -94,8 +105,7 @@ impl<const D: usize> Interaction<D> for StripConstraints<D> {
         after: &mut InteractionState<D>,
         reports: &mut InteractionReports,
     ) -> Result<(), StepError> {
-        let strips = &context.boundary.strips;
-        (reports.strips, after.traction) = self.finish_step(strips, context.grid, &after.traction, at.u, context.halo);
+        self.finish_start(context, at, after, reports);
         Ok(())
     }
 }
