@@ -3,7 +3,7 @@
 use crate::solver::Skyline;
 use bsmpm::error::StepError;
 use bsmpm::initial;
-use bsmpm::interactions::background::ResistedDisplacement;
+use bsmpm::interactions::artificial_stiffness::ResistedDisplacement;
 use bsmpm::interactions::state::InteractionState;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Model;

@@ -275,9 +275,13 @@ impl RunWriter {
         if let Some(water) = &report.water {
             sizes.insert("water_unknowns".into(), water.unknowns as u64);
         }
+        let artificial = report.artificial_stiffness;
         let most = [
             ("most_massless_nodes", report.massless_nodes),
-            ("most_background_cells", report.background_cells),
+            (
+                "most_background_cells",
+                artificial.map_or(0, |stiffness| stiffness.cells),
+            ),
             ("most_tied_functions", report.tied_functions),
             ("most_untied_functions", report.untied_functions),
         ];
@@ -300,7 +304,9 @@ impl RunWriter {
         summary.deepest_penetration = penetrations.chain(summary.deepest_penetration).reduce(f64::max);
         summary.settled_steps += u64::from(report.settled);
         summary.last_background = None;
-        if let Some([soft, all]) = report.background.map(|works| works.map(|work| work * self.whole)) {
+        if let Some(stiffness) = &report.artificial_stiffness {
+            let soft = stiffness.work * self.whole;
+            let all = stiffness.internal_work * self.whole;
             let internal = summary.internal_work.unwrap_or(0.0) + all;
             summary.background_work = Some(summary.background_work.unwrap_or(0.0) + soft);
             summary.internal_work = Some(internal);
@@ -309,7 +315,7 @@ impl RunWriter {
             let work = if soft == 0.0 { 0.0 } else { soft / scale };
             summary.last_background = Some(BackgroundShares { work });
         }
-        if let Some(share) = report.background_share {
+        if let Some(share) = report.artificial_stiffness.and_then(|stiffness| stiffness.force_share) {
             summary.background_forces = Some(summary.background_forces.unwrap_or(0.0) + share);
         }
         if let Some((excess, turnover)) = report.beside_fixed.zip(report.turnover.as_ref()) {

@@ -335,7 +335,7 @@ impl<const D: usize> Recorder<D> {
             flows.transfer,
             flows.integration,
             flows.smoothing,
-            flows.background,
+            flows.artificial_stiffness,
             flows.penalty,
         ];
         let whole = [

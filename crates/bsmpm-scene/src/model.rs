@@ -10,7 +10,7 @@ use bsmpm::field::pore_water::Water;
 use bsmpm::field::pore_water::ambient::Ambient;
 use bsmpm::field::pore_water::flow::{Course, Flow};
 use bsmpm::grid::{Grid, KnotVector};
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::interactions::rigid::{self, ParticleDomains, RigidBody, RigidState};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::material::state_width;
@@ -45,7 +45,7 @@ pub fn criteria(case: &Case) -> Criteria {
 /// The same once the stages until the time `t` have begun.
 pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result<Model<K, D>, GridError> {
     let coefficient = case.solver.background;
-    let background = (coefficient > 0.0).then_some(Background { coefficient });
+    let artificial_stiffness = (coefficient > 0.0).then_some(ArtificialStiffness { coefficient });
     let grid = grid(case)?;
     let materials = case.materials_at(t);
     let flow = surfaces::flow::<K, D>(case, &grid, t);
@@ -70,7 +70,7 @@ pub fn model_at<K: Kinematics<D>, const D: usize>(case: &Case, t: f64) -> Result
         groups: groups_of(case, &materials),
         quadrature: case.solver.quadrature,
         extended_splines: case.solver.extended_splines,
-        background,
+        artificial_stiffness,
         criteria: criteria(case),
         damping: damping(&materials),
         nonlinear: match case.solver.nonlinear {

@@ -5,7 +5,7 @@ use crate::dynamics::newmark::Newmark;
 use crate::energy::{EnergyBound, StoredEnergy};
 use crate::error::{Severity, StepError};
 use crate::grid::extension::ExtendedSplines;
-use crate::interactions::background::ResistedDisplacement;
+use crate::interactions::artificial_stiffness::ResistedDisplacement;
 use crate::interactions::state::InteractionState;
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
@@ -147,7 +147,7 @@ impl Stepper {
         let (from, to) = self.begin(schedule, model, points, halo)?;
         let mut rejected = Vec::new();
         let mut counts = Counts::default();
-        let mut has_drag = false; // whether the background resists the complete displacement in the next attempt
+        let mut has_drag = false; // whether the artificial stiffness resists the complete displacement in the next attempt
         loop {
             let end = self.end_of_attempt(from, to);
             let dt = end - self.at.t;
@@ -253,11 +253,11 @@ impl Stepper {
         }
     }
 
-    /// Selects what the background resists in a step of size `dt` (s): the change from the last step if prescribed
+    /// Selects what the artificial stiffness resists in a step of size `dt` (s): the change from the last step if prescribed
     /// motion continues steadily and splines of nearly empty cells are tied. Under loads there is no steady flow, and
     /// the complete displacement is resisted.
     fn resisted<K, const D: usize>(&self, model: &Model<K, D>, dt: f64) -> ResistedDisplacement {
-        let is_tied = model.background.is_some() && model.extended_splines == ExtendedSplines::Linear;
+        let is_tied = model.artificial_stiffness.is_some() && model.extended_splines == ExtendedSplines::Linear;
         let last_dt = self.at.guess_dt;
         match is_tied && last_dt > 0.0 && model.boundary.moves_steadily(self.at.t, last_dt, dt) {
             true => ResistedDisplacement::Change,

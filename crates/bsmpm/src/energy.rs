@@ -9,6 +9,7 @@ use crate::exact::Exact;
 use crate::field::pore_water::{carried, work};
 use crate::grid::transfer;
 use crate::interactions::InteractionWork;
+use crate::interactions::load::LoadWork;
 use crate::kinematics::{Gradient, Kinematics};
 use crate::model::Model;
 use crate::parallel::{Halo, over_layers};
@@ -38,7 +39,7 @@ pub struct Flows<T = f64> {
     /// Loss by smoothing of the elastic strain.
     pub smoothing: T,
     /// Loss to the artificial stiffness.
-    pub background: T,
+    pub artificial_stiffness: T,
     /// Loss in the penalty between strips and material.
     pub penalty: T,
 }
@@ -46,7 +47,7 @@ pub struct Flows<T = f64> {
 impl Flows {
     /// Returns the total numerical loss (J).
     pub fn numerical(&self) -> f64 {
-        self.transfer + self.integration + self.smoothing + self.background + self.penalty
+        self.transfer + self.integration + self.smoothing + self.artificial_stiffness + self.penalty
     }
 
     /// Creates the flows from sums in the order of [`Self::each`].
@@ -66,10 +67,18 @@ impl<T> Flows<T> {
             transfer,
             integration,
             smoothing,
-            background,
+            artificial_stiffness,
             penalty,
         } = self;
-        [external, plastic, transfer, integration, smoothing, background, penalty]
+        [
+            external,
+            plastic,
+            transfer,
+            integration,
+            smoothing,
+            artificial_stiffness,
+            penalty,
+        ]
     }
 }
 
@@ -232,14 +241,13 @@ impl StepEnergy {
         add_inertia(flows, problem, u);
     }
 
-    /// Completes the flows of the step over all ranks, with the work of the loads (J) by the mean of their tractions
-    /// and of half their increase. Returns the flows, if the model balances its energy, and the terms of the energy
+    /// Completes the flows of the step over all ranks, with the work of the loads. Returns the flows, if the model balances its energy, and the terms of the energy
     /// bound. The points are updated. One reduction.
     pub fn close<K: Kinematics<D>, const D: usize>(
         self,
         model: &Model<K, D>,
         points: &Points<D>,
-        load_work: [f64; 2],
+        load_work: LoadWork,
         halo: &dyn Halo,
     ) -> (Option<Flows>, Turnover) {
         let Self {
@@ -275,9 +283,8 @@ impl StepEnergy {
         }
         let sums = halo.reproducible_sum(&sums);
         // The points of loads are the same on every rank.
-        let [loads, loads_grown] = load_work;
         let turnover = Turnover {
-            external: sums[0] + loads,
+            external: sums[0] + load_work.mean,
             plastic: sums[1],
             damped: sums[2],
             stored: StoredEnergy {
@@ -288,8 +295,8 @@ impl StepEnergy {
         };
         let flows = model.balances_energy.then(|| {
             let mut flows = Flows::of(&sums[6..]);
-            flows.external += loads;
-            flows.integration -= loads_grown;
+            flows.external += load_work.mean;
+            flows.integration -= load_work.half_increase;
             flows
         });
         (flows, turnover)
@@ -348,7 +355,7 @@ fn add_interactions<K: Kinematics<D>, const D: usize>(
     flows.external += &work.external;
     flows.integration += &work.integration;
     flows.penalty = work.penalty;
-    flows.background = work.background;
+    flows.artificial_stiffness = work.artificial_stiffness;
     if let Some(inertia) = nodes.inertia.as_ref().filter(|inertia| !inertia.struck.is_empty()) {
         let blow = over_layers(halo, D, |c| inertia.struck[c]);
         flows.external += &blow;

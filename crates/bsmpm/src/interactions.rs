@@ -25,7 +25,7 @@
 //! shows an example (`how-to/add-a-boundary.md`).
 
 pub mod absorbing;
-pub mod background;
+pub mod artificial_stiffness;
 pub mod contact;
 pub mod coulomb;
 pub mod free_field;
@@ -41,7 +41,8 @@ use crate::exact::Exact;
 use crate::field::pore_water::pore_pressure::PorePressure;
 use crate::grid::{Contributions, Grid, Shape};
 use crate::interactions::absorbing::ColumnAction;
-use crate::interactions::background::ResistedDisplacement;
+use crate::interactions::artificial_stiffness::{ArtificialStiffnessReport, ResistedDisplacement};
+use crate::interactions::load::LoadWork;
 use crate::interactions::state::InteractionState;
 use crate::kinematics::Kinematics;
 use crate::linear::MatrixAssembly;
@@ -176,7 +177,7 @@ pub struct InteractionWork {
     /// Loss in penalties.
     pub penalty: Exact,
     /// Loss to the artificial stiffness.
-    pub background: Exact,
+    pub artificial_stiffness: Exact,
     /// Half the work of friction and dashpots at faces, which the energy bound leaves out.
     pub friction: Exact,
 }
@@ -190,14 +191,10 @@ pub struct InteractionReports {
     pub rigid: Vec<RigidReport>,
     /// Results of the rigid strips.
     pub strips: Vec<StripReport>,
-    /// Works (J) on the artificial stiffness and of the internal forces, see [`StepReport`](crate::step::StepReport).
-    pub background: Option<[f64; 2]>,
-    /// Force of the artificial stiffness relative to the mean force of the nodes (-).
-    pub background_share: Option<f64>,
-    /// Cells with the artificial stiffness, over all ranks.
-    pub background_cells: usize,
-    /// Work of loads by the mean of their tractions, and that of half their increase (J), equal on all ranks.
-    pub load_work: [f64; 2],
+    /// Results of the artificial stiffness, if there is one.
+    pub artificial_stiffness: Option<ArtificialStiffnessReport>,
+    /// Work of the loads, equal on all ranks.
+    pub load_work: LoadWork,
 }
 
 /// Something that acts on the nodes in one step besides the stress of the material points.
@@ -367,7 +364,7 @@ impl<const D: usize> Interactions<D> {
     pub fn begin<K: Kinematics<D>>(start: &StepStart<'_, K, D>) -> Result<Self, StepError> {
         // The order of sums of forces. A new kind of interaction needs one line here.
         let kinds = [
-            background::begin(start),
+            artificial_stiffness::begin(start),
             strip::begin(start),
             rigid::begin(start)?,
             absorbing::begin(start),

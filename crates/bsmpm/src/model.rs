@@ -9,7 +9,7 @@ use crate::field::pore_water::ambient::{Ambient, Span, StillWater};
 use crate::field::pore_water::flow::Motion;
 use crate::grid::Grid;
 use crate::grid::extension::ExtendedSplines;
-use crate::interactions::background::Background;
+use crate::interactions::artificial_stiffness::ArtificialStiffness;
 use crate::interactions::rigid::ParticleDomains;
 use crate::kinematics::Kinematics;
 use crate::material::Moduli;
@@ -144,7 +144,7 @@ pub struct Model<K, const D: usize> {
     /// Whether functions of nearly empty cells are extrapolated from those of full cells.
     pub extended_splines: ExtendedSplines,
     /// Artificial stiffness of occupied cells, if any.
-    pub background: Option<Background>,
+    pub artificial_stiffness: Option<ArtificialStiffness>,
     /// Convergence criteria.
     pub criteria: Criteria,
     /// Retardation time of every material in dynamics (s); empty without damping.

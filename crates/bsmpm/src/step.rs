@@ -28,7 +28,7 @@ use crate::error::StepError;
 use crate::grid::Shape;
 use crate::initial;
 use crate::interactions::StepInput;
-use crate::interactions::background::ResistedDisplacement;
+use crate::interactions::artificial_stiffness::ResistedDisplacement;
 use crate::interactions::free_field::FreeField;
 use crate::interactions::state::InteractionState;
 use crate::kinematics::Kinematics;
@@ -44,7 +44,7 @@ use problem::Problem;
 /// Advances the material points and the state of the interactions by one step.
 ///
 /// `guess` is the nodal displacement from which the iteration starts (m, D numbers per node of the window); the
-/// converged displacement replaces it. `resisted` selects the part of the displacement that the background resists. If
+/// converged displacement replaces it. `resisted` selects the part of the displacement that the artificial stiffness resists. If
 /// the step fails, nothing has changed but the counts of the work done.
 pub fn step<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,

@@ -426,7 +426,8 @@ struct FlowsFields {
     transfer: f64,
     integration: f64,
     smoothing: f64,
-    background: f64,
+    #[serde(rename = "background")]
+    artificial_stiffness: f64,
     penalty: f64,
 }
 

@@ -7,7 +7,7 @@ use crate::solver::Run;
 use crate::table::Found;
 use bsmpm::boundary::Support;
 use bsmpm::control::Stepper;
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{Gravity, Regime};
 use bsmpm::observe::{self, Part};
@@ -28,7 +28,7 @@ fn inner_stress(shift: f64, background: f64) -> Vec<f64> {
             .body([2..10, 0..4], 3, 1.0, |x| x * 0.0)
             .support(Support::fixed(1, false))
             .gravity(2.0, 0.0);
-    scene.model.background = (background > 0.0).then_some(Background {
+    scene.model.artificial_stiffness = (background > 0.0).then_some(ArtificialStiffness {
         coefficient: background,
     });
     let inside = |x: &Vector<2>| (x[0] - 1.5).abs() < 0.5 && (x[1] - 0.5).abs() < 0.25;

@@ -78,6 +78,15 @@ impl<const D: usize> Load<D> {
     }
 }
 
+/// Work of loads in a step (J).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LoadWork {
+    /// Work of the mean of the tractions at both ends.
+    pub mean: f64,
+    /// Work of half the increase of the tractions.
+    pub half_increase: f64,
+}
+
 /// Loads in one step.
 #[derive(Debug)]
 struct AppliedLoads<const D: usize> {
@@ -232,16 +241,15 @@ fn moved<const D: usize>(
     position
 }
 
-/// Returns the work of all loads in the interval by the mean of their tractions (N m), and half of the increase of the
-/// tractions times the displacement of the points (N m). `positions` (m) and `pressures` (Pa) are those of the load
+/// Returns the work of all loads in the interval. `positions` (m) and `pressures` (Pa) are those of the load
 /// points at the start and at the end.
 fn work<const D: usize>(
     loads: &[Load<D>],
     positions: [&Vec<Vec<Vector<D>>>; 2],
     pressures: [&Vec<Vec<Vector<D>>>; 2],
     interval: TimeInterval,
-) -> [f64; 2] {
-    let mut sums = [0.0; 2];
+) -> LoadWork {
+    let mut sums = LoadWork::default();
     for (number, load) in loads.iter().enumerate() {
         let places = positions[0][number].iter().zip(&positions[1][number]);
         let moved: Vec<Vector<D>> = places.map(|(from, to)| to - from).collect();
@@ -252,8 +260,8 @@ fn work<const D: usize>(
             };
             load.grown(t) * full_work(load, traction, &moved)
         });
-        sums[0] += 0.5 * (works[0] + works[1]);
-        sums[1] += 0.5 * (works[1] - works[0]);
+        sums.mean += 0.5 * (works[0] + works[1]);
+        sums.half_increase += 0.5 * (works[1] - works[0]);
     }
     sums
 }

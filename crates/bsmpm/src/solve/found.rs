@@ -32,7 +32,7 @@ pub struct StepSolution<K: Kinematics<D>, const D: usize> {
     pub scale: f64,
     /// |du_0 . f_0| (N m), the reference of all energies; `None` if no direction was needed.
     pub first_energy: Option<f64>,
-    /// Sum of the magnitudes of the works of all internal forces (J), with a background.
+    /// Sum of the magnitudes of the works of all internal forces (J), with an artificial stiffness.
     pub work: f64,
     /// Number of Newton iterations.
     pub newton_iterations: usize,

@@ -13,6 +13,7 @@ use crate::field::pore_water::backward::is_smooth;
 use crate::field::pore_water::crossed::PreviousFlow;
 use crate::grid::Shape;
 use crate::interactions::InteractionReports;
+use crate::interactions::load::LoadWork;
 use crate::interactions::state::InteractionState;
 use crate::kinematics::Kinematics;
 use crate::model::{Model, Regime};
@@ -37,7 +38,7 @@ pub struct Acceptance<const D: usize> {
     state: InteractionState<D>, // at the end of the step
     update: ConstitutiveUpdate,
     energy: Option<StepEnergy>, // `None` if neither dynamics nor an energy balance needs it
-    load_work: [f64; 2],        // J, see `InteractionReports`
+    load_work: LoadWork,
     interval: TimeInterval,
 }
 
@@ -73,8 +74,11 @@ impl<const D: usize> Acceptance<D> {
         };
         let update = commit::constitutive_update(model, &found.trial, points, halo)?;
         report.second_order_works = commit::second_order_works(model, points, &update.answers, halo);
-        if let Some([_, internal]) = &mut report.background {
-            *internal = internal.max(commit::stress_work(&found.trial, points, &update.answers, halo));
+        if let Some(stiffness) = &mut report.artificial_stiffness {
+            stiffness.internal_work =
+                stiffness
+                    .internal_work
+                    .max(commit::stress_work(&found.trial, points, &update.answers, halo));
         }
         let accounts = model.balances_energy || model.regime == Regime::Dynamic;
         let energy = accounts.then(|| StepEnergy::of(problem, found, &update.answers, interval));

@@ -100,7 +100,13 @@ impl<const D: usize> GridState<D> {
         let fitted = (model.quadrature == Quadrature::Fitted)
             .then(|| quadrature::fitted::<K, D>(&model.grid, &model.boundary, shape, points, halo));
         let volume = fitted.as_deref().unwrap_or(&points.volume);
-        let (active, stiff) = supported(shape, volume, model.background.is_some(), model.grid.nodes(), halo);
+        let (active, stiff) = supported(
+            shape,
+            volume,
+            model.artificial_stiffness.is_some(),
+            model.grid.nodes(),
+            halo,
+        );
         let velocities = model.boundary.velocities(&model.grid);
         let mut free = vec![false; velocities.len()];
         for (c, free) in free.iter_mut().enumerate() {
@@ -352,11 +358,11 @@ fn scatter_weight<const D: usize>(
 }
 
 /// Marks nodes that are touched by an occupied cell, and nodes with positive stiffness: touched by a point with a
-/// gradient, or by a background.
+/// gradient, or in a cell with the artificial stiffness.
 fn supported<const D: usize>(
     shape: &Shape<D>,
     volume: &[f64],
-    has_background: bool,
+    has_artificial_stiffness: bool,
     nodes: usize,
     halo: &dyn Halo,
 ) -> (Vec<bool>, Vec<bool>) {
@@ -376,7 +382,7 @@ fn supported<const D: usize>(
     let stiff = stiff
         .iter()
         .zip(&touched)
-        .map(|(stiff, touched)| *stiff > above || (has_background && *touched))
+        .map(|(stiff, touched)| *stiff > above || (has_artificial_stiffness && *touched))
         .collect();
     (touched, stiff)
 }

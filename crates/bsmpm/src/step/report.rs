@@ -6,6 +6,7 @@ use crate::error::Measures;
 use crate::field::pore_water::crossed::PreviousFlow;
 use crate::field::pore_water::saved::WaterReport;
 use crate::interactions::InteractionReports;
+use crate::interactions::artificial_stiffness::ArtificialStiffnessReport;
 use crate::kinematics::Kinematics;
 use crate::solve::found::StepSolution;
 use crate::step::outflow::Outflow;
@@ -47,8 +48,6 @@ pub struct StepReport {
     pub unknowns: usize,
     /// Active nodes whose mass is negligible, over all ranks. Their velocity and averages are set to zero.
     pub massless_nodes: usize,
-    /// Cells with the artificial stiffness, over all ranks.
-    pub background_cells: usize,
     /// Splines that are tied to those of full cells, over all ranks.
     pub tied_functions: usize,
     /// Splines of nearly empty cells that are not tied, over all ranks: no full cell is near enough, or a footing, a
@@ -67,13 +66,8 @@ pub struct StepReport {
     pub rigid: Vec<RigidReport>,
     /// Reports of the rigid strips.
     pub strips: Vec<StripReport>,
-    /// Two works (J), only with an artificial stiffness. First (u - w) . B (u - w) on this stiffness, which does not
-    /// resist the displacement w. Then the larger of two sums of magnitudes: the works f_int u of all nodes
-    /// and components (background included), and the works of the points' stresses.
-    pub background: Option<[f64; 2]>,
-    /// Largest force of the background on a node divided by the RMS force of the nodes (-). Only with a background, and
-    /// in steps without prescribed motion.
-    pub background_share: Option<f64>,
+    /// Results of the artificial stiffness, if there is one.
+    pub artificial_stiffness: Option<ArtificialStiffnessReport>,
     /// Second-order works of the step (J): for elastic soil with the same strain, and the actual one. Only in
     /// quasi-static analysis with yielding materials and without flowing water.
     pub second_order_works: Option<[f64; 2]>,
@@ -115,7 +109,6 @@ impl StepReport {
             active_nodes: constraints.active_nodes,
             unknowns: constraints.unknowns,
             massless_nodes: constraints.massless_nodes,
-            background_cells: interactions.background_cells,
             tied_functions: extension.map_or(0, |extension| extension.tied),
             untied_functions: extension.map_or(0, |extension| extension.untied),
             settled: found.settled,
@@ -124,8 +117,7 @@ impl StepReport {
             contacts: interactions.contacts,
             rigid: interactions.rigid,
             strips: interactions.strips,
-            background: interactions.background,
-            background_share: interactions.background_share,
+            artificial_stiffness: interactions.artificial_stiffness,
             water: WaterReport::of(problem, found, flowed),
             ..Self::default()
         }

@@ -3,7 +3,7 @@
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::grid::{Contributions, Grid, KnotVector, Shape};
-use bsmpm::interactions::background::{Background, Blocks};
+use bsmpm::interactions::artificial_stiffness::{ArtificialStiffness, Blocks};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
 use bsmpm::tensor::Vector;
@@ -31,7 +31,7 @@ fn background<K: Kinematics<D>, const D: usize>(axes: [KnotVector; D]) -> (Grid<
     let grid = scene.model.grid.clone();
     let points = &scene.points;
     let shape = Shape::at(&grid, points).expect("points inside");
-    let background = Background {
+    let background = ArtificialStiffness {
         coefficient: COEFFICIENT,
     };
     let found = background.blocks::<K, D>(&grid, &shape, points, &scene.model.materials);

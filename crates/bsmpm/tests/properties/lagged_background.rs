@@ -4,7 +4,7 @@ use crate::support::scene::{Scene, axis};
 use bsmpm::boundary::{Boundary, Path, RigidBody, Strip, Support, surface};
 use bsmpm::control::AcceptedStep;
 use bsmpm::grid::extension::ExtendedSplines;
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::interactions::rigid::Outline;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
@@ -44,7 +44,7 @@ fn footing(rows: Vec<(f64, [f64; 2])>) -> Scene<PlaneStrain, 2> {
 
 /// The steps under a background of this coefficient.
 fn steps(rows: &[(f64, [f64; 2])], coefficient: f64) -> Vec<AcceptedStep> {
-    let scene = footing(rows.to_vec()).background(Some(Background { coefficient }));
+    let scene = footing(rows.to_vec()).artificial_stiffness(Some(ArtificialStiffness { coefficient }));
     scene.solved(0.05, rows.last().expect("a path").0).1
 }
 
@@ -63,7 +63,7 @@ fn a_limit_load_does_not_depend_on_the_coefficient() {
         (stiff / usual - 1.0).abs() < 1e-5 && (soft / usual - 1.0).abs() < 1e-5,
         "{stiff} {usual} {soft}"
     );
-    let mut dragged = footing(path.to_vec()).background(Some(Background { coefficient: 1e-3 }));
+    let mut dragged = footing(path.to_vec()).artificial_stiffness(Some(ArtificialStiffness { coefficient: 1e-3 }));
     dragged.model.extended_splines = ExtendedSplines::Off;
     let dragged = force(&dragged.solved(0.05, 1.0).1);
     assert!(dragged > 1.001 * usual, "without ties it is a drag: {dragged} N");
@@ -71,7 +71,10 @@ fn a_limit_load_does_not_depend_on_the_coefficient() {
 
 /// Work of the background in every step over that of all internal forces.
 fn shares(steps: &[AcceptedStep]) -> Vec<f64> {
-    let share = |step: &AcceptedStep| step.report.background.map_or(0.0, |[soft, all]| soft / all.abs());
+    let share = |step: &AcceptedStep| {
+        let stiffness = step.report.artificial_stiffness;
+        stiffness.map_or(0.0, |of| of.work / of.internal_work.abs())
+    };
     steps.iter().map(share).collect()
 }
 

@@ -4,7 +4,7 @@ use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::grid::Shape;
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Branch, CamClay, Elastic, Law, Material, MohrCoulomb, Separation};
 use bsmpm::model::Regime;
@@ -46,7 +46,7 @@ fn loaded<K: Kinematics<D>, const D: usize>(method: Stabilisation, regime: Regim
     scene = scene
         .body(cells, 2, 1.0, |_| Vector::zeros())
         .support(Support::fixed(D - 1, false));
-    scene.model.background = Some(Background { coefficient: 1e-3 });
+    scene.model.artificial_stiffness = Some(ArtificialStiffness { coefficient: 1e-3 });
     let mut random = Random::new(3);
     scene = scene.scattered(&mut random);
     scene.points.sort_by_cell(&scene.model.grid);
@@ -316,7 +316,7 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
         0.0,
         cohesion,
     );
-    (scene.model.materials, scene.model.background) = (vec![Material::MohrCoulomb(law).into()], None);
+    (scene.model.materials, scene.model.artificial_stiffness) = (vec![Material::MohrCoulomb(law).into()], None);
     let mut random = Random::new(7);
     for p in 0..scene.points.len() {
         let [xx, yy, zz, xy] = [6.0, -12.0, -3.0, 0.0].map(|mean| size * (mean + random.signed()));

@@ -8,7 +8,7 @@ use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::grid::{Grid, KnotVector};
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::interactions::state::InteractionState;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::material::{Elastic, Hencky, LayeredMaterial, Material};
@@ -75,7 +75,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
             groups: Groups::default(),
             quadrature: Quadrature::Points,
             extended_splines: ExtendedSplines::Off,
-            background: None,
+            artificial_stiffness: None,
             criteria: Criteria {
                 energy: 1e-14,
                 force: 1e-10,
@@ -239,9 +239,9 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         self
     }
 
-    /// With this background.
-    pub fn background(mut self, background: Option<Background>) -> Self {
-        self.model.background = background;
+    /// With this artificial stiffness.
+    pub fn artificial_stiffness(mut self, stiffness: Option<ArtificialStiffness>) -> Self {
+        self.model.artificial_stiffness = stiffness;
         self
     }
 

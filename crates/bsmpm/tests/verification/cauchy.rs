@@ -2,7 +2,7 @@
 
 use crate::support::scene::{METHODS, Scene, axis};
 use bsmpm::boundary::{Path, Strip, Support, surface};
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Criteria;
@@ -36,8 +36,8 @@ fn pressed(method: Stabilisation) -> Points<2> {
         force: 1e-4,
         max_iterations: 1000,
     };
-    let soft = Background { coefficient: 1e-3 };
-    scene = scene.background(Some(soft));
+    let soft = ArtificialStiffness { coefficient: 1e-3 };
+    scene = scene.artificial_stiffness(Some(soft));
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 3.0].into(), &[1.0, 3.0].into(), 4);
     let path = Path {
         rows: vec![(1.0, [0.0, -0.5].into())],

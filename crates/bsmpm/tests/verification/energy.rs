@@ -9,7 +9,7 @@ use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::error::StepError;
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb, Separation};
 use bsmpm::model::{AverageWeight, Gravity, Regime};
@@ -112,7 +112,7 @@ fn the_bars_books_close_and_say_where_its_energy_went() {
         let left = (course.stored.kinetic + course.stored.elastic) / start;
         assert!(course.relative() <= 1e-10); // measured 1.1e-11
         assert_eq!(
-            (flows.external, flows.plastic, flows.background, flows.penalty),
+            (flows.external, flows.plastic, flows.artificial_stiffness, flows.penalty),
             (0.0, 0.0, 0.0, 0.0)
         );
         assert!((left + flows.numerical() / start - 1.0).abs() <= 1e-10);
@@ -190,12 +190,12 @@ fn a_collapse_with_friction_closes() {
         (Stabilisation::ConsistentFBar, Separation::Closing),
     ] {
         let mut scene = collapse(method, separation);
-        scene.model.background = Some(Background { coefficient: 1e-4 });
+        scene.model.artificial_stiffness = Some(ArtificialStiffness { coefficient: 1e-4 });
         let course = kept(scene, 2e-3, 0.3);
         tell(&format!("{method:?}"), &course);
         let flows = course.books.flows;
         assert!(course.relative() <= 1e-8); // measured 8.7e-12, 1.5e-12
-        assert!(flows.plastic >= 0.1 * flows.external && flows.background > 0.0);
+        assert!(flows.plastic >= 0.1 * flows.external && flows.artificial_stiffness > 0.0);
         assert!(course.stored.kinetic > 0.0 && flows.external > 0.0);
     }
 }
@@ -302,7 +302,7 @@ fn footing(method: Stabilisation) -> Scene<PlaneStrain, 2> {
     .support(Support::fixed(1, false))
     .stabilised(method);
     scene.model.weighting = AverageWeight::Volume;
-    scene.model.background = Some(Background { coefficient: 1e-3 });
+    scene.model.artificial_stiffness = Some(ArtificialStiffness { coefficient: 1e-3 });
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.0].into(), &[0.5, 1.0].into(), 2);
     let path = Path {
         rows: vec![(1.0, [0.0, -0.05].into())],
@@ -327,7 +327,7 @@ fn a_quasi_static_footing_closes() {
         let flows = course.books.flows;
         assert!(course.relative() <= 1e-8); // measured 5.4e-12
         assert_eq!((course.stored.kinetic, flows.transfer), (0.0, 0.0));
-        assert!(flows.plastic > 0.1 * flows.external && flows.penalty > 0.0 && flows.background > 0.0);
+        assert!(flows.plastic > 0.1 * flows.external && flows.penalty > 0.0 && flows.artificial_stiffness > 0.0);
         assert!(flows.penalty <= 1e-3 * flows.external);
     }
 }

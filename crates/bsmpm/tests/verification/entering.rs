@@ -4,7 +4,7 @@ use crate::support::scene::{Scene, axis, by_id, hencky};
 use crate::support::solver::Dense;
 use bsmpm::boundary::Support;
 use bsmpm::grid::Shape;
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::schedule::TimeInterval;
@@ -20,12 +20,12 @@ const H: f64 = 0.25;
 const EDGE: f64 = H / 6.0;
 
 /// A soft block of 8 x 4 cells on a base that it sticks to, `shift` off the knots, and its inner points by id.
-fn block(shift: f64, background: Option<Background>, regime: Regime) -> (Scene<PlaneStrain, 2>, HashSet<u64>) {
+fn block(shift: f64, background: Option<ArtificialStiffness>, regime: Regime) -> (Scene<PlaneStrain, 2>, HashSet<u64>) {
     let mut scene = Scene::<PlaneStrain, 2>::new([axis(H, 12, 2), axis(H, 5, 2)], hencky(100.0, 0.3), regime)
         .body([2..10, 0..4], 3, 1.0, |x| x * 0.0)
         .support(Support::fixed(1, false))
         .gravity(2.0, 0.0)
-        .background(background);
+        .artificial_stiffness(background);
     let inside = |x: &Vector<2>| (x[0] - 1.5).abs() < 0.5 && (x[1] - 0.5).abs() < 0.25;
     let points = &mut scene.points;
     let inner = (0..points.len())
@@ -38,7 +38,7 @@ fn block(shift: f64, background: Option<Background>, regime: Regime) -> (Scene<P
 }
 
 /// Vertical stress of the inner points, by id, of the settled block.
-fn inner_stress(shift: f64, background: Option<Background>) -> Vec<f64> {
+fn inner_stress(shift: f64, background: Option<ArtificialStiffness>) -> Vec<f64> {
     let (scene, inner) = block(shift, background, Regime::QuasiStatic);
     let (scene, steps) = scene.solved(1.0, 1.0);
     assert!(steps.iter().all(|step| step.rejected.is_empty()));
@@ -51,7 +51,7 @@ fn inner_stress(shift: f64, background: Option<Background>) -> Vec<f64> {
 }
 
 /// Largest change of the inner stress over the largest stress: translated across a cell, and just entering one.
-fn changes(background: Option<Background>) -> [f64; 2] {
+fn changes(background: Option<ArtificialStiffness>) -> [f64; 2] {
     let reference = inner_stress(0.0, background);
     let largest = reference.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
     let change = |shift| {
@@ -78,7 +78,7 @@ fn a_body_whose_edge_enters_a_cell_by_next_to_nothing_has_the_same_stress_inside
     // % there. What is left with one is the points' quadrature; 1e-1 E holds the edge cells too much (2.2e-2).
     for (name, background, bound) in [
         ("no background", None, 0.0125), // measured 9.7e-3, 1.07e-2
-        ("background 1e-4", Some(Background { coefficient: 1e-4 }), 0.01), // measured 6.6e-3, 5.2e-3
+        ("background 1e-4", Some(ArtificialStiffness { coefficient: 1e-4 }), 0.01), // measured 6.6e-3, 5.2e-3
     ] {
         let [crossing, entering] = changes(background);
         println!("{name}: inner stress changes by {crossing:.2e} across the cell, {entering:.2e} just entering it");
@@ -87,7 +87,7 @@ fn a_body_whose_edge_enters_a_cell_by_next_to_nothing_has_the_same_stress_inside
 }
 
 /// Largest over smallest eigenvalue of K_0, as it is and scaled to a unit diagonal.
-fn condition(shift: f64, background: Option<Background>) -> [f64; 2] {
+fn condition(shift: f64, background: Option<ArtificialStiffness>) -> [f64; 2] {
     let (scene, _) = block(shift, background, Regime::QuasiStatic);
     let model = &scene.model;
     let points = &scene.points;
@@ -123,7 +123,7 @@ fn a_background_bounds_the_condition_however_little_enters_a_cell() {
         let shift = EDGE + H * 10.0_f64.powi(-k);
         let none = condition(shift, None);
         let coefficients = [1e-4, 1e-3, 1e-2];
-        let found = coefficients.map(|coefficient| condition(shift, Some(Background { coefficient })));
+        let found = coefficients.map(|coefficient| condition(shift, Some(ArtificialStiffness { coefficient })));
         let row: Vec<String> = [none]
             .iter()
             .chain(&found)

@@ -4,7 +4,7 @@
 use crate::support::scene::{METHODS, Scene, axis, by_id, hencky};
 use bsmpm::boundary::Support;
 use bsmpm::grid::KnotVector;
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb, Separation};
 use bsmpm::model::{Gravity, Regime};
@@ -207,13 +207,13 @@ fn the_soft_background_changes_a_filled_elastic_block_by_the_order_of_its_coeffi
         .support(Support::roller(0, false))
         .support(Support::fixed(1, false))
         .gravity(1.0, 0.0)
-        .background(background);
+        .artificial_stiffness(background);
         scene.solved(1.0, 1.0).0.points
     };
     let plain = settled(None);
     let scale = plain.u.iter().map(|u| u.norm()).fold(0.0, f64::max);
     for coefficient in [1e-5, 1e-3, 1e-2] {
-        let soft = settled(Some(Background { coefficient }));
+        let soft = settled(Some(ArtificialStiffness { coefficient }));
         let change = soft
             .u
             .iter()

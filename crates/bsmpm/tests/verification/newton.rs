@@ -4,7 +4,7 @@
 use crate::support::scene::{Scene, axis};
 use bsmpm::boundary::{Path, Strip, Support, surface};
 use bsmpm::control::AcceptedStep;
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Criteria;
@@ -41,7 +41,7 @@ fn indented(nonlinear: Nonlinear, method: Stabilisation) -> (Plane, Vec<Accepted
         force: 1e-9,
         max_iterations: 400,
     };
-    scene.model.background = Some(Background { coefficient: 1e-3 });
+    scene.model.artificial_stiffness = Some(ArtificialStiffness { coefficient: 1e-3 });
     scene.model.nonlinear = nonlinear;
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &[0.0, 1.5].into(), &[1.0, 1.5].into(), 3);
     let path = Path {

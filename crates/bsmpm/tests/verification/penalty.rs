@@ -2,7 +2,7 @@
 
 use crate::support::scene::{Scene, axis};
 use bsmpm::boundary::{Path, Strip, Support, surface};
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Criteria;
@@ -32,7 +32,7 @@ fn pressure(factor: f64) -> f64 {
         force: 1e-6,
         max_iterations: 1000,
     };
-    scene.model.background = Some(Background { coefficient: 1e-3 });
+    scene.model.artificial_stiffness = Some(ArtificialStiffness { coefficient: 1e-3 });
     let at = |x: f64, y: f64| Vector::<2>::new(x, y);
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &at(0.0, 2.0), &at(1.0, 2.0), 4);
     let path = Path {

@@ -4,7 +4,7 @@ use crate::support::scene::{Scene, axis, hencky};
 use bsmpm::boundary::{Load, Path, Strip, Support, SurfacePoint, surface};
 use bsmpm::control::AcceptedStep;
 use bsmpm::error::StepError;
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::schedule::Schedule;
@@ -25,7 +25,7 @@ fn block(cells: [usize; 2], order: usize) -> Plane {
         .rollers(0..2);
     scene.model.weighting = AverageWeight::Volume;
     scene.model.criteria.force = 1e-12;
-    scene.model.background = Some(Background { coefficient: 1e-3 });
+    scene.model.artificial_stiffness = Some(ArtificialStiffness { coefficient: 1e-3 });
     scene
         .model
         .boundary
@@ -148,7 +148,7 @@ fn a_cut_step_follows_the_same_path() {
 #[test]
 fn a_uniform_traction_gives_uniform_stress_before_the_body_has_moved_and_follows_it() {
     let mut scene = block([4, 4], 2);
-    scene.model.background = None;
+    scene.model.artificial_stiffness = None;
     let points = surface::along::<PlaneStrain, 2>(&scene.model.grid, &at(0.0, 1.0), &at(1.0, 1.0), 3);
     scene = scene.load(Load::dead(points, at(0.0, -100.0), 1.0));
     let M = scene.model.materials[0].elastic().oedometric();

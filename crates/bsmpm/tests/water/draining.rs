@@ -5,7 +5,7 @@ use crate::support::scene::{axis, hencky};
 use bsmpm::boundary::surface;
 use bsmpm::boundary::{Load, Support, SurfacePoint};
 use bsmpm::field::pore_water::flow::{Course, Drain, Given, PermeabilityLaw};
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::tensor::Vector;
@@ -49,8 +49,8 @@ fn a_drained_surface_that_settles_through_rows_of_cells_stays_drained() {
     ];
     for (law, exact) in cases {
         let mut scene = column(20, 0.999, 0.5 * M, law);
-        let soft = Background { coefficient: 1e-2 };
-        scene = scene.background(Some(soft));
+        let soft = ArtificialStiffness { coefficient: 1e-2 };
+        scene = scene.artificial_stiffness(Some(soft));
         scene.model.weighting = AverageWeight::Volume;
         (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
         let mut errors = Vec::new();

@@ -4,7 +4,7 @@
 use super::{DENSITY, M, Plane, WEIGHT, column_of, geometric, run};
 use bsmpm::field::pore_water::flow::{Course, DrainedFace, Given, PermeabilityLaw};
 use bsmpm::field::pore_water::observed::PoreWater;
-use bsmpm::interactions::background::Background;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::points::Points;
 use bsmpm::stabilisation::Stabilisation;
@@ -23,7 +23,7 @@ const ACROSS: usize = 2;
 fn settling(cells: usize, load: f64, law: PermeabilityLaw) -> Plane {
     let mut scene = column_of([ACROSS, cells], 0.999, load, law)
         .stabilised(Stabilisation::ConsistentFBar)
-        .background(Some(Background { coefficient: 1e-2 }));
+        .artificial_stiffness(Some(ArtificialStiffness { coefficient: 1e-2 }));
     (scene.model.criteria.energy, scene.model.criteria.force) = (1e-8, 1e-5);
     scene
 }

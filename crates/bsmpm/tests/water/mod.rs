@@ -17,7 +17,7 @@ use bsmpm::boundary::{Load, Support, SurfacePoint};
 use bsmpm::field::pore_water::Water;
 use bsmpm::field::pore_water::ambient::Ambient;
 use bsmpm::field::pore_water::flow::{Drain, DrainedFace, Flow, Given, Motion, Permeability, PermeabilityLaw, Soil};
-use bsmpm::interactions::background::ResistedDisplacement;
+use bsmpm::interactions::artificial_stiffness::ResistedDisplacement;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::points::Points;

@@ -14,8 +14,8 @@ use bsmpm::field::pore_water::flow::{
 };
 use bsmpm::field::pore_water::retention::Retention;
 use bsmpm::grid::Shape;
-use bsmpm::interactions::background::Background;
-use bsmpm::interactions::background::ResistedDisplacement;
+use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
+use bsmpm::interactions::artificial_stiffness::ResistedDisplacement;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::{Criteria, Method, Nonlinear, QuasiNewton};
@@ -53,7 +53,7 @@ fn wet<K: Kinematics<D>, const D: usize>(
         .body([const { 0..2 }; D], 3, 1.0, |_| Vector::zeros())
         .support(Support::fixed(D - 1, false));
     scene = scene.gravity(10.0, 0.0);
-    scene.model.background = Some(Background { coefficient: 1e-3 });
+    scene.model.artificial_stiffness = Some(ArtificialStiffness { coefficient: 1e-3 });
     // None of these points is so near to saturation that its permeability has a bounded slope in the derivative.
     let mut random = Random::new(5);
     scene = scene.scattered(&mut random);

@@ -22,9 +22,24 @@ use std::borrow::Cow;
 
 /// Artificial stiffness of all occupied cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Background {
+pub struct ArtificialStiffness {
     /// Fraction c of the largest Young's modulus in the cell (-).
     pub coefficient: f64,
+}
+
+/// Results of the artificial stiffness in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArtificialStiffnessReport {
+    /// Cells with the stiffness, over all ranks.
+    pub cells: usize,
+    /// Work (u - w) . B (u - w) on the stiffness, which does not resist the displacement w (J).
+    pub work: f64,
+    /// The larger of two sums of magnitudes: the works f_int u of all nodes and components, those of the stiffness
+    /// included, and the works of the points' stresses (J).
+    pub internal_work: f64,
+    /// Largest force of the stiffness on a node divided by the RMS force of the nodes (-); `None` in steps with
+    /// prescribed motion, and without forces.
+    pub force_share: Option<f64>,
 }
 
 /// Displacement that the artificial stiffness resists.
@@ -51,7 +66,7 @@ struct SoftCell {
     factor: f64, // Pa, c E times the geometry weight
 }
 
-impl Background {
+impl ArtificialStiffness {
     /// Computes the blocks of the occupied cells: c E times the integral of eps : eps, with the geometry weight at the
     /// cell's centre. E is the largest Young's modulus of the material points in the cell.
     pub fn blocks<K: Kinematics<D>, const D: usize>(
@@ -99,7 +114,7 @@ impl Blocks {
         });
     }
 
-    /// Returns u . B u of this rank's cells (N m): the work that the background absorbs.
+    /// Returns u . B u of this rank's cells (N m): the work that the stiffness absorbs.
     pub fn work<const D: usize>(&self, shape: &Shape<D>, u: &[f64]) -> Exact {
         let mut works: Vec<f64> = Vec::with_capacity(self.cells.len());
         self.each_product::<D>(shape, u, |_, u, forces| {
@@ -146,7 +161,7 @@ impl Blocks {
         self.cells.len()
     }
 
-    /// Adds the background block of a cell, by index `patch`, to `block`.
+    /// Adds the block of a cell, by index `patch`, to `block`.
     pub fn add_to(&self, patch: usize, block: &mut [f64]) {
         let soft = self.cells[patch];
         self.forms.add_to(soft.form, soft.factor, block);
@@ -155,7 +170,7 @@ impl Blocks {
 
 /// Artificial stiffness of one step.
 #[derive(Debug)]
-struct ArtificialStiffness {
+struct AppliedStiffness {
     blocks: Blocks,
     resisted: ResistedDisplacement,
     /// Part of the step's displacement that the stiffness does not resist (m), D numbers per node; `None`: it resists
@@ -168,8 +183,8 @@ struct ArtificialStiffness {
 /// Begins the artificial stiffness of a step, if the model has one.
 pub fn begin<K: Kinematics<D>, const D: usize>(start: &StepStart<'_, K, D>) -> Option<Box<dyn Interaction<D>>> {
     let model = start.model;
-    let soft = model.background?;
-    Some(Box::new(ArtificialStiffness {
+    let soft = model.artificial_stiffness?;
+    Some(Box::new(AppliedStiffness {
         blocks: soft.blocks::<K, D>(&model.grid, start.shape, start.points, &model.materials),
         resisted: start.input.resisted,
         unresisted: None,
@@ -179,7 +194,7 @@ pub fn begin<K: Kinematics<D>, const D: usize>(start: &StepStart<'_, K, D>) -> O
     }))
 }
 
-impl ArtificialStiffness {
+impl AppliedStiffness {
     /// Returns the part of a nodal displacement that the stiffness resists (m).
     fn resisted<'a>(&self, u: &'a [f64]) -> Cow<'a, [f64]> {
         match &self.unresisted {
@@ -213,7 +228,7 @@ impl ArtificialStiffness {
     }
 }
 
-impl<const D: usize> Interaction<D> for ArtificialStiffness {
+impl<const D: usize> Interaction<D> for AppliedStiffness {
     /// Limits the resistance to the difference from the displacement `last`, if only changes are resisted. In `last`,
     /// outer splines take the values that their homes imply, because their own have next to no stiffness.
     fn note_unknowns(&mut self, context: &StepContext<'_, D>, last: &[f64]) {
@@ -252,7 +267,7 @@ impl<const D: usize> Interaction<D> for ArtificialStiffness {
     }
 
     fn add_work(&self, context: &StepContext<'_, D>, at: &EquilibriumState<'_>, work: &mut InteractionWork) {
-        work.background += &self.force(context, at.u).dot(at.u);
+        work.artificial_stiffness += &self.force(context, at.u).dot(at.u);
     }
 
     fn finish(
@@ -265,11 +280,12 @@ impl<const D: usize> Interaction<D> for ArtificialStiffness {
         let work = self.blocks.work::<D>(context.shape, &self.resisted(at.u));
         let mut cells = [self.blocks.count() as f64];
         context.halo.all_reduce_sum(&mut cells);
-        reports.background = Some([context.halo.reproducible_sum(&[work])[0], at.internal_work]);
-        reports.background_cells = cells[0] as usize;
-        if !self.is_driven {
-            reports.background_share = self.share(context, at);
-        }
+        reports.artificial_stiffness = Some(ArtificialStiffnessReport {
+            cells: cells[0] as usize,
+            work: context.halo.reproducible_sum(&[work])[0],
+            internal_work: at.internal_work,
+            force_share: (!self.is_driven).then(|| self.share(context, at)).flatten(),
+        });
         Ok(())
     }
 }
