@@ -213,10 +213,12 @@ impl<'p, K: Kinematics<D>, const D: usize> Run<'p, K, D> {
         }
     }
 
-    /// A warning about a `subject`, a name of the case, that is given once for each of its codes.
-    fn warn_once(&mut self, subject: &str, warning: String) {
-        let code = code_of(&warning).unwrap_or_default();
+    /// A warning about a `subject`, a name of the case, that is given once for each of its codes. `warning` makes its
+    /// text, which begins with the `code`.
+    fn warn_once(&mut self, code: &str, subject: &str, warning: impl FnOnce() -> String) {
         if self.issued.insert(IssuedWarning::new(code, subject)) {
+            let warning = warning();
+            debug_assert_eq!(code_of(&warning), Some(code));
             self.warn(warning);
         }
     }

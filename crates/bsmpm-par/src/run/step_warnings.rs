@@ -51,20 +51,22 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let advance = report.advance;
             let depth = report.penetration;
             if advance > FASTEST {
-                let warning = format!(
-                    "W0702: rigid body `{name}` moves by {advance:.2} cells in one step at t = {t} (limit: \
-                     {FASTEST}). Contact with the soil is detected too late. Increase `analysis.steps`, or reduce \
-                     `analysis.dt`."
-                );
-                self.warn_once(&name, warning);
+                self.warn_once("W0702", &name, || {
+                    format!(
+                        "W0702: rigid body `{name}` moves by {advance:.2} cells in one step at t = {t} (limit: \
+                         {FASTEST}). Contact with the soil is detected too late. Increase `analysis.steps`, or reduce \
+                         `analysis.dt`."
+                    )
+                });
             }
             if depth > DEEPEST {
-                let warning = format!(
-                    "W0703: rigid body `{name}` penetrates the soil by {depth:.2} cells at t = {t} (limit: \
-                     {DEEPEST}). The force on the body is inaccurate. Increase `analysis.steps`, or reduce \
-                     `analysis.dt`."
-                );
-                self.warn_once(&name, warning);
+                self.warn_once("W0703", &name, || {
+                    format!(
+                        "W0703: rigid body `{name}` penetrates the soil by {depth:.2} cells at t = {t} (limit: \
+                         {DEEPEST}). The force on the body is inaccurate. Increase `analysis.steps`, or reduce \
+                         `analysis.dt`."
+                    )
+                });
             }
         }
     }
@@ -92,11 +94,12 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let name = self.case.rigid[number].name.clone();
             let side = through.face.side(self.case.geometry);
             let t = self.moment(accepted.t);
-            let warning = format!(
+            self.warn_once("W0704", &name, || {
+format!(
                 "W0704: rigid body `{name}` passes through boundary `{side}` at t = {t}. Boundaries do not support rigid bodies. \
                  Place soil in front of the boundary, or change the motion of the body."
-            );
-            self.warn_once(&name, warning);
+            )
+});
         }
     }
 
@@ -111,25 +114,28 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             let points = on.points.len();
             let name = bsmpm_scene::surfaces::name_of_strip(&self.case, number);
             let t = self.moment(accepted.t);
-            let warning = if strip.held == 0 {
-                format!(
+            if strip.held == 0 {
+                self.warn_once("W0705", &name, || {
+                    format!(
                     "W0705: `{name}` touches no soil at t = {t}, and carries no load. Check the position and the path \
                      of `{name}`."
                 )
+                });
             } else if 2 * strip.left_behind > points {
-                format!(
+                self.warn_once("W0706", &name, || {
+                    format!(
                     "W0706: `{name}` lost contact with the soil at t = {t}: most of it is more than half a cell away. \
                      The reaction is no longer valid. Use smaller cells, or reduce the uplift."
                 )
+                });
             } else if strip.moved_on > 0 {
-                format!(
+                self.warn_once("W0707", &name, || {
+                    format!(
                     "W0707: `{name}` returns to the soil at t = {t}, but not where it separated. The program assumes \
                      level ground between the two places. Let `{name}` return at the same place."
                 )
-            } else {
-                continue;
-            };
-            self.warn_once(&name, warning);
+                });
+            }
         }
     }
 
@@ -149,20 +155,22 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
         let points: Vec<usize> = wanted.iter().map(|points| points.len()).collect();
         for number in (0..points.len()).filter(|&number| acts[number] && 2 * water.held[number] < points[number]) {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
-            let warning = format!(
+            self.warn_once("W0708", &name, || {
+format!(
                 "W0708: most of `{name}` has no soil nearby at t = {t}. No water flows there. If the surface heaves, \
                  extend the grid by one cell above the heaved surface."
-            );
-            self.warn_once(&name, warning);
+            )
+});
         }
         for number in (0..points.len()).filter(|&number| water.torn[number] > TORN) {
             let name = bsmpm_scene::surfaces::name_of_drain(&self.case, number);
-            let warning = format!(
+            self.warn_once("W0709", &name, || {
+format!(
                 "W0709: `{name}` does not drain the faces of a gap of {:.1} cells that opened in the soil at t = {t}, \
                  so consolidation is too slow. Compare drainage = \"hydrostatic\" (no excess pore pressure).",
                 water.torn[number]
-            );
-            self.warn_once(&name, warning);
+            )
+});
         }
         self.tell_drained_faces(accepted);
     }
@@ -188,17 +196,21 @@ impl<K: Kinematics<D>, const D: usize> Run<'_, K, D> {
             }
             let name = bsmpm_scene::surfaces::name_of_drained_face(&self.case, number);
             let share = 100.0 * face.off as f64 / face.near.max(1) as f64;
-            let warning = match sealed {
-                true => format!(
-                    "W0710: the soil has left the drained boundary of `{name}` at t = {t}. No water drains there. \
-                     Define the drain by `surface`, or `from` and `to`, so that it moves with the soil."
-                ),
-                false => format!(
+            if sealed {
+                self.warn_once("W0710", &name, || {
+                    format!(
+                        "W0710: the soil has left the drained boundary of `{name}` at t = {t}. No water drains there. \
+                         Define the drain by `surface`, or `from` and `to`, so that it moves with the soil."
+                    )
+                });
+            } else {
+                self.warn_once("W0711", &name, || {
+                    format!(
                     "W0711: {share:.0} % of the soil has left the drained boundary of `{name}` at t = {t}. Too little \
                      water drains. Define the drain by `surface`, or `from` and `to`, so that it moves with the soil."
-                ),
-            };
-            self.warn_once(&name, warning);
+                )
+                });
+            }
         }
     }
 
