@@ -1,6 +1,6 @@
 //! Fuzzes tables of numbers, and piecewise linear motions.
 
-use bsmpm::boundary::Path;
+use bsmpm::interactions::strip::Path;
 use bsmpm::tensor::Vector;
 use bsmpm_io::table::{Columns, parse};
 

@@ -16,8 +16,10 @@ pub use strips::{penalty, strips};
 use crate::case::{Traction, Triangle, keeps_direction};
 use crate::grid::vector;
 use crate::{ActiveLoads, Case, Face, LoadedLine, Plate, Push, Shares, Site};
-use bsmpm::boundary::{Load, StripReport, SurfacePoint, surface};
+use bsmpm::boundary::{SurfacePoint, surface};
 use bsmpm::grid::Grid;
+use bsmpm::interactions::load::Load;
+use bsmpm::interactions::strip::StripReport;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::tensor::Vector;
 

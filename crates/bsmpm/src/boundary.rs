@@ -4,10 +4,10 @@
 pub mod anchor;
 pub mod surface;
 
-pub use crate::interactions::coulomb::{Contact, ContactReport};
-pub use crate::interactions::load::Load;
-pub use crate::interactions::rigid::{RigidBody, RigidReport, RigidState};
-pub use crate::interactions::strip::{MotionShare, Path, Strip, StripContact, StripReport};
+use crate::interactions::coulomb::Contact;
+use crate::interactions::load::Load;
+use crate::interactions::rigid::RigidBody;
+use crate::interactions::strip::Strip;
 use crate::schedule::TimeInterval;
 pub use anchor::{AnchoredPoints, Idle};
 pub use surface::{Anchors, SurfacePoint};

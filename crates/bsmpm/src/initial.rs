@@ -8,10 +8,10 @@ use crate::points::MappedPoints;
 use crate::schedule::TimeInterval;
 pub use settle::{EquilibriumSearchReport, set_spread, settle};
 
-use crate::boundary::StripReport;
 use crate::error::StepError;
 use crate::grid::{Shape, transfer};
 use crate::interactions::state::InteractionState;
+use crate::interactions::strip::StripReport;
 use crate::interactions::{EquilibriumState, InteractionReports};
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;

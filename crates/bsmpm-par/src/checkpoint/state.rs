@@ -8,11 +8,12 @@ pub use free_field::FreeFieldState;
 
 use super::Refusal;
 use super::issued::{IssuedWarning, SurfaceCounts, numbered};
-use bsmpm::boundary::{Anchors, RigidState};
+use bsmpm::boundary::Anchors;
 use bsmpm::control::Progress;
 use bsmpm::energy::{EnergyAccounts, EnergyBound, Flows};
 use bsmpm::field::pore_water::crossed::CrossedVolumes;
 use bsmpm::grid::Grid;
+use bsmpm::interactions::rigid::RigidState;
 use bsmpm::interactions::state::InteractionState;
 use bsmpm::tensor::Vector;
 use bsmpm_io::exit;

@@ -1,7 +1,7 @@
 //! Data of footings, prescribed displacements, loads and initial stress.
 
 use super::{Base, Face};
-use bsmpm::boundary::StripContact;
+use bsmpm::interactions::strip::StripContact;
 use bsmpm::material::Profile;
 use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;

@@ -1,8 +1,9 @@
 //! Data of stages. A stage changes bodies, loads, boundaries and materials of a case.
 
 use super::{Body, Case, DrainSite, Face, NamedMaterial, Shares, Support, keeps_direction};
-use bsmpm::boundary::{Contact, Idle};
+use bsmpm::boundary::Idle;
 use bsmpm::field::pore_water::flow::Motion;
+use bsmpm::interactions::coulomb::Contact;
 use bsmpm::tensor::Vector;
 use std::ops::Range;
 

@@ -3,10 +3,13 @@
 use super::place::{FollowedPoint, at_surface, section};
 use super::subject::{Face, HistorySubject};
 use crate::grid::{GridSpec, vector};
-use bsmpm::boundary::{ContactReport, RigidReport, StripContact, StripReport, Support};
+use bsmpm::boundary::Support;
 use bsmpm::error::StepError;
 use bsmpm::field::pore_water::crossed::CrossedVolumes;
 use bsmpm::field::pore_water::observed::PoreWater;
+use bsmpm::interactions::coulomb::ContactReport;
+use bsmpm::interactions::rigid::RigidReport;
+use bsmpm::interactions::strip::{StripContact, StripReport};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::model::Model;
 use bsmpm::observe::{self, Part, Section};

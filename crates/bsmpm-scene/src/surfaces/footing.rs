@@ -3,7 +3,7 @@
 use super::{normal, unit};
 use crate::grid::vector;
 use crate::{Case, Geometry, Site};
-use bsmpm::boundary::{Path, StripReport};
+use bsmpm::interactions::strip::{Path, StripReport};
 use bsmpm::kinematics::{Axisymmetric, Kinematics};
 use bsmpm::tensor::Vector;
 

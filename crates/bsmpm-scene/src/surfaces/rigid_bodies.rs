@@ -2,8 +2,8 @@
 
 use super::course;
 use crate::{ActiveLoads, Case, Geometry, Rigid, RigidShape};
-use bsmpm::boundary::RigidBody;
 use bsmpm::interactions::rigid::Outline;
+use bsmpm::interactions::rigid::RigidBody;
 use bsmpm::schedule::between;
 use bsmpm::tensor::Vector;
 

@@ -6,8 +6,9 @@ use super::{normal, on_plate, unit};
 use crate::grid::vector;
 use crate::validate::normal_of_site;
 use crate::{ActiveLoads, Base, Case, Site};
-use bsmpm::boundary::{Path, Strip, StripContact, SurfacePoint, surface};
+use bsmpm::boundary::{SurfacePoint, surface};
 use bsmpm::grid::Grid;
+use bsmpm::interactions::strip::{Path, Strip, StripContact};
 use bsmpm::kinematics::Kinematics;
 use bsmpm::tensor::Vector;
 

@@ -1,8 +1,9 @@
 //! Displacement between adjacent footings that move differently.
 
+use bsmpm::boundary::SurfacePoint;
 use bsmpm::boundary::surface::Attachment;
-use bsmpm::boundary::{MotionShare, Strip, SurfacePoint};
 use bsmpm::grid::Grid;
+use bsmpm::interactions::strip::{MotionShare, Strip};
 use bsmpm::tensor::Vector;
 use std::collections::BTreeMap;
 

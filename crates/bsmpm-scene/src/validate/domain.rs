@@ -13,7 +13,7 @@ use crate::grid::GridSpec;
 use crate::report::Report;
 use crate::schema::Draft;
 use crate::words::AnalysisType;
-use bsmpm::boundary::Contact;
+use bsmpm::interactions::coulomb::Contact;
 use bsmpm::model::Regime;
 
 /// Analysis, grid and bodies of a case, each `None` after an error.

@@ -9,8 +9,9 @@ use crate::schema::Draft;
 use crate::surfaces::transition::{ROUNDING, apart_at_corner, holds_all, meet};
 use crate::surfaces::{self, name_of_strip};
 use crate::words::Geometry;
-use bsmpm::boundary::{RigidBody, Strip};
 use bsmpm::grid::Grid;
+use bsmpm::interactions::rigid::RigidBody;
+use bsmpm::interactions::strip::Strip;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::tensor::Vector;
 

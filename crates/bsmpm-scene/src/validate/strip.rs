@@ -11,7 +11,7 @@ use crate::report::Report;
 use crate::schema::{Draft, MotionKey, StripKeys};
 use crate::surfaces::{name_of_strip, strip_of_face};
 use crate::words::{AnalysisType, Components, Side, Support, Word};
-use bsmpm::boundary::StripContact;
+use bsmpm::interactions::strip::StripContact;
 
 /// Parts of a motion below which it does not count.
 const NOTHING: f64 = 1e-12;

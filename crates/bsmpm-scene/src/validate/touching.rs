@@ -6,8 +6,8 @@ use crate::report::Report;
 use crate::schema::Draft;
 use crate::surfaces;
 use crate::words::Geometry;
-use bsmpm::boundary::RigidBody;
 use bsmpm::interactions::rigid::Outline;
+use bsmpm::interactions::rigid::RigidBody;
 use bsmpm::tensor::Vector;
 
 /// Places on a path between two of its rows at which an overlap is looked for.

@@ -1,7 +1,7 @@
 //! Tests that pressures and other loads act where and when the case says.
 
 use super::{FULL, set, valid};
-use bsmpm::boundary::Load;
+use bsmpm::interactions::load::Load;
 use bsmpm::kinematics::{PlaneStrain, Solid};
 use bsmpm_scene::{LoadedLine, Push};
 
@@ -150,7 +150,7 @@ fn loads_by_rows_of_forces_are_these_forces() {
         assert_eq!(loads.len(), idle);
         loads
     };
-    let at = |load: &bsmpm::boundary::Load<2>, row: usize| load.traction[0] * load.amplitude[row].1;
+    let at = |load: &bsmpm::interactions::load::Load<2>, row: usize| load.traction[0] * load.amplitude[row].1;
     let traction = |path: &str| format!("traction.0={{ from = [1.0, 0.25], to = [1.0, 1.25], {path} }}");
     let rows = [[0.0, 300.0], [-2e3, 1e3], [500.0, 0.0]];
     let turning = traction("stress_path = [[0.1, 0, 300], [0.2, \"-2 kPa\", \"1 kPa\"], [0.3, 500, 0]]");

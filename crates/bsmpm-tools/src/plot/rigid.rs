@@ -1,7 +1,7 @@
 //! Draws outlines of rigid bodies.
 
-use bsmpm::boundary::RigidBody;
 use bsmpm::interactions::rigid::Outline;
+use bsmpm::interactions::rigid::RigidBody;
 use bsmpm::tensor::Vector;
 use bsmpm_io::frame::Frame;
 use bsmpm_scene::observables::Observable;

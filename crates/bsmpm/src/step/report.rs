@@ -1,12 +1,14 @@
 //! Report of an accepted step.
 
-use crate::boundary::{ContactReport, RigidReport, StripReport};
 use crate::energy::{Flows, Turnover};
 use crate::error::Measures;
 use crate::field::pore_water::crossed::PreviousFlow;
 use crate::field::pore_water::saved::WaterReport;
 use crate::interactions::InteractionReports;
 use crate::interactions::artificial_stiffness::ArtificialStiffnessReport;
+use crate::interactions::coulomb::ContactReport;
+use crate::interactions::rigid::RigidReport;
+use crate::interactions::strip::StripReport;
 use crate::kinematics::Kinematics;
 use crate::solve::found::StepSolution;
 use crate::step::outflow::Outflow;

@@ -1,11 +1,13 @@
 //! Tests that in steady motion the artificial stiffness resists only changes of the displacement per step.
 
 use crate::support::scene::{Scene, axis};
-use bsmpm::boundary::{Boundary, Path, RigidBody, Strip, Support, surface};
+use bsmpm::boundary::{Boundary, Support, surface};
 use bsmpm::control::AcceptedStep;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::interactions::rigid::Outline;
+use bsmpm::interactions::rigid::RigidBody;
+use bsmpm::interactions::strip::{Path, Strip};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;

@@ -2,9 +2,10 @@
 
 use crate::support::random::Random;
 use crate::support::scene::{Scene, axis};
-use bsmpm::boundary::{Path, Strip, Support, surface};
+use bsmpm::boundary::{Support, surface};
 use bsmpm::grid::Shape;
 use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
+use bsmpm::interactions::strip::{Path, Strip};
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Branch, CamClay, Elastic, Law, Material, MohrCoulomb, Separation};
 use bsmpm::model::Regime;

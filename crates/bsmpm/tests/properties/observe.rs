@@ -1,7 +1,8 @@
 //! Tests of history quantities on fields with a known answer.
 
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::boundary::{Contact, Support};
+use bsmpm::boundary::Support;
+use bsmpm::interactions::coulomb::Contact;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::observe::projection::projected_pressure;

@@ -2,14 +2,17 @@
 
 use super::random::Random;
 use super::solver::Skyline;
-use bsmpm::boundary::{AnchoredPoints, Boundary, Load, RigidBody, Strip, Support};
+use bsmpm::boundary::{AnchoredPoints, Boundary, Support};
 use bsmpm::control::{AcceptedStep, Stepper};
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::grid::extension::ExtendedSplines;
 use bsmpm::grid::{Grid, KnotVector};
 use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
+use bsmpm::interactions::load::Load;
+use bsmpm::interactions::rigid::RigidBody;
 use bsmpm::interactions::state::InteractionState;
+use bsmpm::interactions::strip::Strip;
 use bsmpm::kinematics::Kinematics;
 use bsmpm::material::{Elastic, Hencky, LayeredMaterial, Material};
 use bsmpm::method::Criteria;

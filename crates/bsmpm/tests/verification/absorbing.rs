@@ -2,9 +2,10 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
-use bsmpm::boundary::{Load, Support, SurfacePoint};
+use bsmpm::boundary::{Support, SurfacePoint};
 use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::initial;
+use bsmpm::interactions::load::Load;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain};
 use bsmpm::method::Nonlinear;
 use bsmpm::model::{Regime, Shaking};

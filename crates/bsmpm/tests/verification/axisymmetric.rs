@@ -3,9 +3,10 @@
 use super::sections::{DENSITY, G, cut};
 use crate::support::scene::{METHODS, Scene, axis, hencky, rms};
 use crate::support::solver::Skyline;
-use bsmpm::boundary::{Load, Support, surface};
+use bsmpm::boundary::{Support, surface};
 use bsmpm::control::Stepper;
 use bsmpm::grid::{Grid, KnotVector};
+use bsmpm::interactions::load::Load;
 use bsmpm::kinematics::{Axisymmetric, Kinematics};
 use bsmpm::material::Moduli;
 use bsmpm::model::{AverageWeight, Regime};

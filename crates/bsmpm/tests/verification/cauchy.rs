@@ -1,8 +1,9 @@
 //! Tests that the Cauchy stress remains on the yield surface during large plastic flow.
 
 use crate::support::scene::{METHODS, Scene, axis};
-use bsmpm::boundary::{Path, Strip, Support, surface};
+use bsmpm::boundary::{Support, surface};
 use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
+use bsmpm::interactions::strip::{Path, Strip};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Criteria;

@@ -2,10 +2,12 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
-use bsmpm::boundary::{Contact, ContactReport, Path, Strip, Support, surface};
+use bsmpm::boundary::{Support, surface};
 use bsmpm::control::{AcceptedStep, Stepper};
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::energy::{EnergyAccounts, StoredEnergy};
+use bsmpm::interactions::coulomb::{Contact, ContactReport};
+use bsmpm::interactions::strip::{Path, Strip};
 use bsmpm::kinematics::{PlaneStrain, Solid};
 use bsmpm::method::Nonlinear;
 use bsmpm::model::{Gravity, Regime};

@@ -3,8 +3,9 @@
 
 use super::bar::{CELLS, PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::boundary::{Path, Strip, Support, SurfacePoint};
+use bsmpm::boundary::{Support, SurfacePoint};
 use bsmpm::dynamics::newmark::Newmark;
+use bsmpm::interactions::strip::{Path, Strip};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Nonlinear;

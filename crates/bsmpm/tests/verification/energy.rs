@@ -3,13 +3,15 @@
 use super::bar::{PERIOD, bar};
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
-use bsmpm::boundary::{Load, Path, Strip, Support, surface};
+use bsmpm::boundary::{Support, surface};
 use bsmpm::control::Stepper;
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::error::StepError;
 use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
+use bsmpm::interactions::load::Load;
+use bsmpm::interactions::strip::{Path, Strip};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb, Separation};
 use bsmpm::model::{AverageWeight, Gravity, Regime};

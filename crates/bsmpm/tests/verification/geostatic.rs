@@ -2,9 +2,11 @@
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
-use bsmpm::boundary::{Load, Path, Strip, surface};
+use bsmpm::boundary::surface;
 use bsmpm::error::StepError;
 use bsmpm::initial;
+use bsmpm::interactions::load::Load;
+use bsmpm::interactions::strip::{Path, Strip};
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{
     Branch, DruckerPrager, Elastic, GradedLaw, LayeredMaterial, Match, Material, MohrCoulomb, Profile, Separation,

@@ -2,9 +2,10 @@
 //! quasi-Newton.
 
 use crate::support::scene::{Scene, axis};
-use bsmpm::boundary::{Path, Strip, Support, surface};
+use bsmpm::boundary::{Support, surface};
 use bsmpm::control::AcceptedStep;
 use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
+use bsmpm::interactions::strip::{Path, Strip};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Criteria;

@@ -1,8 +1,9 @@
 //! Tests of the influence of a rigid footing's penalty stiffness on the collapse pressure.
 
 use crate::support::scene::{Scene, axis};
-use bsmpm::boundary::{Path, Strip, Support, surface};
+use bsmpm::boundary::{Support, surface};
 use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
+use bsmpm::interactions::strip::{Path, Strip};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::method::Criteria;

@@ -1,10 +1,12 @@
 //! Tests of rigid bodies: friction, impact, Hertz contact, punches, separation and free motion.
 
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::boundary::{Path, RigidBody, RigidReport, Strip, Support, surface};
+use bsmpm::boundary::{Support, surface};
 use bsmpm::energy::{EnergyAccounts, StoredEnergy};
 use bsmpm::grid::Shape;
 use bsmpm::interactions::rigid::Outline;
+use bsmpm::interactions::rigid::{RigidBody, RigidReport};
+use bsmpm::interactions::strip::{Path, Strip};
 use bsmpm::interactions::{EquilibriumState, InteractionReports, StepInput};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Nonlinear;

@@ -2,7 +2,8 @@
 
 use super::sections::{DENSITY, G, cut, weighed};
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::boundary::{Load, Support, SurfacePoint};
+use bsmpm::boundary::{Support, SurfacePoint};
+use bsmpm::interactions::load::Load;
 use bsmpm::kinematics::{PlaneStrain, Solid};
 use bsmpm::model::Regime;
 use bsmpm::observe::{Section, SectionForces, section_forces};

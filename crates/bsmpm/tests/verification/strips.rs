@@ -1,8 +1,10 @@
 //! Tests of footings with friction and separation: a dragged block, and a footing that lifts and returns.
 
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::boundary::{Contact, ContactReport, Path, Strip, StripContact, StripReport, Support, surface};
+use bsmpm::boundary::{Support, surface};
 use bsmpm::control::AcceptedStep;
+use bsmpm::interactions::coulomb::{Contact, ContactReport};
+use bsmpm::interactions::strip::{Path, Strip, StripContact, StripReport};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::method::Nonlinear;
 use bsmpm::model::Regime;

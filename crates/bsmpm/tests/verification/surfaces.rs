@@ -1,10 +1,12 @@
 //! Tests of rigid footings, tractions and point loads: exact stress, global equilibrium, and halved steps.
 
 use crate::support::scene::{Scene, axis, hencky};
-use bsmpm::boundary::{Load, Path, Strip, Support, SurfacePoint, surface};
+use bsmpm::boundary::{Support, SurfacePoint, surface};
 use bsmpm::control::AcceptedStep;
 use bsmpm::error::StepError;
 use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
+use bsmpm::interactions::load::Load;
+use bsmpm::interactions::strip::{Path, Strip};
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::schedule::Schedule;

@@ -3,9 +3,10 @@
 use super::{M, Plane, at, column, flowing, geometric, run, run_watched, settlement};
 use crate::support::scene::{axis, hencky};
 use bsmpm::boundary::surface;
-use bsmpm::boundary::{Load, Support, SurfacePoint};
+use bsmpm::boundary::{Support, SurfacePoint};
 use bsmpm::field::pore_water::flow::{Course, Drain, Given, PermeabilityLaw};
 use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
+use bsmpm::interactions::load::Load;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{AverageWeight, Regime};
 use bsmpm::tensor::Vector;

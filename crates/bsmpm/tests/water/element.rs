@@ -2,9 +2,10 @@
 
 use super::{LOAD_PARTS, M, Plane, at, column, flowing, run};
 use crate::support::scene::axis;
-use bsmpm::boundary::{Load, Support, SurfacePoint};
+use bsmpm::boundary::{Support, SurfacePoint};
 use bsmpm::field::pore_water::flow::PermeabilityLaw;
 use bsmpm::initial;
+use bsmpm::interactions::load::Load;
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;
 use bsmpm::stabilisation::Stabilisation;

@@ -2,11 +2,12 @@
 
 use super::{Plane, at, flowing};
 use crate::support::scene::{axis, hencky};
-use bsmpm::boundary::{Contact, Support};
+use bsmpm::boundary::Support;
 use bsmpm::field::pore_water::carried;
 use bsmpm::field::pore_water::flow::{Motion, PermeabilityLaw};
 use bsmpm::field::pore_water::pore_pressure::PorePressure;
 use bsmpm::grid::Shape;
+use bsmpm::interactions::coulomb::Contact;
 use bsmpm::model::Regime;
 
 /// A square of 1 m with an excess pore pressure that is linear in the place, Pa, and a left face with friction; what

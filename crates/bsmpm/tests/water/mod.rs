@@ -13,11 +13,12 @@ mod terzaghi;
 
 use crate::support::scene::{Scene, axis, hencky};
 use crate::support::solver::Skyline;
-use bsmpm::boundary::{Load, Support, SurfacePoint};
+use bsmpm::boundary::{Support, SurfacePoint};
 use bsmpm::field::pore_water::Water;
 use bsmpm::field::pore_water::ambient::Ambient;
 use bsmpm::field::pore_water::flow::{Drain, DrainedFace, Flow, Given, Motion, Permeability, PermeabilityLaw, Soil};
 use bsmpm::interactions::artificial_stiffness::ResistedDisplacement;
+use bsmpm::interactions::load::Load;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
 use bsmpm::points::Points;

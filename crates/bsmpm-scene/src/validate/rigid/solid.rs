@@ -9,7 +9,7 @@ use crate::record::KeyPlace;
 use crate::report::Report;
 use crate::schema::{RevolveTable, RigidTable, ShapeKey};
 use crate::shape_error;
-use bsmpm::boundary::RigidBody;
+use bsmpm::interactions::rigid::RigidBody;
 use bsmpm::interactions::rigid::{Outline, Terrain};
 use bsmpm::tensor::Vector;
 
