@@ -253,9 +253,9 @@ impl Stepper {
         }
     }
 
-    /// Selects what the artificial stiffness resists in a step of size `dt` (s): the change from the last step if prescribed
-    /// motion continues steadily and splines of nearly empty cells are tied. Under loads there is no steady flow, and
-    /// the complete displacement is resisted.
+    /// Selects what the artificial stiffness resists in a step of size `dt` (s): the change from the last step if
+    /// prescribed motion continues steadily and splines of nearly empty cells are tied. Under loads there is no steady
+    /// flow, and the complete displacement is resisted.
     fn resisted<K, const D: usize>(&self, model: &Model<K, D>, dt: f64) -> ResistedDisplacement {
         let is_tied = model.artificial_stiffness.is_some() && model.extended_splines == ExtendedSplines::Linear;
         let last_dt = self.at.guess_dt;

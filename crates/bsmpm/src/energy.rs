@@ -241,8 +241,8 @@ impl StepEnergy {
         add_inertia(flows, problem, u);
     }
 
-    /// Completes the flows of the step over all ranks, with the work of the loads. Returns the flows, if the model balances its energy, and the terms of the energy
-    /// bound. The points are updated. One reduction.
+    /// Completes the flows of the step over all ranks, with the work of the loads. Returns the flows, if the model
+    /// balances its energy, and the terms of the energy bound. The points are updated. One reduction.
     pub fn close<K: Kinematics<D>, const D: usize>(
         self,
         model: &Model<K, D>,

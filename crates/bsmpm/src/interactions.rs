@@ -14,8 +14,8 @@
 //! - (6) tangent, as a product: [`Interaction::add_product`], [`Interaction::add_nodal_product`]; as a matrix:
 //!   [`Interaction::assemble`], [`Interaction::add_to_cell`], [`Interaction::add_damping`]
 //! - (9) active set: [`Interaction::predict`], [`Interaction::correct`], [`Interaction::hold_neutral`]
-//! - (11) acceptance: [`Interaction::add_work`], [`Interaction::finish`], [`Interaction::update`]; after the equilibrium
-//!   at the start of the run: [`Interaction::finish_start`]
+//! - (11) acceptance: [`Interaction::add_work`], [`Interaction::finish`], [`Interaction::update`]; after the
+//!   equilibrium at the start of the run: [`Interaction::finish_start`]
 //!
 //! # A new interaction
 //!
@@ -318,8 +318,8 @@ pub trait Interaction<const D: usize>: fmt::Debug + Send + Sync {
     /// (11) Adds the works in the accepted step.
     fn add_work(&self, _context: &StepContext<'_, D>, _at: &EquilibriumState<'_>, _work: &mut InteractionWork) {}
 
-    /// Writes the forces that an equilibrium at the start of the run has given the interaction, with which the first step
-    /// begins, and the results. Nothing has moved, so that all other state stays.
+    /// Writes the forces that an equilibrium at the start of the run has given the interaction, with which the first
+    /// step begins, and the results. Nothing has moved, so that all other state stays.
     fn finish_start(
         &self,
         _context: &StepContext<'_, D>,

@@ -44,8 +44,8 @@ use problem::Problem;
 /// Advances the material points and the state of the interactions by one step.
 ///
 /// `guess` is the nodal displacement from which the iteration starts (m, D numbers per node of the window); the
-/// converged displacement replaces it. `resisted` selects the part of the displacement that the artificial stiffness resists. If
-/// the step fails, nothing has changed but the counts of the work done.
+/// converged displacement replaces it. `resisted` selects the part of the displacement that the artificial stiffness
+/// resists. If the step fails, nothing has changed but the counts of the work done.
 pub fn step<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     points: &mut Points<D>,

@@ -68,7 +68,8 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     Err(StepError::Unsettled { passes: most })
 }
 
-/// Finds equilibrium from the displacement `u` (m) with the present statuses. `first_energy`: see [`find`](super::find).
+/// Finds equilibrium from the displacement `u` (m) with the present statuses. `first_energy`: see
+/// [`find`](super::find).
 fn find_at_statuses<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     mapped: MappedPoints<'_, D>,
