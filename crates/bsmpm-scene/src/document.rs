@@ -3,6 +3,7 @@
 use crate::error::Origin;
 use crate::report::{Report, shortened};
 use crate::source::Source;
+use crate::words::Word;
 use toml::de::{DeTable, DeValue};
 
 mod syntax;
@@ -61,6 +62,23 @@ impl DocumentTable {
 
     pub(crate) fn get_mut(&mut self, key: &str) -> Option<&mut DocumentEntry> {
         self.entries.iter_mut().find(|entry| entry.key == key)
+    }
+
+    /// The value at a path of keys, such as `analysis.type`.
+    pub(crate) fn node(&self, path: &str) -> Option<&Node> {
+        let mut keys = path.split('.');
+        let first = &self.get(keys.next()?)?.node;
+        keys.try_fold(first, |node, key| match &node.value {
+            Value::Table(table) => table.get(key).map(|entry| &entry.node),
+            _ => None,
+        })
+    }
+
+    /// The word at a path of keys, if it is one of those of `T`, and its place.
+    pub(crate) fn word<T: Word>(&self, path: &str) -> Option<(T, Origin)> {
+        let node = self.node(path)?;
+        let Value::Text(text) = &node.value else { return None };
+        Some((T::of(text)?, node.origin))
     }
 }
 

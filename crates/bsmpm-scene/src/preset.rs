@@ -135,7 +135,7 @@ pub(crate) fn fill(
     overrides: &[String],
     report: &mut Report<'_>,
 ) -> bool {
-    let accuracy = chosen(document);
+    let accuracy = document.word::<Accuracy>(ACCURACY);
     let is_filled = limit_load::fill(document, source, overrides, report);
     let Some((accuracy, origin)) = accuracy else {
         return is_filled;
@@ -173,16 +173,16 @@ fn fill_accuracy(
         report,
         filled: false,
     };
-    filling.put("grid", &["degree"], &quoted(ORDER), "");
+    filling.put(&["grid.degree"], &quoted(ORDER), "");
     let cells = scene.cells(preset);
     filling.cells(cells.as_ref(), &scene, preset);
     filling.steps(cells.as_ref(), &scene, preset);
     if let Some(why) = scene.locks() {
-        filling.put("stabilisation", &["method"], &quoted(METHOD), why);
+        filling.put(&["stabilisation.method"], &quoted(METHOD), why);
     }
     let [energy, force] = preset.tolerances;
-    filling.put("solver", &["tolerance"], energy, "");
-    filling.put("solver", &["force_tolerance"], force, "");
+    filling.put(&["solver.tolerance"], energy, "");
+    filling.put(&["solver.force_tolerance"], force, "");
     let filled = filling.filled;
     if filled && draft.rigid.items().iter().any(|rigid| rigid.free.is_given()) {
         report.warn(format!(
@@ -202,15 +202,6 @@ fn fill_accuracy(
     filled
 }
 
-/// The word that the case gives, if it is one of them, and its place.
-fn chosen(document: &DocumentTable) -> Option<(Accuracy, Origin)> {
-    let entry = document.get(ACCURACY)?;
-    let Value::Text(text) = &entry.node.value else {
-        return None;
-    };
-    Some((Accuracy::of(text)?, entry.node.origin))
-}
-
 /// A word as TOML.
 fn quoted(choice: impl Word) -> String {
     format!("\"{}\"", choice.word())
@@ -225,9 +216,12 @@ struct Completion<'a, 'r> {
 }
 
 impl Completion<'_, '_> {
-    /// Gives the first of these keys of a table the value, unless one of them is given; whether it did.
-    fn put(&mut self, table: &str, keys: &[&str], value: &str, why: &str) -> bool {
+    /// Gives the first of these keys of one table the value, unless one of them is given; whether it did.
+    fn put(&mut self, keys: &[&str], value: &str, why: &str) -> bool {
         let origin = self.choice.origin;
+        let Some((table, key)) = keys[0].split_once('.').filter(|_| !self.is_given(keys)) else {
+            return false;
+        };
         if self.document.get(table).is_none() {
             let node = Node {
                 origin,
@@ -239,36 +233,27 @@ impl Completion<'_, '_> {
                 node,
             });
         }
-        let Some(DocumentEntry {
-            node: Node {
-                value: Value::Table(inner),
-                ..
-            },
-            ..
-        }) = self.document.get_mut(table)
-        else {
+        let entry = self.document.get_mut(table).map(|entry| &mut entry.node.value);
+        let Some(Value::Table(inner)) = entry else {
             return false;
         };
-        let put = keys.iter().all(|key| inner.get(key).is_none()) && insert(inner, keys[0], value, origin);
+        let put = insert(inner, key, value, origin);
         if put {
-            self.tell(&format!("{table}.{}", keys[0]), value, why);
+            self.tell(keys[0], value, why);
         }
         put
     }
 
-    /// Reports an error that no value can be chosen for these keys of a table, unless one of them is given.
-    fn miss(&mut self, table: &str, keys: &[&str], message: String) {
-        match self.document.get(table) {
-            Some(DocumentEntry {
-                node: Node {
-                    value: Value::Table(table),
-                    ..
-                },
-                ..
-            }) if keys.iter().any(|key| table.get(key).is_some()) => {}
-            _ => self
-                .report
-                .consequence(self.choice.origin, self.choice.key, message, scene::BASIS),
+    /// Whether the case gives one of the keys.
+    fn is_given(&self, keys: &[&str]) -> bool {
+        keys.iter().any(|key| self.document.node(key).is_some())
+    }
+
+    /// Reports an error that no value can be chosen for these keys, unless one of them is given.
+    fn miss(&mut self, keys: &[&str], message: String) {
+        if !self.is_given(keys) {
+            self.report
+                .consequence(self.choice.origin, self.choice.key, message, scene::BASIS);
         }
     }
 
@@ -277,7 +262,7 @@ impl Completion<'_, '_> {
         let mut points = preset.points;
         match cells {
             Some(cells) => {
-                if self.put("grid", &cells.keys, &cells.value, &cells.why) {
+                if self.put(&cells.keys, &cells.value, &cells.why) {
                     cells
                         .sizes
                         .iter()
@@ -293,8 +278,7 @@ impl Completion<'_, '_> {
                 }
             }
             None => self.miss(
-                "grid",
-                &["cell", "knots"],
+                &["grid.cell", "grid.knots"],
                 self.choice.cannot_choose("grid.cell", cells::CELLS),
             ),
         }
@@ -315,19 +299,19 @@ impl Completion<'_, '_> {
     /// Gives the analysis steps, unless it has some, or says why none can be chosen. The cells that a case gives by
     /// hand count, too.
     fn steps(&mut self, cells: Option<&Cells>, scene: &PresetScene<'_>, preset: &Preset) {
-        const KEYS: [&str; 2] = ["steps", "dt"];
+        const KEYS: [&str; 2] = ["analysis.steps", "analysis.dt"];
         match scene.steps(preset, cells.map(|cells| cells.edge)) {
             Some((steps, why)) => {
-                self.put("analysis", &KEYS, &steps.to_string(), &why);
+                self.put(&KEYS, &steps.to_string(), &why);
             }
             None if scene.is_consolidation() => {
                 let message = "E0254: a preset cannot choose the time steps of a consolidation analysis. Give \
                                analysis.dt and analysis.growth.";
-                self.miss("analysis", &KEYS, message.into());
+                self.miss(&KEYS, message.into());
             }
             None if cells.is_some() || scene.shortest().is_some() => {
                 let message = self.choice.cannot_choose("analysis.steps", scene::STEPS);
-                self.miss("analysis", &KEYS, message);
+                self.miss(&KEYS, message);
             }
             None => {} // an error of the cells
         }
@@ -335,17 +319,12 @@ impl Completion<'_, '_> {
 
     /// Gives every body that has none its points.
     fn points(&mut self, points: u64) {
+        const BODY: &str = "body";
         const KEY: &str = "points_per_cell";
         let origin = self.choice.origin;
         let value = points.to_string();
-        let Some(DocumentEntry {
-            node: Node {
-                value: Value::List(bodies),
-                ..
-            },
-            ..
-        }) = self.document.get_mut("body")
-        else {
+        let entry = self.document.get_mut(BODY).map(|entry| &mut entry.node.value);
+        let Some(Value::List(bodies)) = entry else {
             return;
         };
         let mut any = false;
@@ -356,7 +335,7 @@ impl Completion<'_, '_> {
         }
         if any {
             self.tell(
-                &format!("body.*.{KEY}"),
+                &format!("{BODY}.*.{KEY}"),
                 &value,
                 "of bodies without a value of their own",
             );

@@ -10,7 +10,7 @@ use crate::report::Report;
 use crate::schema::{Group, Key, Kind, Presence, Table};
 use crate::slips;
 use crate::unit::Dimension;
-use crate::words::{AnalysisType, Geometry, Word};
+use crate::words::{AnalysisType, Geometry};
 pub(crate) use field::{CaseTable, Field, KeyPlace, Location, Measure, OrTable, vector};
 pub(crate) use value::UNREAD;
 
@@ -93,23 +93,12 @@ struct Context {
 
 /// The whole file, whose table is `root`, as a record; what does not fit goes to `report`.
 pub(crate) fn read(root: &'static Table, document: &DocumentTable, report: &mut Report<'_>) -> Record {
-    let kind = document.get("analysis").and_then(|entry| match &entry.node.value {
-        Value::Table(analysis) => analysis.get("type"),
-        _ => None,
-    });
-    let kind = kind.and_then(|entry| match &entry.node.value {
-        Value::Text(text) => AnalysisType::of(text),
-        _ => None,
-    });
-    let pseudo_time = kind.is_some_and(AnalysisType::is_timeless);
-    let geometry = document.get("geometry").and_then(|entry| match &entry.node.value {
-        Value::Text(text) => Geometry::of(text),
-        _ => None,
-    });
+    let kind = document.word::<AnalysisType>("analysis.type");
+    let geometry = document.word::<Geometry>("geometry");
     Context {
         root,
-        pseudo_time,
-        geometry: geometry.unwrap_or(Geometry::PlaneStrain),
+        pseudo_time: kind.is_some_and(|(kind, _)| kind.is_timeless()),
+        geometry: geometry.map_or(Geometry::PlaneStrain, |(geometry, _)| geometry),
     }
     .record(root, document, Origin::Nowhere, "", report)
 }

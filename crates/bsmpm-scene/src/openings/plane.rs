@@ -43,10 +43,9 @@ impl PlaneShape {
                 })
             }
             ShapeKey::Circle(key) => {
-                let circle = key.value()?;
-                let [x, y] = circle.centre.get()?;
+                let ([x, y], radius) = key.value()?.circle()?;
                 let angle = std::f64::consts::TAU / SIDES as f64;
-                let radius = circle.radius.get()? / (0.5 * angle).cos();
+                let radius = radius / (0.5 * angle).cos();
                 let corners = (0..SIDES).map(|k| {
                     let (sin, cos) = (k as f64 * angle).sin_cos();
                     [x + radius * cos, y + radius * sin]
@@ -57,8 +56,7 @@ impl PlaneShape {
                 })
             }
             ShapeKey::Polygon(key) => {
-                let rows = key.value()?.iter();
-                let corners: Vec<[f64; 2]> = rows.map(|row| [row.numbers[0], row.numbers[1]]).collect();
+                let corners = key.pairs()?;
                 (corners.len() >= 3).then_some(Self {
                     corners,
                     is_round: false,

@@ -17,13 +17,10 @@ const MOST_TRIANGLES: usize = 256;
 /// Pieces of the surface of a shape within a cuboid (m); of terrain none, which is no hole.
 pub(crate) fn surface_points(key: ShapeKey<'_>, bounds: [[f64; 3]; 2]) -> Option<Vec<SurfacePoint>> {
     match key {
-        ShapeKey::Box(key) => {
-            let shape = key.value()?;
-            Some(cuboid([shape.lower.vector()?, shape.upper.vector()?], bounds))
-        }
+        ShapeKey::Box(key) => Some(cuboid(key.value()?.corners()?, bounds)),
         ShapeKey::Sphere(key) => {
-            let shape = key.value()?;
-            Some(sphere(shape.centre.vector()?.into(), shape.radius.get()?))
+            let (center, radius) = key.value()?.sphere()?;
+            Some(sphere(center.into(), radius))
         }
         ShapeKey::Extrude(key) => extruded(key.value()?, bounds),
         ShapeKey::Revolve(key) => revolved(key.value()?, bounds),

@@ -384,7 +384,7 @@ fn of_edges([x, y]: [f64; 2], why: String) -> Cells {
         format!("[{x:?}, {y:?}]")
     };
     Cells {
-        keys: ["cell", "knots"],
+        keys: ["grid.cell", "grid.knots"],
         value,
         edge: x.min(y),
         why,
@@ -402,7 +402,7 @@ fn of_breakpoints(breakpoints: [Vec<f64>; 2], why: String) -> Option<Cells> {
     let edge = x.min(y);
     let value = format!("{{ x = {:?}, y = {:?} }}", breakpoints[0], breakpoints[1]);
     let cells = Cells {
-        keys: ["knots", "cell"],
+        keys: ["grid.knots", "grid.cell"],
         value,
         edge,
         why,

@@ -2,8 +2,7 @@
 
 use super::scene::PresetScene;
 use super::{Choice, Completion, ORDER, Preset, quoted};
-use crate::document::{DocumentTable, Value};
-use crate::error::Origin;
+use crate::document::DocumentTable;
 use crate::report::Report;
 use crate::schema::Draft;
 use crate::source::Source;
@@ -29,7 +28,7 @@ pub(super) fn fill(
     overrides: &[String],
     report: &mut Report<'_>,
 ) -> bool {
-    let Some((purpose, origin)) = chosen(document) else {
+    let Some((purpose, origin)) = document.word::<Purpose>(KEY) else {
         return false;
     };
     // Its errors are reported when the filled document is read.
@@ -46,11 +45,10 @@ pub(super) fn fill(
         report,
         filled: false,
     };
-    filling.put("grid", &["degree"], &quoted(ORDER), "");
+    filling.put(&["grid.degree"], &quoted(ORDER), "");
     filling.points(POINTS);
     filling.put(
-        "analysis",
-        &["steps", "dt"],
+        &["analysis.steps", "analysis.dt"],
         STEPS,
         "with fewer, steps near failure do not converge and are halved",
     );
@@ -64,28 +62,17 @@ pub(super) fn fill(
             "prevents volumetric locking of plastic flow without dilation",
         ),
     };
-    filling.put("stabilisation", &["method"], &quoted(method), why);
+    filling.put(&["stabilisation.method"], &quoted(method), why);
     let [energy, force] = match draft.accuracy.get() {
         Some(Accuracy::Reference) => Preset::of(Accuracy::Reference).tolerances,
         _ => TOLERANCES,
     };
-    filling.put("solver", &["tolerance"], energy, "");
-    filling.put("solver", &["force_tolerance"], force, "");
+    filling.put(&["solver.tolerance"], energy, "");
+    filling.put(&["solver.force_tolerance"], force, "");
     filling.put(
-        "solver",
-        &["background"],
+        &["solver.background"],
         BACKGROUND,
         "small enough that the limit load does not depend on it",
     );
     filling.filled
-}
-
-/// The word that the case gives, if it is one of them, and its place.
-fn chosen(document: &DocumentTable) -> Option<(Purpose, Origin)> {
-    let Value::Table(analysis) = &document.get("analysis")?.node.value else {
-        return None;
-    };
-    let node = &analysis.get("purpose")?.node;
-    let Value::Text(text) = &node.value else { return None };
-    Some((Purpose::of(text)?, node.origin))
 }

@@ -356,14 +356,11 @@ pub(super) fn corners(key: ShapeKey<'_>) -> Option<Vec<[f64; 2]>> {
             [shape.lower.pair()?, shape.upper.pair()?]
         }
         ShapeKey::Circle(key) => {
-            let circle = key.value()?;
-            let center = circle.centre.get()?;
-            let radius = circle.radius.get()?;
+            let (center, radius) = key.value()?.circle()?;
             [-radius, radius].map(|reach| center.map(|x| x + reach))
         }
         ShapeKey::Polygon(key) => {
-            let rows = key.value()?.iter();
-            let corners: Vec<[f64; 2]> = rows.map(|row| [row.numbers[0], row.numbers[1]]).collect();
+            let corners = key.pairs()?;
             return (!corners.is_empty()).then_some(corners);
         }
         _ => return None,

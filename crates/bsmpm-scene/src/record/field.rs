@@ -170,6 +170,14 @@ pub(crate) fn vector(numbers: &[f64]) -> [f64; 3] {
     std::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(0.0))
 }
 
+impl Field<Vec<ListRow>> {
+    /// The first two numbers of each row.
+    pub(crate) fn pairs(&self) -> Option<Vec<[f64; 2]>> {
+        let rows = self.value()?.iter();
+        Some(rows.map(|row| [row.numbers[0], row.numbers[1]]).collect())
+    }
+}
+
 impl<T> Field<Vec<T>> {
     /// The items; none if the key is absent or an error has been reported.
     pub(crate) fn items(&self) -> &[T] {

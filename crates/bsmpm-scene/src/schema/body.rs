@@ -205,6 +205,27 @@ macro_rules! any_shape {
 any_shape!(BodyTable);
 any_shape!(SubtractTable);
 
+impl BoxTable {
+    /// m  lower and upper corner
+    pub(crate) fn corners(&self) -> Option<[[f64; 3]; 2]> {
+        Some([self.lower.vector()?, self.upper.vector()?])
+    }
+}
+
+impl CircleTable {
+    /// m  centre and radius
+    pub(crate) fn circle(&self) -> Option<([f64; 2], f64)> {
+        Some((self.centre.get()?, self.radius.get()?))
+    }
+}
+
+impl SphereTable {
+    /// m  centre and radius
+    pub(crate) fn sphere(&self) -> Option<([f64; 3], f64)> {
+        Some((self.centre.vector()?, self.radius.get()?))
+    }
+}
+
 impl ExtrudeTable {
     /// The key that gives the outline.
     pub(crate) fn outline(&self) -> ShapeKey<'_> {

@@ -92,11 +92,6 @@ impl FootingTable {
     pub(crate) fn site(&self) -> SiteKey<'_> {
         plate_or_segment!(self)
     }
-
-    /// The key of the motion.
-    pub(crate) fn motion(&self) -> MotionKey<'_> {
-        first_given!(self, MotionKey: Displacement(displacement), Velocity(velocity), Path(path))
-    }
 }
 
 impl PrescribedTable {
@@ -106,11 +101,6 @@ impl PrescribedTable {
             SiteKey::Segment(..) if self.face.is_given() => SiteKey::Face(&self.face),
             site => site,
         }
-    }
-
-    /// The key of the motion.
-    pub(crate) fn motion(&self) -> MotionKey<'_> {
-        first_given!(self, MotionKey: Displacement(displacement), Velocity(velocity), Path(path))
     }
 }
 
@@ -162,41 +152,36 @@ pub(crate) struct StripKeys<'a> {
     pub(crate) contact: Option<&'a FrictionalTable>,
 }
 
-impl FootingTable {
-    /// What it has in common with prescribed motions.
-    pub(crate) fn strip(&self) -> StripKeys<'_> {
-        StripKeys {
-            location: self.location(),
-            name: &self.name,
-            site: self.site(),
-            from: &self.from,
-            to: &self.to,
-            rectangle: &self.rectangle,
-            disc: &self.disc,
-            motion: self.motion(),
-            interface: &self.interface,
-            contact: self.interface.table(),
+/// The motion and the common keys of a strip.
+macro_rules! strip_table {
+    ($Table:ident, $interface:ident) => {
+        impl $Table {
+            /// The key of the motion.
+            pub(crate) fn motion(&self) -> MotionKey<'_> {
+                first_given!(self, MotionKey: Displacement(displacement), Velocity(velocity), Path(path))
+            }
+
+            /// What footings and prescribed motions have in common.
+            pub(crate) fn strip(&self) -> StripKeys<'_> {
+                StripKeys {
+                    location: self.location(),
+                    name: &self.name,
+                    site: self.site(),
+                    from: &self.from,
+                    to: &self.to,
+                    rectangle: &self.rectangle,
+                    disc: &self.disc,
+                    motion: self.motion(),
+                    interface: &self.$interface,
+                    contact: self.$interface.table(),
+                }
+            }
         }
-    }
+    };
 }
 
-impl PrescribedTable {
-    /// What it has in common with a footing.
-    pub(crate) fn strip(&self) -> StripKeys<'_> {
-        StripKeys {
-            location: self.location(),
-            name: &self.name,
-            site: self.site(),
-            from: &self.from,
-            to: &self.to,
-            rectangle: &self.rectangle,
-            disc: &self.disc,
-            motion: self.motion(),
-            interface: &self.components,
-            contact: self.components.table(),
-        }
-    }
-}
+strip_table!(FootingTable, interface);
+strip_table!(PrescribedTable, components);
 
 impl Draft {
     /// The footing and the prescribed motions, in the order of their numbers.

@@ -68,9 +68,7 @@ pub(super) fn circle(
     around: AroundStrip<'_>,
     report: &mut Report<'_>,
 ) -> Option<([f64; 2], f64, Vec<[f64; 2]>)> {
-    let circle = key.value()?;
-    let center = circle.centre.get()?;
-    let radius = circle.radius.get()?;
+    let (center, radius) = key.value()?.circle()?;
     let lower = around.grid?.lower();
     let upper = around.grid?.upper();
     let places: Vec<[f64; 2]> = ring(center, radius)

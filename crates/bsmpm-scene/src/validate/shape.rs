@@ -10,7 +10,7 @@ use crate::error::Origin;
 use crate::grid::GridSpec;
 use crate::record::{Field, ListRow};
 use crate::report::Report;
-use crate::schema::{BodyTable, BoxTable, ShapeKey};
+use crate::schema::{BodyTable, ShapeKey};
 use crate::shape_error;
 use crate::words::Geometry;
 use bsmpm::interactions::rigid;
@@ -204,14 +204,11 @@ fn read(key: ShapeKey<'_>, report: &mut Report<'_>) -> Option<BodyShape> {
     match key {
         ShapeKey::Polygon(key) => polygon(key, report),
         ShapeKey::Circle(key) => {
-            let circle = key.value()?;
-            Some(BodyShape::Circle {
-                center: circle.centre.get()?,
-                radius: circle.radius.get()?,
-            })
+            let (center, radius) = key.value()?.circle()?;
+            Some(BodyShape::Circle { center, radius })
         }
         ShapeKey::Box(key) => {
-            let [lower, upper] = corners(key)?.map(|[x, y, _]| [x, y]);
+            let [lower, upper] = key.value()?.corners()?.map(|[x, y, _]| [x, y]);
             if lower[0] >= upper[0] || lower[1] >= upper[1] {
                 key.value()?.upper.error(empty_box(&lower, &upper), report);
                 return None;
@@ -220,12 +217,6 @@ fn read(key: ShapeKey<'_>, report: &mut Report<'_>) -> Option<BodyShape> {
         }
         _ => None,
     }
-}
-
-/// m  lower and upper corner of a box
-fn corners(key: &Field<BoxTable>) -> Option<[[f64; 3]; 2]> {
-    let corners = key.value()?;
-    Some([corners.lower.vector()?, corners.upper.vector()?])
 }
 
 /// Of a box without extent along some axis.
@@ -238,7 +229,7 @@ fn empty_box(lower: &[f64], upper: &[f64]) -> String {
 
 fn polygon(key: &Field<Vec<ListRow>>, report: &mut Report<'_>) -> Option<BodyShape> {
     let rows = key.value()?;
-    let mut corners: Vec<[f64; 2]> = rows.iter().map(|row| [row.numbers[0], row.numbers[1]]).collect();
+    let mut corners = key.pairs()?;
     // Some close a polygon by its first corner once more.
     if corners.len() > 3 && corners.first() == corners.last() {
         corners.pop();

@@ -28,9 +28,7 @@ pub(super) fn pieces(key: SiteKey<'_>, around: AroundStrip<'_>, report: &mut Rep
     let spacing = grid.shortest() / bodies.iter().map(|body| body.points_per_cell).max()? as f64;
     let found = match key {
         SiteKey::Sphere(key) => {
-            let sphere = key.value()?;
-            let center = sphere.centre.vector()?;
-            let radius = sphere.radius.get()?;
+            let (center, radius) = key.value()?.sphere()?;
             let sound = countable(2.0 * TAU * radius * radius, spacing);
             let pieces = sound.map(|()| sphere_of(center, radius, spacing).into_iter());
             pieces.map(|pieces| pieces.flat_map(|of| inside(grid, of)).collect())

@@ -103,9 +103,7 @@ pub(super) fn plate(key: PlateKey<'_>, grid: &GridSpec, report: &mut Report<'_>)
         PlateKey::Disc(key) => return disc(key, grid, report),
         PlateKey::Rectangle(key) => key,
     };
-    let table = key.value()?;
-    let lower = table.lower.vector()?;
-    let upper = table.upper.vector()?;
+    let [lower, upper] = key.value()?.corners()?;
     let flat = (0..3).filter(|&axis| lower[axis] == upper[axis]).count();
     if flat != 1 || (0..3).any(|axis| lower[axis] > upper[axis]) {
         let message = format!(

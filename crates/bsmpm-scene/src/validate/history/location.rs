@@ -76,8 +76,7 @@ pub(super) fn at_x(key: &Field<f64>, grid: Option<&GridSpec>, report: &mut Repor
 
 /// A box that has something in common with the grid.
 pub(super) fn within(record: &BoxTable, grid: Option<&GridSpec>, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
-    let lower = record.lower.vector()?;
-    let upper = record.upper.vector()?;
+    let [lower, upper] = record.corners()?;
     if let Some(grid) = grid {
         let axes = grid.dims();
         let low = &lower[..axes];

@@ -72,11 +72,8 @@ pub(super) fn read(
 fn shape(key: ShapeKey<'_>, report: &mut Report<'_>) -> Option<RigidSolid> {
     match key {
         ShapeKey::Sphere(key) => {
-            let sphere = key.value()?;
-            Some(RigidSolid::Sphere {
-                center: sphere.centre.vector()?,
-                radius: sphere.radius.get()?,
-            })
+            let (center, radius) = key.value()?.sphere()?;
+            Some(RigidSolid::Sphere { center, radius })
         }
         ShapeKey::Revolve(key) => revolved(key.value()?, report),
         ShapeKey::Ground(key) => {

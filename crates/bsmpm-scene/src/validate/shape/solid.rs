@@ -95,11 +95,8 @@ fn is_turned(rows: &[ListRow]) -> bool {
 fn read(key: ShapeKey<'_>, report: &mut Report<'_>) -> Option<SolidShape> {
     match key {
         ShapeKey::Sphere(key) => {
-            let sphere = key.value()?;
-            Some(SolidShape::Sphere {
-                center: sphere.centre.vector()?,
-                radius: sphere.radius.get()?,
-            })
+            let (center, radius) = key.value()?.sphere()?;
+            Some(SolidShape::Sphere { center, radius })
         }
         ShapeKey::Extrude(key) => extruded(key.value()?, report),
         ShapeKey::Revolve(key) => revolved(key.value()?, report),
@@ -183,7 +180,7 @@ fn enclosed(shape: &SurfaceTable, report: &mut Report<'_>) -> Option<SolidShape>
 
 /// Lower and upper corner of a box.
 pub(in super::super) fn cuboid(key: &Field<BoxTable>, report: &mut Report<'_>) -> Option<[[f64; 3]; 2]> {
-    let [lower, upper] = super::corners(key)?;
+    let [lower, upper] = key.value()?.corners()?;
     if (0..3).any(|axis| lower[axis] >= upper[axis]) {
         key.value()?.upper.error(super::empty_box(&lower, &upper), report);
         return None;
