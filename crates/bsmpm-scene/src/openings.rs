@@ -96,6 +96,16 @@ impl Ray {
     fn at(&self, distance: f64) -> Vector<3> {
         self.start + self.direction * distance
     }
+
+    /// Whether it is outside a box (m) at a distance (m), and does not come back.
+    fn has_left(&self, [lower, upper]: [[f64; 3]; 2], distance: f64) -> bool {
+        let at = self.at(distance);
+        (0..3).any(|axis| match self.direction[axis] {
+            forwards if forwards > 0.0 => at[axis] > upper[axis],
+            backwards if backwards < 0.0 => at[axis] < lower[axis],
+            _ => false,
+        })
+    }
 }
 
 /// A body and what is around it.
@@ -187,13 +197,14 @@ impl Surroundings<'_> {
 
     /// m  along a ray to the wall that faces back, if it comes to one within its reach (m)
     fn across(&self, ray: &Ray, reach: f64) -> Option<f64> {
+        let bounds = self.bounds_of_images();
         let step = reach / STEPS as f64;
         let mut open = 0.0;
         for k in 1..=STEPS {
-            if (self.is_other)(self.folded(ray.at(open))) {
+            let next = k as f64 * step;
+            if ray.has_left(bounds, next) || (self.is_other)(self.folded(ray.at(open))) {
                 return None;
             }
-            let next = k as f64 * step;
             if self.is_material(ray.at(next)) {
                 let width = self.met(ray, [open, next]);
                 let faces = self.inwards(ray.at(width), AROUND * width).dot(&ray.direction) >= FACES;
@@ -202,6 +213,21 @@ impl Surroundings<'_> {
             open = next;
         }
         None
+    }
+
+    /// m  lower and upper corner of the box around the body and its mirror images
+    fn bounds_of_images(&self) -> [[f64; 3]; 2] {
+        let [mut lower, mut upper] = self.bounds;
+        // The inverse of `folded`.
+        for plane in self.planes.iter().rev() {
+            let axis = plane.axis;
+            if plane.is_upper {
+                upper[axis] = 2.0 * plane.at - lower[axis];
+            } else {
+                lower[axis] = 2.0 * plane.at - upper[axis];
+            }
+        }
+        [lower, upper]
     }
 
     /// How far along a ray the body begins, m, between an open place and one in the body.
