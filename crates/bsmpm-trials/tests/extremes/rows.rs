@@ -190,10 +190,12 @@ fn edges() -> Vec<Row> {
 #[rustfmt::skip] // a row is a line or two
 fn counts() -> Vec<Row> {
     vec![
+        // The bar comes apart. Whether an indicator reports that at the end, or a loose point leaves the grid before,
+        // depends on round-off, and so on the processor.
         row("N07", "1 point per cell, bar stretched to 1.5 times its length: error of the stress", AtMost(0.05),
-            || points::stretched(1, 1.5)).or_refused(),
+            || points::stretched(1, 1.5)).or_refused().or_left(),
         row("N07", "1 point per cell, bar stretched to 3 times its length: error of the stress", AtMost(0.05),
-            || points::stretched(1, 3.0)).or_refused().fails(SEPARATION),
+            || points::stretched(1, 3.0)).or_refused().or_left(),
         row("N07", "2 x 2 points per cell, bar stretched to 3 times its length: error of the stress", AtMost(0.05),
             || points::stretched(2, 3.0)).or_refused().fails(SEPARATION),
         row("N07", "1 point per cell, footing: p/c at z/B = 0.1", BEARING, || points::footing(1)).or_refused(),

@@ -55,6 +55,8 @@ pub struct Row {
     pub depth: Depth,
     /// whether a clean refusal or warning is an answer, too
     pub may_refuse: bool,
+    /// whether the end of a run from which a material point would leave the grid is an answer, too
+    pub may_leave: bool,
     /// why it fails at present
     pub known: Option<&'static str>,
     pub measure: Box<dyn Fn() -> Found>,
@@ -74,6 +76,7 @@ pub fn row<F: Into<Found>>(
         limit,
         depth: Depth::Short,
         may_refuse: false,
+        may_leave: false,
         known: None,
         measure,
     }
@@ -92,6 +95,14 @@ impl Row {
     pub fn or_refused(self) -> Self {
         Self {
             may_refuse: true,
+            ..self
+        }
+    }
+
+    /// A run that ends because a material point would leave the grid (exit code 81) passes as well.
+    pub fn or_left(self) -> Self {
+        Self {
+            may_leave: true,
             ..self
         }
     }
@@ -160,6 +171,7 @@ impl Row {
                 Limit::Same => *value == 0.0,
                 Limit::Reported => true,
             },
+            Found::Warned(81, reason) => self.may_leave && !reason.is_empty(),
             Found::Warned(code, reason) => self.may_refuse && [0, 65, 80, 82].contains(code) && !reason.is_empty(),
             Found::Broken(_) => false,
         }
