@@ -327,7 +327,7 @@ impl RunWriter {
             raise(&mut summary.largest_force_measure, last.force / criteria.force);
             raise(&mut summary.largest_energy_measure, last.energy / criteria.energy);
             if let Some(water) = last.water {
-                raise(&mut summary.largest_water_measure, water / criteria.water());
+                raise(&mut summary.largest_water_measure, water / criteria.second_field());
             }
         }
     }

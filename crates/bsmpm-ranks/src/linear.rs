@@ -439,7 +439,7 @@ impl<const D: usize, const C: usize> LinearSolver for KspSolver<'_, D, C> {
         Ok(krylov)
     }
 
-    fn water(&mut self) -> Option<&mut dyn LinearSolver> {
+    fn second_field(&mut self) -> Option<&mut dyn LinearSolver> {
         self.water.as_deref_mut().map(|water| water as &mut dyn LinearSolver)
     }
 }

@@ -199,7 +199,7 @@ impl StepEnergy {
             flows.integration += &water.tau;
             elastic += &water.held;
         }
-        let dry = nodes.pores.is_some().then(|| points.mass.to_vec());
+        let dry = nodes.field.is_some().then(|| points.mass.to_vec());
         let mut draft = Self {
             flows,
             damped,

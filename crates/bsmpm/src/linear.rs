@@ -52,7 +52,7 @@ pub trait LinearSolver {
     ) -> Result<Krylov, SolveError>;
     /// Returns the solver of the pore pressures, if water flows. Its system has one unknown per node, at the node with
     /// the same number as the pressure's spline.
-    fn water(&mut self) -> Option<&mut dyn LinearSolver> {
+    fn second_field(&mut self) -> Option<&mut dyn LinearSolver> {
         None
     }
 }

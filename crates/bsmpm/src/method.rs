@@ -55,13 +55,13 @@ impl Criteria {
     }
 
     /// Returns the tolerance of the water residual |R| / max(storage, flow, water through surfaces).
-    pub fn water(&self) -> f64 {
+    pub fn second_field(&self) -> f64 {
         WATER.min(self.force)
     }
 
     /// Formats the water residual with its tolerance, as a continuation of [`Criteria::judged`].
     pub fn judged_water(&self, water: f64) -> String {
-        format!(", water residual {}", against(water, self.water()))
+        format!(", water residual {}", against(water, self.second_field()))
     }
 }
 

@@ -15,7 +15,7 @@ pub mod stability;
 pub mod unknowns;
 
 use crate::error::StepError;
-use crate::field::pore_water::matrix;
+use crate::field::Field;
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
 use crate::method::{Nonlinear, QuasiNewton};
@@ -49,19 +49,19 @@ pub fn find<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
 ) -> Result<StepSolution<K, D>, StepError> {
-    let last = admissible(problem.nodes, guess);
-    let zero = admissible(problem.nodes, &vec![0.0; guess.len()]);
+    let last = admissible::<K, D>(problem.nodes, guess);
+    let zero = admissible::<K, D>(problem.nodes, &vec![0.0; guess.len()]);
     let mut differs = [f64::from(u8::from(last != zero))];
     problem.halo.all_reduce_max(&mut differs);
-    let flows = problem.nodes.pores.is_some();
+    let is_coupled = problem.nodes.field.is_some();
     let method = match problem.model.nonlinear {
-        // A rank-one update ignores pressures, and a Newton iteration costs as much as 6 to 23 secant iterations.
-        Nonlinear::QuasiNewton(_) | Nonlinear::Auto if flows => Nonlinear::QuasiNewton(QuasiNewton::Multisecant),
+        // A rank-one update ignores a second field, and a Newton iteration costs as much as 6 to 23 secant iterations.
+        Nonlinear::QuasiNewton(_) | Nonlinear::Auto if is_coupled => Nonlinear::QuasiNewton(QuasiNewton::Multisecant),
         method => method,
     };
-    let by_newton = (flows && problem.model.nonlinear == Nonlinear::Auto).then(|| last.clone());
+    let by_newton = (is_coupled && problem.model.nonlinear == Nonlinear::Auto).then(|| last.clone());
     let mut found = search(problem, method, last, first_energy, solver, counts);
-    // With flowing water, Newton's method is tried before another guess: it converges in more of the steps in which
+    // With a second field, Newton's method is tried before another guess: it converges in more of the steps in which
     // secants fail, and a failure of both costs the same.
     if let Some(last) = by_newton.filter(|_| goes_on(&found)) {
         found = search(problem, Nonlinear::Newton, last, first_energy, solver, counts);
@@ -179,17 +179,17 @@ fn by_secants<K: Kinematics<D>, const D: usize>(
     if problem.nodes.constraints.unknowns > 0 && !convergence.is_balanced(&residual.balance, problem) {
         stiffness::factorise(problem, Some(&residual.trial), solver)?;
         counts.factorisations += 1;
-        if let Some(pores) = &problem.nodes.pores {
-            matrix::factorise(problem, pores, &u[problem.nodes.constraints.free.len()..], solver)?;
+        if let Some(field) = &problem.nodes.field {
+            field.factorise(problem, &u[problem.nodes.constraints.free.len()..], solver)?;
             counts.factorisations += 1;
         }
     }
     quasi_newton::iterate(problem, method, u, residual, solver, counts, convergence)
 }
 
-/// Combines `guess` at free components, prescribed values, and zero elsewhere. Where water flows, the pressures of the
-/// points follow.
-fn admissible<const D: usize>(nodes: &GridState<D>, guess: &[f64]) -> Vec<f64> {
+/// Combines `guess` at free components, prescribed values, and zero elsewhere. The values of a second field at
+/// the start follow.
+fn admissible<K: Kinematics<D>, const D: usize>(nodes: &GridState<D>, guess: &[f64]) -> Vec<f64> {
     let displacements = guess
         .iter()
         .enumerate()
@@ -198,8 +198,8 @@ fn admissible<const D: usize>(nodes: &GridState<D>, guess: &[f64]) -> Vec<f64> {
             None if nodes.constraints.free[c] => value,
             None => 0.0,
         });
-    let pressures = nodes.pores.iter().flat_map(|pores| pores.guess.iter().copied());
-    displacements.chain(pressures).collect()
+    let field = nodes.field.iter().flat_map(Field::<K, D>::start);
+    displacements.chain(field.copied()).collect()
 }
 
 /// Evaluates the forces under `u` and counts the evaluation.

@@ -5,6 +5,7 @@ pub mod ambient;
 pub mod backward;
 pub mod carried;
 pub mod content;
+mod coupling;
 pub mod crossed;
 pub mod drain;
 pub mod flow;

@@ -125,7 +125,7 @@ impl<const D: usize> LinearSolver for BorderedSolver<'_, D> {
         self.solver.solve_with(product, relative, rhs, solution)
     }
 
-    fn water(&mut self) -> Option<&mut dyn LinearSolver> {
-        self.solver.water()
+    fn second_field(&mut self) -> Option<&mut dyn LinearSolver> {
+        self.solver.second_field()
     }
 }

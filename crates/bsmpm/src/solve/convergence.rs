@@ -2,6 +2,7 @@
 
 use crate::error::{Measures, SolveError, StepError, WorstNode};
 use crate::exact::Exact;
+use crate::field::FieldBalance;
 use crate::kinematics::Kinematics;
 use crate::method::Criteria;
 use crate::method::Method;
@@ -54,11 +55,11 @@ impl Convergence {
     /// Returns whether a state is in equilibrium before any direction is known: the initial guess is far below the
     /// force tolerance, or at every node the out-of-balance force is round-off.
     pub fn is_balanced<K, const D: usize>(&self, balance: &Balance, problem: &Problem<'_, K, D>) -> bool {
-        let water = self.water(balance).unwrap_or(0.0);
+        let field = self.field(balance).unwrap_or(0.0);
         (self.history.is_empty()
             && self.measure(balance) <= ALREADY * self.criteria.force
-            && water <= ALREADY * self.criteria.water())
-            || (self.round_off.covers(balance, problem) && water == 0.0)
+            && field <= ALREADY * self.criteria.second_field())
+            || (self.round_off.covers(balance, problem) && field == 0.0)
     }
 
     /// Returns the first displacement whose forces balanced far below their tolerance (m, nodal). Later states only
@@ -72,13 +73,10 @@ impl Convergence {
         self.round_off.measure(balance).0
     }
 
-    /// Returns the measure of the water (-), where it flows: the imbalance divided by the water that is stored, flows
-    /// or leaves.
-    pub fn water(&self, balance: &Balance) -> Option<f64> {
-        balance
-            .water
-            .as_ref()
-            .map(|water| water.measure(self.round_off.of_water()))
+    /// Returns the measure of the second field (-), if there is one, see [`FieldBalance::measure`].
+    pub fn field(&self, balance: &Balance) -> Option<f64> {
+        let field = balance.field.as_ref()?;
+        Some(field.measure(self.round_off.of_field()))
     }
 
     /// Returns the norm of the round-off of the forces (N).
@@ -106,19 +104,19 @@ impl Convergence {
     pub fn reaches(&mut self, method: Method, energy: f64, u: &[f64], balance: &Balance) -> bool {
         let energy = energy / self.first_energy.unwrap_or(f64::INFINITY);
         let force = self.measure(balance);
-        let water = self.water(balance);
+        let field = self.field(balance);
         self.history.push(Measures {
             energy,
             force,
-            water,
+            water: field,
             method,
         });
-        let far_below = water.is_none_or(|water| water <= SETTLED * self.criteria.water());
+        let far_below = field.is_none_or(|field| field <= SETTLED * self.criteria.second_field());
         if self.settled.is_none() && force <= SETTLED * self.criteria.force && far_below {
             self.settled = Some(u.to_vec());
         }
-        let is_dry_or_balanced = water.is_none_or(|water| water < self.criteria.water());
-        energy < self.criteria.energy && force < self.criteria.force && is_dry_or_balanced
+        let is_balanced = field.is_none_or(|field| field < self.criteria.second_field());
+        energy < self.criteria.energy && force < self.criteria.force && is_balanced
     }
 
     /// Returns the measures so far.
@@ -200,19 +198,15 @@ pub fn first_energy<K: Kinematics<D>, const D: usize>(problem: &Problem<'_, K, D
     (work - penalty[0]).abs()
 }
 
-/// Creates the error of a state in which points have inverted or pores have closed.
+/// Creates the error of a state in which points have inverted, or have no admissible state of the second field.
 pub fn inverted<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     residual: &Residual<K, D>,
     iteration: usize,
 ) -> StepError {
-    if let Some(water) = residual.balance.water.as_ref().filter(|water| water.closed > 0)
-        && residual.balance.inverted == 0
-    {
-        return StepError::Closed {
-            count: water.closed,
-            iteration,
-        };
+    let of_field = residual.balance.field.as_ref().and_then(|field| field.error(iteration));
+    if let Some(error) = of_field.filter(|_| residual.balance.inverted == 0) {
+        return error;
     }
     let first = residual
         .first_inverted

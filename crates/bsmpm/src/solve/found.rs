@@ -1,7 +1,7 @@
 //! Converged state of a step.
 
 use crate::error::Measures;
-use crate::field::pore_water::residual::WaterBalance;
+use crate::field::SecondBalance;
 use crate::interactions::EquilibriumState;
 use crate::kinematics::Kinematics;
 use crate::solve::convergence::Convergence;
@@ -14,10 +14,10 @@ use crate::tensor::Tensor;
 pub struct StepSolution<K: Kinematics<D>, const D: usize> {
     /// Nodal displacement (m).
     pub u: Vec<f64>,
-    /// Nodal excess pore pressure (Pa), where water flows.
+    /// Nodal values of the second field; empty without one.
     pub p: Vec<f64>,
-    /// Balance of the water, where it flows.
-    pub water: Option<WaterBalance>,
+    /// Balance of the second field, if there is one.
+    pub field: Option<SecondBalance>,
     /// Deformation increment under `u`.
     pub trial: DeformationIncrement<K, D>,
     /// Nodal force of the supports on the body (N).
@@ -54,8 +54,8 @@ impl<K: Kinematics<D>, const D: usize> StepSolution<K, D> {
         }
     }
 
-    /// Collects the state that an iteration reached. `u` contains displacements, followed by pressures where water
-    /// flows.
+    /// Collects the state that an iteration reached. `u` contains displacements, followed by the values of a
+    /// second field.
     pub fn new(mut u: Vec<f64>, residual: Residual<K, D>, convergence: &Convergence) -> Self {
         let newton_iterations = convergence.by_newton();
         let force = convergence.measure(&residual.balance);
@@ -70,7 +70,7 @@ impl<K: Kinematics<D>, const D: usize> StepSolution<K, D> {
         Self {
             u,
             p,
-            water: balance.water,
+            field: balance.field,
             trial,
             reaction,
             history,

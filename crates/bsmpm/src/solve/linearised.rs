@@ -3,7 +3,7 @@
 
 use crate::dynamics::inertia::Inertia;
 use crate::error::SolveError;
-use crate::field::pore_water::linearised::WaterTangent;
+use crate::field::{Field, FieldTangent};
 use crate::grid::transfer;
 use crate::kinematics::{Gradient, GradientModuli, Kinematics, Slope};
 use crate::linear::{LinearSolver, MatrixAssembly, Symmetry};
@@ -29,8 +29,8 @@ pub struct ForceTangent<'a, K: Kinematics<D>, const D: usize> {
     dilation: Option<Vec<Dilation<K::Gradient>>>,
     /// Contribution of the adjoint force at all points, under consistent F-bar in dilatant material.
     adjoint: Option<(Adjoint, Vec<Pressure<K::Gradient>>)>,
-    /// Contribution of flowing water, if any.
-    water: Option<WaterTangent<'a, D>>,
+    /// Contribution of the second field, if any.
+    field: Option<FieldTangent<'a, D>>,
 }
 
 /// Contribution of the adjoint force at a point, whose pressure is an average.
@@ -50,7 +50,7 @@ struct LinearisedPoint {
     tau: Tensor,           // Pa
     volume: f64,           // m^D  V0
     pressure: Option<f64>, // of the adjoint force (J)
-    pore: Option<f64>,     // pore pressure times J (Pa)
+    field: Option<f64>,    // Kirchhoff pressure of the second field (Pa)
 }
 
 impl LinearisedPoint {
@@ -64,8 +64,8 @@ impl LinearisedPoint {
             change -= l.transpose() * (pressure - own);
             change += Tensor::identity() * (pressure * l.trace() - works::<K, D>(&self.tangent.apply(&l)));
         }
-        if let Some(pore) = self.pore {
-            change += (l.transpose() - Tensor::identity() * l.trace()) * pore;
+        if let Some(pressure) = self.field {
+            change += (l.transpose() - Tensor::identity() * l.trace()) * pressure;
         }
         K::working(&(change * self.inverse.transpose())) * self.volume
     }
@@ -141,7 +141,7 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
                 tau: response.tau().full(),
                 volume,
                 pressure: pressures.at(p),
-                pore: trial.pore_at(p),
+                field: trial.field_pressure_at(p),
             };
             let viscous = trial.viscous(problem.model, points, p, &response);
             let viscous = viscous.map(|viscous| (viscous.tau.full(), viscous.tangent(response.change_of_returned())));
@@ -165,23 +165,21 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
             moduli,
             dilation,
             adjoint,
-            water: None,
+            field: None,
         }
     }
 
-    /// Adds flowing water to the derivative. In `x` the nodal excess pore pressures (Pa) follow the displacements.
-    pub fn with_water(mut self, x: &'a [f64]) -> Self {
+    /// Adds the second field to the derivative. In `x` its nodal values follow the displacements.
+    pub fn with_field(mut self, x: &'a [f64]) -> Self {
         let Problem { nodes, .. } = *self.problem;
         let p = &x[nodes.constraints.free.len()..];
-        self.water = nodes
-            .pores
-            .as_ref()
-            .map(|pores| WaterTangent::at(self.problem, pores, self.trial, p));
+        let field = nodes.field.as_ref();
+        self.field = field.map(|field| field.tangent(self.problem, self.trial, p));
         self
     }
 
     /// Computes K v for nodal arrays; `v` is zero where it is not free. One exchange with the neighbours, one more each
-    /// under F-bar, for the adjoint force and with water.
+    /// under F-bar, for the adjoint force and with a second field.
     pub fn multiply(&self, v: &[f64], out: &mut [f64]) {
         let Problem {
             shape,
@@ -206,10 +204,10 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
         let pressed = rate
             .as_ref()
             .and_then(|(dilation, rate)| Some((dilation, self.pressed(dilation, rate, &grad)?)));
-        let water = self.water.as_ref().map(|water| (water, water.pressures(v_p)));
-        if let Some((water, pressures)) = &water {
+        let field = self.field.as_ref().map(|field| (field, field.pressures(v_p)));
+        if let Some((field, pressures)) = &field {
             let averaged = rate.as_ref().map(|(_, rate)| &rate[..]);
-            out_p.copy_from_slice(&water.multiply(self.problem, &grad, averaged, pressures, v_p));
+            out_p.copy_from_slice(&field.multiply(self.problem, &grad, averaged, pressures, v_p));
         }
         let volume = self.problem.volume();
         let moduli = &self.moduli;
@@ -221,8 +219,8 @@ impl<'a, K: Kinematics<D>, const D: usize> ForceTangent<'a, K, D> {
             let flux = pressed
                 .as_ref()
                 .map_or(flux, |(dilation, pressed)| flux + dilation[p].trace * pressed[p]);
-            water.as_ref().map_or(flux, |(water, changes)| {
-                flux + water.pressed::<K>(p, changes[p].value) * volume[p]
+            field.as_ref().map_or(flux, |(field, changes)| {
+                flux + field.pressed::<K>(p, changes[p].value) * volume[p]
             })
         });
         let context = self.problem.context();

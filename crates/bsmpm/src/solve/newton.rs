@@ -2,7 +2,7 @@
 //! Used where quasi-Newton stalls.
 
 use crate::error::{SolveError, StepError};
-use crate::field::pore_water::newton::{Exact, Scales, direction as coupled};
+use crate::field::{CoupledDirection, Field, Scales};
 use crate::kinematics::Kinematics;
 use crate::linear::{Krylov, LinearSolver};
 use crate::method::Method;
@@ -25,8 +25,8 @@ const MOST: usize = 30;
 /// Smallest and largest relative residual of a direction. In between it follows the force measure, so that convergence
 /// stays quadratic (Dembo, Eisenstat and Steihaug, 1982).
 const FORCING: (f64, f64) = (1e-10, 1e-3);
-/// Largest relative residual with flowing water, with an inexact solver, and in three dimensions. The preconditioner is
-/// then no factorisation of the derivative, and each factor of ten costs matrix-vector products.
+/// Largest relative residual with a second field, with an inexact solver, and in three dimensions. The preconditioner
+/// is then no factorisation of the derivative, and each factor of ten costs matrix-vector products.
 const LOOSE: f64 = 1e-1;
 /// Relative residual above which a direction is rejected.
 const USELESS: f64 = 0.5;
@@ -93,8 +93,8 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     })
 }
 
-/// Solves K du = f_oob with the complete derivative K at this state. Returns du and the energy du . f_oob (N m). Where
-/// water flows, the pressures follow the displacements in du.
+/// Solves K du = f_oob with the complete derivative K at this state. Returns du and the energy du . f_oob (N m). The
+/// values of a second field follow the displacements in du.
 fn direction<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     x: &[f64],
@@ -102,10 +102,11 @@ fn direction<K: Kinematics<D>, const D: usize>(
     solver: &mut dyn LinearSolver,
     counts: &mut Counts,
 ) -> Result<(Vec<f64>, f64), SolveError> {
-    if let Some((pores, water)) = problem.nodes.pores.as_ref().zip(residual.balance.water.as_ref()) {
+    if let Some((field, balance)) = problem.nodes.field.as_ref().zip(residual.balance.field.as_ref()) {
         let measure = Scales::of(problem, &residual.balance).measure(&residual.balance);
         let forcing = measure.clamp(FORCING.0, LOOSE);
-        let Exact { dx, energy, krylov } = coupled(problem, pores, x, residual, water, forcing, solver)?;
+        let CoupledDirection { dx, energy, krylov } =
+            field.newton_direction(problem, x, residual, balance, forcing, solver)?;
         counts.factorisations += 2;
         counts.iterations += 1;
         counts.products += krylov.iterations + 1;
@@ -182,7 +183,7 @@ fn around_stiffness<K: Kinematics<D>, const D: usize>(
 }
 
 /// Tries the full direction, half of it, a quarter, .., and returns the first state that reduces the out-of-balance
-/// force; where water flows, the combined measure of forces and water.
+/// force; with a second field, the combined measure of forces and field.
 fn search<K: Kinematics<D>, const D: usize>(
     problem: &Problem<'_, K, D>,
     u: &[f64],
@@ -192,7 +193,7 @@ fn search<K: Kinematics<D>, const D: usize>(
 ) -> Option<(Vec<f64>, Residual<K, D>)> {
     let scales = problem
         .nodes
-        .pores
+        .field
         .as_ref()
         .map(|_| Scales::of(problem, &residual.balance));
     let measure = |of: &Balance| scales.as_ref().map_or(of.norm, |scales| scales.measure(of));

@@ -1,8 +1,7 @@
 //! Quasi-Newton iteration of a step, with one factorised stiffness K_0.
 
 use crate::error::{SolveError, StepError};
-use crate::field::pore_water::follow::Follow;
-use crate::field::pore_water::split::Split;
+use crate::field::{Field, FieldBalance, FieldMatrix, Split};
 use crate::kinematics::Kinematics;
 use crate::linear::{LinearSolver, SolveReport};
 use crate::method::{Method, QuasiNewton};
@@ -24,7 +23,7 @@ const SHORTEST: f64 = 1.0 / 16.0;
 /// A search direction and its cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
-    /// Nodal displacements (m), followed by pressures (Pa) where water flows.
+    /// Nodal displacements (m), followed by the values of a second field.
     pub du: Vec<f64>,
     /// Energy du . f (N m).
     pub energy: f64,
@@ -50,15 +49,16 @@ impl Secants {
         }
     }
 
-    /// Creates an empty history for the unknowns of a problem. Where water flows, pressures are among them and the
+    /// Creates an empty history for the unknowns of a problem. With a second field, its values are among them and the
     /// multisecant method is used.
-    fn of<K, const D: usize>(method: QuasiNewton, problem: &Problem<'_, K, D>) -> Self {
+    fn of<K: Kinematics<D>, const D: usize>(method: QuasiNewton, problem: &Problem<'_, K, D>) -> Self {
         let free = &problem.nodes.constraints.free;
         let halo = problem.halo;
-        let Some(pores) = &problem.nodes.pores else {
+        let Some(field) = &problem.nodes.field else {
             return Self::new::<D>(method, free, halo);
         };
-        let unknowns = Unknowns::of::<D>(free, halo).with_pressures(free.len(), &pores.free, halo);
+        let of_field = Field::<K, D>::unknowns(field);
+        let unknowns = Unknowns::of::<D>(free, halo).with_field(free.len(), of_field, halo);
         Self::Multisecant(Multisecant::new(unknowns))
     }
 
@@ -74,18 +74,17 @@ impl Secants {
         Ok(self.corrected::<D>(w, f, halo, solved))
     }
 
-    /// Returns the direction of a problem's displacements, followed by pressures where water flows.
+    /// Returns the direction of a problem's displacements, followed by the values of a second field.
     fn towards<K: Kinematics<D>, const D: usize>(
         &mut self,
         problem: &Problem<'_, K, D>,
         balance: &Balance,
         solver: &mut dyn LinearSolver,
     ) -> Result<Direction, SolveError> {
-        match problem.nodes.pores.as_ref().zip(balance.water.as_ref()) {
-            Some((pores, water)) => {
-                let lacking = water.excess.iter().map(|excess| -excess);
-                let f: Vec<f64> = balance.f_oob.iter().copied().chain(lacking).collect();
-                let Split { z, f, solved } = Split::of(problem, pores, &f, solver)?;
+        match problem.nodes.field.as_ref().zip(balance.field.as_ref()) {
+            Some((field, lacks)) => {
+                let f: Vec<f64> = balance.f_oob.iter().copied().chain(lacks.lacking()).collect();
+                let Split { z, f, solved } = field.split(problem, &f, solver)?;
                 Ok(self.corrected::<D>(z, &f, problem.halo, solved))
             }
             None => self.direction::<D>(&balance.f_oob, problem.halo, solver),
@@ -187,7 +186,7 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
     convergence: &mut Convergence,
 ) -> Result<StepSolution<K, D>, FailedIteration> {
     let mut secants = Secants::of(method.update, problem);
-    let mut follow = Follow::of(problem, &u);
+    let mut matrix = FieldMatrix::of(problem, &u);
     let mut best = u.clone();
     let mut least = residual.balance.norm;
     while convergence.iterations() < problem.model.criteria.max_iterations
@@ -207,21 +206,17 @@ pub fn iterate<K: Kinematics<D>, const D: usize>(
         // The direction's own energy is a sum of products with secants, which has a different round-off.
         let work = stability::is_decisive(problem, &residual.balance)
             .then(|| dot(problem.halo, D, &direction.du, &residual.balance.f_oob));
-        let of_water = convergence.water(&residual.balance).unwrap_or(0.0);
-        if let Some(pores) = &problem.nodes.pores {
-            follow.tame(problem, pores, &u, &mut direction.du, of_water);
-        }
+        let of_field = convergence.field(&residual.balance).unwrap_or(0.0);
+        matrix.tame(problem, &u, &mut direction.du, of_field);
         match advance(problem, &mut u, &direction.du, &mut residual, counts) {
             Ok(length) => secants.took(length), // (8), (4), (5)
             Err(inverted) => return Err(FailedIteration::with_best(inverted, best)),
         }
         stability::check(problem, convergence, &direction.du, work, &residual.balance)?;
-        if let Some(pores) = &problem.nodes.pores {
-            let of_water = convergence.water(&residual.balance).unwrap_or(0.0);
-            if follow.up(problem, pores, &u, of_water, solver)? {
-                counts.factorisations += 1;
-                secants = Secants::of(method.update, problem);
-            }
+        let of_field = convergence.field(&residual.balance).unwrap_or(0.0);
+        if matrix.up(problem, &u, of_field, solver)? {
+            counts.factorisations += 1;
+            secants = Secants::of(method.update, problem);
         }
         if residual.balance.norm < least {
             (least, best) = (residual.balance.norm, u.clone());

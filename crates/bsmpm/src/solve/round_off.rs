@@ -1,5 +1,6 @@
 //! Round-off of the out-of-balance force at each node. Smaller out-of-balance forces count as zero.
 
+use crate::field::Field;
 use crate::kinematics::Kinematics;
 use crate::nodal::Nodal;
 use crate::parallel::over_layers;
@@ -18,7 +19,7 @@ pub struct RoundOff {
     force: Vec<f64>, // per component (N): 1e-13 E h^(D-1), E the largest at the node, plus inertia
     norm: f64,       // of all nodes (N)
     apart: Vec<f64>, // of the nodes of each single material (N); empty with one material
-    water: f64,      // of the water balance (m3)
+    field: f64,      // of the balance of the second field
 }
 
 impl RoundOff {
@@ -52,12 +53,12 @@ impl RoundOff {
         let sums = problem.halo.reproducible_sum(&sums);
         let norm = sums[0].sqrt();
         let apart = sums[1..].iter().map(|sum| sum.sqrt()).collect();
-        let water = nodes.pores.as_ref().map_or(0.0, |pores| pores.round_off);
+        let field = nodes.field.as_ref().map_or(0.0, Field::<K, D>::round_off);
         Self {
             force,
             norm,
             apart,
-            water,
+            field,
         }
     }
 
@@ -66,9 +67,9 @@ impl RoundOff {
         self.norm
     }
 
-    /// Returns the norm of the round-off of the water balance (m3).
-    pub fn of_water(&self) -> f64 {
-        self.water
+    /// Returns the norm of the round-off of the balance of the second field.
+    pub fn of_field(&self) -> f64 {
+        self.field
     }
 
     /// Returns the force measure (-): the largest of |f_oob| / largest force over all nodes and over each single

@@ -15,12 +15,16 @@ use crate::step::residual::Balance;
 const NEAR: f64 = 1e-3;
 
 /// Returns whether the work of a direction from this state decides on stability: near equilibrium, without inertia
-/// (which decides where an unstable body moves), and with a symmetric derivative (no friction, yielding or flowing
-/// water).
+/// (which decides where an unstable body moves), and with a symmetric derivative (no friction, yielding or second
+/// field).
 pub fn is_decisive<K, const D: usize>(problem: &Problem<'_, K, D>, before: &Balance) -> bool {
     let has_friction = problem.nodes.interactions.iter().any(Interaction::has_friction);
-    let flows = problem.nodes.pores.is_some();
-    before.measure() < NEAR && problem.nodes.inertia.is_none() && !has_friction && !flows && is_symmetric(problem.model)
+    let is_coupled = problem.nodes.field.is_some();
+    before.measure() < NEAR
+        && problem.nodes.inertia.is_none()
+        && !has_friction
+        && !is_coupled
+        && is_symmetric(problem.model)
 }
 
 /// Rejects a direction `du` (m, nodal; its length does not matter) near static equilibrium whose second-order work is

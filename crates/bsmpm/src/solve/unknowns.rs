@@ -11,7 +11,7 @@ const LANES: usize = 8;
 /// Packed vectors of the unknowns: components that are zero by definition are left out.
 #[derive(Clone, Debug)]
 pub struct Unknowns {
-    places: Vec<u32>,          // nodal component of each; pressures follow displacements
+    places: Vec<u32>,          // nodal component of each; a second field follows displacements
     layers: Vec<Range<usize>>, // unknowns of this rank's own nodes, by layer
 }
 
@@ -29,14 +29,15 @@ impl Unknowns {
         Self { places, layers }
     }
 
-    /// Appends the `free` pore pressures, one per node. In nodal arrays they follow the `components` displacements.
-    pub fn with_pressures(mut self, components: usize, free: &[bool], halo: &dyn Halo) -> Self {
-        let pressures = Self::of::<1>(free, halo);
+    /// Appends the `free` values of a second field, one per node. In nodal arrays they follow the `components`
+    /// displacements.
+    pub fn with_field(mut self, components: usize, free: &[bool], halo: &dyn Halo) -> Self {
+        let field = Self::of::<1>(free, halo);
         let before = self.places.len();
         self.places
-            .extend(pressures.places.iter().map(|place| place + components as u32));
+            .extend(field.places.iter().map(|place| place + components as u32));
         self.layers.extend(
-            pressures
+            field
                 .layers
                 .iter()
                 .map(|layer| layer.start + before..layer.end + before),

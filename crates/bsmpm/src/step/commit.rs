@@ -276,9 +276,9 @@ pub fn update_points<K: Kinematics<D>, const D: usize>(
     points.state = state;
     keep(model, &trial, &answers, points);
     let content = nodes
-        .pores
+        .field
         .as_ref()
-        .map_or(0.0, |pores| saved::save(model, pores, &trial, &pressures, points, halo));
+        .map_or(0.0, |field| saved::save(model, field, &trial, &pressures, points, halo));
     let damped = nodes.inertia.is_some() && !model.damping.is_empty();
     let before = (damped && model.stabilisation.smooths()).then(|| points.b_e.clone());
     let smoothed = match model.stabilisation {

@@ -4,8 +4,8 @@
 use crate::dynamics::inertia::{self, Inertia};
 use crate::dynamics::mass::Mass;
 use crate::error::StepError;
+use crate::field::SecondField;
 use crate::field::pore_water::carried;
-use crate::field::pore_water::nodes::PorePressureField;
 use crate::grid::{Shape, transfer};
 use crate::interactions::state::InteractionState;
 use crate::interactions::{Interactions, StepContext, StepInput, StepStart};
@@ -35,8 +35,8 @@ pub struct GridState<const D: usize> {
     pub constraints: Constraints<D>,
     /// Whatever acts on the nodes besides the stress of the material points.
     pub interactions: Interactions<D>,
-    /// Pressures of flowing pore water, if any.
-    pub pores: Option<PorePressureField<D>>,
+    /// Second field, if there is one.
+    pub field: Option<SecondField<D>>,
     averages: Averages<D>,
 }
 
@@ -81,7 +81,7 @@ impl<const D: usize> GridState<D> {
         nodes.tie(model, shape, points, input, halo);
         nodes.inertia = nodes.start_inertia(model, shape, points, interval.dt, halo);
         nodes.load(model, shape, points, interval.end(), halo);
-        nodes.pores = PorePressureField::of(model, shape, points, input.state, interval, halo)?;
+        nodes.field = SecondField::of(model, shape, points, input.state, interval, halo)?;
         nodes.apply_statuses();
         nodes.count(halo);
         Ok(nodes)
@@ -121,7 +121,7 @@ impl<const D: usize> GridState<D> {
             averages: Averages { fitted, ..averages },
             constraints,
             interactions: Interactions::default(),
-            pores: None,
+            field: None,
             f_ext: Vec::new(),
             inertia: None,
             weight,

@@ -2,7 +2,7 @@
 //! iteration.
 
 use crate::exact::Exact;
-use crate::field::pore_water::residual::WaterBalance;
+use crate::field::{Field, FieldBalance, SecondBalance};
 use crate::grid::{Contributions, transfer};
 use crate::interactions::{Interaction, NodalForces};
 use crate::kinematics::{Gradient, GradientOf, Kinematics};
@@ -52,16 +52,16 @@ pub struct Balance {
     pub work: f64,
     /// Points inverted or not finite, over all ranks.
     pub inverted: u64,
-    /// Balance of the water, if it flows.
-    pub water: Option<WaterBalance>,
+    /// Balance of the second field, if there is one.
+    pub field: Option<SecondBalance>,
     /// Whether no norm overflowed.
     finite: bool,
 }
 
 impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
-    /// Evaluates the forces under `x`: displacements (m), followed by excess pore pressures (Pa) if water flows;
-    /// missing pressures are zero. One exchange with the neighbours, one more each for F-bar, its adjoint, elastic
-    /// supports and water, and one reduction (two with water).
+    /// Evaluates the forces under `x`: displacements (m), followed by the values of a second field, if there is
+    /// one; missing values are zero. One exchange with the neighbours, one more each for F-bar, its adjoint, elastic
+    /// supports and a second field, and one reduction (two with a second field).
     pub fn of(problem: &Problem<'_, K, D>, x: &[f64]) -> Self {
         let Problem {
             model,
@@ -71,16 +71,16 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
             halo,
             ..
         } = *problem;
-        let (u, p) = x.split_at(nodes.constraints.free.len());
+        let (u, values) = x.split_at(nodes.constraints.free.len());
         let mut extended = Cow::Borrowed(u);
         if let Some(extension) = &nodes.constraints.extension {
             extension.extend(&model.grid, extended.to_mut(), halo);
         }
         let u = &extended[..];
         let mut trial = DeformationIncrement::of(model, shape, nodes, points, u, halo);
-        let water = nodes.pores.as_ref().map(|pores| match p {
-            [] => WaterBalance::of(problem, pores, &mut trial, &vec![0.0; pores.free.len()]),
-            p => WaterBalance::of(problem, pores, &mut trial, p),
+        let field = nodes.field.as_ref().map(|field| match values {
+            [] => field.balance(problem, &mut trial, &vec![0.0; Field::<K, D>::unknowns(field).len()]),
+            values => field.balance(problem, &mut trial, values),
         });
         let InternalForce {
             mut f_int,
@@ -92,7 +92,7 @@ impl<K: Kinematics<D>, const D: usize> Residual<K, D> {
             interaction.add_internal_force(&context, u, &mut f_int);
         }
         let balance = Balance {
-            water,
+            field,
             ..Balance::of(problem, u, &|p| trial.dF(p), halo.assemble_ghosts(&f_int), inverted)
         };
         Self {
@@ -278,7 +278,7 @@ impl Balance {
             apart: apart.collect(),
             work: sums[kinds + 1],
             inverted: sums[0] as u64,
-            water: None,
+            field: None,
             finite: sums.iter().all(|sum| sum.is_finite()),
         }
     }
@@ -288,13 +288,11 @@ impl Balance {
         if self.norm == 0.0 { 0.0 } else { self.norm / self.scale }
     }
 
-    /// Returns whether, on all ranks, no point inverted, no pores closed, and no number overflowed.
+    /// Returns whether, on all ranks, no point inverted, every point has an admissible state of a
+    /// second field, and no number overflowed.
     pub fn is_sound(&self) -> bool {
-        let of_water = self
-            .water
-            .as_ref()
-            .is_none_or(|water| water.closed == 0 && water.finite);
-        self.inverted == 0 && self.finite && of_water
+        let is_field_sound = self.field.as_ref().is_none_or(FieldBalance::is_sound);
+        self.inverted == 0 && self.finite && is_field_sound
     }
 }
 

@@ -25,8 +25,8 @@ pub struct DeformationIncrement<K: Kinematics<D>, const D: usize> {
     mean: Option<Vec<f64>>,
     /// Damping that adds a viscous stress to the stress of the law.
     damping: Damping,
-    /// Pore pressure times J at every point (Pa), if water flows; subtracted from the skeleton's Kirchhoff stress.
-    pub(crate) pore: Option<Vec<f64>>,
+    /// Kirchhoff pressure that a second field carries at every point (Pa); subtracted from the stress of the material.
+    pub(crate) field_pressure: Option<Vec<f64>>,
 }
 
 impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
@@ -52,7 +52,7 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
             grad,
             mean: None,
             damping: Damping::of(model, nodes),
-            pore: None,
+            field_pressure: None,
         };
         let mean = model.stabilisation.averages().then(|| {
             nodes.mean_dilation(model, shape, points, halo, |p| match trial.dJ(p) {
@@ -171,10 +171,12 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
         } else {
             law.stress_in_space(b_trial, &state[..width])?
         };
-        if let Some(pore) = &self.pore {
-            let pore = eight.of(pore);
-            let pore = Lanes::from_fn(simd, |lane| *pore[lane]);
-            tau = Symmetric(std::array::from_fn(|k| if k < 3 { tau.0[k] - pore } else { tau.0[k] }));
+        if let Some(pressure) = &self.field_pressure {
+            let pressure = eight.of(pressure);
+            let pressure = Lanes::from_fn(simd, |lane| *pressure[lane]);
+            tau = Symmetric(std::array::from_fn(
+                |k| if k < 3 { tau.0[k] - pressure } else { tau.0[k] },
+            ));
         }
         Some((dF, tau))
     }
@@ -221,19 +223,19 @@ impl<K: Kinematics<D>, const D: usize> DeformationIncrement<K, D> {
             .map_or(tau, |viscous| viscous.beside(tau))
     }
 
-    /// Returns `tau` of the skeleton minus J times the pore pressure at point `p` (Pa).
+    /// Returns `tau` of the material minus the pressure of a second field at point `p` (Pa).
     #[inline]
     pub fn pressed(&self, p: usize, mut tau: Symmetric) -> Symmetric {
-        if let Some(pore) = &self.pore {
-            tau.0[..3].iter_mut().for_each(|normal| *normal -= pore[p]);
+        if let Some(pressure) = &self.field_pressure {
+            tau.0[..3].iter_mut().for_each(|normal| *normal -= pressure[p]);
         }
         tau
     }
 
-    /// Returns J times the pore pressure at point `p` (Pa), if water flows.
+    /// Returns the Kirchhoff pressure of a second field at point `p` (Pa), if there is one.
     #[inline]
-    pub(crate) fn pore_at(&self, p: usize) -> Option<f64> {
-        self.pore.as_ref().map(|pore| pore[p])
+    pub(crate) fn field_pressure_at(&self, p: usize) -> Option<f64> {
+        self.field_pressure.as_ref().map(|pressure| pressure[p])
     }
 
     /// Returns the Hencky strain of point `p` in the step, `½ ln (I + e)` with e = dF-bar dF-bar^T - I; `None` for an

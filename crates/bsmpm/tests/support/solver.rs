@@ -212,7 +212,7 @@ impl LinearSolver for Skyline {
         })
     }
 
-    fn water(&mut self) -> Option<&mut dyn LinearSolver> {
+    fn second_field(&mut self) -> Option<&mut dyn LinearSolver> {
         self.water.as_deref_mut().map(|water| water as &mut dyn LinearSolver)
     }
 

@@ -139,7 +139,7 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
         points,
         halo: &halo,
     };
-    let pores = nodes.pores.as_ref().expect("water flows");
+    let pores = nodes.field.as_ref().expect("water flows");
     let mut random = Random::new(11);
     let mut free = |(length, pressure): (f64, f64)| -> Vec<f64> {
         let all = nodes
@@ -174,7 +174,7 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
     });
     let mut product = vec![0.0; x.len()];
     ForceTangent::at(&pieces, &residual)
-        .with_water(&x)
+        .with_field(&x)
         .multiply(&v, &mut product);
     let step = 1e-7;
     let lacking = |by: f64| -> Vec<f64> {
@@ -184,7 +184,7 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
             .f_oob
             .iter()
             .copied()
-            .chain(balance.water.iter().flat_map(|water| water.excess.iter().map(|R| -R)))
+            .chain(balance.field.iter().flat_map(|water| water.excess.iter().map(|R| -R)))
             .collect()
     };
     let after = lacking(step);

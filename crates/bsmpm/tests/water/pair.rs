@@ -112,7 +112,7 @@ fn constants(mut scene: Plane) -> [f64; 2] {
         points,
         halo: &halo,
     };
-    let pores = nodes.pores.as_ref().expect("it flows");
+    let pores = nodes.field.as_ref().expect("it flows");
     let free: Vec<usize> = (0..nodes.constraints.free.len())
         .filter(|&c| nodes.constraints.free[c])
         .collect();
@@ -246,7 +246,7 @@ fn a_rotation_changes_neither_the_flow_nor_the_content_and_turns_the_forces() {
     };
     let still = state(&|_| at(0.0, 0.0));
     let moved = state(&|node| turned(place(node)) - place(node));
-    let excess = |balance: &bsmpm::step::residual::Balance| balance.water.as_ref().expect("it flows").excess.clone();
+    let excess = |balance: &bsmpm::step::residual::Balance| balance.field.as_ref().expect("it flows").excess.clone();
     let scale = excess(&still).iter().map(|value| value.abs()).fold(0.0, f64::max);
     let off = excess(&still)
         .iter()

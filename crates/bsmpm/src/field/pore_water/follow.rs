@@ -2,7 +2,6 @@
 
 use crate::error::SolveError;
 use crate::field::pore_water::matrix;
-use crate::field::pore_water::nodes::PorePressureField;
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
 use crate::step::problem::Problem;
@@ -26,7 +25,7 @@ pub struct Follow {
 impl Follow {
     /// Creates the state for a matrix that is assembled at the displacements and pressures `x`.
     pub fn of<K, const D: usize>(problem: &Problem<'_, K, D>, x: &[f64]) -> Self {
-        let open = problem.nodes.pores.as_ref().map_or_else(Vec::new, |pores| {
+        let open = problem.nodes.field.as_ref().map_or_else(Vec::new, |pores| {
             let p = &x[problem.nodes.constraints.free.len()..];
             pores.drainage.open(if p.is_empty() { &pores.guess } else { p })
         });
@@ -40,14 +39,8 @@ impl Follow {
 
     /// Limits the pressures of a direction `dx` in the first iterations. A step may not fill pores beyond saturation,
     /// nor more than double the suction plus the air-entry value.
-    pub fn tame<K, const D: usize>(
-        &mut self,
-        problem: &Problem<'_, K, D>,
-        pores: &PorePressureField<D>,
-        x: &[f64],
-        dx: &mut [f64],
-        measure: f64,
-    ) {
+    pub fn tame<K, const D: usize>(&mut self, problem: &Problem<'_, K, D>, x: &[f64], dx: &mut [f64], measure: f64) {
+        let Some(pores) = &problem.nodes.field else { return };
         let Some(water) = &problem.model.water else { return };
         let Some(flow) = water.flow.as_ref().filter(|flow| flow.retains()) else {
             return;
@@ -75,11 +68,13 @@ impl Follow {
     pub fn up<K: Kinematics<D>, const D: usize>(
         &mut self,
         problem: &Problem<'_, K, D>,
-        pores: &PorePressureField<D>,
         x: &[f64],
         measure: f64,
         solver: &mut dyn LinearSolver,
     ) -> Result<bool, SolveError> {
+        let Some(pores) = &problem.nodes.field else {
+            return Ok(false);
+        };
         let Some(flow) = problem.model.water.as_ref().and_then(|water| water.flow.as_ref()) else {
             return Ok(false);
         };

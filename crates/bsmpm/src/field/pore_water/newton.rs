@@ -2,6 +2,7 @@
 //! (T8.16), as preconditioner.
 
 use crate::error::SolveError;
+use crate::field::FieldBalance;
 use crate::field::pore_water::matrix;
 use crate::field::pore_water::nodes::PorePressureField;
 use crate::field::pore_water::residual::WaterBalance;
@@ -35,19 +36,19 @@ impl Scales {
         let strained = force * problem.model.grid.smallest_edge() / stiffest;
         Self {
             force,
-            water: balance.water.as_ref().map_or(0.0, |water| water.scale).max(strained),
+            water: balance.field.as_ref().map_or(0.0, |water| water.scale).max(strained),
         }
     }
 
     /// Returns the root of the sum of squares of both scaled norms.
     pub fn measure(&self, balance: &Balance) -> f64 {
-        let water = balance.water.as_ref().map_or(0.0, |water| water.norm);
+        let water = balance.field.as_ref().map_or(0.0, |water| water.norm);
         (balance.norm / self.force).hypot(water / self.water)
     }
 }
 
 /// Newton direction, its energy, and the result of the Krylov method.
-pub struct Exact {
+pub struct CoupledDirection {
     /// Displacements (m), followed by pressures (Pa), nodal.
     pub dx: Vec<f64>,
     /// Sum of the magnitudes of the works of skeleton and water in the direction (N m), in the measure of the
@@ -67,24 +68,18 @@ pub fn direction<K: Kinematics<D>, const D: usize>(
     water: &WaterBalance,
     relative: f64,
     solver: &mut dyn LinearSolver,
-) -> Result<Exact, SolveError> {
+) -> Result<CoupledDirection, SolveError> {
     let components = problem.nodes.constraints.free.len();
     let halo = problem.halo;
     let balance = &residual.balance;
-    let linearised = ForceTangent::at(problem, residual).with_water(x);
+    let linearised = ForceTangent::at(problem, residual).with_field(x);
     stiffness::factorise(problem, Some(&residual.trial), solver)?;
     matrix::factorise(problem, pores, &x[components..], solver)?;
     let scales = Scales::of(problem, balance);
-    let unknowns =
-        Unknowns::of::<D>(&problem.nodes.constraints.free, halo).with_pressures(components, &pores.free, halo);
+    let unknowns = Unknowns::of::<D>(&problem.nodes.constraints.free, halo).with_field(components, &pores.free, halo);
     let divided = [1.0 / scales.force, 1.0 / scales.water];
     let back = [scales.force, scales.water];
-    let mut f: Vec<f64> = balance
-        .f_oob
-        .iter()
-        .copied()
-        .chain(water.excess.iter().map(|excess| -excess))
-        .collect();
+    let mut f: Vec<f64> = balance.f_oob.iter().copied().chain(water.lacking()).collect();
     let first = Split::of(problem, pores, &f, solver)?;
     scale(&mut f, components, divided);
     let mut nodal = vec![0.0; x.len()];
@@ -113,7 +108,7 @@ pub fn direction<K: Kinematics<D>, const D: usize>(
     let (f_u, f_p) = first.f.split_at(components);
     // Magnitudes are added, so that works of opposite sign do not cancel.
     let energy = dot(halo, D, du, f_u).abs() + dot(halo, 1, dp, f_p).abs();
-    Ok(Exact { dx, energy, krylov })
+    Ok(CoupledDirection { dx, energy, krylov })
 }
 
 /// Multiplies the first `components` numbers of a nodal array (forces) by `factors[0]` and the others (water) by

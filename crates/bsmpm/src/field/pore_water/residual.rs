@@ -76,7 +76,7 @@ impl WaterBalance {
             ]
         });
         pores.drainage.add_to(p, &mut sums);
-        trial.pore = Some(of_points(problem, pores, trial, &pressures));
+        trial.field_pressure = Some(of_points(problem, pores, trial, &pressures));
         let mut sums = halo.assemble_ghosts(&sums);
         pores.ties.add_to(p, &mut sums, |node| node * TERMS + FLOWS);
         Self::at_nodes(problem, pores, &sums, closed.into_inner())
@@ -117,15 +117,6 @@ impl WaterBalance {
             finite: totals.iter().all(|total| total.is_finite()),
             excess,
             out,
-        }
-    }
-
-    /// Returns |R| relative to `scale`; zero if |R| is at most `round_off` (m3).
-    pub fn measure(&self, round_off: f64) -> f64 {
-        if self.norm <= round_off {
-            0.0
-        } else {
-            self.norm / self.scale
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Updates pore pressure and mass of the material points after convergence, theory-manual equation (T8.12).
 
 use crate::exact::Exact;
+use crate::field::FieldBalance;
 use crate::field::pore_water::backward::is_smooth;
 use crate::field::pore_water::crossed::{CrossedVolumes, PreviousFlow};
 use crate::field::pore_water::flow::{DrainedFace, Flow};
@@ -65,8 +66,8 @@ impl WaterReport {
         before: Option<&PreviousFlow>,
     ) -> Option<Self> {
         let Problem { model, nodes, halo, .. } = *problem;
-        let pores = nodes.pores.as_ref()?;
-        let water = found.water.as_ref()?;
+        let pores = nodes.field.as_ref()?;
+        let water = found.field.as_ref()?;
         let flow = model.water.as_ref()?.flow.as_ref()?;
         let owned = halo.owned();
         let mut counted = vec![false; water.out.len()];

@@ -45,6 +45,6 @@ impl Split {
 /// Returns the linear system of the pressures. Fails if the solver has none.
 pub fn system(solver: &mut dyn LinearSolver) -> Result<&mut dyn LinearSolver, SolveError> {
     solver
-        .water()
+        .second_field()
         .ok_or_else(|| SolveError::Failed("there is no system of the pore pressures".into()))
 }

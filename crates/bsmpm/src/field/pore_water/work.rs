@@ -38,8 +38,8 @@ impl Work {
         let Problem {
             model, points, halo, ..
         } = *problem;
-        let pores = problem.nodes.pores.as_ref()?;
-        let balance = found.water.as_ref()?;
+        let pores = problem.nodes.field.as_ref()?;
+        let balance = found.field.as_ref()?;
         let water = model.water.as_ref()?;
         let flow = water.flow.as_ref()?;
         let weight = water.unit_weight;
