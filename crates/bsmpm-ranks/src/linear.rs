@@ -59,7 +59,7 @@ impl<'p, const D: usize> KspSolver<'p, D, D> {
         timers: &Rc<Timers>,
     ) -> Self {
         let grid = &model.grid;
-        let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
+        let flows = model.is_coupled();
         let water = flows.then(|| {
             // The functions of degree q - 1 use the numbers of the nodes.
             let stencil = Stencil::lowered(grid);

@@ -1,20 +1,25 @@
 //! Second field: unknowns at the nodes besides the displacement. The only one is the excess pore pressure.
 //!
-//! The nonlinear solution knows the field by the traits [`Field`] and [`FieldBalance`] only. In nodal arrays of all
+//! Steps and the nonlinear solution know the field by the traits [`Field`] and [`FieldBalance`]. In nodal arrays of all
 //! unknowns, the values of the field follow the displacements, one per node.
 
 pub mod pore_water;
 
+pub use pore_water::carried::{add_forces, pore_pressure};
 pub use pore_water::follow::Follow as FieldMatrix;
 pub use pore_water::linearised::WaterTangent as FieldTangent;
 pub use pore_water::newton::{CoupledDirection, Scales};
 pub use pore_water::nodes::PorePressureField as SecondField;
 pub use pore_water::residual::WaterBalance as SecondBalance;
+pub use pore_water::saved::WaterReport as FieldReport;
 pub use pore_water::split::Split;
 
 use crate::error::{SolveError, StepError};
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
+use crate::model::Model;
+use crate::parallel::Halo;
+use crate::points::Points;
 use crate::step::problem::Problem;
 use crate::step::residual::Residual;
 use crate::step::trial::DeformationIncrement;
@@ -75,6 +80,17 @@ pub trait Field<K: Kinematics<D>, const D: usize> {
         relative: f64,
         solver: &mut dyn LinearSolver,
     ) -> Result<CoupledDirection, SolveError>;
+
+    /// Stores the converged nodal `values` in the material points, which have moved. Returns how much they took in,
+    /// over all ranks. One reduction.
+    fn save(
+        &self,
+        model: &Model<K, D>,
+        trial: &DeformationIncrement<K, D>,
+        values: &[f64],
+        points: &mut Points<D>,
+        halo: &dyn Halo,
+    ) -> f64;
 }
 
 /// Balance of a second field at the nodes.

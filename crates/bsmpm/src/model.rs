@@ -324,6 +324,11 @@ impl<K: Kinematics<D>, const D: usize> Model<K, D> {
 }
 
 impl<K, const D: usize> Model<K, D> {
+    /// Returns whether there is a second field: pore water flows.
+    pub fn is_coupled(&self) -> bool {
+        self.water.as_ref().is_some_and(|water| water.flow.is_some())
+    }
+
     /// Returns all surfaces of bodies with surface points.
     pub fn surfaces(&self) -> Surfaces<'_, D> {
         let flow = self.water.as_ref().and_then(|water| water.flow.as_ref());

@@ -191,7 +191,7 @@ pub fn bytes<K: Kinematics<D>, const D: usize>(mut points: Points<D>, model: &Mo
     let width = model.grid.order() + 1;
     let averaged = model.stabilisation.averages();
     let lowered = model.stabilisation.lowers();
-    let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
+    let flows = model.is_coupled();
     let shape = D * (2 * width + if lowered { width - 1 } else { 0 });
     // Two trial states: that of the iteration, and the next one while it is judged.
     let trial = 2 * (D * K::Gradient::SLOPES + usize::from(averaged) + usize::from(flows));

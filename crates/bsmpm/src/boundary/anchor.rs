@@ -80,6 +80,14 @@ pub struct AnchorPlaces<const D: usize> {
 }
 
 impl Anchors {
+    /// Returns the ids of the material points that anchor the points of acting strips, and of all loads, drains and
+    /// inflows.
+    pub fn acting<const D: usize>(&self, boundary: &Boundary<D>) -> Vec<&Vec<u64>> {
+        let strips = self.strips.iter().zip(&boundary.strips);
+        let strips = strips.filter(|(_, strip)| strip.acts()).map(|(ids, _)| ids);
+        strips.chain(&self.loads).chain(&self.water).collect()
+    }
+
     /// Returns the `carried` anchors, or, before the first step, the nearest material points. Two reductions in that
     /// case.
     pub fn of<const D: usize>(

@@ -116,7 +116,7 @@ fn keep(all: &mut Neighbours, side: LineSide, material: usize, neighbour: Neighb
 /// Returns the nearest points of this rank, which were within half a cell of their line.
 fn neighbours<K, const D: usize>(model: &Model<K, D>, points: &Points<D>) -> Neighbours {
     let grid = &model.grid;
-    let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
+    let flows = model.is_coupled();
     let mut found = Neighbours::new();
     for p in 0..points.len() {
         let start: Vector<D> = points.x[p] - points.u[p];

@@ -9,8 +9,6 @@ use super::report::StepReport;
 use crate::boundary::{AnchoredPoints, Anchors};
 use crate::energy::StepEnergy;
 use crate::error::StepError;
-use crate::field::pore_water::backward::is_smooth;
-use crate::field::pore_water::crossed::PreviousFlow;
 use crate::grid::Shape;
 use crate::interactions::InteractionReports;
 use crate::interactions::load::LoadWork;
@@ -70,7 +68,7 @@ impl<const D: usize> Acceptance<D> {
         let load_work = reports.load_work;
         let mut report = StepReport {
             dt: interval.dt,
-            ..StepReport::of(problem, found, reports, before.flowed.as_ref())
+            ..StepReport::of(problem, found, reports, before)
         };
         let update = commit::constitutive_update(model, &found.trial, points, halo)?;
         report.second_order_works = commit::second_order_works(model, points, &update.answers, halo);
@@ -147,7 +145,7 @@ impl<const D: usize> Acceptance<D> {
 }
 
 /// Completes the state of the interactions and the report with the updated points at the end `t` of the step (s). The
-/// points have taken in `content` of water (m3).
+/// points have taken in `content` of the second field.
 fn complete_report<K, const D: usize>(
     model: &Model<K, D>,
     points: &Points<D>,
@@ -165,13 +163,8 @@ fn complete_report<K, const D: usize>(
         strip.left_behind = places.left_behind(number, strips, t, &model.grid);
     }
     state.position = places.loads;
+    let dt = report.dt;
     if let Some(water) = &mut report.water {
-        water.stored = content;
-        state.crossed.add(1.0, &water.crossed);
-        state.flowed = is_smooth(model).then(|| PreviousFlow {
-            dt: report.dt,
-            crossed: water.crossed.clone(),
-            left: water.left,
-        });
+        water.complete(model, content, dt, state);
     }
 }

@@ -59,8 +59,7 @@ impl<const D: usize> Averages<D> {
     pub fn of<K>(model: &Model<K, D>, shape: &Shape<D>, points: &Points<D>, massless: f64, halo: &dyn Halo) -> Self {
         let weights = weights(model.weighting, points);
         let grouped = model.grouped(points);
-        let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
-        let of_points: Option<Vec<f64>> = (flows && model.stabilisation.lowers()).then(|| {
+        let of_points: Option<Vec<f64>> = (model.is_coupled() && model.stabilisation.lowers()).then(|| {
             weights
                 .iter()
                 .zip(points.F.iter())

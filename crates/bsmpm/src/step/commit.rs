@@ -5,7 +5,7 @@ use crate::boundary::AnchoredPoints;
 use crate::dynamics::inertia::Inertia;
 use crate::dynamics::mass::MassMatrix;
 use crate::error::StepError;
-use crate::field::pore_water::saved;
+use crate::field::Field;
 use crate::grid::{Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::material::{LayeredMaterial, MaterialError, Response, Separation};
@@ -41,16 +41,7 @@ pub fn check_inside<K: Kinematics<D>, const D: usize>(
             .is_none()
             .then(|| (p, x, model.boundary.lets_out(&model.grid, &x)))
     });
-    let acting = anchors
-        .strips
-        .iter()
-        .zip(&model.boundary.strips)
-        .filter(|(_, strip)| strip.acts());
-    let acting: Vec<&Vec<u64>> = acting
-        .map(|(ids, _)| ids)
-        .chain(&anchors.loads)
-        .chain(&anchors.water)
-        .collect();
+    let acting = anchors.acting(&model.boundary);
     let mut leaves: Vec<_> = leaves.into_iter().flatten().collect();
     let mut counts = [(points.len() - leaves.len()) as f64, 0.0, leaves.len() as f64];
     leaves.retain(|(p, _, out)| !out || acting.iter().any(|ids| ids.contains(&points.id[*p])));
@@ -82,7 +73,7 @@ pub struct CommitReport {
     pub smoothed: f64,
     /// Largest displacement of a point, over all ranks (m).
     pub advance: f64,
-    /// Water that the points took in, over all ranks (m3).
+    /// How much of the second field the points took in, over all ranks.
     pub content: f64,
     /// Kinetic energy of points near fixed faces in excess of that of their displacement, over all ranks (J). Only in
     /// dynamics with such a face.
@@ -207,10 +198,9 @@ impl<K: Kinematics<D>, const D: usize> LawsOfPoints<'_, K, D> {
 }
 
 /// Returns whether second-order works measure the distance from failure: in quasi-static analysis with yielding
-/// materials and without flowing water, whose pressure changes the load on the soil over time.
+/// materials and without a second field, which changes the load on the material over time.
 fn has_second_order_works<K, const D: usize>(model: &Model<K, D>) -> bool {
-    let flows = model.water.as_ref().is_some_and(|water| water.flow.is_some());
-    model.regime == Regime::QuasiStatic && !flows && model.materials.iter().any(LayeredMaterial::yields)
+    model.regime == Regime::QuasiStatic && !model.is_coupled() && model.materials.iter().any(LayeredMaterial::yields)
 }
 
 /// Returns the second-order works of a step over all points of all ranks (J): `Σ V0 Δε : D : Δε` for elastic soil, and
@@ -259,7 +249,7 @@ pub fn update_points<K: Kinematics<D>, const D: usize>(
 ) -> CommitReport {
     let ConstitutiveUpdate { answers, state } = update;
     let StepSolution {
-        u, p: pressures, trial, ..
+        u, p: values, trial, ..
     } = found;
     if let Some(inertia) = &nodes.inertia {
         move_with_inertia(shape, model.mass, inertia, &u, points);
@@ -278,7 +268,7 @@ pub fn update_points<K: Kinematics<D>, const D: usize>(
     let content = nodes
         .field
         .as_ref()
-        .map_or(0.0, |field| saved::save(model, field, &trial, &pressures, points, halo));
+        .map_or(0.0, |field| field.save(model, &trial, &values, points, halo));
     let damped = nodes.inertia.is_some() && !model.damping.is_empty();
     let before = (damped && model.stabilisation.smooths()).then(|| points.b_e.clone());
     let smoothed = match model.stabilisation {

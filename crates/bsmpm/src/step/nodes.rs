@@ -4,8 +4,7 @@
 use crate::dynamics::inertia::{self, Inertia};
 use crate::dynamics::mass::Mass;
 use crate::error::StepError;
-use crate::field::SecondField;
-use crate::field::pore_water::carried;
+use crate::field::{self, SecondField};
 use crate::grid::{Shape, transfer};
 use crate::interactions::state::InteractionState;
 use crate::interactions::{Interactions, StepContext, StepInput, StepStart};
@@ -13,7 +12,7 @@ use crate::kinematics::Kinematics;
 use crate::model::{AverageWeight, Model, Regime};
 use crate::nodal::Nodal;
 use crate::parallel::Halo;
-use crate::points::Points;
+use crate::points::{MappedPoints, Points};
 use crate::quadrature::{self, Quadrature};
 use crate::schedule::TimeInterval;
 use crate::step::apart::MaterialNodeSets;
@@ -67,7 +66,7 @@ impl<const D: usize> GridState<D> {
         let interval = input.interval;
         let mut nodes = Self::of_points(model, shape, points, interval, halo);
         let volume = nodes.volume(points);
-        let pore_pressure = carried::pore_pressure(model, shape, points, volume, interval.end(), halo);
+        let pore_pressure = field::pore_pressure(model, shape, points, volume, interval.end(), halo);
         nodes.interactions = Interactions::begin(&StepStart {
             model,
             shape,
@@ -211,13 +210,9 @@ impl<const D: usize> GridState<D> {
         t: f64,
         halo: &dyn Halo,
     ) {
-        let mut f_ext = external_force(model, shape, points, t, &self.weight, halo);
-        if let Some(force) = carried::force(model, shape, points, self.volume(points), t) {
-            f_ext
-                .iter_mut()
-                .zip(halo.assemble_ghosts(&force))
-                .for_each(|(all, force)| *all += force);
-        }
+        let mut f_ext = body_force(model, shape, points, t, &self.weight, halo);
+        let mapped = MappedPoints { shape, points };
+        field::add_forces(model, mapped, self.volume(points), t, &mut f_ext, halo);
         for interaction in self.interactions.iter() {
             let force = interaction.constant_force();
             f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
@@ -301,8 +296,8 @@ impl<const D: usize> GridState<D> {
         }
     }
 
-    /// Returns the weights of the points in averages of dilations (m^D or kg). With flowing water they are multiplied
-    /// by J, as in the water balance, so that the average is 1 for soil that keeps its water.
+    /// Returns the weights of the points in averages of dilations (m^D or kg). With a second field they are multiplied
+    /// by J, as in its balance, so that the average is 1 for material that keeps its content.
     pub fn dilation_weights<'a, K>(&'a self, model: &Model<K, D>, points: &'a Points<D>) -> &'a [f64] {
         self.averages
             .of_points
@@ -387,8 +382,8 @@ fn supported<const D: usize>(
     (touched, stiff)
 }
 
-/// Computes the body force (step 2d), sum_p N_Ip m_p g(t + dt), and the force of hydrostatic water (N).
-fn external_force<K: Kinematics<D>, const D: usize>(
+/// Computes the body force (step 2d), sum_p N_Ip m_p g(t + dt) (N).
+fn body_force<K: Kinematics<D>, const D: usize>(
     model: &Model<K, D>,
     shape: &Shape<D>,
     points: &Points<D>,
@@ -411,12 +406,6 @@ fn external_force<K: Kinematics<D>, const D: usize>(
                 force[component] = mass * g[component];
             }
         }
-    }
-    if let Some(water) = model.still_water(t) {
-        let force = halo.assemble_ghosts(&transfer::to_nodes(shape, |p| {
-            <[f64; D]>::from(water.force(points, p, model.span(points, p), model.follows_water(points, p)))
-        }));
-        f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
     }
     f_ext
 }

@@ -2,12 +2,12 @@
 
 use crate::energy::{Flows, Turnover};
 use crate::error::Measures;
-use crate::field::pore_water::crossed::PreviousFlow;
-use crate::field::pore_water::saved::WaterReport;
+use crate::field::FieldReport;
 use crate::interactions::InteractionReports;
 use crate::interactions::artificial_stiffness::ArtificialStiffnessReport;
 use crate::interactions::coulomb::ContactReport;
 use crate::interactions::rigid::RigidReport;
+use crate::interactions::state::InteractionState;
 use crate::interactions::strip::StripReport;
 use crate::kinematics::Kinematics;
 use crate::solve::found::StepSolution;
@@ -71,7 +71,7 @@ pub struct StepReport {
     /// Results of the artificial stiffness, if there is one.
     pub artificial_stiffness: Option<ArtificialStiffnessReport>,
     /// Second-order works of the step (J): for elastic soil with the same strain, and the actual one. Only in
-    /// quasi-static analysis with yielding materials and without flowing water.
+    /// quasi-static analysis with yielding materials and without a second field.
     pub second_order_works: Option<[f64; 2]>,
     /// Energy flows of the step (J), if the model balances its energy.
     pub energy: Option<Flows>,
@@ -84,20 +84,21 @@ pub struct StepReport {
     pub beside_fixed: Option<f64>,
     /// Material that left the grid, if any.
     pub outflow: Option<Outflow>,
-    /// Report of the flowing water, if any.
-    pub water: Option<WaterReport>,
+    /// Report of the second field, if there is one.
+    pub water: Option<FieldReport>,
     /// Smoothing of the elastic state as a fraction of one pass of S, mean over the points (-).
     pub smoothed: f64,
 }
 
 impl StepReport {
-    /// Creates the report of a converged displacement with the results of the interactions, after the flow `flowed` of
-    /// the last step, before the points are updated. One reduction for the forces of the supports.
+    /// Creates the report of a converged displacement with the results of the interactions, before the points are
+    /// updated. `before` is the state of the interactions at the start of the step. One reduction for the forces of the
+    /// supports.
     pub fn of<K: Kinematics<D>, const D: usize>(
         problem: &Problem<'_, K, D>,
         found: &StepSolution<K, D>,
         interactions: InteractionReports,
-        flowed: Option<&PreviousFlow>,
+        before: &InteractionState<D>,
     ) -> Self {
         let constraints = &problem.nodes.constraints;
         let extension = constraints.extension.as_ref();
@@ -120,7 +121,7 @@ impl StepReport {
             rigid: interactions.rigid,
             strips: interactions.strips,
             artificial_stiffness: interactions.artificial_stiffness,
-            water: WaterReport::of(problem, found, flowed),
+            water: FieldReport::of(problem, found, before.flowed.as_ref()),
             ..Self::default()
         }
     }

@@ -7,8 +7,31 @@ use crate::grid::{Contributions, Shape, transfer};
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::parallel::Halo;
-use crate::points::Points;
+use crate::points::{MappedPoints, Points};
 use crate::tensor::{Tensor, Vector};
+
+/// Adds the forces of hydrostatic water and of stored pore pressures at time `t` to the external force `f_ext` (N).
+/// `volume` (m^D) are the weights of the points in integrals of the stress. One exchange with the neighbours for each.
+pub fn add_forces<K: Kinematics<D>, const D: usize>(
+    model: &Model<K, D>,
+    mapped: MappedPoints<'_, D>,
+    volume: &[f64],
+    t: f64,
+    f_ext: &mut [f64],
+    halo: &dyn Halo,
+) {
+    let MappedPoints { shape, points } = mapped;
+    if let Some(water) = model.still_water(t) {
+        let force = halo.assemble_ghosts(&transfer::to_nodes(shape, |p| {
+            <[f64; D]>::from(water.force(points, p, model.span(points, p), model.follows_water(points, p)))
+        }));
+        f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
+    }
+    if let Some(force) = force(model, shape, points, volume, t) {
+        let force = halo.assemble_ghosts(&force);
+        f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);
+    }
+}
 
 /// Returns the nodal force of stored pore pressures at time `t`, sum_p V0 J p div N_Ip (N), with gradients at the start
 /// of the step. `volume` (m^D) are the weights of the points in integrals of the stress. `None` if points store no

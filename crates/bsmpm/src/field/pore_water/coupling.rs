@@ -6,10 +6,14 @@ use crate::field::pore_water::matrix;
 use crate::field::pore_water::newton::{self, CoupledDirection};
 use crate::field::pore_water::nodes::PorePressureField;
 use crate::field::pore_water::residual::WaterBalance;
+use crate::field::pore_water::saved;
 use crate::field::pore_water::split::Split;
 use crate::field::{Field, FieldBalance};
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
+use crate::model::Model;
+use crate::parallel::Halo;
+use crate::points::Points;
 use crate::step::problem::Problem;
 use crate::step::residual::Residual;
 use crate::step::trial::DeformationIncrement;
@@ -73,6 +77,17 @@ impl<K: Kinematics<D>, const D: usize> Field<K, D> for PorePressureField<D> {
         solver: &mut dyn LinearSolver,
     ) -> Result<CoupledDirection, SolveError> {
         newton::direction(problem, self, x, residual, balance, relative, solver)
+    }
+
+    fn save(
+        &self,
+        model: &Model<K, D>,
+        trial: &DeformationIncrement<K, D>,
+        values: &[f64],
+        points: &mut Points<D>,
+        halo: &dyn Halo,
+    ) -> f64 {
+        saved::save(model, self, trial, values, points, halo)
     }
 }
 

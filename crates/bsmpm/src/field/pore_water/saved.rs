@@ -8,6 +8,7 @@ use crate::field::pore_water::flow::{DrainedFace, Flow};
 use crate::field::pore_water::nodes::{PorePressureField, face_functions};
 use crate::field::pore_water::residual::{ExcessPressure, FlowState};
 use crate::grid::transfer::scalars;
+use crate::interactions::state::InteractionState;
 use crate::kinematics::Kinematics;
 use crate::model::Model;
 use crate::parallel::Halo;
@@ -58,6 +59,24 @@ pub struct WaterReport {
 }
 
 impl WaterReport {
+    /// Completes the results with the water that the points have taken in in a step `dt` (m3, s), and enters the flow
+    /// into the `state` of the interactions.
+    pub fn complete<K, const D: usize>(
+        &mut self,
+        model: &Model<K, D>,
+        content: f64,
+        dt: f64,
+        state: &mut InteractionState<D>,
+    ) {
+        self.stored = content;
+        state.crossed.add(1.0, &self.crossed);
+        state.flowed = is_smooth(model).then(|| PreviousFlow {
+            dt,
+            crossed: self.crossed.clone(),
+            left: self.left,
+        });
+    }
+
     /// Returns the results of the step solution `found`, after the flow `before` of the last step, before the points
     /// are updated; `None` without pore-water flow. Two reductions, three with drained faces.
     pub fn of<K: Kinematics<D>, const D: usize>(
