@@ -151,20 +151,18 @@ impl Stepper {
         loop {
             let end = self.end_of_attempt(from, to);
             let dt = end - self.at.t;
-            let mut guess = self.scaled_guess(dt);
             let resisted = match has_drag {
                 true => ResistedDisplacement::Whole,
                 false => self.resisted(model, dt),
             };
-            let model = self.with_sudden_forces(model.over(dt));
             let interval = TimeInterval { start: self.at.t, dt };
             let backend = &mut Backend {
                 halo,
                 solver,
                 counts: &mut counts,
             };
-            let error = match step(&model, points, state, &mut guess, interval, resisted, backend) {
-                Ok(report) => {
+            let error = match self.attempt(model, points, state, interval, resisted, backend) {
+                Ok((report, guess)) => {
                     (self.guess, self.at.guess_dt, self.at.t) = (guess, dt, end);
                     self.accept(&report, &model.criteria);
                     return Some(Ok(AcceptedStep {
@@ -195,6 +193,22 @@ impl Stepper {
             }
             (self.at.cuts, self.at.easy) = (self.at.cuts + 1, 0);
         }
+    }
+
+    /// Attempts a step over `interval`. Returns its report and the converged nodal displacement (m).
+    fn attempt<K: Kinematics<D>, const D: usize>(
+        &self,
+        model: &Model<K, D>,
+        points: &mut Points<D>,
+        state: &mut InteractionState<D>,
+        interval: TimeInterval,
+        resisted: ResistedDisplacement,
+        backend: &mut Backend<'_>,
+    ) -> Result<(StepReport, Vec<f64>), StepError> {
+        let mut guess = self.scaled_guess(interval.dt);
+        let model = self.with_sudden_forces(model.over(interval.dt));
+        let report = step(&model, points, state, &mut guess, interval, resisted, backend)?;
+        Ok((report, guess))
     }
 
     /// Begins a nominal step unless one is in progress, and returns its start and end (s); `None` at the end of the
