@@ -168,9 +168,10 @@ impl HistoryTable {
 
     /// The key of a section in space.
     pub(crate) fn plate(&self) -> Option<PlateKey<'_>> {
-        if self.rectangle.is_given() {
-            return Some(PlateKey::Rectangle(&self.rectangle));
+        if self.disc.is_given() {
+            return Some(PlateKey::Disc(&self.disc));
         }
-        self.disc.is_given().then_some(PlateKey::Disc(&self.disc))
+        let rectangle = &self.rectangle;
+        rectangle.is_given().then_some(PlateKey::Rectangle(rectangle))
     }
 }

@@ -78,10 +78,10 @@ impl<'a> SiteKey<'a> {
 /// The plate or the segment of a table.
 macro_rules! plate_or_segment {
     ($table:ident) => {
-        if $table.rectangle.is_given() {
-            SiteKey::Plate(PlateKey::Rectangle(&$table.rectangle))
-        } else if $table.disc.is_given() {
+        if $table.disc.is_given() {
             SiteKey::Plate(PlateKey::Disc(&$table.disc))
+        } else if $table.rectangle.is_given() {
+            SiteKey::Plate(PlateKey::Rectangle(&$table.rectangle))
         } else {
             SiteKey::Segment(&$table.from, &$table.to)
         }
