@@ -100,14 +100,7 @@ fn falling() -> (f64, f64) {
     let mut acceleration = 0.0_f64;
     let mut lost = 0.0_f64;
     let mut before = speed;
-    while let Some(step) = stepper.advance(
-        &schedule,
-        &scene.model,
-        &mut scene.points,
-        &mut scene.state,
-        &halo,
-        &mut solver,
-    ) {
+    while let Some(step) = scene.advance(&mut stepper, &schedule, &halo, &mut solver) {
         let t = step.expect("a step").t;
         scene.points.sort_by_cell(&scene.model.grid);
         for u in stepper.guess.chunks_exact(2).filter(|u| u[0] != 0.0) {

@@ -78,14 +78,7 @@ fn march(scene: &mut Scene<PlaneStrain, 2>) -> Result<(), Failure> {
     let schedule = Schedule::new(1.0, 10.0, []);
     let mut solver = Skyline::new(&scene.model.grid);
     let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
-    while let Some(step) = stepper.advance(
-        &schedule,
-        &scene.model,
-        &mut scene.points,
-        &mut scene.state,
-        &halo,
-        &mut solver,
-    ) {
+    while let Some(step) = scene.advance(&mut stepper, &schedule, &halo, &mut solver) {
         step?;
         scene.points.sort_by_cell(&scene.model.grid);
     }

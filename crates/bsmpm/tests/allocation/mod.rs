@@ -4,9 +4,7 @@ use crate::support::scene::{METHODS, Scene, axis, hencky};
 use bsmpm::grid::Shape;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
-use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::tensor::Vector;
@@ -60,15 +58,7 @@ fn allocations(per_axis: usize, method: Stabilisation) -> usize {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 0.1 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 0.1);
     let pieces = Problem {
         model,
         shape: &shape,

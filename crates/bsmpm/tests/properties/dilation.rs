@@ -7,9 +7,7 @@ use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;
 use bsmpm::points::{Points, Seed};
-use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::smooth;
 use bsmpm::step::trial::DeformationIncrement;
@@ -40,15 +38,7 @@ fn rate_error<K: Kinematics<D>, const D: usize>(order: usize, method: Stabilisat
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 1.0 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 1.0);
     let pieces = Problem {
         model,
         shape: &shape,
@@ -207,15 +197,7 @@ fn the_filter_smooths_the_elastic_dilation_where_the_material_flows_and_nothing_
     let mut scene = flowing(0.002);
     let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
-    let nodes = GridState::from_points(
-        &scene.model,
-        &shape,
-        &scene.points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 1.0 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 1.0);
     let mut flow = Vec::new();
     for p in 0..scene.points.len() {
         let response = scene.model.respond(&scene.points, p, &scene.points.b_e.at(p)).unwrap();
@@ -250,15 +232,7 @@ fn without_flow_the_filter_leaves_every_bit() {
     let before = scene.points.clone();
     let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, &scene.points).unwrap();
-    let nodes = GridState::from_points(
-        &scene.model,
-        &shape,
-        &scene.points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 1.0 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 1.0);
     let respond = |p: usize| scene.model.respond(&before, p, &before.b_e.at(p)).unwrap();
     let flow: Vec<_> = (0..before.len())
         .map(|p| smooth::PlasticFlow::of(&respond(p), 0.0))
@@ -273,15 +247,7 @@ fn means<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, value: &[f64]) -
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 1.0 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 1.0);
     nodes.mean_dilation(model, &shape, points, &halo, |p| value[p])
 }
 

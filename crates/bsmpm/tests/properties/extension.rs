@@ -9,10 +9,8 @@ use bsmpm::grid::{Grid, Shape};
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
 use bsmpm::nodal::Nodal;
-use bsmpm::schedule::TimeInterval;
 use bsmpm::solve::linearised::ForceTangent;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::step::stiffness;
@@ -64,19 +62,10 @@ fn close(found: &[f64], expected: &[f64], tolerance: f64) {
 
 fn ties_keep_what_they_must<K: Kinematics<D>, const D: usize>(order: usize) {
     let scene = cut_block::<K, D>(order);
-    let model = &scene.model;
     let grid = &scene.model.grid;
     let halo = scene.halo();
     let shape = Shape::at(grid, &scene.points).unwrap();
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        &scene.points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 1.0 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 1.0);
     let extension = nodes.constraints.extension.as_ref().expect("cut cells");
     assert!(
         extension.tied > 0 && extension.untied == 0,
@@ -127,15 +116,7 @@ fn matrix_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, is_genera
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 1.0 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 1.0);
     let problem = Problem {
         model,
         shape: &shape,
@@ -200,15 +181,7 @@ fn condition(scene: &Scene<PlaneStrain, 2>) -> f64 {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 1.0 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 1.0);
     let problem = Problem {
         model,
         shape: &shape,

@@ -10,8 +10,6 @@ use bsmpm::observe::noise::relative_pressure_noise;
 use bsmpm::observe::quadrature::{Defect, compression, defect};
 use bsmpm::parallel::Halo;
 use bsmpm::quadrature;
-use bsmpm::schedule::TimeInterval;
-use bsmpm::step::nodes::GridState;
 use bsmpm::step::smooth;
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
 
@@ -260,15 +258,7 @@ fn a_pass_of_smoothing_has_the_variance_of_its_formula() {
         let points = &scene.points;
         let halo = scene.halo();
         let shape = Shape::at(&scene.model.grid, points).unwrap();
-        let nodes = GridState::from_points(
-            &scene.model,
-            &shape,
-            points,
-            &scene.state,
-            TimeInterval { start: 0.0, dt: 1.0 },
-            &halo,
-        )
-        .unwrap();
+        let nodes = scene.nodes(&shape, 1.0);
         let square = |p: usize| points.x[p][0].powi(2);
         let spread = nodes.average(
             &scene.model,

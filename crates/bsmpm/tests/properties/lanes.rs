@@ -8,9 +8,7 @@ use bsmpm::lanes::{self, InLanes, LANES, Simd};
 use bsmpm::material::{Elastic, Material, MohrCoulomb, VonMises};
 use bsmpm::model::{Model, Regime};
 use bsmpm::points::Points;
-use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::GridState;
 use bsmpm::step::trial::DeformationIncrement;
 use bsmpm::tensor::Vector;
 use std::ops::Range;
@@ -70,15 +68,7 @@ fn compared<K: Kinematics<D>, const D: usize>(method: Stabilisation, seed: u64) 
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).expect("points in the grid");
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 1.0 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 1.0);
     let mut u: Vec<f64> = (0..model.grid.nodes() * D).map(|_| 2e-3 * random.signed()).collect();
     u[0] = 3.0; // the points of the first cell
     let trial = DeformationIncrement::of(model, &shape, &nodes, points, &u, &halo);

@@ -11,10 +11,8 @@ use bsmpm::material::{Branch, CamClay, Elastic, Law, Material, MohrCoulomb, Sepa
 use bsmpm::model::Regime;
 use bsmpm::points::Points;
 use bsmpm::quadrature::Quadrature;
-use bsmpm::schedule::TimeInterval;
 use bsmpm::solve::linearised::ForceTangent;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::tensor::{Symmetric, Vector};
@@ -60,15 +58,7 @@ fn product_error<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>) -> (f64,
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 0.01 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 0.01);
     let pieces = Problem {
         model,
         shape: &shape,
@@ -330,15 +320,7 @@ fn curvature(cohesion: f64, size: f64) -> ([f64; 2], usize) {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 0.01 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 0.01);
     let pieces = Problem {
         model,
         shape: &shape,

@@ -7,9 +7,7 @@ use bsmpm::grid::Shape;
 use bsmpm::kinematics::{Kinematics, PlaneStrain, Solid};
 use bsmpm::model::Regime;
 use bsmpm::schedule::Schedule;
-use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::GridState;
 use bsmpm::step::trial::DeformationIncrement;
 use bsmpm::tensor::{Square, Symmetric, Vector};
 use nalgebra::Rotation2;
@@ -85,14 +83,7 @@ fn the_guess_is_scaled_to_the_step_so_that_free_flight_needs_no_iteration_after_
     let mut solver = Skyline::new(&scene.model.grid);
     let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     let mut iterations = Vec::new();
-    while let Some(step) = stepper.advance(
-        &schedule,
-        &scene.model,
-        &mut scene.points,
-        &mut scene.state,
-        &halo,
-        &mut solver,
-    ) {
+    while let Some(step) = scene.advance(&mut stepper, &schedule, &halo, &mut solver) {
         iterations.push(step.unwrap().report.iterations);
         scene.points.sort_by_cell(&scene.model.grid);
     }
@@ -134,15 +125,7 @@ fn a_rigidly_rotating_field_turns_the_stress_of_every_point() {
         let points = &scene.points;
         let halo = scene.halo();
         let shape = Shape::at(&scene.model.grid, points).unwrap();
-        let nodes = GridState::from_points(
-            &scene.model,
-            &shape,
-            points,
-            &scene.state,
-            TimeInterval { start: 0.0, dt: 1.0 },
-            &halo,
-        )
-        .expect("no loads");
+        let nodes = scene.nodes(&shape, 1.0);
         let trial = DeformationIncrement::of(&scene.model, &shape, &nodes, points, &u, &halo);
         let before = scene.model.materials[0].at(0.0).respond(&b_e, &[]).unwrap();
         for p in 0..points.len() {

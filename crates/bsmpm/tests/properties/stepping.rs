@@ -34,14 +34,7 @@ fn run(scene: &mut Scene<PlaneStrain, 2>, schedule: &Schedule, refusals: usize) 
     let halo = scene.halo();
     let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     let mut steps = Vec::new();
-    while let Some(found) = stepper.advance(
-        schedule,
-        &scene.model,
-        &mut scene.points,
-        &mut scene.state,
-        &halo,
-        &mut solver,
-    ) {
+    while let Some(found) = scene.advance(&mut stepper, schedule, &halo, &mut solver) {
         steps.push(found?);
         scene.points.sort_by_cell(&scene.model.grid);
     }
@@ -299,14 +292,7 @@ fn a_step_that_is_given_up_on_request_has_never_been() {
             let mut lengths = Vec::new();
             loop {
                 let before = scene.clone();
-                match stepper.advance(
-                    &schedule,
-                    &scene.model,
-                    &mut scene.points,
-                    &mut scene.state,
-                    &halo,
-                    &mut solver,
-                ) {
+                match scene.advance(&mut stepper, &schedule, &halo, &mut solver) {
                     None => break,
                     Some(Ok(accepted)) => lengths.push(accepted.dt),
                     Some(Err(failure)) => {
@@ -350,14 +336,7 @@ fn a_converged_step_that_is_rejected_has_never_been() {
         loop {
             halo.convinced.set(false);
             let before = scene.clone();
-            match stepper.advance(
-                &schedule,
-                &scene.model,
-                &mut scene.points,
-                &mut scene.state,
-                &halo,
-                &mut solver,
-            ) {
+            match scene.advance(&mut stepper, &schedule, &halo, &mut solver) {
                 None => break,
                 found => assert!(
                     found.unwrap().is_err_and(|failure| failure.is_interruption()),
@@ -365,15 +344,8 @@ fn a_converged_step_that_is_rejected_has_never_been() {
                 ),
             }
             assert_is_same(&scene, &before);
-            stepper
-                .advance(
-                    &schedule,
-                    &scene.model,
-                    &mut scene.points,
-                    &mut scene.state,
-                    &halo,
-                    &mut solver,
-                )
+            scene
+                .advance(&mut stepper, &schedule, &halo, &mut solver)
                 .unwrap()
                 .unwrap();
             scene.points.sort_by_cell(&scene.model.grid);

@@ -8,10 +8,8 @@ use bsmpm::grid::Shape;
 use bsmpm::kinematics::{Axisymmetric, Kinematics, PlaneStrain, Solid};
 use bsmpm::material::{Elastic, Material, MohrCoulomb};
 use bsmpm::model::Regime;
-use bsmpm::schedule::TimeInterval;
 use bsmpm::solve::linearised::ForceTangent;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::step::stiffness;
@@ -89,15 +87,7 @@ fn products<K: Kinematics<D>, const D: usize>(
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 0.01 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 0.01);
     let pieces = Problem {
         model,
         shape: &shape,

@@ -6,8 +6,6 @@ use bsmpm::grid::{KnotVector, Shape, transfer};
 use bsmpm::kinematics::{Axisymmetric, Gradient, Kinematics, PlaneStrain, Solid};
 use bsmpm::model::{Gravity, Regime};
 use bsmpm::points::Points;
-use bsmpm::schedule::TimeInterval;
-use bsmpm::step::nodes::GridState;
 use bsmpm::tensor::{Square, Vector};
 use std::ops::Range;
 
@@ -146,17 +144,8 @@ fn the_mapping_conserves<K: Kinematics<D>, const D: usize>(order: usize) {
         starts_vertical: false,
     });
     let points = &scene.points;
-    let halo = scene.halo();
     let shape = Shape::at(&scene.model.grid, points).unwrap();
-    let nodes = GridState::from_points(
-        &scene.model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 0.1 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 0.1);
     let mass: f64 = points.mass.iter().sum();
     let mut worst = [(nodes.weight.iter().sum::<f64>() / mass - 1.0).abs(), 0.0, 0.0];
     let motion = points.motion.as_ref().unwrap();

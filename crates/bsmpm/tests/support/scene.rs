@@ -3,27 +3,29 @@
 use super::random::Random;
 use super::solver::Skyline;
 use bsmpm::boundary::{AnchoredPoints, Boundary, Support};
-use bsmpm::control::{AcceptedStep, Stepper};
+use bsmpm::control::{AcceptedStep, Failure, Stepper};
 use bsmpm::dynamics::mass::MassMatrix;
 use bsmpm::dynamics::newmark::Newmark;
 use bsmpm::grid::extension::ExtendedSplines;
-use bsmpm::grid::{Grid, KnotVector};
+use bsmpm::grid::{Grid, KnotVector, Shape};
 use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::interactions::load::Load;
 use bsmpm::interactions::rigid::RigidBody;
 use bsmpm::interactions::state::InteractionState;
 use bsmpm::interactions::strip::Strip;
 use bsmpm::kinematics::Kinematics;
+use bsmpm::linear::LinearSolver;
 use bsmpm::material::{Elastic, Hencky, LayeredMaterial, Material};
 use bsmpm::method::Criteria;
 use bsmpm::method::Nonlinear;
 use bsmpm::model::WallVelocity;
 use bsmpm::model::{AverageWeight, Gravity, Model, Regime};
-use bsmpm::parallel::Alone;
+use bsmpm::parallel::{Alone, Halo};
 use bsmpm::points::{Points, Seed};
 use bsmpm::quadrature::Quadrature;
-use bsmpm::schedule::Schedule;
+use bsmpm::schedule::{Schedule, TimeInterval};
 use bsmpm::stabilisation::{Groups, Stabilisation};
+use bsmpm::step::nodes::GridState;
 use bsmpm::tensor::{Symmetric, Tensor, Vector};
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -276,12 +278,30 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         }
     }
 
+    /// The nodes at the start of a step of `dt` (s), which begins at t = 0.
+    pub fn nodes(&self, shape: &Shape<D>, dt: f64) -> GridState<D> {
+        let interval = TimeInterval { start: 0.0, dt };
+        GridState::from_points(&self.model, shape, &self.points, &self.state, interval, &self.halo())
+            .expect("loads on material")
+    }
+
     /// The points with the anchors of the surfaces.
     pub fn anchored(&self) -> AnchoredPoints<'_, D> {
         AnchoredPoints {
             points: &self.points,
             anchors: &self.state.anchors,
         }
+    }
+
+    /// Makes the next step of a schedule, if there is one.
+    pub fn advance(
+        &mut self,
+        stepper: &mut Stepper,
+        schedule: &Schedule,
+        halo: &dyn Halo,
+        solver: &mut dyn LinearSolver,
+    ) -> Option<Result<AcceptedStep, Failure>> {
+        stepper.advance(schedule, &self.model, &mut self.points, &mut self.state, halo, solver)
     }
 
     /// Steps to `end` with nominal steps `dt`; `watch` sees the points after every accepted one. Panics on a failure.
@@ -295,14 +315,7 @@ impl<K: Kinematics<D>, const D: usize> Scene<K, D> {
         let schedule = Schedule::new(dt, end, []);
         let mut solver = Skyline::new(&self.model.grid);
         let mut stepper = Stepper::new(self.model.grid.nodes() * D);
-        while let Some(found) = stepper.advance(
-            &schedule,
-            &self.model,
-            &mut self.points,
-            &mut self.state,
-            &halo,
-            &mut solver,
-        ) {
+        while let Some(found) = self.advance(&mut stepper, &schedule, &halo, &mut solver) {
             let accepted = found.unwrap_or_else(|failure| panic!("{failure:?}"));
             self.points.sort_by_cell(&self.model.grid);
             watch(self, &accepted);

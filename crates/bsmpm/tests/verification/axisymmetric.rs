@@ -141,14 +141,7 @@ fn inflated(cells: usize, pressure: f64) -> (f64, f64) {
     let halo = scene.halo();
     let mut solver = Skyline::new(&scene.model.grid);
     let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
-    while let Some(Ok(_)) = stepper.advance(
-        &schedule,
-        &scene.model,
-        &mut scene.points,
-        &mut scene.state,
-        &halo,
-        &mut solver,
-    ) {
+    while let Some(Ok(_)) = scene.advance(&mut stepper, &schedule, &halo, &mut solver) {
         scene.points.sort_by_cell(&scene.model.grid);
     }
     let outer = scene

@@ -70,16 +70,7 @@ fn arrives(mut scene: Scene<PlaneStrain, 2>, dt: f64, end: f64) -> bool {
     let schedule = Schedule::new(dt, end, []);
     let mut solver = Skyline::new(&scene.model.grid);
     let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
-    let mut step = || {
-        stepper.advance(
-            &schedule,
-            &scene.model,
-            &mut scene.points,
-            &mut scene.state,
-            &halo,
-            &mut solver,
-        )
-    };
+    let mut step = || scene.advance(&mut stepper, &schedule, &halo, &mut solver);
     std::iter::from_fn(&mut step).all(|found| found.is_ok())
 }
 

@@ -237,14 +237,7 @@ fn a_method_that_makes_energy_exceeds_the_budget_and_no_other() {
         let mut solver = Skyline::new(&scene.model.grid);
         let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
         let ended = loop {
-            match stepper.advance(
-                &schedule,
-                &scene.model,
-                &mut scene.points,
-                &mut scene.state,
-                &halo,
-                &mut solver,
-            ) {
+            match scene.advance(&mut stepper, &schedule, &halo, &mut solver) {
                 Some(Ok(_)) => scene.points.sort_by_cell(&scene.model.grid),
                 Some(Err(failure)) => break failure.attempts.last().cloned(),
                 None => break None,

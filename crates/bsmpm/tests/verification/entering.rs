@@ -7,8 +7,6 @@ use bsmpm::grid::Shape;
 use bsmpm::interactions::artificial_stiffness::ArtificialStiffness;
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
-use bsmpm::schedule::TimeInterval;
-use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::stiffness;
 use bsmpm::tensor::Vector;
@@ -93,15 +91,7 @@ fn condition(shift: f64, background: Option<ArtificialStiffness>) -> [f64; 2] {
     let points = &scene.points;
     let halo = &scene.halo();
     let shape = Shape::at(&model.grid, points).expect("points inside");
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 1.0 },
-        halo,
-    )
-    .expect("loads on material");
+    let nodes = scene.nodes(&shape, 1.0);
     let mut stiffness = Dense::new(&model.grid);
     let scene = Problem {
         model,

@@ -13,9 +13,7 @@ use bsmpm::boundary::Support;
 use bsmpm::grid::{Shape, transfer};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::{AverageWeight, Regime};
-use bsmpm::schedule::TimeInterval;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::GridState;
 use bsmpm::tensor::Square;
 use nalgebra::DMatrix;
 
@@ -33,15 +31,7 @@ fn forms(method: Stabilisation, order: usize, cells: usize) -> [DMatrix<f64>; 2]
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 1.0 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 1.0);
     let free: Vec<usize> = (0..nodes.constraints.free.len())
         .filter(|&c| nodes.constraints.free[c])
         .collect();

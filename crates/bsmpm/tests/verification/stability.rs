@@ -56,14 +56,7 @@ fn march(scene: &mut Plane, dt: f64, mut watch: impl FnMut(&Plane, &AcceptedStep
     let mut stepper = Stepper::new(scene.model.grid.nodes() * 2);
     loop {
         let before = scene.clone();
-        match stepper.advance(
-            &schedule,
-            &scene.model,
-            &mut scene.points,
-            &mut scene.state,
-            &halo,
-            &mut solver,
-        )? {
+        match scene.advance(&mut stepper, &schedule, &halo, &mut solver)? {
             Err(failure) => return Some(failure),
             Ok(accepted) if !watch(&before, &accepted, &stepper.guess) => return None,
             Ok(_) => scene.points.sort_by_cell(&scene.model.grid),

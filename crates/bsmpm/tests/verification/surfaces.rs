@@ -274,14 +274,7 @@ fn a_load_without_material_is_an_error() {
     let schedule = Schedule::new(1.0, 1.0, []);
     let mut solver = crate::support::solver::Skyline::new(&scene.model.grid);
     let mut stepper = bsmpm::control::Stepper::new(scene.model.grid.nodes() * 2);
-    let found = stepper.advance(
-        &schedule,
-        &scene.model,
-        &mut scene.points,
-        &mut scene.state,
-        &halo,
-        &mut solver,
-    );
+    let found = scene.advance(&mut stepper, &schedule, &halo, &mut solver);
     let attempts = found.and_then(Result::err).expect("a failure").attempts;
     assert!(
         matches!(attempts[..], [StepError::Unloaded { load: 0, points: 1 }]),

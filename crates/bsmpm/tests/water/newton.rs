@@ -26,7 +26,6 @@ use bsmpm::schedule::TimeInterval;
 use bsmpm::solve::Backend;
 use bsmpm::solve::linearised::ForceTangent;
 use bsmpm::stabilisation::Stabilisation;
-use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::step::{Counts, StepReport, step};
@@ -123,15 +122,7 @@ fn product_errors<K: Kinematics<D>, const D: usize>(scene: &Scene<K, D>, mean: f
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 0.1 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 0.1);
     let pieces = Problem {
         model,
         shape: &shape,

@@ -12,8 +12,6 @@ use bsmpm::grid::transfer::scalars;
 use bsmpm::grid::{Shape, transfer};
 use bsmpm::kinematics::PlaneStrain;
 use bsmpm::model::Regime;
-use bsmpm::schedule::TimeInterval;
-use bsmpm::step::nodes::GridState;
 use bsmpm::step::problem::Problem;
 use bsmpm::step::residual::Residual;
 use bsmpm::tensor::Vector;
@@ -96,15 +94,7 @@ fn constants(mut scene: Plane) -> [f64; 2] {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 1.0 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 1.0);
     let problem = Problem {
         model,
         shape: &shape,
@@ -212,15 +202,7 @@ fn a_rotation_changes_neither_the_flow_nor_the_content_and_turns_the_forces() {
     let points = &scene.points;
     let halo = scene.halo();
     let shape = Shape::at(&model.grid, points).unwrap();
-    let nodes = GridState::from_points(
-        model,
-        &shape,
-        points,
-        &scene.state,
-        TimeInterval { start: 0.0, dt: 1.0 },
-        &halo,
-    )
-    .expect("no loads");
+    let nodes = scene.nodes(&shape, 1.0);
     let problem = Problem {
         model,
         shape: &shape,
