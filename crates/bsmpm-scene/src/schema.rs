@@ -7,6 +7,7 @@ mod answers;
 mod body;
 mod element;
 mod flow;
+mod law_types;
 mod laws;
 mod loads;
 mod material;

@@ -1,9 +1,11 @@
 //! Second field: unknowns at the nodes besides the displacement. The only one is the excess pore pressure.
 //!
-//! Steps and the nonlinear solution know the field by the traits [`Field`] and [`FieldBalance`]. In nodal arrays of all
-//! unknowns, the values of the field follow the displacements, one per node.
+//! Steps know the field by the traits [`Field`] and [`FieldBalance`], and the nonlinear solution also by
+//! [`FieldSolution`](solution::FieldSolution). In nodal arrays of all unknowns, the values of the field follow the
+//! displacements, one per node.
 
 pub mod pore_water;
+pub mod solution;
 
 pub use pore_water::carried::{add_forces, pore_pressure};
 pub use pore_water::follow::Follow as FieldMatrix;
@@ -14,14 +16,12 @@ pub use pore_water::residual::WaterBalance as SecondBalance;
 pub use pore_water::saved::WaterReport as FieldReport;
 pub use pore_water::split::Split;
 
-use crate::error::{SolveError, StepError};
+use crate::error::StepError;
 use crate::kinematics::Kinematics;
-use crate::linear::LinearSolver;
 use crate::model::Model;
 use crate::parallel::Halo;
 use crate::points::Points;
 use crate::step::problem::Problem;
-use crate::step::residual::Residual;
 use crate::step::trial::DeformationIncrement;
 
 /// Second field in one step.
@@ -51,35 +51,6 @@ pub trait Field<K: Kinematics<D>, const D: usize> {
         trial: &DeformationIncrement<K, D>,
         values: &'a [f64],
     ) -> FieldTangent<'a, D>;
-
-    /// Assembles and factorises the symmetric matrix of the field at nodal `values`.
-    fn factorise(
-        &self,
-        problem: &Problem<'_, K, D>,
-        values: &[f64],
-        solver: &mut dyn LinearSolver,
-    ) -> Result<(), SolveError>;
-
-    /// Solves for a direction of all unknowns with the symmetric matrices of both fields, one after the other. The
-    /// right-hand side contains the out-of-balance forces, then what the balance of the field lacks.
-    fn split(
-        &self,
-        problem: &Problem<'_, K, D>,
-        out_of_balance: &[f64],
-        solver: &mut dyn LinearSolver,
-    ) -> Result<Split, SolveError>;
-
-    /// Solves for the Newton direction of all unknowns at the state `x`, where `balance` is that of the field, to the
-    /// relative residual `relative`.
-    fn newton_direction(
-        &self,
-        problem: &Problem<'_, K, D>,
-        x: &[f64],
-        residual: &Residual<K, D>,
-        balance: &SecondBalance,
-        relative: f64,
-        solver: &mut dyn LinearSolver,
-    ) -> Result<CoupledDirection, SolveError>;
 
     /// Stores the converged nodal `values` in the material points, which have moved. Returns how much they took in,
     /// over all ranks. One reduction.

@@ -6,7 +6,6 @@ mod packed;
 pub use column::{Column, Number, Rows};
 pub use packed::{Components, PackedTensors};
 
-use crate::boundary::anchor::AnchorCandidates;
 use crate::grid::{Grid, PointPositions, Shape};
 use crate::tensor::{Symmetric, Tensor, Vector};
 use crate::threads;
@@ -221,17 +220,6 @@ impl<const D: usize> PointPositions<D> for Points<D> {
 }
 
 impl<const D: usize> Points<D> {
-    /// Returns the points as candidates for anchors of surface points.
-    pub fn anchored(&self) -> AnchorCandidates<'_, D> {
-        AnchorCandidates {
-            id: &self.id,
-            material: &self.material,
-            x: &self.x,
-            u: &self.u,
-            F: &self.F,
-        }
-    }
-
     /// Creates stress-free points at rest or with their initial velocity; with `dynamic` they store velocity and
     /// acceleration.
     pub fn from_seeds(seeds: impl IntoIterator<Item = Seed<D>>, dynamic: bool) -> Self {

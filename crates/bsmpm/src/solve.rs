@@ -16,6 +16,7 @@ pub mod unknowns;
 
 use crate::error::StepError;
 use crate::field::Field;
+use crate::field::solution::FieldSolution;
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
 use crate::method::{Nonlinear, QuasiNewton};

@@ -1,6 +1,5 @@
 //! Computes the region that a moving rigid body passes through. A preset (key `accuracy`) chooses fine cells there.
 
-use super::scene::corners;
 use crate::schema::{RigidTable, ShapeKey};
 use bsmpm_shapes::polygon;
 
@@ -37,7 +36,7 @@ type Edge = (usize, bool);
 impl Outline {
     fn of(rigid: &RigidTable) -> Option<Self> {
         let corners = match rigid.shape() {
-            shape @ (ShapeKey::Polygon(_) | ShapeKey::Circle(_)) => corners(shape)?,
+            shape @ (ShapeKey::Polygon(_) | ShapeKey::Circle(_)) => shape.corners()?,
             _ => return None,
         };
         let bounds = polygon::bounds(&corners);

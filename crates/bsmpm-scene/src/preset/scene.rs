@@ -336,7 +336,7 @@ fn turned(rigid: &RigidTable, end: f64) -> f64 {
 fn sides(body: &BodyTable) -> Vec<([f64; 2], [f64; 2])> {
     let corners = match body.shape() {
         ShapeKey::Circle(_) => Vec::new(),
-        shape => corners(shape).unwrap_or_default(),
+        shape => shape.corners().unwrap_or_default(),
     };
     (0..corners.len())
         .map(|k| (corners[k], corners[(k + 1) % corners.len()]))
@@ -345,27 +345,7 @@ fn sides(body: &BodyTable) -> Vec<([f64; 2], [f64; 2])> {
 
 /// m  corners of a body's rectangle
 pub(crate) fn around(body: &BodyTable) -> Option<[[f64; 2]; 2]> {
-    corners(body.shape()).map(|corners| polygon::bounds(&corners))
-}
-
-/// m  corners of a polygon or a box, or of the square around a circle
-pub(super) fn corners(key: ShapeKey<'_>) -> Option<Vec<[f64; 2]>> {
-    let [lower, upper] = match key {
-        ShapeKey::Box(key) => {
-            let shape = key.value()?;
-            [shape.lower.pair()?, shape.upper.pair()?]
-        }
-        ShapeKey::Circle(key) => {
-            let (center, radius) = key.value()?.circle()?;
-            [-radius, radius].map(|reach| center.map(|x| x + reach))
-        }
-        ShapeKey::Polygon(key) => {
-            let corners = key.pairs()?;
-            return (!corners.is_empty()).then_some(corners);
-        }
-        _ => return None,
-    };
-    Some(vec![lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]])
+    body.shape().corners().map(|corners| polygon::bounds(&corners))
 }
 
 /// s, m  Times and displacements of a path, from none at the start on.

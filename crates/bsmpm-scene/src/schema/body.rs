@@ -1,7 +1,6 @@
 //! Schema of bodies and their shapes.
 
 use super::Presence::Optional;
-use super::rigid::GroundTable;
 use super::{Dimension as In, Key, Kind, Range, key};
 use crate::record::{CaseTable, Field, KeyPlace, ListRow};
 use crate::words::Axis;
@@ -152,6 +151,15 @@ pub(super) const POLYGON: &[(In, Range)] = &[(In::Length, Range::ANY); 2];
 /// Columns of a raster of heights: x, y and z.
 pub(super) const HEIGHTS: &[(In, Range)] = &[(In::Length, Range::ANY); 3];
 
+table! {
+    /// Rigid ground below a terrain surface. The surface is a regular raster of heights with bilinear interpolation,
+    /// and is horizontal beyond the raster.
+    struct GroundTable = "terrain = { top }" {
+        /// Heights of the terrain: rows [x, y, z] in any order. A file may also be an ESRI ASCII grid.
+        top: Rows(HEIGHTS), Required, example(r#"{ file = "terrain.asc" }"#);
+    }
+}
+
 /// The key that gives a shape. Without any it is the last one, which is then absent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum ShapeKey<'a> {
@@ -167,6 +175,26 @@ pub(crate) enum ShapeKey<'a> {
 }
 
 impl<'a> ShapeKey<'a> {
+    /// m  corners of a polygon or a box, or of the square around a circle
+    pub(crate) fn corners(self) -> Option<Vec<[f64; 2]>> {
+        let [lower, upper] = match self {
+            Self::Box(key) => {
+                let shape = key.value()?;
+                [shape.lower.pair()?, shape.upper.pair()?]
+            }
+            Self::Circle(key) => {
+                let (center, radius) = key.value()?.circle()?;
+                [-radius, radius].map(|reach| center.map(|x| x + reach))
+            }
+            Self::Polygon(key) => {
+                let corners = key.pairs()?;
+                return (!corners.is_empty()).then_some(corners);
+            }
+            _ => return None,
+        };
+        Some(vec![lower, [upper[0], lower[1]], upper, [lower[0], upper[1]]])
+    }
+
     /// Where the key is written.
     pub(crate) fn place(self) -> &'a KeyPlace {
         match self {

@@ -1,18 +1,9 @@
 //! Schema of rigid bodies.
 
-use super::body::{self, BoxTable, CircleTable, RevolveTable, ShapeKey, SphereTable};
+use super::body::{self, BoxTable, CircleTable, GroundTable, RevolveTable, ShapeKey, SphereTable};
 use super::loads;
 use super::site::MotionKey;
 use super::{Dimension as In, Range};
-
-table! {
-    /// Rigid ground below a terrain surface. The surface is a regular raster of heights with bilinear interpolation,
-    /// and is horizontal beyond the raster.
-    struct GroundTable = "terrain = { top }" {
-        /// Heights of the terrain: rows [x, y, z] in any order. A file may also be an ESRI ASCII grid.
-        top: Rows(body::HEIGHTS), Required, example(r#"{ file = "terrain.asc" }"#);
-    }
-}
 
 table! {
     /// A rigid body in frictional contact with the soil. The contact carries no tension. The motion is prescribed or

@@ -1,6 +1,5 @@
 //! Places and motions, which several tables give by the same keys.
 
-use super::Draft;
 use super::body::{BoxTable, CircleTable, SphereTable, SurfaceTable};
 use super::flow::{DrainTable, InflowTable};
 use super::loads::{DiscTable, FootingTable, FrictionalTable, PrescribedTable, TractionTable};
@@ -182,12 +181,3 @@ macro_rules! strip_table {
 
 strip_table!(FootingTable, interface);
 strip_table!(PrescribedTable, components);
-
-impl Draft {
-    /// The footing and the prescribed motions, in the order of their numbers.
-    pub(crate) fn strips(&self) -> impl Iterator<Item = StripKeys<'_>> {
-        let footing = self.footing.value().map(FootingTable::strip);
-        let prescribed = self.prescribed.items().iter();
-        footing.into_iter().chain(prescribed.map(PrescribedTable::strip))
-    }
-}

@@ -10,6 +10,7 @@ use super::loads::{
 use super::material::MaterialTable;
 use super::output::{CheckTable, HistoryTable, OutputTable, ProfileTable};
 use super::rigid::RigidTable;
+use super::site::StripKeys;
 use super::stage::StageTable;
 use super::water::WaterTable;
 use super::{Dimension as In, Kind, Range, Table};
@@ -111,6 +112,13 @@ impl Draft {
     /// Reads the whole file; errors go to `report`.
     pub(crate) fn read(document: &DocumentTable, report: &mut Report<'_>) -> Self {
         Self::from_record(record::read(ROOT, document, report))
+    }
+
+    /// The footing and the prescribed motions, in the order of their numbers.
+    pub(crate) fn strips(&self) -> impl Iterator<Item = StripKeys<'_>> {
+        let footing = self.footing.value().map(FootingTable::strip);
+        let prescribed = self.prescribed.items().iter();
+        footing.into_iter().chain(prescribed.map(PrescribedTable::strip))
     }
 }
 

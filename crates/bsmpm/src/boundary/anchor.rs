@@ -27,6 +27,19 @@ pub struct AnchorCandidates<'a, const D: usize> {
     pub F: &'a PackedTensors<D, Tensor>,
 }
 
+impl<const D: usize> Points<D> {
+    /// Returns the points as candidates for anchors of surface points.
+    pub fn anchored(&self) -> AnchorCandidates<'_, D> {
+        AnchorCandidates {
+            id: &self.id,
+            material: &self.material,
+            x: &self.x,
+            u: &self.u,
+            F: &self.F,
+        }
+    }
+}
+
 /// Material points, and the anchors of the surface points among them.
 #[derive(Clone, Copy)]
 pub struct AnchoredPoints<'a, const D: usize> {

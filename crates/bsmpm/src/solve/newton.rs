@@ -2,7 +2,8 @@
 //! Used where quasi-Newton stalls.
 
 use crate::error::{SolveError, StepError};
-use crate::field::{CoupledDirection, Field, Scales};
+use crate::field::solution::FieldSolution;
+use crate::field::{CoupledDirection, Scales};
 use crate::kinematics::Kinematics;
 use crate::linear::{Krylov, LinearSolver};
 use crate::method::Method;

@@ -1,6 +1,7 @@
 //! Quasi-Newton iteration of a step, with one factorised stiffness K_0.
 
 use crate::error::{SolveError, StepError};
+use crate::field::solution::FieldSolution;
 use crate::field::{Field, FieldBalance, FieldMatrix, Split};
 use crate::kinematics::Kinematics;
 use crate::linear::{LinearSolver, SolveReport};

@@ -4,7 +4,7 @@
 use crate::dynamics::inertia::{self, Inertia};
 use crate::dynamics::mass::Mass;
 use crate::error::StepError;
-use crate::field::{self, SecondField};
+use crate::field::{SecondField, add_forces, pore_pressure};
 use crate::grid::{Shape, transfer};
 use crate::interactions::state::InteractionState;
 use crate::interactions::{Interactions, StepContext, StepInput, StepStart};
@@ -66,7 +66,7 @@ impl<const D: usize> GridState<D> {
         let interval = input.interval;
         let mut nodes = Self::of_points(model, shape, points, interval, halo);
         let volume = nodes.volume(points);
-        let pore_pressure = field::pore_pressure(model, shape, points, volume, interval.end(), halo);
+        let pore_pressure = pore_pressure(model, shape, points, volume, interval.end(), halo);
         nodes.interactions = Interactions::begin(&StepStart {
             model,
             shape,
@@ -212,7 +212,7 @@ impl<const D: usize> GridState<D> {
     ) {
         let mut f_ext = body_force(model, shape, points, t, &self.weight, halo);
         let mapped = MappedPoints { shape, points };
-        field::add_forces(model, mapped, self.volume(points), t, &mut f_ext, halo);
+        add_forces(model, mapped, self.volume(points), t, &mut f_ext, halo);
         for interaction in self.interactions.iter() {
             let force = interaction.constant_force();
             f_ext.iter_mut().zip(force).for_each(|(all, force)| *all += force);

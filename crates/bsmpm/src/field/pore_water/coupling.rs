@@ -8,6 +8,7 @@ use crate::field::pore_water::nodes::PorePressureField;
 use crate::field::pore_water::residual::WaterBalance;
 use crate::field::pore_water::saved;
 use crate::field::pore_water::split::Split;
+use crate::field::solution::FieldSolution;
 use crate::field::{Field, FieldBalance};
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
@@ -49,6 +50,19 @@ impl<K: Kinematics<D>, const D: usize> Field<K, D> for PorePressureField<D> {
         WaterTangent::at(problem, self, trial, values)
     }
 
+    fn save(
+        &self,
+        model: &Model<K, D>,
+        trial: &DeformationIncrement<K, D>,
+        values: &[f64],
+        points: &mut Points<D>,
+        halo: &dyn Halo,
+    ) -> f64 {
+        saved::save(model, self, trial, values, points, halo)
+    }
+}
+
+impl<K: Kinematics<D>, const D: usize> FieldSolution<K, D> for PorePressureField<D> {
     fn factorise(
         &self,
         problem: &Problem<'_, K, D>,
@@ -77,17 +91,6 @@ impl<K: Kinematics<D>, const D: usize> Field<K, D> for PorePressureField<D> {
         solver: &mut dyn LinearSolver,
     ) -> Result<CoupledDirection, SolveError> {
         newton::direction(problem, self, x, residual, balance, relative, solver)
-    }
-
-    fn save(
-        &self,
-        model: &Model<K, D>,
-        trial: &DeformationIncrement<K, D>,
-        values: &[f64],
-        points: &mut Points<D>,
-        halo: &dyn Halo,
-    ) -> f64 {
-        saved::save(model, self, trial, values, points, halo)
     }
 }
 
