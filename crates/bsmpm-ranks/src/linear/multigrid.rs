@@ -140,6 +140,9 @@ impl<const D: usize, const C: usize> Level<D, C> {
     /// Adds two steps of Chebyshev's method for the residual `left` to `x`. Returns the second step, whose product with
     /// the matrix is not yet subtracted from `left`.
     fn smooth(&self, operator: Operator<'_, D, C>, left: &mut [f64], x: &mut [f64]) -> Vec<f64> {
+        // Chebyshev iteration for the eigenvalues from `lower` to `upper` (Saad, 2003, algorithm 12.1): with theta =
+        // middle, delta = half and rho_0 = delta/theta, d_0 = z_0/theta, rho_1 = 1/(2/rho_0 - rho_0) and d_1 = rho_1
+        // rho_0 d_0 + 2 rho_1/delta z_1. The products with rho_0 delta/2 and 2 rho_1/delta form both terms of d_1.
         let upper = self.bound;
         let lower = SMOOTHED * self.bound;
         let middle = 0.5 * (upper + lower);
