@@ -98,6 +98,7 @@ impl<const D: usize> LinearSolver for BorderedSolver<'_, D> {
 
     fn solve(&mut self, rhs: &[f64], solution: &mut [f64]) -> Result<SolveReport, SolveError> {
         let solved = self.solver.solve(rhs, solution)?;
+        // Woodbury: (K - C B^-1 C^T)^-1 f = w + K^-1 C (B - C^T K^-1 C)^-1 C^T w with w = K^-1 f.
         if let Some(inverse) = &self.inverse {
             let motions = inverse * DVector::from_vec(self.seen(solution));
             for (column, motion) in self.solved.iter().zip(motions.iter()) {
