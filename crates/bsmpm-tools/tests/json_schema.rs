@@ -219,3 +219,33 @@ fn the_schema_accepts_earlier_names() {
         .replace("cell = \"0.5 m\"", "cell = \"0.5 m\", order = \"linear\"");
     assert_eq!(Validator::new().fault(&earlier), None);
 }
+
+/// All parts of a schema that are objects.
+fn parts(schema: &Value) -> Vec<&Value> {
+    let below: Vec<&Value> = match schema {
+        Value::Object(keys) => keys.values().collect(),
+        Value::Array(items) => items.iter().collect(),
+        _ => Vec::new(),
+    };
+    let mut parts: Vec<&Value> = below.into_iter().flat_map(parts).collect();
+    parts.extend(schema.is_object().then_some(schema));
+    parts
+}
+
+/// Taplo 0.9.3 completes no keys of a table with `allOf` or `anyOf` beside `properties`.
+#[test]
+fn tables_with_a_required_key_have_no_conditions_beside_their_properties() {
+    let schema = Validator::new().schema;
+    let tables: Vec<&Value> = parts(&schema)
+        .into_iter()
+        .filter(|part| part.get("required").is_some() && part["properties"].is_object())
+        .collect();
+    assert!(tables.len() > 20, "{}", tables.len());
+    for table in tables {
+        assert!(
+            table.get("allOf").is_none() && table.get("anyOf").is_none(),
+            "{}",
+            table["description"]
+        );
+    }
+}

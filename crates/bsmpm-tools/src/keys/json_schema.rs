@@ -50,10 +50,14 @@ fn of_table(table: &Table) -> Value {
         }
         properties.insert(key.name.to_owned(), of_key(key));
     }
+    let mut needed: Vec<&str> = Vec::new();
     let mut conditions: Vec<Value> = Vec::new();
     let required = table.keys.iter().filter(|key| key.presence == Presence::Required);
     for key in required.filter(|key| !key.has_preset) {
-        conditions.push(one_given(&names(table, &[key.name])));
+        match key.earlier {
+            [] => needed.push(key.name),
+            _ => conditions.push(one_given(&names(table, &[key.name]))),
+        }
     }
     for group in table
         .exclusive
@@ -68,10 +72,20 @@ fn of_table(table: &Table) -> Value {
         "properties": properties,
         "additionalProperties": false,
     });
-    if !conditions.is_empty() {
-        schema["allOf"] = conditions.into();
+    let mut dependencies = dependencies(table);
+    // Taplo completes no keys of a table with conditions beside its properties. As dependencies of a required key they
+    // mean the same.
+    match needed.first() {
+        Some(first) if !conditions.is_empty() => {
+            conditions.extend(dependencies.remove(*first));
+            dependencies.insert((*first).to_owned(), json!({ "allOf": conditions }));
+        }
+        None if !conditions.is_empty() => schema["allOf"] = conditions.into(),
+        _ => {}
     }
-    let dependencies = dependencies(table);
+    if !needed.is_empty() {
+        schema["required"] = needed.into();
+    }
     if !dependencies.is_empty() {
         schema["dependencies"] = Value::Object(dependencies);
     }
