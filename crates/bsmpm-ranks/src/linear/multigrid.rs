@@ -169,8 +169,8 @@ fn subtract_product<const D: usize, const C: usize>(operator: Operator<'_, D, C>
     b.iter_mut().zip(&image).for_each(|(b, image)| *b -= image);
 }
 
-/// Estimates the largest eigenvalue of the matrix preconditioned by the patches, with a margin: by the power method from
-/// a random vector, which contains all eigenvectors.
+/// Estimates the largest eigenvalue of the matrix preconditioned by the patches, with a margin: by the power method
+/// from a random vector, which contains all eigenvectors.
 fn largest_eigenvalue<const D: usize, const C: usize>(operator: Operator<'_, D, C>, patches: &Patches) -> f64 {
     let Operator { stencil, free } = operator;
     let mut state = 1_u32;
